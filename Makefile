@@ -13,6 +13,15 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 SOURCES := pyproject.toml Cargo.toml $(shell find crates -name '*.rs' -o -name Cargo.toml -o -name '*.sdl')
 
+# The packages of the extras `test` and `view` by name: `pip install '.[test,view]'` would build the extension once more.
+define TEST_PACKAGES
+from importlib.metadata import requires
+for line in requires("moldloft"):
+    if line.replace("'", '"').endswith(('extra == "test"', 'extra == "view"')):
+        print(line.split(";")[0])
+endef
+export TEST_PACKAGES
+
 PAGE := python/moldloft/workbench/page/index.html
 PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildcard web/src/*)
 # Without Node.js everything but the workbench is there.
@@ -34,7 +43,8 @@ $(VENV)/.installed: $(SOURCES)
 
 $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
 	@echo "installing the packages that the tests need into $(VENV)"
-	@$(PIP) install --editable '.[test,view]'
+	@$(BIN)/python -c "$$TEST_PACKAGES" > $(VENV)/test-packages.txt
+	@$(PIP) install --requirement $(VENV)/test-packages.txt
 	@echo "building the language server"
 	@cargo build --quiet --release -p moldloft-lsp
 	@cp $${CARGO_TARGET_DIR:-target}/release/moldloft-lsp$(EXE) $(BIN)/

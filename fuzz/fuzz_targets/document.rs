@@ -4,13 +4,13 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use moldloft_document::{Document, Format, NoFiles, registry};
+use moldloft::document::{Document, Format, NoFiles, registry};
 
 fuzz_target!(|text: &str| {
     for name in ["fuzz.sdl", "fuzz.ms2"] {
         let mut document = Document::from_text(registry(), Box::new(NoFiles), name, text);
         for diagnostic in document.diagnostics() {
-            let _ = moldloft_diag::render(&diagnostic, document.sources());
+            let _ = moldloft::diag::render(&diagnostic, document.sources());
         }
         let _ = document.panelled();
         let _ = document.convert(Format::Sdl);

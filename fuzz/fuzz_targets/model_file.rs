@@ -2,8 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use moldloft_diag::FileId;
-use moldloft_syntax::{decode, model_file};
+use moldloft::diag::FileId;
+use moldloft::syntax::{decode, model_file};
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(text) = decode(bytes, "fuzz.ms2") else { return };

@@ -2,8 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use moldloft_diag::FileId;
-use moldloft_syntax::sdl::{format, parse};
+use moldloft::diag::FileId;
+use moldloft::syntax::sdl::{format, parse};
 
 fuzz_target!(|text: &str| {
     let Ok(once) = format(text) else { return };

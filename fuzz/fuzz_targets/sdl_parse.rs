@@ -2,12 +2,12 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use moldloft_diag::{Sources, render};
+use moldloft::diag::{Sources, render};
 
 fuzz_target!(|text: &str| {
     let mut sources = Sources::new();
     let file = sources.add("fuzz.sdl", text);
-    let (program, faults) = moldloft_syntax::sdl::parse(text, file);
+    let (program, faults) = moldloft::syntax::sdl::parse(text, file);
     for fault in &faults {
         assert!(fault.span().range().end <= text.len());
         let _ = render(fault, &sources);

@@ -4,7 +4,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use moldloft_document::{Document, NoFiles, registry};
+use moldloft::document::{Document, NoFiles, registry};
 
 const HEAD: &str = "load \"stdsubs.sdl\"\nload \"mslbody.sdl\"\nint n = 5; float x = 2; vector v = {1, 2, 3};\n\
     farray a = uniform(0, 1, 5); curve c = {a, a^2, 1 - a}; surface s[5,5];\n\
@@ -14,7 +14,7 @@ fuzz_target!(|text: &str| {
     let text = format!("{HEAD}{text}");
     let mut fused = Document::from_text(registry(), Box::new(NoFiles), "fuzz.sdl", &text);
     for diagnostic in fused.diagnostics() {
-        let _ = moldloft_diag::render(&diagnostic, fused.sources());
+        let _ = moldloft::diag::render(&diagnostic, fused.sources());
     }
     let mut plain = Document::from_text(registry(), Box::new(NoFiles), "fuzz.sdl", &text);
     plain.with_plain_operators();

@@ -345,7 +345,17 @@ class Document:
         centre: Sequence[float] | None,
         sides: str,
         by: Sequence[str],
+        accuracy: float,
+        of_weights: bool,
     ) -> list[dict[str, Any]]: ...
+    def weights(
+        self,
+    ) -> list[tuple[str, str, float, float, tuple[float, float, float], str]]: ...
+    def section_areas(
+        self, stations: Sequence[float], levels: Sequence[float], accuracy: float
+    ) -> list[list[tuple[float, float]]]: ...
+    def panel_figures(self, level: float) -> tuple[float, float, float]: ...
+    def units(self) -> list[tuple[str, float]]: ...
     def write(
         self,
         format: str,
@@ -354,6 +364,8 @@ class Document:
         immersed: bool,
         tags: Sequence[str],
         tolerance: float | None,
+        whole: bool,
+        triangles: bool,
     ) -> list[tuple[str, bytes]]: ...
     def spline_patches(
         self, tolerance: float | None, lids: bool
@@ -523,6 +535,10 @@ class Net:
     def look(self, us: NDArray[np.float64], vs: NDArray[np.float64]) -> Look: ...
     def measure(self, name: str) -> tuple[float, float]: ...
     def fair(self, options: dict[str, Any]) -> tuple[Net, dict[str, Any]]: ...
+    @staticmethod
+    def fair_data(
+        points: NDArray[np.float64], shape: tuple[int, int], options: dict[str, Any]
+    ) -> tuple[Net, Net, tuple[list[float], list[float]], dict[str, Any]]: ...
     @staticmethod
     def joined(
         nets: list[Net], keeps: str, options: dict[str, Any]

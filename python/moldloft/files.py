@@ -16,7 +16,16 @@ from moldloft.formats import formats
 if TYPE_CHECKING:
     from moldloft.models import Model
 
-__all__ = ["FORMATS", "SOLVERS", "Output", "commit", "file_name", "format_named", "produce"]
+__all__ = [
+    "FORMATS",
+    "SOLVERS",
+    "Output",
+    "commit",
+    "ending",
+    "file_name",
+    "format_named",
+    "produce",
+]
 
 FORMATS = {row.name: row.about for row in formats().values()}
 """The formats by name, with a line about each; all about them is in :mod:`moldloft.formats`."""
@@ -53,6 +62,19 @@ def file_name(stem: str, format: str) -> str:
     return _row(format).file_name(stem)
 
 
+def ending(path: Path) -> str:
+    """What the name of a file says of its format: its ending, or the format of a longer one.
+
+    >>> ending(Path("hull.gdf")), ending(Path("hull.high.gdf")), ending(Path("hull"))
+    ('gdf', 'gdf-high', '')
+    """
+    name = path.name.lower()
+    for row in formats().values():
+        if "." in row.suffix and name.endswith(f".{row.suffix}"):
+            return row.name
+    return path.suffix.lstrip(".").lower()
+
+
 def produce(
     model: Model,
     format: str,
@@ -62,21 +84,32 @@ def produce(
     immersed: bool = False,
     tags: Sequence[str] = (),
     tolerance: float | None = None,
+    whole: bool = False,
+    triangles: bool = False,
 ) -> list[Output]:
     """The files of a model in one format; ``path`` gives their names.
 
     ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`; ``tags``
-    names the patches to write, ``tolerance`` is how far fitted patches may be off.
+    names the patches to write, ``tolerance`` is how far fitted patches may be off, ``whole`` asks
+    for both sides of a symmetric model, ``triangles`` for triangles only.
     """
     row = _row(format)
     if not row.writer:
         found = model.encoded(
-            row.name, path.name, lids=lids, immersed=immersed, tags=tags, tolerance=tolerance
+            row.name,
+            path.name,
+            lids=lids,
+            immersed=immersed,
+            tags=tags,
+            tolerance=tolerance,
+            whole=whole,
+            triangles=triangles,
         )
         return [Output(name, data) for name, data in found.items()]
     given = {"lids": lids, "immersed": immersed, "tags": bool(tags), "tolerance": tolerance}
     if row.holds == "surfaces":
         del given["tolerance"]
+    given |= {"whole": whole, "triangles": triangles}
     for option, value in given.items():
         if value is not None and value is not False:
             raise Error(f"`{option}` is not for {row.name}, which takes whole surfaces")

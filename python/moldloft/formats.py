@@ -59,6 +59,14 @@ class Format:
         return f"{stem}.{self.suffix or self.name}"
 
     @property
+    def plain_panels(self) -> bool:
+        """Whether the files hold panels and cannot name planes of symmetry.
+
+        Of a symmetric model they hold one side, or the whole when it is asked for.
+        """
+        return self.holds.startswith("panels") and not self.symmetry and not self.writer
+
+    @property
     def panel_code(self) -> bool:
         """Whether a panel code reads the files."""
         return self.immersed
@@ -115,6 +123,21 @@ PYTHON_ROWS = (
         holds="surfaces",
         text=True,
         writer="moldloft.cad.dxf:encode",
+    ),
+    Format(
+        "lines-svg",
+        "the lines plan on one sheet as SVG",
+        suffix="lines.svg",
+        holds="drawing",
+        text=True,
+        writer="moldloft.lines_plan:encode_svg",
+    ),
+    Format(
+        "lines-pdf",
+        "the lines plan on one sheet as PDF",
+        suffix="lines.pdf",
+        holds="drawing",
+        writer="moldloft.lines_plan:encode_pdf",
     ),
     Format(
         "offsets",
@@ -180,6 +203,8 @@ def markdown() -> str:
     for row in formats().values():
         names = ", ".join(f"`{name}`" for name in (row.name, *row.aliases))
         options = [word for word in ("lids", "immersed") if getattr(row, word)]
+        if row.plain_panels:
+            options += ["whole", "triangles"]
         if row.holds == "surfaces":
             options.append("tolerance")
         planes = row.symmetry or "–"

@@ -7,12 +7,13 @@ import io
 import math
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft.errors import Error
+from moldloft.units import ANGLES, DIMENSIONS, Units
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,21 +38,21 @@ class Hydrostatics:
     ``"whole"`` for a model without symmetry."""
     volume: float
     """Displaced volume."""
-    displacement: float
-    """Density times volume."""
     wetted_area: float
     """Area of the skin below the water."""
     draft: float
     """Depth of the lowest point below the water."""
     open_edges: int
-    """Open panel edges below the water, not in the symmetry plane: 0 when the skin holds water."""
+    """Open edges of the skin below the water, not in the symmetry plane: 0 when it holds water."""
     closure_error: float
     """Largest difference between the volumes by x, y and z over the volume."""
     waterplane_error: float
     """Difference between the waterplane's area from the skin and from the waterline, over it."""
     outward: bool
-    """True when the panels' normals point out of the body; else the figures are those of the
-    turned mesh."""
+    """True when the skin's normals point out of the body; else the figures are those of the
+    turned skin."""
+    displacement: float | None = None
+    """Mass: density times volume; ``None`` where no density was given."""
     lcb: float | None = None
     """Centre of buoyancy, x."""
     tcb: float | None = None
@@ -68,6 +69,8 @@ class Hydrostatics:
     """Second moment of the waterplane about its longitudinal axis."""
     waterplane_il: float | None = None
     """Second moment of the waterplane about its transverse axis."""
+    waterplane_product: float | None = None
+    """Product moment of the waterplane about level axes through its centre."""
     waterline_low_x: float | None = None
     """Lowest x of the waterline."""
     waterline_high_x: float | None = None
@@ -134,7 +137,16 @@ class Hydrostatics:
     residual: float = 0.0
     """What is left of the equations of rest: volume over volume, arms over the body's diagonal."""
     stable: bool | None = None
-    """Whether small turns about the free axes are righted, for a sought attitude."""
+    """Whether all small turns are righted, free or not, for a sought attitude with a centre of
+    gravity: the stiffness in heel and trim is positive."""
+    lolls: bool = False
+    """True when the attitude where the search began is at rest but unstable, and this is the stable
+    one that the body finds beyond it: the angle of loll."""
+    bounds: dict[str, float] = field(default_factory=dict)
+    """Bounds of the errors of the main figures, by name: estimates of what quadrature and the
+    interpolation of the surfaces leave."""
+    units: Units = field(default_factory=Units)
+    """What the figures are in."""
     derivatives: dict[str, dict[str, float]] = field(default_factory=dict)
     """Exact derivatives ``[figure][parameter]``, where parameters were asked for."""
 
@@ -147,13 +159,51 @@ class Hydrostatics:
         """All figures that have a meaning, by name, in a fixed order."""
         pairs = ((field.name, getattr(self, field.name)) for field in fields(self))
         kept = {name: value for name, value in pairs if value is not None}
+        del kept["units"]
         if not self.derivatives:
             del kept["derivatives"]
         return kept
 
+    def unit(self, figure: str) -> str:
+        """The unit of a figure, empty where the model states none."""
+        return self.units.of(figure)
+
+    def converted(self, to: Units | str) -> Hydrostatics:
+        """The same in other units, such as ``"m t kN"``; dimensions that are not named stay."""
+        to = Units.parse(to) if isinstance(to, str) else to
+        changed: dict[str, Any] = {}
+        for name in DIMENSIONS:
+            value = getattr(self, name, None)
+            if value is not None:
+                changed[name] = value * self.units.factor(name, to)
+        scale = {name: self.units.factor(name, to) for name in self.bounds}
+        changed["bounds"] = {name: bound * scale[name] for name, bound in self.bounds.items()}
+        changed["derivatives"] = {
+            name: {by: x * self.units.factor(name, to) for by, x in row.items()}
+            for name, row in self.derivatives.items()
+        }
+        mine = self.units
+        changed["units"] = Units(
+            to.length or mine.length, to.mass or mine.mass, to.force or mine.force, mine.angle
+        )
+        return replace(self, **changed)
+
+
+def shown(name: str, value: Any) -> Any:
+    """A figure as tables and files have it: angles in degrees."""
+    return math.degrees(value) if name in ANGLES and value is not None else value
+
+
+def header(name: str, units: Units) -> str:
+    """The name of a figure with its unit, as headers of tables have it."""
+    unit = units.of(name)
+    return f"{name} [{unit}]" if unit else name
+
 
 _NUMBERS = [
-    f.name for f in fields(Hydrostatics) if f.name not in ("sides", "status", "derivatives")
+    f.name
+    for f in fields(Hydrostatics)
+    if f.name not in ("sides", "status", "derivatives", "bounds", "units")
 ]
 
 
@@ -165,6 +215,11 @@ class _Rows:
 
     def __init__(self, rows: Sequence[Hydrostatics]) -> None:
         self.rows = tuple(rows)
+
+    @property
+    def units(self) -> Units:
+        """What the figures are in."""
+        return self.rows[0].units if self.rows else Units()
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -199,7 +254,7 @@ class _Rows:
         return [row.as_dict() for row in self.rows]
 
     def csv(self, columns: Sequence[str] | None = None) -> str:
-        """The rows as comma-separated text (RFC 4180), a header first; angles in radians.
+        """The rows as comma-separated text (RFC 4180), units in its header; angles in degrees.
 
         Parameters
         ----------
@@ -211,9 +266,9 @@ class _Rows:
             self.column(name)
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\r\n")
-        writer.writerow(wanted)
+        writer.writerow([header(name, self.units) for name in wanted])
         for row in self.rows:
-            values = [getattr(row, name) for name in wanted]
+            values = [shown(name, getattr(row, name)) for name in wanted]
             writer.writerow(["" if v is None else repr(v) for v in values])
         return text.getvalue()
 
@@ -235,16 +290,18 @@ class HydrostaticTable(_Rows):
         """
         figure, axes = _axes(3)
         draft = self.column("draft")
-        shown = [
-            (["displacement"], "displacement (mass)"),
-            (["lcb", "lcf"], "centres along x"),
-            (["kb", "kmt"], "height over the lowest point"),
+        massive = any(row.displacement is not None for row in self.rows)
+        first = "displacement" if massive else "volume"
+        columns = [
+            ([first], header(first, self.units)),
+            (["lcb", "lcf"], header("lcb", self.units).replace("lcb", "centres along x")),
+            (["kb", "kmt"], header("kb", self.units).replace("kb", "height over the lowest point")),
         ]
-        for axis, (names, label) in zip(axes, shown, strict=True):
+        for axis, (names, label) in zip(axes, columns, strict=True):
             for name in names:
                 axis.plot(self.column(name), draft, label=name)
             axis.set_xlabel(label)
-            axis.set_ylabel("draft")
+            axis.set_ylabel(header("draft", self.units))
             axis.grid(True)
             axis.legend()
         return _save(figure, path)
@@ -306,8 +363,8 @@ class RightingCurve(_Rows):
             heels = [math.degrees(row.heel) for row in wet]
             axis.plot(heels, [row.gz for row in wet], "rx", label="open edge under water")
         axis.axhline(0, color="0.3", linewidth=0.8)
-        axis.set_xlabel("heel (degrees)")
-        axis.set_ylabel("righting arm")
+        axis.set_xlabel("heel [deg]")
+        axis.set_ylabel(header("gz", self.units).replace("gz", "righting arm GZ"))
         axis.grid(True)
         axis.legend()
         return _save(figure, path)

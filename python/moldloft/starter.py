@@ -30,3 +30,18 @@ AbsPoint post1(length, 0, 0.50);
 Line post(post1, transom3);
 RuledSurf stern(transom, post, divisions = {{12, 6}});
 """
+
+BOX = """\
+# A box 10 x 4 x 2.5 about the origin.
+AbsPoint a(-5, -2, -1); AbsPoint b(5, -2, -1); AbsPoint c(-5, 2, -1); AbsPoint d(5, 2, -1);
+AbsPoint e(-5, -2, 1.5); AbsPoint f(5, -2, 1.5); AbsPoint g(-5, 2, 1.5); AbsPoint h(5, 2, 1.5);
+Line ab(a, b); Line cd(c, d); Line ef(e, f); Line gh(g, h);
+Line ac(a, c); Line eg(e, g); Line bd(b, d); Line fh(f, h);
+RuledSurf bottom(ab, cd, orientation = 1);
+RuledSurf top(ef, gh);
+RuledSurf port(ab, ef);
+RuledSurf starboard(cd, gh, orientation = 1);
+RuledSurf bow(ac, eg, orientation = 1);
+RuledSurf stern(bd, fh);
+"""
+"""A box for examples."""

@@ -68,8 +68,8 @@ def test_both_files_are_the_same_model():
     np.testing.assert_array_equal(a.mesh().vertices, b.mesh().vertices)
     np.testing.assert_array_equal(a.mesh().faces, b.mesh().faces)
     ours, theirs = (dataclasses.asdict(m.hydrostatics()) for m in (a, b))
-    # Gravity goes by the unit of length, which the model file of 1995 does not state.
-    for name in ("weight", "tpc", "mtc"):
+    # The model file of 1995 does not state the unit of length.
+    for name in ("units",):
         del ours[name], theirs[name]
     assert ours == theirs
 
@@ -88,8 +88,8 @@ def test_the_waterline_and_the_volume():
     assert figures.volume == pytest.approx(117.45, abs=0.1)
 
 
-def test_the_volume_converges_at_second_order():
-    coarse, middle, dense = (fine(20 * k, 30 * k).hydrostatics().volume for k in (1, 2, 4))
+def test_the_volume_of_the_panels_converges_at_second_order():
+    coarse, middle, dense = (fine(20 * k, 30 * k).panel_figures()["volume"] for k in (1, 2, 4))
     rate = np.log2((middle - coarse) / (dense - middle))
     assert 1.7 < rate < 2.3
 

@@ -56,7 +56,7 @@ fn row<T: Real>(
 
 /// `n` numbers in equal steps from `start` to `end`, both included.
 #[derive(Kind)]
-#[kind(class = Numbers, function, name = "uniform", example = "farray s = uniform(0, 1, 11);")]
+#[kind(class = Numbers, function, cheap, name = "uniform", example = "farray s = uniform(0, 1, 11);")]
 pub struct Uniform<T: Real> {
     /// First number.
     start: T,
@@ -79,7 +79,7 @@ impl<T: Real> Build<T> for Uniform<T> {
 /// `n` numbers from `start` to `end`, dense at both: start + (end - start) (1 - cos pi x) / 2 for
 /// uniform x.
 #[derive(Kind)]
-#[kind(class = Numbers, function, name = "cosine", example = "farray s = cosine(0, 1, 11);")]
+#[kind(class = Numbers, function, cheap, name = "cosine", example = "farray s = cosine(0, 1, 11);")]
 pub struct Cosine<T: Real> {
     /// First number.
     start: T,

@@ -89,6 +89,7 @@ fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallErro
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "tfi",
     example = "surface s[5,4]; s[,1] = spread_i(uniform(0, 1, 5), 1)[,1] * {1, 0, 0}; \
                s[,4] = s[,1] + {0, 1, 0}; s[1,] = uniform(0, 1, 4) * {0, 1, 0}; \

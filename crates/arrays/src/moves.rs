@@ -17,6 +17,7 @@ fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, CallError> 
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "translate",
     example = "vector p = translate({1, 0, 0}, {0, 2, 0}); assert p.y == 2;"
 )]
@@ -39,6 +40,7 @@ impl<T: Scalar> Build<T> for Translate<T> {
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "scale",
     example = "vector p = scale({1, 2, 3}, {1, 1, 2}); assert p.z == 6;"
 )]
@@ -65,6 +67,7 @@ impl<T: Scalar> Build<T> for Scale<T> {
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "mirror",
     example = "vector p = mirror({1, 2, 3}, {0, 0, 0}, {0, 1, 0}); assert p.y == -2;"
 )]
@@ -92,6 +95,7 @@ impl<T: Scalar> Build<T> for Mirror<T> {
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "rotate",
     example = "vector p = rotate({1, 0, 0}, {0, 0, 1}, 1.5707963267948966); \
                assert |p - {0, 1, 0}| < 1e-15; \

@@ -21,7 +21,7 @@ fn steps<T: Real>(points: &[Vec3<T>]) -> impl Iterator<Item = T> + '_ {
 
 /// The product of all numbers of an array.
 #[derive(Kind)]
-#[kind(class = Number, function, name = "prod", example = "assert prod(list(2, 3, 4)) == 24;")]
+#[kind(class = Number, function, cheap, name = "prod", example = "assert prod(list(2, 3, 4)) == 24;")]
 pub struct Prod<T: Scalar> {
     /// The numbers.
     a: Farray<T>,
@@ -47,7 +47,7 @@ fn position<T: Real>(
 
 /// The index, from 1, of the least number of a row; of equal ones the first.
 #[derive(Kind)]
-#[kind(class = Number, function, name = "argmin", example = "assert argmin(list(3, 1, 2)) == 2;")]
+#[kind(class = Number, function, cheap, name = "argmin", example = "assert argmin(list(3, 1, 2)) == 2;")]
 pub struct Argmin<T: Scalar> {
     /// The row.
     a: Farray<T>,
@@ -61,7 +61,7 @@ impl<T: Scalar> Build<T> for Argmin<T> {
 
 /// The index, from 1, of the greatest number of a row; of equal ones the first.
 #[derive(Kind)]
-#[kind(class = Number, function, name = "argmax", example = "assert argmax(list(3, 1, 4)) == 3;")]
+#[kind(class = Number, function, cheap, name = "argmax", example = "assert argmax(list(3, 1, 4)) == 3;")]
 pub struct Argmax<T: Scalar> {
     /// The row.
     a: Farray<T>,
@@ -80,6 +80,7 @@ impl<T: Scalar> Build<T> for Argmax<T> {
 #[kind(
     class = Number,
     function,
+    cheap,
     name = "dot",
     example = "assert dot(list(1, 2, 3, 4), list(1, 0, 1, 0)) == 4;"
 )]
@@ -107,7 +108,7 @@ impl<T: Scalar> Build<T> for Dot<T> {
 
 /// The root of the sum of squares of an array of numbers, or of the coordinates of vectors.
 #[derive(Kind)]
-#[kind(class = Number, function, name = "norm", example = "assert norm(list(3, 4)) == 5;")]
+#[kind(class = Number, function, cheap, name = "norm", example = "assert norm(list(3, 4)) == 5;")]
 pub struct Norm<T: Scalar> {
     /// Numbers, or vectors.
     a: Value<T>,
@@ -135,6 +136,7 @@ impl<T: Scalar> Build<T> for Norm<T> {
 #[kind(
     class = Number,
     function,
+    cheap,
     name = "len",
     example = "assert len(points({0, 0, 0}, {3, 4, 0}, {3, 4, 1})) == 6;"
 )]
@@ -154,6 +156,7 @@ impl<T: Scalar> Build<T> for Len<T> {
 #[kind(
     class = Numbers,
     function,
+    cheap,
     name = "cumlen",
     example = "farray s = cumlen(points({0, 0, 0}, {3, 4, 0}, {3, 4, 1})); assert s[2] == 5;"
 )]
@@ -184,6 +187,7 @@ impl<T: Scalar> Build<T> for Cumlen<T> {
 #[kind(
     class = Vector,
     function,
+    cheap,
     name = "centroid",
     example = "assert |centroid(points({0, 0, 0}, {1, 0, 0}, {3, 0, 0})) - {1.5, 0, 0}| < 1e-15;"
 )]
@@ -250,6 +254,7 @@ fn corner<T: Real>(
 #[kind(
     class = Vector,
     function,
+    cheap,
     name = "bbox_min",
     example = "assert |bbox_min(points({0, 5, 0}, {1, 2, -3})) - {0, 2, -3}| == 0;"
 )]
@@ -269,6 +274,7 @@ impl<T: Scalar> Build<T> for BboxMin<T> {
 #[kind(
     class = Vector,
     function,
+    cheap,
     name = "bbox_max",
     example = "assert |bbox_max(points({0, 5, 0}, {1, 2, -3})) - {1, 5, 0}| == 0;"
 )]

@@ -12,6 +12,7 @@ use moldloft_registry::{
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "reverse",
     example = "farray a = reverse(list(1, 2, 3)); assert a[1] == 3;"
 )]
@@ -45,6 +46,7 @@ impl<T: Scalar> Build<T> for Reverse<T> {
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "swap",
     example = "surface s[2,3]; surface t = swap(s); assert t.d1 == 3;"
 )]
@@ -79,6 +81,7 @@ const SAME: f64 = 1e-12;
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "join",
     example = "curve c = join(points({0, 0, 0}, {1, 0, 0}), points({1, 0, 0}, {1, 1, 0})); \
                assert c.d1 == 3; farray a = join(list(1, 2), list(3, 4)); assert a.d1 == 4;"
@@ -142,6 +145,7 @@ fn row_of<T: Real>(a: &Items<T>, field: FieldId) -> Result<usize, CallError> {
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "spread_i",
     example = "surface s[3,5]; s = spread_i(list(1, 2, 3), 5) * {0, 1, 0}; assert s[3,4].y == 3;"
 )]
@@ -166,6 +170,7 @@ impl<T: Scalar> Build<T> for SpreadI<T> {
 #[kind(
     class = Any,
     function,
+    cheap,
     name = "spread_j",
     example = "surface s = spread_j(points({0, 0, 0}, {1, 0, 0}), 4); assert s.d1 == 4;"
 )]
@@ -202,6 +207,7 @@ fn grid(m: usize, n: usize, field: FieldId) -> Result<(), CallError> {
 #[kind(
     class = Numbers,
     function,
+    cheap,
     name = "list",
     example = "farray a = list(1, 4, 9); assert a.d1 == 3;"
 )]
@@ -222,6 +228,7 @@ impl<T: Scalar> Build<T> for List<T> {
 #[kind(
     class = Vectors,
     function,
+    cheap,
     name = "points",
     example = "curve c = points({0, 0, 0}, {1, 2, 0}); assert c[2].y == 2;"
 )]
@@ -242,6 +249,7 @@ impl<T: Scalar> Build<T> for PointsOf<T> {
 #[kind(
     class = Vectors,
     function,
+    cheap,
     name = "stack",
     example = "surface s = stack(points({0, 0, 0}, {1, 0, 0}), points({0, 1, 0}, {1, 1, 0})); \
                assert s[2,1].y == 1;"
@@ -290,7 +298,7 @@ fn extents<T: Scalar>(a: &Value<T>, field: FieldId) -> Result<ArrayShape, CallEr
 
 /// The first extent of an array: as a.d1, of any expression.
 #[derive(Kind)]
-#[kind(class = Number, function, name = "d1", example = "assert d1(uniform(0, 1, 7)) == 7;")]
+#[kind(class = Number, function, cheap, name = "d1", example = "assert d1(uniform(0, 1, 7)) == 7;")]
 pub struct D1<T: Scalar> {
     /// The array.
     a: Value<T>,
@@ -308,6 +316,7 @@ impl<T: Scalar> Build<T> for D1<T> {
 #[kind(
     class = Number,
     function,
+    cheap,
     name = "d2",
     example = "assert d2(spread_i(uniform(0, 1, 7), 3)) == 3;"
 )]

@@ -32,6 +32,7 @@ pub struct Document {
     pub(crate) plain: Evaluation<f64>,
     pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
     pub(crate) panelled: Option<(u64, Arc<Panelled>)>,
+    pub(crate) bodied: Option<Arc<crate::measures::bodied::Bodied>>,
     pub(crate) blocked: Option<(u64, Arc<crate::measures::blocks::Blocked>)>,
     /// The counts of divisions at the text's own values, and the version of the text.
     nominal: Option<(u64, Nominal)>,
@@ -115,6 +116,7 @@ impl Document {
             plain: Evaluation::default(),
             dual: None,
             panelled: None,
+            bodied: None,
             blocked: None,
             nominal: None,
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },
@@ -234,6 +236,7 @@ impl Document {
         if report {
             found.extend(self.failures(evaluation));
             found.extend(self.remarks(evaluation));
+            found.extend(self.doubled(evaluation));
             self.run_diagnostics = found;
         }
         applied
@@ -286,6 +289,61 @@ impl Document {
     }
 
     /// The warnings of objects that the user should know something of.
+    /// Surfaces that are shown together with their mirror image in a plane in which the model is mirrored anyway.
+    fn doubled<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
+        let letters = match &self.source {
+            Source::ModelFile(source) => source.symmetry(),
+            _ => moldloft_lang::model_file::header::text(&evaluation.graph, "symmetry"),
+        };
+        let mut found = Vec::new();
+        if letters.is_empty() {
+            return found;
+        }
+        let surface = |object: &moldloft_model::Object<T>| match object.value() {
+            Some(Value::Surface(surface)) => Some(surface.clone()),
+            _ => None,
+        };
+        for image in evaluation.graph.objects().filter(|o| o.head.shown()) {
+            let Some((key, true)) = surface(image).and_then(|s| s.image_of()) else { continue };
+            let Some(original) = evaluation.graph.get(key).filter(|o| o.head.shown()) else {
+                continue;
+            };
+            let (Some(a), Some(b)) = (surface(original), surface(image)) else { continue };
+            let places = [(0.21, 0.33), (0.5, 0.71), (0.87, 0.12)];
+            let at = |s: &moldloft_registry::SurfaceRef<T>| {
+                places.map(|(u, v)| s.jet(u.into(), v.into(), moldloft_num::Order::Zero).p.re())
+            };
+            let (p, q) = (at(&a), at(&b));
+            let size = p.iter().fold(0.0f64, |m, p| m.max(p.norm()));
+            let mirrored = |axis: usize| {
+                p.iter().zip(&q).all(|(p, q)| {
+                    let mut p = p.to_array();
+                    p[axis] = -p[axis];
+                    moldloft_num::Vec3::from(p).distance(*q) <= 1e-9 * size
+                })
+            };
+            let axes = (0..3).filter(|&k| letters.contains(['x', 'y', 'z'][k]));
+            let Some(axis) = axes.into_iter().find(|&k| mirrored(k)) else { continue };
+            let plane = ["x = 0", "y = 0", "z = 0"][axis];
+            let message = format!(
+                "`{}` is the mirror image of `{}` in {plane}, in which the model is mirrored anyway: \
+                 it would count twice",
+                image.name, original.name
+            );
+            let mut diagnostic = Diagnostic::error("mirrored-twice", message)
+                .help(format!("hide `{}` (visible = 0), or leave the symmetry out", image.name))
+                .object(&*image.name);
+            if let Some(span) = self.declared_at(evaluation, image) {
+                diagnostic = diagnostic.at(span);
+            }
+            if let Some(span) = self.declared_at(evaluation, original) {
+                diagnostic = diagnostic.note_at(span, "the original");
+            }
+            found.push(diagnostic);
+        }
+        found
+    }
+
     pub(crate) fn remarks<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.remarked() == 0 {
             return Vec::new();
@@ -363,7 +421,8 @@ impl Document {
         all
     }
 
-    /// Corners of patches that lie on open edges of others without being joined to them, for checks.
+    /// Edges of patches that lie in one place, and corners on open edges of others, that are not joined:
+    /// errors, for checks.
     ///
     /// # Errors
     /// When there would be too many panels.
@@ -374,8 +433,8 @@ impl Document {
     }
 
     fn told(&self, remark: &moldloft_panel::PanelNote) -> Diagnostic {
-        let mut diagnostic =
-            Diagnostic::warning(remark.id(), remark.to_string()).help(remark.help());
+        let severity = if remark.is_error() { Diagnostic::error } else { Diagnostic::warning };
+        let mut diagnostic = severity(remark.id(), remark.to_string()).help(remark.help());
         let object =
             remark.object().and_then(|name| self.plain.graph.get(self.plain.graph.find(name)?));
         if let Some(object) = object {
@@ -506,6 +565,14 @@ impl Document {
         match &self.source {
             Source::ModelFile(source) => source.symmetry(),
             _ => moldloft_lang::model_file::header::symmetry(&self.plain.graph),
+        }
+    }
+
+    /// The units that the model states, such as "m t".
+    pub fn units(&self) -> String {
+        match &self.source {
+            Source::ModelFile(source) => source.units(),
+            _ => moldloft_lang::model_file::header::text(&self.plain.graph, "units"),
         }
     }
 

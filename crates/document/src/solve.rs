@@ -18,7 +18,7 @@ use crate::document::Document;
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_lang::SolveStatus;
-use moldloft_num::Dual4;
+use moldloft_num::{Dual4, solve_pivoting_fully};
 use std::collections::HashSet;
 
 /// The report on a solve set.
@@ -53,9 +53,6 @@ const ROUNDED_STEP: f64 = 1e-7;
 
 /// A step is halved at most that many times.
 const HALVINGS: usize = 24;
-
-/// Pivots below this share of the largest are zero.
-const NO_PIVOT: f64 = 1e-11;
 
 impl Document {
     /// The reports on the solve sets of the last run, in order.
@@ -199,7 +196,7 @@ impl Document {
                 let largest = |row: &Vec<f64>| row.iter().fold(0.0f64, |m, d| m.max(d.abs()));
                 scaled.iter().map(|row| 1.0 / largest(row).max(f64::MIN_POSITIVE.sqrt())).collect()
             });
-            let Some(step) = solved(&scaled, &r) else {
+            let Some(step) = solve_pivoting_fully(&scaled, &r) else {
                 report.status = SolveStatus::Singular;
                 break;
             };
@@ -312,7 +309,7 @@ impl Document {
                 if by.iter().all(|d| *d == 0.0) {
                     continue;
                 }
-                let Some(change) = solved(&report.jacobian, &by) else { continue };
+                let Some(change) = solve_pivoting_fully(&report.jacobian, &by) else { continue };
                 for (name, change) in report.unknowns.iter().zip(change) {
                     if let Some(x) = known.get_mut(name) {
                         x.eps[k] = -change;
@@ -376,62 +373,5 @@ impl Solved {
     fn without_effect(&self) -> Option<&str> {
         let still = |j: &usize| self.jacobian.iter().all(|row| row[*j] == 0.0);
         (0..self.unknowns.len()).find(still).map(|j| self.unknowns[j].as_str())
-    }
-}
-
-/// The solution of a small system, by elimination with full pivoting on rows of equal size; `None`
-/// when it is singular.
-fn solved(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
-    let n = right.len();
-    let mut a: Vec<Vec<f64>> = Vec::with_capacity(n);
-    for (row, b) in matrix.iter().zip(right) {
-        let size = row.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        if size == 0.0 || !size.is_finite() {
-            return None;
-        }
-        a.push(row.iter().chain([b]).map(|x| x / size).collect());
-    }
-    let mut columns: Vec<usize> = (0..n).collect();
-    for k in 0..n {
-        let places = (k..n).flat_map(|i| (k..n).map(move |j| (i, j)));
-        let (i, j) = places.fold((k, k), |best, at| {
-            if a[at.0][at.1].abs() > a[best.0][best.1].abs() { at } else { best }
-        });
-        // Written so that NaN is refused.
-        let sound = a[i][j].abs() > NO_PIVOT;
-        if !sound {
-            return None;
-        }
-        a.swap(k, i);
-        columns.swap(k, j);
-        a.iter_mut().for_each(|row| row.swap(k, j));
-        let pivot = a[k].clone();
-        for row in &mut a[k + 1..] {
-            let factor = row[k] / pivot[k];
-            for (x, p) in row[k..].iter_mut().zip(&pivot[k..]) {
-                *x -= factor * p;
-            }
-        }
-    }
-    let mut x = vec![0.0; n];
-    for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|j| a[k][j] * x[columns[j]]).sum();
-        x[columns[k]] = (a[k][n] - known) / a[k][k];
-    }
-    Some(x)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::solved;
-
-    #[test]
-    fn small_systems() {
-        let a = vec![vec![0.0, 2e6, 1e6], vec![1.0, 1.0, 0.0], vec![0.0, 1e-5, 3e-5]];
-        let x = solved(&a, &[8e6, 3.0, 7e-5]).unwrap();
-        let expected = [-0.4, 3.4, 1.2];
-        assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
-        assert_eq!(solved(&[vec![1.0, 2.0], vec![2.0, 4.0]], &[1.0, 2.0]), None);
-        assert_eq!(solved(&[vec![0.0]], &[1.0]), None);
     }
 }

@@ -2,7 +2,7 @@
 //! table ask of it.
 
 use crate::formats::Encoder;
-use crate::{Format, Holds, length_unit};
+use crate::{Format, Holds, Symmetry, length_unit};
 use moldloft_diag::Diagnostic;
 use moldloft_document::{Document, Panelled, PatchFields};
 use moldloft_io::vtk::{self, NamedFile};
@@ -21,6 +21,10 @@ pub struct WriteOptions {
     pub immersed: bool,
     /// Only patches with one of these tags; all when there are none.
     pub tags: Vec<String>,
+    /// Both sides of a symmetric model, joined in its planes, where files cannot name these planes.
+    pub whole: bool,
+    /// Triangles only.
+    pub triangles: bool,
     /// How far fitted spline patches may be off; 1e-5 of the model's diagonal by default.
     pub tolerance: Option<f64>,
 }
@@ -92,6 +96,14 @@ fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnos
     if options.tolerance.is_some() && format.holds != Holds::Surfaces {
         let takers = names(|f| f.holds == Holds::Surfaces);
         return error(format!("a tolerance is for fitted patches, {takers}"));
+    }
+    let of_panels = matches!(format.holds, Holds::Panels | Holds::PanelsAndLines);
+    if (options.whole || options.triangles) && !(of_panels && format.symmetry == Symmetry::None) {
+        let option = if options.whole { "whole" } else { "triangles" };
+        let meshes = names(|f| {
+            matches!(f.holds, Holds::Panels | Holds::PanelsAndLines) && f.symmetry == Symmetry::None
+        });
+        return error(format!("`{option}` is for files of plain panels, {meshes}"));
     }
     let whole = matches!(format.holds, Holds::Surfaces | Holds::Volumes);
     if whole && (options.immersed || !options.tags.is_empty()) {
@@ -232,7 +244,18 @@ impl Export<'_> {
     /// them.
     pub fn panels(&mut self) -> Result<Panels, Failure> {
         let whole = self.document.panelled()?;
-        let part = tagged(&whole.mesh, &self.options.tags)?;
+        let mut part = tagged(&whole.mesh, &self.options.tags)?;
+        if self.options.whole {
+            let letters = self.document.symmetry();
+            for axis in (0..3).filter(|&k| letters.contains(['x', 'y', 'z'][k])) {
+                let suffix = [".mirror_x", ".mirror_y", ".mirror_z"][axis];
+                let both = part.as_ref().unwrap_or(&whole.mesh).with_mirror_image(axis, suffix);
+                part = Some(both.map_err(|e| Diagnostic::error("too-large", e.to_string()))?);
+            }
+        }
+        if self.options.triangles {
+            part = Some(part.as_ref().unwrap_or(&whole.mesh).triangulated());
+        }
         if self.format.holds != Holds::PanelsAndLines {
             self.lines_and_points().refused(self.format.name)?;
         }

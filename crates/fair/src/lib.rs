@@ -116,6 +116,9 @@ pub use interrogate::report::{Mode, Numbers, Report, data_report, numbers, repor
 pub use interrogate::{shape, surface};
 pub use kinds::rows;
 pub use measure::{Measure, Norm, value};
+pub use net::grid::{
+    GridData, GridFit, MovingGrid, fair_grid, fair_grid_with, grid_parameters, grid_spacing,
+};
 pub use net::network;
 pub use net::network::{Network, NetworkCurve, NetworkMode, NetworkReport};
 pub use net::patches::{Edge, PatchNet, Seam};

@@ -1,7 +1,7 @@
 //! What can be wrong with a grid, with the place.
 
 use crate::Edge;
-use crate::MarchFailure;
+use crate::marching::outcome::MarchFailure;
 use std::fmt;
 
 /// A corner of a grid.

@@ -13,6 +13,9 @@
 //! | 3MF | [`threemf::write`] | – |
 //! | Wavefront OBJ | [`obj::write`] | [`obj::read`] |
 //! | OFF | [`off::write`] | – |
+//! | Gmsh | [`msh::write`] | – |
+//! | SU2 | [`su2::write`] | – |
+//! | STL, text | [`stl::write_text`] | [`stl::read`] |
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`], [`vtk::grid_files`] | – |
 //! | Plot3D, all variants | [`plot3d::write`], [`plot3d::write_mesh`], [`plot3d::write_blocks`] | [`plot3d::read`] |
 //! | points in text | [`points::write`], [`points::write_csv`] | [`points::read`] |
@@ -43,7 +46,9 @@ pub mod gltf;
 pub mod hams;
 pub mod hydrostar;
 pub mod iges;
+pub mod msh;
 pub mod nemoh;
+mod numbered;
 pub mod obj;
 pub mod off;
 pub mod plot3d;
@@ -52,6 +57,7 @@ pub mod points;
 pub mod section;
 pub mod step;
 pub mod stl;
+pub mod su2;
 pub mod threemf;
 pub mod vtk;
 

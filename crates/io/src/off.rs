@@ -2,6 +2,7 @@
 
 use crate::WriteError;
 use crate::error::check_positions;
+use crate::numbered::used_vertices;
 use crate::text::{put, real};
 use moldloft_mesh::{Mesh, is_triangle};
 
@@ -11,17 +12,9 @@ use moldloft_mesh::{Mesh, is_triangle};
 /// Positions that are not finite.
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
-    let mut used = vec![false; mesh.positions().len()];
-    mesh.faces().iter().flatten().for_each(|&v| used[v as usize] = true);
-    // Vertices of no face may hold anything, so they are left out.
-    let mut number = vec![0; used.len()];
-    let mut count = 0;
-    for (v, _) in used.iter().enumerate().filter(|(_, used)| **used) {
-        number[v] = count;
-        count += 1;
-    }
-    let mut out = format!("OFF\n{count} {} 0\n", mesh.faces().len());
-    for (p, _) in mesh.positions().iter().zip(&used).filter(|(_, used)| **used) {
+    let (points, number) = used_vertices(mesh);
+    let mut out = format!("OFF\n{} {} 0\n", points.len(), mesh.faces().len());
+    for p in &points {
         let [x, y, z] = p.to_array().map(real);
         put!(out, "{x} {y} {z}\n");
     }

@@ -8,12 +8,16 @@ use crate::error::check_positions;
 use crate::text::{put, word};
 use moldloft_mesh::{Mesh, is_triangle};
 
-/// The file. Quads stay quads.
+/// The file. Quads stay quads where there are no triangles: common readers (trimesh 5, gmsh 4.15) refuse a binary
+/// list of faces of different lengths.
 ///
 /// # Errors
 /// Positions that are not finite; more than 2^31 - 1 vertices.
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
+    let triangles = mesh.faces().iter().filter(|f| is_triangle(**f)).count();
+    let split = (triangles > 0 && triangles < mesh.faces().len()).then(|| mesh.triangulated());
+    let mesh = split.as_ref().unwrap_or(mesh);
     let mut used = vec![false; mesh.positions().len()];
     mesh.faces().iter().flatten().for_each(|&v| used[v as usize] = true);
     let mut number = vec![0i32; used.len()];

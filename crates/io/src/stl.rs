@@ -1,10 +1,12 @@
-//! STL: triangles, in binary (written and read) or text (read).
+//! STL: triangles, in binary or text, both written and read.
+//!
+//! Text has a solid for each patch, named as it: mesh generators take regions of the boundary from them.
 //!
 //! Binary: 80 bytes of anything, a count, then per triangle its normal, three corners (single
 //! precision, little endian) and two unused bytes (3D Systems 1989, Appendix).
 
 use crate::error::check_positions;
-use crate::text::{Line, quoted, utf8};
+use crate::text::{Line, put, quoted, real, utf8, word};
 use crate::{Place, ReadError, StructuredGrid, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::Vec3;
@@ -47,6 +49,38 @@ pub fn write(mesh: &Mesh, name: &str) -> Result<Vec<u8>, WriteError> {
         u32::try_from(count).map_err(|_| WriteError::TooLarge { what: "triangles", count })?;
     out[80..HEADER].copy_from_slice(&number.to_le_bytes());
     Ok(out)
+}
+
+/// The text file, a solid for each patch with faces, its name without blanks. Coordinates are the shortest decimals of
+/// double precision, so that neighbours agree to the bit.
+///
+/// # Errors
+/// Positions that are not finite.
+pub fn write_text(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
+    check_positions(mesh, f64::MAX)?;
+    let triangles = mesh.triangulated();
+    let mut out = String::new();
+    for patch in triangles.patches().iter().filter(|p| !p.faces.is_empty()) {
+        let name = word(&patch.info.name);
+        put!(out, "solid {name}\n");
+        for &[a, b, c, _] in &triangles.faces()[patch.faces.clone()] {
+            let corners = [a, b, c].map(|v| triangles.positions()[v as usize]);
+            let [p, q, r] = corners;
+            if p == q || q == r || r == p {
+                continue;
+            }
+            let normal = (q - p).cross(r - p).normalized().unwrap_or_default();
+            let [x, y, z] = normal.to_array().map(|x| real(f64::from(x as f32)));
+            put!(out, "facet normal {x} {y} {z}\n outer loop\n");
+            for p in corners {
+                let [x, y, z] = p.to_array().map(real);
+                put!(out, "  vertex {x} {y} {z}\n");
+            }
+            out.push_str(" endloop\nendfacet\n");
+        }
+        put!(out, "endsolid {name}\n");
+    }
+    Ok(out.into_bytes())
 }
 
 /// The triangles, corners at equal positions made one vertex; those without area by that rule are
@@ -186,6 +220,20 @@ mod tests {
         assert!((measure(&back).area - area).abs() < 1e-6);
         let far = Mesh::new(mesh.topology().clone(), vec![Vec3::of(1e39, 0.0, 0.0); 9]).unwrap();
         assert!(matches!(write(&far, ""), Err(WriteError::NotFinite { vertex: 0, .. })));
+    }
+
+    #[test]
+    fn text_has_a_solid_for_each_patch() {
+        let mesh = two_patches();
+        let bytes = write_text(&mesh).unwrap();
+        let text = std::str::from_utf8(&bytes).unwrap();
+        let solids: Vec<&str> = text.lines().filter(|l| l.starts_with("solid ")).collect();
+        let names: Vec<String> =
+            mesh.patches().iter().map(|p| format!("solid {}", word(&p.info.name))).collect();
+        assert_eq!(solids, names);
+        let (back, area) = (read(&bytes).unwrap(), measure(&mesh.triangulated()).area);
+        assert_eq!((back.faces().len(), back.positions().len()), (7, 9));
+        assert!((measure(&back).area - area).abs() < 1e-15);
     }
 
     #[test]

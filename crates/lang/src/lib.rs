@@ -29,5 +29,7 @@ pub fn registry() -> Registry {
     let rows = moldloft_relational::rows().into_iter().chain(moldloft_fair::rows());
     let rows = rows.chain(moldloft_field::rows()).chain(moldloft_sketch::entity::rows());
     let rows = rows.chain(moldloft_arrays::rows());
-    Registry::new(rows.chain(functions::elementary::rows()).chain(model_file::header::rows()))
+    let own =
+        [model_file::header::row(), run::solve_set::row()].into_iter().chain(run::weight::rows());
+    Registry::new(rows.chain(functions::elementary::rows()).chain(own))
 }

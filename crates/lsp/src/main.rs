@@ -2,7 +2,7 @@
 //!
 //! `frames of JSON -> Server -> analysis of the text -> frames of JSON`
 //!
-//! Every open text is a [`moldloft_document::Document`] that is run at each change, without writing any
+//! Every open text is a [`moldloft::document::Document`] that is run at each change, without writing any
 //! file, on a thread of its own; all answers come from there. A change stops the run under way, and one
 //! that does not come to an end soon is stopped and reported.
 

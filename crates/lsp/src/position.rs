@@ -1,6 +1,6 @@
 //! Places: bytes of a text, and the protocol's lines and UTF-16 units, both from 0.
 
-use moldloft_diag::Span;
+use moldloft::diag::Span;
 use serde_json::{Value, json};
 
 /// The byte of a position; past the end of a line is its end, past the last line the text's end.

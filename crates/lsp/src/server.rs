@@ -1,10 +1,10 @@
 //! What the server answers.
 
 use crate::position::{offset, position, range};
-use moldloft_diag::{DiagnosticData, LabelData, Severity};
-use moldloft_document::{CompletionKind, Document, NoFiles, World};
-use moldloft_host::FileWorld;
-use moldloft_lang::LIBRARIES;
+use moldloft::diag::{DiagnosticData, LabelData, Severity};
+use moldloft::document::{CompletionKind, Document, NoFiles, World};
+use moldloft::host::FileWorld;
+use moldloft::lang::LIBRARIES;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
@@ -403,7 +403,7 @@ impl Server {
         };
         let text = &open.text;
         if method == "textDocument/formatting" {
-            return match moldloft_syntax::sdl::format(text) {
+            return match moldloft::syntax::sdl::format(text) {
                 Ok(new) if new == *text => Ok(json!([])),
                 Ok(new) => {
                     let whole =
@@ -592,7 +592,7 @@ fn opened(uri: &str, text: &str, cancel: Arc<AtomicBool>) -> Document {
         }
         None => (Box::new(NoFiles), uri.to_string()),
     };
-    Document::watched(moldloft_document::registry(), world, (&name, text), cancel)
+    Document::watched(moldloft::document::registry(), world, (&name, text), cancel)
 }
 
 /// The path of a file address.

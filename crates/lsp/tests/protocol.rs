@@ -182,8 +182,8 @@ fn a_session() {
     for (new, says) in [
         ("1x", "is not a valid name"),
         ("for", "is not a valid name"),
-        ("x", "means something"),
-        ("sqrt", "means something"),
+        ("x", "is already in use"),
+        ("sqrt", "is already in use"),
     ] {
         let ask = json!({"textDocument": id, "position": place, "newName": new});
         let answer = client.answer("textDocument/rename", ask);

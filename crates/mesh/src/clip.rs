@@ -1,6 +1,6 @@
 //! Panels cut at the water.
 
-use crate::{Mesh, MeshError, Panel, TopologyBuilder};
+use crate::{Mesh, MeshError, Panel, Tag, TopologyBuilder};
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 
@@ -78,7 +78,7 @@ pub(crate) fn below<T: Real>(panel: &Panel<T>, level: T) -> Option<Cut<T>> {
 
 impl<T: Real> Mesh<T> {
     /// The part of the mesh below `z = level`, its cut sides sharing their new vertices by identity;
-    /// open along the cut. Panels in the level are left out. Patches keep their names, those that
+    /// open along the cut. Panels in the level are left out, but for those of lids. Patches keep their names, those that
     /// are cut lose their grids; patches that are wholly above stay, empty.
     ///
     /// # Errors
@@ -93,10 +93,11 @@ impl<T: Real> Mesh<T> {
         for patch in self.patches() {
             let mut faces = Vec::new();
             let mut whole = true;
+            let is_lid = patch.info.tag == Tag::Lid;
             for &face in &self.faces()[patch.faces.clone()] {
                 let corners = if crate::is_triangle(face) { 3 } else { 4 };
                 if face[..corners].iter().all(|&v| z(v) <= c) {
-                    if face[..corners].iter().any(|&v| z(v) < c) {
+                    if is_lid || face[..corners].iter().any(|&v| z(v) < c) {
                         faces.push(face);
                     } else {
                         whole = false;

@@ -336,16 +336,24 @@ pub fn hydrostatics<T: Real>(mesh: &Mesh<T>, options: FloatOptions<T>) -> Hydros
 }
 
 /// The faces of the patches that bound the body.
-pub(crate) fn skin_of<T: Real>(mesh: &Mesh<T>) -> Vec<usize> {
+fn skin_of<T: Real>(mesh: &Mesh<T>) -> Vec<usize> {
     let skin = mesh.patches().iter().filter(|p| p.info.tag.is_skin());
     skin.flat_map(|p| p.faces.clone()).collect()
 }
 
-/// The volume below the water, of what the mesh shows, and its first moments about `origin`, whose z
-/// is the level; both negative where the panels' normals point inward.
-pub(crate) fn displaced<T: Real>(mesh: &Mesh<T>, skin: &[usize], origin: Vec3<T>) -> (T, Vec3<T>) {
-    let sums = integrals(mesh, skin, origin);
-    (sums.forms[2], sums.moment)
+impl<T: Real> Mesh<T> {
+    /// The faces of the patches that bound the body: all but lids, water and symmetry planes.
+    pub fn skin_faces(&self) -> Vec<usize> {
+        skin_of(self)
+    }
+
+    /// The open edges of these patches: the patch, and a pair of vertices.
+    pub fn open_skin_edges(&self) -> Vec<(usize, [u32; 2])> {
+        let sides = half_edges(self.topology());
+        let skin = |face: usize| self.patches()[self.topology().patch_of(face)].info.tag.is_skin();
+        let open = edges(&sides).filter(|e| e.len() == 1 && skin(e[0].face()));
+        open.map(|e| (self.topology().patch_of(e[0].face()), [e[0].from, e[0].to])).collect()
+    }
 }
 
 /// The integrals below the water; `origin` is (x0, y0, level).

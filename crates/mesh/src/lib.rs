@@ -27,10 +27,8 @@
 //! Invariant: this crate knows vertices by number only, never by the entity they came from; it opens
 //! no files. Sums run over fixed chunks in fixed order, so their bits do not depend on threads.
 
-mod afloat;
 mod clip;
 mod closure;
-mod equilibrium;
 mod error;
 mod half_edge;
 mod hydrostatics;
@@ -47,9 +45,7 @@ mod topology;
 mod triangulate;
 mod volume;
 
-pub use afloat::{Afloat, Attitude, Water, afloat, bottom};
 pub use closure::{Closes, Closure, EdgeName, OpenEdge, closure};
-pub use equilibrium::{FloatError, Loading, Solved, Status, equilibrium};
 pub use error::MeshError;
 pub use hydrostatics::{
     FloatOptions, FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane, hydrostatics,

@@ -1,5 +1,6 @@
 //! One panel as a bilinear patch or a triangle: centre, area, volume of its cone, quadrature.
 
+use moldloft_num::GAUSS_2_UNIT;
 use moldloft_num::{Real, Vec3};
 
 /// The corners of one panel: the bilinear patch between four points, or a plane triangle.
@@ -14,9 +15,6 @@ pub enum Panel<T> {
     /// Four corners.
     Quad([Vec3<T>; 4]),
 }
-
-/// Gauss points of two-point quadrature on [0, 1]: (1 -+ 1/sqrt(3)) / 2. Exact to degree 3.
-const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 impl<T: Real> Panel<T> {
     /// The panel of a face.
@@ -69,10 +67,10 @@ impl<T: Real> Panel<T> {
             }
             Self::Quad([a, b, c, d]) => {
                 let quarter = T::from(0.25);
-                for s in GAUSS.map(T::from) {
+                for s in GAUSS_2_UNIT.map(T::from) {
                     let (low, high) = (a.lerp(b, s), d.lerp(c, s));
                     let along_t = (high - low) * quarter;
-                    for t in GAUSS.map(T::from) {
+                    for t in GAUSS_2_UNIT.map(T::from) {
                         let along_s = (b - a).lerp(c - d, t);
                         at(low.lerp(high, t), along_s.cross(along_t));
                     }

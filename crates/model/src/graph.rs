@@ -171,8 +171,12 @@ impl<T: Scalar> Graph<T> {
     }
 
     /// All objects in the order of declaration.
+    ///
+    /// While a run declares objects, those that it has declared so far.
     pub fn objects(&self) -> impl Iterator<Item = &Object<T>> {
-        let mut keys: Vec<_> = self.objects.iter().flatten().map(|o| (o.order, o.key)).collect();
+        let there = |o: &&Object<T>| !self.running || o.declared_at == self.clock;
+        let objects = self.objects.iter().flatten().filter(there);
+        let mut keys: Vec<_> = objects.map(|o| (o.order, o.key)).collect();
         keys.sort_unstable();
         keys.into_iter().map(|(_, key)| self.object(key))
     }

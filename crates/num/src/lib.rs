@@ -31,8 +31,10 @@ pub use boxes::Box3;
 pub use dual::{Dual, Dual4};
 pub use frame::{Axis, Frame, Plane};
 pub use jet::{Bi1, Bi2, Jet, Tri1, Uni1, Uni2, lift_curve, lift_surface};
-pub use linear::{Banded, SingularMatrix, solve_dense};
-pub use quadrature::{gauss_legendre, gauss_points, integrate};
+pub use linear::{Banded, SingularMatrix, determinant, solve_dense, solve_pivoting_fully};
+pub use quadrature::{
+    GAUSS_2_UNIT, GAUSS_4, GAUSS_8_UNIT, gauss_legendre, gauss_points, integrate,
+};
 pub use rational::{Pace, Rational, Weight};
 pub use real::Real;
 pub use reparametrization::{

@@ -50,6 +50,72 @@ pub fn solve_dense<T: Real>(a: &mut [T], b: &mut [T]) -> Result<(), SingularMatr
     Ok(())
 }
 
+/// Pivots below this share of the largest are zero.
+const NO_PIVOT: f64 = 1e-11;
+
+/// The solution of a small system, by elimination with full pivoting on rows scaled to equal size; `None`
+/// when it is singular or not finite.
+pub fn solve_pivoting_fully(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
+    let n = right.len();
+    let mut a: Vec<Vec<f64>> = Vec::with_capacity(n);
+    for (row, b) in matrix.iter().zip(right) {
+        let size = row.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        if size == 0.0 || !size.is_finite() {
+            return None;
+        }
+        a.push(row.iter().chain([b]).map(|x| x / size).collect());
+    }
+    let mut columns: Vec<usize> = (0..n).collect();
+    for k in 0..n {
+        let places = (k..n).flat_map(|i| (k..n).map(move |j| (i, j)));
+        let (i, j) = places.fold((k, k), |best, at| {
+            if a[at.0][at.1].abs() > a[best.0][best.1].abs() { at } else { best }
+        });
+        // Written so that NaN is refused.
+        let sound = a[i][j].abs() > NO_PIVOT;
+        if !sound {
+            return None;
+        }
+        a.swap(k, i);
+        columns.swap(k, j);
+        a.iter_mut().for_each(|row| row.swap(k, j));
+        let pivot = a[k].clone();
+        for row in &mut a[k + 1..] {
+            let factor = row[k] / pivot[k];
+            for (x, p) in row[k..].iter_mut().zip(&pivot[k..]) {
+                *x -= factor * p;
+            }
+        }
+    }
+    let mut x = vec![0.0; n];
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| a[k][j] * x[columns[j]]).sum();
+        x[columns[k]] = (a[k][n] - known) / a[k][k];
+    }
+    Some(x)
+}
+
+/// The determinant of a square matrix given by rows, by elimination with row pivots.
+pub fn determinant(matrix: &[f64], n: usize) -> f64 {
+    let mut a = matrix.to_vec();
+    let mut product = 1.0;
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs()));
+        let Some(pivot) = pivot.filter(|&r| a[r * n + k] != 0.0) else { return 0.0 };
+        if pivot != k {
+            (0..n).for_each(|c| a.swap(k * n + c, pivot * n + c));
+            product = -product;
+        }
+        let own = a[k * n + k];
+        product *= own;
+        for r in k + 1..n {
+            let part = a[r * n + k] / own;
+            (k..n).for_each(|c| a[r * n + c] -= part * a[k * n + c]);
+        }
+    }
+    product
+}
+
 /// A square matrix of which only the entries with |row - column| <= `width` are not zero, solved
 /// without pivoting (for the diagonally dominant or totally positive systems of splines).
 #[derive(Clone, Debug)]
@@ -147,5 +213,23 @@ mod tests {
         for (p, q) in b.iter().zip(x) {
             assert!((p.x - q).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn small_systems_are_pivoted_fully() {
+        let a = vec![vec![0.0, 2e6, 1e6], vec![1.0, 1.0, 0.0], vec![0.0, 1e-5, 3e-5]];
+        let x = solve_pivoting_fully(&a, &[8e6, 3.0, 7e-5]).unwrap();
+        let expected = [-0.4, 3.4, 1.2];
+        assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
+        assert_eq!(solve_pivoting_fully(&[vec![1.0, 2.0], vec![2.0, 4.0]], &[1.0, 2.0]), None);
+        assert_eq!(solve_pivoting_fully(&[vec![0.0]], &[1.0]), None);
+    }
+
+    #[test]
+    fn determinants_change_sign_with_their_rows() {
+        assert_eq!(determinant(&[0.0, 2.0, 3.0, 1.0], 2), -6.0);
+        assert_eq!(determinant(&[3.0, 1.0, 0.0, 2.0], 2), 6.0);
+        assert_eq!(determinant(&[1.0, 2.0, 2.0, 4.0], 2), 0.0);
+        assert_eq!(determinant(&[], 0), 1.0);
     }
 }

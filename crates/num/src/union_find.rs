@@ -21,24 +21,53 @@ impl UnionFind {
     }
 
     /// The smallest member of the set of `k`.
-    pub fn find(&mut self, mut k: u32) -> u32 {
-        while self.above[k as usize] != k {
-            let next = self.above[self.above[k as usize] as usize];
-            self.above[k as usize] = next;
-            k = next;
+    pub fn find<M: Member>(&mut self, k: M) -> M {
+        let mut k = k.index();
+        while self.above[k] as usize != k {
+            let next = self.above[self.above[k] as usize];
+            self.above[k] = next;
+            k = next as usize;
         }
-        k
+        M::of(k)
     }
 
     /// Makes the sets of `a` and `b` one.
-    pub fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.above[a.max(b) as usize] = a.min(b);
+    pub fn join<M: Member>(&mut self, a: M, b: M) {
+        let (a, b) = (self.find(a).index(), self.find(b).index());
+        self.above[a.max(b)] = a.min(b) as u32;
     }
 
     /// True when `a` and `b` are in one set.
-    pub fn same(&mut self, a: u32, b: u32) -> bool {
-        self.find(a) == self.find(b)
+    pub fn same<M: Member>(&mut self, a: M, b: M) -> bool {
+        self.find(a).index() == self.find(b).index()
+    }
+}
+
+/// What members are numbered by.
+pub trait Member: Copy {
+    /// The number.
+    fn index(self) -> usize;
+    /// The member of that number.
+    fn of(index: usize) -> Self;
+}
+
+impl Member for u32 {
+    fn index(self) -> usize {
+        self as usize
+    }
+
+    fn of(index: usize) -> Self {
+        index as u32
+    }
+}
+
+impl Member for usize {
+    fn index(self) -> usize {
+        self
+    }
+
+    fn of(index: usize) -> Self {
+        index
     }
 }
 
@@ -89,15 +118,15 @@ mod tests {
     #[test]
     fn the_smallest_member_stands_for_the_set() {
         let mut sets = UnionFind::new(6);
-        for (a, b) in [(5, 3), (4, 5), (3, 4)] {
+        for (a, b) in [(5_u32, 3), (4, 5), (3, 4)] {
             sets.join(a, b);
         }
-        assert_eq!([0, 1, 2, 3, 4, 5].map(|k| sets.find(k)), [0, 1, 2, 3, 3, 3]);
-        sets.join(4, 1);
-        assert!(sets.same(1, 3) && !sets.same(0, 1));
-        assert_eq!(sets.find(5), 1);
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|k: u32| sets.find(k)), [0, 1, 2, 3, 3, 3]);
+        sets.join(4_usize, 1);
+        assert!(sets.same(1_u32, 3) && !sets.same(0_u32, 1));
+        assert_eq!(sets.find(5_usize), 1);
         assert_eq!(sets.push(), 6);
-        assert_eq!(sets.find(6), 6);
+        assert_eq!(sets.find(6_u32), 6);
     }
 
     #[test]

@@ -511,7 +511,7 @@ impl PyDocument {
     /// Hydrostatics: rows of what is given (`level`, `draft`, `displacement`), its number, trim,
     /// heel, whether trim and heel are free; a dictionary for each.
     #[allow(clippy::too_many_arguments)]
-    #[pyo3(signature = (rows, density, gravity, centre, sides, by))]
+    #[pyo3(signature = (rows, density, gravity, centre, sides, by, accuracy, of_weights))]
     fn floating<'py>(
         &self,
         py: Python<'py>,
@@ -521,7 +521,14 @@ impl PyDocument {
         centre: Option<[f64; 3]>,
         sides: &str,
         by: Vec<String>,
+        accuracy: f64,
+        of_weights: bool,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        if !(1e-12..=0.1).contains(&accuracy) {
+            return Err(plain_error(format!(
+                "the accuracy is relative, from 1e-12 to 0.1, not {accuracy}"
+            )));
+        }
         let one_side = match sides {
             "both" => false,
             "one" => true,
@@ -547,10 +554,44 @@ impl PyDocument {
             FloatRequest { immersion, trim, heel }
         };
         let requests: Vec<FloatRequest> = rows.into_iter().map(request).collect();
-        let options = AfloatOptions { density, gravity, centimetre, centre, one_side };
+        let options =
+            AfloatOptions { density, gravity, centimetre, centre, one_side, of_weights, accuracy };
         let names = by.clone();
         let answers = self.long_checked(py, move |d| d.floating(&requests, options, &by))?;
         answers.iter().map(|answer| float_facts(py, answer, &names)).collect()
+    }
+
+    /// Name, group, mass, margin in percent, centre and status of each weight.
+    fn weights(&self, py: Python<'_>) -> Vec<(String, String, f64, f64, [f64; 3], String)> {
+        let weights = self.lock(py).weights();
+        let row = |w: moldloft_document::WeightItem| {
+            (w.name, w.group, w.mass, w.margin, w.centre, w.status)
+        };
+        weights.into_iter().map(row).collect()
+    }
+
+    /// Immersed area of sections and its moment about z = 0, `[station][level]`.
+    fn section_areas(
+        &self,
+        py: Python<'_>,
+        stations: Vec<f64>,
+        levels: Vec<f64>,
+        accuracy: f64,
+    ) -> PyResult<Vec<Vec<[f64; 2]>>> {
+        self.long_checked(py, move |d| d.section_areas(&stations, &levels, accuracy))
+    }
+
+    /// Displaced volume, wetted area and waterplane area of the panels.
+    fn panel_figures(&self, py: Python<'_>, level: f64) -> PyResult<[f64; 3]> {
+        self.long_checked(py, move |d| d.panel_figures(level).map_err(|d| vec![d]))
+    }
+
+    /// The units that the model states: length, mass, force and angle, each a word and its size in metres,
+    /// kilograms, newtons or radians.
+    fn units(&self, py: Python<'_>) -> Vec<(&'static str, f64)> {
+        let text = self.lock(py).units();
+        let known = moldloft_lang::model_file::units::parsed(&text).unwrap_or_default();
+        known.into_iter().map(|(word, _, size)| (word, size)).collect()
     }
 
     /// The files of a format, the first of them under the name `main`: name and content of each.
@@ -564,9 +605,11 @@ impl PyDocument {
         immersed: bool,
         tags: Vec<String>,
         tolerance: Option<f64>,
+        whole: bool,
+        triangles: bool,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
         let format = format_named(format).map_err(|d| plain_error(&d.message))?;
-        let options = WriteOptions { lids, immersed, tags, tolerance };
+        let options = WriteOptions { lids, immersed, tags, whole, triangles, tolerance };
         let files =
             self.long_checked(py, move |d| moldloft_export::write(d, format, &main, &options))?;
         Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
@@ -633,6 +676,12 @@ fn float_facts<'py>(
     dict.set_item("iterations", answer.iterations)?;
     dict.set_item("residual", answer.residual)?;
     dict.set_item("stable", answer.stable)?;
+    dict.set_item("lolls", answer.lolls)?;
+    let bounds = PyDict::new(py);
+    for (name, bound) in &answer.bounds {
+        bounds.set_item(name, bound)?;
+    }
+    dict.set_item("bounds", bounds)?;
     let derivatives = PyDict::new(py);
     if !by.is_empty() {
         for ((name, _), row) in answer.figures.iter().zip(&answer.derivatives) {

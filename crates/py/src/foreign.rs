@@ -35,17 +35,9 @@ pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny
             variadic: false,
         })
         .collect();
-    Row {
-        name: name.clone().into(),
-        doc: doc.into(),
-        class: Class::Any,
-        fields: fields.into(),
-        kind: false,
-        columns: None,
-        sweep: None,
-        example: "".into(),
-        body: Body::Foreign(Arc::new(PythonFunction { name, function })),
-    }
+    Row::new(name.clone(), Body::Foreign(Arc::new(PythonFunction { name, function })))
+        .doc(doc)
+        .fields(fields)
 }
 
 /// A field or set made in Python, as a function without arguments.
@@ -79,17 +71,8 @@ pub fn shape_row(name: &str, object: &Bound<'_, PyAny>) -> Option<Row> {
     } else {
         Shape::Set(object.cast::<crate::implicit::PySet>().ok()?.get().inner.clone())
     };
-    Some(Row {
-        name: name.to_owned().into(),
-        doc: "A field or set made in Python.".into(),
-        class: Class::Any,
-        fields: Vec::new().into(),
-        kind: false,
-        columns: None,
-        sweep: None,
-        example: "".into(),
-        body: Body::Foreign(Arc::new(shape)),
-    })
+    let row = Row::new(name.to_owned(), Body::Foreign(Arc::new(shape)));
+    Some(row.doc("A field or set made in Python."))
 }
 
 impl PythonFunction {

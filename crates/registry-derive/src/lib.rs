@@ -13,7 +13,8 @@
 //! ```
 //!
 //! Struct: `class` (a `Class`), `columns` (model-file columns), `example` (language text that runs
-//! by itself), `function` (a function instead of a kind), `name` (when it differs from the
+//! by itself), `function` (a function instead of a kind), `cheap` (a function that is called anew rather than
+//! remembered), `name` (when it differs from the
 //! struct's), `shape` (the struct is itself the curve or surface: no `Build` is written), `relabel`
 //! (a surface whose v-law can be redistributed). Kinds of curves and snakes, and surfaces with
 //! `relabel` or with columns that begin with it, take a last argument `relabel`, which acts on what
@@ -45,6 +46,7 @@ struct KindOptions {
     example: Option<Expr>,
     name: Option<Expr>,
     function: bool,
+    cheap: bool,
     shape: bool,
     relabel: bool,
     sweep: Option<Vec<syn::Ident>>,
@@ -95,6 +97,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         None => quote!(None),
     };
     let is_kind = !options.function;
+    let cheap = options.cheap;
     let has_own = fields.named.iter().any(|f| f.ident.as_ref().is_some_and(|i| i == "relabel"));
     let relabelled =
         is_kind && !has_own && takes_relabel(&class, &options.columns, options.relabel);
@@ -246,6 +249,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                     columns: #columns,
                     example: #example.into(),
                     sweep: #sweep,
+                    cheap: #cheap,
                     body: ::moldloft_registry::Body::Native {
                         plain: #ident::<f64>::call,
                         dual: #ident::<::moldloft_registry::export::Dual4>::call,
@@ -315,6 +319,7 @@ fn kind_options(input: &DeriveInput) -> syn::Result<KindOptions> {
                     options.name = Some(nv.value.clone());
                 }
                 Meta::Path(path) if path.is_ident("function") => options.function = true,
+                Meta::Path(path) if path.is_ident("cheap") => options.cheap = true,
                 Meta::Path(path) if path.is_ident("shape") => options.shape = true,
                 Meta::Path(path) if path.is_ident("relabel") => options.relabel = true,
                 other => return Err(syn::Error::new_spanned(other, "unknown option of a kind")),

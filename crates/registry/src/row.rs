@@ -213,11 +213,49 @@ pub struct Row {
     /// For a kind that sweeps: the fields of the bead that is moved and of the point or curve that
     /// follows, which the model gives as a [`crate::LocusRef`].
     pub sweep: Option<[FieldId; 2]>,
+    /// True for a function that takes no longer than finding its remembered value: it is called anew.
+    pub cheap: bool,
     /// How it is computed.
     pub body: Body,
 }
 
 impl Row {
+    /// A function of any value, without arguments or documentation.
+    pub fn new(name: impl Into<Cow<'static, str>>, body: Body) -> Self {
+        Self {
+            name: name.into(),
+            doc: Cow::Borrowed(""),
+            class: Class::Any,
+            fields: Cow::Borrowed(&[]),
+            kind: false,
+            columns: None,
+            example: Cow::Borrowed(""),
+            sweep: None,
+            cheap: false,
+            body,
+        }
+    }
+
+    /// The same, documented.
+    pub fn doc(self, doc: impl Into<Cow<'static, str>>) -> Self {
+        Self { doc: doc.into(), ..self }
+    }
+
+    /// The same with arguments.
+    pub fn fields(self, fields: Vec<Field>) -> Self {
+        Self { fields: fields.into(), ..self }
+    }
+
+    /// The same with an example.
+    pub fn example(self, example: impl Into<Cow<'static, str>>) -> Self {
+        Self { example: example.into(), ..self }
+    }
+
+    /// The same, called anew each time.
+    pub fn cheap(self) -> Self {
+        Self { cheap: true, ..self }
+    }
+
     /// The first line of the documentation.
     pub fn summary(&self) -> &str {
         self.doc.lines().next().unwrap_or("")

@@ -1,7 +1,7 @@
 //! One named object: a drawing, its dimensions, faces and curves.
 
+use crate::feature::Feature;
 use crate::solid::curve::Curve;
-use crate::solid::feature::Feature;
 use crate::{Axis, Dimension, Drawing, FaceId, LineId, Measure, PointId, Variable};
 use indexmap::IndexMap;
 use std::collections::BTreeMap;

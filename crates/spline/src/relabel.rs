@@ -104,8 +104,8 @@ pub enum Dense {
 ///
 /// # Example
 /// ```
-/// use moldloft_spline::{Dense, Relabel};
-/// let cosine = Relabel::<f64>::cosine(Dense::Both, 1.0).unwrap();
+/// use moldloft_spline::{Dense, ReparametrizationForm};
+/// let cosine = ReparametrizationForm::<f64>::cosine(Dense::Both, 1.0).unwrap();
 /// assert!((cosine.at(0.25) - (2.0 - 2f64.sqrt()) / 4.0).abs() < 1e-16);
 /// assert_eq!((cosine.at(0.0), cosine.at(1.0)), (0.0, 1.0));
 /// ```

@@ -16,6 +16,7 @@ from moldloft.cli.console import (
     print_json,
     report,
     table,
+    water,
 )
 from moldloft.errors import Error
 from moldloft.hydrostatics import Hydrostatics
@@ -52,7 +53,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--level", metavar="Z", type=float, default=0.0, help="height of the water, by default 0"
     )
     parser.add_argument(
-        "--density", type=float, default=1.0, help="density of the water; default: 1"
+        "--density",
+        metavar="WATER",
+        type=water,
+        help="salt, fresh, or mass per volume: the water that the model displaces",
+    )
+    parser.add_argument(
+        "-v", "--verbose", action="store_true", help="all that was measured, not a few lines"
     )
     parser.add_argument(
         "--sides",
@@ -67,6 +74,14 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--immersed",
         action="store_true",
         help="cut at z = 0 and write only the part below, in the files of panel codes",
+    )
+    parser.add_argument(
+        "--whole",
+        action="store_true",
+        help="both sides of a symmetric model, joined, in files of plain panels (STL, OBJ, ...)",
+    )
+    parser.add_argument(
+        "--triangles", action="store_true", help="triangles only, in files of plain panels"
     )
     parser.add_argument(
         "--tag",
@@ -151,7 +166,9 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
             floating = model.hydrostatics(
                 level=options.level, density=options.density, sides=options.sides
             )
+
         outputs: list[Output] = []
+        halves: list[str] = []
         folder = Path(options.output)
         stem = Path(options.model).stem
         for name in dict.fromkeys(options.to):
@@ -160,7 +177,18 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
             row = formats()[name]
             lids = options.lids and row.lids
             immersed = options.immersed and row.immersed
-            outputs += produce(model, name, path, lids=lids, immersed=immersed, tags=options.tag)
+            plain = {"whole": options.whole, "triangles": options.triangles}
+            outputs += produce(
+                model,
+                name,
+                path,
+                lids=lids,
+                immersed=immersed,
+                tags=options.tag,
+                **(plain if row.plain_panels else {}),
+            )
+            if row.plain_panels and model.symmetry and not options.whole:
+                halves.append(name)
         written = commit(folder, outputs) if outputs else []
     # Remarks of the panelling have joined those of the run.
     report(model.diagnostics)
@@ -169,12 +197,18 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
     report(block_problems(model))
     data = facts(model, mesh, floating, written)
     data["closure"] = mesh.closure(level=options.level)
+    data["one_side"] = halves
+    if floating is not None:
+        units = {name: floating.unit(name) for name in data["hydrostatics"]}
+        data["units"] = {name: unit for name, unit in units.items() if unit}
     if options.json:
         print_json(data)
     else:
-        print(summary(model, mesh, floating, data))
+        print(summary(model, mesh, floating, data, verbose=options.verbose))
         if options.quality:
             print("\n" + worst_panels(mesh))
+            if floating is not None:
+                print("\n" + _panels_against_shape(model, floating, options))
     return 0
 
 
@@ -237,7 +271,14 @@ def _patch_facts(patch: Patch) -> dict[str, Any]:
     }
 
 
-def summary(model: Model, mesh: Mesh, floating: Hydrostatics | None, data: dict[str, Any]) -> str:
+def summary(
+    model: Model,
+    mesh: Mesh,
+    floating: Hydrostatics | None,
+    data: dict[str, Any],
+    *,
+    verbose: bool = False,
+) -> str:
     """What ``build`` prints: patches, the whole, hydrostatics, files."""
     lines = [f"{len(data['objects'])} objects, {mesh!r}"]
     if mesh.patches:
@@ -251,12 +292,49 @@ def summary(model: Model, mesh: Mesh, floating: Hydrostatics | None, data: dict[
         rows.append(["whole", "", *whole, "", "", ""])
         lines += ["", table(header, rows, left=2)]
         lines += _openings(mesh, data)
-    if floating is not None:
-        lines += ["", _floating(floating)]
+    if floating is not None and (verbose or _floats(floating)):
+        lines += ["", _floating(floating) if verbose else _main_figures(floating)]
     if data["files"]:
         lines.append("")
         lines += [f"wrote {file['path']} ({_bytes(file['bytes'])})" for file in data["files"]]
+    if data.get("one_side"):
+        names = ", ".join(data["one_side"])
+        lines.append(f"{names}: one side of the symmetric model; --whole writes both, joined")
     return "\n".join(lines)
+
+
+def _floats(floating: Hydrostatics) -> bool:
+    """Whether the water cuts the skin."""
+    return floating.volume > 0 and floating.waterplane_area is not None
+
+
+_MAIN = ["volume", "displacement", "wetted_area", "draft", "lcb", "vcb", "waterplane_area"]
+_MAIN += ["waterline_length", "waterline_beam", "kmt", "cb", "cp"]
+
+
+def _main_figures(floating: Hydrostatics) -> str:
+    sides = {"both": "both sides", "one": "one side", "whole": "the whole body"}[floating.sides]
+    words = []
+    for name in _MAIN:
+        value = getattr(floating, name)
+        if value is not None:
+            words.append(f"{name} {value:.5g} {floating.unit(name)}".rstrip())
+    text = f"hydrostatics at z = {_number(floating.level)}, {sides} (all: -v, or moldloft hydro)"
+    lines = [", ".join(words[k : k + 4]) for k in range(0, len(words), 4)]
+    if floating.open_edges:
+        lines.append(f"{floating.open_edges} open edges below the water: results are unreliable")
+    return "\n  ".join([text, *lines])
+
+
+def _panels_against_shape(model: Model, floating: Hydrostatics, options: argparse.Namespace) -> str:
+    panels = model.panel_figures(options.level)
+    count = 0.5 if options.sides == "one" and "y" in model.symmetry else 1.0
+    words = []
+    for name, value in panels.items():
+        shape = getattr(floating, name)
+        if shape:
+            words.append(f"{name} {100 * (count * value / shape - 1):+.3g} %")
+    return "panels against the shape: " + ", ".join(words)
 
 
 def _row(patch: Patch) -> list[str]:
@@ -313,13 +391,15 @@ def _floating(floating: Hydrostatics) -> str:
     hidden = {"level", "sides", "open_edges", "closure_error", "waterplane_error", "outward"}
     hidden |= {"trim", "heel", "status", "iterations", "residual"}
     hidden |= {"draft_low_x", "draft_mid", "draft_high_x", "weight"}
+    hidden |= {"bounds", "lolls", "waterplane_product"}
     figures = {k: v for k, v in floating.as_dict().items() if k not in hidden}
     width = max(map(len, figures))
-    lines += [f"  {name.ljust(width)}  {_number(value)}" for name, value in figures.items()]
+    for name, value in figures.items():
+        bound = f" ± {floating.bounds[name]:.1g}" if name in floating.bounds else ""
+        text = f"{_number(value)} {floating.unit(name)}".rstrip()
+        lines.append(f"  {name.ljust(width)}  {text}{bound}")
     if floating.open_edges:
-        lines.append(
-            f"  {floating.open_edges} open panel edges below the waterline: results are unreliable"
-        )
+        lines.append(f"  {floating.open_edges} open edges below the water: results are unreliable")
     return "\n".join(lines)
 
 

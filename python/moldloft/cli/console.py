@@ -8,6 +8,7 @@ import math
 import sys
 import threading
 import time
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,7 @@ __all__ = [
     "print_json",
     "report",
     "table",
+    "water",
 ]
 
 
@@ -71,8 +73,17 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 def open_model(options: argparse.Namespace) -> Model:
     """The model of the arguments, with the values of ``--set``."""
     from moldloft.errors import Error
+    from moldloft.files import ending
+    from moldloft.formats import formats
     from moldloft.models import load
 
+    named = ending(Path(options.model))
+    written = [row for row in formats().values() if named in (row.name, row.suffix) and named]
+    if written and named not in ("sdl", "ms2"):
+        raise Error(
+            f"{options.model} is not a model but what models are written to: {written[0].about};"
+            " expected a program (.sdl), a model file (.ms2) or a sketch (.skt)"
+        )
     model = load(options.model, library=options.library, strict=False)
     if options.refine:
         if options.refine < 0:
@@ -177,3 +188,16 @@ class Progress:
             elif self._said != self._stage:
                 print(f"{self._stage} …", file=sys.stderr, flush=True)
             self._said = self._stage
+
+
+def water(text: str) -> float | str:
+    """A water by name, or its density."""
+    from moldloft.units import WATERS
+
+    if text in WATERS:
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        names = ", ".join(WATERS)
+        raise argparse.ArgumentTypeError(f"`{text}` is neither {names} nor a number") from None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import abc
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -224,12 +225,12 @@ def _goal(text: str) -> Any:
     word, equals, share = text.partition("=")
     if word not in ("near", "fairest", "budget", "nearest"):
         raise argparse.ArgumentTypeError(
-            f"`{word}` is no goal; there are: near, fairest, budget=SHARE, nearest=SHARE"
+            f"`{word}` is not a goal; there are: near, fairest, budget=SHARE, nearest=SHARE"
         )
     try:
         return (word, float(share)) if equals else word
     except ValueError:
-        raise argparse.ArgumentTypeError(f"`{share}` is no share") from None
+        raise argparse.ArgumentTypeError(f"`{share}` is not a number") from None
 
 
 def _vector(text: str) -> list[float]:
@@ -480,7 +481,10 @@ class _Points(_Source):
         self.title = str(file.path)
 
     def fair(self, options: argparse.Namespace) -> Result:
-        if len([b for b in self.file.blocks if len(b) > 1]) > 1:
+        if self.file.offsets and options.along is None and not options.box:
+            self.said.append("half-breadths move; stations and heights stay")
+            options.along = [0.0, 1.0, 0.0]
+        if self.file.offsets or len([b for b in self.file.blocks if len(b) > 1]) > 1:
             return self._network(options)
         from moldloft.fairing import fair
 
@@ -587,14 +591,21 @@ class _Points(_Source):
             curves = result.curves if hasattr(result, "lists") else [result.spline]
             return _commit(path, encoded(curves, path))
         if hasattr(result, "lists"):
-            return _commit(path, points_text(result.points[self.of_row], self.file).encode())
+            rows = result.points[self.of_row]
+            like: PointFile = self.file
+            if like.table is not None:
+                # Each row of the table once, as it stood.
+                table = like.table.copy()
+                table[like.places] = rows
+                rows, like = table, replace(like, blocks=[range(len(table))])
+            return _commit(path, points_text(rows, like).encode())
         points = result.points
         if self.closing:
             points = np.concatenate([points, points[:1]])
         same = path.suffix.lower() == self.file.path.suffix.lower()
-        like = self.file if same else None
+        form = self.file if same else None
         delimiter = {".csv": ",", ".tsv": "\t"}.get(path.suffix.lower(), " ")
-        return _commit(path, points_text(points, like, delimiter).encode())
+        return _commit(path, points_text(points, form, delimiter).encode())
 
 
 def _surface_breaks(text: str) -> tuple[list[int], list[int]]:
@@ -643,9 +654,11 @@ def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFair
         "as_": role,
         "degree": options.degree,
         "closed": (options.closed, options.closed_v),
-        "measure": options.measure or "second",
+        "measure": options.measure,
         "mode": options.mode,
-        "bound": options.bound or "points",
+        "bound": options.bound,
+        "spacing": options.spacing,
+        "goal": options.goal,
         "breaks": _surface_breaks(options.breaks),
         "ends": 2 if options.ends is None else _ends(options),
         "rims": rims,

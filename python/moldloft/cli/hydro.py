@@ -8,15 +8,30 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from moldloft.cli.console import Progress, add_model, open_model, print_json, report, table
+from moldloft.cli.console import (
+    Progress,
+    add_model,
+    open_model,
+    print_json,
+    report,
+    table,
+    water,
+)
 from moldloft.errors import Error
-from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
+from moldloft.hydrostatics import (
+    Hydrostatics,
+    HydrostaticTable,
+    RightingCurve,
+    header,
+    shown,
+)
 
 __all__ = ["add", "run"]
 
 _TABLE = ["draft", "displacement", "lcb", "vcb", "waterplane_area", "lcf", "kmt", "kml"]
 _TABLE += ["tpc", "mtc", "cb", "cp", "cm", "cwp"]
 _HIDDEN = {"sides", "open_edges", "closure_error", "waterplane_error", "outward", "derivatives"}
+_HIDDEN |= {"bounds", "lolls", "waterplane_product"}
 _ANGLES = ("trim", "heel")
 
 
@@ -39,7 +54,59 @@ def add(parser: argparse.ArgumentParser) -> None:
         choices=["trim", "heel", "both"],
         help="quantities held fixed when --cg is given",
     )
-    parser.add_argument("--density", type=float, default=1.0, help="density; default: 1")
+    parser.add_argument(
+        "--density",
+        metavar="WATER",
+        type=water,
+        help="salt, fresh, or mass per volume in the model's units; without it there are no masses",
+    )
+    parser.add_argument(
+        "--units", metavar="UNITS", help="other units for the figures, such as 'm t kN'"
+    )
+    parser.add_argument(
+        "--accuracy", type=float, default=1e-6, help="relative accuracy; default: 1e-6"
+    )
+    parser.add_argument(
+        "--weights",
+        action="store_true",
+        help="list the model's weights; they float unless --displacement is given",
+    )
+    parser.add_argument(
+        "--criteria",
+        metavar="RULE",
+        nargs="?",
+        const="is-code-2008",
+        help="intact criteria: is-code-2008 (the default), fishing, timber, or a .json file",
+    )
+    parser.add_argument(
+        "--wind",
+        metavar="AREA,LEVER",
+        type=_numbers(2),
+        help="lateral area above the water in m², height of its centre over half the draught in m",
+    )
+    parser.add_argument(
+        "--opening",
+        metavar="NAME=X,Y,Z",
+        type=_opening,
+        action="append",
+        default=[],
+        help="a point through which water enters; may be repeated",
+    )
+    parser.add_argument(
+        "--booklet", metavar="FILE", help="a stability booklet of the loading (.html)"
+    )
+    parser.add_argument(
+        "--kn",
+        metavar="VOLUMES",
+        type=_list,
+        help="cross curves: arms KN for these displaced volumes, at the heels of --gz",
+    )
+    parser.add_argument(
+        "--sections",
+        metavar="LOW,HIGH,N",
+        type=_range,
+        help="immersed areas of N sections from x = LOW to HIGH, below the levels of --table",
+    )
     parser.add_argument("--gravity", type=float, help="default: 9.80665 m/s² in the model's unit")
     parser.add_argument("--sides", choices=["both", "one"], default="both")
     parser.add_argument(
@@ -49,13 +116,15 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--gz",
         metavar="LOW,HIGH,N",
         type=_range,
-        help="righting arms at N heels from LOW to HIGH, in degrees; needs --displacement and --cg",
+        help="righting arms at N heels from LOW to HIGH, in degrees",
     )
     parser.add_argument(
         "--by", metavar="NAME", action="append", default=[], help="differentiate by a parameter"
     )
-    parser.add_argument("--json", action="store_true", help="figures as data; angles in radians")
-    parser.add_argument("--csv", metavar="FILE", help="write the rows; angles in radians")
+    parser.add_argument(
+        "--json", action="store_true", help="figures as data with their units; angles in degrees"
+    )
+    parser.add_argument("--csv", metavar="FILE", help="write the rows, with units in the header")
     parser.add_argument(
         "--plot", metavar="FILE", help="draw the table or the arms (.png, .svg, .pdf)"
     )
@@ -74,6 +143,17 @@ def _numbers(count: int) -> Any:
     return read
 
 
+def _opening(text: str) -> tuple[str, list[float]]:
+    name, equals, place = text.partition("=")
+    if not equals or not name:
+        raise argparse.ArgumentTypeError(f"`{text}` is not of the form name=x,y,z")
+    return name, _numbers(3)(place)
+
+
+def _list(text: str) -> list[float]:
+    return list(_numbers(text.count(",") + 1)(text))
+
+
 def _range(text: str) -> list[float]:
     low, high, count = _numbers(3)(text)
     if count != int(count) or not 2 <= count <= 10_000:
@@ -86,10 +166,10 @@ def run(options: argparse.Namespace) -> int:
     """Measures and reports."""
     if options.table and options.gz:
         raise Error("ask for --table or for --gz, not for both")
-    if options.gz and (options.displacement is None or options.cg is None):
-        raise Error("--gz needs --displacement and --cg")
-    if (options.plot or options.csv) and not (options.table or options.gz):
-        raise Error("--csv and --plot are of the rows of --table or --gz")
+    if options.kn and not options.gz:
+        raise Error("--kn needs the heels of --gz")
+    if (options.plot or options.csv) and not (options.table or options.gz or options.sections):
+        raise Error("--csv and --plot are of the rows of --table, --gz or --sections")
     with Progress() as progress:
         progress.stage(f"running {options.model}")
         model = open_model(options)
@@ -97,51 +177,28 @@ def run(options: argparse.Namespace) -> int:
         if model.has_errors:
             return 1
         progress.stage("floating")
-        common: dict[str, Any] = {
-            "cg": options.cg,
-            "density": options.density,
-            "gravity": options.gravity,
-            "by": options.by,
-        }
-        trim, heel = math.radians(options.trim), math.radians(options.heel)
-        kept = {"both": ("trim", "heel")}.get(options.fixed, (options.fixed,))
-        rows: HydrostaticTable | RightingCurve | None = None
-        if options.table:
-            rows = model.hydrostatic_table(options.table, trim=trim, sides=options.sides, **common)
-        elif options.gz:
-            rows = model.righting_curve(
-                [math.radians(a) for a in options.gz],
-                options.displacement,
-                trim=trim,
-                free_trim="trim" not in kept,
-                **common,
-            )
-        elif options.displacement is not None:
-            free = None
-            if options.fixed and options.cg:
-                free = [name for name in _ANGLES if name not in kept]
-            afloat = model.equilibrium(
-                options.displacement, free=free, trim=trim, heel=heel, sides=options.sides, **common
-            )
-        else:
-            afloat = model.hydrostatics(
-                level=options.level,
-                draft=options.draft,
-                trim=trim,
-                heel=heel,
-                sides=options.sides,
-                **common,
-            )
+        if options.weights and options.displacement is None:
+            _take_weights(model, options)
+        if options.weights and not (options.gz or options.table or options.criteria):
+            print(model.weights())
+        if options.sections:
+            return _sections(model, options)
+        if options.booklet:
+            return _booklet(model, options)
+        if options.criteria:
+            return _criteria(model, options)
+        if options.kn:
+            return _cross_curves(model, options)
+        afloat, rows = _measured(model, options)
         written: list[Path] = []
         if rows is not None and options.csv:
             written.append(rows.write_csv(options.csv))
         if rows is not None and options.plot:
             progress.stage("drawing")
             written.append(rows.plot(options.plot))
-    shown = [afloat] if rows is None else list(rows)
-    _warn(shown)
+    _warn([afloat] if rows is None else list(rows))
     if options.json:
-        print_json(afloat.as_dict() if rows is None else rows.as_list())
+        print_json(_data(afloat) if rows is None else [_data(row) for row in rows])
     elif rows is None:
         print(_one(afloat))
     else:
@@ -152,19 +209,176 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
+def _take_weights(model: Any, options: argparse.Namespace) -> None:
+    total = model.weights()
+    if not total.rows:
+        raise Error(
+            "the model has no weights\nhelp: declare them: Weight engine({2, 0, 0.5}, mass = 3);"
+        )
+    options.displacement, options.cg = total.mass, list(total.centre)
+
+
+def _measured(
+    model: Any, options: argparse.Namespace
+) -> tuple[Hydrostatics, HydrostaticTable | RightingCurve | None]:
+    common: dict[str, Any] = {
+        "cg": options.cg,
+        "density": options.density,
+        "gravity": options.gravity,
+        "by": options.by,
+        "accuracy": options.accuracy,
+    }
+    trim, heel = math.radians(options.trim), math.radians(options.heel)
+    kept = {"both": ("trim", "heel")}.get(options.fixed, (options.fixed,))
+    rows: HydrostaticTable | RightingCurve | None = None
+    if options.table:
+        rows = model.hydrostatic_table(options.table, trim=trim, sides=options.sides, **common)
+    elif options.gz:
+        if options.displacement is None or options.cg is None:
+            raise Error("--gz needs --displacement and --cg, or --weights")
+        rows = model.righting_curve(
+            [math.radians(a) for a in options.gz],
+            options.displacement,
+            trim=trim,
+            free_trim="trim" not in kept,
+            **common,
+        )
+    elif options.displacement is not None:
+        free = None
+        if options.fixed and options.cg:
+            free = [name for name in _ANGLES if name not in kept]
+        afloat = model.equilibrium(
+            options.displacement, free=free, trim=trim, heel=heel, sides=options.sides, **common
+        )
+    else:
+        afloat = model.hydrostatics(
+            level=options.level,
+            draft=options.draft,
+            trim=trim,
+            heel=heel,
+            sides=options.sides,
+            **common,
+        )
+    if rows is not None:
+        if options.units:
+            rows = type(rows)([row.converted(options.units) for row in rows])
+        return rows.rows[0], rows
+    return (afloat.converted(options.units) if options.units else afloat), None
+
+
+def _data(row: Hydrostatics) -> dict[str, Any]:
+    """The figures as data: angles in degrees, units by figure."""
+    figures = {name: shown(name, value) for name, value in row.as_dict().items()}
+    units = {name: row.unit(name) for name in figures if row.unit(name)}
+    return {**figures, "units": units}
+
+
+def _stability(model: Any, options: argparse.Namespace) -> Any:
+    kept = {"both": ("trim", "heel")}.get(options.fixed, (options.fixed,))
+    return model.stability(
+        options.displacement,
+        cg=options.cg,
+        density=options.density,
+        trim=math.radians(options.trim),
+        free_trim="trim" not in kept,
+        openings=dict(options.opening),
+        gravity=options.gravity,
+        accuracy=options.accuracy,
+    )
+
+
+def _criteria(model: Any, options: argparse.Namespace) -> int:
+    from moldloft.stability import Wind
+
+    stability = _stability(model, options)
+    wind = Wind(*options.wind) if options.wind else None
+    found = stability.assess(options.criteria, wind=wind)
+    if options.json:
+        print_json({"rule": found.rule, "passed": found.passed, "checks": found.as_list()})
+        return 0
+    print(stability.summary())
+    print()
+    print(found)
+    return 0
+
+
+def _booklet(model: Any, options: argparse.Namespace) -> int:
+    from moldloft.booklet import write_booklet
+    from moldloft.stability import Wind
+
+    wind = Wind(*options.wind) if options.wind else None
+    rule = options.criteria or "is-code-2008"
+    stability = _stability(model, options)
+    print(f"wrote {write_booklet(options.booklet, model, stability, rule=rule, wind=wind)}")
+    return 0
+
+
+def _cross_curves(model: Any, options: argparse.Namespace) -> int:
+    from moldloft.stability import cross_curves
+
+    found = cross_curves(
+        model,
+        options.kn,
+        [math.radians(a) for a in options.gz],
+        free_trim=options.fixed not in ("trim", "both"),
+        accuracy=options.accuracy,
+    )
+    if options.json:
+        print_json(found.as_list())
+    elif options.csv:
+        print(f"wrote {found.write_csv(options.csv)}")
+    else:
+        print(found)
+    return 0
+
+
+def _sections(model: Any, options: argparse.Namespace) -> int:
+    levels = options.table or [0.0 if options.level is None else options.level]
+    areas = model.section_areas(options.sections, levels, accuracy=options.accuracy)
+    unit = model.units.of("area")
+    head = [f"x [{model.units.length}]" if model.units.length else "x"]
+    head += [f"area [{unit}] below z = {z:g}" if unit else f"area below z = {z:g}" for z in levels]
+    body = [
+        [f"{x:.6g}", *(f"{a:.8g}" for a in row)]
+        for x, row in zip(options.sections, areas, strict=True)
+    ]
+    if options.csv:
+        import csv
+        import io
+
+        from moldloft.files import Output, commit
+
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\r\n")
+        writer.writerow(head)
+        writer.writerows(
+            [[x, *row] for x, row in zip(options.sections, areas.tolist(), strict=True)]
+        )
+        path = Path(options.csv)
+        commit(path.parent, [Output(path.name, text.getvalue().encode())])
+        print(f"wrote {path}")
+    elif options.json:
+        print_json({"stations": options.sections, "levels": levels, "areas": areas.tolist()})
+    else:
+        print(table(head, body, left=0))
+    return 0
+
+
 def _warn(rows: list[Hydrostatics]) -> None:
     wet = [row for row in rows if row.floods]
     if wet:
         heels = sum(row.heel != 0 for row in wet)
         where = f" in {len(wet)} of {len(rows)} rows" if len(rows) > 1 else ""
         note = ", heeled" if heels else ""
-        text = f"warning: the mesh has an open edge below the waterline{where}{note}; "
+        text = f"warning: the skin has an open edge below the waterline{where}{note}; "
         print(text + "results are unreliable", file=sys.stderr)
     lost = sum(row.status == "not-converged" for row in rows)
     if lost:
         print(f"warning: {lost} of {len(rows)} attitudes did not come to rest", file=sys.stderr)
     if any(row.stable is False for row in rows):
-        print("warning: the body does not right itself in this attitude", file=sys.stderr)
+        print("warning: unstable: small turns are not righted in this attitude", file=sys.stderr)
+    if any(row.lolls for row in rows):
+        print("warning: unstable upright; this is the attitude of loll", file=sys.stderr)
 
 
 def _one(afloat: Hydrostatics) -> str:
@@ -173,30 +387,36 @@ def _one(afloat: Hydrostatics) -> str:
     figures = {k: v for k, v in afloat.as_dict().items() if k not in _HIDDEN}
     width = max(map(len, figures))
     for name, value in figures.items():
-        shown = f"{value:.8g}" if isinstance(value, float) else str(value)
+        text = f"{value:.8g}" if isinstance(value, float) else str(value)
         if name in _ANGLES:
-            shown = f"{math.degrees(value):.8g} degrees"
+            text = f"{math.degrees(value):.8g} degrees"
+        elif afloat.unit(name):
+            text += f" {afloat.unit(name)}"
+        if name in afloat.bounds:
+            text += f" ± {afloat.bounds[name]:.1g}"
         slopes = afloat.derivatives.get(name, {})
         more = "".join(f"  d/d{by} {slope:.6g}" for by, slope in slopes.items())
-        lines.append(f"  {name.ljust(width)}  {shown}{more}")
+        lines.append(f"  {name.ljust(width)}  {text}{more}")
     if afloat.open_edges:
         lines.append(
-            f"  {afloat.open_edges} open panel edges below the waterline: results are unreliable"
+            f"  {afloat.open_edges} open edges of the skin below the water: results are unreliable"
         )
     return "\n".join(lines)
 
 
 def _table(rows: HydrostaticTable | RightingCurve) -> str:
     if isinstance(rows, HydrostaticTable):
-        body = [[_number(getattr(row, name)) for name in _TABLE] for row in rows]
-        return table(_TABLE, body, left=0)
-    names = ["heel", "gz", "righting_moment", "trim", "draft_mid", "freeboard", "status"]
+        names = [n for n in _TABLE if any(getattr(row, n) is not None for row in rows)]
+        body = [[_number(getattr(row, name)) for name in names] for row in rows]
+        return table([header(name, rows.units) for name in names], body, left=0)
+    names = ["heel", "gz", "righting_moment", "trim", "draft_mid", "freeboard"]
+    names = [header(name, rows.units) for name in names] + ["status"]
     body = []
     for row in rows:
         cells = [f"{math.degrees(row.heel):.4g}", _number(row.gz), _number(row.righting_moment)]
         cells += [f"{math.degrees(row.trim):.4g}", _number(row.draft_mid), _number(row.freeboard)]
         body.append([*cells, row.status])
-    text = table(names, body, left=0) + "\n(heel and trim in degrees)"
+    text = table(names, body, left=0)
     heel, arm = rows.largest
     text += f"\nlargest arm {arm:.6g} at {math.degrees(heel):.4g} degrees"
     if rows.vanishing is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import warnings
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.errors import FairingError, FileError, FormatError
+from moldloft.fairing.tables import plain
 from moldloft.files import Output, commit
 from moldloft.grids import Plot3DVariant, decode_plot3d, encode_plot3d
 
@@ -58,6 +60,17 @@ class PointFile:
     """Of an aerofoil in two halves, from the leading edge each: the numbers of their points."""
     notes: list[str] = field(default_factory=list)
     """What reading it showed."""
+    inches: bool = False
+    """Whether lengths were in feet, inches and eighths; they are inches here."""
+    comma: bool = False
+    """Whether numbers had decimal commas."""
+    offsets: bool = False
+    """Whether it is a table of offsets: stations, half-breadths and heights. Its blocks are then
+    the stations and the waterlines, which share their points."""
+    table: Floats | None = None
+    """The rows of a table of offsets as they were."""
+    places: list[int] = field(default_factory=list)
+    """Of each row of the curves the row of the table."""
 
     @property
     def width(self) -> int:
@@ -81,7 +94,10 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
     """Read rows of points.
 
     CSV with or without names of columns, blanks or tabs, aerofoils with a title (in one run, or in
-    two halves with their counts). ``#`` begins a comment, blank lines separate curves.
+    two halves with their counts) and prose after the points, decimal commas, lengths in feet,
+    inches and eighths (``4-5-1``). Columns named x, y and z, or station, half-breadth and height,
+    are taken by name; the rows of the latter are a table of offsets. ``#`` begins a comment, blank
+    lines separate curves.
 
     Raises
     ------
@@ -91,21 +107,80 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
         When the file cannot be read.
     """
     path = Path(path)
+    data = _bytes(path)
     try:
-        rows, found = _core.read_points(_bytes(path))
+        text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    try:
+        made = plain(text)
+        rows, found = _core.read_points(made.text.encode())
     except FormatError as error:
         raise _at(path, error) from error
+    except FairingError as error:
+        raise FairingError(f"{path}: {error}") from error
     halves = found["halves"]
     notes = ["the two halves are read as one curve from the upper trailing edge"] if halves else []
-    return PointFile(
+    file = PointFile(
         path,
         np.ascontiguousarray(rows[:, : found["columns"]]),
         found["lines"],
         [range(first, end) for first, end in found["blocks"]],
-        found["head"],
+        found["head"] if made.head is None else made.head,
         found["delimiter"],
         halves,
-        notes,
+        made.notes + notes,
+        made.inches,
+        made.comma,
+    )
+    return _as_offsets(file) if made.stations and file.width == 3 else file
+
+
+def _as_offsets(file: PointFile) -> PointFile:
+    """A table of offsets as the curves of its stations and waterlines."""
+    table = file.points
+    by_station: dict[float, list[int]] = {}
+    by_level: dict[float, list[int]] = {}
+    for k, (x, _, z) in enumerate(table.tolist()):
+        by_station.setdefault(x, []).append(k)
+        by_level.setdefault(z, []).append(k)
+    if len(by_station) < 2 or max(map(len, by_station.values())) < 2:
+        return file
+    seen: dict[tuple[float, ...], int] = {}
+    for k, row in enumerate(table.tolist()):
+        if tuple(row) in seen:
+            first = file.lines[seen[tuple(row)]]
+            raise FairingError(f"{file.path}:{file.lines[k]}: the same offset as line {first}")
+        seen[tuple(row)] = k
+    stations = list(by_station)
+    rises = [b > a for a, b in itertools.pairwise(stations)]
+    if not (all(rises) or not any(rises)):
+        k = next(k for k in range(1, len(rises)) if rises[k] != rises[0]) + 1
+        line = file.lines[by_station[stations[k]][0]]
+        raise FairingError(
+            f"{file.path}:{line}: station {stations[k]:g} is out of order after {stations[k - 1]:g}"
+        )
+    lists = list(by_station.values())
+    for rows in by_level.values():
+        lists.append(sorted(rows, key=lambda k: table[k, 0]))
+    long = [rows for rows in lists if len(rows) >= 5]
+    short = len(lists) - len(long)
+    if not long:
+        raise FairingError(f"{file.path}: no station or waterline has 5 points")
+    notes = list(file.notes)
+    if short:
+        notes.append(f"{short} stations and waterlines with fewer than 5 points: not faired")
+    places = [k for rows in long for k in rows]
+    ends = list(itertools.accumulate(map(len, long)))
+    return replace(
+        file,
+        points=np.ascontiguousarray(table[places]),
+        lines=[file.lines[k] for k in places],
+        blocks=[range(end - len(rows), end) for end, rows in zip(ends, long, strict=True)],
+        notes=notes,
+        offsets=True,
+        table=table,
+        places=places,
     )
 
 
@@ -119,6 +194,8 @@ def _at(path: Path, error: FormatError) -> FairingError:
 
 def points_text(points: Floats, like: PointFile | None = None, delimiter: str = ",") -> str:
     """Rows of points as text that reads back to the bit, in the form of a file read."""
+    if like is not None and (like.inches or like.comma):
+        return _own_form(points, like)
     own = delimiter if like is None else (like.delimiter or " ")
     separator = own + " " if own.strip() else own
     head = like.head if like else []
@@ -126,6 +203,39 @@ def points_text(points: Floats, like: PointFile | None = None, delimiter: str = 
     blocks = [(block.start, block.stop) for block in like.blocks] if like else []
     rows = np.ascontiguousarray(points, dtype=np.float64)
     return _core.points_text(rows, separator, head, blocks, halves)
+
+
+def sixteenths(inches: float) -> str:
+    """A length in feet, inches and eighths, to the nearest sixteenth.
+
+    Examples
+    --------
+    >>> sixteenths(53.125), sixteenths(54.0625), sixteenths(-0.26)
+    ('4-5-1', '4-6-0+', '-0-0-2')
+    """
+    count = round(16 * abs(inches))
+    feet, rest = divmod(count, 192)
+    whole, parts = divmod(rest, 16)
+    sign = "-" if inches < 0 and count else ""
+    return f"{sign}{feet}-{whole}-{parts // 2}{'+' if parts % 2 else ''}"
+
+
+def _own_form(points: Floats, like: PointFile) -> str:
+    """Rows with decimal commas, or in feet, inches and eighths."""
+
+    def number(x: float) -> str:
+        if like.inches:
+            return sixteenths(x)
+        return repr(float(x) + 0.0).replace(".", ",")
+
+    separator = {"\t": "\t", None: " "}.get(like.delimiter, "; " if like.comma else ", ")
+    lines = [line.removeprefix("# ") if like.inches else line for line in like.head]
+    starts = {block.start for block in like.blocks} - {0}
+    for k, row in enumerate(points):
+        if k in starts and not like.offsets:
+            lines.append("")
+        lines.append(separator.join(number(x) for x in row))
+    return "\n".join(lines) + "\n"
 
 
 def read_numbers(path: str | os.PathLike[str]) -> list[float]:

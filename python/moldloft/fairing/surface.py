@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -421,6 +421,19 @@ class SurfaceFairing:
     """Passes of the faithful mode."""
     seconds: float
     """Time of the fairing."""
+    goal: str = "fairest"
+    """Which of the surfaces within the tolerances was wanted."""
+    residuals: Floats | None = field(default=None, repr=False)
+    """The distance of each point from the surface at its parameters, for fits."""
+    used: float | None = None
+    """The mean of the squared residuals over tolerances; 1 is noise that fills these evenly."""
+
+    @property
+    def deviation_data(self) -> float:
+        """No point that was given is farther from the surface than this."""
+        if self.residuals is not None:
+            return float(self.residuals.max())
+        return float(np.linalg.norm(self.points - self.data, axis=2).max())
 
     @property
     def gap_relative(self) -> float:
@@ -445,6 +458,9 @@ class SurfaceFairing:
             "measure": self.measure,
             "tolerance": self.tol,
             "passes": self.passes,
+            "goal": self.goal,
+            "budget_used": self.used,
+            "deviation_data": self.deviation_data,
             "deviation_certified": self.deviation_certified,
             "deviation_sampled": self.deviation_sampled,
             "deviation_percent": self.deviation_percent,
@@ -477,7 +493,8 @@ class SurfaceFairing:
         tail = [
             (
                 "deviation",
-                f"certified {self.deviation_certified:.6e}, sampled {self.deviation_sampled:.6e}, "
+                f"at the points {self.deviation_data:.6e}; surface to surface certified "
+                f"{self.deviation_certified:.6e}, sampled {self.deviation_sampled:.6e}, "
                 f"{self.deviation_percent:.4g} % of the extent",
             ),
             ("certificate", f"{self.value:.9e}, {left}"),
@@ -555,6 +572,89 @@ def _conditions(
     return out, labels
 
 
+def _fair_data(
+    points: ArrayLike,
+    tol: ArrayLike | None,
+    options: dict[str, Any],
+    conditions: tuple[list[_Condition], list[str]],
+) -> SurfaceFairing:
+    """A grid of data under tolerances."""
+    from moldloft.fairing.curve import _goal, spacing_of
+
+    started = time.perf_counter()
+    data, _ = points_of(points, 3)
+    m, n = data.shape[:2]
+    degree, closed = options["degree"], options["closed"]
+    for axis, name in ((0, "u"), (1, "v")):
+        few = (2 * degree[axis] if closed[axis] else degree[axis]) + 2
+        if data.shape[axis] < few:
+            raise FairingError(
+                f"expected at least {few} points along {name}, found {data.shape[axis]}"
+            )
+    if tol is not None and np.ndim(tol) == 2 and np.shape(tol) != (m, n):
+        raise FairingError(f"expected tolerances {(m, n)}, found {np.shape(tol)}")
+    if tol is None and any(closed):
+        raise FairingError("a closed surface without a tolerance shrinks")
+    limits = radii(tol, m * n)
+    for i, j in options["fixed"]:
+        limits[int(i) * n + int(j)] = 0.0
+    word, way = direction(options["motion"])
+    spaced, spaced_way = spacing_of(options["spacing"])
+    wanted = _goal(options["goal"])
+    measure = options["measure"] or ("variation" if min(degree) >= 3 else "bending")
+    core, before, at, told = _core.Net.fair_data(
+        data.reshape(-1, 3),
+        (m, n),
+        {
+            "tolerance": limits,
+            "motion": word,
+            "direction": way,
+            "degree": degree,
+            "closed": closed,
+            "spacing": spaced,
+            "spacing_direction": spaced_way,
+            "marks": (list(options["breaks"][0]), list(options["breaks"][1])),
+            "rims": _rims(options["rims"]),
+            "measure": measure,
+            "goal": wanted,
+            "conditions": conditions[0],
+            "labels": conditions[1],
+        },
+    )
+    faired, original = SplineSurface._of(core), SplineSurface._of(before)
+    moved = faired.grid(np.asarray(at[0]), np.asarray(at[1]))
+    residuals = told["residuals"].reshape(m, n)
+    # What the surface passes through to rounding has not moved by a bit.
+    still = residuals <= 64 * np.finfo(float).eps * np.abs(data).max()
+    moved[still] = data[still]
+    jumps_before, jumps_after = original.measure("jumps"), faired.measure("jumps")
+    return SurfaceFairing(
+        points=moved,
+        surface=faired,
+        original=original,
+        data=data,
+        tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
+        as_="fit",
+        mode="optimum",
+        measure=measure,
+        measure_before=told["measure_before"],
+        measure_after=told["measure_after"],
+        jumps_before=told["jumps_before"],
+        jumps_after=told["jumps_after"],
+        jumps_along=((jumps_before[0], jumps_after[0]), (jumps_before[1], jumps_after[1])),
+        deviation_certified=told["certified"],
+        deviation_sampled=told["sampled"],
+        extent=float(np.linalg.norm(np.ptp(data.reshape(-1, 3), axis=0))),
+        value=told["certificate"]["value"],
+        gap=told["certificate"]["gap"],
+        passes=None,
+        seconds=time.perf_counter() - started,
+        goal=wanted[0],
+        residuals=residuals,
+        used=told["used"],
+    )
+
+
 def fair_surface(
     points: ArrayLike | SplineSurface,
     tol: ArrayLike | None,
@@ -564,9 +664,11 @@ def fair_surface(
     closed: tuple[bool, bool] = (False, False),
     knots: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
     weights: ArrayLike | None = None,
-    measure: str = "second",
+    measure: str | None = None,
     mode: str = "optimum",
-    bound: str = "points",
+    bound: str | None = None,
+    spacing: Any = "chord",
+    goal: Any = "near",
     breaks: tuple[Sequence[int], Sequence[int]] = ((), ()),
     fixed: Sequence[tuple[int, int]] = (),
     ends: Any = 2,
@@ -588,19 +690,26 @@ def fair_surface(
     tol
         How far each point of the net may move; ``None`` for no limit.
     as_
-        ``"control"``: the grid is the control net; ``"fit"``: the surface passes through it before
-        it is faired.
+        ``"control"``: the grid is the control net of a uniform surface; ``"fit"``: data on the
+        surface, which stays within the tolerance of each. Closed surfaces and those with knots or
+        weights of their own pass through data at even parameters before they are faired.
     degree, closed, knots, weights
         Of the surface of a grid; see :class:`SplineSurface` and :meth:`SplineSurface.interpolate`.
     measure
-        As for curves: the sum over all curves of the net in both directions.
+        As for curves: the sum over all curves of the net in both directions, of data over those
+        through the data. By default ``"variation"`` for data, ``"second"`` otherwise.
     mode
         ``"optimum"``: all curves at once, with a certificate. ``"faithful"``: curve after curve by
         local steps, those of constant v first, then those of constant u, ``passes`` times.
         ``"sweeps"``: all points in order, for nets too large for the optimum.
     bound
-        ``"points"``: each control point is within the tolerance; ``"curve"``: the surface is, which
-        leaves the control points more room.
+        ``"data"``: the tolerance bounds the distance of each point from the surface; ``"points"``:
+        the move of each control point; ``"curve"``: that of the surface from the one through the
+        points, which leaves the control points more room. By default the data for fits.
+    spacing
+        Parameters of data in each direction, the mean over its lines; see curves.
+    goal
+        Which of the surfaces within the tolerances of data; see curves.
     breaks
         Rows of points along u and along v, from 0, that are knuckle lines: their points do not move
         by a bit and nothing is smoothed across them.
@@ -639,6 +748,25 @@ def fair_surface(
         raise FairingError(
             f"unknown mode `{mode}` of surfaces; expected one of: optimum, faithful, sweeps"
         )
+    by_data = as_ == "fit" and mode == "optimum" and bound in (None, "data") and not any(closed)
+    plain = weights is None and all(k is None for k in knots)
+    if bound == "data" and not (by_data and plain):
+        raise FairingError("bound `data` is for optima of open grids of data without own knots")
+    if by_data and plain and not isinstance(points, SplineSurface):
+        options = {
+            "degree": (degree, degree) if isinstance(degree, int) else degree,
+            "closed": closed,
+            "measure": measure,
+            "spacing": spacing,
+            "goal": goal,
+            "breaks": breaks,
+            "fixed": fixed,
+            "rims": rims,
+            "motion": motion,
+        }
+        return _fair_data(points, tol, options, _conditions(through, normals, keep))
+    measure = measure or "second"
+    bound = bound or "points"
     conditions, labels = _conditions(through, normals, keep)
     if conditions and mode != "optimum":
         raise FairingError("only the optimum keeps conditions; take mode `optimum`")

@@ -338,8 +338,11 @@ fn grids_of_the_language() {
     assert_eq!(refused("elliptic", &args(&walls)), ("unknown-word", Some(5), None));
     let walls = [text("laplace"), Value::Unset, text("j1"), number(0.05)];
     assert_eq!(refused("elliptic", &args(&walls)), ("unused-argument", Some(3), None));
-    let walls = [text("sorenson"), Value::Unset, text("j1"), number(0.05)];
+    let walls = [text("sorenson"), Value::Unset, text("j1"), number(0.1)];
     assert_eq!(one("folds", &[ok("elliptic", &args(&walls))]), 0.0);
+    // A third of the cell that the fixed sides begin with folds the cell beside them.
+    let walls = [text("sorenson"), Value::Unset, text("j1"), number(0.05)];
+    assert_eq!(refused("elliptic", &args(&walls)).0, "folded-grid");
     // A start that stays folded for want of sweeps is refused, unless it is wanted.
     let mut folded = points(&grid);
     folded.swap(3 * 7 + 3, 5 * 7 + 3);

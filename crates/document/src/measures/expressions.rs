@@ -3,11 +3,12 @@
 use crate::document::{Document, Source};
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
+use moldloft_hydro::USUAL_ACCURACY;
 use moldloft_lang::run::interpreter::Inputs;
 use moldloft_lang::run::program::Program;
+use moldloft_lang::run::whole::{body_numbers, mesh_numbers, not_finite, one_of};
 use moldloft_lang::source::env::Evaluation;
 use moldloft_lang::value::variables::Called as _;
-use moldloft_mesh::{Mesh, measure, measure_patch};
 use moldloft_num::{Dual4, Vec3};
 use moldloft_registry::{Scalar, Value};
 use std::collections::HashSet;
@@ -20,8 +21,14 @@ impl Document {
     /// What is wrong with it.
     pub fn eval(&mut self, text: &str) -> Result<Value<f64>, Vec<Diagnostic>> {
         if let Some((group, number)) = self.whole_name(text) {
-            let panelled = self.panelled().map_err(|d| vec![d])?;
-            return self.whole_number(&panelled.mesh, group, number).map_err(|d| vec![d]);
+            let found = if group == "mesh" {
+                let panelled = self.panelled().map_err(|d| vec![d])?;
+                mesh_numbers(&panelled.mesh)
+            } else {
+                let bodied = self.bodied(USUAL_ACCURACY).map_err(|d| vec![d])?;
+                body_numbers(&bodied.body, &self.symmetry())
+            };
+            return one_of(found, group, number).map_err(|d| vec![d]);
         }
         let mut evaluation = std::mem::take(&mut self.plain);
         let value = self.eval_in(&mut evaluation, text);
@@ -55,44 +62,13 @@ impl Document {
         program.eval(evaluation, inputs, text)
     }
 
-    /// The parts of `mesh.area`, `hydrostatics.volume` (unless the model has such an object) or
-    /// `hull.volume` of a surface: numbers of the joined panels.
+    /// The parts of `mesh.area`, a number of the joined panels, or of `hydrostatics.volume`, one of the surfaces;
+    /// unless the model has an object of that name.
     fn whole_name<'t>(&self, text: &'t str) -> Option<(&'t str, &'t str)> {
         let (group, number) = text.trim().rsplit_once('.')?;
         let word = number.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        let object = self.graph().find(group).and_then(|key| self.graph().get(key));
-        let known = match object {
-            Some(object) => {
-                matches!(object.value(), Some(Value::Surface(_)))
-                    && object.head.shown()
-                    && matches!(number, "area" | "volume")
-            }
-            None => matches!(group, "mesh" | "hydrostatics"),
-        };
+        let known = matches!(group, "mesh" | "hydrostatics") && self.graph().find(group).is_none();
         (known && word).then_some((group, number))
-    }
-
-    /// A number of the whole model.
-    fn whole_number<T: Scalar>(
-        &self,
-        mesh: &Mesh<T>,
-        group: &str,
-        number: &str,
-    ) -> Result<Value<T>, Diagnostic> {
-        let patch = mesh.patches().iter().position(|p| p.info.name == group);
-        let numbers = if patch.is_some() || group == "mesh" {
-            let measures = patch.map_or_else(|| measure(mesh), |k| measure_patch(mesh, k));
-            vec![("area", Value::Number(measures.area)), ("volume", Value::Number(measures.volume))]
-        } else {
-            crate::measures::hydrostatics::numbers(mesh, &self.hydrostatic_options())?
-        };
-        if let Some((_, value)) = numbers.iter().find(|(name, _)| *name == number) {
-            return Ok(value.clone());
-        }
-        let known: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
-        Err(Diagnostic::error("unknown-member", format!("{group} has no `{number}`"))
-            .expected(known.join(", "))
-            .suggest(number, known.iter().copied()))
     }
 
     /// Derivatives of expressions by parameters (or literals of objects): `[expression][by]`,
@@ -111,9 +87,17 @@ impl Document {
                 let value = match document.whole_name(text) {
                     Some((group, number)) => {
                         let panelled = document.panelled().map_err(|d| vec![d])?;
-                        let mesh = panelled.panelling.mesh(&evaluation.graph);
-                        let mesh = mesh.ok_or_else(|| vec![no_mesh()])?;
-                        document.whole_number(&mesh, group, number).map_err(|d| vec![d])?
+                        let found = if group == "mesh" {
+                            let mesh = panelled.panelling.mesh(&evaluation.graph);
+                            mesh_numbers(&mesh.ok_or_else(|| vec![no_mesh()])?)
+                        } else {
+                            let bodied = document.bodied(USUAL_ACCURACY).map_err(|d| vec![d])?;
+                            let graph = &evaluation.graph;
+                            let body = bodied.skin.body(&panelled.panelling, graph, USUAL_ACCURACY);
+                            let body = body.ok_or_else(|| vec![not_finite()])?;
+                            body_numbers(&body, &document.symmetry())
+                        };
+                        one_of(found, group, number).map_err(|d| vec![d])?
                     }
                     None => document.eval_in(evaluation, text)?,
                 };

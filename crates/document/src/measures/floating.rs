@@ -2,11 +2,16 @@
 
 use crate::Document;
 use moldloft_diag::Diagnostic;
-use moldloft_mesh::{
-    Afloat, Attitude, FloatError, Loading, Mesh, Solved, Status, Symmetry, Water, afloat, bottom,
-    equilibrium,
+use moldloft_hydro::{
+    Afloat, Attitude, Body, FloatError, Loading, Solved, Status, Water, afloat, bottom, bounds,
+    equilibrium, section_area,
 };
+use moldloft_lang::run::weight::{WEIGHT, mass_and_centre};
+use moldloft_lang::run::whole::not_finite;
+use moldloft_mesh::{FloatOptions, Symmetry};
+use moldloft_model::Graph;
 use moldloft_num::{Dual4, Real, Vec3};
+use moldloft_registry::Scalar;
 use rayon::prelude::*;
 
 /// A hydrostatics request; heel and trim in radians.
@@ -52,6 +57,10 @@ pub struct AfloatOptions {
     pub centre: Option<[f64; 3]>,
     /// Only the modelled side of y = 0 counts.
     pub one_side: bool,
+    /// The mass that floats and the centre of gravity are those of the model's weights.
+    pub of_weights: bool,
+    /// The relative accuracy of the figures.
+    pub accuracy: f64,
 }
 
 /// One answer: figures by name, and how they came about.
@@ -61,14 +70,18 @@ pub struct FloatAnswer {
     pub figures: Vec<(&'static str, f64)>,
     /// For each figure its derivatives by the asked parameters.
     pub derivatives: Vec<Vec<f64>>,
+    /// Bounds of the errors of the main figures, by name.
+    pub bounds: Vec<(&'static str, f64)>,
     /// `given`, `converged` or `not-converged`.
     pub status: &'static str,
     /// Newton steps.
     pub iterations: usize,
     /// What is left of the equations of rest.
     pub residual: f64,
-    /// Whether small turns about the free axes are righted.
+    /// Whether all small turns are righted; `None` without a centre of gravity.
     pub stable: Option<bool>,
+    /// Whether this is the attitude that a body finds which is unstable where the search began.
+    pub lolls: bool,
     /// Open edges below the water.
     pub open_edges: usize,
     /// See [`moldloft_mesh::Hydrostatics::closure_error`].
@@ -94,9 +107,9 @@ impl Document {
         by: &[String],
     ) -> Result<Vec<FloatAnswer>, Vec<Diagnostic>> {
         let symmetry = self.symmetry();
-        let panelled = self.panelled().map_err(|d| vec![d])?;
-        let mesh = panelled.mesh.clone();
-        let mut answers = answers(&mesh, &symmetry, requests, options)
+        let bodied = self.bodied(options.accuracy).map_err(|d| vec![d])?;
+        let carried = self.carried(&self.plain.graph, options)?;
+        let mut answers = answers(&bodied.body, &symmetry, requests, options, carried)
             .into_iter()
             .map(|solved| Ok(answer(&solved?)))
             .collect::<Result<Vec<FloatAnswer>, FloatError>>()
@@ -106,10 +119,11 @@ impl Document {
         }
         self.passes(by, |document, evaluation, count| {
             let panelled = document.panelled().map_err(|d| vec![d])?;
-            let mesh = panelled.panelling.mesh(&evaluation.graph);
-            let mesh: Mesh<Dual4> =
-                mesh.ok_or_else(|| vec![crate::measures::expressions::no_mesh()])?;
-            let all = self::answers(&mesh, &symmetry, requests, options);
+            let graph = &evaluation.graph;
+            let body = bodied.skin.body(&panelled.panelling, graph, options.accuracy);
+            let body: Body<Dual4> = body.ok_or_else(|| vec![not_finite()])?;
+            let carried = document.carried(graph, options)?;
+            let all = self::answers(&body, &symmetry, requests, options, carried);
             for (answer, solved) in answers.iter_mut().zip(all) {
                 let figures = solved.map_err(cannot_float)?.0.afloat.figures();
                 for (column, (_, x)) in answer.derivatives.iter_mut().zip(figures) {
@@ -119,6 +133,75 @@ impl Document {
             Ok(())
         })?;
         Ok(answers)
+    }
+}
+
+/// A weight of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WeightItem {
+    /// Its name.
+    pub name: String,
+    /// The group it is listed in, empty for none.
+    pub group: String,
+    /// Mass, with its margin.
+    pub mass: f64,
+    /// The margin in percent.
+    pub margin: f64,
+    /// Its centre.
+    pub centre: [f64; 3],
+    /// How the mass is known.
+    pub status: String,
+}
+
+impl Document {
+    /// The weights of the model, in the order of declaration.
+    pub fn weights(&self) -> Vec<WeightItem> {
+        let objects = self.graph().objects().filter(|o| o.row.name == WEIGHT);
+        let item = |o: &moldloft_model::Object<f64>| {
+            let (mass, centre) = mass_and_centre(o.value()?)?;
+            let argument = |name: &str| o.args.get(o.row.field(name)?);
+            let text = |name: &str| match argument(name) {
+                Some(moldloft_registry::Value::Text(text)) => text.to_string(),
+                _ => String::new(),
+            };
+            let margin = match argument("margin") {
+                Some(moldloft_registry::Value::Number(x)) => *x,
+                _ => 0.0,
+            };
+            let (group, mut status) = (text("group"), text("status"));
+            if status.is_empty() {
+                status = "estimated".into();
+            }
+            let (name, centre) = (o.name.to_string(), centre.to_array());
+            Some(WeightItem { name, group, mass, margin, centre, status })
+        };
+        objects.filter_map(item).collect()
+    }
+
+    /// The mass and the centre of all weights, where these float.
+    fn carried<T: Scalar>(
+        &self,
+        graph: &Graph<T>,
+        options: AfloatOptions,
+    ) -> Result<Option<(T, Vec3<T>)>, Vec<Diagnostic>> {
+        if !options.of_weights {
+            return Ok(None);
+        }
+        let (mut mass, mut moment) = (T::zero(), Vec3::zero());
+        for object in graph.objects().filter(|o| o.row.name == WEIGHT) {
+            if let Some((m, centre)) = object.value().and_then(mass_and_centre) {
+                mass += m;
+                moment += centre * m;
+            }
+        }
+        if mass.re() > 0.0 {
+            return Ok(Some((mass, moment / mass)));
+        }
+        Err(vec![
+            Diagnostic::error("no-weights", "the model has no weights")
+                .expected("declarations such as: Weight engine({2, 0, 0.5}, mass = 3);")
+                .help("or give the displacement and the centre of gravity"),
+        ])
     }
 }
 
@@ -140,27 +223,27 @@ type Answered<T> = Result<(Solved<T>, bool, &'static str), FloatError>;
 
 /// The answers of all requests, each from canonical data: none starts from another's.
 fn answers<T: Real>(
-    mesh: &Mesh<T>,
+    body: &Body<T>,
     symmetry: &str,
     requests: &[FloatRequest],
     options: AfloatOptions,
+    carried: Option<(T, Vec3<T>)>,
 ) -> Vec<Answered<T>> {
-    let image = |mesh: &Mesh<T>, axis| mesh.with_mirror_image(axis, ".mirror").ok();
-    let lengthwise = if symmetry.contains('x') { image(mesh, 0) } else { None };
-    let mesh = lengthwise.as_ref().unwrap_or(mesh);
+    let lengthwise = symmetry.contains('x').then(|| body.with_mirror_image(0));
+    let body = lengthwise.as_ref().unwrap_or(body);
     let half = symmetry.contains('y');
     let heels = |r: &FloatRequest| {
         r.heel != 0.0 || matches!(r.immersion, Immersion::Mass { free_heel: true, .. })
     };
     // A heeled body is no longer symmetric in the water: it is shown whole.
-    let whole =
-        if half && !options.one_side && requests.iter().any(heels) { image(mesh, 1) } else { None };
+    let whole = (half && !options.one_side && requests.iter().any(heels))
+        .then(|| body.with_mirror_image(1));
     let one = |request: &FloatRequest| -> Answered<T> {
-        let (mesh, shown) = match &whole {
+        let (body, shown) = match &whole {
             Some(whole) if heels(request) => (whole, Symmetry::None),
-            _ if half && options.one_side => (mesh, Symmetry::MirroredOnce),
-            _ if half => (mesh, Symmetry::MirroredTwice),
-            _ => (mesh, Symmetry::None),
+            _ if half && options.one_side => (body, Symmetry::MirroredOnce),
+            _ if half => (body, Symmetry::MirroredTwice),
+            _ => (body, Symmetry::None),
         };
         let sides = match (half, options.one_side) {
             (false, _) => "whole",
@@ -173,23 +256,26 @@ fn answers<T: Real>(
         let AfloatOptions { density, gravity, centimetre, .. } = options;
         let water = Water { density, gravity, symmetry: shown, centimetre };
         let centre = options.centre.map(|c| Vec3::from(c.map(T::from)));
+        let centre = centre.or(carried.map(|c| c.1));
         let (trim, heel) = (T::from(request.trim), T::from(request.heel));
         let given = |level: T| {
-            let afloat = afloat(mesh, water, Attitude { level, trim, heel }, centre);
+            let afloat = afloat(body, water, Attitude { level, trim, heel }, centre);
             let status = Status::Converged;
-            Solved { afloat, status, iterations: 0, residual: 0.0, stable: true }
+            let stable = afloat.stable.unwrap_or(true);
+            Solved { afloat, status, iterations: 0, residual: 0.0, stable, lolls: false }
         };
         Ok(match request.immersion {
             Immersion::Level(level) => (given(T::from(level)), false, sides),
             Immersion::Draft(draft) => {
-                let [x, bottom] = bottom(mesh);
+                let [x, bottom] = bottom(body);
                 let level = Attitude::level_at(trim, heel, x, bottom + draft);
                 (given(level), false, sides)
             }
             Immersion::Mass { mass, free_trim, free_heel } => {
-                let loading = Loading { mass: T::from(mass), centre, free_trim, free_heel };
+                let mass = carried.map_or(T::from(mass), |c| c.0);
+                let loading = Loading { mass, centre, free_trim, free_heel };
                 let start = Attitude { level: T::zero(), trim, heel };
-                (equilibrium(mesh, water, loading, start)?, true, sides)
+                (equilibrium(body, water, loading, start)?, true, sides)
             }
         })
     };
@@ -209,11 +295,62 @@ fn answer((solved, sought, sides): &(Solved<f64>, bool, &'static str)) -> FloatA
         },
         iterations: solved.iterations,
         residual: solved.residual,
-        stable: (*sought && solved.afloat.gm.is_some()).then_some(solved.stable),
+        bounds: bounds(&solved.afloat),
+        stable: if *sought { solved.afloat.stable } else { None },
+        lolls: solved.lolls,
         open_edges: earth.open_edges,
         closure_error: earth.closure_error,
         waterplane_error: earth.waterplane_error,
         outward: earth.outward,
         sides,
+    }
+}
+
+impl Document {
+    /// The immersed area of sections below upright levels: `[station][level]`, with the moment of each area about
+    /// z = 0; both sides of a mirrored model.
+    ///
+    /// # Errors
+    /// When there is no skin.
+    pub fn section_areas(
+        &mut self,
+        stations: &[f64],
+        levels: &[f64],
+        accuracy: f64,
+    ) -> Result<Vec<Vec<[f64; 2]>>, Vec<Diagnostic>> {
+        let bodied = self.bodied(accuracy).map_err(|d| vec![d])?;
+        let symmetry = self.symmetry();
+        let lengthwise = symmetry.contains('x').then(|| bodied.body.with_mirror_image(0));
+        let body = lengthwise.as_ref().unwrap_or(&bodied.body);
+        let sides = if symmetry.contains('y') { 2.0 } else { 1.0 };
+        let one = |&x: &f64| {
+            let at = |&z: &f64| {
+                let [area, moment] = section_area(body, x, z);
+                let sign = if area < 0.0 { -sides } else { sides };
+                let area = area * sign;
+                // About the level it is negative below; about z = 0 the level is added.
+                [area, z * area - moment.abs() * sides]
+            };
+            levels.iter().map(at).collect()
+        };
+        Ok(stations.par_iter().map(one).collect())
+    }
+
+    /// What the panels displace below an upright level: volume, wetted area, waterplane area; of both sides of a
+    /// mirrored model.
+    ///
+    /// # Errors
+    /// When there are no panels.
+    pub fn panel_figures(&mut self, level: f64) -> Result<[f64; 3], Diagnostic> {
+        let panelled = self.panelled()?;
+        let symmetry = self.symmetry();
+        let lengthwise =
+            symmetry.contains('x').then(|| panelled.mesh.with_mirror_image(0, ".mirror").ok());
+        let mesh = lengthwise.flatten();
+        let mesh = mesh.as_ref().unwrap_or(&panelled.mesh);
+        let shown = if symmetry.contains('y') { Symmetry::MirroredTwice } else { Symmetry::None };
+        let options = FloatOptions { level, symmetry: shown, density: 1.0 };
+        let h = moldloft_mesh::hydrostatics(mesh, options);
+        Ok([h.volume, h.wetted_area, h.waterplane.map_or(0.0, |w| w.area)])
     }
 }

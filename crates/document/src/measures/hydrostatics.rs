@@ -1,10 +1,13 @@
 //! The hydrostatics of a model, as named numbers.
 
 use crate::Document;
+use crate::measures::bodied::Bodied;
 use moldloft_diag::Diagnostic;
-use moldloft_mesh::{FloatOptions, Hydrostatics, Mesh, Symmetry, hydrostatics};
-use moldloft_num::{Real, Vec3};
-use moldloft_registry::Value;
+use moldloft_hydro::{USUAL_ACCURACY, hydrostatics};
+use moldloft_lang::run::whole::not_finite;
+use moldloft_mesh::{Hydrostatics, Mesh, Symmetry};
+use moldloft_panel::Skin;
+use std::sync::Arc;
 
 /// How the model floats.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,41 +27,91 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The same for a mesh of another scalar.
-    pub fn float<T: Real>(&self) -> FloatOptions<T> {
-        let symmetry = if self.mirrored { Symmetry::MirroredTwice } else { Symmetry::None };
-        FloatOptions { level: T::from(self.level), symmetry, density: self.density }
+    fn symmetry(&self) -> Symmetry {
+        if self.mirrored { Symmetry::MirroredTwice } else { Symmetry::None }
     }
 }
 
-/// The named numbers of a mesh's hydrostatics; those of the waterplane only where there is one.
-///
-/// # Errors
-/// When the mesh cannot be measured.
-pub(crate) fn numbers<T: Real>(
-    mesh: &Mesh<T>,
-    options: &Options,
-) -> Result<Vec<(&'static str, Value<T>)>, Diagnostic> {
-    let float = hydrostatics(mesh, options.float());
-    Ok(named(&float))
-}
-
-/// The numbers of hydrostatics by their names.
-pub fn named<T: Real>(h: &Hydrostatics<T>) -> Vec<(&'static str, Value<T>)> {
-    let mut all: Vec<_> =
-        h.figures().into_iter().map(|(name, x)| (name, Value::Number(x))).collect();
-    let mut vector = |name, v: Option<Vec3<T>>| all.extend(v.map(|v| (name, Value::Vector(v))));
-    vector("buoyancy_centre", h.buoyancy_centre);
-    vector("waterplane_centre", h.waterplane.as_ref().map(|w| w.centre));
-    all
-}
-
 impl Document {
-    /// The hydrostatics of the model's panels.
+    /// The hydrostatics of the model.
     ///
     /// # Errors
-    /// When there are no panels.
+    /// When there is no skin.
     pub fn hydrostatics(&mut self, options: &Options) -> Result<Hydrostatics<f64>, Diagnostic> {
-        Ok(hydrostatics(&self.panelled()?.mesh, options.float()))
+        let bodied = self.bodied(USUAL_ACCURACY)?;
+        let level = options.level;
+        Ok(hydrostatics(&bodied.body, level, options.symmetry(), options.density))
+    }
+
+    /// The skin of all shown surfaces and bodies, remembered until something changes.
+    ///
+    /// # Errors
+    /// When there are too many panels, or a surface is not finite.
+    pub(crate) fn bodied(&mut self, accuracy: f64) -> Result<Arc<Bodied>, Diagnostic> {
+        let clock = self.plain.graph.last_change();
+        if let Some(known) = &self.bodied
+            && known.clock == clock
+            && known.accuracy == accuracy
+        {
+            return Ok(known.clone());
+        }
+        let panelled = self.panelled()?;
+        let mirrors = self.mirrors();
+        self.one_side_alone(&panelled.mesh)?;
+        let graph = &self.plain.graph;
+        let skin = Skin::new(&panelled.panelling, &panelled.mesh, graph, &mirrors);
+        let body = skin.body(&panelled.panelling, graph, accuracy).ok_or_else(not_finite)?;
+        let bodied = Arc::new(Bodied { clock, accuracy, skin, body });
+        self.bodied = Some(bodied.clone());
+        Ok(bodied)
+    }
+
+    /// Refuses a mirrored model that shows both sides of the plane: what lies on both would count twice.
+    fn one_side_alone(&self, mesh: &Mesh) -> Result<(), Diagnostic> {
+        let size = mesh.bounds().diagonal();
+        for axis in self.mirrors() {
+            let k = usize::from(axis);
+            let mut reach: [(f64, &str); 2] = [(0.0, ""); 2];
+            for patch in mesh.patches().iter().filter(|p| p.info.tag.is_skin()) {
+                for &v in mesh.faces()[patch.faces.clone()].iter().flatten() {
+                    let x = mesh.positions()[v as usize][k];
+                    if x < reach[0].0 {
+                        reach[0] = (x, &patch.info.name);
+                    }
+                    if x > reach[1].0 {
+                        reach[1] = (x, &patch.info.name);
+                    }
+                }
+            }
+            let [(low, below), (high, above)] = reach;
+            if low.abs().min(high) <= 1e-9 * size {
+                continue;
+            }
+            let plane = ["x = 0", "y = 0", "z = 0"][k];
+            let mut fault = Diagnostic::error(
+                "mirrored-twice",
+                format!("the model is mirrored in {plane} and shows both sides of it"),
+            )
+            .expected("one side, as the symmetry says")
+            .found(format!("`{below}` reaches {low}, `{above}` reaches {high}"))
+            .help("hide one side, or leave the symmetry out");
+            for (name, first) in [(above, true), (below, false)] {
+                let object = self.graph().find(name).and_then(|key| self.graph().get(key));
+                let span = object.and_then(|o| self.declared_at(&self.plain, o));
+                fault = match span {
+                    Some(span) if first => fault.at(span),
+                    Some(span) => fault.note_at(span, "the other side"),
+                    None => fault,
+                };
+            }
+            return Err(fault);
+        }
+        Ok(())
+    }
+
+    /// The axes whose plane through zero mirrors the model.
+    fn mirrors(&self) -> Vec<u8> {
+        let letters = self.symmetry();
+        (0..3u8).filter(|&k| letters.contains(['x', 'y', 'z'][usize::from(k)])).collect()
     }
 }

@@ -1,6 +1,7 @@
 //! Numbers and fields of a model: values of expressions, derivatives, hydrostatics, contour lines, blocks.
 
 pub(crate) mod blocks;
+pub(crate) mod bodied;
 pub(crate) mod contour_lines;
 pub(crate) mod expressions;
 pub(crate) mod floating;

@@ -40,6 +40,8 @@ fn what_has_no_centre_cannot_float_freely() {
         centimetre: 0.01,
         centre: None,
         one_side: false,
+        of_weights: false,
+        accuracy: 1e-6,
     };
     let faults = document
         .floating(&[FloatRequest { immersion, trim: 0.0, heel: 0.0 }], options, &[])

@@ -290,7 +290,7 @@ fn bad_input_is_told() {
         ("set s = set(sphere({0,0,0}, 1)) ^ 2;", "wrong-operand", "`^`"),
         ("set s = set(sphere({0,0,0}, 1)) | 2;", "wrong-operand", "`|`"),
         ("field s = 3 < sphere({0,0,0}, 1);", "wrong-operand", "`<`"),
-        ("field f = tan(sphere({0,0,0}, 1));", "wrong-class", "tan"),
+        ("field f = floor(sphere({0,0,0}, 1));", "wrong-class", "floor"),
         ("set s = abs(set(sphere({0,0,0}, 1)));", "wrong-class", "takes no set"),
         ("field f = set(sphere({0,0,0}, 1));", "wrong-type", "expected a field, found a set"),
         ("set s = 3;", "wrong-type", "expected a set"),

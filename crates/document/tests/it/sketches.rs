@@ -169,6 +169,23 @@ fn faults_point_into_the_sketch() {
     assert_eq!(m.diagnostics()[0].id, "no-sketch");
 }
 
+#[test]
+fn a_section_that_crosses_itself_has_no_body() {
+    let run = "= \"0.75*HEIGHT\"";
+    assert!(DAM.contains(run));
+    let text = DAM.replace(run, "= 54 IN -30 60");
+    let mut m = Document::open(registry(), shelf(&[("dam.skt", &text)]), "dam.skt");
+    fine(&m);
+    // The toe passes the heel: the downstream face crosses the upstream one.
+    m.set(&[("dam.RUN".into(), -21.0)]).unwrap();
+    let found = m.diagnostics();
+    let invalid = found.iter().find(|d| d.id == "sketch-invalid");
+    assert!(invalid.is_some_and(|d| !d.help.is_empty()), "{found:#?}");
+    assert!(m.eval("dam.volume").is_err());
+    m.set(&[("dam.RUN".into(), 54.0)]).unwrap();
+    assert!((number(&mut m, "dam.volume") - 169_200.0).abs() < 1e-6);
+}
+
 /// What a run of edits leaves is what a run from scratch makes, bit for bit.
 #[test]
 fn edits_leave_what_a_fresh_run_makes() {

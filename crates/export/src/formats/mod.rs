@@ -10,6 +10,7 @@ mod hams;
 mod hydrostar;
 mod iges;
 mod model_file;
+mod msh;
 mod nemoh;
 mod obj;
 mod off;
@@ -19,6 +20,8 @@ mod png;
 mod program;
 mod step;
 mod stl;
+mod stl_text;
+mod su2;
 mod svg;
 mod threemf;
 mod volume_p3d;
@@ -43,10 +46,13 @@ pub static FORMATS: &[Format] = &[
     hams::FORMAT,
     aqwa::FORMAT,
     stl::FORMAT,
+    stl_text::FORMAT,
     threemf::FORMAT,
     obj::FORMAT,
     off::FORMAT,
     ply::FORMAT,
+    msh::FORMAT,
+    su2::FORMAT,
     glb::FORMAT,
     vtp::FORMAT,
     vts::FORMAT,

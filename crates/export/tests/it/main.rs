@@ -101,7 +101,8 @@ fn lids_go_where_the_row_says() {
         };
         let (without, with) = (files(false), files(true));
         let own = format.lids == Lids::OwnFile;
-        assert_eq!((with.len(), with[0] == without[0]), (1 + usize::from(own), own));
+        let found = (with.len(), with[0] == without[0]);
+        assert_eq!(found, (1 + usize::from(own), own), "{}", format.name);
     }
 }
 

@@ -28,7 +28,7 @@ fn distance(model: &Document, patch: &SplinePatch, turned: bool) -> f64 {
 fn splines_are_exact_with_the_fewest_points() {
     let text = "
         AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 2); AbsPoint C(2, 0, -1); AbsPoint D(3, 0, 0);
-        AbsPoint E(0, 3, 0); AbsPoint F(1, 3, 1); AbsPoint G(2, 3, 1); AbsPoint H(3, 3, 0);
+        AbsPoint E(0, 3, 0); AbsPoint F(1, 3, 1); AbsPoint G(2, 3, 2); AbsPoint H(3, 3, 0);
         AbsPoint I(4, 3, 0);
         BCurve low({A, B, C, D}, degree = 3); BCurve high({E, F, G, H, I}, degree = 3);
         RuledSurf sheet(low, high, divisions = {4, 4});

@@ -2,6 +2,7 @@
 
 mod curve;
 mod functions;
+mod moving_surface;
 mod net;
 mod patches;
 mod shapes;

@@ -1,7 +1,11 @@
 //! `FairSurf`: the faired surface of a grid of points.
 
+use super::moving_surface::MovingSurface;
 use super::{ACCURACY, Own, Places, Role, faithful, fault, indices, measure, role};
-use crate::{Bound, End, FairError, Limit, Network, Space, Spacing, interpolate_with_corners};
+use crate::{
+    Bound, End, FairError, GridData, Layout, Limit, Motion, Network, Space, Spacing,
+    fair_grid_with, grid_parameters, interpolate_with_corners,
+};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     ArrayShape, Build, CallError, Class, Context, FieldId, FromValue, Kind, SurfaceRef, Value,
@@ -41,7 +45,8 @@ impl<T: Real> FromValue<T> for Grid<T> {
 pub struct FairSurf<T: Real> {
     /// A grid of points, at least degree + 2 in each direction.
     points: Grid<T>,
-    /// Largest distance from the surface through the points; 0 leaves it unchanged.
+    /// Largest distance of each point from the surface (`as = "control"`, of the surface from the one
+    /// with these control points); 0 leaves it unchanged.
     #[field(min = 0)]
     tolerance: T,
     /// The measure to minimise; see `FairCurve`.
@@ -81,6 +86,17 @@ pub struct FairSurf<T: Real> {
     /// The same along v.
     #[field(default)]
     knots_v: Option<Vec<T>>,
+    /// How points get their parameters, as for `FairCurve`: the mean over all lines of the grid in
+    /// each direction. The mode "faithful" takes "index", and so do control points.
+    #[field(default = "chord")]
+    spacing: Arc<str>,
+    /// Which of the surfaces within the tolerance; see `FairCurve`.
+    #[field(default = "near")]
+    goal: Arc<str>,
+    /// The direction in which the surface may leave its points, such as {0, 1, 0} for offsets; any
+    /// direction without it.
+    #[field(default)]
+    along: Option<Vec3<T>>,
 }
 
 /// The fields of weights and knots.
@@ -246,6 +262,18 @@ impl<T: Real> Build<T> for FairSurf<T> {
         );
         let (marks_u, marks_v) = (marks_u?, marks_v?);
         let own = self.own(grid.shape)?;
+        let motion = match &self.along {
+            None => Motion::Ball,
+            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
+            Some(_) => {
+                return Err(CallError::new("zero-direction", "the direction has no length")
+                    .expected("a direction such as {0, 1, 0}")
+                    .in_field(Self::ALONG));
+            }
+        };
+        let spacing = super::spacing(&self.spacing, Self::SPACING)?;
+        let goal = super::goal(&self.goal, Self::GOAL)?;
+        let by_data = fitted_first && passes.is_none() && !matches!(spacing, Spacing::Uniform);
         let weights = self.weights.as_ref().map(|w| w.items.clone());
         let Rims([south, east, north, west]) = self.rims;
         let rims = [[west, east], [south, north]];
@@ -263,9 +291,9 @@ impl<T: Real> Build<T> for FairSurf<T> {
                 ([u, v], net, [mu, mv])
             } else {
                 let spaces = [own[0].space(degree, m)?, own[1].space(degree, n)?];
-                (spaces, grid.points(), [marks_u, marks_v])
+                (spaces, grid.points(), [marks_u.clone(), marks_v.clone()])
             };
-            let limit = Limit::ball(net.len(), self.tolerance.re())?;
+            let limit = Limit::new(motion, vec![self.tolerance.re(); net.len()])?;
             let plain = net.iter().map(|p| p.re()).collect();
             let network = Network::net(spaces.clone(), plain, weights.clone(), limit)?
                 .with_breaks(&marks[0], &marks[1])?
@@ -280,6 +308,25 @@ impl<T: Real> Build<T> for FairSurf<T> {
             };
             Ok((spaces, points))
         };
+        let by_points = || -> Result<_, FairError> {
+            let points = grid.points();
+            let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
+            let at = grid_parameters(&points, [m, n], [spacing; 2], [false; 2], motion)?;
+            let layout = |at: &[T], marks: &[usize]| {
+                let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
+                Layout::new(self.degree, &real, marks, false)
+            };
+            let data = GridData {
+                limit: Limit::new(motion, vec![self.tolerance.re(); plain.len()])?,
+                layouts: [layout(&at[0], &marks_u)?, layout(&at[1], &marks_v)?],
+                rims,
+                points: plain,
+            };
+            let tolerances = vec![self.tolerance; points.len()];
+            let at = [at[0].as_slice(), at[1].as_slice()];
+            let made = fair_grid_with(&data, measure, goal, ACCURACY, &points, &tolerances, at)?.0;
+            Ok(made)
+        };
         let about = |e: FairError| match e {
             FairError::Weight { .. } => {
                 CallError::new("bad-weight", e.to_string()).in_field(WEIGHTS)
@@ -292,6 +339,12 @@ impl<T: Real> Build<T> for FairSurf<T> {
             }
             e => fault(e, &places),
         };
+        if by_data {
+            let (degree, made) = (self.degree, by_points().map_err(about)?);
+            let surface =
+                MovingSurface::referred(degree, made.knots, made.points).map_err(about)?;
+            return Ok(Value::Surface(surface));
+        }
         let (spaces, points) = make().map_err(about)?;
         let [u, v] = spaces.map(|s| s.knot_vector().0);
         let weights = weights.map(|w| w.into_iter().map(T::from).collect());

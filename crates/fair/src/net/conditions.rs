@@ -2,15 +2,7 @@
 
 use crate::curve::condition::{AXES, across};
 use crate::{Condition, FairError, Network, Space};
-use moldloft_num::Vec3;
-
-/// The rule of Gauss and Legendre with four points, on [-1, 1].
-const GAUSS: [(f64, f64); 4] = [
-    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-    (-0.339_981_043_584_856_3, 0.652_145_154_862_546_2),
-    (0.339_981_043_584_856_3, 0.652_145_154_862_546_2),
-    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-];
+use moldloft_num::{GAUSS_4, Vec3};
 
 /// The basis functions of one direction at a parameter: control points, values and slopes.
 struct Line {
@@ -157,7 +149,7 @@ impl Network {
             let mut out = Vec::new();
             for k in space.spans() {
                 let (a, b) = (space.knot(k), space.knot(k + 1));
-                for (x, w) in GAUSS {
+                for (x, w) in GAUSS_4 {
                     let t = 0.5 * (a + b) + 0.5 * (b - a) * x;
                     out.push((0.5 * (b - a) * w, Line::of(space, t)));
                 }

@@ -1,5 +1,6 @@
 //! Nets of surfaces, networks of curves, and surfaces with common edges.
 
 mod conditions;
+pub mod grid;
 pub mod network;
 pub(crate) mod patches;

@@ -6,6 +6,7 @@ mod entity;
 mod findings;
 mod fit;
 mod fixtures;
+mod grid;
 mod interrogate;
 mod joined;
 mod joins;

@@ -13,6 +13,8 @@ use std::sync::atomic::AtomicBool;
 const MOST: usize = 24;
 /// The cells by which it is proved that two sets share no volume.
 const CELLS: usize = 3000;
+/// Boxes about a contact in a point or a line are no larger than this part of the whole.
+const SMALL: f64 = 1.0 / 16.0;
 /// Two sets share no more than this part of the box where they only touch.
 const SHARED: f64 = 1e-9;
 
@@ -39,6 +41,19 @@ fn operands(set: &Set) -> Option<Vec<Set>> {
     (out.len() > 1).then_some(out)
 }
 
+/// A place of a contact in points or lines, given the boxes that may hold it. Bodies that share a face are one.
+fn contact<T>(over: &Box3, open: &[(Box3, T)]) -> Option<Vec3> {
+    let side = |b: &Box3| (0..3).map(|k| b.high[k] - b.low[k]).fold(0.0, f64::max);
+    let boxes = || open.iter().map(|(place, _)| place);
+    let all = boxes().copied().reduce(|a, b| a.union(b))?;
+    let smallest = boxes().min_by(|a, b| side(a).total_cmp(&side(b)))?;
+    let largest = boxes().map(side).fold(0.0, f64::max);
+    // A face that is shared exactly shows no volume in large boxes either. Along a line the boxes are as many as its
+    // length has sides; on a face their number is the square of that.
+    let few = open.len() as f64 <= 64.0 + 8.0 * side(&all) / side(smallest);
+    (largest <= SMALL * side(over) && few).then(|| smallest.centre())
+}
+
 /// Sets that share no volume, and the places where they touch; `None` when there is one only, or none touch.
 pub(super) fn parted(
     set: &Set,
@@ -59,8 +74,8 @@ pub(super) fn parted(
             if shared.bracket.volume().high > SHARED * size {
                 let (a, b) = (group[i].min(group[j]), group[i].max(group[j]));
                 group.iter_mut().filter(|g| **g == b).for_each(|g| *g = a);
-            } else if let Some((place, _)) = shared.open.first() {
-                contacts.push(place.centre());
+            } else if let Some(place) = contact(over, &shared.open) {
+                contacts.push(place);
             }
         }
     }

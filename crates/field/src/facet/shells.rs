@@ -2,6 +2,7 @@
 
 use super::Facets;
 use moldloft_num::Vec3;
+use moldloft_num::union_find::UnionFind;
 use std::collections::HashMap;
 
 /// A connected part of facets.
@@ -18,24 +19,16 @@ impl Facets {
     /// volume and one of negative volume for each of its cavities.
     pub fn shells(&self) -> Vec<Shell> {
         let faces = self.mesh.faces();
-        let mut root: Vec<u32> = (0..self.mesh.positions().len() as u32).collect();
-        fn find(root: &mut [u32], mut v: u32) -> u32 {
-            while root[v as usize] != v {
-                root[v as usize] = root[root[v as usize] as usize];
-                v = root[v as usize];
-            }
-            v
-        }
+        let mut parts = UnionFind::new(self.mesh.positions().len());
         for f in faces {
             for k in 1..3 {
-                let (a, b) = (find(&mut root, f[0]), find(&mut root, f[k]));
-                root[a.max(b) as usize] = a.min(b);
+                parts.join(f[0], f[k]);
             }
         }
         let mut number: HashMap<u32, usize> = HashMap::new();
         let mut shells: Vec<Shell> = Vec::new();
         for (t, f) in faces.iter().enumerate() {
-            let at = find(&mut root, f[0]);
+            let at = parts.find(f[0]);
             let k = *number.entry(at).or_insert_with(|| {
                 shells.push(Shell { volume: 0.0, faces: Vec::new() });
                 shells.len() - 1

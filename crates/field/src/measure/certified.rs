@@ -221,7 +221,7 @@ fn halves(sides: &[Interval; 3]) -> impl Iterator<Item = [Interval; 3]> + '_ {
 /// let ball = |r| Primitive::sphere(Vec3::zero(), r).map(|f| Set::new(&f));
 /// let shell = ball(1.0)? - ball(0.999)?;
 /// let over = Box3 { low: Vec3::of(-1.1, -1.1, -1.1), high: Vec3::of(1.1, 1.1, 1.1) };
-/// let found = certified(&shell, &over, &Effort::of_cells(4000), &Default::default())?;
+/// let found = certified(&shell, &over, &Effort::of_cells(64_000), &Default::default())?;
 /// let exact = 4.0 / 3.0 * std::f64::consts::PI * (1.0 - 0.999f64.powi(3));
 /// assert!(found.bracket.volume().contains(exact));
 /// assert!((found.best.volume() / exact - 1.0).abs() < 1e-3);

@@ -45,8 +45,8 @@ const USUAL: f64 = 1e-8;
 ///
 /// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);
 /// let over = Box3 { low: Vec3::of(-1.1, -1.1, -1.1), high: Vec3::of(1.1, 1.1, 1.1) };
-/// let volume = bracket(&ball, &over, 5)?.volume();
-/// assert!(volume.contains(4.0 / 3.0 * std::f64::consts::PI) && volume.width() < 0.02);
+/// let volume = bracket(&ball, &over, 6)?.volume();
+/// assert!(volume.contains(4.0 / 3.0 * std::f64::consts::PI) && volume.width() < 0.01);
 /// # Ok::<(), moldloft_field::FieldError>(())
 /// ```
 pub fn bracket(set: &Set, over: &Box3, depth: u32) -> Result<Moments<Interval>, FieldError> {

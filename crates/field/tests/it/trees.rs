@@ -62,7 +62,7 @@ fn random_trees_are_closed_manifold_and_oriented() {
     // Edges and corners thinner than a cell are cut off: where several pass through one, and along lines where
     // surfaces meet at a small angle. Their share falls as the cells do, so every tenth tree has finer ones.
     let (mut cells, mut undecided, mut blunt) = ([0; 2], [0; 2], [0; 2]);
-    for seed in 0..rounds(60, 10_000) as u64 {
+    for seed in 0..rounds(30, 10_000) as u64 {
         let fine = usize::from(seed % 10 == 0);
         let depth = [5, 7][fine];
         let mut random = Trees(Random::new(seed * 7919 + 1));

@@ -1,9 +1,10 @@
 //! Marching off a curve: in its plane, or on a surface that the grid stays on (a collar).
 
-use super::front::{self, Front, MarchFailure, Step};
+use super::front::{self, Front, Step};
 use super::line::{Matrix, System, mirrored, smoothed};
+use super::outcome::{MarchFailure, Marched};
 use super::report::{self, Worst};
-use super::{Hyperbolic, Marched, Side};
+use super::settings::{Hyperbolic, Side};
 use crate::{GridError, SurfaceGrid};
 use moldloft_num::{Real, Vec3};
 use std::sync::atomic::AtomicBool;
@@ -57,7 +58,7 @@ pub fn hyperbolic_curve_until<T: Real>(
     if let Some(k) = curve.iter().position(|p| !p.is_finite()) {
         return Err(GridError::NotFinite { at: [k + 1, 1] });
     }
-    options.check()?;
+    report::check_heights(&options.heights)?;
     let closed = options.sides[0] == Side::Periodic || options.sides[1] == Side::Periodic;
     let mut wall = curve.to_vec();
     if closed {

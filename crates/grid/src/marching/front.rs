@@ -1,79 +1,11 @@
 //! The march itself, the same for curves and surfaces: layers, sub-steps, and what is tried when cells fold.
 
-use super::Hyperbolic;
+use super::outcome::{FailureCause, MarchFailure};
 use super::report::Worst;
+use super::settings::Hyperbolic;
 use crate::GridError;
 use moldloft_num::{Real, Vec3};
-use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Why a layer cannot be marched.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FailureCause {
-    /// The first cell does not fit into a concave corner: lines off the neighbours of the corner cross those off
-    /// the corner.
-    CornerTooTight {
-        /// The angle of the corner on the grid's side, in degrees.
-        angle: f64,
-        /// The spacing of the points beside the corner.
-        spacing: f64,
-        /// The first cell asked for.
-        height: f64,
-        /// The largest one that fits.
-        fits: f64,
-    },
-    /// A corner of a cell is turned over; its scaled Jacobian.
-    Folded(f64),
-    /// Grid lines run into each other: an edge of the layer has shrunk to nothing.
-    LinesMeet,
-    /// The layer takes more steps than are made.
-    TooManySteps(usize),
-    /// The equations have no finite solution.
-    NotFinite,
-}
-
-/// Where and why a march ends.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MarchFailure {
-    /// The layer, from 1 (the wall).
-    pub layer: usize,
-    /// The node or cell of it, from 1; 1 in the second index off curves.
-    pub at: [usize; 2],
-    /// The point of the wall below it.
-    pub wall: Vec3,
-    /// Why.
-    pub cause: FailureCause,
-}
-
-impl fmt::Display for MarchFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [i, j] = self.at;
-        let Vec3 { x, y, z } = self.wall;
-        let layer = self.layer;
-        match &self.cause {
-            FailureCause::CornerTooTight { angle, spacing, height, fits } => write!(
-                f,
-                "the first cell of {height:.3e} does not fit into the concave corner of {angle:.1} degrees at \
-                 [{i},{j}], where points are {spacing:.3e} apart: it fits up to {fits:.3e}"
-            ),
-            FailureCause::Folded(jacobian) => write!(
-                f,
-                "layer {layer} folds at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4}): scaled Jacobian {jacobian:.3}"
-            ),
-            FailureCause::LinesMeet => write!(
-                f,
-                "grid lines meet in layer {layer} at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4})"
-            ),
-            FailureCause::TooManySteps(steps) => {
-                write!(f, "layer {layer} is not reached in {steps} steps")
-            }
-            FailureCause::NotFinite => write!(
-                f,
-                "layer {layer} has no finite solution at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4})"
-            ),
-        }
-    }
-}
 
 /// One step of a march.
 pub(super) struct Step<'a, T> {

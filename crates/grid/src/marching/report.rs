@@ -1,63 +1,11 @@
 //! What is measured of a march: cells, corners, walls, and whether it ends early.
 
-use super::Hyperbolic;
-use super::front::{FailureCause, Front, MarchFailure, Outcome};
+use super::front::{Front, Outcome};
+use super::outcome::{FailureCause, MarchReport, StopReason};
+use super::settings::Hyperbolic;
 use crate::surface_grid::SAME;
 use crate::{Corner, Edge, GridError};
 use moldloft_num::{Real, Vec3};
-use std::fmt;
-
-/// Why a march ended before its last height.
-#[derive(Clone, Debug, PartialEq)]
-pub enum StopReason {
-    /// The next layer cannot be marched.
-    Failure(MarchFailure),
-    /// The next layer has a cell of this scaled Jacobian.
-    Jacobian(f64),
-    /// The next layer has a cell of this skewness.
-    Skewness(f64),
-    /// The next layer has a cell that is so many times the one below.
-    Growth(f64),
-    /// Cells are as high as they are long.
-    Isotropic,
-}
-
-impl fmt::Display for StopReason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Failure(failure) => write!(f, "{failure}"),
-            Self::Jacobian(x) => write!(f, "the next layer has a scaled Jacobian of {x:.3}"),
-            Self::Skewness(x) => write!(f, "the next layer has a skewness of {x:.3}"),
-            Self::Growth(x) => write!(f, "cells of the next layer grow by {x:.3}"),
-            Self::Isotropic => write!(f, "cells are as high as they are long"),
-        }
-    }
-}
-
-/// How a march went.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MarchReport {
-    /// Layers, the wall among them.
-    pub layers: usize,
-    /// Steps that were made for them.
-    pub steps: usize,
-    /// Which of the three settings was needed: 1, 2 without a cap on smoothed volumes, 3 with more smoothing.
-    pub rung: usize,
-    /// The least scaled Jacobian at a corner of a cell.
-    pub jacobian: f64,
-    /// Where: layer above the cell and indices of the cell, from 1.
-    pub at: [usize; 3],
-    /// The largest equiangle skewness of a cell's corners.
-    pub skewness: f64,
-    /// The least and the greatest distance of the first layer from the wall.
-    pub first_cell: [f64; 2],
-    /// The largest angle between a line and the bisecting normal at the wall, in radians.
-    pub wall_angle: f64,
-    /// The largest ratio of a line's cell to the one below, or of that to it.
-    pub growth: f64,
-    /// Why it ended before the last height.
-    pub stopped: Option<StopReason>,
-}
 
 /// The least scaled Jacobian of the cells of a layer, with the cell, and the greatest skewness.
 #[derive(Clone, Copy, Debug)]
@@ -276,4 +224,16 @@ fn growth_of<T: Real>(layers: &[Vec<Vec3<T>>]) -> f64 {
 fn isotropic<T: Real>(front: &impl Front<T>, below: &[Vec3<T>], above: &[Vec3<T>]) -> bool {
     let heights = below.iter().zip(above).map(|(a, b)| a.re().distance(b.re()));
     heights.sum::<f64>() / below.len() as f64 >= front.mean_edge(above)
+}
+
+/// Refuses heights that do not ascend from 0.
+pub(super) fn check_heights<T: Real>(heights: &[T]) -> Result<(), GridError> {
+    for (k, height) in heights.iter().enumerate() {
+        let before = if k == 0 { -f64::MIN_POSITIVE } else { heights[k - 1].re() };
+        let ascends = height.re() > before && height.is_finite();
+        if !ascends || (k == 0 && height.re() != 0.0) {
+            return Err(GridError::Heights { at: k + 1, value: height.re() });
+        }
+    }
+    Ok(())
 }

@@ -1,10 +1,11 @@
 //! Marching off a surface.
 
 use super::curve::{ACUTE, LEAST_SINE};
-use super::front::{self, Front, MarchFailure, Step};
+use super::front::{self, Front, Step};
 use super::line::{Matrix, System, inverse, mirrored, smoothed, times};
+use super::outcome::{MarchFailure, Marched};
 use super::report::{self, Worst};
-use super::{Hyperbolic, Marched, Side};
+use super::settings::{Hyperbolic, Side};
 use crate::{GridError, SurfaceGrid};
 use moldloft_num::{Real, Vec3};
 use rayon::prelude::*;
@@ -39,7 +40,7 @@ pub fn hyperbolic_until<T: Real>(
 ) -> Result<Marched<T>, GridError> {
     surface.check_count(3)?;
     surface.check_finite()?;
-    options.check()?;
+    report::check_heights(&options.heights)?;
     let sides = options.sides;
     let closed = [0, 1]
         .map(|axis| sides[2 * axis] == Side::Periodic || sides[2 * axis + 1] == Side::Periodic);

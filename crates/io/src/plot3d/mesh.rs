@@ -1,6 +1,7 @@
 //! Structured patches of a mesh and blocks of a volume mesh as grids of points.
 
-use super::{Variant, write};
+use super::variant::Variant;
+use super::write::write;
 use crate::error::{check_blocks, check_positions};
 use crate::{StructuredGrid, WriteError};
 use moldloft_mesh::{Block, Blocks, Mesh};

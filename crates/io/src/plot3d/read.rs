@@ -4,7 +4,7 @@
 //! orders and mark sizes, then as plain numbers.
 
 use super::read_text::read_text;
-use super::{FORMAT, Laid, Variant};
+use super::variant::{FORMAT, Laid, Variant};
 use crate::{Place, ReadError, StructuredGrid};
 
 /// The blocks of a file and which variant it is.

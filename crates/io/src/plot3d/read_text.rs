@@ -1,7 +1,7 @@
 //! Plot3D in, as text: numbers with Fortran's repeat counts and exponents.
 
 use super::read::{fill, sizes};
-use super::{FORMAT, Laid, Variant};
+use super::variant::{FORMAT, Laid, Variant};
 use crate::{Place, ReadError, StructuredGrid};
 
 /// A word of the text: a number, perhaps several times over, and the line it stands in.

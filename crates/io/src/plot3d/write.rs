@@ -1,6 +1,6 @@
 //! Plot3D out: grids of points in the variant that the caller chose.
 
-use super::{FORMAT, Laid, Variant};
+use super::variant::{FORMAT, Laid, Variant};
 use crate::text::real;
 use crate::{StructuredGrid, WriteError};
 

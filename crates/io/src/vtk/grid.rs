@@ -1,6 +1,6 @@
 //! Structured patches and grids of points as VTK structured grids.
 
-use super::{Appended, Field, NamedFile, PatchFields, array, point_data, strings};
+use super::xml::{Appended, Field, NamedFile, PatchFields, array, point_data, strings};
 use crate::error::check_positions;
 use crate::plot3d::structured_patches;
 use crate::text::{put, word, xml};

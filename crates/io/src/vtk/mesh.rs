@@ -1,6 +1,6 @@
 //! Panels as VTK polygons, with points, polylines and the fields of patches.
 
-use super::{Appended, Field, PatchFields, array, point_data, strings};
+use super::xml::{Appended, Field, PatchFields, array, point_data, strings};
 use crate::error::check_positions;
 use crate::text::xml;
 use crate::{LinesAndPoints, WriteError};

@@ -1,7 +1,7 @@
 //! Volume blocks as VTK structured grids, or all their hexahedra as one unstructured grid.
 
 use super::grid::{indexed, structured};
-use super::{Appended, NamedFile, array, strings};
+use super::xml::{Appended, NamedFile, array, strings};
 use crate::WriteError;
 use crate::error::check_blocks;
 use moldloft_mesh::{Blocks, HexBlock};

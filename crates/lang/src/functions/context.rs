@@ -3,6 +3,7 @@
 
 use crate::functions::files::{Mode, STANDARD_OUTPUT};
 use crate::functions::format::{self, Item};
+use crate::functions::grid_files::{GridFormat, RowFormat};
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::source::scope::{Binding, Passed};
@@ -25,6 +26,10 @@ pub const MOST_REFINED: u32 = 8;
 pub struct Builtin {
     /// Its name.
     pub name: &'static str,
+    /// How many arguments it takes, at least and at most.
+    pub(crate) arguments: (usize, usize),
+    /// What a call does.
+    pub(crate) action: Action,
     /// Its arguments.
     pub signature: &'static str,
     /// What it does, in one line.
@@ -33,136 +38,202 @@ pub struct Builtin {
     pub example: &'static str,
 }
 
+/// What the call of a built-in function does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Action {
+    Format,
+    Open,
+    Close,
+    Write,
+    Read,
+    More,
+    Next,
+    Rewind,
+    Count,
+    IsSet,
+    CheckEdges,
+    Refined,
+    RefinedStep,
+    Refinement,
+    WriteGrids(GridFormat),
+    ReadPlot3d,
+    ReadRows(RowFormat),
+}
+
 /// All built-in functions, in the order of the reference.
 pub const BUILTINS: [Builtin; 22] = [
     Builtin {
         name: "format",
+        arguments: (1, usize::MAX),
+        action: Action::Format,
         signature: "format(pattern, ...)",
         doc: "Formats numbers by C directives; the pattern repeats for the remaining values.",
         example: "assert format(\"%6.2f|%d\", 2.5, 3) == \"  2.50|3\";",
     },
     Builtin {
         name: "open",
+        arguments: (1, 3),
+        action: Action::Open,
         signature: "open(name, mode)",
         doc: "Opens a text file to read (\"r\"), write (\"w\") or append (\"a\"); open(7, name) chooses the unit.",
         example: "file f = open(\"a.txt\", \"w\"); write(f, 1, {2, 3, 4}); close(f);",
     },
     Builtin {
         name: "close",
+        arguments: (1, 1),
+        action: Action::Close,
         signature: "close(f)",
         doc: "Closes a file.",
         example: "open(7, \"a.txt\"); close(7);",
     },
     Builtin {
         name: "write",
+        arguments: (1, usize::MAX),
+        action: Action::Write,
         signature: "write(f, ...)",
         doc: "Writes values to a file: a point or number on each line, the first index of a grid fastest.",
         example: "write(stdout, \"two points\", {{1, 2, 3}, {4, 5, 6}});",
     },
     Builtin {
         name: "read",
+        arguments: (1, usize::MAX),
+        action: Action::Read,
         signature: "read(f, ...)",
         doc: "Reads numbers into variables or parts of them; a string takes the rest of the line.",
         example: "open(7, \"a.txt\"); write(7, {1, 2, 3}); close(7); file f = open(\"a.txt\", \"r\"); vector v; read(f, v); assert v.z == 3;",
     },
     Builtin {
         name: "more",
+        arguments: (1, 1),
+        action: Action::More,
         signature: "more(c)",
         doc: "Reports whether a multiple argument, or a file, has unread items.",
         example: "function float total(float x...) { float s = 0; while (more(x)) s += next(x); return s; } assert total(1, 2) == 3;",
     },
     Builtin {
         name: "next",
+        arguments: (1, 1),
+        action: Action::Next,
         signature: "next(c)",
         doc: "The next item of a multiple argument.",
         example: "function float second(float x...) { next(x); return next(x); } assert second(1, 2) == 2;",
     },
     Builtin {
         name: "rewind",
+        arguments: (1, 1),
+        action: Action::Rewind,
         signature: "rewind(c)",
         doc: "Returns to the first item of a multiple argument, or to the start of a file.",
         example: "function float first(float x...) { next(x); rewind(x); return next(x); } assert first(1, 2) == 1;",
     },
     Builtin {
         name: "count",
+        arguments: (1, 1),
+        action: Action::Count,
         signature: "count(c)",
         doc: "The number of items of a multiple argument.",
         example: "function float n(float x...) { return count(x); } assert n(5, 6, 7) == 3;",
     },
     Builtin {
         name: "isset",
+        arguments: (1, 1),
+        action: Action::IsSet,
         signature: "isset(a[i])",
         doc: "Reports whether a variable, or every element of a section, has a value.",
         example: "curve c[3]; c[1:2] = {0, 0, 0}; assert isset(c[2]) and not isset(c);",
     },
     Builtin {
         name: "check_edges",
+        arguments: (1, 1),
+        action: Action::CheckEdges,
         signature: "check_edges(s)",
         doc: "Stops with location and gap when the four edges of a surface are not set or do not meet.",
         example: "surface s[3,3] = {0, 0, 0}; check_edges(s);",
     },
     Builtin {
         name: "refined",
+        arguments: (1, 1),
+        action: Action::Refined,
         signature: "refined(n)",
         doc: "n points, or more when the run is refined: intervals are halved, so that coarse points recur.",
         example: "farray s = uniform(0, 1, refined(5));",
     },
     Builtin {
         name: "refined_step",
+        arguments: (1, 1),
+        action: Action::RefinedStep,
         signature: "refined_step(ds)",
         doc: "A step per index consistent with refined(n): halved at each refinement.",
         example: "farray s = d_tanh(0, 1, refined_step(.01), 0, refined(25));",
     },
     Builtin {
         name: "refinement",
+        arguments: (0, 0),
+        action: Action::Refinement,
         signature: "refinement()",
         doc: "The number of parts of each interval of refined(n): 1, 2, 4, ...",
         example: "assert refinement() >= 1;",
     },
     Builtin {
         name: "write_p3d",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Plot3d),
         signature: "write_p3d(name, words, s1, s2, ...)",
         doc: "Writes surfaces as a Plot3D file: stream, records or text; single; single-block; 2d; planes; big; iblank; mark8.",
         example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", \"records single\", s); surface t = read_p3d(\"s.x\"); assert t.d1 == 3;",
     },
     Builtin {
         name: "write_vts",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Vts),
         signature: "write_vts(name, s1, s2, ...)",
         doc: "Writes surfaces as VTK structured grids: one .vts, or several with their .vtm.",
         example: "surface s[3,2] = {1, 2, 3}; write_vts(\"s.vts\", s);",
     },
     Builtin {
         name: "write_stl",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Stl),
         signature: "write_stl(name, words, s1, s2, ...)",
         doc: "Writes surfaces as binary STL, triangles without area at poles left out; \"flip\" reverses the normals.",
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);",
     },
     Builtin {
         name: "write_cgns",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Cgns),
         signature: "write_cgns(name, s1, s2, ...)",
         doc: "Writes surfaces as structured CGNS zones with the interfaces where their edges have the same points.",
         example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s);",
     },
     Builtin {
         name: "write_csv",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Csv),
         signature: "write_csv(name, c1, c2, ...)",
         doc: "Writes points as lines of x,y,z under a heading, with all digits.",
         example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); assert read_points(\"c.csv\")[2] . {1, 0, 0} == 1;",
     },
     Builtin {
         name: "read_p3d",
+        arguments: (1, 2),
+        action: Action::ReadPlot3d,
         signature: "read_p3d(name, block)",
         doc: "A surface of a Plot3D file of any variant, by the number of its block (1).",
         example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", s); assert read_p3d(\"s.x\", 1).d2 == 2;",
     },
     Builtin {
         name: "read_points",
+        arguments: (1, 1),
+        action: Action::ReadRows(RowFormat::Points),
         signature: "read_points(name)",
         doc: "The points of a text with two or three numbers to a line, as a curve.",
         example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); curve d = read_points(\"c.csv\");",
     },
     Builtin {
         name: "read_aerofoil",
+        arguments: (1, 1),
+        action: Action::ReadRows(RowFormat::Aerofoil),
         signature: "read_aerofoil(name)",
         doc: "A section of a coordinate file in Selig's or Lednicer's listing: tail, upper side, nose, lower side, tail.",
         example: "file f = open(\"a.dat\", \"w\"); write(f, \"a wedge\"); for (x = 1:0:-.25) write(f, format(\"%g %g\", x, .1*x)); for (x = .25:1:.25) write(f, format(\"%g %g\", x, -.1*x)); close(f); assert read_aerofoil(\"a.dat\").d1 == 9;",
@@ -227,14 +298,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .expected(builtin.signature));
         }
         let given: Vec<ExprId> = m.program[args].iter().map(|a| a.value).collect();
-        let (least, most) = match builtin.name {
-            "format" | "write" | "read" => (1, usize::MAX),
-            "open" => (1, 3),
-            "refinement" => (0, 0),
-            "write_p3d" | "write_vts" | "write_stl" | "write_cgns" | "write_csv" => (2, usize::MAX),
-            "read_p3d" => (1, 2),
-            _ => (1, 1),
-        };
+        let (least, most) = builtin.arguments;
         if !(least..=most).contains(&given.len()) {
             let id = if given.len() < least { "missing-argument" } else { "too-many-arguments" };
             let message = format!("invalid arguments of {}", builtin.name);
@@ -243,8 +307,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .expected(builtin.signature)
                 .found(format!("{} arguments", given.len())));
         }
-        match builtin.name {
-            "format" => {
+        match builtin.action {
+            Action::Format => {
                 let pattern = self.text(m, given[0])?;
                 let mut items = Vec::new();
                 for &arg in &given[1..] {
@@ -253,12 +317,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
                 format::format(&pattern, &items).map(|text| Value::text(&text))
             }
-            "open" => self.open(m, &given),
-            "close" => {
+            Action::Open => self.open(m, &given),
+            Action::Close => {
                 let unit = self.unit(m, given[0])?;
                 self.env.files.close(unit).map(|()| Value::Unset)
             }
-            "write" => {
+            Action::Write => {
                 let unit = self.unit(m, given[0])?;
                 let mut text = String::new();
                 for &arg in &given[1..] {
@@ -274,7 +338,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
                 self.env.files.write(unit, &text).map(|()| Value::Unset)
             }
-            "read" => {
+            Action::Read => {
                 let unit = self.unit(m, given[0])?;
                 for &arg in &given[1..] {
                     let place = self.place(m, arg)?;
@@ -284,8 +348,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
                 Ok(Value::Unset)
             }
-            "more" | "next" | "rewind" | "count" => self.sequence(m, builtin, given[0]),
-            "isset" => {
+            Action::More | Action::Next | Action::Rewind | Action::Count => {
+                self.sequence(m, builtin, given[0])
+            }
+            Action::IsSet => {
                 let place = self.place(m, given[0])?;
                 let (_, value, known) = self.known(&place)?;
                 let set = match shape_of(value) {
@@ -294,18 +360,22 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 };
                 Ok(Value::Number(T::from(f64::from(u8::from(set)))))
             }
-            "check_edges" => self.check_edges(m, given[0]).map(|()| Value::Unset),
-            "refined" => {
+            Action::CheckEdges => self.check_edges(m, given[0]).map(|()| Value::Unset),
+            Action::Refined => {
                 let n = self.whole(m, given[0])?;
                 let fine = (n - 1.0) * self.parts() + 1.0;
                 Ok(Value::Number(T::from(fine)))
             }
-            "refined_step" => {
+            Action::RefinedStep => {
                 let step = self.number(m, given[0])?;
                 Ok(Value::Number(step / self.parts()))
             }
-            "refinement" => Ok(Value::Number(T::from(self.parts()))),
-            name => self.grid_file(m, name, &given),
+            Action::Refinement => Ok(Value::Number(T::from(self.parts()))),
+            Action::WriteGrids(format) => {
+                self.write_grids(m, (builtin.name, format), &given).map(|()| Value::Unset)
+            }
+            Action::ReadPlot3d => self.read_p3d(m, &given),
+            Action::ReadRows(format) => self.read_rows(m, format, &given),
         }
     }
 
@@ -457,7 +527,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         });
         let flag = |holds: bool| Value::Number(T::from(f64::from(u8::from(holds))));
         let Some((name, all, read)) = multiple else {
-            if builtin.name == "count" || builtin.name == "next" {
+            if matches!(builtin.action, Action::Count | Action::Next) {
                 return Err(Diagnostic::error(
                     "wrong-type",
                     format!("{} reads a multiple argument", builtin.name),
@@ -466,15 +536,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .expected("the last argument of a subroutine, declared as `curve c...`"));
             }
             let unit = self.unit(m, arg)?;
-            return match builtin.name {
-                "more" => self.env.files.more(unit).map(flag),
+            return match builtin.action {
+                Action::More => self.env.files.more(unit).map(flag),
                 _ => self.env.files.rewind(unit).map(|()| Value::Unset),
             };
         };
-        match builtin.name {
-            "count" => Ok(Value::Number(T::from(all as f64))),
-            "more" => Ok(flag(read < all)),
-            "rewind" => {
+        match builtin.action {
+            Action::Count => Ok(Value::Number(T::from(all as f64))),
+            Action::More => Ok(flag(read < all)),
+            Action::Rewind => {
                 self.set_read(name, 0);
                 Ok(Value::Unset)
             }

@@ -178,17 +178,10 @@ fn along_axis<T: Real>(
 
 macro_rules! row {
     ($name:literal, $doc:literal, $fields:expr, $example:literal, $body:ident) => {
-        Row {
-            name: Cow::Borrowed($name),
-            doc: Cow::Borrowed($doc),
-            class: Class::Any,
-            fields: Cow::Owned($fields),
-            kind: false,
-            columns: None,
-            sweep: None,
-            example: Cow::Borrowed($example),
-            body: Body::Native { plain: $body::<f64>, dual: $body::<moldloft_num::Dual4> },
-        }
+        Row::new($name, Body::Native { plain: $body::<f64>, dual: $body::<moldloft_num::Dual4> })
+            .doc($doc)
+            .fields($fields)
+            .example($example)
     };
 }
 
@@ -199,44 +192,9 @@ pub(crate) enum Elementary<T> {
     Binary(fn(T, T) -> T),
 }
 
-/// Functions of arrays that take no longer than comparing their arguments with remembered ones.
-const QUICK: [&str; 30] = [
-    "min",
-    "max",
-    "sum",
-    "prod",
-    "argmin",
-    "argmax",
-    "dot",
-    "norm",
-    "len",
-    "cumlen",
-    "centroid",
-    "bbox_min",
-    "bbox_max",
-    "list",
-    "points",
-    "join",
-    "stack",
-    "reverse",
-    "swap",
-    "spread_i",
-    "spread_j",
-    "d1",
-    "d2",
-    "translate",
-    "scale",
-    "mirror",
-    "rotate",
-    "uniform",
-    "cosine",
-    "tfi",
-];
-
 /// True for functions that take no longer than finding their remembered values.
 pub(crate) fn is_quick(row: &Row) -> bool {
-    let own = QUICK.contains(&&*row.name) || elementary::<f64>(&row.name).is_some();
-    own && matches!(row.body, Body::Native { .. })
+    row.cheap && matches!(row.body, Body::Native { .. })
 }
 
 /// The value of an elementary function.
@@ -277,7 +235,7 @@ macro_rules! elementary {
                         each($u, &args[0], $u_f)
                     }
                     row!($u, $u_doc, vec![argument("x", "A number, a row of numbers or a field.")],
-                        "assert sin(0) == 0;", body)
+                        "assert sin(0) == 0;", body).cheap()
                 },)*
                 $({
                     fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
@@ -285,7 +243,7 @@ macro_rules! elementary {
                     }
                     let fields =
                         vec![argument($x, "A number or a row."), argument($y, "A number or a row.")];
-                    row!($b, $b_doc, fields, "assert hypot(3, 4) == 5;", body)
+                    row!($b, $b_doc, fields, "assert hypot(3, 4) == 5;", body).cheap()
                 },)*
             ]
         }
@@ -391,27 +349,33 @@ pub fn rows() -> Vec<Row> {
     }
     let mut rows = Vec::new();
     rows.extend(elementary_rows());
-    rows.push(row!(
-        "min",
-        "The least number of an array; of several arguments the least, element by element.",
-        several(),
-        "assert min(3, 1) == 1;",
-        least
-    ));
+    rows.push(
+        row!(
+            "min",
+            "The least number of an array; of several arguments the least, element by element.",
+            several(),
+            "assert min(3, 1) == 1;",
+            least
+        )
+        .cheap(),
+    );
     rows.push(row!(
         "max",
         "The greatest number of an array; of several arguments the greatest, element by element.",
         several(),
         "assert max(3, 1) == 3;",
         greatest
-    ));
-    rows.push(row!(
-        "sum",
-        "The sum of the numbers of an array; of several arguments the sum, element by element.",
-        several(),
-        "assert sum({1, 2, 4}) == 7;",
-        total
-    ));
+    ).cheap());
+    rows.push(
+        row!(
+            "sum",
+            "The sum of the numbers of an array; of several arguments the sum, element by element.",
+            several(),
+            "assert sum({1, 2, 4}) == 7;",
+            total
+        )
+        .cheap(),
+    );
     rows.push(row!(
         // `mean` is the mean curvature of a surface.
         "average",

@@ -17,6 +17,23 @@ use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
 
+/// What `write_...` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum GridFormat {
+    Plot3d,
+    Vts,
+    Stl,
+    Cgns,
+    Csv,
+}
+
+/// What `read_...` reads as a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RowFormat {
+    Points,
+    Aerofoil,
+}
+
 /// The words that choose a variant of Plot3D, the usual ones first.
 const VARIANTS: &str = "stream, records, text; double, single; multi, single-block; 3d, 2d; whole, planes; little, \
                         big; iblank; mark8";
@@ -131,16 +148,13 @@ fn stem(name: &str) -> &str {
 }
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// A built-in function of this file.
-    pub fn grid_file(&mut self, m: &Module, name: &str, given: &[ExprId]) -> Evaluated<T> {
-        match name {
-            "read_p3d" => self.read_p3d(m, given),
-            "read_points" | "read_aerofoil" => self.read_rows(m, name, given),
-            _ => self.write_grids(m, name, given).map(|()| Value::Unset),
-        }
-    }
-
-    fn write_grids(&mut self, m: &Module, name: &str, given: &[ExprId]) -> Result<(), Diagnostic> {
+    /// Writes the grids given behind the name of a file and its words; `name` is the function's.
+    pub(crate) fn write_grids(
+        &mut self,
+        m: &Module,
+        (name, format): (&str, GridFormat),
+        given: &[ExprId],
+    ) -> Result<(), Diagnostic> {
         if self.run.extent() == Extent::Edit {
             let message = "a queried expression cannot write files";
             return Err(Diagnostic::error("misplaced-assignment", message)
@@ -163,12 +177,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     blocks.push(finite(grid(a), a.shape, &written).map_err(|d| d.at(span))?);
                     names.push(written);
                 }
-                Value::List(layers) if matches!(name, "write_p3d" | "write_vts") => {
+                Value::List(layers) if matches!(format, GridFormat::Plot3d | GridFormat::Vts) => {
                     let written = m.program.slice(span).trim().to_string();
                     blocks.push(volume(layers, &written).map_err(|d| d.or_at(span))?);
                     names.push(written);
                 }
-                Value::Numbers(a) if name == "write_p3d" && !blocks.is_empty() => {
+                Value::Numbers(a) if format == GridFormat::Plot3d && !blocks.is_empty() => {
                     let block = blocks.last_mut().expect("there is one");
                     let [ni, nj, _] = block.size;
                     if a.items.len() != ni * nj || a.items.iter().any(|x| x.re().fract() != 0.0) {
@@ -214,8 +228,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         };
         let at = |d: Diagnostic| d.or_at(at_name);
-        match name {
-            "write_p3d" => {
+        match format {
+            GridFormat::Plot3d => {
                 let mut v = variant(&words).map_err(|d| d.or_at(words_at))?;
                 v.iblank |= blocks.iter().any(|b| b.iblank.is_some());
                 if v.iblank {
@@ -227,7 +241,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let bytes = plot3d::write(&blocks, v).map_err(|e| at(cannot(e)))?;
                 self.env.files.put(&path, bytes).map_err(at)
             }
-            "write_vts" => {
+            GridFormat::Vts => {
                 nothing_of(&words, "")?;
                 let folder = path.rfind('/').map_or("", |k| &path[..=k]);
                 let files = vtk::grid_files(&blocks, stem(&path)).map_err(|e| at(cannot(e)))?;
@@ -237,13 +251,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
                 Ok(())
             }
-            "write_stl" => {
+            GridFormat::Stl => {
                 let flip = nothing_of(&words, "flip")?;
                 let bytes =
                     stl::write_grids(&blocks, stem(&path), flip).map_err(|e| at(cannot(e)))?;
                 self.env.files.put(&path, bytes).map_err(at)
             }
-            "write_cgns" => {
+            GridFormat::Cgns => {
                 nothing_of(&words, "")?;
                 if let Some(k) = blocks.iter().position(|b| b.size[0] < 2 || b.size[1] < 2) {
                     let message = format!("CGNS cannot hold `{}`: it has no cells", names[k]);
@@ -255,7 +269,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 self.env.files.put(&path, bytes).map_err(at)?;
                 self.env.files.for_cgns(&path, names).map_err(at)
             }
-            _ => {
+            GridFormat::Csv => {
                 nothing_of(&words, "")?;
                 let rows: Vec<Vec3> = blocks.iter().flat_map(StructuredGrid::points).collect();
                 if !rows.iter().all(|p| p.is_finite()) {
@@ -274,7 +288,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// `read_p3d("body.x")`, `read_p3d("body.x", 2)`.
-    fn read_p3d(&mut self, m: &Module, given: &[ExprId]) -> Evaluated<T> {
+    pub(crate) fn read_p3d(&mut self, m: &Module, given: &[ExprId]) -> Evaluated<T> {
         let (path, bytes) = self.bytes_of(m, given[0])?;
         let unreadable = |e: &dyn std::fmt::Display| {
             Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
@@ -301,14 +315,22 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(self.points(ArrayShape::Grid(ni, nj), points))
     }
 
-    fn read_rows(&mut self, m: &Module, name: &str, given: &[ExprId]) -> Evaluated<T> {
+    /// The points of a text.
+    pub(crate) fn read_rows(
+        &mut self,
+        m: &Module,
+        format: RowFormat,
+        given: &[ExprId],
+    ) -> Evaluated<T> {
         let (path, bytes) = self.bytes_of(m, given[0])?;
         let unreadable = |e: &dyn std::fmt::Display| {
             Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
         };
-        let points = match name {
-            "read_points" => points::read(&bytes).map_err(|e| unreadable(&e))?.rows,
-            _ => section::read_aerofoil(&bytes).map_err(|e| unreadable(&e))?.points,
+        let points = match format {
+            RowFormat::Points => points::read(&bytes).map_err(|e| unreadable(&e))?.rows,
+            RowFormat::Aerofoil => {
+                section::read_aerofoil(&bytes).map_err(|e| unreadable(&e))?.points
+            }
         };
         let points: Vec<Vec3<T>> = points.into_iter().map(Vec3::lifted).collect();
         if points.is_empty() {

@@ -1,11 +1,11 @@
 //! What a model says of itself as a whole: its mirror planes, its unit, the header of its model file.
 
+use crate::model_file::text::Text;
+use crate::model_file::units;
 use moldloft_model::Graph;
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Row, Scalar, Value};
-use std::marker::PhantomData;
-use std::sync::Arc;
+use moldloft_registry::{Build, CallError, Context, Kind, Row, Scalar, Value};
 
 /// The name of the kind below.
 pub const KIND: &str = "Model";
@@ -21,7 +21,7 @@ pub struct Model<T: Real> {
     /// The mirror planes, as letters: "y" for y = 0, "xy" for x = 0 and y = 0.
     #[field(default = "")]
     symmetry: Text<T>,
-    /// The units of length and mass, such as "m kg".
+    /// The units of length, mass, force and angle, such as "m t kN": of each at most one.
     #[field(default = "")]
     units: Text<T>,
     /// The version of the model file, such as "0.35" or "1.44".
@@ -31,20 +31,9 @@ pub struct Model<T: Real> {
     lines: Option<Vec<Text<T>>>,
 }
 
-/// A text, in a kind that is generic over the number all the same.
-#[derive(Clone, Debug)]
-pub struct Text<T>(Arc<str>, PhantomData<T>);
-
-impl<T: Real> FromValue<T> for Text<T> {
-    const CLASS: Class = Class::Text;
-    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
-        <Arc<str> as FromValue<T>>::from_value(value).map(|text| Text(text, PhantomData))
-    }
-}
-
 impl<T: Real> Build<T> for Model<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let letters = &self.symmetry.0;
+        let letters = self.symmetry.as_str().to_string();
         let known = letters.chars().all(|c| matches!(c, 'x' | 'y' | 'z'));
         let once = letters.chars().enumerate().all(|(k, c)| letters.find(c) == Some(k));
         if !known || !once {
@@ -53,15 +42,28 @@ impl<T: Real> Build<T> for Model<T> {
                 .found(format!("\"{letters}\""))
                 .in_field(Self::SYMMETRY));
         }
+        if let Err(word) = units::parsed(self.units.as_str()) {
+            let known: Vec<&str> = units::UNITS.iter().map(|u| u.0).collect();
+            return Err(CallError::new(
+                "unknown-unit",
+                format!("`{word}` is not a unit, or a second one"),
+            )
+            .expected(format!(
+                "at most one unit each of length, mass, force and angle: {}",
+                known.join(", ")
+            ))
+            .found(format!("\"{}\"", self.units.as_str()))
+            .in_field(Self::UNITS));
+        }
         let lines = self.lines.unwrap_or_default();
         let texts = [self.symmetry, self.units, self.version].into_iter().chain(lines);
-        Ok(Value::list(texts.map(|text| Value::Text(text.0))))
+        Ok(Value::list(texts.map(Text::into_value)))
     }
 }
 
-/// The rows of this crate that are kinds.
-pub fn rows() -> Vec<Row> {
-    vec![<Model<f64> as StaticRow>::row(), crate::run::solve_set::row()]
+/// The row of the header.
+pub fn row() -> Row {
+    <Model<f64> as StaticRow>::row()
 }
 
 /// The header's text of that field in the first object of kind `Model`; empty without one.

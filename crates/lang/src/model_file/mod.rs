@@ -4,12 +4,15 @@
 //! field of the line is which argument. Parents may stand below their children in the file: the
 //! objects are declared in an order in which they do not.
 
+mod divisions;
 mod formula;
 pub mod header;
 pub(crate) mod names;
 mod panel_attributes;
+pub mod text;
 mod to_model_file;
 mod to_program;
+pub mod units;
 
 pub use to_model_file::to_model_file;
 pub use to_program::{prevents_conversion, quoted, to_program};
@@ -21,6 +24,7 @@ use crate::source::env::{Environment, Evaluation};
 use crate::source::fault_location;
 use crate::source::module::Modules;
 use crate::value::number_path::{self, NumberPath};
+use divisions::{Part, divisions, is_pair};
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, FileId, Sources, Span};
 use moldloft_model::{Applied, Declaration, Extent, Object, Run};
@@ -545,6 +549,11 @@ impl ModelFileSource {
     pub fn symmetry(&self) -> String {
         self.model.symmetry()
     }
+
+    /// The header's line of units, empty without one.
+    pub fn units(&self) -> String {
+        self.model.header_value("Units").unwrap_or("").trim().to_string()
+    }
 }
 
 /// Makes the objects of an [`Extent::Whole`] application.
@@ -946,58 +955,6 @@ impl Root {
 
 fn radians<T: Scalar>(degrees: T) -> T {
     degrees * (std::f64::consts::PI / 180.0)
-}
-
-/// A part of a head: its name, its numbers and where they stand.
-type Part = (&'static str, Vec<NumberId>, Span);
-
-/// The divisions of an object of `class`, or what they should look like.
-fn divisions(class: Class, fields: &[Written]) -> Result<Vec<Part>, &'static str> {
-    let kinds: Vec<FieldKind> = fields.iter().map(|field| field.kind).collect();
-    let span = |from: usize, to: usize| fields[from].span.to(fields[to].span);
-    let two = |n: [NumberId; 2], m: [NumberId; 2], span| {
-        vec![("divisions", n.to_vec(), span), ("subdivisions", m.to_vec(), span)]
-    };
-    match (class.dimension(), &kinds[..]) {
-        (Some(1), [FieldKind::Number(n)]) => Ok(vec![("divisions", vec![*n], fields[0].span)]),
-        (Some(1), [FieldKind::Pair(n, m)]) => Ok(vec![
-            ("divisions", vec![*n], fields[0].span),
-            ("subdivisions", vec![*m], fields[0].span),
-        ]),
-        (Some(1), _) => Err("divisions, such as 8x4 or 8"),
-        (Some(2), [FieldKind::Pair(nu, mu), FieldKind::Pair(nv, mv), rest @ ..]) => {
-            let mut parts = two([*nu, *nv], [*mu, *mv], span(0, 1));
-            match rest {
-                [] => Ok(parts),
-                [FieldKind::Number(orientation)] => {
-                    parts.push(("orientation", vec![*orientation], fields[2].span));
-                    Ok(parts)
-                }
-                _ => Err("divisions and orientation, such as 8x1 8x1 0"),
-            }
-        }
-        (
-            Some(2),
-            [
-                FieldKind::Number(nu),
-                FieldKind::Number(mu),
-                FieldKind::Number(nv),
-                FieldKind::Number(mv),
-                FieldKind::Number(orientation),
-            ],
-        ) => {
-            let mut parts = two([*nu, *nv], [*mu, *mv], span(0, 3));
-            parts.push(("orientation", vec![*orientation], fields[4].span));
-            Ok(parts)
-        }
-        (Some(2), _) => Err("divisions and orientation, such as 8x1 8x1 0 or 8 1 8 1 0"),
-        (_, []) => Ok(Vec::new()),
-        _ => Err("data after colour and visibility: there is nothing to divide"),
-    }
-}
-
-fn is_pair(field: &Written) -> bool {
-    matches!(field.kind, FieldKind::Pair(..))
 }
 
 /// The program that a model file stands for where a program loads it.

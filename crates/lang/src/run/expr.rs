@@ -600,6 +600,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 return Ok(Value::Number(T::from(extents[d] as f64)));
             }
         }
+        if let Some(number) = self.whole_member(m, base, &word, m.program[base].span) {
+            return number;
+        }
         let value = self.expr(m, base)?;
         let object = match value {
             Value::Object(key) => Some(key),
@@ -648,8 +651,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         word: &str,
     ) -> Option<Evaluated<T>> {
         let object = self.run.graph().get(key)?;
-        if let Some(number) = crate::value::member::of_patch(self.run.graph(), object, word) {
-            return Some(number.map(Value::Number));
+        if let Some(member) = crate::value::member::of_patch(object, word) {
+            return Some(member);
+        }
+        if let Some(member) = crate::run::weight::member(object, word) {
+            return Some(Ok(member));
         }
         if object.row.name == crate::run::solve_set::KIND
             && let Some(value) = self.member_of_solve(&object.name, word)

@@ -109,6 +109,8 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     /// Names that are declared somewhere in the main file: for hints at what comes later.
     pub(crate) current: usize,
     pub arrays: ArrayMachine<T>,
+    /// Numbers of the whole model that were read last.
+    pub(crate) measured: Option<(usize, String, Vec<(&'static str, Value<T>)>)>,
     /// True once the note on the misprint of 1992 was given.
     pub misprint_told: bool,
     /// True while a library routine is left because of an error in it.
@@ -144,6 +146,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             assigned: HashMap::new(),
             current: 0,
             arrays: ArrayMachine { plain_operators, ..ArrayMachine::default() },
+            measured: None,
             misprint_told: false,
             abandoned: false,
         }

@@ -13,3 +13,5 @@ mod read_log;
 mod routine;
 mod sketches;
 pub(crate) mod solve_set;
+pub mod weight;
+pub mod whole;

@@ -1,11 +1,12 @@
-//! What values own: `.x`, `.t`, `.length`, `.area` and the like.
+//! What values own: `.x`, `.t`, `.length`, `.area`, the edges and corners of surfaces, and the like.
 
 use moldloft_diag::Diagnostic;
-use moldloft_mesh::{Blocks, HexBlock, Mesh, PatchInfo, TopologyBuilder, measure};
-use moldloft_model::{Graph, Object};
+use moldloft_hydro::{USUAL_ACCURACY, surface_measures};
+use moldloft_mesh::{Blocks, HexBlock};
+use moldloft_model::Object;
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
-use moldloft_panel::{MOST_CELLS, MOST_PANELS, divisions, solid_grid, too_many_panels};
-use moldloft_registry::{Array, ArrayShape, Scalar, SolidRef, Value, Vectors};
+use moldloft_panel::{MOST_CELLS, solid_grid};
+use moldloft_registry::{Array, ArrayShape, Point, Scalar, SolidRef, SurfaceRef, Value, Vectors};
 use std::sync::Arc;
 
 /// The member called `name`, if the value has one.
@@ -39,6 +40,7 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
                 Ok(Value::Vectors(Arc::new(Vectors::row(lifted))))
             }),
         },
+        (Value::Surface(surface), None) => part_of_surface(surface, name).map(Ok),
         (Value::Curve(curve), None) if name == "length" => {
             // To about twelve digits, as the function of this name.
             let speed = |t: f64| curve.jet(T::from(t), Order::First)[1].re().norm();
@@ -59,6 +61,22 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
         }
         _ => None,
     }
+}
+
+/// The edges of surfaces, in order, and their corners.
+const EDGES: [&str; 4] = ["v0", "u1", "v1", "u0"];
+const CORNERS: [(&str, [f64; 2]); 4] =
+    [("c00", [0.0, 0.0]), ("c10", [1.0, 0.0]), ("c11", [1.0, 1.0]), ("c01", [0.0, 1.0])];
+
+/// An edge of a surface as a snake, or a corner as a magnet.
+fn part_of_surface<T: Real>(surface: &SurfaceRef<T>, name: &str) -> Option<Value<T>> {
+    if let Some(k) = EDGES.iter().position(|edge| *edge == name) {
+        let edge = moldloft_relational::edge(surface.clone(), k, surface.depth);
+        return Some(Value::Curve(edge));
+    }
+    let &(_, [u, v]) = CORNERS.iter().find(|corner| corner.0 == name)?;
+    let corner = Point::on_surface(surface.clone(), T::from(u), T::from(v));
+    Some(Value::Point(Box::new(corner)))
 }
 
 /// How the value was found: `.status`, `.residual`, `.iterations`, `.start`, `.alternatives`.
@@ -110,39 +128,49 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         Value::Vectors(_) => vec!["x", "y", "z", "d1"],
         Value::Numbers(_) | Value::List(_) => vec!["d1"],
         Value::Curve(_) => vec!["length"],
-        Value::Surface(_) => vec!["area"],
+        Value::Surface(_) => {
+            let mut names = vec!["area", "centroid", "volume"];
+            names.extend(EDGES);
+            names.extend(CORNERS.map(|corner| corner.0));
+            names
+        }
         Value::Body(_) => [&["volume", "area", "centroid"][..], &FLAWS].concat(),
         Value::Solid(_) => vec!["volume"],
         _ => Vec::new(),
     }
 }
 
-/// The area of a surface object, measured on its panels, or the volume of a solid, on its cells.
-pub fn of_patch<T: Scalar>(
-    graph: &Graph<T>,
-    object: &Object<T>,
-    name: &str,
-) -> Option<Result<T, Diagnostic>> {
+/// The area, the centre of the area, or the enclosed volume of a surface; the volume of a solid, on its cells.
+pub fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<Value<T>, Diagnostic>> {
     if let Value::Solid(solid) = object.value()? {
-        return (name == "volume").then(|| solid_volume(solid, object));
+        return (name == "volume").then(|| solid_volume(solid, object).map(Value::Number));
     }
     let Value::Surface(surface) = object.value()? else { return None };
-    if name != "area" {
+    if !matches!(name, "area" | "centroid" | "volume") {
         return None;
     }
-    let [nu, nv] = divisions(graph, object).map(|n| n as usize);
-    let panels = nu as u64 * nv as u64;
-    if panels > MOST_PANELS {
-        return Some(Err(crate::source::fault_location::unplaced(&too_many_panels(panels))));
-    }
-    let steps = |n: usize| (0..=n).map(|k| k as f64 / n as f64).collect::<Vec<_>>();
-    let mut points = vec![Vec3::zero(); (nu + 1) * (nv + 1)];
-    surface.grid(&steps(nu), &steps(nv), &mut points, None);
-    let mut builder = TopologyBuilder::new();
-    let vertices = builder.add_vertices(points.len()).ok()?;
-    builder.add_block(PatchInfo::new(""), nu + 1, nv + 1, vertices.collect(), false).ok()?;
-    Some(Ok(measure(&Mesh::new(builder.build().into(), points).ok()?).area))
+    let Some(measures) = surface_measures(&**surface, USUAL_ACCURACY) else {
+        return Some(Err(not_finite()));
+    };
+    Some(match name {
+        "area" => Ok(Value::Number(measures.area)),
+        "centroid" => Ok(Value::Vector(measures.area_centre)),
+        _ if measures.open <= CLOSED * measures.area.re() => {
+            Ok(Value::Number(measures.volume.abs()))
+        }
+        _ => Err(Diagnostic::error("not-closed", format!("`{}` encloses no volume", object.name))
+            .expected("a closed surface")
+            .help("`hydrostatics.volume` is that of all shown surfaces below the water")),
+    })
 }
+
+/// The fault of a surface without finite places.
+pub fn not_finite() -> Diagnostic {
+    Diagnostic::error("no-body", "a surface has places that are not finite, so it has no measures")
+}
+
+/// The integral of the normal of a closed surface is this share of its area at most.
+const CLOSED: f64 = 1e-7;
 
 /// Cells along a direction of which the solid itself says nothing.
 const USUAL_CELLS: usize = 8;

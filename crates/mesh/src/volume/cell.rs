@@ -1,6 +1,7 @@
 //! One hexahedron as a trilinear map: volume, Jacobians, aspect.
 
 use crate::Panel;
+use moldloft_num::GAUSS_2_UNIT;
 use moldloft_num::{Real, Vec3};
 
 /// An edge shorter than this share of its cell has collapsed.
@@ -14,9 +15,6 @@ pub struct Hexahedron<T>(pub [Vec3<T>; 8]);
 /// The corners of the six faces, counter-clockwise seen from outside of a right-handed cell.
 const FACES: [[usize; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-
-/// Gauss points of two-point quadrature on [0, 1]: (1 -+ 1/sqrt(3)) / 2.
-const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 impl<T: Real> Hexahedron<T> {
     /// The volume of the trilinear map, exactly: the cones over its six bilinear faces. Neighbours
@@ -62,7 +60,7 @@ impl Hexahedron<f64> {
             move |c: usize| [0, 1, 2].map(|axis| if c >> axis & 1 == 1 { high } else { low })
         };
         let corners = (0..8).map(of(0.0, 1.0)).map(|p| (p, true));
-        corners.chain((0..8).map(of(GAUSS[0], GAUSS[1])).map(|p| (p, false)))
+        corners.chain((0..8).map(of(GAUSS_2_UNIT[0], GAUSS_2_UNIT[1])).map(|p| (p, false)))
     }
 
     /// The smallest scaled Jacobian det(X_u, X_v, X_w) / (|X_u| |X_v| |X_w|) at the corners and

@@ -1,6 +1,6 @@
 //! What a surface looks like: curvatures and reflections on a grid.
 
-use super::refused;
+use super::arguments::refused;
 use crate::arrays;
 use moldloft_fair::surface::{self, SurfaceAnalysis as One};
 use moldloft_num::{Surface, Vec3};

@@ -1,12 +1,14 @@
 //! Nets of surfaces, and curves that share points.
 
+use super::arguments::{certificate, fair_error, floats, measure, refused, space, vectors};
+use super::look::Look;
 use super::solve::{bound, contradiction, end, get, goal, motion};
 use super::spline::spacing;
-use super::{Look, certificate, fair_error, floats, measure, refused, space, vectors};
 use crate::arrays;
 use moldloft_fair::{
-    Condition, End, FairError, Limit, Network, NetworkCurve, NetworkMode, NetworkReport, PatchNet,
-    Seam, Space, Spacing, parameters_across,
+    Condition, End, FairError, GridData, Layout, Limit, Measure, Network, NetworkCurve,
+    NetworkMode, NetworkReport, PatchNet, Seam, Space, Spacing, fair_grid, grid_parameters,
+    grid_spacing, parameters_across,
 };
 use moldloft_num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -123,12 +125,7 @@ impl Net {
         let mut network = network.with_breaks(&u, &v).map_err(fair_error)?;
         network.kept.extend(get::<Vec<usize>>(&options, "fixed")?);
         if let Some(words) = get::<Option<[String; 4]>>(&options, "rims")? {
-            let rim = |k: usize| match words[k].as_str() {
-                "corners" => Ok(End::Free),
-                word => end(word),
-            };
-            let rims = [[rim(0)?, rim(1)?], [rim(2)?, rim(3)?]];
-            network = network.with_rims(rims).map_err(fair_error)?;
+            network = network.with_rims(rims(&words)?).map_err(fair_error)?;
         }
         if get::<String>(&options, "order")? == "uv" {
             // Passes begin with the curves along v.
@@ -138,6 +135,84 @@ impl Net {
         let (told, points) = solved(py, network, &options)?;
         let (spaces, weights) = (self.spaces.clone(), self.weights.clone());
         Ok((Self { spaces, points, weights }, told))
+    }
+
+    /// Fairs a grid of data, point (i, j) at `i * n + j`: the faired net, the net through the data, the
+    /// parameters of the data along u and v, and the report.
+    #[staticmethod]
+    #[expect(clippy::type_complexity, reason = "nets, parameters and the report")]
+    fn fair_data<'py>(
+        py: Python<'py>,
+        points: PyReadonlyArray2<'py, f64>,
+        shape: [usize; 2],
+        options: Bound<'py, PyDict>,
+    ) -> PyResult<(Self, Self, (Vec<f64>, Vec<f64>), Bound<'py, PyDict>)> {
+        let points = vectors(&points)?;
+        let word: String = get(&options, "motion")?;
+        let way = motion(&word, get(&options, "direction")?)?;
+        let limit = Limit::new(way, get(&options, "tolerance")?).map_err(fair_error)?;
+        let degrees: [usize; 2] = get(&options, "degree")?;
+        let closed: [bool; 2] = get(&options, "closed")?;
+        let spaced =
+            spacing(&get::<String>(&options, "spacing")?, get(&options, "spacing_direction")?)?;
+        let spaced = grid_spacing(&points, shape, spaced, closed);
+        let at =
+            grid_parameters(&points, shape, spaced, closed, limit.motion).map_err(fair_error)?;
+        let marks: (Vec<usize>, Vec<usize>) = get(&options, "marks")?;
+        let layout = |d: usize, marks: &[usize]| {
+            Layout::new(degrees[d], &at[d], marks, closed[d]).map_err(fair_error)
+        };
+        let layouts = [layout(0, &marks.0)?, layout(1, &marks.1)?];
+        let rims = rims(&get::<[String; 4]>(&options, "rims")?)?;
+        let data = GridData { points, limit, layouts, rims };
+        let named = measure(&get::<String>(&options, "measure")?)?;
+        let wanted = goal(&get(&options, "goal")?)?;
+        let conditions: Vec<(String, [f64; 2], [f64; 3])> = get(&options, "conditions")?;
+        let labels: Vec<String> = get(&options, "labels")?;
+        let done = crate::work::interruptible(py, &Default::default(), move || {
+            let mut owners = Vec::new();
+            let made = (|| {
+                let network = data.network(data.original()?)?;
+                let mut all = Vec::new();
+                for (k, one) in conditions.iter().enumerate() {
+                    let own = condition(&network, one)?;
+                    owners.extend(std::iter::repeat_n(k, own.len()));
+                    all.extend(own);
+                }
+                let made = fair_grid(&data, named, wanted, &all, 1e-9)?;
+                Ok::<_, FairError>((made, network, data))
+            })();
+            (made, owners)
+        })?;
+        let (made, network, data) = match done {
+            (Ok(made), _) => made,
+            (Err(FairError::Contradiction { conditions, ends, miss }), owners) => {
+                return Err(contradiction(&conditions, ends, miss, &owners, &labels));
+            }
+            (Err(other), _) => return Err(fair_error(other)),
+        };
+        let jumps = |points: &[Vec3]| {
+            let all = 0..network.strands.len();
+            network.value(Measure::Jumps, all, points).map_err(fair_error)
+        };
+        let dict = PyDict::new(py);
+        dict.set_item("measure_before", made.before)?;
+        dict.set_item("measure_after", made.certificate.value)?;
+        dict.set_item("jumps_before", jumps(&made.original)?)?;
+        dict.set_item("jumps_after", jumps(&made.points)?)?;
+        dict.set_item("certified", network.certified(&made.points))?;
+        dict.set_item("sampled", network.sampled(&made.points))?;
+        dict.set_item("used", made.used)?;
+        dict.set_item("residuals", made.residuals.to_pyarray(py))?;
+        dict.set_item("active", made.active)?;
+        dict.set_item("certificate", certificate(py, &made.certificate)?)?;
+        let spaces = [0, 1].map(|d| data.layouts[d].space.clone());
+        let net = |points| Self { spaces: spaces.clone(), points, weights: None };
+        let at = |d: usize| {
+            let (a, b) = spaces[d].domain();
+            data.layouts[d].at.iter().map(|t| (t - a) / (b - a)).collect()
+        };
+        Ok((net(made.points), net(made.original), (at(0), at(1)), dict))
     }
 
     /// Fairs surfaces with common edges together: the faired nets, their seams as (surface, direction,
@@ -153,12 +228,7 @@ impl Net {
         let radii: Vec<f64> = get(&options, "tolerance")?;
         let word: String = get(&options, "motion")?;
         let motion = motion(&word, get(&options, "direction")?)?;
-        let words: [String; 4] = get(&options, "rims")?;
-        let rim = |k: usize| match words[k].as_str() {
-            "corners" => Ok(End::Free),
-            word => end(word),
-        };
-        let rims = [[rim(0)?, rim(1)?], [rim(2)?, rim(3)?]];
+        let rims = rims(&get::<[String; 4]>(&options, "rims")?)?;
         let mut at = 0;
         let mut sheets = Vec::new();
         for net in &nets {
@@ -187,6 +257,15 @@ impl Net {
         let pairs = seams.iter().map(|s| [side(s, 0), side(s, 1)]).collect();
         Ok((nets.iter().enumerate().map(net).collect(), pairs, told))
     }
+}
+
+/// What the four rims keep: at both ends of u, then of v.
+fn rims(words: &[String; 4]) -> PyResult<[[End; 2]; 2]> {
+    let rim = |k: usize| match words[k].as_str() {
+        "corners" => Ok(End::Free),
+        word => end(word),
+    };
+    Ok([[rim(0)?, rim(1)?], [rim(2)?, rim(3)?]])
 }
 
 /// Curves over common points.

@@ -1,7 +1,7 @@
 //! From options to reports.
 
-use super::spline::{spacing, told};
-use super::{Spline, certificate, fair_error, measure, refused};
+use super::arguments::{certificate, fair_error, measure, refused};
+use super::spline::{Spline, spacing, told};
 use moldloft_fair::{
     Bound as Bounded, Condition, Data, DataOptions, End, FairError, Goal, Job, KnotRemovalOptions,
     Layout, Limit, Mode, Motion, Numbers, OptimumOptions, Report, Rule, Space, Step, Stops,

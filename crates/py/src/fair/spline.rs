@@ -1,6 +1,7 @@
 //! Spline curves and their interrogation.
 
-use super::{fair_error, floats, long, measure, refused, solve, space, vectors};
+use super::arguments::{fair_error, floats, long, measure, refused, space, vectors};
+use super::solve;
 use crate::arrays;
 use moldloft_fair::shape::{self, Sample};
 use moldloft_fair::{

@@ -1,6 +1,6 @@
 //! Facets of sets.
 
-use super::set::{array, attributes};
+use super::arguments::{array, attributes};
 use crate::error::plain_error;
 use moldloft_field::{Facets, Pieces, crossing_faces};
 use moldloft_io::{LinesAndPoints, obj, ply, stl, threemf, vtk};

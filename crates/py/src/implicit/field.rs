@@ -1,7 +1,8 @@
 //! Implicit functions.
 
+use super::arguments::{box_of, finished, points};
 use super::oracle::{PythonOracle, Slots};
-use super::{box_of, finished, points};
+
 use crate::arrays;
 use crate::error::plain_error;
 use moldloft_field::{Affine, FieldError, Form, Primitive, check_rail, check_rails};

@@ -1,9 +1,9 @@
 //! Sets.
 
+use super::arguments::{attributes, box_of, finished, points};
+use super::facets::PyFacets;
 use super::field::{PyField, values};
 use super::oracle::Slots;
-use super::{PyFacets, box_of, finished, points};
-use crate::arrays;
 use crate::error::plain_error;
 use crate::work::interruptible;
 use moldloft_field::{
@@ -552,20 +552,4 @@ impl PySet {
         let over = self.long(py, |set, _| region(set, None))?;
         Ok((over.low.to_array(), over.high.to_array()))
     }
-}
-
-/// Attributes as data.
-pub fn attributes<'py>(py: Python<'py>, a: &Attributes) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("name", &a.name)?;
-    dict.set_item("colour", a.colour)?;
-    dict.set_item("material", &a.material)?;
-    dict.set_item("tolerance", a.tolerance)?;
-    dict.set_item("tags", a.tags.clone())?;
-    Ok(dict)
-}
-
-/// Points as an array (n, 3).
-pub fn array<'py>(py: Python<'py>, points: &[Vec3]) -> Bound<'py, numpy::PyArray2<f64>> {
-    arrays::filled(py, [points.len(), 3], |out| out.copy_from_slice(points)).0
 }

@@ -377,7 +377,7 @@ impl<T: Real> Cut<T> {
 
 impl<T: Real> Curve<T> for Cut<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        super::on_surface_jet(&self.both.first, self.place(t, order), order)
+        super::on_surface::on_surface_jet(&self.both.first, self.place(t, order), order)
     }
 
     /// Place by place, as single ones.

@@ -10,6 +10,7 @@ mod geodesic;
 mod int_point;
 mod intersect_snake;
 mod magnets;
+mod on_surface;
 mod outcome;
 mod pieces;
 mod points;
@@ -24,46 +25,3 @@ pub use intersect_snake::{IntCurve, IntSnake};
 pub use magnets::{IntMagnet, ProjMagnet, ProxMagnet, TanMagnet, XYZMagnet};
 pub use points::ProjPoint;
 pub use project_snake::{ProjCurve, ProjSnake};
-
-use moldloft_num::{CurveJet, Order, Real, find_root};
-use moldloft_registry::SurfaceRef;
-
-/// The jet of S(w(t)) from that of w.
-fn on_surface_jet<T: Real>(
-    surface: &SurfaceRef<T>,
-    [w, d, dd]: CurveJet<T>,
-    order: Order,
-) -> CurveJet<T> {
-    let s = surface.jet(w.x, w.y, order);
-    let mut jet = [s.p, s.u * d.x + s.v * d.y, s.u * dd.x + s.v * dd.y];
-    jet[2] += s.uu * (d.x * d.x) + s.uv * (d.x * d.y * 2.0) + s.vv * (d.y * d.y);
-    jet
-}
-
-/// The parameters at which a way in the parameter plane of a surface crosses its breaks, together
-/// with the way's own, ascending. The nodes are so near each other that between two the way crosses
-/// a line once at most.
-fn crossings(
-    lines: &[Vec<f64>; 2],
-    own: Vec<f64>,
-    nodes: &[(f64, [f64; 2])],
-    at: impl Fn(f64) -> [f64; 2],
-) -> Vec<f64> {
-    let mut breaks = own;
-    for pair in nodes.windows(2) {
-        let ((a, p), (b, q)) = (pair[0], pair[1]);
-        for (axis, lines) in lines.iter().enumerate() {
-            for &line in lines {
-                if (p[axis] - line) * (q[axis] - line) < 0.0 {
-                    breaks.extend(find_root(|t| at(t)[axis] - line, a, b).ok());
-                } else if p[axis] == line && q[axis] != line {
-                    breaks.push(a);
-                }
-            }
-        }
-    }
-    breaks.retain(|t| *t > 0.0 && *t < 1.0);
-    breaks.sort_by(f64::total_cmp);
-    breaks.dedup();
-    breaks
-}

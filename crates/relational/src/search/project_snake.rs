@@ -158,6 +158,10 @@ impl<T: Real> Curve<T> for OntoMirror<T> {
         let turned = |v| self.mirror.direction(v, true);
         [self.mirror.foot(p), turned(d), turned(dd)]
     }
+    fn image_of(&self) -> Option<moldloft_num::trace::Key> {
+        self.curve.key
+    }
+
     fn breaks(&self) -> Vec<f64> {
         self.curve.breaks()
     }
@@ -461,7 +465,7 @@ struct Projected<T: Real> {
 
 impl<T: Real> Curve<T> for Projected<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        super::on_surface_jet(&self.path.surface, self.path.place(t, order), order)
+        super::on_surface::on_surface_jet(&self.path.surface, self.path.place(t, order), order)
     }
 
     /// Place by place, as single ones: none depends on the others.
@@ -484,7 +488,7 @@ impl<T: Real> Curve<T> for Projected<T> {
             let w = self.path.place(T::from(t), Order::Zero)[0].re();
             [w.x, w.y]
         };
-        super::crossings(&self.path.surface.breaks(), own, &nodes, at)
+        super::on_surface::crossings(&self.path.surface.breaks(), own, &nodes, at)
     }
 
     fn trace(&self) -> Trace<T> {

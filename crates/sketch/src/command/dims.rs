@@ -3,8 +3,8 @@
 use super::CommandError;
 use super::args::Args;
 use super::draw::{require_line, require_point, set_letters};
+use super::question::Question;
 use super::session::{Reply, Session};
-use super::solids::Question;
 use super::words::UNITS;
 use crate::dimension::layout::agree;
 use crate::{

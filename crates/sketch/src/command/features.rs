@@ -5,8 +5,9 @@ use super::args::Args;
 use super::session::{Reply, Session};
 use crate::Object;
 use crate::dimension::expr::Expr;
+use crate::feature::{Feature, FeatureKind, Operand, Placement};
 use crate::solid::combine::CombineError;
-use crate::solid::feature::{Feature, FeatureKind, NoBody, Placement, body};
+use crate::solid::feature::{NoBody, body};
 use crate::solid::operation::Operation;
 use crate::solid::validity::Flaw;
 use moldloft_num::Vec3;
@@ -154,8 +155,7 @@ impl Session {
         }
         self.require_body(&object)?;
         // Its numbers keep their names.
-        let operands =
-            vec![crate::solid::feature::Operand { object: object.into(), prefix: String::new() }];
+        let operands = vec![Operand { object: object.into(), prefix: String::new() }];
         let kind = FeatureKind::Revolve { line: [line.p, line.q], angle };
         self.make(Feature { kind, operands }, &target, |why| match why {
             NoBody::Axis => Some(CommandError::new(
@@ -204,8 +204,7 @@ impl Session {
             ));
         }
         self.require_body(&object)?;
-        let operands =
-            vec![crate::solid::feature::Operand { object: object.into(), prefix: String::new() }];
+        let operands = vec![Operand { object: object.into(), prefix: String::new() }];
         self.make(Feature { kind: FeatureKind::Pattern { step, count }, operands }, &target, |_| {
             None
         })
@@ -264,8 +263,7 @@ impl Session {
             ));
         }
         self.require_body(&object)?;
-        let operands =
-            vec![crate::solid::feature::Operand { object: object.into(), prefix: String::new() }];
+        let operands = vec![Operand { object: object.into(), prefix: String::new() }];
         self.make(Feature { kind: FeatureKind::Place(place), operands }, &target, |_| None)
     }
 }

@@ -9,6 +9,7 @@ mod features;
 mod files;
 mod info;
 mod objects;
+mod question;
 mod sensitivity;
 mod session;
 mod solids;

@@ -1,7 +1,7 @@
 //! A session: objects, undo, journal, and the dispatch of commands.
 
 use super::args::Args;
-use super::solids::Question;
+use super::question::Question;
 use super::words::{self, Command};
 use super::{CommandError, verbs};
 use crate::solid::feature::{NoBody, body};

@@ -4,6 +4,7 @@ use super::CommandError;
 use super::args::Args;
 use super::draw::require_point;
 use super::info::{Suggestion, suggestions};
+use super::question::Question;
 use super::session::{MAX_POINTS, Reply, Session};
 use crate::solid::faces::{Fit, Fitted, Polygon, fit, fit_plane};
 use crate::solid::merge::{self, Placed};
@@ -12,17 +13,6 @@ use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// A question that waits for ACCEPT, REJECT, REVERSE, REPEAT, YES or NO.
-#[derive(Clone, Debug)]
-pub(crate) enum Question {
-    /// Is the estimated value right?
-    Dimension { name: String, axis: Axis, p: PointId, q: PointId, value: f64 },
-    /// Is this candidate a face?
-    Face { object: String, left: Vec<Vec<Vec<PointId>>>, taken: Vec<Face> },
-    /// Which of several solids?
-    Solid { object: String, faces: Vec<Vec<Face>> },
-}
 
 impl Session {
     /// Where the points of a fully dimensioned object are, or what is missing.

@@ -11,6 +11,7 @@ use crate::drawing::estimate::Estimate;
 use crate::drawing::planes::Planes;
 use crate::object::Object;
 use crate::{Axis, PointId};
+use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, VecDeque};
 
@@ -149,27 +150,18 @@ impl<T: Real> Layout<T> {
 struct Graph {
     /// Per node: (other node, dimension, whether the other node is its far end).
     next: Vec<Vec<(usize, usize, bool)>>,
-    parent: Vec<usize>,
+    sets: UnionFind,
 }
 
 impl Graph {
     fn new(nodes: usize) -> Graph {
-        Graph { next: vec![Vec::new(); nodes], parent: (0..nodes).collect() }
-    }
-
-    fn root(&mut self, mut k: usize) -> usize {
-        while self.parent[k] != k {
-            self.parent[k] = self.parent[self.parent[k]];
-            k = self.parent[k];
-        }
-        k
+        Graph { next: vec![Vec::new(); nodes], sets: UnionFind::new(nodes) }
     }
 
     fn join(&mut self, a: usize, b: usize, dimension: usize) {
         self.next[a].push((b, dimension, true));
         self.next[b].push((a, dimension, false));
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b);
+        self.sets.join(a, b);
     }
 
     /// The dimensions on the way from `a` to `b`, each with its sign.
@@ -280,7 +272,7 @@ fn graphs(object: &Object, planes: &Planes) -> ([Graph; 3], Vec<usize>) {
             continue;
         }
         let graph = &mut graphs[axis.index()];
-        if graph.root(a) == graph.root(b) {
+        if graph.sets.same(a, b) {
             closing.push(k);
         } else {
             graph.join(a, b, k);

@@ -13,7 +13,7 @@ use crate::drawing::estimate::Estimate;
 use crate::drawing::planes::Planes;
 use crate::object::Object;
 use crate::{Axis, LineId, PointId};
-use moldloft_num::{Dual, Real, Vec3, solve_dense};
+use moldloft_num::{Dual, Real, Vec3, determinant, solve_dense};
 
 type Floating<T> = Vec<(Axis, Vec<(usize, T)>)>;
 
@@ -557,25 +557,4 @@ impl<T: Real> System<'_, T> {
         }
         Ok(x)
     }
-}
-
-/// The determinant of a square matrix, by elimination with row pivots.
-fn determinant(matrix: &[f64], n: usize) -> f64 {
-    let mut a = matrix.to_vec();
-    let mut product = 1.0;
-    for k in 0..n {
-        let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs()));
-        let Some(pivot) = pivot.filter(|&r| a[r * n + k] != 0.0) else { return 0.0 };
-        if pivot != k {
-            (0..n).for_each(|c| a.swap(k * n + c, pivot * n + c));
-            product = -product;
-        }
-        let own = a[k * n + k];
-        product *= own;
-        for r in k + 1..n {
-            let part = a[r * n + k] / own;
-            (k..n).for_each(|c| a[r * n + c] -= part * a[k * n + c]);
-        }
-    }
-    product
 }

@@ -6,6 +6,7 @@
 
 use crate::{Axis, Drawing, LineId, PointId};
 use moldloft_num::Real;
+use moldloft_num::union_find::UnionFind;
 use std::collections::BTreeMap;
 
 /// How much of all lines run along an axis, before they are looked at.
@@ -73,14 +74,7 @@ impl Drawing {
                 })
                 .collect()
         };
-        let mut group: Vec<usize> = (0..strokes.len()).collect();
-        fn root(group: &mut [usize], mut k: usize) -> usize {
-            while group[k] != k {
-                group[k] = group[group[k]];
-                k = group[k];
-            }
-            k
-        }
+        let mut group = UnionFind::new(strokes.len());
         for (k, s) in strokes.iter().enumerate() {
             for (axis, sense, far, own) in leads(s.ends[0]) {
                 if own == k {
@@ -94,15 +88,14 @@ impl Drawing {
                         m != k && strokes[m].ends.contains(&far) && strokes[m].ends.contains(&end)
                     });
                     if let Some(m) = parallel {
-                        let (a, b) = (root(&mut group, k), root(&mut group, m));
-                        group[a.max(b)] = a.min(b);
+                        group.join(k, m);
                     }
                 }
             }
         }
         let mut members: BTreeMap<usize, Vec<&Stroke>> = BTreeMap::new();
         for (k, s) in strokes.iter().enumerate() {
-            members.entry(root(&mut group, k)).or_default().push(s);
+            members.entry(group.find(k)).or_default().push(s);
         }
         let mut out = BTreeMap::new();
         for own in members.values() {

@@ -5,6 +5,7 @@
 //! N - 1 dimensions and one reference value (manual, pp. 5-8; routines DETPNS, SETPLS, PLNTES).
 
 use crate::{Align, Axis, Drawing, Free, LineId, PointId};
+use moldloft_num::union_find::UnionFind;
 use std::collections::VecDeque;
 
 /// Why two points share a coordinate.
@@ -87,11 +88,8 @@ impl Planes {
         let mut class = [const { Vec::new() }; 3];
         let mut count = [0; 3];
         for axis in Axis::ALL {
-            let mut parent: Vec<u32> = (0..ids.len() as u32).collect();
-            let mut join = |a: usize, b: usize| {
-                let (a, b) = (root(&mut parent, a as u32), root(&mut parent, b as u32));
-                parent[a.max(b) as usize] = a.min(b);
-            };
+            let mut sets = UnionFind::new(ids.len());
+            let mut join = |a: usize, b: usize| sets.join(a, b);
             for line in drawing.lines.values() {
                 if let (Some(free), Some(p), Some(q)) = (line.free, index(line.p), index(line.q))
                     && !free.contains(axis)
@@ -109,8 +107,8 @@ impl Planes {
             }
             let k = axis.index();
             let mut number = vec![u32::MAX; ids.len()];
-            for point in 0..ids.len() as u32 {
-                let top = root(&mut parent, point) as usize;
+            for point in 0..ids.len() {
+                let top = sets.find(point);
                 if number[top] == u32::MAX {
                     number[top] = count[k] as u32;
                     count[k] += 1;
@@ -198,14 +196,6 @@ impl Planes {
         faults.append(&mut later);
         faults
     }
-}
-
-fn root(parent: &mut [u32], mut k: u32) -> u32 {
-    while parent[k as usize] != k {
-        parent[k as usize] = parent[parent[k as usize] as usize];
-        k = parent[k as usize];
-    }
-    k
 }
 
 /// The shortest chain of reasons for which two points share a coordinate; `None` when they do not.

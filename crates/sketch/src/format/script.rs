@@ -1,7 +1,7 @@
 //! An object as the commands that make it: the file format.
 
+use crate::feature::{Feature, FeatureKind, Placement};
 use crate::solid::curve::{Curve, CurveKind};
-use crate::solid::feature::{Feature, FeatureKind, Placement};
 use crate::{Axis, Expr, Measure, Object, Role, Source};
 use moldloft_syntax::number::plain;
 use std::fmt::Write;

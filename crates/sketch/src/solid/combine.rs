@@ -7,12 +7,13 @@
 //! from one more step in the scalar (implicit function theorem).
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
-use super::curve::{GAUSS, Piece};
+use super::curve::Piece;
 use super::surface::{Met, On, Surface, meet};
 use super::{Solid, SolidEdge, SolidFace, Trace, Trim, Vertex};
 use crate::PointId;
 use crate::solid::operation::Operation;
 use moldloft_mesh::triangulate;
+use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -562,7 +563,7 @@ impl<'a, T: Real> Placing<'a, T> {
             let Some(normal) = step.re().normalized() else { continue };
             let lifted = Vec3::lifted(normal);
             let rate = lifted.dot(step);
-            for (x, w) in GAUSS {
+            for (x, w) in GAUSS_8_UNIT {
                 let at = pair[0] + step * T::from(x);
                 let plane = Surface::Plane { at, normal: lifted };
                 let met = solve(&plane, at.re(), 0.5 * step.re().norm(), &mut start)?;

@@ -5,6 +5,7 @@
 //! the third entry of its second row must be -1, or the curve misses its last point.
 
 use crate::{Expr, PointId};
+use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
 
@@ -132,7 +133,7 @@ impl<T: Real> Piece<T> {
     pub fn length(&self) -> T {
         let mut sum = T::zero();
         for k in 0..4 {
-            for (x, w) in GAUSS {
+            for (x, w) in GAUSS_8_UNIT {
                 let s = (k as f64 + x) / 4.0;
                 sum += self.velocity(T::from(s)).norm() * (w / 4.0);
             }
@@ -157,18 +158,6 @@ impl<T: Real> Piece<T> {
         if n.is_finite() { (n as usize).clamp(1, 720) } else { 1 }
     }
 }
-
-/// Gauss's eight-point rule on [0, 1] (Abramowitz and Stegun, table 25.4).
-pub(crate) const GAUSS: [(f64, f64); 8] = [
-    (0.019_855_071_751_231_856, 0.050_614_268_145_188_13),
-    (0.101_666_761_293_186_64, 0.111_190_517_226_687_24),
-    (0.237_233_795_041_835_5, 0.156_853_322_938_943_65),
-    (0.408_282_678_752_175_1, 0.181_341_891_689_181),
-    (0.591_717_321_247_825, 0.181_341_891_689_181),
-    (0.762_766_204_958_164_5, 0.156_853_322_938_943_65),
-    (0.898_333_238_706_813_4, 0.111_190_517_226_687_24),
-    (0.980_144_928_248_768_1, 0.050_614_268_145_188_13),
-];
 
 /// Why a curve cannot be drawn.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Area, volume, centroid and inertia, by exact formulas for triangles and Gauss's rule for curves.
 
-use crate::solid::curve::{GAUSS, Piece};
+use crate::solid::curve::Piece;
+use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3};
 
 /// Properties of a solid of unit density, or of a flat figure.
@@ -107,7 +108,7 @@ impl<T: Real> Sums<T> {
             for (at, by) in nodes {
                 let arm = at - apex;
                 let normal = arm.cross(by);
-                for (r, wr) in GAUSS {
+                for (r, wr) in GAUSS_8_UNIT {
                     let p = apex + arm * T::from(r) - self.origin;
                     let da = normal * T::from(r * wr);
                     self.element(p, da);
@@ -154,7 +155,7 @@ impl<T: Real> Sums<T> {
             let s = T::from(s);
             let (a, da) = (near.at(s), near.velocity(s));
             let (b, db) = far(s);
-            for (t, wt) in GAUSS {
+            for (t, wt) in GAUSS_8_UNIT {
                 let t = T::from(t);
                 let element = da.lerp(db, t).cross(b - a) * T::from(w * wt);
                 let p = a.lerp(b, t) - self.origin;
@@ -190,5 +191,5 @@ impl<T: Real> Sums<T> {
 
 /// Gauss's nodes on four parts of [0, 1]: arcs up to a half turn come out to rounding.
 pub(crate) fn along() -> impl Iterator<Item = (f64, f64)> {
-    (0..4).flat_map(|k| GAUSS.map(|(x, w)| ((f64::from(k) + x) / 4.0, w / 4.0)))
+    (0..4).flat_map(|k| GAUSS_8_UNIT.map(|(x, w)| ((f64::from(k) + x) / 4.0, w / 4.0)))
 }

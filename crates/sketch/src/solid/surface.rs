@@ -1,6 +1,7 @@
 //! Surfaces of faces, and points where surfaces and curves meet, with derivatives.
 
-use crate::solid::curve::{GAUSS, Piece};
+use crate::solid::curve::Piece;
+use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3, solve_dense};
 
 /// The surface of a face.
@@ -104,7 +105,7 @@ impl<T: Real> Surface<T> {
         for &[u, v, du] in nodes {
             let length = v - start;
             for part in 0..parts {
-                for (x, w) in GAUSS {
+                for (x, w) in GAUSS_8_UNIT {
                     let x = (f64::from(part) + x) / f64::from(parts);
                     let [p, a, b] = self.jet(u, start + length * x);
                     let weight = -(length * du) * (w / f64::from(parts));

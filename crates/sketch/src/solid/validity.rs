@@ -9,6 +9,7 @@ use super::combine::{CombineError, newell, resolved};
 use super::{Solid, SolidFace};
 use crate::FaceId;
 use crate::PointId;
+use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
 
@@ -297,20 +298,12 @@ enum Shells {
 
 /// The direction of the shells that hang together by edges.
 fn shells<T: Real>(body: &Solid<T>) -> Shells {
-    let mut parent: Vec<usize> = (0..body.faces.len()).collect();
-    fn root(parent: &mut [usize], mut k: usize) -> usize {
-        while parent[k] != k {
-            parent[k] = parent[parent[k]];
-            k = parent[k];
-        }
-        k
-    }
+    let mut parts = UnionFind::new(body.faces.len());
     let mut first: BTreeMap<usize, usize> = BTreeMap::new();
     for (f, face) in body.faces.iter().enumerate() {
         for &(e, _) in face.loops.iter().flatten() {
             let other = *first.entry(e).or_insert(f);
-            let (a, b) = (root(&mut parent, other), root(&mut parent, f));
-            parent[a.max(b)] = a.min(b);
+            parts.join(other, f);
         }
     }
     let outline = body.outline();
@@ -319,7 +312,7 @@ fn shells<T: Real>(body: &Solid<T>) -> Shells {
     // The triangles of each shell: signed fans serve for volumes and solid angles.
     let mut fans: BTreeMap<usize, Vec<[Vec3; 3]>> = BTreeMap::new();
     for (f, face) in body.faces.iter().enumerate() {
-        let fan = fans.entry(root(&mut parent, f)).or_default();
+        let fan = fans.entry(parts.find(f)).or_default();
         let mut add = |c: &Vec<u32>, apex: Vec3| {
             fan.extend((0..c.len()).map(|k| [apex, at(c[k]), at(c[(k + 1) % c.len()])]));
         };

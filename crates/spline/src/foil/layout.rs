@@ -1,6 +1,7 @@
 //! Where a foil lies in space: from points to chord, thickness and mean-line directions.
 
-use super::{FoilError, Station};
+use super::error::FoilError;
+use super::station::Station;
 use moldloft_num::{Jet, Real, Vec3};
 
 /// How thickness is set off from the mean line.

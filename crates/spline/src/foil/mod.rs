@@ -7,110 +7,24 @@
 //!
 //! `family, mean line -> Section -> Station (x, thickness, camber) -> Layout -> position`
 
+mod error;
 mod layout;
 mod mean;
 mod six_series;
+mod station;
 mod tables;
 #[cfg(test)]
 mod tests;
 mod thickness;
 
+pub use error::FoilError;
 pub use layout::{Layout, Metric, Offset};
 pub use mean::Mean;
+pub use station::Station;
 pub use thickness::Thickness;
 
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
-use std::fmt;
 use std::sync::Arc;
-
-/// Why there is no such foil.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FoilError {
-    /// There is no thickness form of this name.
-    Family {
-        /// The name asked for.
-        name: String,
-    },
-    /// There is no mean line of this name.
-    Mean {
-        /// The name asked for.
-        name: String,
-    },
-    /// A number of the section lies outside its range.
-    Range {
-        /// What the number is.
-        name: &'static str,
-        /// The number.
-        value: f64,
-        /// The smallest allowed.
-        min: f64,
-        /// The largest allowed.
-        max: f64,
-    },
-    /// The ordinates do not run over x from 0 to 1.
-    Ordinates {
-        /// The first that is out of place, from 0.
-        index: usize,
-        /// What is wrong with it.
-        what: &'static str,
-    },
-    /// A foil is laid between 3, 4 or 5 points.
-    Points {
-        /// The number given.
-        actual: usize,
-    },
-    /// Nose and tail are in one place.
-    NoChord,
-    /// The metric measures some lengths as nothing or less.
-    Metric,
-    /// The section has no slope of its mean line, which offsets along the normal need.
-    NoSlope,
-    /// A coordinate is NaN or infinite.
-    NotFinite {
-        /// Index of the point.
-        index: usize,
-    },
-}
-
-impl fmt::Display for FoilError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Family { name } => write!(f, "unknown foil family \"{name}\""),
-            Self::Mean { name } => write!(f, "unknown mean line \"{name}\""),
-            Self::Range { name, value, min, max } => {
-                write!(f, "expected {name} from {min} to {max}, found {value}")
-            }
-            Self::Ordinates { index, what } => write!(f, "ordinate {} {what}", index + 1),
-            Self::Points { actual } => {
-                write!(f, "a foil is laid between 3, 4 or 5 points, found {actual}")
-            }
-            Self::NoChord => write!(f, "the nose and the tail of the foil coincide"),
-            Self::Metric => write!(f, "the metric of the foil is not positive"),
-            Self::NoSlope => {
-                write!(f, "a section given by ordinates cannot be set off along the normal")
-            }
-            Self::NotFinite { index } => write!(f, "point {} of the foil is not finite", index + 1),
-        }
-    }
-}
-
-impl std::error::Error for FoilError {}
-
-/// A place of a section, in units of the chord, of half the greatest thickness and of the greatest
-/// camber.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Station<J> {
-    /// Distance from the nose along the chord.
-    pub x: J,
-    /// Half thickness; negative on the lower side.
-    pub thickness: J,
-    /// Height of the mean line.
-    pub camber: J,
-    /// Slope of the mean line, d camber / dx, held near the nose; see [`Section::at`].
-    pub slope: J,
-    /// True on the lower side.
-    pub lower: bool,
-}
 
 /// What a section is made of, by name; see [`Section::new`].
 #[derive(Clone, Debug)]

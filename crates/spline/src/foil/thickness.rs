@@ -1,6 +1,6 @@
 //! Thickness forms of foils: four-digit, modified, 16-series, and those of propellers.
 
-use super::FoilError;
+use super::error::FoilError;
 use super::six_series::{Blended, STEPS};
 use crate::{End, Ends, InterpolatingSpline};
 use moldloft_num::{Curve, Jet, Real, Vec3, lift_curve};

@@ -8,7 +8,8 @@ use crate::common::{line, open, rounds};
 use moldloft_document::Document;
 use moldloft_num::{Order, Vec3, gauss_legendre};
 use moldloft_registry::{Class, Value};
-use moldloft_testing::ridders_vectors;
+use moldloft_testing::{ridders_vectors, soak};
+use rayon::prelude::*;
 
 /// Values, flat, and the object (or measured number) that each belongs to.
 #[derive(Clone)]
@@ -179,7 +180,15 @@ fn check(seed: u64) -> Option<Tally> {
         println!("seed {seed}: {faults:?}");
         return None;
     }
-    let inputs = inputs(&mut document);
+    let mut inputs = inputs(&mut document);
+    if !soak() {
+        // The ordinary run moves the parameter and a quarter of the literals, other ones in each model.
+        let mut k = seed as usize;
+        inputs.retain(|(name, _)| {
+            k += 1;
+            name == "w" || k % 4 == 0
+        });
+    }
     let names: Vec<String> = inputs.iter().map(|(name, _)| name.clone()).collect();
     let (positions, numbers) = expressions(&document);
     let all: Vec<String> = positions.iter().chain(&numbers).cloned().collect();
@@ -277,18 +286,26 @@ fn wanted() -> Option<(String, usize)> {
 fn derivatives_equal_differences_on_random_models_of_all_kinds() {
     let wanted = wanted();
     let models = wanted.as_ref().map_or(rounds(100).max(parts()), |w| w.1);
+    let with = |seed: &u64| {
+        let has = |(kind, _): &(String, usize)| model(*seed).contains(&format!("\n{kind} "));
+        wanted.as_ref().is_none_or(has)
+    };
+    let tallies: Vec<(Tally, usize)> = (1..=models as u64)
+        .into_par_iter()
+        .filter(with)
+        .map(|seed| {
+            let mut redrawn = 0;
+            let mut draws = (0..5).map(|k| check(seed + k * 1000 * parts() as u64));
+            let tally = draws.find_map(|tally| {
+                redrawn += usize::from(tally.is_none());
+                tally
+            });
+            (tally.expect("one of five draws is a model"), redrawn)
+        })
+        .collect();
     let (mut total, mut redrawn) = (Tally::default(), 0);
-    for seed in 1..=models as u64 {
-        let without = |(kind, _): &(String, usize)| !model(seed).contains(&format!("\n{kind} "));
-        if wanted.as_ref().is_some_and(without) {
-            continue;
-        }
-        let mut draws = (0..5).map(|k| check(seed + k * 1000 * parts() as u64));
-        let tally = draws.find_map(|tally| {
-            redrawn += usize::from(tally.is_none());
-            tally
-        });
-        let tally = tally.expect("one of five draws is a model");
+    for (tally, again) in tallies {
+        redrawn += again;
         total.parameters += tally.parameters;
         total.values += tally.values;
         total.kinks += tally.kinks;
@@ -299,6 +316,8 @@ fn derivatives_equal_differences_on_random_models_of_all_kinds() {
     assert!(redrawn <= models / 10);
     assert!(total.kinks * 1000 <= total.values, "{total:?}");
     assert!(total.missed <= models / 4, "{total:?}");
+    // What lies at the end of what a model can take has no differences.
+    assert!(total.uncompared * 100 <= total.values, "{total:?}");
 }
 
 /// Where a curve has a corner that moves, the corner's own way counts as well.

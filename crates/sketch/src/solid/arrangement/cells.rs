@@ -3,28 +3,12 @@
 use super::plane::{Frame, facet_winding};
 use super::pool::Pool;
 use super::{ArrangeError, Facet, Region};
+use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
 
 /// Numbers of windings, by operand.
 pub(super) type Turns = [i32; 2];
-
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn root(&mut self, mut k: u32) -> u32 {
-        while self.0[k as usize] != k {
-            self.0[k as usize] = self.0[self.0[k as usize] as usize];
-            k = self.0[k as usize];
-        }
-        k
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}
 
 /// The windings in front of and behind each region.
 pub(super) fn windings(
@@ -50,8 +34,8 @@ pub(super) fn windings(
             }
         }
     }
-    let mut sets = Sets((0..2 * regions.len() as u32).collect());
-    let mut parts = Sets((0..regions.len() as u32).collect());
+    let mut sets = UnionFind::new(2 * regions.len());
+    let mut parts = UnionFind::new(regions.len());
     for around in wings.values_mut() {
         around.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let n = around.len();
@@ -67,14 +51,14 @@ pub(super) fn windings(
     }
     let mut sides: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for s in 0..2 * regions.len() as u32 {
-        sides.entry(sets.root(s)).or_default().push(s);
+        sides.entry(sets.find(s)).or_default().push(s);
     }
     let mut known: BTreeMap<u32, Turns> = BTreeMap::new();
     for start in 0..regions.len() as u32 {
-        if parts.root(start) != start {
+        if parts.find(start) != start {
             continue;
         }
-        let root = sets.root(2 * start);
+        let root = sets.find(2 * start);
         known.insert(root, in_front(pool, facets, frames, sheets, &regions[start as usize])?);
         let mut waiting = vec![root];
         while let Some(root) = waiting.pop() {
@@ -83,7 +67,7 @@ pub(super) fn windings(
                 let region = &regions[s as usize / 2];
                 let sign = if s % 2 == 0 { 1 } else { -1 };
                 let there: Turns = [0, 1].map(|k| here[k] + sign * region.turns[k]);
-                let other = sets.root(s ^ 1);
+                let other = sets.find(s ^ 1);
                 match known.get(&other) {
                     Some(found) if *found != there => {
                         return Err(ArrangeError::Inconsistent(region.inner));
@@ -98,7 +82,7 @@ pub(super) fn windings(
         }
     }
     Ok((0..regions.len() as u32)
-        .map(|r| [2 * r, 2 * r + 1].map(|s| known[&sets.root(s)]))
+        .map(|r| [2 * r, 2 * r + 1].map(|s| known[&sets.find(s)]))
         .collect())
 }
 

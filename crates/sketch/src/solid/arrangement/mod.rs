@@ -16,6 +16,7 @@ mod pool;
 mod regions;
 
 use moldloft_num::Vec3;
+use moldloft_num::union_find::UnionFind;
 use plane::{Frame, common_segments, facet_winding};
 pub(super) use pool::overlapping;
 use pool::{Pool, bounds};
@@ -237,14 +238,7 @@ type Cuts = BTreeMap<usize, Vec<[Vec3; 2]>>;
 /// meet.
 fn meet(pool: &Pool, facets: &[Facet], frames: &[Frame], crossing: bool) -> (Vec<usize>, Cuts) {
     let boxes: Vec<[Vec3; 2]> = facets.iter().map(|f| f.bounds).collect();
-    let mut sheet: Vec<usize> = (0..facets.len()).collect();
-    fn root(sheet: &mut [usize], mut k: usize) -> usize {
-        while sheet[k] != k {
-            sheet[k] = sheet[sheet[k]];
-            k = sheet[k];
-        }
-        k
-    }
+    let mut sheet = UnionFind::new(facets.len());
     let mut cuts = Cuts::new();
     let wide = 4.0 * pool.tolerance;
     overlapping(&boxes, pool.tolerance, usize::MAX, |i, j| {
@@ -256,8 +250,7 @@ fn meet(pool: &Pool, facets: &[Facet], frames: &[Frame], crossing: bool) -> (Vec
             f.loops.iter().flatten().all(|&v| frame.height(pool.at(v)).abs() <= wide)
         };
         if flat(a, &frames[j]) && flat(b, &frames[i]) {
-            let (x, y) = (root(&mut sheet, i), root(&mut sheet, j));
-            sheet[x.max(y)] = x.min(y);
+            sheet.join(i, j);
             return;
         }
         // Two triangles or convex quads of one surface meet in the edge they share and nowhere else.
@@ -274,7 +267,7 @@ fn meet(pool: &Pool, facets: &[Facet], frames: &[Frame], crossing: bool) -> (Vec
             cuts.entry(j).or_default().push([p, q]);
         }
     });
-    let sheet = (0..facets.len()).map(|k| root(&mut sheet, k)).collect();
+    let sheet = (0..facets.len()).map(|k| sheet.find(k)).collect();
     (sheet, cuts)
 }
 
@@ -469,18 +462,10 @@ fn join(
                 _ => None,
             })
             .collect();
-        let mut part: Vec<usize> = (0..pieces.len()).collect();
-        fn root(part: &mut [usize], mut k: usize) -> usize {
-            while part[k] != k {
-                part[k] = part[part[k]];
-                k = part[k];
-            }
-            k
-        }
+        let mut part = UnionFind::new(pieces.len());
         for (h, t) in twin.iter().enumerate() {
             if let Some(t) = *t {
-                let (x, y) = (root(&mut part, halves[h].2), root(&mut part, halves[t].2));
-                part[x.max(y)] = x.min(y);
+                part.join(halves[h].2, halves[t].2);
             }
         }
         let mut loops: BTreeMap<usize, Vec<Vec<u32>>> = BTreeMap::new();
@@ -498,11 +483,10 @@ fn join(
                     h = next[t];
                 }
             }
-            loops.entry(root(&mut part, halves[start].2)).or_default().push(cycle);
+            loops.entry(part.find(halves[start].2)).or_default().push(cycle);
         }
         for (top, mut cycles) in loops {
-            let members: Vec<usize> =
-                (0..pieces.len()).filter(|&p| root(&mut part, p) == top).collect();
+            let members: Vec<usize> = (0..pieces.len()).filter(|&p| part.find(p) == top).collect();
             let mut sources: Vec<(usize, u32)> = Vec::new();
             for &p in &members {
                 let region = &regions[kept[own[p]].0];

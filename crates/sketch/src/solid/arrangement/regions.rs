@@ -2,6 +2,7 @@
 
 use super::plane::{Frame, winding};
 use super::pool::Pool;
+use moldloft_num::union_find::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A region of a sheet: loops with the region to their left, the outer one first.
@@ -82,23 +83,12 @@ pub(super) fn area(points: &[[f64; 2]]) -> f64 {
 
 /// The connected figure of each vertex, by its lowest vertex.
 fn figures(edges: &BTreeSet<(u32, u32)>) -> BTreeMap<u32, u32> {
-    let mut parent: BTreeMap<u32, u32> = BTreeMap::new();
-    fn root(parent: &mut BTreeMap<u32, u32>, mut v: u32) -> u32 {
-        while parent[&v] != v {
-            let up = parent[&parent[&v]];
-            parent.insert(v, up);
-            v = up;
-        }
-        v
-    }
-    for &(a, b) in edges {
-        parent.entry(a).or_insert(a);
-        parent.entry(b).or_insert(b);
-        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-        parent.insert(a.max(b), a.min(b));
-    }
-    let all: Vec<u32> = parent.keys().copied().collect();
-    all.into_iter().map(|v| (v, root(&mut parent, v))).collect()
+    let all: BTreeSet<u32> = edges.iter().flat_map(|&(a, b)| [a, b]).collect();
+    let all: Vec<u32> = all.into_iter().collect();
+    let index = |v: u32| all.partition_point(|&w| w < v);
+    let mut sets = UnionFind::new(all.len());
+    edges.iter().for_each(|&(a, b)| sets.join(index(a), index(b)));
+    all.iter().enumerate().map(|(k, &v)| (v, all[sets.find(k)])).collect()
 }
 
 /// A point inside a region: half the way from the middle of its longest edge to what is opposite.

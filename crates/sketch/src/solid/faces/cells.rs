@@ -2,6 +2,7 @@
 
 use super::regions::{Region, Sheet};
 use super::wire::Wire;
+use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 
 /// A candidate as it stands at an edge.
@@ -32,8 +33,8 @@ impl Cells {
 
     pub fn build(wire: &Wire, sheets: &[Sheet], regions: &[Region]) -> Cells {
         let wings = wings(wire, sheets, regions);
-        let mut shell = Forest::new(2 * regions.len());
-        let mut part = Forest::new(regions.len());
+        let mut shell = UnionFind::new(2 * regions.len());
+        let mut part = UnionFind::new(regions.len());
         for around in &wings {
             for (k, &wing) in around.iter().enumerate() {
                 let next = around[(k + 1) % around.len()];
@@ -45,35 +46,35 @@ impl Cells {
         let cones: Vec<f64> = regions.iter().map(|r| cone(wire, r, centre)).collect();
         let mut volumes = vec![0.0; 2 * regions.len()];
         for (r, cone) in cones.iter().enumerate() {
-            volumes[shell.root(2 * r)] -= cone;
-            volumes[shell.root(2 * r + 1)] += cone;
+            volumes[shell.find(2 * r)] -= cone;
+            volumes[shell.find(2 * r + 1)] += cone;
         }
         let nothing = wire.tolerance.powi(3);
         let mut number = vec![None; 2 * regions.len()];
         let mut volume = Vec::new();
         for s in 0..2 * regions.len() {
-            if shell.root(s) == s && volumes[s] > nothing {
+            if shell.find(s) == s && volumes[s] > nothing {
                 number[s] = Some(volume.len());
                 volume.push(volumes[s]);
             }
         }
         // A shell with its inside out is the wall of a cavity in the smallest cell around it.
         let walls: Vec<usize> =
-            (0..2 * regions.len()).filter(|&s| shell.root(s) == s && number[s].is_none()).collect();
+            (0..2 * regions.len()).filter(|&s| shell.find(s) == s && number[s].is_none()).collect();
         let mut host = vec![None; 2 * regions.len()];
         for &wall in &walls {
             let (e, _) = regions[wall / 2].loops[0][0];
             let [a, b] = wire.edges[e].ends.map(|v| wire.vertices[v]);
             let point = (a + b) * 0.5;
-            let own = part.root(wall / 2);
+            let own = part.find(wall / 2);
             let mut turns = vec![0.0; volume.len()];
             for (r, region) in regions.iter().enumerate() {
-                if part.root(r) == own {
+                if part.find(r) == own {
                     continue;
                 }
                 let angle = solid_angle(wire, region, point);
                 for (side, sign) in [(2 * r, -1.0), (2 * r + 1, 1.0)] {
-                    if let Some(cell) = number[shell.root(side)] {
+                    if let Some(cell) = number[shell.find(side)] {
                         turns[cell] += sign * angle;
                     }
                 }
@@ -88,7 +89,7 @@ impl Cells {
         }
         let side = (0..2 * regions.len())
             .map(|s| {
-                let root = shell.root(s);
+                let root = shell.find(s);
                 number[root].or(host[root])
             })
             .collect();
@@ -148,26 +149,4 @@ fn solid_angle(wire: &Wire, region: &Region, p: Vec3) -> f64 {
             if top == 0.0 { 0.0 } else { 2.0 * Real::atan2(top, bottom) }
         })
         .sum()
-}
-
-/// Union-find with the smallest member as root.
-pub(super) struct Forest(Vec<usize>);
-
-impl Forest {
-    pub fn new(n: usize) -> Forest {
-        Forest((0..n).collect())
-    }
-
-    pub fn root(&mut self, mut k: usize) -> usize {
-        while self.0[k] != k {
-            self.0[k] = self.0[self.0[k]];
-            k = self.0[k];
-        }
-        k
-    }
-
-    pub fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b);
-    }
 }

@@ -5,9 +5,10 @@
 //! satisfies this is an answer; they are ranked by what people rarely mean: edges with more than two
 //! faces, then edges between faces of one plane, then less volume.
 
-use super::cells::{Cells, Forest};
+use super::cells::Cells;
 use super::regions::Region;
 use super::wire::Wire;
+use moldloft_num::union_find::UnionFind;
 
 /// At most so many answers are kept.
 pub(super) const MAX_ANSWERS: usize = 64;
@@ -70,7 +71,7 @@ pub(super) fn label(wire: &Wire, regions: &[Region], cells: &Cells) -> (Vec<Answ
     if edges.iter().any(|e| !e.cut && e.cells.is_empty()) {
         return (vec![], true);
     }
-    let mut groups = Forest::new(count);
+    let mut groups = UnionFind::new(count);
     let mut of_cell: Vec<Vec<usize>> = vec![Vec::new(); count];
     for (k, e) in edges.iter().enumerate() {
         e.cells.windows(2).for_each(|w| groups.join(w[0], w[1]));
@@ -79,10 +80,10 @@ pub(super) fn label(wire: &Wire, regions: &[Region], cells: &Cells) -> (Vec<Answ
     let start = Answer { solid: vec![false; count], branching: 0, scribed: 0, volume: 0.0 };
     let (mut answers, mut complete) = (vec![start], true);
     for group in 0..count {
-        if groups.root(group) != group {
+        if groups.find(group) != group {
             continue;
         }
-        let members: Vec<usize> = (0..count).filter(|&c| groups.root(c) == group).collect();
+        let members: Vec<usize> = (0..count).filter(|&c| groups.find(c) == group).collect();
         let mut search = Search {
             edges: &edges,
             of_cell: &of_cell,
@@ -94,7 +95,7 @@ pub(super) fn label(wire: &Wire, regions: &[Region], cells: &Cells) -> (Vec<Answ
         search.run();
         complete &= search.steps < MAX_STEPS && search.found.len() < MAX_ANSWERS * 4;
         let own: Vec<&Around> = (edges.iter())
-            .filter(|e| e.cells.first().is_some_and(|&c| groups.root(c) == group))
+            .filter(|e| e.cells.first().is_some_and(|&c| groups.find(c) == group))
             .collect();
         let part: Vec<Answer> = (search.found.iter())
             .map(|solid_cells| {

@@ -13,8 +13,9 @@ mod label;
 mod regions;
 mod wire;
 
-use cells::{Cells, Forest};
+use cells::Cells;
 use moldloft_num::Vec3;
+use moldloft_num::union_find::UnionFind;
 use regions::{Half, Region, Sheet};
 use wire::Wire;
 
@@ -132,9 +133,9 @@ pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Vec<
     let mut regions: Vec<Region> = (sheets.iter().enumerate())
         .flat_map(|(k, sheet)| regions::regions(&wire, k, sheet))
         .collect();
-    let mut figure = Forest::new(wire.vertices.len());
+    let mut figure = UnionFind::new(wire.vertices.len());
     wire.edges.iter().for_each(|e| figure.join(e.ends[0], e.ends[1]));
-    let own: Vec<usize> = regions.iter().map(|r| figure.root(wire.tail(r.loops[0][0]))).collect();
+    let own: Vec<usize> = regions.iter().map(|r| figure.find(wire.tail(r.loops[0][0]))).collect();
     let around = |k: usize| {
         let sheet = &sheets[regions[k].sheet];
         let p = sheet.flat(wire.vertices[wire.tail(regions[k].loops[0][0])]);
@@ -172,7 +173,7 @@ impl Build<'_> {
                 _ => None,
             })
             .collect();
-        let mut joined = Forest::new(self.regions.len());
+        let mut joined = UnionFind::new(self.regions.len());
         let (mut branching, mut scribed) = (Vec::new(), Vec::new());
         for (edge, around) in self.wire.edges.iter().zip(&self.cells.wings) {
             let faces: Vec<usize> =
@@ -186,9 +187,9 @@ impl Build<'_> {
         }
         let mut faces = Vec::new();
         for first in 0..self.regions.len() {
-            let Some(up) = outward[first].filter(|_| joined.root(first) == first) else { continue };
+            let Some(up) = outward[first].filter(|_| joined.find(first) == first) else { continue };
             let mut halves: Vec<Half> = (first..self.regions.len())
-                .filter(|&r| outward[r].is_some() && joined.root(r) == first)
+                .filter(|&r| outward[r].is_some() && joined.find(r) == first)
                 .flat_map(|r| self.regions[r].loops.iter().flatten().copied())
                 .collect();
             // Both sides of an edge: the joint of two parts, or a line scribed on the face.

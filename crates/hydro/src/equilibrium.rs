@@ -1,9 +1,10 @@
 //! The attitude in which a body of given mass floats at rest.
 
-use crate::afloat::rim;
-use crate::hydrostatics::{displaced, skin_of};
-use crate::{Afloat, Attitude, Mesh, Symmetry, Water, afloat};
-use moldloft_num::{Dual, Real, Vec3, solve_dense};
+use crate::body::Body;
+use crate::figures::displaced;
+use crate::{Afloat, Attitude, Water, afloat};
+use moldloft_mesh::Symmetry;
+use moldloft_num::{Real, Vec3, solve_dense};
 use std::fmt;
 
 /// What floats.
@@ -39,8 +40,10 @@ pub struct Solved<T> {
     pub iterations: usize,
     /// Largest of: the error of the volume over the volume, those of the arms over the diagonal.
     pub residual: f64,
-    /// True when small turns about the free axes are righted.
+    /// True when all small turns are righted, be they free or not, and without a centre of gravity.
     pub stable: bool,
+    /// True when the attitude sought from was at rest but unstable, and this one was found beyond it.
+    pub lolls: bool,
 }
 
 /// Why a body cannot float so.
@@ -100,13 +103,13 @@ const LARGEST_TURN: f64 = 0.2;
 ///
 /// The level is first found at the given trim and heel, by Newton steps within a bracket; then all
 /// unknowns together by Newton's method with exact derivatives and shortened steps, on the real
-/// parts. One more step in `T` gives the derivatives of the solution (implicit function theorem).
-/// An equilibrium may be unstable: see [`Solved::stable`].
+/// parts. From an unstable state at rest the search goes on, heeling to both sides, to the nearest stable one, if
+/// there is one. One more step in `T` gives the derivatives of the solution (implicit function theorem).
 ///
 /// # Errors
 /// [`FloatError`].
 pub fn equilibrium<T: Real>(
-    mesh: &Mesh<T>,
+    body: &Body<T>,
     water: Water,
     loading: Loading<T>,
     start: Attitude<T>,
@@ -122,21 +125,29 @@ pub fn equilibrium<T: Real>(
     if half && (loading.free_heel || start.heel.re() != 0.0) {
         return Err(FloatError::HalfHeels);
     }
-    let real = mesh.re();
+    let real = body.re();
     let problem = Problem::new(&real, water, loading)?;
-    let level = problem.level(start.trim.re(), start.heel.re())?;
-    let from = [level, start.trim.re(), start.heel.re()];
-    let (at, iterations, residual) = problem.newton(from);
-    let status = if residual <= LOOSE { Status::Converged } else { Status::NotConverged };
+    let from = [problem.level(start.trim.re(), start.heel.re())?, start.trim.re(), start.heel.re()];
+    let (mut at, mut iterations, mut residual) = problem.newton(from);
+    let loose = problem.loose();
+    let mut lolls = false;
+    if residual <= loose
+        && loading.free_heel
+        && !problem.stable(at)
+        && let Some((found, steps, left)) = problem.beyond(at)
+    {
+        (at, residual, lolls) = (found, left, true);
+        iterations += steps;
+    }
+    let status = if residual <= loose { Status::Converged } else { Status::NotConverged };
 
     // One Newton step in T: the unknowns move so that the residual's derivative vanishes.
     let constant = at.map(T::from);
     let seeded = [constant[0], start.trim, start.heel];
     let fixed: [T; 3] =
         std::array::from_fn(|k| if problem.free.contains(&k) { constant[k] } else { seeded[k] });
-    let (skin, free) = (problem.skin.clone(), problem.free.clone());
-    let (count, size) = (problem.count, problem.size);
-    let exact = Problem { mesh, water, loading, skin, free, count, size };
+    let (free, count, size) = (problem.free.clone(), problem.count, problem.size);
+    let exact = Problem { body, water, loading, free, count, size };
     let off = exact.residual(fixed);
     let mut unknowns = fixed;
     if let Some(step) = problem.step(at, |r| off[r]) {
@@ -144,42 +155,36 @@ pub fn equilibrium<T: Real>(
             unknowns[k] += dx;
         }
     }
-    let afloat = afloat(mesh, water, Attitude::of(unknowns), loading.centre);
-    let stable = match afloat.gm {
-        Some([transverse, lengthwise]) => {
-            (!loading.free_heel || transverse.re() > 0.0)
-                && (!loading.free_trim || lengthwise.re() > 0.0)
-        }
-        None => true,
-    };
-    Ok(Solved { afloat, status, iterations, residual, stable })
+    let afloat = afloat(body, water, Attitude::of(unknowns), loading.centre);
+    let stable = afloat.stable.unwrap_or(true);
+    Ok(Solved { afloat, status, iterations, residual, stable, lolls })
 }
 
 /// The equations of rest, made dimensionless: volume, trimming arm, heeling arm.
 struct Problem<'m, T: Real> {
-    mesh: &'m Mesh<T>,
+    body: &'m Body<T>,
     water: Water,
     loading: Loading<T>,
-    /// The faces of the skin.
-    skin: Vec<usize>,
     /// Which of level, trim and heel are sought: equation k for unknown k.
     free: Vec<usize>,
-    /// 1, or -1 where the panels' normals point inward; times 2 for one of two sides.
+    /// 1, or -1 where the normals point inward; times 2 for one of two sides.
     count: f64,
-    /// Diagonal of the mesh.
+    /// The body's diagonal.
     size: f64,
 }
 
+/// Steps of heel in the search beyond an unstable attitude.
+const HEEL_STEP: f64 = 0.0349;
+
 impl<'m> Problem<'m, f64> {
     fn new<S: Real>(
-        mesh: &'m Mesh<f64>,
+        body: &'m Body<f64>,
         water: Water,
         loading: Loading<S>,
     ) -> Result<Self, FloatError> {
-        let skin = skin_of(mesh);
-        let bounds = mesh.bounds();
+        let bounds = body.bounds();
         let size = bounds.diagonal();
-        if skin.is_empty() || !(size > 0.0 && size.is_finite()) {
+        if body.is_empty() || !(size > 0.0 && size.is_finite()) {
             return Err(FloatError::NoBody);
         }
         let mut free = vec![0];
@@ -193,30 +198,36 @@ impl<'m> Problem<'m, f64> {
         };
         // Half under water the sign of the volume tells which way the normals point.
         let middle = bounds.centre();
-        let (volume, _) = displaced(mesh, &skin, middle);
+        let volume = displaced(body, middle.z, [middle.x, middle.y], 1.0).forms[2];
         if volume == 0.0 {
             return Err(FloatError::NoBody);
         }
         let sides = if water.symmetry == Symmetry::MirroredTwice { 2.0 } else { 1.0 };
-        Ok(Self { mesh, water, loading, skin, free, count: sides * volume.signum(), size })
+        Ok(Self { body, water, loading, free, count: sides * volume.signum(), size })
+    }
+
+    /// The residual up to which an attitude is at rest.
+    fn loose(&self) -> f64 {
+        LOOSE.max(0.1 * self.body.accuracy())
     }
 
     /// The level at which the body displaces its mass, at a trim and heel.
     fn level(&self, trim: f64, heel: f64) -> Result<f64, FloatError> {
-        let turned = Attitude { level: 0.0, trim, heel }.turned(self.mesh);
+        let turned = Attitude { level: 0.0, trim, heel }.turned(self.body);
         let bounds = turned.bounds();
         let density = self.water.density;
         let wanted = self.loading.mass / density;
+        let middle = bounds.centre();
         let volume = |z: f64| {
-            let level = Dual::<1>::seeded(z, 0);
-            let lifted = lifted(&turned);
-            let (v, _) = displaced(&lifted, &self.skin, Vec3::new(0.0.into(), 0.0.into(), level));
-            (v.re * self.count - wanted, v.eps[0] * self.count)
+            let sums = displaced(&turned, z, [middle.x, middle.y], self.count);
+            (sums.forms[2] - wanted, sums.plane[0])
         };
+        let lowest = turned.lowest(Vec3::of(0.0, 0.0, 1.0)).unwrap_or(bounds.low.z);
+        let highest = -turned.lowest(Vec3::of(0.0, 0.0, -1.0)).unwrap_or(-bounds.high.z);
         // A hair above the top, so that panels in the top are under water too.
-        let (mut low, mut high) = (bounds.low.z, bounds.high.z + 1e-9 * self.size);
+        let (mut low, mut high) = (lowest, highest + 1e-9 * self.size);
         // Beyond its rim an open body gains nothing: it is full there.
-        let full = rim(&turned, self.water.symmetry).map_or(high, |z| z.min(high));
+        let full = turned.lowest_rim().map_or(high, |z| z.min(high));
         let most = volume(full).0.max(volume(high).0) + wanted;
         if wanted > most * (1.0 + 1e-12) {
             return Err(FloatError::Sinks { mass: self.loading.mass, most: most * density });
@@ -245,26 +256,46 @@ impl<'m> Problem<'m, f64> {
         Ok(z)
     }
 
-    /// The residuals and their derivatives by level, trim and heel.
-    fn slopes(&self, at: [f64; 3]) -> [Dual<3>; 3] {
-        let unknowns = std::array::from_fn(|k| Dual::<3>::seeded(at[k], k));
-        let loading = Loading {
-            mass: Dual::from(self.loading.mass),
-            centre: self.loading.centre.map(Vec3::lifted),
-            free_trim: self.loading.free_trim,
-            free_heel: self.loading.free_heel,
-        };
-        let mesh = lifted(self.mesh);
-        let (water, skin, free) = (self.water, self.skin.clone(), self.free.clone());
-        let (count, size) = (self.count, self.size);
-        Problem { mesh: &mesh, water, loading, skin, free, count, size }.residual(unknowns)
+    /// The derivatives of the residuals by level, trim and heel: `[residual][unknown]`.
+    ///
+    /// With the level axes ex, ey, n and moments about the origin: d/dlevel of V, P, Q are A, A xf, A yf; d/dtrim are
+    /// A xf, Ipp + V n.B, Ipq; d/dheel are c A yf, c Ipq - s V ey.B, c Iqq + V (s ex.B + c n.B), with c and s of the
+    /// trim.
+    fn slopes(&self, at: [f64; 3]) -> [[f64; 3]; 3] {
+        let attitude = Attitude::of(at);
+        let turned = attitude.turned(self.body);
+        let g = attitude.earth_from(self.loading.centre.unwrap_or_default());
+        let sums = displaced(&turned, at[0], [g.x, g.y], self.count);
+        let v = sums.forms[2];
+        let [a, ax, ay, axx, axy, ayy] = sums.plane;
+        let (px, qy) = (ax + a * g.x, ay + a * g.y);
+        let ipp = axx + 2.0 * g.x * ax + g.x * g.x * a;
+        let ipq = axy + g.x * ay + g.y * ax + g.x * g.y * a;
+        let iqq = ayy + 2.0 * g.y * ay + g.y * g.y * a;
+        let vb = sums.moment + Vec3::of(g.x, g.y, at[0]) * v;
+        let (s, c) = (libm::sin(at[1]), libm::cos(at[1]));
+        let dv = [a, px, c * qy];
+        let dp = [px, ipp + vb.z, c * ipq - s * vb.y];
+        let dq = [qy, ipq, c * iqq + s * vb.x + c * vb.z];
+        // The centre of gravity moves in the level axes as well.
+        let dpg = [0.0, g.z, -s * g.y];
+        let dqg = [0.0, 0.0, s * g.x + c * g.z];
+        let wanted = self.loading.mass / self.water.density;
+        let arm = wanted * self.size;
+        let mut rows = [[0.0; 3]; 3];
+        for k in 0..3 {
+            rows[0][k] = dv[k] / wanted;
+            rows[1][k] = (dp[k] - dv[k] * g.x - v * dpg[k]) / arm;
+            rows[2][k] = (dq[k] - dv[k] * g.y - v * dqg[k]) / arm;
+        }
+        rows
     }
 
     /// The Newton step of the free unknowns against the residuals `off`.
     fn step<T: Real>(&self, at: [f64; 3], off: impl Fn(usize) -> T) -> Option<Vec<T>> {
         let slopes = self.slopes(at);
         let entries = self.free.iter().flat_map(|&r| self.free.iter().map(move |&c| (r, c)));
-        let mut matrix: Vec<T> = entries.map(|(r, c)| T::from(slopes[r].eps[c])).collect();
+        let mut matrix: Vec<T> = entries.map(|(r, c)| T::from(slopes[r][c])).collect();
         let mut step: Vec<T> = self.free.iter().map(|&r| -off(r)).collect();
         solve_dense(&mut matrix, &mut step).ok()?;
         step.iter().all(|x| x.is_finite()).then_some(step)
@@ -275,13 +306,12 @@ impl<'m> Problem<'m, f64> {
     }
 
     fn newton(&self, from: [f64; 3]) -> ([f64; 3], usize, f64) {
-        let bounds = self.mesh.bounds();
-        let height = bounds.diagonal();
+        let height = self.size;
         let mut at = from;
-        let mut worst = self.worst(self.residual(at));
+        let mut residual = self.residual(at);
+        let mut worst = self.worst(residual);
         let mut steps = 0;
         while worst > TIGHT && steps < MOST_STEPS {
-            let residual = self.residual(at);
             let Some(step) = self.step(at, |k| residual[k]) else { break };
             let mut share: f64 = 1.0;
             for (&k, dx) in self.free.iter().zip(&step) {
@@ -289,14 +319,16 @@ impl<'m> Problem<'m, f64> {
                 share = share.min(most / dx.abs().max(f64::MIN_POSITIVE));
             }
             let mut better = false;
-            for _ in 0..12 {
+            let tries = if worst < 1e-10 { 1 } else { 12 };
+            for _ in 0..tries {
                 let mut next = at;
                 for (&k, dx) in self.free.iter().zip(&step) {
                     next[k] += share * dx;
                 }
-                let off = self.worst(self.residual(next));
+                let found = self.residual(next);
+                let off = self.worst(found);
                 if off < worst {
-                    (at, worst, better) = (next, off, true);
+                    (at, residual, worst, better) = (next, found, off, true);
                     break;
                 }
                 share *= 0.5;
@@ -308,6 +340,58 @@ impl<'m> Problem<'m, f64> {
         }
         (at, steps, worst)
     }
+
+    fn stable(&self, at: [f64; 3]) -> bool {
+        let found = afloat(self.body, self.water, Attitude::of(at), self.loading.centre);
+        found.stable.unwrap_or(true)
+    }
+
+    /// From an unstable attitude at rest: the nearest stable one, heeling to either side, with the number of steps
+    /// and what is left. The arm is followed at fixed heel; where it changes from overturning to righting, all
+    /// unknowns are solved together.
+    fn beyond(&self, at: [f64; 3]) -> Option<([f64; 3], usize, f64)> {
+        let held = Problem {
+            body: self.body,
+            water: self.water,
+            loading: self.loading,
+            free: self.free.iter().copied().filter(|&k| k != 2).collect(),
+            count: self.count,
+            size: self.size,
+        };
+        let side = |sign: f64| -> Option<([f64; 3], usize, f64)> {
+            let (mut now, mut count) = (at, 0);
+            let mut before = -1.0;
+            while (now[2] - at[2]).abs() < std::f64::consts::PI {
+                let mut next = now;
+                next[2] += sign * HEEL_STEP;
+                next[0] = held.level(next[1], next[2]).ok()?;
+                let (next, steps, left) = held.newton(next);
+                count += steps;
+                if left > self.loose() {
+                    return None;
+                }
+                let arm = self.residual(next)[2] * sign;
+                if before < 0.0 && arm >= 0.0 {
+                    // Between two heels the arm is all but straight.
+                    let (found, steps, left) = self.newton(next);
+                    let near = (found[2] - next[2]).abs() <= 3.0 * HEEL_STEP;
+                    return (left <= self.loose() && near && self.stable(found)).then_some((
+                        found,
+                        count + steps,
+                        left,
+                    ));
+                }
+                before = arm;
+                now = next;
+            }
+            None
+        };
+        let [up, down] = [side(1.0), side(-1.0)];
+        let turned = |f: &Option<([f64; 3], usize, f64)>| {
+            f.map_or(f64::INFINITY, |f| (f.0[2] - at[2]).abs())
+        };
+        if turned(&down) < turned(&up) * (1.0 - 1e-9) { down } else { up }
+    }
 }
 
 impl<T: Real> Problem<'_, T> {
@@ -315,25 +399,15 @@ impl<T: Real> Problem<'_, T> {
     /// over V0 and the diagonal.
     fn residual(&self, unknowns: [T; 3]) -> [T; 3] {
         let attitude = Attitude::of(unknowns);
-        let turned = attitude.turned(self.mesh);
+        let turned = attitude.turned(self.body);
         let wanted = self.loading.mass / self.water.density;
         let centre = self.loading.centre.unwrap_or_default();
-        let g = attitude.earth_from(centre);
         // Moments about the centre of gravity, so that a far origin costs no digits.
-        let origin = Vec3::new(g.x, g.y, attitude.level);
-        let (volume, moment) = displaced(&turned, &self.skin, origin);
+        let g = attitude.earth_from(centre);
+        let sums = displaced(&turned, attitude.level, [g.x, g.y], self.count);
         let arm = wanted * self.size;
-        [
-            volume * self.count / wanted - 1.0,
-            moment.x * self.count / arm,
-            moment.y * self.count / arm,
-        ]
+        [sums.forms[2] / wanted - 1.0, sums.moment.x / arm, sums.moment.y / arm]
     }
-}
-
-fn lifted<T: Real>(mesh: &Mesh<f64>) -> Mesh<T> {
-    let positions = mesh.positions().iter().map(|&p| Vec3::lifted(p)).collect();
-    Mesh::new(mesh.topology().clone(), positions).expect("as many positions as before")
 }
 
 #[cfg(test)]

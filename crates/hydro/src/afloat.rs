@@ -1,12 +1,9 @@
 //! A body in still water at any draft, trim and heel.
 
-use crate::half_edge::{edges, half_edges};
-use crate::hydrostatics::skin_of;
-use crate::{FloatOptions, Hydrostatics, Mesh, Symmetry, hydrostatics};
+use crate::body::Body;
+use crate::figures::{Floating, floating};
+use moldloft_mesh::{Hydrostatics, Symmetry, Waterplane};
 use moldloft_num::{Real, Vec3};
-
-/// Vertices within this share of the size of a mesh from a plane lie in it.
-const SAME_PLACE: f64 = 1e-9;
 
 /// How a body lies in the water: first heeled about its own x axis, then trimmed about the level
 /// axis across it, both through its origin; then the water stands at `level` above the origin.
@@ -62,19 +59,18 @@ impl<T: Real> Attitude<T> {
         z * ct * ch - x * st
     }
 
-    /// The mesh as the water sees it.
-    pub fn turned(&self, mesh: &Mesh<T>) -> Mesh<T> {
+    /// The body as the water sees it.
+    pub fn turned(&self, body: &Body<T>) -> Body<T> {
         let still = |a: T| a.re() == 0.0 && a.is_constant();
         if still(self.trim) && still(self.heel) {
-            return mesh.clone();
+            return body.clone();
         }
         let (st, ct, sh, ch) = self.turns();
-        let place = |p: &Vec3<T>| {
+        let place = |p: Vec3<T>| {
             let (y, z) = (p.y * ch + p.z * sh, p.z * ch - p.y * sh);
             Vec3::new(p.x * ct + z * st, y, z * ct - p.x * st)
         };
-        let positions = mesh.positions().iter().map(place).collect();
-        Mesh::new(mesh.topology().clone(), positions).expect("as many positions as before")
+        body.mapped(place, false)
     }
 
     fn turns(&self) -> (T, T, T, T) {
@@ -82,14 +78,14 @@ impl<T: Real> Attitude<T> {
     }
 }
 
-/// The water, and what the mesh shows of the body.
+/// The water, and what the skin shows of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Water {
     /// Mass per volume.
     pub density: f64,
     /// Acceleration of gravity.
     pub gravity: f64,
-    /// What the mesh shows; a heeled body must be shown whole.
+    /// What the skin shows; a heeled body must be shown whole.
     pub symmetry: Symmetry,
     /// A centimetre in the model's unit of length: 0.01 for metres.
     pub centimetre: f64,
@@ -134,6 +130,13 @@ pub struct Afloat<T> {
     pub gz: Option<T>,
     /// The same along the body: zero in trim.
     pub trim_arm: Option<T>,
+    /// Area moment of the waterplane about level axes through its centre, the integral of x y.
+    pub product_moment: T,
+    /// Estimates of the errors of volume, its first moments, wetted area, and of the waterplane's area, first and
+    /// second moments.
+    pub errors: [f64; 6],
+    /// True when all small turns are righted; `None` without a centre of gravity.
+    pub stable: Option<bool>,
 }
 
 impl<T: Real> Afloat<T> {
@@ -157,6 +160,9 @@ impl<T: Real> Afloat<T> {
             let own = centres.iter().find(|(centre, _)| *centre == name);
             rows.push((name, own.and_then(|c| c.1).unwrap_or(value)));
         }
+        if self.earth.waterplane.is_some() {
+            rows.push(("waterplane_product", self.product_moment));
+        }
         rows.push(("weight", self.weight));
         let more = [
             ("tpc", self.tpc),
@@ -172,19 +178,54 @@ impl<T: Real> Afloat<T> {
     }
 }
 
+/// The bounds of the main figures by name: estimates of the errors of quadrature and interpolation, carried to the
+/// figures at first order.
+pub fn bounds<T: Real>(afloat: &Afloat<T>) -> Vec<(&'static str, f64)> {
+    let [volume, moment, wetted, area, first, second] = afloat.errors;
+    let h = &afloat.earth;
+    let v = h.volume.re().abs().max(f64::MIN_POSITIVE);
+    let density = (h.displacement.re() / h.volume.re()).abs();
+    let mut rows = vec![("volume", volume)];
+    if density.is_finite() {
+        rows.push(("displacement", volume * density));
+    }
+    rows.push(("wetted_area", wetted));
+    // Moments are about the middle of the body.
+    let centre = moment / v;
+    if h.buoyancy_centre.is_some() {
+        rows.extend([("lcb", centre), ("tcb", centre), ("vcb", centre), ("kb", centre)]);
+    }
+    if let Some(w) = h.waterplane {
+        let a = w.area.re().abs().max(f64::MIN_POSITIVE);
+        rows.extend([("waterplane_area", area), ("lcf", first / a), ("tcf", first / a)]);
+        rows.extend([("waterplane_it", second), ("waterplane_il", second)]);
+        let radius = |i: T| second / v + i.re().abs() / v * (volume / v);
+        let (t, l) = (radius(w.transverse_moment), radius(w.longitudinal_moment));
+        rows.extend([("bmt", t), ("bml", l), ("kmt", t + centre), ("kml", l + centre)]);
+        if afloat.gm.is_some() {
+            rows.extend([("gmt", t + centre), ("gml", l + centre)]);
+        }
+    }
+    if afloat.gz.is_some() {
+        rows.extend([("gz", centre), ("trim_arm", centre)]);
+    }
+    rows
+}
+
 /// The figures of the body at an attitude; `gravity_centre` is in the body's axes.
 ///
-/// With a mesh of one side ([`Symmetry`]) the heel must be zero.
+/// With a skin of one side ([`Symmetry`]) the heel must be zero.
 pub fn afloat<T: Real>(
-    mesh: &Mesh<T>,
+    body: &Body<T>,
     water: Water,
     attitude: Attitude<T>,
     gravity_centre: Option<Vec3<T>>,
 ) -> Afloat<T> {
-    let turned = attitude.turned(mesh);
+    let turned = attitude.turned(body);
     let Water { density, gravity, symmetry, centimetre } = water;
-    let earth = hydrostatics(&turned, FloatOptions { level: attitude.level, symmetry, density });
-    let around = extents(mesh);
+    let Floating { figures: earth, product_moment, errors } =
+        floating(&turned, attitude.level, symmetry, density);
+    let around = extents(body);
     let draft = |x: T| attitude.water_over(x) - around.low_z;
     let drafts = [around.low_x, (around.low_x + around.high_x) * 0.5, around.high_x].map(draft);
     let gravity_earth = gravity_centre.map(|g| attitude.earth_from(g));
@@ -197,65 +238,54 @@ pub fn afloat<T: Real>(
     let (gm, arms) = (gm(), arms());
     let plane = earth.waterplane;
     let stiff = gm.map(|g| g[1]).or(earth.bm_longitudinal());
-    let trimming = |p: crate::Waterplane<T>| {
+    let trimming = |p: Waterplane<T>| {
         (p.length.re() > 0.0)
             .then_some(stiff)
             .flatten()
             .map(|gm| earth.displacement * gm * centimetre / p.length)
+    };
+    let stable = match (gm, arms) {
+        (Some([t, l]), _) => {
+            let off = product_moment.re() / earth.volume.re();
+            Some(t.re() > 0.0 && l.re() > 0.0 && t.re() * l.re() > off * off)
+        }
+        // Wholly under water: buoyancy above gravity.
+        (None, Some(arms)) => Some(arms.z.re() > 0.0),
+        (None, None) => None,
     };
     Afloat {
         attitude,
         buoyancy_centre: earth.buoyancy_centre.map(|c| attitude.body_from(c)),
         flotation_centre: plane.map(|p| attitude.body_from(p.centre)),
         drafts,
-        freeboard: rim(&turned, symmetry).map(|z| z - attitude.level),
+        freeboard: turned.lowest_rim().map(|z| z - attitude.level),
         weight: earth.displacement * gravity,
         tpc: plane.map(|p| p.area * density * centimetre),
         mtc: plane.and_then(trimming),
         gm,
         gz: arms.map(|a| a.y),
         trim_arm: arms.map(|a| a.x),
+        product_moment,
+        errors,
+        stable,
         earth,
     }
 }
 
 /// The middle of the skin's length and its lowest z: where drafts are measured.
-pub fn bottom<T: Real>(mesh: &Mesh<T>) -> [T; 2] {
-    let Extents { low_x, high_x, low_z } = extents(mesh);
+pub fn bottom<T: Real>(body: &Body<T>) -> [T; 2] {
+    let Extents { low_x, high_x, low_z } = extents(body);
     [(low_x + high_x) * 0.5, low_z]
 }
 
-/// Extents of the skin, with the derivatives of the corners they are reached at.
-#[derive(Clone, Copy)]
-pub(crate) struct Extents<T> {
-    pub low_x: T,
-    pub high_x: T,
-    pub low_z: T,
+/// Extents of the skin, with the derivatives of the places they are reached at.
+struct Extents<T> {
+    low_x: T,
+    high_x: T,
+    low_z: T,
 }
 
-pub(crate) fn extents<T: Real>(mesh: &Mesh<T>) -> Extents<T> {
-    let skin = skin_of(mesh);
-    let mut corners = skin.iter().flat_map(|&f| mesh.faces()[f]).map(|v| v as usize);
-    let Some(first) = corners.next() else {
-        return Extents { low_x: T::zero(), high_x: T::zero(), low_z: T::zero() };
-    };
-    let p = mesh.positions()[first];
-    let start = Extents { low_x: p.x, high_x: p.x, low_z: p.z };
-    corners.fold(start, |e, v| {
-        let p = mesh.positions()[v];
-        Extents { low_x: e.low_x.min(p.x), high_x: e.high_x.max(p.x), low_z: e.low_z.min(p.z) }
-    })
-}
-
-/// The lowest point of the open edges that do not lie in the symmetry plane.
-pub(crate) fn rim<T: Real>(mesh: &Mesh<T>, symmetry: Symmetry) -> Option<T> {
-    let epsilon = SAME_PLACE * mesh.bounds().diagonal();
-    let position = |v: u32| mesh.positions()[v as usize];
-    let sides = half_edges(mesh.topology());
-    let skin = |face: usize| mesh.patches()[mesh.topology().patch_of(face)].info.tag.is_skin();
-    let open = edges(&sides).filter(|e| e.len() == 1 && skin(e[0].face()));
-    let ends = open.map(|e| [position(e[0].from), position(e[0].to)]);
-    let inner = |p: &[Vec3<T>; 2]| p.iter().all(|p| p.y.re().abs() <= epsilon);
-    let outer = ends.filter(|p| symmetry == Symmetry::None || !inner(p));
-    outer.flatten().map(|p| p.z).reduce(|a, b| a.min(b))
+fn extents<T: Real>(body: &Body<T>) -> Extents<T> {
+    let along = |x: f64, z: f64| body.lowest(Vec3::of(x, 0.0, z)).unwrap_or(T::zero());
+    Extents { low_x: along(1.0, 0.0), high_x: -along(-1.0, 0.0), low_z: along(0.0, 1.0) }
 }

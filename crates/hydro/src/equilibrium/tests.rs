@@ -1,14 +1,18 @@
 //! Closed forms of floating boxes: upright, heeled, trimmed.
 
 use super::*;
-use crate::report::fixtures::sphere;
-use crate::{PatchInfo, Tag, TopologyBuilder};
+use crate::tests::ellipsoid;
+use moldloft_mesh::{Mesh, PatchInfo, Tag, TopologyBuilder};
 use moldloft_num::Dual4;
 use std::f64::consts::PI;
 
 /// A closed box of length x breadth x height about (0, 0, 0) with `n` panels along each side, or
 /// without its top.
-fn box_of<T: Real>(sides: [T; 3], n: usize, decked: bool) -> Mesh<T> {
+fn box_of<T: Real>(sides: [T; 3], n: usize, decked: bool) -> Body<T> {
+    Body::of_mesh(&box_mesh(sides, n, decked), 1e-9)
+}
+
+fn box_mesh<T: Real>(sides: [T; 3], n: usize, decked: bool) -> Mesh<T> {
     let (mut positions, mut quads) = (Vec::new(), Vec::new());
     for axis in 0..3 {
         for end in [false, true] {
@@ -138,25 +142,45 @@ fn weight_off_the_middle_trims_and_heels() {
 #[test]
 fn a_sphere_in_water() {
     // Half immersed: V = 2 pi r^3 / 3, and GM = -z_G for any sphere: the metacentre is its centre.
-    let ball = sphere(40, 1.0, Vec3::zero());
-    let volume = crate::measure(&ball).volume;
-    let at =
-        Loading { free_trim: false, free_heel: false, ..loading(volume / 2.0, [0.0, 0.0, -0.2]) };
+    let ball = ellipsoid([1.0; 3], Vec3::zero(), 1e-9);
+    let mass = 2.0 * PI / 3.0;
+    let at = Loading { free_trim: false, free_heel: false, ..loading(mass, [0.0, 0.0, -0.2]) };
     let a = equilibrium(&ball, Water::default(), at, Attitude::upright(0.0)).unwrap().afloat;
-    close(a.attitude.level, 0.0, 1e-12);
-    close(a.gm.unwrap()[0], 0.2, 2e-3);
-    close(a.buoyancy_centre.unwrap().z, -3.0 / 8.0, 2e-3);
-    close(a.earth.volume, 2.0 * PI / 3.0, 6e-3);
+    close(a.attitude.level, 0.0, 1e-10);
+    close(a.gm.unwrap()[0], 0.2, 1e-9);
+    close(a.buoyancy_centre.unwrap().z, -3.0 / 8.0, 1e-9);
+    close(a.earth.volume, mass, 1e-9);
+    close(a.earth.waterplane.unwrap().beam, 2.0, 1e-9);
+    close(a.earth.waterplane.unwrap().midship_area, PI / 2.0, 1e-9);
 }
 
 #[test]
-fn an_unstable_equilibrium_is_called_so() {
-    let tall = box_of([2.0, 2.0, 10.0], 2, true);
-    let solved =
-        equilibrium(&tall, Water::default(), loading(20.0, [0.0; 3]), Attitude::upright(0.0));
-    let solved = solved.unwrap();
+fn an_unstable_equilibrium_is_called_so_and_left() {
+    let tall = box_of([3.0, 2.0, 10.0], 2, true);
+    let at = |free_heel| Loading { free_heel, ..loading(30.0, [0.0; 3]) };
+    let solved = equilibrium(&tall, Water::default(), at(false), Attitude::upright(0.0)).unwrap();
     assert!(solved.status == Status::Converged && !solved.stable);
     assert!(solved.afloat.gm.unwrap()[0] < 0.0);
+    let solved = equilibrium(&tall, Water::default(), at(true), Attitude::upright(0.0)).unwrap();
+    assert!(solved.status == Status::Converged && solved.stable && solved.lolls, "{solved:?}");
+    close(solved.afloat.gz.unwrap(), 0.0, 1e-9);
+    close(solved.afloat.attitude.heel, PI / 2.0, 1e-9);
+}
+
+#[test]
+fn the_angle_of_loll_of_a_box() {
+    // 10 x 4, depth 2.5, draught 1, BM 4/3: tan^2 phi = -2 GM / BM while wall-sided. With KG 2.4 the arm overturns
+    // at every angle up to 180 degrees, so that it comes to rest upside down.
+    let barge = box_of([10.0, 4.0, 2.5], 1, true);
+    let wall_sided = |kg: f64| (2.0 * (kg - 0.5 - 4.0 / 3.0) / (4.0 / 3.0)).sqrt().atan();
+    for (kg, heel) in
+        [(1.9, wall_sided(1.9)), (1.95, wall_sided(1.95)), (2.0, 0.5f64.atan()), (2.4, PI)]
+    {
+        let at = loading(40.0, [0.0, 0.0, kg - 1.25]);
+        let solved = equilibrium(&barge, Water::default(), at, Attitude::upright(0.0)).unwrap();
+        assert!(solved.stable && solved.lolls && solved.status == Status::Converged, "{kg}");
+        close(solved.afloat.attitude.heel, heel, 1e-10);
+    }
 }
 
 #[test]
@@ -174,6 +198,7 @@ fn what_cannot_float_is_explained() {
     assert_eq!(mass, 200.0);
     close(most, L * B * H, 1e-10);
     let none = Mesh::new(TopologyBuilder::new().build().into(), vec![]).unwrap();
+    let none = Body::of_mesh(&none, 1e-9);
     let none = equilibrium(&none, Water::default(), loading(1.0, [0.0; 3]), Attitude::upright(0.0));
     assert_eq!(none, Err(FloatError::NoBody));
     let half = Water { symmetry: Symmetry::MirroredTwice, ..Water::default() };

@@ -1,0 +1,21 @@
+//! Panels as Gmsh's format, a physical group for each patch.
+
+use super::Format;
+use crate::{Export, Failure};
+use moldloft_io::msh;
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "msh",
+    aliases: &["gmsh"],
+    suffix: "msh",
+    about: "Gmsh 2.2 with a physical group for each patch",
+    text: true,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let mesh = export.panels()?;
+    Ok(export.main_file(msh::write(&mesh)?))
+}

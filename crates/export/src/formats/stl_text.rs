@@ -1,0 +1,21 @@
+//! Triangles as text STL, a solid for each patch.
+
+use super::Format;
+use crate::{Export, Failure};
+use moldloft_io::stl;
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "stl-text",
+    suffix: "ascii.stl",
+    other_suffix: "stl",
+    about: "triangles, text STL with a solid for each patch",
+    text: true,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let mesh = export.panels()?;
+    Ok(export.main_file(stl::write_text(&mesh)?))
+}

@@ -1,0 +1,20 @@
+//! Panels as SU2's format, a marker for each patch.
+
+use super::Format;
+use crate::{Export, Failure};
+use moldloft_io::su2;
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "su2",
+    suffix: "su2",
+    about: "SU2 panels with a marker for each patch",
+    text: true,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let mesh = export.panels()?;
+    Ok(export.main_file(su2::write(&mesh)?))
+}

@@ -1,0 +1,221 @@
+//! Grids of data at any spacing: what is exact stays, tolerances hold, derivatives are those of
+//! differences.
+
+use moldloft_fair::*;
+use moldloft_num::{Dual4, Real, Vec3};
+use moldloft_testing::Lcg;
+
+fn uneven(random: &mut Lcg, n: usize, ratio: f64) -> Vec<f64> {
+    let mut at = vec![0.0];
+    for _ in 1..n {
+        let step = ratio.powf(random.centred());
+        at.push(at[at.len() - 1] + step);
+    }
+    let last = at[n - 1];
+    at.into_iter().map(|t| t / last).collect()
+}
+
+fn data(points: &[Vec3<f64>], shape: [usize; 2], tolerance: f64, motion: Motion) -> GridData {
+    spaced(
+        points,
+        shape,
+        tolerance,
+        motion,
+        grid_spacing(points, shape, Spacing::Chord, [false; 2]),
+    )
+}
+
+fn spaced(
+    points: &[Vec3<f64>],
+    shape: [usize; 2],
+    tolerance: f64,
+    motion: Motion,
+    spacing: [Spacing; 2],
+) -> GridData {
+    let at = grid_parameters(points, shape, spacing, [false; 2], motion).unwrap();
+    GridData {
+        limit: Limit::new(motion, vec![tolerance; points.len()]).unwrap(),
+        layouts: at.map(|at| Layout::new(3, &at, &[], false).unwrap()),
+        rims: [[End::Free; 2]; 2],
+        points: points.to_vec(),
+    }
+}
+
+fn along_y() -> Motion {
+    Motion::Along(Vec3::of(0.0, 1.0, 0.0))
+}
+
+/// Offsets over stations and waterlines; chords across the offsets are the stations themselves.
+fn offsets(xs: &[f64], zs: &[f64], y: impl Fn(f64, f64) -> f64) -> Vec<Vec3<f64>> {
+    xs.iter()
+        .flat_map(|&x| zs.iter().map(move |&z| (x, z)))
+        .map(|(x, z)| Vec3::of(x, y(x, z), z))
+        .collect()
+}
+
+#[test]
+fn what_is_fair_does_not_move() {
+    let mut random = Lcg::new(5);
+    for ratio in [1.0, 4.0, 100.0] {
+        let (xs, zs) = (uneven(&mut random, 12, ratio), uneven(&mut random, 8, ratio));
+        for goal in [Goal::Near(0.8), Goal::Fairest] {
+            for measure in [Measure::Variation, Measure::Third] {
+                // No more than quadratic in either direction: nothing to gain.
+                let points = offsets(&xs, &zs, |x, z| (1.0 - x * x) * (0.3 + z - 0.5 * z * z));
+                for motion in [along_y(), Motion::Ball] {
+                    let data = data(&points, [12, 8], 0.01, motion);
+                    let made = fair_grid(&data, measure, goal, &[], 1e-9).unwrap();
+                    let moved = made.residuals.iter().copied().fold(0.0, f64::max);
+                    assert!(moved < 1e-12, "{ratio} {goal:?} {measure:?} {motion:?} {moved:e}");
+                }
+            }
+        }
+        // A tilted plane, in any direction of motion.
+        let points = offsets(&xs, &zs, |x, z| 0.2 + 0.5 * x - 0.3 * z);
+        let data = data(&points, [12, 8], 0.01, Motion::Ball);
+        let made = fair_grid(&data, Measure::Bending, Goal::Fairest, &[], 1e-9).unwrap();
+        let moved = made.residuals.iter().copied().fold(0.0, f64::max);
+        assert!(moved < 1e-12, "{ratio} {moved:e}");
+    }
+}
+
+#[test]
+fn noise_goes_and_tolerances_hold() {
+    let xs: Vec<f64> = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 8.5, 9.0, 9.5, 10.0]
+        .iter()
+        .map(|s| s / 5.0 - 1.0)
+        .collect();
+    let zs: Vec<f64> = [0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.25].iter().map(|z| z / 1.25).collect();
+    let wigley = |x: f64, z: f64| 0.9 * (1.0 - x * x) * (1.0 - (1.0 - z) * (1.0 - z));
+    let round =
+        |x: f64, z: f64| 0.9 * (1.0 - x.abs().powi(3)) * (1.0 - 0.55 * (1.0 - z) * (1.0 - z));
+    // Read to 0.01, as in the tables of hulls: how many times nearer to the truth than the data.
+    for (hull, least) in [(&wigley as &dyn Fn(f64, f64) -> f64, 3.0), (&round, 1.0)] {
+        let exact = offsets(&xs, &zs, hull);
+        let read: Vec<_> =
+            exact.iter().map(|p| Vec3::of(p.x, (100.0 * p.y).round() / 100.0, p.z)).collect();
+        let data = data(&read, [15, 7], 0.005 * (1.0 + 1e-9), along_y());
+        let made = fair_grid(&data, Measure::Variation, Goal::Budget(0.8), &[], 1e-9).unwrap();
+        assert!(made.residuals.iter().all(|&r| r <= 0.005 * (1.0 + 2e-9)));
+        assert!(made.used < 0.8 + 1e-6 && made.certificate.relative() < 1e-6);
+        let network = data.network(made.original.clone()).unwrap();
+        let surface = network.surface(&made.points).unwrap();
+        let rms = |f: &dyn Fn(usize, usize) -> f64| {
+            let all = (0..15).flat_map(|i| (0..7).map(move |j| (i, j)));
+            (all.map(|(i, j)| f(i, j).powi(2)).sum::<f64>() / 105.0).sqrt()
+        };
+        let (us, vs) = (&data.layouts[0].at, &data.layouts[1].at);
+        let off = |i: usize, j: usize| {
+            use moldloft_num::{Order, Surface};
+            let p = surface.jet(us[i], vs[j], Order::Zero).p;
+            p.y - exact[7 * i + j].y
+        };
+        let before = rms(&|i, j| read[7 * i + j].y - exact[7 * i + j].y);
+        let after = rms(&off);
+        assert!(before > least * after, "{before:e} {after:e}");
+    }
+}
+
+#[test]
+fn rims_and_fixed_points_stay() {
+    let mut random = Lcg::new(2);
+    let (xs, zs) = (uneven(&mut random, 9, 3.0), uneven(&mut random, 8, 3.0));
+    let mut points = offsets(&xs, &zs, |x, z| (1.0 - x * x) * (1.0 - z * z));
+    points.iter_mut().for_each(|p| p.y += 0.01 * random.centred());
+    let mut data = data(&points, [9, 8], 0.01, Motion::Ball);
+    data.rims = [[End::Curvature, End::Free], [End::Position, End::Tangent]];
+    data.limit.radii[8 * 4 + 3] = 0.0;
+    let made = fair_grid(&data, Measure::Variation, Goal::Fairest, &[], 1e-9).unwrap();
+    let same = |i: usize, j: usize| made.points[8 * i + j] == made.original[8 * i + j];
+    for i in 0..9 {
+        for j in 0..8 {
+            let kept = i < 3 || j < 1 || j >= 6 || (i == 8 && (j == 0 || j == 7));
+            assert!(!kept || same(i, j), "{i} {j}");
+        }
+    }
+    assert!(made.residuals[8 * 4 + 3] < 1e-12);
+    assert!(made.residuals.iter().any(|&r| r > 0.005));
+    // Nothing may move at all, and everything coincides.
+    data.limit.radii.fill(0.0);
+    let made = fair_grid(&data, Measure::Variation, Goal::Fairest, &[], 1e-9).unwrap();
+    assert_eq!((made.points == made.original, made.certificate.gap), (true, 0.0));
+    let none = self::data(&[Vec3::zero(); 72], [9, 8], 0.01, Motion::Ball);
+    let made = fair_grid(&none, Measure::Variation, Goal::Near(0.8), &[], 1e-9).unwrap();
+    assert!(made.points.iter().all(|p| *p == Vec3::zero()));
+}
+
+#[test]
+fn derivatives_go_through_the_knots() {
+    let chords = [Spacing::Chord; 2];
+    let mut random = Lcg::new(7);
+    let (xs, zs) = (uneven(&mut random, 7, 3.0), uneven(&mut random, 6, 2.0));
+    let mut points = offsets(&xs, &zs, |x, z| (1.0 - x * x) * (1.0 - z * z));
+    points.iter_mut().for_each(|p| *p += Vec3::of(0.0, 0.02 * random.centred(), 0.0));
+    for (measure, goal) in [
+        (Measure::Variation, Goal::Fairest),
+        (Measure::Bending, Goal::Budget(0.8)),
+        (Measure::Third, Goal::Budget(0.8)),
+    ] {
+        let surface = |points: &[Vec3<f64>], tolerance: f64| {
+            let data = spaced(points, [7, 6], tolerance, Motion::Ball, chords);
+            let made = fair_grid(&data, measure, goal, &[], 1e-13).unwrap();
+            (data.network(made.original).unwrap().surface(&made.points).unwrap(), data)
+        };
+        let mut moving: Vec<Vec3<Dual4>> = points.iter().map(|&p| Vec3::lifted(p)).collect();
+        moving[15].y = Dual4::seeded(points[15].y, 0);
+        moving[20].x = Dual4::seeded(points[20].x, 1);
+        let tolerance = Dual4::seeded(0.008, 2);
+        let at = grid_parameters(&moving, [7, 6], chords, [false; 2], Motion::Ball).unwrap();
+        let data = spaced(&points, [7, 6], 0.008, Motion::Ball, chords);
+        let at = [at[0].as_slice(), at[1].as_slice()];
+        let tolerances = vec![tolerance; 42];
+        let (made, _) =
+            fair_grid_with(&data, measure, goal, 1e-13, &moving, &tolerances, at).unwrap();
+        // The corners of the net are the data's, and the curve along a rim is a spline: compare the
+        // control points where their knots' derivatives are known, by the surface at the data.
+        for (u, v) in [(0.31, 0.62), (0.77, 0.4)] {
+            let value =
+                |knots: &[Vec<Dual4>; 2], points: &[Vec3<Dual4>]| tensor(knots, points, u, v);
+            let exact = value(&made.knots, &made.points);
+            let h = 1e-5;
+            for d in 0..3 {
+                let at = |by: f64| {
+                    use moldloft_num::{Order, Surface};
+                    let mut points = points.clone();
+                    match d {
+                        0 => points[15].y += by,
+                        1 => points[20].x += by,
+                        _ => {}
+                    }
+                    let tolerance = 0.008 + if d == 2 { by } else { 0.0 };
+                    surface(&points, tolerance).0.jet(u, v, Order::Zero).p
+                };
+                let wanted = (at(h) - at(-h)) * (0.5 / h);
+                let off = (exact.map(|x| x.eps[d]) - wanted).norm();
+                assert!(
+                    off < 2e-4 * (1.0 + wanted.norm()),
+                    "{measure:?} {goal:?} {d} {off:e} {wanted:?}"
+                );
+            }
+        }
+    }
+}
+
+/// De Boor's algorithm in both directions.
+fn tensor(knots: &[Vec<Dual4>; 2], points: &[Vec3<Dual4>], u: f64, v: f64) -> Vec3<Dual4> {
+    let n = knots[1].len() - 4;
+    let curve = |knots: &[Dual4], t: f64, c: &dyn Fn(usize) -> Vec3<Dual4>| {
+        let last = knots.len() - 4;
+        let k = 3 + knots[4..last].iter().filter(|k| k.re() <= t).count();
+        let mut d: Vec<Vec3<Dual4>> = (k - 3..=k).map(c).collect();
+        for level in 1..=3 {
+            for j in (level..=3).rev() {
+                let (low, high) = (knots[k - 3 + j], knots[k + 1 + j - level]);
+                let share = (Dual4::from(t) - low) / (high - low);
+                d[j] = d[j - 1] * (Dual4::from(1.0) - share) + d[j] * share;
+            }
+        }
+        d[3]
+    };
+    curve(&knots[0], u, &|i| curve(&knots[1], v, &|j| points[i * n + j]))
+}

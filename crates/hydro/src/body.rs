@@ -1,0 +1,317 @@
+//! A body: the cells of its skin, its open rims, and what is known of their distance to the surfaces.
+
+use crate::bernstein::halves;
+use crate::cell::{Cell, FitLimits, cells_of};
+use crate::integrals::{Immersed, Wanted, immersed};
+use moldloft_mesh::Mesh;
+use moldloft_num::{Box3, Real, Surface, Vec3};
+use std::sync::Arc;
+
+/// The accuracy, relative, to which figures are computed unless another is asked for.
+pub const USUAL_ACCURACY: f64 = 1e-6;
+
+/// Quadrature and interpolation are asked for this share of the accuracy, so that figures made of several
+/// integrals, and equations between them, keep it.
+const SHARE: f64 = 1e-2;
+
+/// Below this relative error rounding hides what finer rules gain.
+const FINEST: f64 = 1e-11;
+
+/// A surface that bounds a body.
+#[derive(Clone, Copy)]
+pub struct Side<'a, T: Real> {
+    /// The surface.
+    pub surface: &'a dyn Surface<T>,
+    /// True when its outward normal is against S_u x S_v.
+    pub reversed: bool,
+    /// The edges v = 0, u = 1, v = 1, u = 0 that nothing joins.
+    pub open_edges: [bool; 4],
+}
+
+/// The skin of a body as polynomial cells.
+#[derive(Clone, Debug)]
+pub struct Body<T> {
+    cells: Vec<Arc<Cell<T>>>,
+    /// Control points of curves along which the skin is open.
+    rims: Vec<Vec<Vec3<T>>>,
+    size: f64,
+    accuracy: f64,
+}
+
+/// Areas, volume and centres of a whole skin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measures<T> {
+    /// Area of the skin.
+    pub area: T,
+    /// Centre of the skin's area.
+    pub area_centre: Vec3<T>,
+    /// Volume inside, meaningful when the skin is closed.
+    pub volume: T,
+    /// Centre of the volume.
+    pub centroid: Vec3<T>,
+    /// Estimates of the errors of area and volume.
+    pub bounds: [f64; 2],
+    /// The largest component of the integral of the normal: zero for a closed skin.
+    pub open: f64,
+}
+
+/// Area, volume and centres of one surface; `None` when it has a place that is not finite.
+pub fn surface_measures<T: Real>(surface: &dyn Surface<T>, accuracy: f64) -> Option<Measures<T>> {
+    let steps: Vec<f64> = (0..=6).map(|k| f64::from(k) / 6.0).collect();
+    let mut points = vec![Vec3::zero(); steps.len() * steps.len()];
+    surface.grid(&steps, &steps, &mut points, None);
+    if !points.iter().all(|p| p.is_finite()) {
+        return None;
+    }
+    let size = Box3::around(points.iter().map(|p| p.re())).diagonal();
+    let side = Side { surface, reversed: false, open_edges: [false; 4] };
+    Some(Body::new(&[side], [], Vec::new(), size, accuracy)?.measures())
+}
+
+impl<T: Real> Body<T> {
+    /// The body that the sides, and panels of other skins, bound. `size` is about its diagonal. `None` when a
+    /// surface has a place that is not finite.
+    pub fn new(
+        sides: &[Side<'_, T>],
+        panels: impl IntoIterator<Item = [Vec3<T>; 4]>,
+        rims: Vec<Vec<Vec3<T>>>,
+        size: f64,
+        accuracy: f64,
+    ) -> Option<Self> {
+        let limits = FitLimits {
+            distance: 1e-2 * SHARE * accuracy * size,
+            area: 0.1 * SHARE * accuracy * size * size,
+        };
+        let mut body = Self { cells: Vec::new(), rims, size, accuracy };
+        for side in sides {
+            let cells = cells_of(side.surface, side.reversed, limits)?;
+            for k in (0..4).filter(|&k| side.open_edges[k]) {
+                body.rims.extend(cells.iter().filter(|c| c.on_edge(k)).map(|c| c.edge(k)));
+            }
+            body.cells.extend(cells.into_iter().map(Arc::new));
+        }
+        body.cells.extend(panels.into_iter().map(|p| Arc::new(Cell::of_panel(p))));
+        Some(body)
+    }
+
+    /// The body that the panels of a mesh bound, exactly; its open edges are its rims.
+    pub fn of_mesh(mesh: &Mesh<T>, accuracy: f64) -> Self {
+        let size = mesh.bounds().diagonal();
+        let at = |v: u32| mesh.positions()[v as usize];
+        let panels = mesh.skin_faces().into_iter().map(|f| mesh.faces()[f].map(at));
+        let rims = mesh.open_skin_edges().into_iter().map(|(_, e)| e.map(at).to_vec()).collect();
+        let no_surface = Self { cells: Vec::new(), rims, size, accuracy };
+        let cells = panels.map(|p| Arc::new(Cell::of_panel(p))).collect();
+        Self { cells, ..no_surface }
+    }
+
+    /// True when there is nothing.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// About the diagonal.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The relative accuracy that figures are computed to.
+    pub fn accuracy(&self) -> f64 {
+        self.accuracy
+    }
+
+    /// The number of polynomial cells.
+    pub fn cell_count(&self) -> usize {
+        self.cells.len()
+    }
+
+    pub(crate) fn cells(&self) -> &[Arc<Cell<T>>] {
+        &self.cells
+    }
+
+    /// The box around the control points, which contains the skin.
+    pub fn bounds(&self) -> Box3 {
+        Box3::around(self.cells.iter().flat_map(|c| c.net().iter().map(|p| p.re())))
+    }
+
+    /// The body moved point by point by an affine map; `turned` when the map is a reflection.
+    pub fn mapped(&self, map: impl Fn(Vec3<T>) -> Vec3<T>, turned: bool) -> Self {
+        Self {
+            cells: self.cells.iter().map(|c| Arc::new(c.mapped(&map, turned))).collect(),
+            rims: self.rims.iter().map(|r| r.iter().map(|&p| map(p)).collect()).collect(),
+            size: self.size,
+            accuracy: self.accuracy,
+        }
+    }
+
+    /// The body together with its mirror image in the plane through zero of `axis`.
+    pub fn with_mirror_image(&self, axis: usize) -> Self {
+        let mirrored = |p: Vec3<T>| {
+            let mut q = p.to_array();
+            q[axis] = -q[axis];
+            Vec3::from(q)
+        };
+        let image = self.mapped(mirrored, true);
+        let mut both = self.clone();
+        both.cells.extend(image.cells);
+        both.rims.extend(image.rims);
+        both
+    }
+
+    /// The body of real parts.
+    pub fn re(&self) -> Body<f64> {
+        Body {
+            cells: self.cells.iter().map(|c| Arc::new(c.re())).collect(),
+            rims: self.rims.iter().map(|r| r.iter().map(|p| p.re()).collect()).collect(),
+            size: self.size,
+            accuracy: self.accuracy,
+        }
+    }
+
+    /// Area, volume and centres of the whole skin.
+    pub fn measures(&self) -> Measures<T> {
+        let bounds = self.bounds();
+        let centre = bounds.centre();
+        if self.cells.is_empty() {
+            let zero = Vec3::zero();
+            let t = T::zero();
+            return Measures {
+                area: t,
+                area_centre: zero,
+                volume: t,
+                centroid: zero,
+                bounds: [0.0; 2],
+                open: 0.0,
+            };
+        }
+        // All of it is under water, and moments are about its middle.
+        let moved = self.mapped(|p| p - Vec3::lifted(centre), false);
+        let above = T::from(2.0 * self.size + bounds.diagonal());
+        let all = moved.integrals(above, [T::zero(); 2]);
+        let Immersed { sums, errors, .. } = &all;
+        let fit = self.fit_errors(&bounds);
+        let volume = (sums.forms[0] + sums.forms[1]) * 0.5;
+        // The field (0, 0, z - level) with its origin at the level, moved back to the middle.
+        let vertical = sums.forms[2] - sums.plane[0] * above;
+        let volume = volume * (2.0 / 3.0) + vertical / 3.0;
+        let about = |m: Vec3<T>, whole: T| {
+            if whole.re() == 0.0 { Vec3::zero() } else { m / whole }
+        };
+        let mut moment = sums.moment;
+        // Closed: the water plane vanishes, so the column's moments are those of the volume.
+        moment.z += volume * above;
+        let mut area_moment = sums.area_moment;
+        area_moment.z += sums.wetted * above;
+        let open = [sums.open[0], sums.open[1], sums.plane[0]].map(|x| x.re().abs());
+        Measures {
+            area: sums.wetted,
+            area_centre: about(area_moment, sums.wetted) + Vec3::lifted(centre),
+            volume,
+            centroid: about(moment, volume) + Vec3::lifted(centre),
+            bounds: [errors[2] + fit[2], errors[0] + fit[0]],
+            open: open.into_iter().fold(0.0, f64::max),
+        }
+    }
+
+    /// The integrals below `level` about (x0, y0).
+    pub(crate) fn integrals(&self, level: T, origin: [T; 2]) -> Immersed<T> {
+        self.wanted_integrals(level, origin, Wanted::All)
+    }
+
+    /// The same, but only what is wanted to the accuracy.
+    pub(crate) fn wanted_integrals(&self, level: T, origin: [T; 2], wanted: Wanted) -> Immersed<T> {
+        let accuracy = (SHARE * self.accuracy).max(FINEST);
+        immersed(&self.cells, level, origin, self.size, accuracy, wanted)
+    }
+
+    /// What the distance between cells and surfaces can add to the errors of volume, its first moments, area, and
+    /// of the water plane's area, first and second moments.
+    pub(crate) fn fit_errors(&self, bounds: &Box3) -> [f64; 6] {
+        let reach = bounds.diagonal();
+        let mut errors = [0.0; 6];
+        for cell in &self.cells {
+            let [fit_u, fit_v] = cell.fit;
+            if fit_u + fit_v == 0.0 {
+                continue;
+            }
+            let [u, v] = cell.lengths();
+            // The slopes of what is left, of degree 10, over the lengths across.
+            let strip = fit_u * v.max(fit_u) + fit_v * u.max(fit_v);
+            let volume = (fit_u + fit_v) * u * v;
+            let parts = [volume, volume * reach, 4.0 * strip, 4.0 * strip];
+            for (e, x) in errors.iter_mut().zip(parts) {
+                *e += x;
+            }
+        }
+        errors[4] = errors[3] * reach;
+        errors[5] = errors[4] * reach;
+        errors
+    }
+
+    /// The least value of `p . direction` over the skin: exact but for rounding, with the derivatives of the place
+    /// at which it is reached.
+    pub fn lowest(&self, direction: Vec3<f64>) -> Option<T> {
+        let along = |p: Vec3<T>| p.x * direction.x + p.y * direction.y + p.z * direction.z;
+        let least =
+            |c: &Cell<T>| c.net().iter().map(|&p| along(p).re()).fold(f64::INFINITY, f64::min);
+        let mut best: Option<T> = None;
+        let mut stack: Vec<(f64, Arc<Cell<T>>)> =
+            self.cells.iter().map(|c| (least(c), c.clone())).collect();
+        stack.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let near = 1e-14 * self.size;
+        let mut steps = 0;
+        while let Some((bound, cell)) = stack.pop() {
+            if best.is_some_and(|b| bound >= b.re() - near) {
+                continue;
+            }
+            steps += 1;
+            let [du, dv] = cell.degree();
+            for corner in [0, dv, du * (dv + 1), du * (dv + 1) + dv] {
+                let x = along(cell.net()[corner]);
+                if best.is_none_or(|b| x.re() < b.re()) {
+                    best = Some(x);
+                }
+            }
+            let [u, v] = cell.lengths();
+            if u.max(v) <= 1e-9 * self.size || steps > 20_000 {
+                continue;
+            }
+            let mut parts: Vec<_> = cell
+                .split(usize::from(v > u))
+                .into_iter()
+                .map(|c| (least(&c), Arc::new(c)))
+                .collect();
+            parts.sort_by(|a, b| b.0.total_cmp(&a.0));
+            stack.extend(parts);
+        }
+        best
+    }
+
+    /// The number of rims that reach below the level.
+    pub(crate) fn open_below(&self, level: f64) -> usize {
+        let low = |r: &&Vec<Vec3<T>>| r.iter().any(|p| p.z.re() < level - 1e-9 * self.size);
+        self.rims.iter().filter(low).count()
+    }
+
+    /// The lowest z of the open rims.
+    pub fn lowest_rim(&self) -> Option<T> {
+        let least = |r: &[Vec3<T>]| r.iter().map(|p| p.z.re()).fold(f64::INFINITY, f64::min);
+        let mut best: Option<T> = None;
+        let mut stack: Vec<(Vec<Vec3<T>>, u32)> =
+            self.rims.iter().map(|r| (r.clone(), 0)).collect();
+        while let Some((row, depth)) = stack.pop() {
+            if best.is_some_and(|b| least(&row) >= b.re() - 1e-14 * self.size) {
+                continue;
+            }
+            for p in [row[0], row[row.len() - 1]] {
+                if best.is_none_or(|b| p.z.re() < b.re()) {
+                    best = Some(p.z);
+                }
+            }
+            if depth < 40 && row.len() > 2 {
+                stack.extend(halves(&row).map(|half| (half, depth + 1)));
+            }
+        }
+        best
+    }
+}

@@ -1,0 +1,377 @@
+//! A piece of a skin: a tensor polynomial in Bernstein form over the unit square.
+//!
+//! A surface becomes cells by interpolation at Chebyshev points between its joints; a cell whose last Chebyshev
+//! coefficients are not negligible is halved. What is left of them bounds the distance to the surface.
+
+use crate::bernstein::{MOST_DEGREE, basis, halves};
+use moldloft_num::{Real, Surface, Vec3};
+use std::sync::OnceLock;
+
+/// A polynomial patch, of which `reversed` has its normal against S_u x S_v.
+#[derive(Clone, Debug)]
+pub struct Cell<T> {
+    degree: [usize; 2],
+    /// Control points, (i, j) at `[i * (degree[1] + 1) + j]`.
+    net: Vec<Vec3<T>>,
+    pub(crate) reversed: bool,
+    /// Whether it reaches the surface's edge v = 0, u = 1, v = 1, u = 0.
+    border: [bool; 4],
+    /// How far the surface may be from it along u and along v, as the last coefficients say.
+    pub(crate) fit: [f64; 2],
+}
+
+/// What a fit may miss.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FitLimits {
+    /// A distance that is negligible.
+    pub distance: f64,
+    /// A distance times the length across that is negligible: the area that a strip gains.
+    pub area: f64,
+}
+
+/// The most cells of a surface.
+const MOST_CELLS: usize = 6000;
+
+/// A cell is halved this often at most in one direction.
+const DEEPEST: u32 = 40;
+
+impl<T: Real> Cell<T> {
+    /// The bilinear cell of four corners, counter-clockwise seen from outside; a triangle repeats its last.
+    pub fn of_panel([a, b, c, d]: [Vec3<T>; 4]) -> Self {
+        Self {
+            degree: [1, 1],
+            net: vec![a, d, b, c],
+            reversed: false,
+            border: [false; 4],
+            fit: [0.0; 2],
+        }
+    }
+
+    pub(crate) fn degree(&self) -> [usize; 2] {
+        self.degree
+    }
+
+    pub(crate) fn net(&self) -> &[Vec3<T>] {
+        &self.net
+    }
+
+    /// The cell moved point by point by a linear or affine map; `turned` when that turns its normal round.
+    pub fn mapped(&self, map: impl Fn(Vec3<T>) -> Vec3<T>, turned: bool) -> Self {
+        Self {
+            net: self.net.iter().map(|&p| map(p)).collect(),
+            reversed: self.reversed ^ turned,
+            degree: self.degree,
+            border: self.border,
+            fit: self.fit,
+        }
+    }
+
+    /// The cell of real parts.
+    pub fn re(&self) -> Cell<f64> {
+        Cell {
+            degree: self.degree,
+            net: self.net.iter().map(|p| p.re()).collect(),
+            reversed: self.reversed,
+            border: self.border,
+            fit: self.fit,
+        }
+    }
+
+    /// The cell with numbers without derivatives.
+    pub fn lifted(cell: &Cell<f64>) -> Self {
+        Self {
+            degree: cell.degree,
+            net: cell.net.iter().map(|&p| Vec3::lifted(p)).collect(),
+            reversed: cell.reversed,
+            border: cell.border,
+            fit: cell.fit,
+        }
+    }
+
+    /// Whether it reaches that edge of the surface.
+    pub(crate) fn on_edge(&self, k: usize) -> bool {
+        self.border[k]
+    }
+
+    /// The control points of the edge v = 0, u = 1, v = 1, u = 0, for k = 0 to 3.
+    pub fn edge(&self, k: usize) -> Vec<Vec3<T>> {
+        let [du, dv] = self.degree;
+        let at = |i: usize, j: usize| self.net[i * (dv + 1) + j];
+        match k {
+            0 => (0..=du).map(|i| at(i, 0)).collect(),
+            1 => (0..=dv).map(|j| at(du, j)).collect(),
+            2 => (0..=du).map(|i| at(i, dv)).collect(),
+            _ => (0..=dv).map(|j| at(0, j)).collect(),
+        }
+    }
+
+    /// The control points of the line on which the parameter other than `inner` is `w`, and their derivatives by
+    /// `w`.
+    pub(crate) fn line(&self, inner: usize, w: T, at: &mut Vec<Vec3<T>>, by: &mut Vec<Vec3<T>>) {
+        let [du, dv] = self.degree;
+        at.clear();
+        by.clear();
+        let (b, slope) = basis(self.degree[1 - inner], w);
+        let (count, across, step, along) =
+            if inner == 0 { (du + 1, dv + 1, 1, dv + 1) } else { (dv + 1, du + 1, dv + 1, 1) };
+        for k in 0..count {
+            let (mut p, mut d) = (Vec3::zero(), Vec3::zero());
+            for m in 0..across {
+                let c = self.net[k * along + m * step];
+                p += c * b[m];
+                d += c * slope[m];
+            }
+            at.push(p);
+            by.push(d);
+        }
+    }
+
+    /// The two halves along u (0) or v (1).
+    pub(crate) fn split(&self, along: usize) -> [Self; 2] {
+        let [du, dv] = self.degree;
+        let mut parts = [self.clone(), self.clone()];
+        if along == 1 {
+            for i in 0..=du {
+                let row = i * (dv + 1)..(i + 1) * (dv + 1);
+                let [low, high] = halves(&self.net[row.clone()]);
+                parts[0].net[row.clone()].copy_from_slice(&low);
+                parts[1].net[row].copy_from_slice(&high);
+            }
+        } else {
+            for j in 0..=dv {
+                let column: Vec<_> = (0..=du).map(|i| self.net[i * (dv + 1) + j]).collect();
+                for (part, half) in parts.iter_mut().zip(halves(&column)) {
+                    for (i, p) in half.into_iter().enumerate() {
+                        part.net[i * (dv + 1) + j] = p;
+                    }
+                }
+            }
+        }
+        parts
+    }
+
+    /// Its greatest lengths along u and along v, of the control polygons.
+    pub(crate) fn lengths(&self) -> [f64; 2] {
+        let [du, dv] = self.degree;
+        let at = |i: usize, j: usize| self.net[i * (dv + 1) + j].re();
+        let along_u = |j: usize| (0..du).map(|i| at(i, j).distance(at(i + 1, j))).sum::<f64>();
+        let along_v = |i: usize| (0..dv).map(|j| at(i, j).distance(at(i, j + 1))).sum::<f64>();
+        [(0..=dv).map(along_u).fold(0.0, f64::max), (0..=du).map(along_v).fold(0.0, f64::max)]
+    }
+}
+
+/// The cells of a surface, or `None` where it is not finite. `reversed` when its outward normal is against S_u x S_v.
+pub(crate) fn cells_of<T: Real>(
+    surface: &dyn Surface<T>,
+    reversed: bool,
+    limits: FitLimits,
+) -> Option<Vec<Cell<T>>> {
+    let ends = |mut breaks: Vec<f64>, joints: Vec<f64>| {
+        breaks.extend(joints);
+        breaks.retain(|t| *t > 0.0 && *t < 1.0);
+        breaks.extend([0.0, 1.0]);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup_by(|a, b| *a - *b < 1e-13);
+        breaks
+    };
+    let [bu, bv] = surface.breaks();
+    let [ju, jv] = surface.joints();
+    let (us, vs) = (ends(bu, ju), ends(bv, jv));
+    let mut stack: Vec<([f64; 4], [u32; 2])> = Vec::new();
+    for u in us.windows(2).rev() {
+        for v in vs.windows(2).rev() {
+            stack.push(([u[0], u[1], v[0], v[1]], [0, 0]));
+        }
+    }
+    let mut cells = Vec::new();
+    while let Some((frame, depth)) = stack.pop() {
+        let fitted = fit(surface, frame, reversed)?;
+        let [tail_u, tail_v] = fitted.fit;
+        let [length_u, length_v] = fitted.lengths();
+        // Rounding of the places cannot be had smaller.
+        let size = fitted.net.iter().fold(0.0f64, |m, p| m.max(p.re().norm()));
+        let distance = limits.distance.max(4e-14 * size);
+        let negligible =
+            |tail: f64, across: f64| tail <= distance || tail * across.max(tail) <= limits.area;
+        let full = cells.len() + stack.len() >= MOST_CELLS;
+        let rough =
+            [!negligible(tail_u, length_v), !negligible(tail_v, length_u)].map(|r| r && !full);
+        let [u0, u1, v0, v1] = frame;
+        let worse = usize::from(tail_v > tail_u);
+        let along = if rough[worse] { worse } else { 1 - worse };
+        if rough[along] && depth[along] < DEEPEST {
+            let mut deeper = depth;
+            deeper[along] += 1;
+            let parts = match along {
+                0 => [[u0, 0.5 * (u0 + u1), v0, v1], [0.5 * (u0 + u1), u1, v0, v1]],
+                _ => [[u0, u1, v0, 0.5 * (v0 + v1)], [u0, u1, 0.5 * (v0 + v1), v1]],
+            };
+            stack.push((parts[1], deeper));
+            stack.push((parts[0], deeper));
+        } else {
+            cells.push(fitted);
+        }
+    }
+    Some(cells)
+}
+
+/// Places off the Chebyshev points at which an interpolation is compared.
+const PROBES: [f64; 3] = [0.071, 0.457, 0.893];
+
+/// The interpolation of a surface on [u0, u1] x [v0, v1] at Chebyshev points, of the lowest degree that keeps it.
+fn fit<T: Real>(
+    surface: &dyn Surface<T>,
+    [u0, u1, v0, v1]: [f64; 4],
+    reversed: bool,
+) -> Option<Cell<T>> {
+    const N: usize = MOST_DEGREE + 1;
+    let tables = tables();
+    let within = |a: f64, b: f64, s: f64| match s {
+        0.0 => a,
+        1.0 => b,
+        s => a + (b - a) * s,
+    };
+    let us: Vec<f64> = tables.nodes.iter().map(|&s| within(u0, u1, s)).collect();
+    let vs: Vec<f64> = tables.nodes.iter().map(|&s| within(v0, v1, s)).collect();
+    let mut points = vec![Vec3::zero(); N * N];
+    surface.grid(&us, &vs, &mut points, None);
+    if !points.iter().all(|p| p.is_finite()) {
+        return None;
+    }
+    let coefficients = transformed(&points, [N, N], [&tables.analysis, &tables.analysis]);
+    // The size of the coefficients from (i, j) on, by rows and by columns.
+    let row = |i: usize| (0..N).map(|j| coefficients[i * N + j].re().norm()).sum::<f64>();
+    let column = |j: usize| (0..N).map(|i| coefficients[i * N + j].re().norm()).sum::<f64>();
+    let size = coefficients.iter().fold(0.0f64, |m, c| m.max(c.re().norm()));
+    let rounding = 2e-16 * size;
+    let degree = |size_of: &dyn Fn(usize) -> f64| {
+        (1..N).rev().find(|&k| size_of(k) > rounding * 8.0).unwrap_or(1)
+    };
+    let still = |k: usize, along: usize| {
+        let at = |m: usize| if along == 0 { k * N + m } else { m * N + k };
+        (0..N).all(|m| {
+            let c = coefficients[at(m)];
+            (1..T::PARTS).all(|p| {
+                let largest = |x: T| x.part(p).abs();
+                largest(c.x).max(largest(c.y)).max(largest(c.z)) <= 1e-13 * (1.0 + size)
+            })
+        })
+    };
+    // Derivatives may be of a higher degree than the places.
+    let highest =
+        |from: usize, along: usize| (from + 1..N).rev().find(|&k| !still(k, along)).unwrap_or(from);
+    let (du, dv) = (highest(degree(&row), 0), highest(degree(&column), 1));
+    let tail = |d: usize, size_of: &dyn Fn(usize) -> f64| {
+        let left: f64 = (d + 1..N).map(size_of).sum();
+        if d < N - 1 { left } else { size_of(N - 1) + size_of(N - 2) }
+    };
+    let mut fit = [tail(du, &row), tail(dv, &column)];
+    let mut kept = Vec::with_capacity((du + 1) * (dv + 1));
+    for i in 0..=du {
+        kept.extend_from_slice(&coefficients[i * N..i * N + dv + 1]);
+    }
+    let to_bernstein = [&tables.synthesis[du], &tables.synthesis[dv]];
+    let net = transformed(&kept, [du + 1, dv + 1], to_bernstein);
+    let border = [v0 == 0.0, u1 == 1.0, v1 == 1.0, u0 == 0.0];
+    let cell = Cell { degree: [du, dv], net, reversed, border, fit };
+    // Between the points, where a kink that no joint declares would show.
+    let mut off: f64 = 0.0;
+    let (mut at, mut by) = (Vec::new(), Vec::new());
+    let us = PROBES.map(|s| within(u0, u1, s));
+    let vs = PROBES.map(|s| within(v0, v1, s));
+    let mut probes = [Vec3::zero(); 9];
+    surface.grid(&us, &vs, &mut probes, None);
+    for (j, &v) in PROBES.iter().enumerate() {
+        cell.line(0, T::from(v), &mut at, &mut by);
+        for (i, &u) in PROBES.iter().enumerate() {
+            let p = crate::bernstein::place_and_tangent(&at, T::from(u)).0.re();
+            off = off.max(p.distance(probes[i * 3 + j].re()));
+        }
+    }
+    if !off.is_finite() {
+        return None;
+    }
+    if off > fit[0] + fit[1] + 1e-13 * (1.0 + size) {
+        let worse = usize::from(fit[1] > fit[0]);
+        fit[worse] = off;
+        if fit[1 - worse] == 0.0 && cell.degree[1 - worse] > cell.degree[worse] {
+            fit = [off, off];
+        }
+    }
+    Some(Cell { fit, ..cell })
+}
+
+/// The Chebyshev points, and the matrices from values there to Chebyshev and on to Bernstein coefficients.
+struct Tables {
+    nodes: Vec<f64>,
+    analysis: Vec<Vec<f64>>,
+    /// Of each degree.
+    synthesis: Vec<Vec<Vec<f64>>>,
+}
+
+fn tables() -> &'static Tables {
+    static TABLES: OnceLock<Tables> = OnceLock::new();
+    TABLES.get_or_init(|| {
+        let n = MOST_DEGREE;
+        let angle = |k: usize| std::f64::consts::PI * k as f64 / n as f64;
+        // sin^2 is exact at both ends.
+        let nodes = (0..=n).map(|k| libm::pow(libm::sin(0.5 * angle(k)), 2.0)).collect();
+        // The discrete cosine transform at the extrema, in x = 1 - 2 s.
+        let half = |k: usize| if k == 0 || k == n { 0.5 } else { 1.0 };
+        let entry = |m: usize, k: usize| {
+            2.0 / n as f64 * half(m) * half(k) * libm::cos(angle((m * k) % (2 * n)))
+        };
+        let analysis = (0..=n).map(|m| (0..=n).map(|k| entry(m, k)).collect()).collect();
+        Tables { nodes, analysis, synthesis: (0..=n).map(bernstein_from_chebyshev).collect() }
+    })
+}
+
+/// Row k, column m: the Bernstein coefficient k of T_m(1 - 2 s) in a degree. All are integers over binomials, exact:
+/// T_m(1 - 2 s) has the coefficients (-1)^k C(2m, 2k) / C(m, k) in its own degree.
+fn bernstein_from_chebyshev(degree: usize) -> Vec<Vec<f64>> {
+    let choose = |n: usize, k: usize| (0..k).fold(1.0, |c, i| c * (n - i) as f64 / (i + 1) as f64);
+    let mut matrix = vec![vec![0.0; degree + 1]; degree + 1];
+    for m in 0..=degree {
+        let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let mut row: Vec<f64> =
+            (0..=m).map(|k| sign(k) * (choose(2 * m, 2 * k) / choose(m, k))).collect();
+        for d in m..degree {
+            // Raised by one degree.
+            let raised = (0..=d + 1).map(|k| {
+                let share = k as f64 / (d + 1) as f64;
+                let before = if k > 0 { row[k - 1] } else { 0.0 };
+                let here = if k <= d { row[k] } else { 0.0 };
+                share * before + (1.0 - share) * here
+            });
+            row = raised.collect();
+        }
+        for (k, c) in row.into_iter().enumerate() {
+            matrix[k][m] = c;
+        }
+    }
+    matrix
+}
+
+/// The matrices applied along u and along v.
+fn transformed<T: Real>(
+    points: &[Vec3<T>],
+    [nu, nv]: [usize; 2],
+    [along_u, along_v]: [&Vec<Vec<f64>>; 2],
+) -> Vec<Vec3<T>> {
+    let scaled = |p: Vec3<T>, c: f64| p.map(|x| x * c);
+    let mut half = vec![Vec3::zero(); nu * nv];
+    for i in 0..nu {
+        for (j, row) in along_v.iter().enumerate() {
+            let sum = (0..nv).fold(Vec3::zero(), |s, k| s + scaled(points[i * nv + k], row[k]));
+            half[i * nv + j] = sum;
+        }
+    }
+    let mut all = vec![Vec3::zero(); nu * nv];
+    for (i, row) in along_u.iter().enumerate() {
+        for j in 0..nv {
+            all[i * nv + j] =
+                (0..nu).fold(Vec3::zero(), |s, k| s + scaled(half[k * nv + j], row[k]));
+        }
+    }
+    all
+}

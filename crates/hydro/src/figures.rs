@@ -1,0 +1,149 @@
+//! The hydrostatic figures of a body below a water plane z = level.
+
+use crate::body::Body;
+use crate::integrals::Wanted;
+use crate::section::{section_area, waterline_extent};
+use crate::strip::Cut;
+use moldloft_mesh::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
+use moldloft_num::{Real, Vec3};
+
+/// Figures with what stability needs besides.
+pub(crate) struct Floating<T> {
+    pub figures: Hydrostatics<T>,
+    /// The integral of x y over the waterplane about its centre.
+    pub product_moment: T,
+    /// See [`crate::Afloat::errors`].
+    pub errors: [f64; 6],
+}
+
+/// The sums below a level, of the number of sides meant, about (x0, y0, level).
+pub(crate) struct Displaced<T> {
+    pub forms: [T; 3],
+    pub moment: Vec3<T>,
+    pub plane: [T; 6],
+}
+
+/// Volume, moments and water plane below `level` about (x0, y0); `count` is 1, 2 for both sides of a half, negative
+/// where normals point inward.
+pub(crate) fn displaced<T: Real>(
+    body: &Body<T>,
+    level: T,
+    origin: [T; 2],
+    count: f64,
+) -> Displaced<T> {
+    let sums = body.wanted_integrals(level, origin, Wanted::Displacement).sums;
+    let times = |x: T| x * count;
+    Displaced {
+        forms: sums.forms.map(times),
+        moment: sums.moment.map(times),
+        plane: sums.plane.map(times),
+    }
+}
+
+/// The figures of the upright body at z = `level`; see [`Hydrostatics`].
+pub fn hydrostatics<T: Real>(
+    body: &Body<T>,
+    level: T,
+    symmetry: Symmetry,
+    density: f64,
+) -> Hydrostatics<T> {
+    floating(body, level, symmetry, density).figures
+}
+
+/// Figures of the part of the body below z = `level`: the skin may be open at the level or above it and, when it
+/// shows one side, in the plane y = 0. Skins whose normals all point inward give the same figures, reported as such.
+pub(crate) fn floating<T: Real>(
+    body: &Body<T>,
+    level: T,
+    symmetry: Symmetry,
+    density: f64,
+) -> Floating<T> {
+    let box_ = body.bounds();
+    let middle = box_.centre();
+    let half = symmetry != Symmetry::None;
+    let (x0, y0) = (T::from(middle.x), T::from(if half { 0.0 } else { middle.y }));
+    let origin = Vec3::new(x0, y0, level);
+    let all = body.integrals(level, [x0, y0]);
+    let sums = &all.sums;
+    let outward = sums.forms[2].re() >= 0.0;
+    let sides = if symmetry == Symmetry::MirroredTwice { 2.0 } else { 1.0 };
+    let count = if outward { sides } else { -sides };
+    let [x, y, z] = sums.forms.map(|form| form * count);
+    let volume = z;
+    let mut buoyancy_centre =
+        (volume.re() > 0.0).then(|| origin + sums.moment * T::from(count) / volume);
+    if let (Some(centre), Symmetry::MirroredTwice) = (&mut buoyancy_centre, symmetry) {
+        centre.y = T::zero();
+    }
+    let lowest = body.lowest(Vec3::of(0.0, 0.0, 1.0));
+    let draft = lowest.map_or(T::zero(), |low| (level - low).max(T::zero()));
+    let cut = Cut { axis: 2, level, epsilon: 1e-13 * body.size() };
+    let mut product_moment = T::zero();
+    let waterplane = waterline_extent(&all.waterline, cut).map(|extent| {
+        let plane = sums.plane.map(|p| p * count);
+        let (mut found, product) = waterplane(plane, extent, origin, symmetry);
+        product_moment = product;
+        let half_way = (found.ends[0] + found.ends[1]) * 0.5;
+        found.midship_area = section_area(body, half_way, level)[0].abs() * sides;
+        found
+    });
+    let coefficients = waterplane.filter(|w| volume.re() > 0.0 && w.midship_area.re() > 0.0);
+    let coefficients = coefficients.map(|w| FormCoefficients {
+        block: volume / (w.length * w.beam * draft),
+        prismatic: volume / (w.midship_area * w.length),
+        midship: w.midship_area / (w.beam * draft),
+        waterplane: w.area / (w.length * w.beam),
+    });
+    let relative = |error: f64, size: f64| if error == 0.0 { 0.0 } else { error / size.abs() };
+    let largest = (x - z).re().abs().max((y - z).re().abs());
+    let green = sums.green.re().abs();
+    let fit = body.fit_errors(&box_);
+    let errors = std::array::from_fn(|k| (all.errors[k] + fit[k]) * sides);
+    let figures = Hydrostatics {
+        level,
+        volume,
+        displacement: volume * density,
+        buoyancy_centre,
+        wetted_area: sums.wetted * sides,
+        draft,
+        waterplane,
+        coefficients,
+        forms: VolumeForms { x, y, z },
+        closure_error: relative(largest, volume.re()),
+        waterplane_error: relative((sums.plane[0].re().abs() - green).abs(), sums.plane[0].re()),
+        open_edges: body.open_below(level.re()),
+        outward,
+    };
+    Floating { figures, product_moment, errors }
+}
+
+/// The waterplane from its integrals about the origin, and the product moment about its centre.
+fn waterplane<T: Real>(
+    [area, mx, my, mxx, mxy, myy]: [T; 6],
+    [x_low, x_high, y_low, y_high]: [T; 4],
+    origin: Vec3<T>,
+    symmetry: Symmetry,
+) -> (Waterplane<T>, T) {
+    let has_area = area.re() != 0.0;
+    let ratio = |m: T| if has_area { m / area } else { T::zero() };
+    let dx = ratio(mx);
+    let both = symmetry == Symmetry::MirroredTwice;
+    let dy = if both { T::zero() } else { ratio(my) };
+    let beam = match symmetry {
+        Symmetry::None => y_high - y_low,
+        Symmetry::MirroredTwice => y_high.abs().max(y_low.abs()) * 2.0,
+        Symmetry::MirroredOnce => y_high.abs().max(y_low.abs()),
+    };
+    // Steiner: the moment about the centre is that about the origin less area times arms.
+    let plane = Waterplane {
+        area,
+        centre: origin + Vec3::new(dx, dy, T::zero()),
+        transverse_moment: myy - area * dy * dy,
+        longitudinal_moment: mxx - area * dx * dx,
+        ends: [x_low, x_high],
+        length: x_high - x_low,
+        beam,
+        midship_area: T::zero(),
+    };
+    (plane, if both { T::zero() } else { mxy - area * dx * dy })
+}

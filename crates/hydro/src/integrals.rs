@@ -1,0 +1,342 @@
+//! Integrals over the part of a skin below z = level, and over the water plane, each with an estimate of its error.
+//!
+//! With the field (0, 0, z - level) the water plane adds nothing to the volume, so no lid is needed. Whole cells
+//! have a rule that is exact for their polynomials where degrees are low; on strips that the water cuts the outer
+//! parameter is w = a + (b - a) sin^2(pi s / 2), which takes the square roots at both ends out of the integrand.
+//! Every integral is computed by two rules; the finer is used, and the difference, which is about the error of the
+//! coarser, is its estimate. Cells are halved, the worst first, until the sum of the estimates is small.
+
+use crate::cell::Cell;
+use crate::gauss::gauss;
+use crate::strip::{Cut, Line, Strip, Wet, strips};
+use moldloft_num::{Real, Vec3};
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+/// What is integrated, about (x0, y0, level).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sums<T> {
+    /// Of x n_x, y n_y, z n_z.
+    pub forms: [T; 3],
+    /// First moments of the volume.
+    pub moment: Vec3<T>,
+    /// Area of the skin, and its first moments.
+    pub wetted: T,
+    pub area_moment: Vec3<T>,
+    /// Of 1, x, y, xx, xy, yy over the water plane.
+    pub plane: [T; 6],
+    /// The area of the water plane from the waterline (Green).
+    pub green: T,
+    /// Integrals of n_x and n_y: what is open under water.
+    pub open: [T; 2],
+}
+
+/// Errors of volume, first moments of it, area, and of the water plane's area, first and second moments.
+pub(crate) type Errors = [f64; 6];
+
+impl<T: Real> Sums<T> {
+    pub fn zero() -> Self {
+        let t = T::zero();
+        Self {
+            forms: [t; 3],
+            moment: Vec3::zero(),
+            wetted: t,
+            area_moment: Vec3::zero(),
+            plane: [t; 6],
+            green: t,
+            open: [t; 2],
+        }
+    }
+
+    pub fn add(&mut self, o: &Self) {
+        for k in 0..3 {
+            self.forms[k] += o.forms[k];
+        }
+        self.moment += o.moment;
+        self.wetted += o.wetted;
+        self.area_moment += o.area_moment;
+        for k in 0..6 {
+            self.plane[k] += o.plane[k];
+        }
+        self.green += o.green;
+        for k in 0..2 {
+            self.open[k] += o.open[k];
+        }
+    }
+
+    /// Adds a piece of skin with the vector area `n`.
+    #[inline]
+    fn take(&mut self, p: Vec3<T>, n: Vec3<T>) {
+        let square = n.norm_sq();
+        if square.re() > 0.0 {
+            let area = square.sqrt();
+            self.wetted += area;
+            self.area_moment += p * area;
+        }
+        self.forms[0] += p.x * n.x;
+        self.forms[1] += p.y * n.y;
+        let column = p.z * n.z;
+        self.forms[2] += column;
+        self.moment += Vec3::new(p.x * column, p.y * column, p.z * column * 0.5);
+        let down = -n.z;
+        let (x, y) = (p.x * down, p.y * down);
+        let parts = [down, x, y, p.x * x, p.x * y, p.y * y];
+        for (sum, part) in self.plane.iter_mut().zip(parts) {
+            *sum += part;
+        }
+        self.open[0] += n.x;
+        self.open[1] += n.y;
+    }
+
+    /// How far two results of the same integrals are apart.
+    fn differences(&self, o: &Self) -> Errors {
+        let off = |a: T, b: T| (a.re() - b.re()).abs();
+        let vector = |a: Vec3<T>, b: Vec3<T>| off(a.x, b.x).max(off(a.y, b.y)).max(off(a.z, b.z));
+        let plane = |k: usize| off(self.plane[k], o.plane[k]);
+        [
+            (0..3).map(|k| off(self.forms[k], o.forms[k])).fold(0.0, f64::max),
+            vector(self.moment, o.moment),
+            off(self.wetted, o.wetted),
+            plane(0),
+            plane(1).max(plane(2)),
+            plane(3).max(plane(4)).max(plane(5)),
+        ]
+    }
+}
+
+/// The integrals over all cells, and what the figures of the waterline need.
+pub(crate) struct Immersed<T> {
+    pub sums: Sums<T>,
+    /// The estimates of the quadrature's errors.
+    pub errors: Errors,
+    /// The strips that the water cuts.
+    pub waterline: Vec<Strip<T>>,
+}
+
+/// The most cells that are halved.
+const MOST_HALVED: usize = 20_000;
+
+/// From this many cells on they are shared among threads.
+const WORTH_A_THREAD: usize = 2048;
+
+/// A cell's share of the integrals.
+struct Part<T> {
+    cell: Arc<Cell<T>>,
+    sums: Sums<T>,
+    errors: Errors,
+    waterline: Vec<Strip<T>>,
+}
+
+/// A part that may be halved: the worst first, the earlier of two alike.
+struct Candidate(f64, usize);
+
+impl PartialEq for Candidate {
+    fn eq(&self, o: &Self) -> bool {
+        self.cmp(o) == Ordering::Equal
+    }
+}
+impl Eq for Candidate {}
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
+        Some(self.cmp(o))
+    }
+}
+impl Ord for Candidate {
+    fn cmp(&self, o: &Self) -> Ordering {
+        self.0.total_cmp(&o.0).then(o.1.cmp(&self.1))
+    }
+}
+
+/// Which integrals must reach the accuracy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    All,
+    /// Volume and its first moments: what an equilibrium needs.
+    Displacement,
+}
+
+/// The integrals below `level`, each to about `accuracy` of its size; `origin` is (x0, y0), `size` that of the body.
+pub(crate) fn immersed<T: Real>(
+    cells: &[Arc<Cell<T>>],
+    level: T,
+    origin: [T; 2],
+    size: f64,
+    accuracy: f64,
+    wanted: Wanted,
+) -> Immersed<T> {
+    let cut = Cut { axis: 2, level, epsilon: 1e-13 * size };
+    let origin = Vec3::new(origin[0], origin[1], level);
+    let one = |cell: &Arc<Cell<T>>| part(cell, cut, origin);
+    let mut parts: Vec<Option<Part<T>>> = if cells.len() < WORTH_A_THREAD {
+        cells.iter().map(|c| Some(one(c))).collect()
+    } else {
+        cells.par_iter().map(|c| Some(one(c))).collect()
+    };
+    let mut errors = [0.0; 6];
+    let mut scale = [0.0f64; 6];
+    {
+        let mut sums = Sums::zero();
+        for part in parts.iter().flatten() {
+            sums.add(&part.sums);
+            for k in 0..6 {
+                errors[k] += part.errors[k];
+            }
+        }
+        let volume = sums.forms[2].re().abs().max(1e-12 * size.powi(3));
+        let area = sums.wetted.re().abs().max(1e-9 * size * size);
+        let plane = sums.plane[0].re().abs().max(1e-3 * area);
+        scale.copy_from_slice(&[
+            volume,
+            volume * size,
+            area,
+            plane,
+            plane * size,
+            plane * size * size,
+        ]);
+    }
+    let count = if wanted == Wanted::All { 6 } else { 2 };
+    let worst = |e: &Errors| (0..count).map(|k| e[k] / scale[k]).fold(0.0, f64::max);
+    let mut heap: BinaryHeap<Candidate> = parts
+        .iter()
+        .enumerate()
+        .filter_map(|(k, p)| Some(Candidate(worst(&p.as_ref()?.errors), k)))
+        .collect();
+    let mut halved = 0;
+    while halved < MOST_HALVED && worst(&errors) > accuracy {
+        let Some(Candidate(share, k)) = heap.pop() else { break };
+        if share <= 1e-3 * accuracy / (parts.len() as f64) {
+            break;
+        }
+        let Some(old) = parts[k].take() else { continue };
+        let [along_u, along_v] = old.cell.lengths();
+        if along_u.max(along_v) <= 1e-12 * size {
+            parts[k] = Some(old);
+            continue;
+        }
+        for e in 0..6 {
+            errors[e] -= old.errors[e];
+        }
+        for half in old.cell.split(usize::from(along_v > along_u)) {
+            let new = one(&Arc::new(half));
+            for e in 0..6 {
+                errors[e] += new.errors[e];
+            }
+            heap.push(Candidate(worst(&new.errors), parts.len()));
+            parts.push(Some(new));
+        }
+        halved += 1;
+    }
+    // Summed anew: subtraction leaves rounding.
+    let mut all = Immersed { sums: Sums::zero(), errors: [0.0; 6], waterline: Vec::new() };
+    for part in parts.into_iter().flatten() {
+        all.sums.add(&part.sums);
+        for k in 0..6 {
+            all.errors[k] += part.errors[k];
+        }
+        all.waterline.extend(part.waterline);
+    }
+    all
+}
+
+/// Points of the rules on strips that are cut: along w, and across.
+const OUTER: [usize; 2] = [14, 10];
+
+fn part<T: Real>(cell: &Arc<Cell<T>>, cut: Cut<T>, origin: Vec3<T>) -> Part<T> {
+    let mut found = Vec::new();
+    let undecided = strips(cell, cut, &mut found);
+    let (mut sums, mut errors) = (Sums::zero(), [0.0; 6]);
+    if undecided > 0.0 {
+        let reach = cell.lengths().iter().sum::<f64>();
+        for (k, e) in errors.iter_mut().enumerate() {
+            *e += match k {
+                0 | 1 => 0.0,
+                2 | 3 => undecided,
+                4 => undecided * reach,
+                _ => undecided * reach * reach,
+            };
+        }
+    }
+    for strip in &found {
+        let [fine, coarse] = [0, 1].map(|k| integrated(strip, cut, origin, k));
+        sums.add(&fine);
+        let mut off = fine.differences(&coarse);
+        if strip.wet == Wet::All && is_exact(strip) {
+            // Only the area is not a polynomial.
+            off = [0.0, 0.0, off[2], 0.0, 0.0, 0.0];
+        }
+        for k in 0..6 {
+            errors[k] += off[k];
+        }
+    }
+    found.retain(Strip::is_cut);
+    Part { cell: cell.clone(), sums, errors, waterline: found }
+}
+
+/// The most points of a rule on whole lines.
+const MOST: usize = 12;
+
+/// Points on a whole line along a parameter: exact for second moments up to degree 6.
+fn points(degree: usize) -> usize {
+    match degree {
+        0 | 1 => 3,
+        d => (2 * d).clamp(5, MOST),
+    }
+}
+
+fn is_exact<T: Real>(strip: &Strip<T>) -> bool {
+    strip.cell.degree().iter().all(|&d| 2 * d <= MOST)
+}
+
+/// The integrals over a strip by the finer (0) or the coarser (1) rule.
+fn integrated<T: Real>(strip: &Strip<T>, cut: Cut<T>, origin: Vec3<T>, coarser: usize) -> Sums<T> {
+    let mut sums = Sums::zero();
+    let degree = strip.cell.degree();
+    let fewer = if degree == [1, 1] { 1 } else { 2 };
+    let across = points(degree[strip.inner]) - fewer * coarser;
+    let outer = if strip.is_cut() {
+        OUTER[coarser]
+    } else {
+        points(degree[1 - strip.inner]) - fewer * coarser
+    };
+    let length = strip.to - strip.from;
+    let sign = strip.sign();
+    let mut line = Line::default();
+    for &(s, weight) in gauss(outer) {
+        let (share, slope) = if strip.is_cut() {
+            let half = std::f64::consts::FRAC_PI_2;
+            let (sine, cosine) = (libm::sin(half * s), libm::cos(half * s));
+            (sine * sine, 2.0 * half * sine * cosine)
+        } else {
+            (s, 1.0)
+        };
+        let w = strip.from + length * share;
+        let dw = length * (slope * weight);
+        strip.line(w, &mut line);
+        let (low, high) = if strip.is_cut() {
+            let at = strip.cut_on(&line, cut);
+            let (p, along) = (at.p - origin, at.along);
+            // The waterline runs along the skin's edge, clockwise about the water plane seen from above.
+            let turn = if strip.wet == Wet::Before { -sign } else { sign };
+            sums.green += (p.x * along.y - p.y * along.x) * dw * (0.5 * turn);
+            if strip.wet == Wet::Before { (T::zero(), at.t) } else { (at.t, T::one()) }
+        } else {
+            (T::zero(), T::one())
+        };
+        let reach = high - low;
+        for &(s, weight) in gauss(across) {
+            let t = low + reach * s;
+            let (basis, slopes) = crate::bernstein::basis(line.at.len() - 1, t);
+            let (mut p, mut inner, mut outer) = (Vec3::zero(), Vec3::zero(), Vec3::zero());
+            for k in 0..line.at.len() {
+                p += line.at[k] * basis[k];
+                inner += line.at[k] * slopes[k];
+                outer += line.by[k] * basis[k];
+            }
+            let n = inner.cross(outer) * (reach * dw * (weight * sign));
+            sums.take(p - origin, n);
+        }
+    }
+    sums
+}

@@ -1,0 +1,32 @@
+//! Measures, hydrostatics and stability of bodies bounded by surfaces.
+//!
+//! `surfaces -> polynomial cells = Body -> integrals below a water plane -> figures, equilibrium, stability`
+//!
+//! Figures are integrals over the surfaces, with the waterline solved on them; each main figure has a bound: the sum
+//! of the estimates of its quadrature and of what the interpolation of the surfaces leaves. Everything is generic
+//! over [`moldloft_num::Real`]: decisions look at real parts, so derivatives come from the same code.
+//!
+//! Invariant: this crate knows surfaces and panels only, no names, no files; no result depends on threads.
+
+mod afloat;
+mod bernstein;
+mod body;
+mod cell;
+mod equilibrium;
+mod figures;
+mod gauss;
+mod integrals;
+mod measures;
+mod section;
+mod strip;
+
+pub use afloat::{Afloat, Attitude, Water, afloat, bottom, bounds};
+pub use body::{Body, Measures, Side, USUAL_ACCURACY, surface_measures};
+pub use cell::Cell;
+pub use equilibrium::{FloatError, Loading, Solved, Status, equilibrium};
+pub use figures::hydrostatics;
+pub use measures::{curve_measures, solid_measures};
+pub use section::section_area;
+
+#[cfg(test)]
+mod tests;

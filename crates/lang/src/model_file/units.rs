@@ -1,0 +1,82 @@
+//! The units of a model: of length, mass, force and angle, each a word of one table.
+
+/// What a unit measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// In metres.
+    Length,
+    /// In kilograms.
+    Mass,
+    /// In newtons.
+    Force,
+    /// In radians.
+    Angle,
+}
+
+/// The units that are known: word, dimension, size in metres, kilograms, newtons or radians. Exact by definition
+/// (BIPM 2019, The International System of Units; NIST SP 811, appendix B), but for the angle.
+pub const UNITS: [(&str, Dimension, f64); 21] = [
+    ("m", Dimension::Length, 1.0),
+    ("cm", Dimension::Length, 0.01),
+    ("mm", Dimension::Length, 0.001),
+    ("km", Dimension::Length, 1000.0),
+    ("ft", Dimension::Length, 0.3048),
+    ("in", Dimension::Length, 0.0254),
+    ("yd", Dimension::Length, 0.9144),
+    ("kg", Dimension::Mass, 1.0),
+    ("t", Dimension::Mass, 1000.0),
+    ("g", Dimension::Mass, 0.001),
+    ("lb", Dimension::Mass, 0.453_592_37),
+    ("slug", Dimension::Mass, 14.593_902_937_206_364),
+    ("LT", Dimension::Mass, 1_016.046_908_8),
+    ("N", Dimension::Force, 1.0),
+    ("kN", Dimension::Force, 1e3),
+    ("MN", Dimension::Force, 1e6),
+    ("lbf", Dimension::Force, 4.448_221_615_260_5),
+    ("kgf", Dimension::Force, 9.806_65),
+    ("tf", Dimension::Force, 9_806.65),
+    ("rad", Dimension::Angle, 1.0),
+    ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
+];
+
+/// The unit of that word; letters may be of either case where that is unambiguous.
+pub fn unit(word: &str) -> Option<(&'static str, Dimension, f64)> {
+    let same = UNITS.into_iter().find(|u| u.0 == word);
+    same.or_else(|| UNITS.into_iter().find(|u| u.0.eq_ignore_ascii_case(word)))
+}
+
+/// The units that a text such as "m t kN" states, at most one of a dimension.
+///
+/// # Errors
+/// The word that is not a unit, or the second of a dimension.
+pub fn parsed(text: &str) -> Result<Vec<(&'static str, Dimension, f64)>, String> {
+    let mut found: Vec<(&'static str, Dimension, f64)> = Vec::new();
+    for word in text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty()) {
+        // Time is in seconds everywhere.
+        if matches!(word, "s" | "sec") {
+            continue;
+        }
+        let known = unit(word).ok_or_else(|| word.to_string())?;
+        if found.iter().any(|f| f.1 == known.1) {
+            return Err(word.to_string());
+        }
+        found.push(known);
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_unit_of_a_dimension() {
+        let words = |text: &str| parsed(text).map(|u| u.iter().map(|u| u.0).collect::<Vec<_>>());
+        assert_eq!(words("m t kN"), Ok(vec!["m", "t", "kN"]));
+        assert_eq!(words("ft, lb, sec"), Ok(vec!["ft", "lb"]));
+        assert_eq!(words(""), Ok(vec![]));
+        assert_eq!(words("furlong"), Err("furlong".into()));
+        assert_eq!(words("m ft"), Err("ft".into()));
+        assert_eq!(words("Ft KG"), Ok(vec!["ft", "kg"]));
+    }
+}

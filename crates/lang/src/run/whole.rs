@@ -1,0 +1,144 @@
+//! Numbers of the whole model in its own program: `hydrostatics.volume`, `mesh.area`.
+//!
+//! They are those of the surfaces and bodies that are shown and declared so far; reading one evaluates these. Which
+//! way the surfaces face follows from the panels, which the run with plain numbers makes; a run with derivatives
+//! takes it over from there.
+
+use crate::model_file::header;
+use crate::run::interpreter::Interpreter;
+use crate::source::fault_location::unplaced;
+use crate::source::module::Module;
+pub use crate::value::member::not_finite;
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_hydro::{Body, USUAL_ACCURACY, hydrostatics};
+use moldloft_mesh::{Hydrostatics, Mesh, Symmetry, measure};
+use moldloft_model::Graph;
+use moldloft_num::trace::Key;
+use moldloft_num::{Real, Vec3};
+use moldloft_panel::{Panelling, Skin};
+use moldloft_registry::{Class, Scalar, Value};
+use moldloft_syntax::sdl::ExprId;
+use std::any::Any;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The numbers of hydrostatics by their names.
+pub fn named<T: Real>(h: &Hydrostatics<T>) -> Vec<(&'static str, Value<T>)> {
+    let mut all: Vec<_> =
+        h.figures().into_iter().map(|(name, x)| (name, Value::Number(x))).collect();
+    let mut vector = |name, v: Option<Vec3<T>>| all.extend(v.map(|v| (name, Value::Vector(v))));
+    vector("buoyancy_centre", h.buoyancy_centre);
+    vector("waterplane_centre", h.waterplane.as_ref().map(|w| w.centre));
+    all
+}
+
+/// What the panels of a whole model measure.
+pub fn mesh_numbers<T: Real>(mesh: &Mesh<T>) -> Vec<(&'static str, Value<T>)> {
+    let measures = measure(mesh);
+    vec![("area", Value::Number(measures.area)), ("volume", Value::Number(measures.volume))]
+}
+
+/// The hydrostatics of a body in water at z = 0; `symmetry` holds the letters of the planes that mirror it.
+pub fn body_numbers<T: Real>(body: &Body<T>, symmetry: &str) -> Vec<(&'static str, Value<T>)> {
+    let lengthwise = symmetry.contains('x').then(|| body.with_mirror_image(0));
+    let body = lengthwise.as_ref().unwrap_or(body);
+    let shown = if symmetry.contains('y') { Symmetry::MirroredTwice } else { Symmetry::None };
+    named(&hydrostatics(body, T::zero(), shown, 1.0))
+}
+
+/// The number of that name among those of a group.
+pub fn one_of<T: Real>(
+    numbers: Vec<(&'static str, Value<T>)>,
+    group: &str,
+    number: &str,
+) -> Result<Value<T>, Diagnostic> {
+    if let Some((_, value)) = numbers.iter().find(|(name, _)| *name == number) {
+        return Ok(value.clone());
+    }
+    let known: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
+    Err(Diagnostic::error("unknown-member", format!("{group} has no `{number}`"))
+        .expected(known.join(", "))
+        .suggest(number, known.iter().copied()))
+}
+
+/// The panels and the skin of the objects of these names, as the plain run found them last.
+#[derive(Default)]
+struct Skins(Mutex<HashMap<Vec<Arc<str>>, Arc<(Panelling, Skin)>>>);
+
+/// More of them are not kept.
+const MOST_SKINS: usize = 64;
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// `hydrostatics.volume` and the like; `None` where the name means something else.
+    pub fn whole_member(
+        &mut self,
+        m: &Module,
+        base: ExprId,
+        word: &str,
+        span: Span,
+    ) -> Option<Result<Value<T>, Diagnostic>> {
+        let symbol = m.program.as_name(base)?;
+        let group = m.program.name(symbol).to_string();
+        if !matches!(&*group, "hydrostatics" | "mesh")
+            || self.env.scope.lookup(m.names[symbol.0 as usize]).is_some()
+            || self.run.find(&group).is_some()
+        {
+            return None;
+        }
+        let numbers = self.whole_numbers(&group, span);
+        Some(numbers.and_then(|all| one_of(all, &group, word)).map_err(|d| d.or_at(span)))
+    }
+
+    fn whole_numbers(
+        &mut self,
+        group: &str,
+        span: Span,
+    ) -> Result<Vec<(&'static str, Value<T>)>, Diagnostic> {
+        let graph = self.run.graph();
+        let count = graph.objects().count();
+        let bounds = |class: Class| matches!(class, Class::Surface | Class::Mesh | Class::Any);
+        let shown = graph.objects().filter(|o| o.head.shown() && bounds(o.row.class));
+        let (keys, names): (Vec<Key>, Vec<Arc<str>>) =
+            shown.map(|o| (o.key, o.name.clone())).unzip();
+        for key in keys {
+            self.read(Value::Object(key), span)?;
+        }
+        if let Some((at, known, numbers)) = &self.measured
+            && *at == count
+            && known == group
+        {
+            return Ok(numbers.clone());
+        }
+        let graph = self.run.graph();
+        let symmetry = header::text(graph, "symmetry");
+        let skins: Arc<Skins> = graph.context().kept.of();
+        let mut skins = skins.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(graph) = (graph as &dyn Any).downcast_ref::<Graph<f64>>() {
+            let panelling = Panelling::new(graph).map_err(|fault| unplaced(&fault))?;
+            let mesh = panelling.own_mesh().ok_or_else(no_mesh)?;
+            let mirrors: Vec<u8> =
+                (0..3u8).filter(|&k| symmetry.contains(['x', 'y', 'z'][usize::from(k)])).collect();
+            let skin = Skin::new(&panelling, &mesh, graph, &mirrors);
+            if skins.len() >= MOST_SKINS {
+                skins.clear();
+            }
+            skins.insert(names.clone(), Arc::new((panelling, skin)));
+        }
+        let found = skins.get(&names).cloned().ok_or_else(no_mesh)?;
+        drop(skins);
+        let (panelling, skin) = &*found;
+        let numbers = if group == "mesh" {
+            mesh_numbers(&panelling.mesh(graph).ok_or_else(no_mesh)?)
+        } else {
+            let body = skin.body(panelling, graph, USUAL_ACCURACY).ok_or_else(not_finite)?;
+            body_numbers(&body, &symmetry)
+        };
+        self.measured = Some((count, group.to_string(), numbers.clone()));
+        Ok(numbers)
+    }
+}
+
+fn no_mesh() -> Diagnostic {
+    Diagnostic::error("no-mesh", "the model has no panels")
+        .help("declare a surface, and show it (visible = 1)")
+}

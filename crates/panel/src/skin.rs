@@ -1,0 +1,150 @@
+//! The skin of a model as a body for measures: its surfaces, which way they face, and where they are open.
+
+use crate::panelling::Panelling;
+use moldloft_hydro::{Body, Side};
+use moldloft_mesh::{Closes, EdgeName, Mesh, closure};
+use moldloft_model::Graph;
+use moldloft_num::Vec3;
+use moldloft_registry::{Scalar, Value};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Which surfaces and panels bound the body; independent of the scalar.
+#[derive(Clone, Debug)]
+pub struct Skin {
+    sides: Vec<SkinSide>,
+    /// Faces of bodies of triangles, and of grids of very many pieces, which are their panels.
+    faces: Vec<usize>,
+    /// Open panel edges where no whole edge of a surface is open.
+    rims: Vec<[u32; 2]>,
+    /// About the diagonal.
+    size: f64,
+    on_panels: Vec<String>,
+}
+
+#[derive(Clone, Debug)]
+struct SkinSide {
+    name: Arc<str>,
+    reversed: bool,
+    open_edges: [bool; 4],
+}
+
+/// A surface of more pieces than this is measured on its panels.
+const MOST_PIECES: usize = 2500;
+
+impl Skin {
+    /// The skin of a mesh that `panelling` made of `graph`: the patches that bound the body. `mirrors` are the axes
+    /// whose plane through zero mirrors the model; what is open there is not open.
+    pub fn new<T: Scalar>(
+        panelling: &Panelling,
+        mesh: &Mesh<f64>,
+        graph: &Graph<T>,
+        mirrors: &[u8],
+    ) -> Self {
+        let names: Vec<Arc<str>> = panelling.surfaces().cloned().collect();
+        let open = closure(mesh, mirrors, None);
+        let mut skin = Self {
+            sides: Vec::new(),
+            faces: Vec::new(),
+            rims: Vec::new(),
+            size: mesh.bounds().diagonal(),
+            on_panels: Vec::new(),
+        };
+        let mut in_parts: HashSet<usize> = HashSet::new();
+        for (k, patch) in mesh.patches().iter().enumerate() {
+            if !patch.info.tag.is_skin() {
+                continue;
+            }
+            let pieces = |name: &Arc<str>| {
+                let object = graph.get(graph.find(name)?)?;
+                let Value::Surface(surface) = object.value()? else { return None };
+                let [u, v] = surface.joints();
+                Some((u.len() + 1) * (v.len() + 1))
+            };
+            let side = names.get(k).zip(patch.block.as_ref());
+            let side = side.filter(|(name, _)| pieces(name).is_some_and(|n| n <= MOST_PIECES));
+            let mut open_edges = [false; 4];
+            for edge in open.open.iter().filter(|e| e.patch == k && e.closes == Closes::Nothing) {
+                match (edge.edge, side) {
+                    (EdgeName::Side(n), Some((_, block))) => {
+                        let count = if n % 2 == 0 { block.nu } else { block.nv } - 1;
+                        open_edges[usize::from(n)] = edge.panels == count;
+                        if edge.panels != count {
+                            in_parts.insert(k);
+                        }
+                    }
+                    _ => {
+                        in_parts.insert(k);
+                    }
+                }
+            }
+            match side {
+                Some((name, block)) => {
+                    if in_parts.contains(&k) {
+                        open_edges = [false; 4];
+                    }
+                    let (name, reversed) = (name.clone(), block.reversed);
+                    skin.sides.push(SkinSide { name, reversed, open_edges });
+                }
+                None => {
+                    skin.faces.extend(patch.faces.clone());
+                    skin.on_panels.push(patch.info.name.clone());
+                }
+            }
+        }
+        if !in_parts.is_empty() {
+            let mirrored = |edge: &[u32; 2]| {
+                mirrors.iter().any(|&axis| {
+                    edge.iter().all(|&v| mesh.positions()[v as usize][usize::from(axis)] == 0.0)
+                })
+            };
+            let edges = mesh.open_skin_edges();
+            let edges = edges.into_iter().filter(|(patch, _)| in_parts.contains(patch));
+            skin.rims = edges.map(|(_, edge)| edge).filter(|e| !mirrored(e)).collect();
+        }
+        skin
+    }
+
+    /// The patches that are measured on their panels: they have no surface, or it has very many pieces.
+    pub fn on_panels(&self) -> &[String] {
+        &self.on_panels
+    }
+
+    /// True when nothing bounds a body.
+    pub fn is_empty(&self) -> bool {
+        self.sides.is_empty() && self.faces.is_empty()
+    }
+
+    /// The body with the scalar of `graph`; `None` when a surface has no value there, or none that is finite.
+    pub fn body<T: Scalar>(
+        &self,
+        panelling: &Panelling,
+        graph: &Graph<T>,
+        accuracy: f64,
+    ) -> Option<Body<T>> {
+        let surface = |side: &SkinSide| match graph.get(graph.find(&side.name)?)?.value()? {
+            Value::Surface(surface) => Some(surface.clone()),
+            _ => None,
+        };
+        let surfaces: Vec<_> = self.sides.iter().map(surface).collect::<Option<_>>()?;
+        let sides: Vec<Side<'_, T>> = self
+            .sides
+            .iter()
+            .zip(&surfaces)
+            .map(|(side, surface)| Side {
+                surface: &**surface,
+                reversed: side.reversed,
+                open_edges: side.open_edges,
+            })
+            .collect();
+        let mut panels: Vec<[Vec3<T>; 4]> = Vec::new();
+        let mut rims: Vec<Vec<Vec3<T>>> = Vec::new();
+        if !self.faces.is_empty() || !self.rims.is_empty() {
+            let mesh = panelling.mesh(graph)?;
+            let at = |v: u32| mesh.positions()[v as usize];
+            panels.extend(self.faces.iter().map(|&f| mesh.faces()[f].map(at)));
+            rims.extend(self.rims.iter().map(|edge| edge.map(at).to_vec()));
+        }
+        Body::new(&sides, panels, rims, self.size, accuracy)
+    }
+}

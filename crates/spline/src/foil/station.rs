@@ -1,0 +1,17 @@
+//! A place of a section, before it is laid between points.
+
+/// A place of a section, in units of the chord, of half the greatest thickness and of the greatest
+/// camber.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Station<J> {
+    /// Distance from the nose along the chord.
+    pub x: J,
+    /// Half thickness; negative on the lower side.
+    pub thickness: J,
+    /// Height of the mean line.
+    pub camber: J,
+    /// Slope of the mean line, d camber / dx, held near the nose; see [`Section::at`](super::Section::at).
+    pub slope: J,
+    /// True on the lower side.
+    pub lower: bool,
+}

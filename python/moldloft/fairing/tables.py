@@ -1,0 +1,253 @@
+"""Text of points as people have it, made plain.
+
+Aerofoils with prose, decimal commas, named columns, lengths in feet, inches and eighths.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from moldloft.errors import FairingError
+
+__all__ = ["Plain", "eighths", "length", "plain"]
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
+_SLIP = re.compile(r"[-+.\dOoIl]+")
+_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+_EIGHTHS = re.compile(r"([-\u2212]?)(\d+)-(\d+)-(\d+)([+\u00bd-]?)")
+_FEET = re.compile(
+    r"([-\u2212]?)(\d+)['\u2032]\s*-?\s*(?:(\d+)(?:\s+(\d+)/(\d+))?|(\d+)/(\d+))?\s*[\"\u2033]?"
+)
+_MISSING = frozenset(("", "x", "X", "-", "\u2013", "\u2014", "null", "nan", "NaN", "n/a"))
+
+_AXES = {
+    "x": "x",
+    "y": "y",
+    "z": "z",
+    "station": "x",
+    "half_breadth": "y",
+    "halfbreadth": "y",
+    "buttock": "y",
+    "waterline": "z",
+    "height": "z",
+}
+"""What named columns are, in the axes of a ship: x along, y across, z up."""
+
+
+def eighths(text: str) -> Fraction | None:
+    """Feet, inches and eighths as inches: ``4-5-1``; ``+`` or ``-`` is a sixteenth more or less.
+
+    Examples
+    --------
+    >>> float(eighths("4-5-1")), float(eighths("0-54-0+")), eighths("4-5")
+    (53.125, 54.0625, None)
+    """
+    found = _EIGHTHS.fullmatch(text)
+    if found is None:
+        return None
+    sign, feet, inches, parts, more = found.groups()
+    value = Fraction(12 * int(feet) + int(inches)) + Fraction(int(parts), 8)
+    value += {"+": 1, "\u00bd": 1, "-": -1}.get(more, 0) * Fraction(1, 16)
+    return -value if sign else value
+
+
+def length(text: str) -> float | None:
+    r"""A length as people write it: a number, feet-inches-eighths or feet and inches in inches.
+
+    Examples
+    --------
+    >>> length("1.5"), length("4-5-1"), length("4' 5 1/8"), length("six")
+    (1.5, 53.125, 53.125, None)
+    """
+    text = text.strip()
+    if _NUMBER.fullmatch(text):
+        return float(text.replace("d", "e").replace("D", "e"))
+    inches = eighths(text)
+    if inches is not None:
+        return float(inches)
+    feet = _FEET.fullmatch(text)
+    if feet is None:
+        return None
+    sign, whole, own, top, under, alone, below = feet.groups()
+    top, under = top or alone or "0", under or below or "1"
+    if int(under) == 0:
+        return None
+    value = Fraction(12 * int(whole) + int(own or 0)) + Fraction(int(top), int(under))
+    return float(-value if sign else value)
+
+
+@dataclass
+class Plain:
+    """Text that a reader of plain rows reads, line for line as it was, and what was done to it."""
+
+    text: str
+    head: list[str] | None = None
+    """The lines before the first row as they were."""
+    notes: list[str] = field(default_factory=list)
+    inches: bool = False
+    """Whether lengths were in feet, inches and eighths."""
+    comma: bool = False
+    """Whether numbers had decimal commas."""
+    stations: bool = False
+    """Whether the rows are offsets: their columns are station, half-breadth and height."""
+
+
+def _cells(line: str) -> list[str]:
+    """The cells of a line: between semicolons, tabs or commas, else blanks."""
+    line = line.strip().rstrip(";,\t ")
+    for sign in (";", "\t", ","):
+        if sign in line:
+            return [c.strip().strip('"').strip() for c in line.split(sign)]
+    return line.split()
+
+
+def _numbers(cells: list[str]) -> bool:
+    return bool(cells) and all(_NUMBER.fullmatch(c) for c in cells)
+
+
+def plain(text: str) -> Plain:
+    """Text made plain. What it cannot make plain stays, for the reader to refuse with its line."""
+    out = Plain(text.lstrip("\ufeff"))
+    lines = out.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = _decimal_commas(lines, out)
+    lines = _lengths(lines, out)
+    lines = _named(lines, out)
+    lines = _prose(lines, out)
+    out.text = "\n".join(lines)
+    return out
+
+
+def _decimal_commas(lines: list[str], out: Plain) -> list[str]:
+    """Numbers with decimal commas, where something else separates the columns."""
+
+    def words(line: str) -> list[str]:
+        return [w for w in re.split(r"[;\t ]+", line.strip()) if w]
+
+    rows = [w for line in lines if line.strip() and (w := words(line))]
+    inner = [w for w in rows if len(w) > 1 and all(_COMMA.fullmatch(c) or c.isdigit() for c in w)]
+    some = [c for w in inner for c in w if _COMMA.fullmatch(c)]
+    if len(inner) < 3 or not some or any("." in c for w in inner for c in w):
+        return lines
+    # `1,2 3,4` could be four whole numbers; points with blanks alone have fractions of some digits.
+    if all(len(c.partition(",")[2]) < 2 for c in some) and not any(";" in s for s in lines):
+        return lines
+    out.comma = True
+    out.notes.append("numbers are read with decimal commas")
+
+    def one(line: str) -> str:
+        if all(_COMMA.fullmatch(c) or c.lstrip("+-").isdigit() for c in words(line)):
+            return line.replace(",", ".")
+        return line
+
+    return [one(line) for line in lines]
+
+
+def _lengths(lines: list[str], out: Plain) -> list[str]:
+    """Lengths in feet, inches and eighths become inches."""
+    made = []
+    large = 0
+    for line in lines:
+        cells = _cells(line)
+        own = [_EIGHTHS.fullmatch(c) or _FEET.fullmatch(c) for c in cells]
+        values = [length(c) for c in cells]
+        if not any(own) or any(v is None for v in values):
+            made.append(line)
+            continue
+        out.inches = True
+        large += sum(1 for c in cells if (e := _EIGHTHS.fullmatch(c)) and int(e[3]) >= 12)
+        large += sum(1 for c in cells if (e := _EIGHTHS.fullmatch(c)) and int(e[4]) >= 8)
+        made.append(", ".join(repr(v) for v in values))
+    if out.inches:
+        out.notes.append("lengths in feet, inches and eighths are read as inches")
+    if large:
+        out.notes.append(f"{large} lengths have 12 inches or 8 eighths and more")
+    return made
+
+
+def _axis(name: str) -> str | None:
+    return _AXES.get(re.sub(r"[\s-]+", "_", name.strip().lower()).rstrip("s"))
+
+
+def _named(lines: list[str], out: Plain) -> list[str]:
+    """Columns by name: x, y, z or station, half-breadth and height, among others that are left."""
+    first = next((k for k, s in enumerate(lines) if s.strip() and not s.startswith("#")), None)
+    if first is None:
+        return lines
+    names = _cells(lines[first].lstrip("# "))
+    axes = [_axis(n) for n in names]
+    plain_names = [n.strip().lower() for n in names]
+    if {"x", "y"} <= set(plain_names):
+        # Beside x and y a station is a number of the section.
+        axes = [n if n in ("x", "y", "z") else None for n in plain_names]
+    known = [a for a in axes if a]
+    if len(known) < 2 or len(set(known)) != len(known):
+        if len(known) > len(set(known)):
+            raise FairingError(f"line {first + 1}: two columns of {', '.join(names)} are the same")
+        return lines
+    order = sorted((a, k) for k, a in enumerate(axes) if a)
+    station = any(n.startswith("station") for n in plain_names)
+    out.stations = station and len(known) == 3
+    if len(known) == len(names) and [k for _, k in order] == list(range(len(names))):
+        return lines
+    unused = [n for n, a in zip(names, axes, strict=True) if not a]
+    if unused:
+        word = "column" if len(unused) == 1 else "columns"
+        out.notes.append(f"{word} {', '.join(f'`{n}`' for n in unused)}: not used")
+    made = list(lines[: first + 1])
+    made[first] = ", ".join(names[k] for _, k in order)
+    for k in range(first + 1, len(lines)):
+        cells = _cells(lines[k])
+        if not lines[k].strip() or lines[k].startswith("#") or len(cells) != len(names):
+            made.append(lines[k])
+            continue
+        chosen = [cells[at] for _, at in order]
+        gone = [c for c in chosen if c in _MISSING]
+        if gone and out.stations:
+            made.append(f"# {lines[k]}")
+            out.notes.append(f"line {k + 1}: a missing cell, the row is left out")
+        else:
+            made.append(", ".join(chosen))
+    return made
+
+
+def _prose(lines: list[str], out: Plain) -> list[str]:
+    """Titles, lines of a program's own and prose round the rows of an aerofoil."""
+    rows = [k for k, s in enumerate(lines) if len(c := _cells(s)) in (2, 3) and _numbers(c)]
+    if len(rows) < 5:
+        return lines
+    first, last = rows[0], rows[-1]
+    made = list(lines)
+    own = [k for k in range(first) if lines[k].strip()]
+    odd = [k for k in own if not lines[k].startswith("#") and len(_cells(lines[k])) != 1]
+    four = [k for k in odd if len(c := _cells(lines[k])) in (4, 5) and _numbers(c)]
+    if four:
+        # The grid's box of an aerofoil for MSES.
+        out.notes.append(f"line {four[0] + 1}: four numbers before the points, not read")
+    if any("\t" in lines[k] or "," in lines[k] or ";" in lines[k] for k in odd) or four:
+        words = [c for k in odd if k not in four for c in _cells(lines[k])]
+        if not _column_names(words):
+            out.head = [lines[k].rstrip() for k in own]
+            for k in own:
+                made[k] = f"# {lines[k]}"
+    after = [k for k in range(last + 1, len(lines)) if lines[k].strip()]
+    after = [k for k in after if not lines[k].startswith("#")]
+    # A slip of the pen in a last row is no prose.
+    width = len(_cells(lines[last]))
+    slip = any(
+        len(cells := _cells(lines[k])) == width and _SLIP.fullmatch(cells[0]) is not None
+        for k in after
+    )
+    if after and not slip:
+        where = f"line {after[0] + 1}"
+        if len(after) > 1:
+            where = f"lines {after[0] + 1} to {after[-1] + 1}"
+        out.notes.append(f"{where} after the points: text, not read")
+        for k in after:
+            made[k] = f"# {lines[k]}"
+    return made
+
+
+def _column_names(words: list[str]) -> bool:
+    return bool(words) and all(_axis(w) for w in words)

@@ -1,0 +1,165 @@
+"""Points as people have them: aerofoils of the wild, decimal commas, named columns, offsets."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import moldloft
+from moldloft.errors import Error, FairingError
+from moldloft.fairing.files import points_text, read_points, sixteenths
+from moldloft.fairing.tables import length
+
+SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
+
+
+def naca(n=33):
+    s = np.linspace(-1, 1, n)
+    x = s * s
+    y = 0.2969 * abs(s) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1015 * x**4
+    return np.column_stack([x, np.sign(-s) * 0.6 * y])
+
+
+ROWS = "\n".join(f"{x:.6f}  {y:.6f}" for x, y in naca())
+
+FORMS = {
+    "selig": f"NACA 0012\n{ROWS}\n",
+    "tabs and a trailing tab": "MH 16\tMartin Hepperle\t\n" + ROWS.replace("\n", "\t   \n"),
+    "prose behind": f"HN 1\n{ROWS}\n\nModif 1.00057 ->1.00000\nDicke: 7,83 %\nhttp://a.b/c\n",
+    "prose without a blank line": f"HN 1\n{ROWS}\nsource from http://a.b/c\n20 nov 2005",
+    "the box of MSES": f"BOEING 737\n  -2.0  3.0  -2.6  3.4\n{ROWS}\n",
+    "decimal commas": "NACA 0012\n" + ROWS.replace(".", ","),
+    "semicolons": "x;y\n" + ROWS.replace("  ", ";").replace(".", ","),
+    "carriage returns": f"NACA\r\n{ROWS}\r\n".replace("\n", "\r\n").replace("\r\r", "\r"),
+    "columns by name": "name,station,y,x\n"
+    + "\n".join(f"p{k},{k % 7},{y:.6f},{x:.6f}" for k, (x, y) in enumerate(naca())),
+}
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_every_form_is_read(tmp_path, name):
+    path = tmp_path / "foil.dat"
+    path.write_bytes(FORMS[name].encode())
+    file = read_points(path)
+    assert file.points.shape == (33, 2)
+    assert np.abs(file.points - naca()).max() <= 5.1e-7
+    again = tmp_path / "again.dat"
+    again.write_text(points_text(file.points, file))
+    assert read_points(again).points.tobytes() == file.points.tobytes()
+    if "prose" in name:
+        assert any("text, not read" in note for note in file.notes)
+        assert file.head == ["HN 1"]
+    if name == "columns by name":
+        assert any("`name`, `station`" in note for note in file.notes)
+
+
+FAULTS = {
+    "a slip in the last row": (f"{ROWS}\n1.0 O.5", "found `O.5`"),
+    "a word among the rows": (ROWS.replace("\n", "\nhere ", 1) + "\n" + ROWS, "found `here`"),
+    "two columns of one name": ("x,x,y\n" + "1,2,3\n" * 6, "are the same"),
+    "the same offset twice": (
+        "station,half-breadth,height\n"
+        + "".join(f"{s},{z},{z}\n" for s in range(6) for z in range(5))
+        + "3,2,2\n",
+        "the same offset as line",
+    ),
+    "stations out of order": (
+        "station,half-breadth,height\n"
+        + "".join(f"{s},{z},{z}\n" for s in (0, 1, 3, 2, 4) for z in range(5)),
+        "station 2 is out of order after 3",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_faults_have_their_line(tmp_path, name):
+    text, words = FAULTS[name]
+    path = tmp_path / "points.csv"
+    path.write_text(text)
+    with pytest.raises(FairingError, match=r"points\.csv") as caught:
+        read_points(path)
+    assert words in str(caught.value)
+
+
+def test_feet_inches_and_eighths(tmp_path):
+    assert [length(t) for t in ("4-5-1", "0-54-0", "4-5-1+", "4' 5 1/8\"", "4' 1/8\"")] == [
+        53.125,
+        54.0,
+        53.1875,
+        53.125,
+        48.125,
+    ]
+    assert length("4-5") is None and length("x") is None
+    for sixteen in range(0, 4000, 7):
+        assert length(sixteenths(sixteen / 16)) == sixteen / 16
+    # The half-breadths of a sheer, read to eighths: the same form comes out.
+    x = 16.125 * np.arange(18)
+    y = 60 * np.sin(np.pi * (x + 40) / 350)
+    path = tmp_path / "sheer.csv"
+    rows = [f"{sixteenths(a)}, {sixteenths(round(8 * b) / 8)}" for a, b in zip(x, y, strict=True)]
+    path.write_text("# sheer\n" + "\n".join(rows) + "\n")
+    file = read_points(path)
+    assert file.inches and any("inches" in note for note in file.notes)
+    assert np.abs(file.points[:, 1] - y).max() <= 1 / 16
+    assert points_text(file.points, file).splitlines()[1:] == rows
+
+
+def hull(x, z):
+    return 0.9 * (1 - (x / 5 - 1) ** 2) * (1 - (1 - z / 1.25) ** 2)
+
+
+def test_a_table_of_offsets(cli, tmp_path):
+    """Named columns: stations and waterlines that share their points; half-breadths alone move."""
+    stations = [0, 0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 8.5, 9, 9.5, 10]
+    levels = [0, 0.1, 0.25, 0.5, 0.75, 1, 1.25]
+    rows = [(s, w, round(hull(s, w), 2)) for s in stations for w in levels]
+    text = "Station;Waterline;Half-breadth\n"
+    text += "".join(f"{s};{w};{y}\n".replace(".", ",") for s, w, y in rows)
+    path = tmp_path / "offsets.csv"
+    path.write_text(text)
+    file = read_points(path)
+    assert file.offsets and file.comma and len(file.blocks) == 15 + 7
+    done = cli("fair", path, "--tol", 0.005, "-o", "out.csv", "--json")
+    told = json.loads(done.stdout)
+    assert told["curves"] == 22 and told["shared"] == 105
+    out = read_points(tmp_path / "out.csv")
+    assert out.table is not None and out.table.shape == (105, 3)
+    before, after = file.table, out.table
+    assert (before[:, [0, 2]] == after[:, [0, 2]]).all()
+    assert np.abs(after - before).max() <= 0.005 * (1 + 1e-12)
+    truth = hull(before[:, 0], before[:, 2])
+    near = np.sqrt(((after[:, 1] - truth) ** 2).mean())
+    assert near < 0.5 * np.sqrt(((before[:, 1] - truth) ** 2).mean())
+
+
+def test_the_aerofoils_of_a_package(tmp_path):
+    """The files of a package, where it is installed: all are read, or refused with a reason."""
+    spec = importlib.util.find_spec("aerosandbox")
+    if spec is None or spec.origin is None:
+        pytest.skip("aerosandbox, which ships the files, is not installed")
+    folder = Path(spec.origin).parent / "geometry" / "airfoil" / "airfoil_database"
+    files = sorted(folder.glob("*.dat"))[:: 1 if SOAK else 60]
+    refused, flagged, beyond, bends = [], [], [], []
+    for path in files:
+        try:
+            points = read_points(path).points[:, :2]
+        except Error as error:
+            refused.append(str(error))
+            continue
+        if len(points) < 8:
+            continue
+        faired = moldloft.fair(points, 3e-4)
+        if any(f.kind == "outlier" for f in faired.findings):
+            flagged.append(path.name)
+        if faired.deviation_data > 3e-4 * (1 + 1e-9):
+            beyond.append(path.name)
+        if faired.after.inflections > faired.before.inflections:
+            bends.append(path.name)
+    assert len(refused) <= 0.02 * len(files) + 1, refused
+    assert not beyond and not bends
+    assert len(flagged) <= 0.02 * len(files) + 1, flagged

@@ -1,0 +1,79 @@
+"""The lines plan: curves on the model, labels that do not overlap, files that others read."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import moldloft
+from conftest import SAILBOAT
+from moldloft.lines_plan import _overlap, draw, lines_plan, pdf, svg
+
+
+@pytest.fixture(scope="module")
+def plan():
+    return lines_plan(moldloft.load(Path(SAILBOAT, "hull.sdl")), title="hull")
+
+
+def test_labels_are_there_and_do_not_overlap(plan):
+    words = [text.text for text in plan.texts]
+    for number in range(11):
+        assert words.count(str(number)) >= 2
+    assert {"DWL", "BL", "CL"} <= set(words) and plan.left_out == []
+    for k, a in enumerate(plan.texts):
+        assert not any(_overlap(a, b) for b in plan.texts[k + 1 :])
+    assert any(word.startswith("volume  117.45 ft³") for word in words)
+
+
+def test_the_waterline_is_that_of_the_hydrostatics(plan):
+    # The design waterline of the half-breadth plan, 27.386 ft at 1:50.
+    curves = [p.points for p in plan.paths if p.layer == "dwl" and len(p.points) > 10]
+    assert len(curves) == 1
+    length = np.ptp(curves[0][::3, 0]) * plan.scale / 304.8
+    assert length == pytest.approx(27.38620965, rel=1e-7)
+    beam = 2 * np.ptp(curves[0][:, 1]) * plan.scale / 304.8
+    assert beam == pytest.approx(9.17429864, rel=2e-3)
+
+
+def test_files(plan, tmp_path):
+    text = svg(plan).decode()
+    assert text.startswith("<svg") and 'width="420mm"' in text and text.count("<path") > 40
+    data = pdf(plan)
+    assert data == pdf(plan) and data.startswith(b"%PDF-1.7")
+    box = re.search(rb"MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", data)
+    assert float(box[1]) == pytest.approx(420 / 25.4 * 72, abs=1e-3)
+    stream = zlib.decompress(data.split(b"stream\n")[1].split(b"\nendstream")[0])
+    assert stream.count(b" c") > 500 and b"(hull) Tj" in stream
+    start = int(data.split(b"startxref\n")[1].split()[0])
+    assert data[start : start + 4] == b"xref"
+    hull = moldloft.load(Path(SAILBOAT, "hull.sdl"))
+    assert draw(hull, tmp_path / "plan.svg").read_bytes().startswith(b"<svg")
+    hull.write(tmp_path / "hull.lines.pdf", format="lines-pdf")
+    assert (tmp_path / "hull.lines.pdf").stat().st_size > 4000
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"stations": "left"}, "bow"),
+        ({"sheet": "B5"}, "unknown sheet"),
+        ({"scale": 1.0, "sheet": "A4"}, "does not fit"),
+        ({"scale": -2.0}, "positive"),
+    ],
+)
+def test_bad_requests(options, words):
+    hull = moldloft.load(Path(SAILBOAT, "hull.sdl"))
+    with pytest.raises(moldloft.Error, match=words):
+        lines_plan(hull, **options)
+
+
+def test_a_model_without_surfaces(tmp_path):
+    model = moldloft.loads("AbsPoint a(0, 0, 0);")
+    with pytest.raises(moldloft.Error, match="shows none"):
+        lines_plan(model)
+    with pytest.raises(moldloft.Error, match=r"\.jpg"):
+        draw(model, tmp_path / "plan.jpg")
