@@ -255,7 +255,7 @@ def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldlof
 
 
 def _columns(rows: Iterable[Any]) -> dict[str, list[Any]]:
-    """Records as columns; what is no number or text is left out."""
+    """Records as columns; only numbers and texts are kept."""
     columns: dict[str, list[Any]] = {}
     listed = list(rows)
     if not listed:
