@@ -6,7 +6,7 @@
 ... param float beam = 2 in [1, 3]; param float depth = 1 in [0, 2];
 ... AbsPoint A(0, beam, depth);
 ... ''')
->>> f = function(m, ["beam", "depth"], {"size": "norm(A)", "area": "A.y * A.z"})
+>>> f = function(m, ["beam", "depth"], {"size": "sqrt(A.y * A.y + A.z * A.z)", "area": "A.y * A.z"})
 >>> f([2.0, 1.0])
 array([2.23606798, 2.        ])
 >>> f.jacobian([2.0, 1.0])
