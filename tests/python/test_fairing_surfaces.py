@@ -89,7 +89,7 @@ def test_the_optimum_is_a_conic_solvers():
     faired = moldloft.fair(read, tol, **options)
     assert faired.value == pytest.approx(least, rel=1e-5)
     # The budget: one more cone.
-    budget = cp.sum_squares((bu @ c @ bv.T - read[..., 1]) / tol) <= 0.8 * (m * n - 4) / 3
+    budget = cp.sum_squares((bu @ c @ bv.T - read[..., 1]) / tol) <= 0.8 * m * n / 3
     cp.Problem(cp.Minimize(wanted), [*inside, budget]).solve(solver="CLARABEL")
     faired = moldloft.fair(read, tol, **{**options, "goal": "budget"})
     assert faired.value == pytest.approx(float(wanted.value) * size, rel=1e-5)

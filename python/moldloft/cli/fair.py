@@ -225,12 +225,12 @@ def _goal(text: str) -> Any:
     word, equals, share = text.partition("=")
     if word not in ("near", "fairest", "budget", "nearest"):
         raise argparse.ArgumentTypeError(
-            f"`{word}` is no goal; there are: near, fairest, budget=SHARE, nearest=SHARE"
+            f"`{word}` is not a goal; there are: near, fairest, budget=SHARE, nearest=SHARE"
         )
     try:
         return (word, float(share)) if equals else word
     except ValueError:
-        raise argparse.ArgumentTypeError(f"`{share}` is no share") from None
+        raise argparse.ArgumentTypeError(f"`{share}` is not a number") from None
 
 
 def _vector(text: str) -> list[float]:

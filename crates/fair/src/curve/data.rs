@@ -31,7 +31,7 @@ pub struct Data {
 /// What is wanted.
 #[derive(Clone, Debug)]
 pub struct DataOptions {
-    /// What there is to be little of.
+    /// The measure to minimise.
     pub measure: Measure,
     /// Which of the curves.
     pub goal: Goal,
@@ -55,7 +55,7 @@ pub struct DataFit {
     pub residuals: Vec<f64>,
     /// The mean of the squared residuals over the tolerances, over 1/3.
     pub used: f64,
-    /// The measure of the curve, and what is left to gain among the curves within the tolerances
+    /// The measure of the curve, and the optimality gap among the curves within the tolerances
     /// whose residuals are no larger in the sum of squares.
     pub certificate: Certificate,
     /// The least of the measure within the tolerances.

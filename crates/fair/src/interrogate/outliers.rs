@@ -3,7 +3,7 @@
 //! Each point is left out and predicted by a cubic through its neighbours, five on either side, by
 //! their chord lengths. What is off along the curve is a matter of spacing and no finding; what is
 //! off across it is set against a scale of the neighbourhood that the whole file moderates (Smyth
-//! 2004). A knuckle is told from a wrong digit by leaving the point out: that cures a wrong digit.
+//! 2004). A knuckle differs from a wrong digit: leaving the point out cures a wrong digit.
 
 use moldloft_num::Vec3;
 

@@ -218,7 +218,7 @@ pub fn inflections(samples: &[Sample]) -> usize {
     changes + usize::from(last.is_some() && ends_straight)
 }
 
-/// The turn of the tangent, in radians, below which a reversal is no inflection.
+/// The turn of the tangent, in radians, below which a reversal is not counted as an inflection.
 const LEAST_TURN: f64 = 1e-4;
 
 /// How often a plane curve turns back: the reversals of its tangent's turning by more than a

@@ -43,7 +43,7 @@ pub struct GridFit {
     pub residuals: Vec<f64>,
     /// The mean of the squared residuals over the tolerances, over 1/3.
     pub used: f64,
-    /// The measure of the surface and what is left to gain; see [`crate::DataFit`].
+    /// The measure of the surface and the optimality gap; see [`crate::DataFit`].
     pub certificate: Certificate,
     /// The measure of the surface through the data.
     pub before: f64,

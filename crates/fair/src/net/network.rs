@@ -496,7 +496,7 @@ impl Network {
         moved(&parts, &solved, goal, &found, &pull, moving)
     }
 
-    /// Which points stand still in the joint optimum.
+    /// Which points do not move in the joint optimum.
     fn frozen(&self) -> Vec<bool> {
         let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();
         let marked = self.strands.iter().flat_map(|s| s.marks.iter().map(|&m| s.points[m]));

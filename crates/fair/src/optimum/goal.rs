@@ -85,7 +85,7 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    /// The original itself; nothing is left to gain where nothing may move.
+    /// The original itself; the gap is 0 where nothing may move.
     pub fn unmoved(points: &[Vec3<f64>], value: f64, still: bool) -> Self {
         let certificate = Certificate { value, gap: if still { 0.0 } else { value } };
         let optimum = Optimum { points: points.to_vec(), certificate, iterations: 0, active: 0 };

@@ -202,7 +202,7 @@ pub(crate) struct Parts<'a> {
 }
 
 impl DataLimits {
-    /// The limits that say something: neither without end nor on what stands still.
+    /// The limits that say something: neither infinite nor on points that do not move.
     fn used<'a>(&'a self, frozen: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
         (0..self.rows.len()).filter(|&k| {
             self.radii[k].is_finite() && self.rows.row(k).0.iter().any(|&c| !frozen[c as usize])
