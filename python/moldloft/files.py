@@ -16,7 +16,16 @@ from moldloft.formats import formats
 if TYPE_CHECKING:
     from moldloft.models import Model
 
-__all__ = ["FORMATS", "SOLVERS", "Output", "commit", "file_name", "format_named", "produce"]
+__all__ = [
+    "FORMATS",
+    "SOLVERS",
+    "Output",
+    "commit",
+    "ending",
+    "file_name",
+    "format_named",
+    "produce",
+]
 
 FORMATS = {row.name: row.about for row in formats().values()}
 """The formats by name, with a line about each; all about them is in :mod:`moldloft.formats`."""
@@ -51,6 +60,19 @@ def file_name(stem: str, format: str) -> str:
     ('hull.gdf', 'hull.mar')
     """
     return _row(format).file_name(stem)
+
+
+def ending(path: Path) -> str:
+    """What the name of a file says of its format: its ending, or the format of a longer one.
+
+    >>> ending(Path("hull.gdf")), ending(Path("hull.high.gdf")), ending(Path("hull"))
+    ('gdf', 'gdf-high', '')
+    """
+    name = path.name.lower()
+    for row in formats().values():
+        if "." in row.suffix and name.endswith(f".{row.suffix}"):
+            return row.name
+    return path.suffix.lstrip(".").lower()
 
 
 def produce(

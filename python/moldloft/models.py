@@ -401,7 +401,10 @@ class Model:
         return Mesh(self._document.mesh(wanted), symmetry=self.symmetry)
 
     def junctions(self) -> list[_core.Diagnostic]:
-        """Corners of patches that lie on edges of other patches and are not joined to them."""
+        """Edges of patches in one place, and corners on edges of others, that are not joined.
+
+        Each is an error: the mesh is open where the shape is closed.
+        """
         return self._document.junctions()
 
     def blocks(self) -> Blocks:
@@ -885,10 +888,10 @@ class Model:
         list of pathlib.Path
             The files written; some formats take several.
         """
-        from moldloft.files import commit, produce
+        from moldloft.files import commit, ending, produce
 
         path = Path(path)
-        wanted = format or path.suffix.lstrip(".")
+        wanted = format or ending(path)
         names = [tags] if isinstance(tags, str) else list(tags)
         files = produce(
             self,

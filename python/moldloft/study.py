@@ -77,7 +77,7 @@ class Function:
         try:
             found: Floats = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
         except (TypeError, ValueError):
-            raise Error(f"output `{name}` is no number, vector or array") from None
+            raise Error(f"output `{name}` is not a number, vector or array") from None
         return found
 
     def _set(self, x: ArrayLike) -> None:

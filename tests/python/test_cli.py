@@ -165,6 +165,30 @@ def test_sections_of_a_set(cli, tmp_path):
     assert drawing.count("<path") + drawing.count("<poly") >= 2
 
 
+def test_files_are_what_their_names_say(cli, tmp_path):
+    (tmp_path / "a.sdl").write_text("AbsPoint A(0, 0, 0);")
+    for name in ("a.jpg", "a.svg"):
+        assert "PNG" in cli("render", "a.sdl", "-o", name, status=1).stderr
+        assert not (tmp_path / name).exists()
+    (tmp_path / "a.gdf").write_text("title")
+    assert "not a model" in cli("convert", "a.gdf", status=1).stderr
+    assert "not a model" in cli("check", "a.gdf", status=1).stderr
+
+
+def test_check_states_the_line_that_joins(cli, tmp_path):
+    text = """AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(4, 1, 0);
+        AbsPoint P(0, 0, 0); AbsPoint Q(4, 0, 0); AbsPoint E(0, -1, 0); AbsPoint F(4, -1, 0);
+        Line ab(A, B); Line qp(Q, P); Line cd(C, D); Line ef(F, E);
+        RuledSurf top(ab, cd); RuledSurf low(ef, qp);"""
+    (tmp_path / "two.sdl").write_text(text)
+    said = cli("check", "two.sdl", status=1)
+    assert "edges-not-joined" in said.stderr + said.stdout
+    line = "Join j(top.v0, low.v1);"
+    assert line in said.stderr + said.stdout
+    (tmp_path / "one.sdl").write_text(text + line)
+    assert "no errors" in cli("check", "one.sdl").stdout
+
+
 def test_doc(cli):
     rows = strict(cli("doc", "--list", "--json").stdout)
     kinds = {row["name"]: row for row in rows}
@@ -173,6 +197,9 @@ def test_doc(cli):
     assert {"name", "class", "help", "required"} <= curve["fields"][0].keys()
     assert all(row["summary"] for row in rows)
     assert "BCurve" in cli("doc", "BCurve").stdout
+    page = cli("doc", "Component").stdout
+    assert page.startswith("Component name(") and "keel.tip" in page
+    assert "`Component`" in cli("doc", "Componnt", status=1).stderr
     assert "`BCurve`" in cli("doc", "BCurv", status=1).stderr
     wanted = """AbsPoint RelPoint MirrPoint ProjPoint AbsBead RelBead AbsMagnet AbsRing Line Arc
         BCurve CCurve SubCurve MirrCurve LineSnake BSnake EdgeSnake UVSnake RuledSurf BLoftSurf

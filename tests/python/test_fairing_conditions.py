@@ -132,7 +132,7 @@ def test_surfaces_keep_rims_points_and_areas(cli, tmp_path):
         "--through", f"0.3,0.6={','.join(map(repr, place.tolist()))}", "--keep", "volume",
         "-o", "hull.p3d",
     )  # fmt: skip
-    assert data["deviation_certified"] <= 2e-4
+    assert data["deviation_data"] <= 2e-4 * (1 + 1e-9)
     error = cli("fair", DATA / "wigley.p3d", "--tol", "1", "--rims", "soft", status=1).stderr
     assert "`soft`" in error and "tangent" in error
     error = cli("fair", DATA / "wigley.p3d", "--tol", "1", "--rims", "w=tangent", status=1).stderr

@@ -26,6 +26,16 @@ def rust_rows() -> list[formats.Format]:
     return [row for row in formats.formats().values() if not row.writer]
 
 
+def test_a_longer_ending_names_its_format(tmp_path: Path) -> None:
+    model = moldloft.loads(SHIP)
+    model.write(tmp_path / "ship.high.gdf")
+    model.write(tmp_path / "other.gdf", format="gdf-high")
+    (long, other) = ((tmp_path / name).read_bytes() for name in ("ship.high.gdf", "other.gdf"))
+    assert long.splitlines()[1:] == other.splitlines()[1:]
+    model.write(tmp_path / "ship.gdf")
+    assert (tmp_path / "ship.gdf").read_bytes().splitlines()[1:] != long.splitlines()[1:]
+
+
 def test_the_docs_have_the_table() -> None:
     page = (ROOT / "docs" / "formats.md").read_text(encoding="utf-8")
     assert formats.markdown() in page, "write it anew: python -m moldloft.formats"

@@ -128,7 +128,6 @@ export class View {
     this.canvas = this.renderer.domElement
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
     host.append(this.canvas)
-    this.image.scale.y = -1
     this.scene.add(this.model, this.image, this.extras)
     const material = new ShaderMaterial({
       uniforms: { pixels: { value: 7 * this.renderer.getPixelRatio() } },
@@ -375,11 +374,30 @@ export class View {
     g.setAttribute('big', new BufferAttribute(big, 1))
   }
 
-  /** The half that is not in the model, shown dimmed. */
+  /** The halves, or three quarters, that are not in the model. */
   private reflect(): void {
     this.image.clear()
-    this.image.visible = this.mirror && this.symmetry.includes('y')
+    const planes = [0, 1, 2].filter((k) => this.symmetry.includes('xyz'[k]))
+    this.image.visible = this.mirror && planes.length > 0
     if (!this.image.visible) return
+    const own = this.bounds.clone()
+    for (let which = 1; which < 1 << planes.length; which++) {
+      const image = new Group()
+      const box = own.clone()
+      planes.forEach((axis, k) => {
+        if (!((which >> k) & 1)) return
+        image.scale.setComponent(axis, -1)
+        const [low, high] = [box.min.getComponent(axis), box.max.getComponent(axis)]
+        box.min.setComponent(axis, -high)
+        box.max.setComponent(axis, -low)
+      })
+      this.twins(image)
+      this.image.add(image)
+      this.bounds.union(box)
+    }
+  }
+
+  private twins(image: Group): void {
     for (const item of this.items.values()) {
       if (!item.group.visible || item.kind === 'point' || item.kind === 'frame') continue
       const twin = new Group()
@@ -390,11 +408,8 @@ export class View {
         owners.set(copy, item)
         twin.add(copy)
       }
-      this.image.add(twin)
+      image.add(twin)
     }
-    const low = this.bounds.clone()
-    ;[low.min.y, low.max.y] = [-this.bounds.max.y, -this.bounds.min.y]
-    this.bounds.union(low)
   }
 
   /** Numbers at the vertices of patches, as colours. */

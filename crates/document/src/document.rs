@@ -421,7 +421,8 @@ impl Document {
         all
     }
 
-    /// Corners of patches that lie on open edges of others without being joined to them, for checks.
+    /// Edges of patches that lie in one place, and corners on open edges of others, that are not joined:
+    /// errors, for checks.
     ///
     /// # Errors
     /// When there would be too many panels.
@@ -432,8 +433,8 @@ impl Document {
     }
 
     fn told(&self, remark: &moldloft_panel::PanelNote) -> Diagnostic {
-        let mut diagnostic =
-            Diagnostic::warning(remark.id(), remark.to_string()).help(remark.help());
+        let severity = if remark.is_error() { Diagnostic::error } else { Diagnostic::warning };
+        let mut diagnostic = severity(remark.id(), remark.to_string()).help(remark.help());
         let object =
             remark.object().and_then(|name| self.plain.graph.get(self.plain.graph.find(name)?));
         if let Some(object) = object {

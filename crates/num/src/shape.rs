@@ -73,6 +73,12 @@ pub trait Curve<T: Real>: Send + Sync {
         Trace::own()
     }
 
+    /// The curve object of which this is the image, point by point at equal parameters, under a map of
+    /// space. For joins: images of one curve that lie in one place are one.
+    fn image_of(&self) -> Option<Key> {
+        None
+    }
+
     /// The curve in the parameter plane of the surface it lies on: (u(t), v(t), 0), for snakes.
     fn on_surface(&self, _t: T, _order: Order) -> Option<CurveJet<T>> {
         None
@@ -148,6 +154,14 @@ pub trait Surface<T: Real>: Send + Sync {
     /// direction of increasing parameter.
     fn edges(&self) -> Edges<T> {
         Edges::own()
+    }
+
+    /// The objects, or parts of objects, that alone determine the shape of an edge of the surface's own
+    /// (0..4): the points that a loft's line across its masters passes, the point that is turned to a
+    /// circle, the curve that is moved. Empty when there are none such. For joins: edges made of the same
+    /// things that lie in one place are one.
+    fn edge_made_of(&self, _k: usize) -> Vec<Key> {
+        Vec::new()
     }
 
     /// The surface object of which this is the image, point by point at equal parameters, under a
@@ -307,6 +321,11 @@ pub trait CurveFormula: Send + Sync {
         Trace::own()
     }
 
+    /// See [`Curve::image_of`].
+    fn image_of(&self) -> Option<Key> {
+        None
+    }
+
     /// See [`Curve::rational`].
     fn rational(&self) -> Rational<1> {
         Rational::none()
@@ -326,6 +345,10 @@ impl<F: CurveFormula> Curve<F::Scalar> for F {
     fn trace(&self) -> Trace<F::Scalar> {
         CurveFormula::trace(self)
     }
+    fn image_of(&self) -> Option<Key> {
+        CurveFormula::image_of(self)
+    }
+
     fn rational(&self) -> Rational<1> {
         CurveFormula::rational(self)
     }
@@ -352,6 +375,11 @@ pub trait SurfaceFormula: Send + Sync {
     /// See [`Surface::edges`].
     fn edges(&self) -> Edges<Self::Scalar> {
         Edges::own()
+    }
+
+    /// See [`Surface::edge_made_of`].
+    fn edge_made_of(&self, _k: usize) -> Vec<Key> {
+        Vec::new()
     }
 
     /// See [`Surface::joints`].
@@ -383,6 +411,10 @@ impl<F: SurfaceFormula> Surface<F::Scalar> for F {
     fn edges(&self) -> Edges<F::Scalar> {
         SurfaceFormula::edges(self)
     }
+    fn edge_made_of(&self, k: usize) -> Vec<Key> {
+        SurfaceFormula::edge_made_of(self, k)
+    }
+
     fn joints(&self) -> [Vec<f64>; 2] {
         SurfaceFormula::joints(self)
     }

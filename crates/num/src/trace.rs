@@ -7,9 +7,61 @@
 use crate::Real;
 use smallvec::{SmallVec, smallvec};
 
-/// The identity of a named object, given out by the model. Opaque here.
+/// The identity of a named object, given out by the model, or of a part of one that has no name of its
+/// own: a corner or an edge of a surface, an end of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Key(pub u32);
+
+/// What a [`Key`] names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Named {
+    /// An object.
+    Object(Key),
+    /// Corner 0..4, (u,v) = (0,0), (1,0), (1,1), (0,1), of a surface object.
+    Corner(Key, usize),
+    /// Edge 0..4 (v = 0, u = 1, v = 1, u = 0) of a surface object.
+    Edge(Key, usize),
+    /// The begin (0) or the end (1) of a curve object.
+    End(Key, usize),
+}
+
+/// Objects have numbers below this; a part has its kind above them.
+const PART: u32 = 1 << 28;
+
+impl Key {
+    fn part(self, kind: u32) -> Option<Key> {
+        (self.0 < PART).then(|| Key(self.0 + PART * kind))
+    }
+
+    /// The identity of corner `k` of this surface; none for what is not an object.
+    pub fn corner(self, k: usize) -> Option<Key> {
+        self.part(1 + k as u32)
+    }
+
+    /// The identity of edge `k` of this surface.
+    pub fn edge(self, k: usize) -> Option<Key> {
+        self.part(5 + k as u32)
+    }
+
+    /// The identity of the begin (0) or the end (1) of this curve.
+    pub fn end(self, k: usize) -> Option<Key> {
+        self.part(9 + k as u32)
+    }
+
+    /// What it names.
+    pub fn named(self) -> Named {
+        let of = Key(self.0 % PART);
+        match (self.0 / PART) as usize {
+            kind @ 1..=4 => Named::Corner(of, kind - 1),
+            kind @ 5..=8 => Named::Edge(of, kind - 5),
+            kind @ 9..=10 => Named::End(of, kind - 9),
+            _ => Named::Object(self),
+        }
+    }
+}
+
+/// The corners at which edge 0..4 of a surface begins and ends.
+pub const EDGE_CORNERS: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
 
 /// The identity of a root: an object itself, or one of the four edges of a surface object that
 /// has no curve of its own there.
@@ -24,6 +76,22 @@ pub enum Root {
     Segment(Key, Key),
     /// The same from the first to the second, run by a law (the third): t is the law's argument.
     Governed(Key, Key, Key),
+}
+
+impl Root {
+    /// The begin or the end of the root, at t = 0 or 1, as far as the root itself names it.
+    pub fn end(self, t: f64) -> Option<Key> {
+        let k = match t {
+            0.0 => 0,
+            1.0 => 1,
+            _ => return None,
+        };
+        match self {
+            Root::Curve(key) => key.end(k),
+            Root::Edge(key, edge) => key.corner(EDGE_CORNERS[usize::from(edge)][k]),
+            Root::Segment(a, b) | Root::Governed(a, b, _) => Some([a, b][k]),
+        }
+    }
 }
 
 /// Where a piece begins or ends on its root.

@@ -1,6 +1,7 @@
 //! What takes part in a panelling: shown surfaces, hidden originals of images, borders of sheets.
 
 use crate::border_curves::{self, BorderCounts};
+use crate::knuckles::knuckles;
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_registry::{Scalar, SurfaceRef, Value};
@@ -45,6 +46,8 @@ pub(crate) struct Draft<'g> {
     pub surface: SurfaceRef<f64>,
     pub border_curve: Option<BorderCounts>,
     pub edges: Edges<f64>,
+    /// The parameters u and v of its knuckles.
+    pub knuckles: [Vec<f64>; 2],
     /// The draft of which it is the image, and the number of the map.
     pub image: Option<(usize, u32)>,
     /// False for a hidden surface of which a shown one is the image.
@@ -81,8 +84,23 @@ pub(crate) fn drafts(graph: &Graph<f64>) -> Vec<Draft<'_>> {
     let mut drafts: Vec<Draft> = Vec::new();
     let draft = |object, meshed| {
         let surface = surface_of(object)?.clone();
-        let (edges, reversed) = (surface.edges(), reversed(graph, object));
-        Some(Draft { object, surface, border_curve: None, edges, image: None, meshed, reversed })
+        let (mut edges, reversed) = (surface.edges(), reversed(graph, object));
+        // Corners that are no point objects go by their own names.
+        for (k, corner) in edges.corners.iter_mut().enumerate() {
+            *corner = corner.or_else(|| object.key.corner(k));
+        }
+        let knuckles = knuckles(&*surface);
+        let border_curve = None;
+        Some(Draft {
+            object,
+            surface,
+            border_curve,
+            edges,
+            knuckles,
+            image: None,
+            meshed,
+            reversed,
+        })
     };
     let mut by_key = HashMap::new();
     for object in graph.objects().filter(|o| o.head.shown()) {
@@ -124,6 +142,7 @@ pub(crate) fn drafts(graph: &Graph<f64>) -> Vec<Draft<'_>> {
                 edges: surface.edges(),
                 surface,
                 border_curve: Some(counts),
+                knuckles: Default::default(),
                 image: None,
                 meshed: false,
                 reversed: false,

@@ -86,9 +86,11 @@ pub(crate) fn along_edge<T: Real>(
                 let to = match segment.until {
                     _ if at + 1 == segments.len() => T::one(),
                     Stop::Piece(p) => pieces.get(usize::from(p))?.until,
-                    Stop::Inside(p, source) => {
+                    Stop::Inside(p, source, turned) => {
                         let piece = pieces.get(usize::from(p))?;
+                        // On the root that both have, and from there to the piece's own.
                         let t = parameter(source, places)?;
+                        let t = if source.turned() == turned { t } else { -t + 1.0 };
                         let share = (t - piece.from.t) / (piece.to.t - piece.from.t);
                         begin(p) + (piece.until - begin(p)) * share
                     }
@@ -104,14 +106,20 @@ pub(crate) fn along_edge<T: Real>(
 
 fn parameter<T: Real>(source: MarkSource, places: &impl PatchLookup<T>) -> Option<T> {
     match source {
-        MarkSource::Bead(key) | MarkSource::Magnet(key, _) => {
-            on_its_root(places.point(key)?, source)
+        MarkSource::Bead { point, .. } | MarkSource::Magnet { point, .. } => {
+            on_its_root(places.point(point)?, source)
         }
-        MarkSource::Piece { draft, edge, piece, end } => {
+        MarkSource::Piece { draft, edge, piece, end, .. } => {
             let k = usize::from(edge);
             let pieces = pieces(&places.edges(draft)?.edges[k], places.owner(draft), k)?;
             let piece = pieces.get(usize::from(piece))?;
             Some(if end { piece.to.t } else { piece.from.t })
+        }
+        MarkSource::Knuckle { draft, edge, piece, share, .. } => {
+            let k = usize::from(edge);
+            let pieces = pieces(&places.edges(draft)?.edges[k], places.owner(draft), k)?;
+            let piece = pieces.get(usize::from(piece))?;
+            Some(piece.from.t + (piece.to.t - piece.from.t) * share)
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::draft::indices;
 use crate::join::Joiner;
 use crate::notes::PanelNote;
 use crate::orientation::{FreeEdge, Orientation};
-use crate::topology::PanelTopology;
+use crate::topology::{EdgeRun, PanelTopology};
 use moldloft_mesh::{MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_num::Vec3;
 use std::collections::HashMap;
@@ -105,6 +105,7 @@ impl JoinedPatches {
         const NONE: u32 = u32::MAX;
         let mut owner: Vec<(u32, Vec3)> = vec![(NONE, Vec3::zero()); self.count as usize];
         let mut worst: HashMap<(u32, u32), (f64, Vec3)> = HashMap::new();
+        let allowed = self.allowed(structure);
         for (patch, frame) in structure.patches.iter().enumerate() {
             for k in (0..4).flat_map(|k| indices(frame.divisions, k)) {
                 let p = points[patch][k];
@@ -113,7 +114,8 @@ impl JoinedPatches {
                     *slot = (patch as u32, p);
                 }
                 let distance = p.distance(slot.1);
-                if distance > JOIN_ACCURACY * size {
+                let near = allowed.get(&self.vertices[patch][k]).copied().unwrap_or(0.0);
+                if distance > (JOIN_ACCURACY * size).max(near) {
                     let entry = worst.entry((slot.0, patch as u32)).or_insert((0.0, p));
                     if distance > entry.0 {
                         *entry = (distance, p);
@@ -131,6 +133,30 @@ impl JoinedPatches {
                 PanelNote::Apart { patches, distance, at }
             })
             .collect()
+    }
+}
+
+impl JoinedPatches {
+    /// How far apart the positions of vertices on declared joins may be.
+    fn allowed(&self, structure: &PanelTopology) -> HashMap<u32, f64> {
+        let mut allowed: HashMap<u32, f64> = HashMap::new();
+        if structure.declared.is_empty() {
+            return allowed;
+        }
+        let declared: HashMap<_, f64> = structure.declared.iter().copied().collect();
+        for (patch, frame) in structure.patches.iter().enumerate() {
+            for (k, run) in frame.runs.iter().enumerate() {
+                let EdgeRun::Along(spans) = run else { continue };
+                let tolerances =
+                    spans.iter().filter_map(|(span, _)| declared.get(&span.interval?).copied());
+                let Some(near) = tolerances.reduce(f64::max) else { continue };
+                for at in indices(frame.divisions, k as u8) {
+                    let slot = allowed.entry(self.vertices[patch][at]).or_insert(0.0);
+                    *slot = slot.max(near);
+                }
+            }
+        }
+        allowed
     }
 }
 

@@ -59,6 +59,21 @@ pub enum PanelNote {
         /// Where.
         at: Vec3,
     },
+    /// Two edges of patches lie in one place but are not joined.
+    Unjoined {
+        /// The patches; twice the same for one that closes.
+        patches: [String; 2],
+        /// Their edges 0..4 (v = 0, u = 1, v = 1, u = 0).
+        edges: [u8; 2],
+        /// So many panels of the first edge lie on the second.
+        panels: usize,
+        /// Their length.
+        length: f64,
+        /// True when both edges lie on each other from end to end.
+        whole: bool,
+        /// Where it begins.
+        at: Vec3,
+    },
     /// The border of a sheet of triangles crosses itself, or has no area, with the divisions that its
     /// neighbours have; so it joins none of them.
     Border {
@@ -80,13 +95,30 @@ impl PanelNote {
             }
             PanelNote::Apart { .. } => "edges-apart",
             PanelNote::Junction { .. } => "corner-not-joined",
+            PanelNote::Unjoined { .. } => "edges-not-joined",
             PanelNote::Border { .. } => "border-not-joined",
         }
     }
 
+    /// True for what opens the mesh where the shape is closed.
+    pub fn is_error(&self) -> bool {
+        matches!(self, PanelNote::Junction { .. } | PanelNote::Unjoined { .. })
+    }
+
     /// The remedy.
-    pub fn help(&self) -> &'static str {
-        match self {
+    pub fn help(&self) -> String {
+        let text = match self {
+            PanelNote::Unjoined { patches: [a, b], edges: [k, l], whole: true, .. } => {
+                let edge = |k: u8| ["v0", "u1", "v1", "u0"][usize::from(k) % 4];
+                return format!(
+                    "write `Join j({a}.{}, {b}.{});`, or build both on the same curve or points",
+                    edge(*k),
+                    edge(*l)
+                );
+            }
+            PanelNote::Unjoined { .. } => {
+                "let both edges run along parts of one curve, between beads on it"
+            }
             PanelNote::Divisions { .. } => {
                 "state the count once and leave it out (or write 0) elsewhere on the chain"
             }
@@ -105,7 +137,8 @@ impl PanelNote {
             }
             PanelNote::Border { .. } => "give it, or its neighbours, more divisions",
             PanelNote::More(_) => "fix those that are reported first",
-        }
+        };
+        text.to_string()
     }
 
     /// The object that it is reported with.
@@ -114,7 +147,9 @@ impl PanelNote {
             PanelNote::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
             PanelNote::Pieces { patch, .. } | PanelNote::Border { patch, .. } => Some(patch),
             PanelNote::Apart { patches, .. } => Some(&patches[1]),
-            PanelNote::Junction { patches, .. } => Some(&patches[0]),
+            PanelNote::Junction { patches, .. } | PanelNote::Unjoined { patches, .. } => {
+                Some(&patches[0])
+            }
             PanelNote::More(_) => None,
         }
     }
@@ -179,6 +214,19 @@ impl std::fmt::Display for PanelNote {
                     "the corner (u, v) = ({u}, {v}) of `{a}` {how} edge {edge} of `{b}` at {along} = \
                      {t:.6} but is not joined to it, at ({}, {}, {})",
                     at.x, at.y, at.z
+                )
+            }
+            PanelNote::Unjoined { patches: [a, b], edges: [k, l], panels, length, at, .. } => {
+                let edge = |k: u8| ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(k) % 4];
+                write!(
+                    f,
+                    "edge {} of `{a}` and edge {} of `{b}` lie in one place along {panels} panels \
+                     ({length:.6} long, from ({}, {}, {})) but are not joined",
+                    edge(*k),
+                    edge(*l),
+                    at.x,
+                    at.y,
+                    at.z
                 )
             }
             PanelNote::Border { patch, divisions } => {

@@ -11,6 +11,7 @@
 
 use crate::draft::{drafts, indices};
 use crate::edges::{self, EdgePlan, along_edge};
+use crate::identity::Identities;
 use crate::joined_patches::JoinedPatches;
 use crate::notes::PanelNote;
 use crate::patch_values::{PatchValues, evaluated_all, names};
@@ -84,8 +85,11 @@ impl Panelling {
         nominal: Option<&Nominal>,
         before: Option<&Panelling>,
     ) -> Result<Self, CallError> {
-        let drafts = drafts(graph);
-        let made = topology::solve(graph, Roots::new(graph, &drafts), &drafts, nominal);
+        let mut drafts = drafts(graph);
+        let identities = Identities::new(graph, &drafts);
+        identities.collapse(&mut drafts);
+        let roots = Roots::new(graph, &drafts, identities);
+        let made = topology::solve(graph, roots, &drafts, nominal);
         let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
         let mut bodies = triangle_bodies::bodies(graph);
         let total = made.structure.patches.iter().map(count).sum::<u64>()

@@ -49,8 +49,9 @@ pub(crate) fn names(graph: &Graph<f64>, structure: &PanelTopology) -> HashMap<Ke
     for plan in structure.patches.iter().flat_map(|f| &f.plans) {
         let EdgePlan::Segments(segments) = plan else { continue };
         for segment in segments {
-            if let Stop::Inside(_, source) = segment.until
-                && let MarkSource::Bead(key) | MarkSource::Magnet(key, _) = source
+            if let Stop::Inside(_, source, _) = segment.until
+                && let MarkSource::Bead { point: key, .. } | MarkSource::Magnet { point: key, .. } =
+                    source
                 && let Some(object) = graph.get(key)
             {
                 names.insert(key, object.name.clone());

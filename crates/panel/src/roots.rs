@@ -5,6 +5,7 @@
 //! neighbours of a part have their corners among the vertices of the whole.
 
 use crate::draft::Draft;
+use crate::identity::Identities;
 use moldloft_model::Graph;
 use moldloft_num::Real;
 use moldloft_num::trace::{Edge, Key, Mark, Piece, Root};
@@ -20,11 +21,25 @@ const SAME_MARK: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MarkSource {
     /// The begin or end of a piece of an edge of a patch.
-    Piece { draft: u32, edge: u8, piece: u16, end: bool },
+    Piece { draft: u32, edge: u8, piece: u16, end: bool, turned: bool },
     /// A bead or ring, by its object.
-    Bead(Key),
+    Bead { point: Key, turned: bool },
     /// A magnet on an edge, 0..4, of its surface.
-    Magnet(Key, u8),
+    Magnet { point: Key, edge: u8, turned: bool },
+    /// A knuckle of a patch that crosses a piece of an edge at a share of its way.
+    Knuckle { draft: u32, edge: u8, piece: u16, share: f64, turned: bool },
+}
+
+impl MarkSource {
+    /// True when the parameter that is had there runs against the root.
+    pub fn turned(self) -> bool {
+        match self {
+            MarkSource::Piece { turned, .. }
+            | MarkSource::Bead { turned, .. }
+            | MarkSource::Knuckle { turned, .. }
+            | MarkSource::Magnet { turned, .. } => turned,
+        }
+    }
 }
 
 /// A place on a root that some patch ends at.
@@ -59,6 +74,7 @@ pub(crate) struct Roots {
     start: Vec<u32>,
     places: Vec<RootPlace>,
     roots: Vec<Root>,
+    identities: Identities,
 }
 
 /// A part of an edge that is one stretch of a root, or a point.
@@ -79,8 +95,8 @@ pub(crate) struct EdgeInterval {
 pub(crate) enum Stop {
     /// Where a piece ends.
     Piece(u16),
-    /// Inside a piece, at a mark of its root.
-    Inside(u16, MarkSource),
+    /// Inside a piece, at a mark of its root; true for a piece that runs on a root against its own.
+    Inside(u16, MarkSource, bool),
 }
 
 struct RawMark {
@@ -92,29 +108,56 @@ struct RawMark {
 
 impl Roots {
     /// All places that edges and corners of the patches mark.
-    pub fn new(graph: &Graph<f64>, drafts: &[Draft]) -> Self {
-        let mut all = Self::default();
+    pub fn new(graph: &Graph<f64>, drafts: &[Draft], identities: Identities) -> Self {
+        let mut all = Self { identities, ..Self::default() };
         let mut raw = Vec::new();
         for (d, draft) in drafts.iter().enumerate() {
             for (k, edge) in draft.edges.edges.iter().enumerate() {
                 let Some(pieces) = pieces(edge, draft.object.key, k) else { continue };
                 for (p, piece) in pieces.iter().enumerate() {
+                    let (piece, turned) = all.identities.piece(piece);
                     for (end, mark) in [piece.from, piece.to].into_iter().enumerate() {
                         let source = MarkSource::Piece {
                             draft: d as u32,
                             edge: k as u8,
                             piece: p as u16,
                             end: end == 1,
+                            turned,
                         };
                         let root = all.id(piece.root);
                         raw.push(RawMark { root, t: mark.t + 0.0, point: mark.point, source });
                     }
+                }
+                for &at in &draft.knuckles[k % 2] {
+                    let Some((p, share)) = share_of(&pieces, at) else { continue };
+                    let (piece, turned) = all.identities.piece(&pieces[p]);
+                    let t = piece.from.t + (piece.to.t - piece.from.t) * share;
+                    let (draft, edge, piece_at) = (d as u32, k as u8, p as u16);
+                    let source =
+                        MarkSource::Knuckle { draft, edge, piece: piece_at, share, turned };
+                    let root = all.id(piece.root);
+                    raw.push(RawMark { root, t: t + 0.0, point: None, source });
                 }
             }
         }
         all.mark_points(graph, drafts, &mut raw);
         all.sort(raw);
         all
+    }
+
+    /// True when joins are declared.
+    pub fn has_declared(&self) -> bool {
+        self.identities.has_declared()
+    }
+
+    /// How far apart the edges along a stretch may be by a declared join.
+    pub fn tolerance(&self, interval: IntervalId) -> Option<f64> {
+        self.identities.tolerance(self.root_of(interval))
+    }
+
+    /// The one name of a point.
+    pub fn point(&self, key: Key) -> Key {
+        self.identities.point(key)
     }
 
     fn id(&mut self, root: Root) -> usize {
@@ -142,11 +185,14 @@ impl Roots {
                 let Some(Value::Point(point)) = graph.get(key).and_then(|o| o.value()) else {
                     continue;
                 };
+                let name = self.identities.point(key);
                 for (root, t, source) in places_of(point, key) {
+                    let (root, against) = self.identities.root(root);
                     // A root that no patch runs along needs no marks.
-                    if let Some(&root) = self.ids.get(&root) {
-                        raw.push(RawMark { root, t: t + 0.0, point: Some(key), source });
-                    }
+                    let Some(&root) = self.ids.get(&root) else { continue };
+                    let (t, source) =
+                        if against { (1.0 - t, against_root(source)) } else { (t, source) };
+                    raw.push(RawMark { root, t: t + 0.0, point: Some(name), source });
                 }
             }
         }
@@ -164,7 +210,12 @@ impl Roots {
             }
             if let Some(last) = self.places.last_mut().filter(|_| same_root) {
                 let known = point.is_some_and(|p| last.points.contains(&p));
-                if t == last.high || (known && t - last.high <= SAME_MARK) {
+                // What rounding puts beside a place on the way over shares is that place.
+                let knuckle = is_knuckle(source) || is_knuckle(last.source);
+                if t == last.high || ((known || knuckle) && t - last.high <= SAME_MARK) {
+                    if is_knuckle(last.source) {
+                        last.source = source;
+                    }
                     last.high = t;
                     last.points.extend(point.filter(|_| !known));
                     continue;
@@ -201,6 +252,7 @@ impl Roots {
     pub fn spans(&self, pieces: &[Piece<f64>]) -> Vec<EdgeInterval> {
         let mut spans = Vec::with_capacity(pieces.len());
         for (p, piece) in pieces.iter().enumerate() {
+            let (piece, turned) = self.identities.piece(piece);
             let root = self.ids[&piece.root];
             let (from, to) =
                 (self.find(root, piece.from.t + 0.0), self.find(root, piece.to.t + 0.0));
@@ -222,7 +274,7 @@ impl Roots {
                 let until = if next == to {
                     Stop::Piece(p)
                 } else {
-                    Stop::Inside(p, self.places[next as usize].source)
+                    Stop::Inside(p, self.places[next as usize].source, turned)
                 };
                 let interval = Some(at.min(next));
                 spans.push(EdgeInterval { interval, backwards, ends: [at, next], until });
@@ -233,13 +285,44 @@ impl Roots {
     }
 }
 
+/// True for a mark that is only where a patch breaks, which no one else names.
+fn is_knuckle(source: MarkSource) -> bool {
+    matches!(source, MarkSource::Knuckle { .. })
+}
+
+/// The piece of an edge inside which a parameter of the edge lies, and its share of the way along it;
+/// `None` at the joint of two.
+fn share_of(pieces: &[Piece<f64>], at: f64) -> Option<(usize, f64)> {
+    let p = pieces.iter().position(|piece| at < piece.until + SAME_MARK)?;
+    let begin = if p == 0 { 0.0 } else { pieces[p - 1].until };
+    let share = (at - begin) / (pieces[p].until - begin);
+    (at < pieces[p].until - SAME_MARK && at > begin + SAME_MARK).then_some((p, share))
+}
+
+fn against_root(source: MarkSource) -> MarkSource {
+    match source {
+        MarkSource::Bead { point, .. } => MarkSource::Bead { point, turned: true },
+        MarkSource::Magnet { point, edge, .. } => MarkSource::Magnet { point, edge, turned: true },
+        MarkSource::Piece { draft, edge, piece, end, .. } => {
+            MarkSource::Piece { draft, edge, piece, end, turned: true }
+        }
+        MarkSource::Knuckle { draft, edge, piece, share, .. } => {
+            MarkSource::Knuckle { draft, edge, piece, share, turned: true }
+        }
+    }
+}
+
 /// The places on roots where a point lies by its own data.
 fn places_of(point: &Point<f64>, key: Key) -> SmallVec<[(Root, f64, MarkSource); 2]> {
     let mut places = SmallVec::new();
     if let Some(place) = &point.on_curve {
         let (curve, t) = (&place.0, place.1);
         if let [piece] = curve.pieces().as_slice() {
-            places.push((piece.root, on_root(piece, t), MarkSource::Bead(key)));
+            places.push((
+                piece.root,
+                on_root(piece, t),
+                MarkSource::Bead { point: key, turned: false },
+            ));
         }
     }
     if let Some(place) = &point.on_surface
@@ -256,7 +339,7 @@ fn places_of(point: &Point<f64>, key: Key) -> SmallVec<[(Root, f64, MarkSource);
             if let Some(pieces) = pieces(edge, owner, k)
                 && let [piece] = pieces.as_slice()
             {
-                let source = MarkSource::Magnet(key, k as u8);
+                let source = MarkSource::Magnet { point: key, edge: k as u8, turned: false };
                 places.push((piece.root, on_root(piece, along), source));
             }
         }
@@ -289,16 +372,16 @@ pub(crate) fn pieces<T: Real>(
 /// The parameter on its root of a bead, ring or magnet that marks it.
 pub(crate) fn on_its_root<T: Real>(point: &Point<T>, source: MarkSource) -> Option<T> {
     match source {
-        MarkSource::Bead(_) => {
+        MarkSource::Bead { .. } => {
             let place = point.on_curve.as_ref()?;
             place.0.pieces().first().map(|piece| on_root(piece, place.1))
         }
-        MarkSource::Magnet(_, k) => {
+        MarkSource::Magnet { edge, .. } => {
             let place = point.on_surface.as_ref()?;
-            let k = usize::from(k);
+            let k = usize::from(edge);
             let pieces = pieces(&place.0.edges().edges[k], place.0.key?, k)?;
             pieces.first().map(|piece| on_root(piece, place.1[k % 2]))
         }
-        MarkSource::Piece { .. } => None,
+        MarkSource::Piece { .. } | MarkSource::Knuckle { .. } => None,
     }
 }

@@ -1,13 +1,14 @@
-//! Corners that lie on an edge of another patch without being joined to it.
+//! What lies in one place without being joined: edges of patches, and corners on edges of others.
 
 use crate::draft::indices;
 use crate::edges::along_edge;
 use crate::notes::PanelNote;
 use crate::panelling::Panelling;
 use crate::patch_values::PatchValues;
+use crate::topology::EdgeRun;
 use moldloft_model::Graph;
 use moldloft_num::{Order, Vec3};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Two places count as one within this share of the model's size: what a designer would call the
 /// same place, found by a projection or typed with few digits.
@@ -28,12 +29,29 @@ struct OpenEdge {
 
 type Cell = [i64; 3];
 
-impl Panelling {
-    /// Corners of patches that lie on open edges of others and are not joined to them: in the
-    /// middle of a panel's edge (a T-junction), or at another vertex in the same place. For
-    /// checks: it takes longer than panelling itself.
-    pub fn junctions(&self, graph: &Graph<f64>) -> Vec<PanelNote> {
-        let sides = self.sides(graph);
+/// Panels of one edge that lie on another.
+#[derive(Clone, Copy, Debug, Default)]
+struct Coincidence {
+    panels: usize,
+    length: f64,
+    at: Vec3,
+    /// True when both edges lie on each other from end to end.
+    whole: bool,
+}
+
+/// The open panel edges, and those that come near each cell of space.
+struct OpenEdges {
+    sides: Vec<OpenEdge>,
+    cells: HashMap<Cell, Vec<usize>>,
+    /// The length of a cell: that of the longest panel edge.
+    longest: f64,
+    /// The size of all of them.
+    size: f64,
+}
+
+impl OpenEdges {
+    /// `None` when there are none.
+    fn new(sides: Vec<OpenEdge>) -> Option<Self> {
         let size = sides
             .iter()
             .flat_map(|s| s.ends)
@@ -42,7 +60,7 @@ impl Panelling {
         // Cells as large as the longest panel edge: each edge meets few of them.
         let longest = sides.iter().map(|s| s.ends[0].distance(s.ends[1])).fold(0.0, f64::max);
         if longest == 0.0 || size == 0.0 {
-            return Vec::new();
+            return None;
         }
         let mut cells: HashMap<Cell, Vec<usize>> = HashMap::new();
         for (k, side) in sides.iter().enumerate() {
@@ -62,24 +80,163 @@ impl Panelling {
                 }
             }
         }
+        Some(Self { sides, cells, longest, size })
+    }
+
+    /// The open edges that may come near a place.
+    fn near(&self, p: Vec3) -> impl Iterator<Item = &OpenEdge> {
+        let cell = p.to_array().map(|x| (x / self.longest).floor() as i64);
+        self.cells.get(&cell).into_iter().flatten().map(|&k| &self.sides[k])
+    }
+}
+
+/// Two edges of patches, of which the second comes later.
+type EdgePair = [(usize, u8); 2];
+
+impl Panelling {
+    /// What lies in one place without being joined, for checks: edges of patches, and corners on open
+    /// edges of other patches, in the middle of a panel's edge (a T-junction) or at another vertex. It
+    /// takes longer than panelling itself.
+    pub fn junctions(&self, graph: &Graph<f64>) -> Vec<PanelNote> {
+        let Some(open) = OpenEdges::new(self.sides(graph)) else { return Vec::new() };
         let known = PatchValues::new(graph, &self.structure, &self.names);
-        let mut open: HashSet<u32> = HashSet::new();
-        sides.iter().for_each(|s| open.extend(s.vertices));
+        let pairs = self.coincident(&open, &known);
+        let whole: HashSet<[usize; 2]> =
+            pairs.iter().filter(|(_, c)| c.whole).map(|(pair, _)| [pair[0].0, pair[1].0]).collect();
+        let corners = self.loose_corners(&open, &known, |patches: [usize; 2]| {
+            whole.contains(&[patches[0].min(patches[1]), patches[0].max(patches[1])])
+        });
+        let mut remarks: Vec<PanelNote> = Vec::new();
+        for (pair, found) in pairs {
+            let [a, b] = [pair[0].0, pair[1].0];
+            let name = |k: usize| self.structure.patches[k].name.to_string();
+            let said = corners.iter().any(|note| match note {
+                PanelNote::Junction { patches, .. } => {
+                    *patches == [name(a), name(b)] || *patches == [name(b), name(a)]
+                }
+                _ => false,
+            });
+            // Of parts of edges a corner says more.
+            if found.whole || !said {
+                remarks.push(PanelNote::Unjoined {
+                    patches: [name(a), name(b)],
+                    edges: [pair[0].1, pair[1].1],
+                    panels: found.panels,
+                    length: found.length,
+                    whole: found.whole,
+                    at: found.at,
+                });
+            }
+        }
+        remarks.extend(corners);
+        if remarks.len() > MOST_REPORTED {
+            let more = remarks.len() - MOST_REPORTED;
+            remarks.truncate(MOST_REPORTED);
+            remarks.push(PanelNote::More(more));
+        }
+        remarks
+    }
+
+    /// The pairs of edges that lie in one place and have no vertices in common there.
+    fn coincident(
+        &self,
+        open: &OpenEdges,
+        known: &PatchValues<f64>,
+    ) -> Vec<(EdgePair, Coincidence)> {
+        let mut found: BTreeMap<EdgePair, [Coincidence; 2]> = BTreeMap::new();
+        for side in &open.sides {
+            let Some(surface) = &known.surfaces[side.patch] else { continue };
+            let own = |share: f64| {
+                let [u, v] = on_edge(side.edge, side.ts[0] + (side.ts[1] - side.ts[0]) * share);
+                surface.jet(u, v, Order::Zero).p
+            };
+            let length = side.ends[0].distance(side.ends[1]);
+            let near = SAME_PLACE * open.size;
+            if length <= 8.0 * near {
+                continue;
+            }
+            // Edges that only cross meet in one of the two at most.
+            let there = |share: f64| -> HashSet<(usize, u8)> {
+                let p = own(share);
+                let meets = |other: &OpenEdge| {
+                    let itself = (other.patch, other.edge) == (side.patch, side.edge);
+                    let Some(surface) = &known.surfaces[other.patch] else { return false };
+                    let point = |t: f64| {
+                        let [u, v] = on_edge(other.edge, t);
+                        surface.jet(u, v, Order::Zero).p
+                    };
+                    !itself && nearest(&point, other.ts, p).1 <= near
+                };
+                open.near(p).filter(|o| meets(o)).map(|o| (o.patch, o.edge)).collect()
+            };
+            let first = there(0.3);
+            if first.is_empty() {
+                continue;
+            }
+            let second = there(0.7);
+            for &other in first.intersection(&second) {
+                let own = (side.patch, side.edge);
+                if self.along_one_curve(own, other) {
+                    continue;
+                }
+                let pair = [own.min(other), own.max(other)];
+                let part = &mut found.entry(pair).or_default()[usize::from(own > other)];
+                if part.panels == 0 {
+                    part.at = side.ends[0];
+                }
+                part.panels += 1;
+                part.length += length;
+            }
+        }
+        let divisions =
+            |(patch, k): (usize, u8)| self.structure.patches[patch].divisions[usize::from(k) % 2];
+        let merged = found.into_iter().map(|(pair, [mut a, b])| {
+            a.whole = a.panels == divisions(pair[0]) && b.panels == divisions(pair[1]);
+            if a.panels == 0 {
+                a = Coincidence { whole: false, ..b };
+            }
+            (pair, a)
+        });
+        merged.collect()
+    }
+
+    /// True for edges along a common stretch: their counts contradict, which is said elsewhere.
+    fn along_one_curve(&self, a: (usize, u8), b: (usize, u8)) -> bool {
+        let intervals = |(patch, k): (usize, u8)| -> Vec<u32> {
+            match &self.structure.patches[patch].runs[usize::from(k)] {
+                EdgeRun::Along(spans) => spans.iter().filter_map(|s| s.0.interval).collect(),
+                EdgeRun::Loose(ends) => ends.to_vec(),
+                _ => Vec::new(),
+            }
+        };
+        let of_a = intervals(a);
+        intervals(b).iter().any(|i| of_a.contains(i))
+    }
+
+    /// The corners of patches that lie on open edges of others and are not joined to them, but for the
+    /// pairs of patches that `skipped` says.
+    fn loose_corners(
+        &self,
+        open: &OpenEdges,
+        known: &PatchValues<f64>,
+        skipped: impl Fn([usize; 2]) -> bool,
+    ) -> Vec<PanelNote> {
+        let size = open.size;
+        let mut vertices: HashSet<u32> = HashSet::new();
+        open.sides.iter().for_each(|s| vertices.extend(s.vertices));
         let mut reported = HashSet::new();
         let mut remarks = Vec::new();
-        let mut more = 0;
         for (patch, frame) in self.structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {
             let [nu, nv] = frame.divisions;
             for corner in [[0, 0], [1, 0], [1, 1], [0, 1]] {
                 let at = usize::from(corner[0]) * nu * (nv + 1) + usize::from(corner[1]) * nv;
                 let (vertex, p) = (self.joined.vertices[patch][at], self.points[patch][at]);
-                if !open.contains(&vertex) {
+                if !vertices.contains(&vertex) {
                     continue;
                 }
-                let cell = p.to_array().map(|x| (x / longest).floor() as i64);
-                for &k in cells.get(&cell).into_iter().flatten() {
-                    let side = &sides[k];
-                    if side.patch == patch || side.vertices.contains(&vertex) {
+                for side in open.near(p) {
+                    let itself = side.patch == patch || side.vertices.contains(&vertex);
+                    if itself || skipped([patch, side.patch]) {
                         continue;
                     }
                     let Some(surface) = &known.surfaces[side.patch] else { continue };
@@ -90,10 +247,6 @@ impl Panelling {
                     let (t, distance) = nearest(&point, side.ts, p);
                     if distance > SAME_PLACE * size || !reported.insert((patch, corner, side.patch))
                     {
-                        continue;
-                    }
-                    if remarks.len() == MOST_REPORTED {
-                        more += 1;
                         continue;
                     }
                     let twin = side.ends.iter().any(|q| q.distance(p) <= SAME_PLACE * size);
@@ -107,9 +260,6 @@ impl Panelling {
                     });
                 }
             }
-        }
-        if more > 0 {
-            remarks.push(PanelNote::More(more));
         }
         remarks
     }

@@ -7,7 +7,7 @@ use crate::edges::{EdgePlan, Segment, Shares, reversed, shares_of};
 use crate::notes::{ChainStep, PanelNote};
 use crate::roots::{EdgeInterval, IntervalId, RootPlaceId, Roots, Stop};
 use moldloft_model::Graph;
-use moldloft_num::trace::{Edge, Key, Root};
+use moldloft_num::trace::{Edge, Key, Named, Root};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::Spacing;
 use std::collections::{HashMap, VecDeque};
@@ -66,6 +66,8 @@ pub(crate) struct PanelTopology {
     pub patches: Vec<PatchTopology>,
     /// The point objects at each place.
     pub points: Vec<Vec<Key>>,
+    /// The stretches of declared joins, and how far apart their edges may be.
+    pub declared: Vec<(IntervalId, f64)>,
 }
 
 /// The skeleton and what was found while it was made.
@@ -105,6 +107,8 @@ struct TopologySolver<'a, 'g> {
     summed: Vec<(usize, usize)>,
     /// For each link: true when the two run in opposite directions.
     turned: Vec<bool>,
+    /// For each patch, the nodes of its stretches between knuckles along u and along v.
+    stretches: Vec<[Vec<Node>; 2]>,
     measured: bool,
 }
 
@@ -131,6 +135,7 @@ pub(crate) fn solve<'g>(
         divider: CountProblem::default(),
         summed: Vec::new(),
         turned: Vec::new(),
+        stretches: vec![Default::default(); drafts.len()],
         measured: false,
     };
     maker.state();
@@ -179,6 +184,10 @@ impl TopologySolver<'_, '_> {
                     self.link(whole, side(patch, usize::from(other) % 2), false);
                 }
                 let Some(spans) = &self.spans[patch][k] else { continue };
+                if !self.drafts[patch].knuckles[k % 2].is_empty() {
+                    self.state_stretches(patch, k);
+                    continue;
+                }
                 let along: Vec<(IntervalId, bool)> =
                     spans.iter().filter_map(|s| Some((s.interval?, s.backwards))).collect();
                 match along[..] {
@@ -194,7 +203,70 @@ impl TopologySolver<'_, '_> {
                 }
             }
         }
+        // Images break where their originals do, and are divided as these are.
+        for patch in 0..self.drafts.len() {
+            let Some((original, _)) = self.drafts[patch].image else { continue };
+            for direction in 0..2 {
+                let [own, others] = [patch, original].map(|p| self.stretches[p][direction].clone());
+                if own.len() == others.len() {
+                    own.into_iter().zip(others).for_each(|(a, b)| self.link(a, b, false));
+                }
+            }
+        }
         self.measured = !self.summed.is_empty();
+    }
+
+    /// The stretches of a patch between its knuckles, which both of its edges across them have alike: they
+    /// add up to the count of the patch, and the intervals of an edge in each of them to its count.
+    fn state_stretches(&mut self, patch: usize, k: usize) {
+        let direction = k % 2;
+        let knuckles = &self.drafts[patch].knuckles[direction];
+        if self.stretches[patch][direction].is_empty() {
+            let nodes: Vec<Node> =
+                (0..=knuckles.len()).map(|_| self.divider.node(None, None)).collect();
+            let mut ends = vec![0.0];
+            ends.extend(knuckles);
+            ends.push(1.0);
+            let sides = if direction == 0 { [0, 2] } else { [3, 1] };
+            // Pieces share by length. Within one curve, equal steps of the parameter stay.
+            let chained = sides.iter().any(
+                |&k| matches!(&self.drafts[patch].edges.edges[k], Edge::Pieces(p) if p.len() > 1),
+            );
+            let length = |w: &[f64]| {
+                let lengths = sides.iter().map(|&k| self.length(patch, k, w[0], w[1]));
+                if chained { lengths.fold(0.0, f64::max) } else { w[1] - w[0] }
+            };
+            let weights: Vec<f64> = ends.windows(2).map(length).collect();
+            let parts = nodes.iter().copied().zip(weights).collect();
+            self.divider.sums.push(Sum { whole: side(patch, direction), parts });
+            self.summed.push((patch, k));
+            self.stretches[patch][direction] = nodes;
+        }
+        let stops = self.stops(patch, k);
+        let spans = self.spans[patch][k].as_deref().unwrap_or_default();
+        let mut within: Vec<Vec<(IntervalId, bool, f64)>> = vec![Vec::new(); knuckles.len() + 1];
+        for (span, stop) in spans.iter().zip(stops.windows(2)) {
+            let Some(interval) = span.interval else { continue };
+            let middle = 0.5 * (stop[0] + stop[1]);
+            let at = knuckles.partition_point(|&b| b <= middle);
+            let length = self.length(patch, k, stop[0], stop[1]);
+            within[at].push((interval, span.backwards, length));
+        }
+        for (at, intervals) in within.into_iter().enumerate() {
+            let whole = self.stretches[patch][direction][at];
+            match intervals[..] {
+                [] => {}
+                [(interval, backwards, _)] => self.link(whole, self.interval(interval), backwards),
+                _ => {
+                    let parts = intervals
+                        .iter()
+                        .map(|&(i, _, length)| (self.interval(i), length))
+                        .collect();
+                    self.divider.sums.push(Sum { whole, parts });
+                    self.summed.push((patch, k));
+                }
+            }
+        }
     }
 
     fn link(&mut self, a: Node, b: Node, turned: bool) {
@@ -213,9 +285,10 @@ impl TopologySolver<'_, '_> {
         for span in self.spans[patch][k].iter().flatten() {
             stops.push(match span.until {
                 Stop::Piece(p) => pieces[usize::from(p)].until,
-                Stop::Inside(p, _) => {
+                Stop::Inside(p, _, turned) => {
                     let piece = &pieces[usize::from(p)];
                     let t = self.roots.places()[span.ends[1] as usize].parameter();
+                    let t = if turned { 1.0 - t } else { t };
                     let share = (t - piece.from.t) / (piece.to.t - piece.from.t);
                     begin(p) + (piece.until - begin(p)) * share
                 }
@@ -317,7 +390,8 @@ impl TopologySolver<'_, '_> {
             if node >= patches {
                 continue;
             }
-            let shares = match path.get(at + 1) {
+            let next = path[at + 1..].iter().find(|&&n| n < patches || self.is_interval(n));
+            let shares = match next {
                 Some(&next) if next >= patches => self.curve((next - patches) as IntervalId),
                 Some(_) => "being its image".into(),
                 None => String::new(),
@@ -338,7 +412,14 @@ impl TopologySolver<'_, '_> {
         let patches = 2 * self.drafts.len();
         let pieces = parts
             .iter()
-            .map(|&(node, _)| (self.curve((node - patches) as IntervalId), counts[node]))
+            .map(|&(node, _)| {
+                let words = if self.is_interval(node) {
+                    self.curve((node - patches) as IntervalId)
+                } else {
+                    "between two knuckles".into()
+                };
+                (words, counts[node])
+            })
             .collect();
         PanelNote::Pieces {
             patch: self.drafts[patch].object.name.to_string(),
@@ -348,18 +429,21 @@ impl TopologySolver<'_, '_> {
         }
     }
 
+    /// True for the node of an interval of a root.
+    fn is_interval(&self, node: Node) -> bool {
+        let first = 2 * self.drafts.len();
+        (first..first + self.roots.len()).contains(&node)
+    }
+
     /// The words for what a stretch is part of.
     fn curve(&self, interval: IntervalId) -> String {
-        let name = |key: Key| self.graph.get(key).map_or("", |o| &*o.name);
+        let name = |key: Key| words_for(self.graph, key);
         match self.roots.root_of(interval) {
-            Root::Curve(key) => format!("`{}`", name(key)),
+            Root::Curve(key) => name(key),
             Root::Segment(a, b) | Root::Governed(a, b, _) => {
-                format!("the line from `{}` to `{}`", name(a), name(b))
+                format!("the line from {} to {}", name(a), name(b))
             }
-            Root::Edge(key, k) => {
-                let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(k) % 4];
-                format!("edge {edge} of `{}`", name(key))
-            }
+            Root::Edge(key, k) => key.edge(usize::from(k)).map_or_else(String::new, name),
         }
     }
 
@@ -409,7 +493,10 @@ impl TopologySolver<'_, '_> {
                 let n = divisions[k % 2];
                 let law = &spacings[side(patch, k % 2)];
                 (runs[k], plans[k]) = match &draft.edges.edges[k] {
-                    Edge::Pole(point) => (EdgeRun::Pole(*point), EdgePlan::Whole(n, None)),
+                    Edge::Pole(point) => {
+                        let point = point.map(|p| self.roots.point(p));
+                        (EdgeRun::Pole(point), EdgePlan::Whole(n, None))
+                    }
                     Edge::SameAs(other) => (EdgeRun::Same(*other), EdgePlan::As(*other)),
                     _ => {
                         let spans = self.spans[patch][k].as_deref().unwrap_or_default();
@@ -453,7 +540,7 @@ impl TopologySolver<'_, '_> {
                 divisions: divisions.map(|n| n as usize),
                 runs,
                 plans,
-                corners: draft.edges.corners,
+                corners: draft.edges.corners.map(|c| c.map(|c| self.roots.point(c))),
                 image: draft.image,
                 reversed: draft.reversed,
                 meshed: draft.meshed,
@@ -461,7 +548,13 @@ impl TopologySolver<'_, '_> {
             });
         }
         let points = self.roots.places().iter().map(|p| p.points.to_vec()).collect();
-        PanelTopology { patches, points }
+        let intervals = 0..self.roots.len() as u32;
+        let declared = if self.roots.has_declared() {
+            intervals.filter_map(|i| Some((i, self.roots.tolerance(i)?))).collect()
+        } else {
+            Vec::new()
+        };
+        PanelTopology { patches, points, declared }
     }
 
     fn edge(
@@ -507,6 +600,23 @@ impl TopologySolver<'_, '_> {
             _ => EdgePlan::Segments(segments),
         };
         (EdgeRun::Along(spans.iter().map(|s| (*s, count(s))).collect()), plan)
+    }
+}
+
+/// The words for an object or a part of one.
+pub(crate) fn words_for(graph: &Graph<f64>, key: Key) -> String {
+    let name = |key: Key| graph.get(key).map_or("", |o| &*o.name);
+    match key.named() {
+        Named::Object(key) => format!("`{}`", name(key)),
+        Named::Corner(key, k) => {
+            let corner = ["(0, 0)", "(1, 0)", "(1, 1)", "(0, 1)"][k];
+            format!("corner {corner} of `{}`", name(key))
+        }
+        Named::Edge(key, k) => {
+            let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][k];
+            format!("edge {edge} of `{}`", name(key))
+        }
+        Named::End(key, k) => format!("the {} of `{}`", ["begin", "end"][k], name(key)),
     }
 }
 

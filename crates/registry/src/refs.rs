@@ -24,6 +24,9 @@ pub struct Point<T: Real> {
     pub on_curve: Option<Arc<(CurveRef<T>, T)>>,
     /// The surface and parameters (u, v) it lies at, for magnets and rings.
     pub on_surface: Option<Arc<(SurfaceRef<T>, [T; 2])>>,
+    /// The point that this is the image of under a map of space. For joins: images of one point that lie
+    /// in one place are one.
+    pub image_of: Option<Key>,
     /// How it was found, when that took a search.
     pub found: Option<Arc<SearchReport>>,
 }
@@ -31,13 +34,18 @@ pub struct Point<T: Real> {
 impl<T: Real> Point<T> {
     /// A free point.
     pub fn free(xyz: Vec3<T>) -> Self {
-        Self { xyz, key: None, on_curve: None, on_surface: None, found: None }
+        Self { xyz, key: None, on_curve: None, on_surface: None, image_of: None, found: None }
+    }
+
+    /// The image of a point under a map of space.
+    pub fn image(xyz: Vec3<T>, of: &Self) -> Self {
+        Self { image_of: of.key, ..Self::free(xyz) }
     }
 
     /// The point of `curve` at `t`; on a snake it also knows its place on the surface.
     ///
-    /// At t = 0 or 1 to the bit it is the point object that the curve ends at, if there is one: its
-    /// key is that object's, so that meshes join there.
+    /// At t = 0 or 1 to the bit it is the end of the curve: its key is that of the point object that the
+    /// curve ends at, if there is one, or that of the end itself, so that meshes join there.
     pub fn on_curve(curve: CurveRef<T>, t: T) -> Self {
         let key = match t.re() {
             0.0 => curve.end_points()[0],
@@ -50,11 +58,11 @@ impl<T: Real> Point<T> {
             Some(Arc::new((SurfaceRef::clone(surface), [w.x, w.y])))
         });
         let on_curve = Some(Arc::new((curve, t)));
-        Self { xyz, key, on_curve, on_surface, found: None }
+        Self { xyz, key, on_curve, on_surface, image_of: None, found: None }
     }
 
-    /// The point of `surface` at (`u`, `v`); at a corner to the bit it is the point object there,
-    /// if there is one, as for [`Point::on_curve`].
+    /// The point of `surface` at (`u`, `v`); at a corner to the bit it is that corner, as for
+    /// [`Point::on_curve`].
     pub fn on_surface(surface: SurfaceRef<T>, u: T, v: T) -> Self {
         let corner = match (u.re(), v.re()) {
             (0.0, 0.0) => Some(0),
@@ -63,10 +71,10 @@ impl<T: Real> Point<T> {
             (0.0, 1.0) => Some(3),
             _ => None,
         };
-        let key = corner.and_then(|k| surface.edges().corners[k]);
+        let key = corner.and_then(|k| surface.edges().corners[k].or(surface.key?.corner(k)));
         let xyz = surface.jet(u, v, Order::Zero).p;
         let on_surface = Some(Arc::new((surface, [u, v])));
-        Self { xyz, key, on_curve: None, on_surface, found: None }
+        Self { xyz, key, on_curve: None, on_surface, image_of: None, found: None }
     }
 
     /// The same point with the report of how it was found.
@@ -94,7 +102,8 @@ impl<T: Real> Point<T> {
             (a, b) => a.is_none() && b.is_none(),
         };
         let places = self.xyz.bits_eq(o.xyz) && curves && surfaces;
-        places && self.key == o.key && self.found == o.found
+        let names = self.key == o.key && self.image_of == o.image_of;
+        places && names && self.found == o.found
     }
 }
 
@@ -109,6 +118,8 @@ pub struct CurveRef<T: Real> {
     /// For a part of another curve, run at an even rate: that curve, itself no such part, and the
     /// parameters there of the part's ends.
     pub part_of: Option<Arc<(CurveRef<T>, [T; 2])>>,
+    /// For the common edge of a declared join: the two edges, and how far apart they may be.
+    pub joins: Option<Arc<([CurveRef<T>; 2], f64)>>,
     /// How it was found, when that took a search.
     pub found: Option<Arc<SearchReport>>,
     /// How deep shapes are nested in it, itself included.
@@ -213,14 +224,13 @@ impl<T: Real> CurveRef<T> {
     pub fn new(shape: impl Curve<T> + 'static, nesting: u32) -> Self {
         let shape: Arc<dyn Curve<T>> = Arc::new(shape);
         let depth = nesting + 1;
-        Self { shape, key: None, surface: None, part_of: None, found: None, depth }
+        Self { shape, key: None, surface: None, part_of: None, joins: None, found: None, depth }
     }
 
     /// A snake on `surface`.
     pub fn snake(shape: impl Curve<T> + 'static, surface: SurfaceRef<T>, nesting: u32) -> Self {
         let depth = nesting.max(surface.depth) + 1;
-        let surface = Some(Box::new(surface));
-        Self { shape: Arc::new(shape), key: None, surface, part_of: None, found: None, depth }
+        Self { surface: Some(Box::new(surface)), ..Self::new(shape, depth - 1) }
     }
 
     /// The same curve with the report of how it was found.
@@ -254,15 +264,31 @@ impl<T: Real> CurveRef<T> {
         }
     }
 
-    /// The point objects at its two ends, where they are known.
+    /// The points at its two ends: point objects where it ends at such, else the corner of the surface
+    /// or the end of the curve that it runs along, or its own end.
     pub fn end_points(&self) -> [Option<Key>; 2] {
+        let own = |k: usize| self.key.and_then(|key| key.end(k));
         match self.shape.trace() {
-            Trace::Own(ends) => ends,
+            Trace::Own([from, to]) => [from.or_else(|| own(0)), to.or_else(|| own(1))],
             Trace::Point(point) => [point, point],
             Trace::Pieces(pieces) => {
-                [pieces.first().and_then(|p| p.from.point), pieces.last().and_then(|p| p.to.point)]
+                let [from, to] = [
+                    pieces.first().map(|p| (p.root, p.from)),
+                    pieces.last().map(|p| (p.root, p.to)),
+                ];
+                let end = |piece: Option<(Root, moldloft_num::trace::Mark<T>)>, k: usize| {
+                    let (root, mark) = piece?;
+                    mark.point.or_else(|| root.end(mark.t.re())).or_else(|| own(k))
+                };
+                [end(from, 0), end(to, 1)]
             }
         }
+    }
+
+    /// What its shape follows from, for joins: the object itself or, for one without a name, the
+    /// original of which it is the image.
+    pub fn made_of(&self) -> Vec<Key> {
+        self.key.or_else(|| self.shape.image_of()).into_iter().collect()
     }
 }
 

@@ -285,6 +285,10 @@ impl<T: Real> Surface<T> for RelabelledSurface<T> {
         all
     }
 
+    fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
+        self.surface.edge_made_of(k)
+    }
+
     fn edges(&self) -> Edges<T> {
         let mut edges = self.surface.edges();
         let whole = reaches(&self.law);

@@ -70,6 +70,10 @@ impl<T: Real> Curve<T> for Mapped<T> {
         self.curve.joints()
     }
 
+    fn image_of(&self) -> Option<moldloft_num::trace::Key> {
+        self.curve.key
+    }
+
     fn rational(&self) -> Rational<1> {
         self.curve.rational()
     }

@@ -32,6 +32,8 @@ mod solid;
 mod surface;
 mod third_derivatives;
 
+pub use snake::edge;
+
 use moldloft_registry::Row;
 use moldloft_registry::export::StaticRow;
 
@@ -101,6 +103,7 @@ pub fn rows() -> Vec<Row> {
         curve::FoilCurve,
         curve::Helix,
         curve::PolyCurve,
+        curve::Join,
         curve::SubCurve,
         curve::BSubCurve,
         curve::RelCurve,

@@ -44,9 +44,10 @@ def run(options: argparse.Namespace) -> int:
             mesh = model.mesh()
             cells = block_problems(model)
         diagnostics = [*model.diagnostics, *cells]
-        if options.quality and mesh is not None:
+        if mesh is not None and mesh.patches and not mesh.closed:
+            progress.stage("looking for edges that are not joined")
             diagnostics += model.junctions()
-        else:
+        if not options.quality:
             mesh = None
     errors = sum(d.is_error for d in diagnostics)
     if options.json:

@@ -8,6 +8,7 @@ import math
 import sys
 import threading
 import time
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -72,8 +73,17 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 def open_model(options: argparse.Namespace) -> Model:
     """The model of the arguments, with the values of ``--set``."""
     from moldloft.errors import Error
+    from moldloft.files import ending
+    from moldloft.formats import formats
     from moldloft.models import load
 
+    named = ending(Path(options.model))
+    written = [row for row in formats().values() if named in (row.name, row.suffix) and named]
+    if written and named not in ("sdl", "ms2"):
+        raise Error(
+            f"{options.model} is not a model but what models are written to: {written[0].about};"
+            " expected a program (.sdl), a model file (.ms2) or a sketch (.skt)"
+        )
     model = load(options.model, library=options.library, strict=False)
     if options.refine:
         if options.refine < 0:

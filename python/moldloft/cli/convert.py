@@ -41,21 +41,21 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Converts; what the other form cannot hold is an error or a remark."""
-    from moldloft.files import commit, format_named, produce
+    from moldloft.files import commit, ending, format_named, produce
     from moldloft.formats import formats
 
     target = Path(options.output) if options.output else None
-    ending = target.suffix.lstrip(".").lower() if target else ""
+    named = ending(target) if target else ""
     if options.model.lower().endswith((".step", ".stp", ".iges", ".igs")):
-        return _from_cad(options, target, format_named(options.to or ending or "sdl"))
+        return _from_cad(options, target, format_named(options.to or named or "sdl"))
     if options.model.lower().endswith(".csv"):
-        return _from_offsets(options, target, format_named(options.to or ending or "sdl"))
+        return _from_offsets(options, target, format_named(options.to or named or "sdl"))
     model = open_model(options)
     report(model.diagnostics)
     if model.has_errors:
         return 1
     other = "ms2" if options.model.lower().endswith(".sdl") else "sdl"
-    form = format_named(options.to or ending or other)
+    form = format_named(options.to or named or other)
     if target is not None:
         commit(target.parent, produce(model, form, target))
     elif form in ("sdl", "ms2"):

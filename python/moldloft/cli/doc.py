@@ -42,9 +42,17 @@ def run(options: argparse.Namespace) -> int:
         else:
             print(_list(rows))
         return 0
+    if options.name in _STATEMENTS and not options.pictures:
+        text = _STATEMENTS[options.name]
+        if options.json:
+            print_json({"name": options.name, "statement": True, "doc": text})
+        else:
+            print(text)
+        return 0
     row = next((row for row in rows if row["name"] == options.name), None)
     if row is None:
-        near = difflib.get_close_matches(options.name, [row["name"] for row in rows], n=1)
+        known = [*(row["name"] for row in rows), *_STATEMENTS]
+        near = difflib.get_close_matches(options.name, known, n=1)
         hint = f"; did you mean `{near[0]}`?" if near else "; see `moldloft doc --list`"
         raise UnknownNameError(f"unknown kind or function `{options.name}`{hint}")
     if options.pictures:
@@ -55,6 +63,31 @@ def run(options: argparse.Namespace) -> int:
         print(_page(row))
     return 0
 
+
+#: Statements that read like kinds.
+_STATEMENTS = {
+    "Component": """\
+Component name("file", parent = object, parameter = value, ...)
+
+A file of objects inserted under a name, on parents of the model's own. The arguments replace the
+file's own declarations of these names: its points and curves, its `param`s. What only they were
+built on is not made. The file sees no other name of the model, and runs by itself as well, on its
+own parents. Its objects are `name.tip`, its parameters `name.span`: design parameters of the model.
+
+  file       the file, relative to the one that inserts it
+  parent     an object of the model in place of one of the file's
+  parameter  a value in place of one of the file's parameters or variables
+
+Example:
+  # keel.sdl
+  param float span = 2 in [0.5, 4];
+  AbsPoint K1(0, 0, 0); AbsPoint K2(1, 0, 0); Line root(K1, K2, visible = 0);
+  AbsBead fore(root, 0.25); RelPoint tip(fore, 0, 0, -span);
+  # boat.sdl
+  AbsPoint A(0, 0, 1); AbsPoint B(8, 0, 1); Line hull(A, B);
+  Component keel("keel.sdl", root = hull, span = 3);
+  RelPoint bulb(keel.tip, 0, 0, -0.5);""",
+}
 
 #: What shows in a picture. Laws, numbers and the model itself have no shape.
 _SHAPES = {

@@ -83,8 +83,12 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Draws what has a value; errors are reported besides."""
+    from moldloft.errors import Error
     from moldloft.files import Output, commit
 
+    if options.output and Path(options.output).suffix.lower() != ".png":
+        found = Path(options.output).name
+        raise Error(f"a picture is a PNG file: name it with `.png`, not `{found}`")
     with Progress() as progress:
         progress.stage(f"running {options.model}")
         model = open_model(options)

@@ -344,15 +344,6 @@ fn corners_that_miss_their_neighbours_are_told() {
     let mut d = sound(&text(marked));
     assert_eq!(d.junctions().unwrap().len(), 0);
     assert_eq!(d.panelled().unwrap().mesh.report().euler, 1, "a disc");
-    // The same place under two names.
-    let mut d = sound(
-        "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(4, 1, 0);
-         AbsPoint A2(0, 0, 0); AbsPoint B2(4, 0, 0); AbsPoint E(0, -1, 0); AbsPoint F(4, -1, 0);
-         Line ab(A, B); Line ab2(A2, B2); Line cd(C, D); Line ef(E, F);
-         RuledSurf top(ab, cd); RuledSurf low(ef, ab2);",
-    );
-    let said: Vec<_> = d.junctions().unwrap().into_iter().map(|t| t.message.clone()).collect();
-    assert!(said.len() == 4 && said.iter().all(|m| m.contains("meets edge")), "{said:?}");
 }
 
 #[test]

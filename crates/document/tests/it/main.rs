@@ -10,6 +10,7 @@ mod faults;
 mod functions;
 mod fused;
 mod hull;
+mod identities;
 mod incremental;
 mod joins;
 mod laws;

@@ -12,8 +12,8 @@ pub(super) struct MovingSurface<T: Real> {
 }
 
 impl<T: Real> MovingSurface<T> {
-    /// Control point (i, j) stands at `i * n + j`; knots run from 0 to 1.
-    pub fn new(
+    /// The surface as models refer to it; control point (i, j) stands at `i * n + j`, knots run from 0 to 1.
+    pub fn referred(
         degree: usize,
         knots: [Vec<T>; 2],
         points: Vec<Vec3<T>>,

@@ -341,7 +341,8 @@ impl<T: Real> Build<T> for FairSurf<T> {
         };
         if by_data {
             let (degree, made) = (self.degree, by_points().map_err(about)?);
-            let surface = MovingSurface::new(degree, made.knots, made.points).map_err(about)?;
+            let surface =
+                MovingSurface::referred(degree, made.knots, made.points).map_err(about)?;
             return Ok(Value::Surface(surface));
         }
         let (spaces, points) = make().map_err(about)?;

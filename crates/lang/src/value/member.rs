@@ -1,4 +1,4 @@
-//! What values own: `.x`, `.t`, `.length`, `.area` and the like.
+//! What values own: `.x`, `.t`, `.length`, `.area`, the edges and corners of surfaces, and the like.
 
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::{USUAL_ACCURACY, surface_measures};
@@ -6,7 +6,7 @@ use moldloft_mesh::{Blocks, HexBlock};
 use moldloft_model::Object;
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
 use moldloft_panel::{MOST_CELLS, solid_grid};
-use moldloft_registry::{Array, ArrayShape, Scalar, SolidRef, Value, Vectors};
+use moldloft_registry::{Array, ArrayShape, Point, Scalar, SolidRef, SurfaceRef, Value, Vectors};
 use std::sync::Arc;
 
 /// The member called `name`, if the value has one.
@@ -40,6 +40,7 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
                 Ok(Value::Vectors(Arc::new(Vectors::row(lifted))))
             }),
         },
+        (Value::Surface(surface), None) => part_of_surface(surface, name).map(Ok),
         (Value::Curve(curve), None) if name == "length" => {
             // To about twelve digits, as the function of this name.
             let speed = |t: f64| curve.jet(T::from(t), Order::First)[1].re().norm();
@@ -60,6 +61,22 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
         }
         _ => None,
     }
+}
+
+/// The edges of surfaces, in order, and their corners.
+const EDGES: [&str; 4] = ["v0", "u1", "v1", "u0"];
+const CORNERS: [(&str, [f64; 2]); 4] =
+    [("c00", [0.0, 0.0]), ("c10", [1.0, 0.0]), ("c11", [1.0, 1.0]), ("c01", [0.0, 1.0])];
+
+/// An edge of a surface as a snake, or a corner as a magnet.
+fn part_of_surface<T: Real>(surface: &SurfaceRef<T>, name: &str) -> Option<Value<T>> {
+    if let Some(k) = EDGES.iter().position(|edge| *edge == name) {
+        let edge = moldloft_relational::edge(surface.clone(), k, surface.depth);
+        return Some(Value::Curve(edge));
+    }
+    let &(_, [u, v]) = CORNERS.iter().find(|corner| corner.0 == name)?;
+    let corner = Point::on_surface(surface.clone(), T::from(u), T::from(v));
+    Some(Value::Point(Box::new(corner)))
 }
 
 /// How the value was found: `.status`, `.residual`, `.iterations`, `.start`, `.alternatives`.
@@ -111,7 +128,12 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         Value::Vectors(_) => vec!["x", "y", "z", "d1"],
         Value::Numbers(_) | Value::List(_) => vec!["d1"],
         Value::Curve(_) => vec!["length"],
-        Value::Surface(_) => vec!["area", "centroid", "volume"],
+        Value::Surface(_) => {
+            let mut names = vec!["area", "centroid", "volume"];
+            names.extend(EDGES);
+            names.extend(CORNERS.map(|corner| corner.0));
+            names
+        }
         Value::Body(_) => [&["volume", "area", "centroid"][..], &FLAWS].concat(),
         Value::Solid(_) => vec!["volume"],
         _ => Vec::new(),

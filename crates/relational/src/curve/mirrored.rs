@@ -42,6 +42,10 @@ impl<T: Real> Curve<T> for MirrCurve<T> {
         self.curve.joints()
     }
 
+    fn image_of(&self) -> Option<moldloft_num::trace::Key> {
+        self.curve.key
+    }
+
     fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         self.curve.law()
     }

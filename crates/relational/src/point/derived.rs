@@ -14,6 +14,10 @@ fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, CallError> {
     Ok(Value::Point(Box::new(Point::free(xyz))))
 }
 
+fn image<T: Real>(xyz: Vec3<T>, of: &Point<T>) -> Result<Value<T>, CallError> {
+    Ok(Value::Point(Box::new(Point::image(xyz, of))))
+}
+
 /// A point off a surface: X = S(u, v) + d n, with n the unit normal along S_u x S_v.
 ///
 /// At a pole the normal is the limit along the parameter line that ends there.
@@ -96,7 +100,7 @@ pub struct RotatPoint<T: Real> {
 
 impl<T: Real> Build<T> for RotatPoint<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        free(self.line.rotated(self.point.xyz, self.angle))
+        image(self.line.rotated(self.point.xyz, self.angle), &self.point)
     }
 }
 
@@ -130,7 +134,7 @@ pub struct CopyPoint<T: Real> {
 impl<T: Real> Build<T> for CopyPoint<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { point, from, to, sx, sy, sz } = self;
-        free(Affine::scaled(from.xyz, to.xyz, [sx, sy, sz]).point(point.xyz))
+        image(Affine::scaled(from.xyz, to.xyz, [sx, sy, sz]).point(point.xyz), &point)
     }
 }
 

@@ -71,6 +71,7 @@ pub struct MirrPoint<T: Real> {
 
 impl<T: Real> Build<T> for MirrPoint<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        free(self.mirror.image(self.point.xyz))
+        let image = Point::image(self.mirror.image(self.point.xyz), &self.point);
+        Ok(Value::Point(Box::new(image)))
     }
 }

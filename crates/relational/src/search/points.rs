@@ -55,7 +55,9 @@ pub struct ProjPoint<T: Real> {
 impl<T: Real> Build<T> for ProjPoint<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let point = match self.mirror {
-            MirrorOrSurface::MirrorArgument(mirror) => Point::free(mirror.foot(self.point.xyz)),
+            MirrorOrSurface::MirrorArgument(mirror) => {
+                Point::image(mirror.foot(self.point.xyz), &self.point)
+            }
             MirrorOrSurface::Surface(onto) => {
                 let ([u, v], found) = foot(&onto, self.point.xyz, false)?;
                 Point::free(onto.surface.jet(u, v, Order::Zero).p).with_found(found)

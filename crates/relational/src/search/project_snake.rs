@@ -158,6 +158,10 @@ impl<T: Real> Curve<T> for OntoMirror<T> {
         let turned = |v| self.mirror.direction(v, true);
         [self.mirror.foot(p), turned(d), turned(dd)]
     }
+    fn image_of(&self) -> Option<moldloft_num::trace::Key> {
+        self.curve.key
+    }
+
     fn breaks(&self) -> Vec<f64> {
         self.curve.breaks()
     }

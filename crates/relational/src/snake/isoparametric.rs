@@ -2,7 +2,7 @@
 
 use crate::curve::Segment;
 use crate::snake::OnSurface;
-use moldloft_num::trace::{Edge, Mark, Piece, Root, Trace};
+use moldloft_num::trace::{EDGE_CORNERS, Edge, Key, Mark, Piece, Root, Trace};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use std::sync::Arc;
@@ -25,9 +25,11 @@ pub fn edge_trace<T: Real>(surface: &SurfaceRef<T>, k: usize) -> Trace<T> {
 
 fn own_edge<T: Real>(surface: &SurfaceRef<T>, k: u8) -> Trace<T> {
     let Some(key) = surface.key else { return Trace::own() };
-    // The ends are marked by their parameters, as the mesher marks them for the surface itself.
-    let mark = |t: f64| Mark { t: T::from(t), point: None };
-    let whole = Piece { root: Root::Edge(key, k), from: mark(0.0), to: mark(1.0), until: T::one() };
+    let known = surface.edges().corners;
+    let [a, b] = EDGE_CORNERS[usize::from(k)].map(|c| known[c].or_else(|| key.corner(c)));
+    let mark = |t: f64, point: Option<Key>| Mark { t: T::from(t), point };
+    let (from, to) = (mark(0.0, a), mark(1.0, b));
+    let whole = Piece { root: Root::Edge(key, k), from, to, until: T::one() };
     Trace::Pieces([whole].into_iter().collect())
 }
 
@@ -50,23 +52,26 @@ pub struct EdgeSnake<T: Real> {
 
 impl<T: Real> Build<T> for EdgeSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let ends = match self.edge {
-            1 => [(0.0, 0.0), (1.0, 0.0)],
-            2 => [(1.0, 0.0), (1.0, 1.0)],
-            3 => [(0.0, 1.0), (1.0, 1.0)],
-            4 => [(0.0, 0.0), (0.0, 1.0)],
-            other => {
-                return Err(CallError::new("out-of-range", format!("no edge {other}"))
-                    .expected("an edge from 1 to 4")
-                    .found(other.to_string())
-                    .in_field(Self::EDGE));
-            }
-        };
-        let [from, to] = ends.map(|(u, v)| Vec3::of(u, v, 0.0));
-        let trace = edge_trace(&self.surface, self.edge - 1);
-        let shape = OnSurface { surface: self.surface.clone(), path: Segment { from, to }, trace };
-        Ok(Value::Curve(CurveRef::snake(shape, self.surface, context.nesting)))
+        match self.edge {
+            k @ 1..=4 => Ok(Value::Curve(edge(self.surface, k - 1, context.nesting))),
+            other => Err(CallError::new("out-of-range", format!("no edge {other}"))
+                .expected("an edge from 1 to 4")
+                .found(other.to_string())
+                .in_field(Self::EDGE)),
+        }
     }
+}
+
+/// The snake along edge `k` (0..4: v = 0, u = 1, v = 1, u = 0) of a surface, in the direction of
+/// increasing parameter; it holds on to shapes nested `nesting` deep.
+pub fn edge<T: Real>(surface: SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef<T> {
+    let [from, to] = EDGE_CORNERS[k].map(|corner| {
+        let [u, v] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][corner];
+        Vec3::of(u, v, 0.0)
+    });
+    let trace = edge_trace(&surface, k);
+    let shape = OnSurface { surface: surface.clone(), path: Segment { from, to }, trace };
+    CurveRef::snake(shape, surface, nesting)
 }
 
 /// A parameter line of a surface: X(t) = S(value, t), or X(t) = S(t, value).

@@ -9,7 +9,7 @@ mod through;
 
 pub use contact::ContactSnake;
 pub use foil::FoilSnake;
-pub use isoparametric::{EdgeSnake, UVSnake, edge_trace};
+pub use isoparametric::{EdgeSnake, UVSnake, edge, edge_trace};
 pub use more::{ArcSnake, CSnake, ConicSnake, CopySnake, NURBSnake, RelSnake};
 pub use on_surface::OnSurface;
 pub use through::{BSnake, LineSnake};

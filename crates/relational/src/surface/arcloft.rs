@@ -116,6 +116,14 @@ impl<T: Real> Column for ArcLoft<T> {
         [self.masters.breaks(), Vec::new()]
     }
 
+    fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
+        // Neither the end of an arc nor that of a section need lie on a master.
+        match k % 2 {
+            0 => Vec::new(),
+            _ => self.masters.edge_made_of(k),
+        }
+    }
+
     /// Where arcs begin and end on masters, edges run along them; a full circle closes.
     fn edges(&self) -> Edges<T> {
         let mut edges = self.masters.edges();

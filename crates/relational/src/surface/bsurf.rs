@@ -129,7 +129,7 @@ impl<T: Scalar> Build<T> for NURBSurf<T> {
             return Ok(Value::Surface(SurfaceRef::new(net, 0)));
         }
         // The same bits with and without derivatives by the knots.
-        let Net { surface, corners } = net;
+        let Net { surface, corners, rows } = net;
         let free = |given: Option<Vec<T>>, knots: &KnotVector| match given {
             Some(given) => FreeKnots::normalized(knots.degree(), &given),
             None => {
@@ -143,6 +143,7 @@ impl<T: Scalar> Build<T> for NURBSurf<T> {
             points: surface.control_points().to_vec(),
             weights: surface.weights().map(<[T]>::to_vec),
             corners,
+            rows,
         };
         Ok(Value::Surface(SurfaceRef::new(free, 0)))
     }
@@ -152,7 +153,12 @@ impl<T: Scalar> Build<T> for NURBSurf<T> {
 struct Net<T: Real> {
     surface: BSplineSurface<T>,
     corners: [Option<Key>; 4],
+    /// The point objects along the edges, where these are clamped.
+    rows: Rows,
 }
+
+/// The point objects along each edge of a net.
+pub(super) type Rows = [Box<[Key]>; 4];
 
 impl<T: Real> Surface<T> for Net<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
@@ -187,6 +193,10 @@ impl<T: Real> Surface<T> for Net<T> {
 
     fn edges(&self) -> Edges<T> {
         Edges { corners: self.corners, ..Edges::own() }
+    }
+
+    fn edge_made_of(&self, k: usize) -> Vec<Key> {
+        self.rows[k].to_vec()
     }
 }
 
@@ -248,9 +258,19 @@ impl<T: Real> Net<T> {
             corner(east && north, nu * nv - 1),
             corner(west && north, nv - 1),
         ];
+        let row = |there: bool, places: &mut dyn Iterator<Item = usize>| -> Box<[Key]> {
+            let keys: Option<Box<[Key]>> = places.map(|k| points[k].key).collect();
+            keys.filter(|_| there).unwrap_or_default()
+        };
+        let rows = [
+            row(south, &mut (0..nu).map(|i| i * nv)),
+            row(east, &mut ((nu - 1) * nv..nu * nv)),
+            row(north, &mut (0..nu).map(|i| i * nv + nv - 1)),
+            row(west, &mut (0..nv)),
+        ];
         let net = points.iter().map(|p| p.xyz).collect();
         let surface = BSplineSurface::new(u, v, net, weights)
             .map_err(|error| faults::of_spline(error, fields.points, fields.degrees[0]))?;
-        Ok(Self { surface, corners })
+        Ok(Self { surface, corners, rows })
     }
 }

@@ -308,6 +308,10 @@ impl<T: Real> Surface<T> for Loft<T> {
         [self.masters.breaks(), Vec::new()]
     }
 
+    fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
+        self.masters.edge_made_of(k)
+    }
+
     fn edges(&self) -> Edges<T> {
         self.masters.edges()
     }

@@ -16,6 +16,10 @@ pub trait Column: Send + Sync {
     fn breaks(&self) -> [Vec<f64>; 2];
     /// See [`Surface::edges`].
     fn edges(&self) -> Edges<Self::Scalar>;
+    /// See [`Surface::edge_made_of`].
+    fn edge_made_of(&self, _k: usize) -> Vec<moldloft_num::trace::Key> {
+        Vec::new()
+    }
 }
 
 /// The surface of such curves.
@@ -84,6 +88,10 @@ impl<C: Column> Surface<C::Scalar> for Columns<C> {
 
     fn edges(&self) -> Edges<C::Scalar> {
         self.0.edges()
+    }
+
+    fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
+        self.0.edge_made_of(k)
     }
 }
 

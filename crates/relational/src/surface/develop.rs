@@ -240,6 +240,14 @@ impl<T: Real> Column for Plate<T> {
         [self.breaks.clone(), Vec::new()]
     }
 
+    fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
+        // Along its curves the rulings set the pace.
+        match k % 2 {
+            0 => Vec::new(),
+            _ => self.masters.edge_made_of(k),
+        }
+    }
+
     /// An edge runs along its curve when u is that curve's parameter; the ends are rulings.
     fn edges(&self) -> Edges<T> {
         let mut edges = self.masters.straight_edges();

@@ -141,7 +141,7 @@ fn fit<T: Real>(
         net.extend(along(1, &column)?.control_points());
     }
     let corners = surface.edges().corners;
-    let fitted = FreeNet { knots, points: net, weights: None, corners };
+    let fitted = FreeNet { knots, points: net, weights: None, corners, rows: Default::default() };
     let mut residual = 0.0f64;
     for (i, &u) in us.iter().enumerate() {
         for (j, &v) in vs.iter().enumerate() {

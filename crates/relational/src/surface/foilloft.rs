@@ -78,6 +78,14 @@ impl<T: Real> Column for FoilLoft<T> {
         [self.masters.breaks(), self.across.clone()]
     }
 
+    fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
+        // Neither the end of an arc nor that of a section need lie on a master.
+        match k % 2 {
+            0 => Vec::new(),
+            _ => self.masters.edge_made_of(k),
+        }
+    }
+
     /// Edges run along nose and tail where the section ends there.
     fn edges(&self) -> Edges<T> {
         let mut edges = self.masters.edges();

@@ -60,6 +60,8 @@ pub struct FreeNet<T: Real> {
     /// As many; all 1 where there are none.
     pub weights: Option<Vec<T>>,
     pub corners: [Option<Key>; 4],
+    /// The point objects along the edges.
+    pub rows: super::bsurf::Rows,
 }
 
 impl<T: Real> SurfaceFormula for FreeNet<T> {
@@ -87,6 +89,10 @@ impl<T: Real> SurfaceFormula for FreeNet<T> {
 
     fn edges(&self) -> Edges<T> {
         Edges { corners: self.corners, ..Edges::own() }
+    }
+
+    fn edge_made_of(&self, k: usize) -> Vec<Key> {
+        self.rows[k].to_vec()
     }
 
     fn rational(&self) -> Rational<2> {

@@ -152,6 +152,10 @@ impl<T: Real> Surface<T> for Blend<T> {
         [self.masters.joints(), self.knots.joints()]
     }
 
+    fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
+        self.masters.edge_made_of(k)
+    }
+
     fn rational(&self) -> Rational<2> {
         self.masters.rational()
     }

@@ -370,6 +370,12 @@ impl<T: Real> Surface<T> for Moved<T> {
         self.surface.crossings(path, spans)
     }
 
+    fn edge_made_of(&self, k: usize) -> Vec<Key> {
+        let [a, b] = moldloft_num::trace::EDGE_CORNERS[k].map(|c| self.corners[c]);
+        let edge = self.surface.key.and_then(|s| s.edge(k));
+        [a, b, edge].into_iter().flatten().collect()
+    }
+
     fn edges(&self) -> moldloft_num::trace::Edges<T> {
         moldloft_num::trace::Edges { corners: self.corners, ..moldloft_num::trace::Edges::own() }
     }

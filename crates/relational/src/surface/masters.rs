@@ -84,6 +84,22 @@ impl<T: Real> Masters<T> {
         all
     }
 
+    /// The points that the line u = 0 (end 0) or u = 1 of a loft is determined by: the masters' ends.
+    pub fn ends(&self, end: usize) -> Vec<Key> {
+        self.0.iter().filter_map(|c| c.end_points()[end]).collect()
+    }
+
+    /// What the edges are made of: those across the masters of the masters' ends, those along them of
+    /// the first and the last.
+    pub fn edge_made_of(&self, k: usize) -> Vec<Key> {
+        match k {
+            0 => self.0[0].made_of(),
+            1 => self.ends(1),
+            2 => self.0[self.0.len() - 1].made_of(),
+            _ => self.ends(0),
+        }
+    }
+
     /// The edges of a surface that is straight from each master to the next, at even steps of v:
     /// as [`Masters::edges`], and the other two run along the segments between the masters' ends.
     pub fn straight_edges(&self) -> Edges<T> {

@@ -151,6 +151,11 @@ impl<T: Real> SurfaceFormula for Parallel<T> {
     fn edges(&self) -> Edges<T> {
         self.edges.clone()
     }
+
+    /// That of the surface, moved.
+    fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
+        self.surface.key.and_then(|s| s.edge(k)).into_iter().collect()
+    }
 }
 
 /// S + d n at parameters and a distance that may be jets.

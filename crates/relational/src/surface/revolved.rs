@@ -1,7 +1,7 @@
 //! Surfaces of revolution.
 
 use super::masters::{along, is_closed};
-use moldloft_num::trace::{Edge, Edges};
+use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Axis, Jet, Order, Pace, Rational, Real, SurfaceFormula, Vec3, Weight};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -83,6 +83,14 @@ impl<T: Real> SurfaceFormula for Revolved<T> {
 
     fn breaks(&self) -> [Vec<f64>; 2] {
         [self.curve.breaks(), Vec::new()]
+    }
+
+    /// The circle of an end of the curve, and the turned curve itself.
+    fn edge_made_of(&self, k: usize) -> Vec<Key> {
+        match k {
+            0 | 2 => self.curve.made_of(),
+            _ => self.curve.end_points()[usize::from(k == 1)].into_iter().collect(),
+        }
     }
 
     fn joints(&self) -> [Vec<f64>; 2] {

@@ -4,7 +4,8 @@ use super::corners;
 use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};
 use crate::seam;
-use moldloft_num::trace::{Edge, Edges, Key};
+use crate::snake::edge_trace;
+use moldloft_num::trace::{Edge, Edges, Key, Mark, Root, Trace};
 use moldloft_num::{
     Bi1, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings, surface_jet_of,
 };
@@ -336,16 +337,27 @@ impl<T: Real> Surface<T> for Patch<T> {
         all
     }
 
+    /// A side that is not given: the surface and the points that it lies straight between.
+    fn edge_made_of(&self, k: usize) -> Vec<Key> {
+        let Layout::Between([first, last]) = &self.layout else { return Vec::new() };
+        if k % 2 == 0 {
+            return Vec::new();
+        }
+        let end = usize::from(k == 1);
+        [self.surface.key, ends(first)[end], ends(last)[end]].into_iter().flatten().collect()
+    }
+
     fn edges(&self) -> Edges<T> {
         match &self.layout {
             Layout::Between([first, last]) => {
                 let ([a, b], [d, c]) = (ends(first), ends(last));
-                let across = |p: Option<Key>, q: Option<Key>| {
-                    if p.is_some() && p == q { Edge::Pole(p) } else { Edge::Own }
+                let across = |p: Option<Key>, q: Option<Key>, end: f64| {
+                    let pole = p.is_some() && p == q;
+                    if pole { Edge::Pole(p) } else { self.implied([first, last], [p, q], end) }
                 };
-                let east = if self.is_closed() { Edge::SameAs(3) } else { across(b, c) };
+                let east = if self.is_closed() { Edge::SameAs(3) } else { across(b, c, 1.0) };
                 Edges {
-                    edges: [edge(first), east, edge(last), across(a, d)],
+                    edges: [edge(first), east, edge(last), across(a, d, 0.0)],
                     corners: [a, b, c, d],
                 }
             }
@@ -362,6 +374,32 @@ impl<T: Real> Surface<T> for Patch<T> {
                 }
             }
         }
+    }
+}
+
+impl<T: Real> Patch<T> {
+    /// The side that is not given, straight in the parameter plane between the ends `end` of two that
+    /// are: where it lies on an edge of the surface, a part of that.
+    fn implied(&self, sides: [&Side<T>; 2], points: [Option<Key>; 2], end: f64) -> Edge<T> {
+        let [p, q] = sides.map(|side| place(side, T::from(end)));
+        for (k, on) in [0.0, 1.0, 1.0, 0.0].into_iter().enumerate() {
+            let split = |w: Vec3<T>| if k % 2 == 0 { (w.y, w.x) } else { (w.x, w.y) };
+            let ((across_p, from), (across_q, to)) = (split(p), split(q));
+            if across_p.re() != on || across_q.re() != on || from.re() == to.re() {
+                continue;
+            }
+            let Some(key) = self.surface.key else { continue };
+            let mark = |t: T, point: Option<Key>| Mark { t, point };
+            let part = edge_trace(&self.surface, k).part(
+                Root::Edge(key, k as u8),
+                mark(from, points[0]),
+                mark(to, points[1]),
+            );
+            if let Trace::Pieces(pieces) = part {
+                return Edge::Pieces(pieces);
+            }
+        }
+        Edge::Own
     }
 }
 

@@ -3,7 +3,7 @@
 use super::law::law;
 use super::masters::{along, is_closed};
 use crate::third_derivatives::tangent;
-use moldloft_num::trace::{Edge, Edges};
+use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3, surface_jet_of};
 use moldloft_registry::{
     Build, CallError, Context, CurveRef, FieldId, Kind, Scalar, SurfaceRef, Value,
@@ -374,6 +374,16 @@ impl<T: Real> Surface<T> for Sweep<T> {
         v.sort_by(f64::total_cmp);
         v.dedup();
         [self.profile.breaks(), v]
+    }
+
+    /// The profile, moved; or the way of one of its ends along the path.
+    fn edge_made_of(&self, k: usize) -> Vec<Key> {
+        if k % 2 == 0 {
+            return self.profile.made_of();
+        }
+        let mut made = self.moving.path.made_of();
+        made.extend(self.profile.end_points()[usize::from(k == 1)]);
+        made
     }
 
     /// Edge v = 0 runs along the profile unless it is turned or scaled there; an edge u = const along

@@ -1,7 +1,7 @@
 //! Curves moved along others without turning.
 
 use super::masters::{along, is_closed};
-use moldloft_num::trace::{Edge, Edges};
+use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Jet, Rational, Real, SurfaceFormula, Vec3, Weight};
 use moldloft_registry::{CurveRef, Kind};
 
@@ -30,6 +30,11 @@ impl<T: Real> SurfaceFormula for TranSurf<T> {
 
     fn breaks(&self) -> [Vec<f64>; 2] {
         [self.c1.breaks(), self.c2.breaks()]
+    }
+
+    /// One of the curves, moved.
+    fn edge_made_of(&self, k: usize) -> Vec<Key> {
+        if k % 2 == 0 { self.c1.made_of() } else { self.c2.made_of() }
     }
 
     fn joints(&self) -> [Vec<f64>; 2] {

@@ -2,7 +2,7 @@
 //! or example fails here, and so does one whose derivatives, grid or edges are wrong.
 
 use crate::common::{Scene, run, scene};
-use moldloft_num::trace::{Edge, Key, Piece, Root, Trace};
+use moldloft_num::trace::{Edge, Key, Named, Piece, Root, Trace};
 use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{Class, Row, Scalar, SurfaceRef, Value};
 use moldloft_testing::ridders;
@@ -332,17 +332,11 @@ fn on_root(scene: &Scene<f64>, root: Root, t: f64) -> Vec3 {
             other => panic!("the root is {other:?}"),
         },
         Root::Segment(a, b) => {
-            let [a, b] = [a, b].map(|key| match value(key) {
-                Value::Point(p) => p.xyz,
-                other => panic!("the root ends at {other:?}"),
-            });
+            let [a, b] = [a, b].map(|key| place(scene, key));
             a * (1.0 - t) + b * t
         }
         Root::Governed(a, b, law) => {
-            let [a, b] = [a, b].map(|key| match value(key) {
-                Value::Point(p) => p.xyz,
-                other => panic!("the root ends at {other:?}"),
-            });
+            let [a, b] = [a, b].map(|key| place(scene, key));
             let Value::Relabel(law) = value(law) else { panic!("no law") };
             let t = law.jet(t, Order::Zero)[0];
             a * (1.0 - t) + b * t
@@ -357,8 +351,26 @@ fn boundary(s: &SurfaceRef<f64>, k: usize, t: f64) -> Vec3 {
 
 fn is_at(scene: &Scene<f64>, key: Option<Key>, p: Vec3, what: &str) {
     if let Some(key) = key {
-        let Value::Point(q) = &scene.0[key.0 as usize].value else { panic!("{what}: no point") };
-        assert!(p.distance(q.xyz) < 1e-13, "{what}: the point is elsewhere");
+        assert!(p.distance(place(scene, key)) < 1e-13, "{what}: the point is elsewhere");
+    }
+}
+
+/// Where a point is: an object, a corner of a surface or an end of a curve.
+fn place(scene: &Scene<f64>, key: Key) -> Vec3 {
+    let value = |key: Key| &scene.0[key.0 as usize].value;
+    match key.named() {
+        Named::Corner(surface, k) => match value(surface) {
+            Value::Surface(s) => boundary(s, [0, 0, 1, 3][k], [0.0, 1.0, 1.0, 1.0][k]),
+            other => panic!("a corner of {other:?}"),
+        },
+        Named::End(curve, k) => match value(curve) {
+            Value::Curve(c) => c.end(k as f64),
+            other => panic!("an end of {other:?}"),
+        },
+        _ => match value(key) {
+            Value::Point(p) => p.xyz,
+            other => panic!("the point is {other:?}"),
+        },
     }
 }
 

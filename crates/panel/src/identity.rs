@@ -1,0 +1,601 @@
+//! Which roots, and which points, are one though they have several names.
+//!
+//! An edge of a loft has no name of its own, nor has a corner of a patch. They are known by what they are
+//! made of: the edge by the ends of the masters, the corner of an image by the corner of the original.
+//! Two of them are one when they are made of the same things *and* lie in one place: neither alone is
+//! enough, for the same point may be turned to several places, and equal numbers join nothing. What is
+//! one here has one root, so marks, divisions and vertices flow along it as along any curve.
+//!
+//! `roots in use -> what each is made of -> those made alike -> those in one place -> one root`
+
+use crate::draft::{Draft, surface_of};
+use crate::roots::pieces;
+use moldloft_model::Graph;
+use moldloft_num::trace::{EDGE_CORNERS, Edge, Key, Named, Piece, Root, Trace};
+use moldloft_num::{Box3, Order, Vec3};
+use moldloft_registry::{CurveRef, SurfaceRef, Value};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// The parameters at which two roots are compared; the same ones from the other end.
+const TRIALS: [f64; 9] = [0.0, 0.0625, 0.1875, 0.34375, 0.5, 0.65625, 0.8125, 0.9375, 1.0];
+
+/// What is made alike lies in one place within this share of its size: rounding, from whichever way it
+/// was reached.
+const SAME_PLACE: f64 = 1e-10;
+
+/// Unions may make more things alike: the lines between corners that turn out to be one. So many rounds.
+const ROUNDS: usize = 6;
+
+/// What a line or a point is made of, as a number; alike for those made of the same things.
+type Make = u64;
+
+/// The roots and points that go by other names.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Identities {
+    roots: HashMap<Root, (Root, bool)>,
+    points: HashMap<Key, Key>,
+    /// The roots of declared joins, and how far apart their edges may be.
+    declared: Vec<(Root, f64)>,
+}
+
+impl Identities {
+    /// Edges between points that turn out to be one are poles: the end of a strip between a curve that
+    /// begins in a mirror and its image.
+    pub fn collapse(&self, drafts: &mut [Draft]) {
+        for draft in drafts {
+            for k in 0..4 {
+                let one = match &draft.edges.edges[k] {
+                    Edge::Pieces(pieces) => {
+                        self.one_point(pieces.iter().flat_map(|p| match p.root {
+                            Root::Segment(a, b) => [Some(a), Some(b)],
+                            _ => [None, None],
+                        }))
+                    }
+                    Edge::Own => {
+                        let made = draft.surface.edge_made_of(k);
+                        // One point alone may be turned to a circle.
+                        let several = made.len() > 1 && has_no_length(&draft.surface, k);
+                        let one = self.one_point(made.into_iter().map(Some));
+                        one.filter(|_| several)
+                    }
+                    _ => None,
+                };
+                if let Some(point) = one {
+                    draft.edges.edges[k] = Edge::Pole(Some(point));
+                }
+            }
+        }
+    }
+
+    /// The point that all of these are.
+    fn one_point(&self, mut points: impl Iterator<Item = Option<Key>>) -> Option<Key> {
+        let first = self.point(points.next()??);
+        points.all(|p| p.is_some_and(|p| self.point(p) == first)).then_some(first)
+    }
+
+    /// True when joins are declared.
+    pub fn has_declared(&self) -> bool {
+        !self.declared.is_empty()
+    }
+
+    /// How far apart the edges along a root may be by a declared join.
+    pub fn tolerance(&self, root: Root) -> Option<f64> {
+        let (root, _) = self.root(root);
+        let of = self.declared.iter().filter(|(r, _)| self.root(*r).0 == root);
+        of.map(|(_, tolerance)| *tolerance).reduce(f64::max)
+    }
+
+    /// Those of everything that the patches run along.
+    pub fn new(graph: &Graph<f64>, drafts: &[Draft]) -> Self {
+        let mut finder = Finder::new(graph, drafts);
+        finder.join_declared();
+        for _ in 0..ROUNDS {
+            finder.makes.clear();
+            let before = finder.unions;
+            finder.join_points();
+            finder.join_lines();
+            finder.found.flatten();
+            if finder.unions == before {
+                break;
+            }
+        }
+        finder.found
+    }
+
+    /// The one name of a point.
+    pub fn point(&self, key: Key) -> Key {
+        let mut at = key;
+        while let Some(&next) = self.points.get(&at) {
+            at = next;
+        }
+        at
+    }
+
+    /// Names of names give way to the one name.
+    fn flatten(&mut self) {
+        let points: Vec<Key> = self.points.keys().copied().collect();
+        for key in points {
+            let last = self.point(key);
+            self.points.insert(key, last);
+        }
+        let roots: Vec<Root> = self.roots.keys().copied().collect();
+        for root in roots {
+            let last = self.root(root);
+            self.roots.insert(root, last);
+        }
+    }
+
+    /// The one name of a root, and whether that runs against it.
+    pub fn root(&self, root: Root) -> (Root, bool) {
+        let (mut at, mut against) = self.straightened(root);
+        // Names lead to smaller ones and end; a count keeps that from resting on it.
+        for _ in 0..self.roots.len() {
+            let Some(&(next, turned)) = self.roots.get(&at) else { break };
+            at = next;
+            against ^= turned;
+            let (straight, turned) = self.straightened(at);
+            at = straight;
+            against ^= turned;
+        }
+        (at, against)
+    }
+
+    /// A straight line between points by the one names of these.
+    fn straightened(&self, root: Root) -> (Root, bool) {
+        match root {
+            Root::Segment(a, b) => {
+                let [p, q] = [self.point(a), self.point(b)];
+                if p == q { (root, false) } else { (Root::Segment(p.min(q), p.max(q)), p > q) }
+            }
+            Root::Governed(a, b, law) => (Root::Governed(self.point(a), self.point(b), law), false),
+            other => (other, false),
+        }
+    }
+
+    /// The piece on the one root, and whether that runs against its own.
+    pub fn piece(&self, piece: &Piece<f64>) -> (Piece<f64>, bool) {
+        let (root, turned) = self.root(piece.root);
+        let mark = |mark: moldloft_num::trace::Mark<f64>| moldloft_num::trace::Mark {
+            t: if turned { 1.0 - mark.t } else { mark.t },
+            point: mark.point.map(|p| self.point(p)),
+        };
+        (Piece { root, from: mark(piece.from), to: mark(piece.to), until: piece.until }, turned)
+    }
+}
+
+struct Finder<'g> {
+    graph: &'g Graph<f64>,
+    found: Identities,
+    /// What the patches run along, and the points in use, in the order of first use.
+    roots: Vec<Root>,
+    points: Vec<Key>,
+    makes: HashMap<Key, Make>,
+    lines: HashMap<Root, Make>,
+    unions: usize,
+}
+
+fn hashed(parts: impl Hash) -> Make {
+    let mut hasher = DefaultHasher::new();
+    parts.hash(&mut hasher);
+    hasher.finish()
+}
+
+/// The make of what is made of several things, whatever their order.
+fn set(mut parts: Vec<Make>) -> Make {
+    parts.sort_unstable();
+    parts.dedup();
+    match parts[..] {
+        [one] => one,
+        _ => hashed(parts),
+    }
+}
+
+impl<'g> Finder<'g> {
+    fn new(graph: &'g Graph<f64>, drafts: &[Draft]) -> Self {
+        let mut roots = indexed();
+        let mut points = indexed();
+        for draft in drafts {
+            for (k, edge) in draft.edges.edges.iter().enumerate() {
+                for piece in pieces(edge, draft.object.key, k).iter().flatten() {
+                    roots.add(piece.root);
+                    if let Root::Segment(a, b) | Root::Governed(a, b, _) = piece.root {
+                        points.add(a);
+                        points.add(b);
+                    }
+                    [piece.from, piece.to]
+                        .iter()
+                        .filter_map(|m| m.point)
+                        .for_each(|p| points.add(p));
+                }
+                if let Edge::Pole(Some(point)) = edge {
+                    points.add(*point);
+                }
+            }
+            draft.edges.corners.iter().flatten().for_each(|&p| points.add(p));
+        }
+        Self {
+            graph,
+            found: Identities::default(),
+            roots: roots.all,
+            points: points.all,
+            makes: HashMap::new(),
+            lines: HashMap::new(),
+            unions: 0,
+        }
+    }
+
+    fn curve(&self, key: Key) -> Option<&'g CurveRef<f64>> {
+        match self.graph.get(key)?.value()? {
+            Value::Curve(curve) => Some(curve),
+            _ => None,
+        }
+    }
+
+    fn surface(&self, key: Key) -> Option<&'g SurfaceRef<f64>> {
+        surface_of(self.graph.get(key)?)
+    }
+
+    /// What a point is made of: itself, or the point that it is an image of.
+    fn point_make(&mut self, key: Key) -> Make {
+        let mut at = self.found.point(key);
+        if let Some(&make) = self.makes.get(&at) {
+            return make;
+        }
+        let first = at;
+        let mut seen = vec![at];
+        // Images of images: down to the original.
+        loop {
+            let next = match at.named() {
+                Named::Object(_) => match self.graph.get(at).and_then(|o| o.value()) {
+                    Some(Value::Point(p)) => p.image_of.or(p.key.filter(|&k| k != at)),
+                    _ => None,
+                },
+                Named::Corner(surface, k) => self.surface(surface).and_then(|s| {
+                    let known = s.edges().corners[k];
+                    known.or_else(|| s.image_of()?.0.corner(k))
+                }),
+                Named::End(curve, k) => self.curve(curve).and_then(|c| {
+                    let known = c.end_points()[k].filter(|&p| p != at);
+                    known.or_else(|| c.image_of()?.end(k))
+                }),
+                Named::Edge(..) => None,
+            };
+            let Some(next) = next.map(|p| self.found.point(p)) else { break };
+            // Points that are images of each other, by other names, have the first of them in common.
+            if let Some(from) = seen.iter().position(|&p| p == next) {
+                at = seen[from..].iter().copied().min().unwrap_or(next);
+                break;
+            }
+            seen.push(next);
+            at = next;
+        }
+        let make = hashed((0u8, at.0));
+        self.makes.insert(first, make);
+        make
+    }
+
+    /// What anything with a key is made of.
+    fn make(&mut self, key: Key) -> Make {
+        match key.named() {
+            Named::Edge(surface, k) => self.line_make(Root::Edge(surface, k as u8)),
+            Named::Corner(..) | Named::End(..) => self.point_make(key),
+            Named::Object(_) => match self.graph.get(key).and_then(|o| o.value()) {
+                Some(Value::Curve(_)) => self.line_make(Root::Curve(key)),
+                Some(Value::Point(_)) => self.point_make(key),
+                _ => hashed((2u8, key.0)),
+            },
+        }
+    }
+
+    fn pieces_make(&mut self, pieces: &[Piece<f64>]) -> Make {
+        let mut parts = Vec::new();
+        for piece in pieces {
+            let line = self.line_make(piece.root);
+            let ends = [piece.from, piece.to];
+            if ends.iter().all(|m| m.t == 0.0 || m.t == 1.0) {
+                parts.push(line);
+                continue;
+            }
+            // A part: the line, and where it begins and ends.
+            let mut marks: Vec<Make> = Vec::new();
+            for mark in ends {
+                marks.push(match mark.point.or_else(|| piece.root.end(mark.t)) {
+                    Some(point) => self.point_make(point),
+                    None => hashed((3u8, mark.t.to_bits())),
+                });
+            }
+            marks.push(line);
+            parts.push(set(marks));
+        }
+        set(parts)
+    }
+
+    /// What a line is made of: the curve of which it is an image, the points that it is drawn through.
+    fn line_make(&mut self, root: Root) -> Make {
+        let (root, _) = self.found.root(root);
+        if let Some(&make) = self.lines.get(&root) {
+            return make;
+        }
+        let own = hashed((1u8, root));
+        // What is made of itself would never end.
+        self.lines.insert(root, own);
+        let make = match root {
+            Root::Segment(a, b) => set(vec![self.point_make(a), self.point_make(b)]),
+            Root::Governed(a, b, _) => set(vec![self.point_make(a), self.point_make(b)]),
+            Root::Curve(key) => match self.curve(key) {
+                Some(curve) => self.curve_make(key, curve),
+                None => own,
+            },
+            Root::Edge(key, k) => match self.surface(key) {
+                Some(surface) => self.edge_make(key, usize::from(k), surface),
+                None => own,
+            },
+        };
+        self.lines.insert(root, make);
+        make
+    }
+
+    fn curve_make(&mut self, key: Key, curve: &CurveRef<f64>) -> Make {
+        if let Some(original) = curve.image_of() {
+            return self.make(original);
+        }
+        match curve.trace() {
+            Trace::Pieces(pieces) => self.pieces_make(&pieces),
+            Trace::Point(Some(point)) => self.point_make(point),
+            _ => {
+                let parents = self.graph.get(key).map(|o| o.parents.clone()).unwrap_or_default();
+                let shapes: Vec<Key> = parents
+                    .into_iter()
+                    .filter(|&p| {
+                        matches!(
+                            self.graph.get(p).and_then(|o| o.value()),
+                            Some(Value::Point(_) | Value::Curve(_) | Value::Surface(_))
+                        )
+                    })
+                    .collect();
+                if shapes.is_empty() {
+                    return hashed((1u8, Root::Curve(key)));
+                }
+                set(shapes.into_iter().map(|p| self.make(p)).collect())
+            }
+        }
+    }
+
+    fn edge_make(&mut self, key: Key, k: usize, surface: &SurfaceRef<f64>) -> Make {
+        if let Some(edge) = surface.image_of().and_then(|(original, _)| original.edge(k)) {
+            return self.make(edge);
+        }
+        let edges = surface.edges();
+        match &edges.edges[k] {
+            Edge::Pieces(pieces) => self.pieces_make(pieces),
+            Edge::SameAs(other) => self.line_make(Root::Edge(key, *other)),
+            Edge::Pole(Some(point)) => self.point_make(*point),
+            Edge::Pole(None) => hashed((1u8, Root::Edge(key, k as u8))),
+            Edge::Own => {
+                let mut made = surface.edge_made_of(k);
+                if made.is_empty() {
+                    // Nothing is known but the ends.
+                    let ends = EDGE_CORNERS[k].map(|c| edges.corners[c].or_else(|| key.corner(c)));
+                    made.extend(ends.into_iter().flatten());
+                }
+                let makes: Vec<Make> = made.into_iter().map(|p| self.make(p)).collect();
+                if makes.is_empty() { hashed((1u8, Root::Edge(key, k as u8))) } else { set(makes) }
+            }
+        }
+    }
+
+    /// Where a point is.
+    fn place(&self, key: Key) -> Option<Vec3> {
+        match key.named() {
+            Named::Object(_) => match self.graph.get(key)?.value()? {
+                Value::Point(p) => Some(p.xyz),
+                _ => None,
+            },
+            Named::Corner(surface, k) => {
+                let [u, v] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][k];
+                Some(self.surface(surface)?.jet(u, v, Order::Zero).p)
+            }
+            Named::End(curve, k) => Some(self.curve(curve)?.end(k as f64)),
+            Named::Edge(..) => None,
+        }
+    }
+
+    /// The points of a root at the trial parameters.
+    fn places(&self, root: Root) -> Option<Vec<Vec3>> {
+        let mut points = vec![Vec3::zero(); TRIALS.len()];
+        match root {
+            Root::Curve(key) => self.curve(key)?.grid(&TRIALS, &mut points),
+            Root::Edge(key, k) => {
+                let surface = self.surface(key)?;
+                let fixed = [if k == 1 || k == 2 { 1.0 } else { 0.0 }];
+                match k % 2 {
+                    0 => surface.grid(&TRIALS, &fixed, &mut points, None),
+                    _ => surface.grid(&fixed, &TRIALS, &mut points, None),
+                }
+            }
+            Root::Segment(a, b) => {
+                let [a, b] = [self.place(a)?, self.place(b)?];
+                for (p, t) in points.iter_mut().zip(TRIALS) {
+                    *p = a * (1.0 - t) + b * t;
+                }
+            }
+            // The law is the same for those that may be one.
+            Root::Governed(..) => return None,
+        }
+        points.iter().all(|p| p.norm().is_finite()).then_some(points)
+    }
+
+    /// The edges that the user declares to be one.
+    fn join_declared(&mut self) {
+        for object in self.graph.objects() {
+            let Some(Value::Curve(curve)) = object.value() else { continue };
+            let Some(join) = &curve.joins else { continue };
+            let (edges, tolerance) = (&join.0, join.1);
+            let [Some(a), Some(b)] = [0, 1].map(|k| edges[k].pieces().first().copied()) else {
+                continue;
+            };
+            let ends = [edges[0].end(0.0), edges[0].end(1.0), edges[1].end(0.0), edges[1].end(1.0)];
+            let alike = ends[0].distance(ends[2]) + ends[1].distance(ends[3]);
+            let against = ends[0].distance(ends[3]) + ends[1].distance(ends[2]);
+            let turned = (against < alike) ^ (a.from.t > a.to.t) ^ (b.from.t > b.to.t);
+            self.join_line(a.root, b.root, turned);
+            let (root, _) = self.found.root(a.root);
+            self.found.declared.push((root, tolerance));
+        }
+    }
+
+    fn join_points(&mut self) {
+        let mut groups: BTreeMap<Make, Vec<Key>> = BTreeMap::new();
+        let mut seen = HashSet::new();
+        for key in self.points.clone() {
+            let key = self.found.point(key);
+            if seen.insert(key) {
+                let make = self.point_make(key);
+                groups.entry(make).or_default().push(key);
+            }
+        }
+        for group in groups.into_values().filter(|g| g.len() > 1) {
+            let placed: Vec<(Key, Vec<Vec3>)> =
+                group.into_iter().filter_map(|p| Some((p, vec![self.place(p)?]))).collect();
+            for (a, b, _) in coincident(&placed) {
+                self.join_point(a, b);
+            }
+        }
+    }
+
+    fn join_point(&mut self, a: Key, b: Key) {
+        let [a, b] = [self.found.point(a), self.found.point(b)];
+        if a == b {
+            return;
+        }
+        // Objects have smaller keys than parts of them: names of the user's come first.
+        let (kept, other) = (a.min(b), a.max(b));
+        self.found.points.insert(other, kept);
+        self.unions += 1;
+    }
+
+    fn join_lines(&mut self) {
+        self.lines.clear();
+        let mut groups: BTreeMap<Make, Vec<Root>> = BTreeMap::new();
+        let mut seen = HashSet::new();
+        for root in self.roots.clone() {
+            let (root, _) = self.found.root(root);
+            if seen.insert(root) {
+                let make = self.line_make(root);
+                groups.entry(make).or_default().push(root);
+            }
+        }
+        for group in groups.into_values().filter(|g| g.len() > 1) {
+            let placed: Vec<(Root, Vec<Vec3>)> =
+                group.into_iter().filter_map(|r| Some((r, self.places(r)?))).collect();
+            for (a, b, turned) in coincident(&placed) {
+                self.join_line(a, b, turned);
+            }
+        }
+    }
+
+    /// Two roots are one from now on, and so are their ends.
+    fn join_line(&mut self, a: Root, b: Root, turned: bool) {
+        let [(a, against_a), (b, against_b)] = [self.found.root(a), self.found.root(b)];
+        let turned = turned ^ against_a ^ against_b;
+        if a == b {
+            return;
+        }
+        let (kept, other) = if rank(a) <= rank(b) { (a, b) } else { (b, a) };
+        self.found.roots.insert(other, (kept, turned));
+        self.unions += 1;
+        let [from, to] = [kept, other].map(|root| self.ends(root));
+        for k in 0..2 {
+            if let (Some(p), Some(q)) = (from[k], to[if turned { 1 - k } else { k }]) {
+                self.join_point(p, q);
+            }
+        }
+    }
+
+    /// The points at both ends of a root.
+    fn ends(&self, root: Root) -> [Option<Key>; 2] {
+        match root {
+            Root::Curve(key) => self.curve(key).map_or([None; 2], |c| c.end_points()),
+            Root::Segment(a, b) | Root::Governed(a, b, _) => [Some(a), Some(b)],
+            Root::Edge(key, k) => {
+                let known = self.surface(key).map(|s| s.edges().corners).unwrap_or_default();
+                EDGE_CORNERS[usize::from(k)].map(|c| known[c].or_else(|| key.corner(c)))
+            }
+        }
+    }
+}
+
+/// True for an edge that is one place to rounding.
+fn has_no_length(surface: &SurfaceRef<f64>, k: usize) -> bool {
+    let place = |t: f64| {
+        let [u, v] = [[t, 0.0], [1.0, t], [t, 1.0], [0.0, t]][k];
+        surface.jet(u, v, Order::Zero).p
+    };
+    let middle = surface.jet(0.5, 0.5, Order::Zero).p;
+    let first = place(0.0);
+    let near = SAME_PLACE * first.distance(middle) + 64.0 * f64::EPSILON * first.norm();
+    TRIALS.iter().all(|&t| place(t).distance(first) <= near)
+}
+
+/// Curves of the user's keep their names before straight lines, and these before edges.
+fn rank(root: Root) -> (u8, u32, u32) {
+    match root {
+        Root::Curve(key) => (0, key.0, 0),
+        Root::Segment(a, b) | Root::Governed(a, b, _) => (1, a.0, b.0),
+        Root::Edge(key, k) => (2, key.0, u32::from(k)),
+    }
+}
+
+/// The pairs of things that lie in one place, and whether one runs against the other: each with the
+/// first of its place.
+fn coincident<K: Copy>(placed: &[(K, Vec<Vec3>)]) -> Vec<(K, K, bool)> {
+    let all = placed.iter().flat_map(|(_, points)| points.iter());
+    let (mut bounds, mut far) = (Box3::EMPTY, 0.0f64);
+    for &p in all {
+        bounds = bounds.including(p);
+        far = far.max(p.norm());
+    }
+    let near = SAME_PLACE * bounds.diagonal() + 64.0 * f64::EPSILON * far;
+    // The middle is the same from both ends. Sorted along an oblique direction, only neighbours can meet.
+    let middle = |k: usize| placed[k].1[placed[k].1.len() / 2].dot(Vec3::new(0.61, 0.53, 0.59));
+    let mut order: Vec<usize> = (0..placed.len()).collect();
+    order.sort_by(|&a, &b| middle(a).total_cmp(&middle(b)).then(a.cmp(&b)));
+    let mut firsts: Vec<usize> = Vec::new();
+    let mut pairs = Vec::new();
+    for k in order {
+        let points = &placed[k].1;
+        let meets = |other: usize, turned: bool| {
+            let n = points.len();
+            let at = |i: usize| placed[other].1[if turned { n - 1 - i } else { i }];
+            points.iter().enumerate().all(|(i, p)| p.distance(at(i)) <= near)
+        };
+        let candidates =
+            firsts.iter().rev().take_while(|&&f| middle(k) - middle(f) <= near).copied();
+        let found =
+            candidates.flat_map(|f| [(f, false), (f, true)]).find(|&(f, turned)| meets(f, turned));
+        match found {
+            Some((first, turned)) => pairs.push((placed[first].0, placed[k].0, turned)),
+            None => firsts.push(k),
+        }
+    }
+    pairs
+}
+
+/// A list without repetitions, in the order of first mention.
+struct Indexed<K> {
+    all: Vec<K>,
+    known: HashSet<K>,
+}
+
+fn indexed<K>() -> Indexed<K> {
+    Indexed { all: Vec::new(), known: Default::default() }
+}
+
+impl<K: Copy + Eq + Hash> Indexed<K> {
+    fn add(&mut self, key: K) {
+        if self.known.insert(key) {
+            self.all.push(key);
+        }
+    }
+}
