@@ -212,7 +212,7 @@ def to_ocp(model: Model, *, accuracy: float | None = None) -> Any:
     from moldloft.cad.occt import read_shape
 
     needed("OCP", "cadquery-ocp-novtk", "to_ocp")
-    (data,) = dict(model._document.write("step", "model.step", False, False, [], accuracy)).values()
+    (data,) = model.encoded("step", "model.step", tolerance=accuracy).values()
     return read_shape(data, _core.length_unit(model._document)[1] / 1000)
 
 
@@ -255,7 +255,7 @@ def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldlof
 
 
 def _columns(rows: Iterable[Any]) -> dict[str, list[Any]]:
-    """Records as columns; what is no number or text is left out."""
+    """Records as columns; only numbers and texts are kept."""
     columns: dict[str, list[Any]] = {}
     listed = list(rows)
     if not listed:

@@ -174,7 +174,7 @@ class Object:
         accuracy
             The largest error of a fit, by default 1e-6 of the shape's diagonal.
         degree
-            The degree along parameters in which the shape is no polynomial, 1 to 9.
+            The degree along parameters in which the shape is not polynomial, 1 to 9.
 
         Raises
         ------

@@ -6,7 +6,7 @@
 ... param float beam = 2 in [1, 3]; param float depth = 1 in [0, 2];
 ... AbsPoint A(0, beam, depth);
 ... ''')
->>> f = function(m, ["beam", "depth"], {"size": "norm(A)", "area": "A.y * A.z"})
+>>> f = function(m, ["beam", "depth"], {"size": "sqrt(A.y * A.y + A.z * A.z)", "area": "A.y * A.z"})
 >>> f([2.0, 1.0])
 array([2.23606798, 2.        ])
 >>> f.jacobian([2.0, 1.0])
@@ -77,7 +77,7 @@ class Function:
         try:
             found: Floats = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
         except (TypeError, ValueError):
-            raise Error(f"output `{name}` is no number, vector or array") from None
+            raise Error(f"output `{name}` is not a number, vector or array") from None
         return found
 
     def _set(self, x: ArrayLike) -> None:

@@ -62,7 +62,7 @@ export class Sheets {
       return h('tr', {}, h('th', { scope: 'row' }, name.replace(/_/g, ' ')), h('td', { class: 'mono' }, shown(x)), h('td', { class: `mono delta ${d > 0 ? 'up' : d < 0 ? 'down' : ''}` }, d ? `${d > 0 ? '+' : '−'}${shown(Math.abs(d), 4)}` : ''))
     })
     const again = h('button', { onclick: () => ((this.marked = null), this.refresh()) }, 'Mark now')
-    return [h('div', { class: 'pad' }, h('h3', {}, 'Hydrostatics of the panels'), h('p', { class: 'quiet' }, `At the waterplane z = 0; lengths in ${model.unit}. The third column is the change since the mark.`), again,
+    return [h('div', { class: 'pad' }, h('h3', {}, 'Hydrostatics'), h('p', { class: 'quiet' }, `At the waterplane z = 0; lengths in ${model.unit}. The third column is the change since the mark.`), again,
       h('table', {}, h('thead', {}, h('tr', {}, h('th', {}, 'figure'), h('th', {}, 'value'), h('th', {}, 'change'))), h('tbody', {}, ...rows)))]
   }
 

@@ -133,7 +133,7 @@ pub enum Ask {
     },
     /// Closure and quality of the mesh.
     Mesh,
-    /// The hydrostatics of the panels.
+    /// The hydrostatics.
     Hydrostatics,
     /// Files in one of the formats.
     Export {
