@@ -76,7 +76,7 @@ test: setup check ## every check and test
 check: setup ## formatting, lints, types and the Rust tests
 	@cargo fmt --all --check
 	@cargo clippy --quiet --workspace --all-targets -- -D warnings
-	@cargo test --quiet --workspace --exclude moldloft-py
+	@cargo test --quiet --workspace --exclude moldloft-py --no-fail-fast
 	@$(BIN)/ruff check --quiet
 	@$(BIN)/ruff format --quiet --check
 	@$(BIN)/mypy --no-error-summary

@@ -226,7 +226,7 @@ def test_version_and_help(cli):
         ["build", HULL, "--set", "beam=wide"],
         ["build", HULL, "--set", "beam=nan"],
         ["eval", HULL],
-        ["convert", HULL, "--to", "step"],
+        ["convert", HULL, "--to", "catpart"],
     ],
 )
 def test_wrong_use(cli, wrong):

@@ -51,8 +51,8 @@ def test_cut_at_the_water(hull, tmp_path, format):
     mesh = capytaine.load_mesh(str(path), file_format=format).merged()
     assert mesh.vertices[:, 2].max() == 0
     assert mesh.faces_areas.sum() == pytest.approx(area_below(hull), rel=2e-3)
-    # Normals point into the water: so the volume is positive.
-    assert mesh.volumes[2] == pytest.approx(hull.hydrostatics().volume, rel=2e-3)
+    # Normals point into the water: so the volume is positive. Panels lie inside the convex shape.
+    assert 0.99 < mesh.volumes[2] / hull.hydrostatics().volume < 1
 
 
 def aqwa(text: str) -> tuple[np.ndarray, list[list[int]], set[str]]:
@@ -85,7 +85,7 @@ def test_aqwa_by_its_columns(hull, tmp_path):
     faces = [[k - 1 for k in (p if len(p) == 4 else [*p, p[-1]])] for p in panels]
     half = capytaine.Mesh(nodes, np.array(faces))
     volume = hull.hydrostatics(sides="one").volume
-    assert half.volumes[2] == pytest.approx(volume, rel=2e-3)
+    assert 0.98 < half.volumes[2] / volume < 1, "panels lie inside the shape"
     with pytest.raises(moldloft.Error, match="say which format"):
         hull.write(tmp_path / "hull.dat")
 

@@ -48,7 +48,8 @@ def still_page(
     def asked(**request: object) -> bytes:
         frame = session.answer(json.dumps(request))
         if "error" in (head := head_of(frame)):
-            raise Error(str(head["error"]))
+            why = str(head["error"])
+            raise Error(why)
         return frame
 
     asked(kind="show", contours=True)

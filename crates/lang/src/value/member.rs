@@ -4,7 +4,7 @@ use moldloft_diag::Diagnostic;
 use moldloft_hydro::{USUAL_ACCURACY, surface_measures};
 use moldloft_mesh::{Blocks, HexBlock};
 use moldloft_model::Object;
-use moldloft_num::{Order, Real, Vec3, gauss_legendre};
+use moldloft_num::{Order, Real, Surface, Vec3, gauss_legendre};
 use moldloft_panel::{MOST_CELLS, solid_grid};
 use moldloft_registry::{Array, ArrayShape, Point, Scalar, SolidRef, SurfaceRef, Value, Vectors};
 use std::sync::Arc;
@@ -155,7 +155,7 @@ pub fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<Valu
     Some(match name {
         "area" => Ok(Value::Number(measures.area)),
         "centroid" => Ok(Value::Vector(measures.area_centre)),
-        _ if measures.open <= CLOSED * measures.area.re() => {
+        _ if measures.open <= CLOSED * measures.area.re() && is_closed(&**surface) => {
             Ok(Value::Number(measures.volume.abs()))
         }
         _ => Err(Diagnostic::error("not-closed", format!("`{}` encloses no volume", object.name))
@@ -171,6 +171,32 @@ pub fn not_finite() -> Diagnostic {
 
 /// The integral of the normal of a closed surface is this share of its area at most.
 const CLOSED: f64 = 1e-7;
+
+/// True when every edge is a point, lies folded on itself, or is its opposite edge: where the normals of an open tube
+/// cancel, its ends do not.
+fn is_closed<T: Scalar>(surface: &dyn Surface<T>) -> bool {
+    let along = |k: usize| k as f64 / EDGE_PLACES as f64;
+    let edge = |axis: usize, end: f64| -> Vec<Vec3> {
+        let at = |t: f64| if axis == 0 { (end, t) } else { (t, end) };
+        let place = |(u, v): (f64, f64)| surface.jet(T::from(u), T::from(v), Order::Zero).p.re();
+        (0..=EDGE_PLACES).map(|k| place(at(along(k)))).collect()
+    };
+    let edges = [0, 1].map(|axis| [0.0, 1.0].map(|end| edge(axis, end)));
+    let origin = edges[0][0][0];
+    let all = edges.iter().flatten().flatten();
+    let near = CLOSED * all.fold(0.0, |size: f64, p| size.max(p.distance(origin)));
+    let meet = |p: &Vec3, q: &Vec3| p.distance(*q) <= near;
+    let sealed = |edge: &[Vec3]| {
+        edge.iter().all(|p| meet(p, &edge[0]))
+            || edge.iter().zip(edge.iter().rev()).all(|(p, q)| meet(p, q))
+    };
+    edges.iter().all(|[low, high]| {
+        low.iter().zip(high).all(|(p, q)| meet(p, q)) || sealed(low) && sealed(high)
+    })
+}
+
+/// Places of an edge, between its ends, at which it is compared with others.
+const EDGE_PLACES: usize = 24;
 
 /// Cells along a direction of which the solid itself says nothing.
 const USUAL_CELLS: usize = 8;

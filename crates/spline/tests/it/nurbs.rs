@@ -32,7 +32,7 @@ fn weights(rng: &mut Rng, n: usize) -> Option<Vec<f64>> {
 /// The largest distance from a curve at many places.
 fn off_curve(curve: &dyn Curve<f64>, nurbs: &Nurbs<1>) -> f64 {
     let s: Vec<f64> = (0..=997).map(|k| f64::from(k) / 997.0).collect();
-    let made = nurbs.grid(&[s.clone()]);
+    let made = nurbs.grid(std::array::from_ref(&s));
     let truth = s.iter().map(|&s| curve.jet(nurbs.paces[0].parameter(s), Order::Zero)[0]);
     truth.zip(made).map(|(a, b)| a.distance(b)).fold(0.0, f64::max)
 }
