@@ -55,7 +55,7 @@ mod tests {
         let mesh = two_patches();
         let text = String::from_utf8(write(&mesh).unwrap()).unwrap();
         assert!(text.starts_with(&format!("NDIME= 3\nNELEM= {}\n", mesh.faces().len())));
-        assert!(text.contains("NPOIN= 9\n") && text.contains("NMARK= 2\n"), "{text}");
+        assert!(text.contains("NPOIN= 9\n") && text.contains("NMARK= 3\n"), "{text}");
         assert!(text.contains(&format!("MARKER_TAG= {}\n", word(&mesh.patches()[0].info.name))));
     }
 }
