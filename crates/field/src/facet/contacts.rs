@@ -14,7 +14,7 @@ const MOST: usize = 24;
 /// The cells by which it is proved that two sets share no volume.
 const CELLS: usize = 3000;
 /// Boxes about a contact in a point or a line are no larger than this part of the whole.
-const SMALL: f64 = 1.0 / 16.0;
+const SMALL: f64 = 1.0 / 4.0;
 /// Two sets share no more than this part of the box where they only touch.
 const SHARED: f64 = 1e-9;
 
