@@ -1,4 +1,7 @@
 # `make demo` needs only Rust and Python >= 3.10; the workbench's page needs Node.js besides. CI runs `make test`.
+#
+# The tests run a development build of the extension, which shares all that it compiles with the Rust tests and checks
+# its own assertions; `make demo` and `make release` build what users get.
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -10,6 +13,11 @@ BIN := $(VENV)/bin
 EXE :=
 endif
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+# What a package that is not there yet is built with.
+PROFILE ?= dev
+demo release: PROFILE = release
+BUILT = $${CARGO_TARGET_DIR:-target}/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))
 
 SOURCES := pyproject.toml Cargo.toml $(shell find crates -name '*.rs' -o -name Cargo.toml -o -name '*.sdl')
 
@@ -27,7 +35,7 @@ PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildca
 # Without Node.js everything but the workbench is there.
 WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
 
-.PHONY: setup demo web test check reference soak clean help
+.PHONY: setup demo release web test check reference soak clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -38,7 +46,8 @@ setup: $(VENV)/.with-tests $(VENV)/.with-browser ## .venv with the package and e
 $(VENV)/.installed: $(SOURCES)
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@echo "building and installing moldloft into $(VENV) (a first build takes a few minutes)"
-	@$(PIP) install --editable .
+	@$(PIP) install 'maturin>=1.10,<2'
+	@MATURIN_PEP517_ARGS="--profile $(PROFILE)" $(PIP) install --no-build-isolation --editable .
 	@touch $@
 
 $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
@@ -46,8 +55,8 @@ $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
 	@$(BIN)/python -c "$$TEST_PACKAGES" > $(VENV)/test-packages.txt
 	@$(PIP) install --requirement $(VENV)/test-packages.txt
 	@echo "building the language server"
-	@cargo build --quiet --release -p moldloft-lsp
-	@cp $${CARGO_TARGET_DIR:-target}/release/moldloft-lsp$(EXE) $(BIN)/
+	@cargo build --quiet --profile $(PROFILE) -p moldloft-lsp
+	@cp $(BUILT)/moldloft-lsp$(EXE) $(BIN)/
 	@touch $@
 
 web: $(PAGE) ## the page of the workbench; needs Node.js
@@ -69,6 +78,10 @@ $(VENV)/.with-browser:
 
 demo: $(VENV)/.installed ## the sailing yacht of examples/sailboat as panels, files, hydrostatics and a picture
 	@$(BIN)/moldloft build examples/sailboat/hull.sdl --to gdf stl obj vtp vts p3d svg png -o out/sailboat
+
+release: ## the package in .venv anew, as users get it: for benchmarks
+	@rm -f $(VENV)/.installed
+	@$(MAKE) --no-print-directory PROFILE=release $(VENV)/.installed
 
 test: setup check ## every check and test
 	@$(BIN)/python -m pytest

@@ -140,6 +140,14 @@ PYTHON_ROWS = (
         writer="moldloft.lines_plan:encode_pdf",
     ),
     Format(
+        "lines-dxf",
+        "the lines plan at full size as DXF: splines on layers (needs ezdxf)",
+        suffix="lines.dxf",
+        holds="drawing",
+        text=True,
+        writer="moldloft.lines_plan:encode_dxf",
+    ),
+    Format(
         "offsets",
         "stations, waterlines and half-breadths (.csv)",
         suffix="csv",
