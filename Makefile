@@ -27,7 +27,10 @@ PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildca
 # Without Node.js everything but the workbench is there.
 WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
 
-.PHONY: setup demo web test check reference soak clean help
+ENGINE := python/moldloft/workbench/wasm/engine.wasm.gz
+WASM := wasm32-unknown-unknown
+
+.PHONY: setup demo web engine test check reference soak clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -55,8 +58,18 @@ web: $(PAGE) ## the page of the workbench; needs Node.js
 $(PAGE): $(PAGE_SOURCES)
 	@command -v npm >/dev/null || { echo "the page of the workbench needs Node.js 20 or newer and npm"; exit 1; }
 	@echo "building the page of the workbench"
-	@cd web && npm ci --no-audit --no-fund --loglevel=error && npm run --silent build -- --logLevel warn
+	@cd web && npm ci --no-audit --no-fund --loglevel=error && npm run --silent build
 	@touch $@
+
+# The engine for pages that compute by themselves; optimised by itself, it takes as long as the rest of the house.
+engine: ## the engine for `export --html`; needs the target wasm32-unknown-unknown
+	@test -d "$$(rustc --print sysroot)/lib/rustlib/$(WASM)" || { \
+		echo "the engine for pages needs the target $(WASM): rustup target add $(WASM)"; exit 1; }
+	@echo "building the engine for pages (it takes a while)"
+	@cargo build --quiet --profile engine --target $(WASM) -p moldloft-wasm
+	@mkdir -p $(dir $(ENGINE))
+	@gzip -9 -n -c $${CARGO_TARGET_DIR:-target}/$(WASM)/engine/moldloft_engine.wasm > $(ENGINE).new
+	@mv $(ENGINE).new $(ENGINE)
 
 # What the tests of the page need, where it can be had: a browser that runs without a display.
 $(VENV)/.with-browser:
@@ -89,4 +102,4 @@ soak: export MOLDLOFT_SOAK = 1
 soak: test ## the long random tests in full
 
 clean: ## removes what was built
-	rm -rf $(VENV) out target web/node_modules python/moldloft/workbench/page
+	rm -rf $(VENV) out target web/node_modules python/moldloft/workbench/page python/moldloft/workbench/wasm

@@ -131,6 +131,26 @@ pub enum Ask {
         /// The coordinate.
         value: f64,
     },
+    /// Lays a foreign mesh or a table of points over the model; the reply has the overlays.
+    Overlay {
+        /// The name of the file: its ending says what it is.
+        name: String,
+        /// Its bytes in base64.
+        data: String,
+    },
+    /// Takes an overlay away, or all; the reply has those that are left.
+    RemoveOverlay {
+        /// Which.
+        #[serde(default)]
+        name: Option<String>,
+    },
+    /// How far the overlays are from the surfaces.
+    Deviation,
+    /// Immersed areas of sections across x along the model.
+    SectionAreas {
+        /// How many sections.
+        count: usize,
+    },
     /// Closure and quality of the mesh.
     Mesh,
     /// The hydrostatics.
