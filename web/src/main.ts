@@ -443,6 +443,7 @@ async function begin(hello: any): Promise<void> {
   document.title = `${hello.name} · Moldloft`
   dirty = hello.dirty
   editor.begin(hello.text, hello.version, again)
+  if (hello.words) editor.words(hello.words)
   if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Take the file” in the commands drops them.')
   showSaved()
   try {
@@ -453,7 +454,7 @@ async function begin(hello: any): Promise<void> {
     const usual = view.items.size && [...view.items.values()].some((i) => i.kind === 'patch') ? ['mesh.area', 'hydrostatics.displacement', 'hydrostatics.lcb', 'hydrostatics.kmt'] : []
     const watched = stored<string[]>(`watch.${model.name}`, usual)
     if (!link.still && watched.length) await link.ask('watch', { expressions: watched })
-    if (!again && !link.still) editor.words((await link.ask('words')).head.words)
+    if (!again && !link.local) editor.words((await link.ask('words')).head.words)
   } catch (error) {
     if (error instanceof Refused) say(error.message)
   }

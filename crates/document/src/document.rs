@@ -33,7 +33,7 @@ pub struct Document {
     pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
     pub(crate) panelled: Option<(u64, Arc<Panelled>)>,
     pub(crate) bodied: Option<Arc<crate::measures::bodied::Bodied>>,
-    pub(crate) whole: HashMap<&'static str, crate::measures::expressions::Whole>,
+    pub(crate) whole: HashMap<&'static str, crate::measures::bodied::Whole>,
     pub(crate) blocked: Option<(u64, Arc<crate::measures::blocks::Blocked>)>,
     /// The counts of divisions at the text's own values, and the version of the text.
     nominal: Option<(u64, Nominal)>,

@@ -60,7 +60,8 @@ impl Overlays {
     /// side of the surface's normal. Where the model is mirrored the nearer of a point and its image counts.
     pub fn put(&self, document: &mut Document, frame: &mut Frame, shapes: bool) {
         let symmetry = document.symmetry();
-        let mirrors: Vec<usize> = (0..3).filter(|&k| symmetry.contains(['x', 'y', 'z'][k])).collect();
+        let mirrors: Vec<usize> =
+            (0..3).filter(|&k| symmetry.contains(['x', 'y', 'z'][k])).collect();
         let mut parts = Vec::new();
         for overlay in &self.all {
             let found = self.distances(document, &overlay.points, &mirrors);
@@ -73,13 +74,16 @@ impl Overlays {
                 part["edge"] = frame.numbers("edge", &overlay.edges);
             }
             part["deviation"] = match &found {
-                Some(d) => frame.floats("deviation", &d.iter().map(|&x| x as f32).collect::<Vec<_>>()),
+                Some(d) => {
+                    frame.floats("deviation", &d.iter().map(|&x| x as f32).collect::<Vec<_>>())
+                }
                 None => Value::Null,
             };
             if let Some(d) = found.filter(|d| !d.is_empty()) {
                 let n = d.len() as f64;
                 let most = d.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-                part["rms"] = crate::facts::number((d.iter().map(|x| x * x).sum::<f64>() / n).sqrt());
+                part["rms"] =
+                    crate::facts::number((d.iter().map(|x| x * x).sum::<f64>() / n).sqrt());
                 part["largest"] = crate::facts::number(most);
             }
             parts.push(part);
@@ -186,7 +190,13 @@ mod tests {
 
     #[test]
     fn bytes_come_in_base64() {
-        for (text, bytes) in [("", &b""[..]), ("TQ==", b"M"), ("TWE=", b"Ma"), ("TWFu", b"Man"), ("//79", &[255, 254, 253])] {
+        for (text, bytes) in [
+            ("", &b""[..]),
+            ("TQ==", b"M"),
+            ("TWE=", b"Ma"),
+            ("TWFu", b"Man"),
+            ("//79", &[255, 254, 253]),
+        ] {
             assert_eq!(from_base64(text).as_deref(), Some(bytes));
         }
         assert_eq!(from_base64("a b"), None);

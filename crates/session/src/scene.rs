@@ -170,7 +170,11 @@ impl KnownPatches {
             let count = twice.entry(name).or_default();
             *count += 1;
             patches.push(KnownPatch {
-                name: if *count == 1 { name.as_str().into() } else { format!("{name} ({count})").into() },
+                name: if *count == 1 {
+                    name.as_str().into()
+                } else {
+                    format!("{name} ({count})").into()
+                },
                 prepared: PreparedPatch::new(mesh, patch),
                 points: Vec::new(),
                 origin: [0.0; 3],

@@ -32,8 +32,8 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the page."""
     from moldloft.files import Output, commit
-    from moldloft.workbench.page import NO_ENGINE, engine_packed
     from moldloft.workbench.export import exported_page
+    from moldloft.workbench.page import NO_ENGINE, engine_packed
 
     source = Path(options.model)
     page = exported_page(

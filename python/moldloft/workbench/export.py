@@ -1,4 +1,4 @@
-"""A model as one file that opens offline: the page of the workbench with its scene and its engine."""
+"""A model as one file that opens offline: the workbench with its scene and its engine."""
 
 from __future__ import annotations
 
@@ -82,7 +82,14 @@ def exported_page(
         text = _edited(text, reply.get("edits", []))
         asked(kind="text", text=text)
     frames = {"open": asked(kind="sync", tab=1)}
-    hello = {"kind": "hello", "name": path.name, "text": text, "version": 0, "dirty": False}
+    hello = {
+        "kind": "hello",
+        "name": path.name,
+        "text": text,
+        "version": 0,
+        "dirty": False,
+        "words": head_of(asked(kind="words"))["words"],
+    }
     data = {
         "hello": hello,
         "frames": {kind: base64.b64encode(frame).decode() for kind, frame in frames.items()},
@@ -112,9 +119,7 @@ def _carried(
         if name is None:
             return None
         place = PurePath(name)
-        return (
-            place.relative_to(folder).as_posix() if place.is_relative_to(folder) else place.name
-        )
+        return place.relative_to(folder).as_posix() if place.is_relative_to(folder) else place.name
 
     return [
         {
@@ -144,7 +149,7 @@ def _assembled(name: str, data: str, engine: bytes | None) -> str:
         worker = _as_data(json.dumps(worker_script()))
         parts.append(f'<script type="application/json" id="moldloft-worker">{worker}</script>')
     # The script runs when the elements before it are there: the engine, which is long, comes last.
-    parts.append(f"<script>(() => {{\"use strict\";{script}\n}})()</script>")
+    parts.append(f'<script>(() => {{"use strict";{script}\n}})()</script>')
     if engine is not None:
         packed = base64.b64encode(engine).decode()
         parts.append(

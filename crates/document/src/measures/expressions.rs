@@ -1,6 +1,7 @@
 //! What is computed from a model: expressions, panels, hydrostatics, and their derivatives.
 
 use crate::document::{Document, Source};
+use crate::measures::bodied::{Numbers, Whole};
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::USUAL_ACCURACY;
@@ -12,18 +13,6 @@ use moldloft_lang::value::variables::Called as _;
 use moldloft_num::{Dual4, Vec3};
 use moldloft_registry::{Scalar, Value};
 use std::collections::HashSet;
-
-/// Numbers of the whole model by their names.
-type Numbers = Vec<(&'static str, Value<f64>)>;
-
-/// What is remembered of the numbers of the whole model.
-pub(crate) struct Whole {
-    /// When they were found.
-    clock: u64,
-    /// The planes that mirrored it.
-    symmetry: String,
-    numbers: Numbers,
-}
 
 impl Document {
     /// The value of an expression in the model's names. Besides these it knows `mesh.area`,
