@@ -384,6 +384,7 @@ function take(frame: Frame): void {
     fitted = true
     view.fit()
   }
+  if (head.rev !== undefined && head.rev !== model.rev && head.watched === undefined && model.watched.length) measure()
   if (scene && field) fields.push(undefined)
   if (scene && combs.size) combing.push(undefined)
   if (scene && view.clip) sectioning.push(undefined)
@@ -393,6 +394,20 @@ function take(frame: Frame): void {
     changed('rev')
   }
   document.body.dataset.state = 'alive'
+}
+
+// Watched numbers follow the scene: at once while they are quick, else when the hand rests.
+let took = 0
+let resting = 0
+const measuring = new Newest<void>(async () => {
+  const from = performance.now()
+  await link.ask('measure').catch(() => undefined)
+  took = performance.now() - from
+})
+function measure(): void {
+  clearTimeout(resting)
+  if (took < 12) measuring.push(undefined)
+  else resting = window.setTimeout(() => measuring.push(undefined), 150)
 }
 
 link.onFrame = take
@@ -425,6 +440,7 @@ link.onMessage = (message) => {
       if (message.state === 'lost') warn(`The engine was stopped: ${message.reason}. Your text is safe.`)
       else {
         warn('')
+        if (!link.local) void link.ask('watch', { expressions: model.watched.map((w) => w.expression) }).catch(() => undefined)
         void relay()
       }
       break
@@ -444,6 +460,10 @@ async function begin(hello: any): Promise<void> {
   dirty = hello.dirty
   editor.begin(hello.text, hello.version, again)
   if (hello.words) editor.words(hello.words)
+  if (hello.watched) {
+    model.watched = hello.watched
+    changed('watched')
+  }
   if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Take the file” in the commands drops them.')
   showSaved()
   try {
@@ -453,7 +473,7 @@ async function begin(hello: any): Promise<void> {
     if (!link.local) await link.ask('open')
     const usual = view.items.size && [...view.items.values()].some((i) => i.kind === 'patch') ? ['mesh.area', 'hydrostatics.displacement', 'hydrostatics.lcb', 'hydrostatics.kmt'] : []
     const watched = stored<string[]>(`watch.${model.name}`, usual)
-    if (!link.still && watched.length) await link.ask('watch', { expressions: watched })
+    if (!link.still) await link.ask('watch', { expressions: watched })
     if (!again && !link.local) editor.words((await link.ask('words')).head.words)
   } catch (error) {
     if (error instanceof Refused) say(error.message)

@@ -89,11 +89,13 @@ pub enum Ask {
         #[serde(default)]
         by: Option<String>,
     },
-    /// Expressions whose values come with every change.
+    /// Expressions to watch; the reply has their values.
     Watch {
         /// The expressions.
         expressions: Vec<String>,
     },
+    /// The values of what is watched.
+    Measure,
     /// Values of expressions, once.
     Evaluate {
         /// The expressions.
@@ -215,7 +217,6 @@ impl Ask {
                 | Ask::DragTo { .. }
                 | Ask::DragEnd { .. }
                 | Ask::Show { .. }
-                | Ask::Watch { .. }
         )
     }
 }

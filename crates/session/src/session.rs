@@ -192,8 +192,6 @@ impl Session {
         {
             self.tabs.remove(&oldest);
         }
-        let watched = self.tabs.entry(tab).or_default().watched.clone();
-        let watched = facts::values(&mut self.document, &watched, None);
         let document = &self.document;
         let known = &mut self.tabs.entry(tab).or_default().known;
         known.scene(frame, self.scene.items());
@@ -206,7 +204,6 @@ impl Session {
         known.fact(frame, "mirror", document.symmetry().into());
         known.fact(frame, "unit", length_unit(document).0.into());
         known.fact(frame, "program", document.is_program().into());
-        known.fact(frame, "watched", watched);
     }
 
     fn carry_out(&mut self, ask: Ask, tab: u64, frame: &mut Frame) -> Answer {
@@ -262,7 +259,9 @@ impl Session {
             }
             Ask::Watch { expressions } => {
                 self.tabs.entry(tab).or_default().watched = expressions;
+                self.measure(tab, frame);
             }
+            Ask::Measure => self.measure(tab, frame),
             Ask::Evaluate { expressions, by } => {
                 let values = facts::values(&mut self.document, &expressions, by.as_deref());
                 frame.put("values", values);
@@ -359,6 +358,12 @@ impl Session {
             }
         }
         Ok(())
+    }
+
+    /// The watched numbers. They are asked for when the scene is there: it never waits for hydrostatics.
+    fn measure(&mut self, tab: u64, frame: &mut Frame) {
+        let expressions = self.tabs.entry(tab).or_default().watched.clone();
+        frame.put("watched", facts::values(&mut self.document, &expressions, None));
     }
 
     fn take_text(&mut self, text: String) {

@@ -23,6 +23,9 @@ _POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'{engine}; style-src 'unsafe-inline'; "
     "img-src data: blob:; base-uri 'none'; form-action 'none'"
 )
+#: What a page watches at first of a model that has panels.
+_WATCHED = ["mesh.area", "hydrostatics.displacement", "hydrostatics.lcb", "hydrostatics.kmt"]
+
 _ENGINE_POLICY = " 'wasm-unsafe-eval' blob:; worker-src blob:"
 
 
@@ -64,10 +67,9 @@ def exported_page(
     asked(kind="show", contours=True)
     if values:
         asked(kind="set", values=dict(values))
-    watched = ["mesh.area", "hydrostatics.displacement", "hydrostatics.lcb", "hydrostatics.kmt"]
     objects = head_of(asked(kind="sync")).get("objects", [])
-    if any(o["class"] in ("surface", "mesh") for o in objects):
-        asked(kind="watch", expressions=watched)
+    shown = any(o["class"] in ("surface", "mesh") for o in objects)
+    watched = _WATCHED if shown else []
     engine = engine_packed() if living else None
     text = stored.text
     if values and engine is not None:
@@ -89,6 +91,7 @@ def exported_page(
         "version": 0,
         "dirty": False,
         "words": head_of(asked(kind="words"))["words"],
+        "watched": head_of(asked(kind="watch", expressions=watched))["watched"],
     }
     data = {
         "hello": hello,
