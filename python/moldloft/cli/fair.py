@@ -192,6 +192,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--block", type=int, help="the block of a Plot3D file, from 1")
     parser.add_argument("-o", "--output", metavar="OUT", help="the faired points or surface")
     parser.add_argument("--plot", metavar="P.png", help="pictures of it; .png or .svg")
+    parser.add_argument(
+        "--report",
+        metavar="P.html",
+        help="one page about it: pictures to scale, every point and its move, the spline",
+    )
     parser.add_argument("--log", metavar="FILE", help="the local steps, replayable, as CSV")
     parser.add_argument("--json", action="store_true", help="the report as data")
     parser.add_argument(
@@ -278,6 +283,8 @@ def run(options: argparse.Namespace) -> int:
     """Fairs and reports."""
     if options.plot and Path(options.plot).suffix.lower() not in (".png", ".svg"):
         raise Error(f"a plot is .png or .svg, not `{options.plot}`")
+    if options.report and Path(options.report).suffix.lower() not in (".html", ".htm"):
+        raise Error(f"a report is .html, not `{options.report}`")
     if options.tol is None and not options.json:
         print(
             "warning: without a tolerance nothing keeps the result near the data: steps without "
@@ -312,6 +319,11 @@ def run(options: argparse.Namespace) -> int:
                 raise Error("--plot: several blocks; choose one with --block")
             result.plot(options.plot)
             files.append(options.plot)
+        if options.report:
+            from moldloft.fairing.page import write_page
+
+            progress.stage(f"writing {options.report}")
+            files.append(write_page(result, options.report, f"Fairing of {source.title}"))
     data["files"] = [str(f) for f in files]
     if options.json:
         print_json(data)
