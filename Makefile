@@ -30,7 +30,7 @@ WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
 ENGINE := python/moldloft/workbench/wasm/engine.wasm.gz
 WASM := wasm32-unknown-unknown
 
-.PHONY: setup demo web engine test check reference soak clean help
+.PHONY: setup demo web engine test check reference site release soak clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -97,9 +97,16 @@ check: setup ## formatting, lints, types and the Rust tests
 reference: $(VENV)/.installed ## docs/reference.md anew from the declarations
 	@$(BIN)/moldloft doc --markdown > docs/reference.md
 	@$(BIN)/moldloft doc --pictures docs/kinds
+	@$(BIN)/python -m moldloft.stubs
+
+site: $(VENV)/.with-tests ## the documentation, in out/site
+	@$(BIN)/mkdocs build --quiet --strict
+
+release: ## wheel with language server and page, sdist, notices, bill of materials; in dist/
+	@$(PYTHON) tools/release.py
 
 soak: export MOLDLOFT_SOAK = 1
 soak: test ## the long random tests in full
 
 clean: ## removes what was built
-	rm -rf $(VENV) out target web/node_modules python/moldloft/workbench/page python/moldloft/workbench/wasm
+	rm -rf $(VENV) out dist target web/node_modules python/moldloft/workbench/page python/moldloft/workbench/wasm

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from moldloft.cli.console import add_model
+from moldloft.cli.console import add_model, emit
 
 __all__ = ["add", "run"]
 
@@ -26,12 +26,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="leave the engine out: a smaller page of the model as it is",
     )
-    parser.add_argument("-o", "--output", metavar="FILE", help="default: MODEL.html")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="default: MODEL.html; - is standard output"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
     """Writes the page."""
-    from moldloft.files import Output, commit
     from moldloft.workbench.export import exported_page
     from moldloft.workbench.page import NO_ENGINE, engine_packed
 
@@ -41,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     )
     if not options.still and engine_packed() is None:
         print(f"note: the page shows the model as it is: {NO_ENGINE}", file=sys.stderr)
-    path = Path(options.output or f"{source.stem}.html")
-    commit(path.parent, [Output(path.name, page)])
-    print(path)
+    path = options.output or f"{source.stem}.html"
+    if emit(path, page) is not None:
+        print(path)
     return 0
