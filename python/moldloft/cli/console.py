@@ -90,7 +90,7 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
 
 
 def say(options: argparse.Namespace, text: str) -> None:
-    """Prints what is no result: nothing when quiet; beside a result on standard output, there."""
+    """Prints a message about success: none when quiet, on standard error beside a file there."""
     if not getattr(options, "quiet", False):
         out = sys.stderr if getattr(options, "output", None) == "-" else sys.stdout
         print(text, file=out)
