@@ -29,7 +29,6 @@ def test_the_page_has_what_people_meet_first() -> None:
         "missing-argument",
         "wrong-class",
         "unknown-name",
-        "unknown-kind",
         "shapes-differ",
     ):
         assert name in names, name
