@@ -69,7 +69,8 @@ _HULL = "import moldloft\nm = moldloft.load('examples/sailboat/hull.sdl')\n"
 
 _DECKED = """
 import moldloft
-text = open("examples/sailboat/hull.sdl").read()
+from pathlib import Path
+text = Path("examples/sailboat/hull.sdl").read_text()
 m = moldloft.loads(text + '''
 AbsPoint Q1(30, 0, 2.76);
 Line middle(P11, Q1); RuledSurf deck(hull.u0, middle, divisions = {20, 4});
@@ -78,6 +79,7 @@ Line post(Q1, P34); RuledSurf transom(hull.v1, post, divisions = {10, 4});
 """
 
 _GRIDS = """
+from pathlib import Path
 import numpy as np
 from moldloft import grids
 u, v = np.meshgrid(np.linspace(0, 1, 5), np.linspace(0, 1, 4), indexing="ij")
@@ -86,7 +88,7 @@ x = (1 - np.cos(np.linspace(0, np.pi, 21))) / 2
 y = 0.6 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
 upper, lower = np.c_[x, y][::-1], np.c_[x, -y][1:]
 rows = "".join(f"{a:.6f} {b:.6f}\\n" for a, b in [*upper, *lower])
-open("naca0012.dat", "w").write("NACA 0012\\n" + rows)
+Path("naca0012.dat").write_text("NACA 0012\\n" + rows)
 """
 
 #: What a page's Python blocks take as given.
