@@ -396,7 +396,8 @@ function take(frame: Frame): void {
   document.body.dataset.state = 'alive'
 }
 
-// Watched numbers follow the scene: at once while they are quick, else when the hand rests.
+// Watched numbers follow the scene: at once while they are quick, else now and then, slow ones when the hand rests:
+// a slider that moves does not wait for them.
 let took = 0
 let resting = 0
 const measuring = new Newest<void>(async () => {
@@ -405,9 +406,13 @@ const measuring = new Newest<void>(async () => {
   took = performance.now() - from
 })
 function measure(): void {
+  if (took < 4) return measuring.push(undefined)
+  if (took < 60 && resting) return
   clearTimeout(resting)
-  if (took < 12) measuring.push(undefined)
-  else resting = window.setTimeout(() => measuring.push(undefined), 150)
+  resting = window.setTimeout(() => {
+    resting = 0
+    measuring.push(undefined)
+  }, 150)
 }
 
 link.onFrame = take
