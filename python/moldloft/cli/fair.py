@@ -35,7 +35,6 @@ rows with the same numbers are one point of all curves that have it. Points coun
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = _EPILOG
     parser.add_argument("file", metavar="FILE", help="points, a Plot3D surface, or MODEL:OBJECT")
     parser.add_argument(
@@ -192,6 +191,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--block", type=int, help="the block of a Plot3D file, from 1")
     parser.add_argument("-o", "--output", metavar="OUT", help="the faired points or surface")
     parser.add_argument("--plot", metavar="P.png", help="pictures of it; .png or .svg")
+    parser.add_argument(
+        "--report",
+        metavar="P.html",
+        help="one page about it: pictures to scale, every point and its move, the spline",
+    )
     parser.add_argument("--log", metavar="FILE", help="the local steps, replayable, as CSV")
     parser.add_argument("--json", action="store_true", help="the report as data")
     parser.add_argument(
@@ -278,6 +282,8 @@ def run(options: argparse.Namespace) -> int:
     """Fairs and reports."""
     if options.plot and Path(options.plot).suffix.lower() not in (".png", ".svg"):
         raise Error(f"a plot is .png or .svg, not `{options.plot}`")
+    if options.report and Path(options.report).suffix.lower() not in (".html", ".htm"):
+        raise Error(f"a report is .html, not `{options.report}`")
     if options.tol is None and not options.json:
         print(
             "warning: without a tolerance nothing keeps the result near the data: steps without "
@@ -312,6 +318,11 @@ def run(options: argparse.Namespace) -> int:
                 raise Error("--plot: several blocks; choose one with --block")
             result.plot(options.plot)
             files.append(options.plot)
+        if options.report:
+            from moldloft.fairing.page import write_page
+
+            progress.stage(f"writing {options.report}")
+            files.append(write_page(result, options.report, f"Fairing of {source.title}"))
     data["files"] = [str(f) for f in files]
     if options.json:
         print_json(data)
@@ -755,7 +766,7 @@ class _Object(_Source):
 
     def __init__(self, model: str, name: str, options: argparse.Namespace) -> None:
         from moldloft.fairing.objects import sampled
-        from moldloft.models import load
+        from moldloft.loading import load
 
         loaded = load(model, library=options.library)
         if options.set:

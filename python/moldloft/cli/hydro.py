@@ -11,6 +11,7 @@ from typing import Any
 from moldloft.cli.console import (
     Progress,
     add_model,
+    emit,
     open_model,
     print_json,
     report,
@@ -124,7 +125,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", action="store_true", help="figures as data with their units; angles in degrees"
     )
-    parser.add_argument("--csv", metavar="FILE", help="write the rows, with units in the header")
+    parser.add_argument(
+        "--csv",
+        metavar="FILE",
+        help="write the rows, with units in the header; - is standard output",
+    )
     parser.add_argument(
         "--plot", metavar="FILE", help="draw the table or the arms (.png, .svg, .pdf)"
     )
@@ -191,6 +196,9 @@ def run(options: argparse.Namespace) -> int:
             return _cross_curves(model, options)
         flotation, rows = _measured(model, options)
         written: list[Path] = []
+        if rows is not None and options.csv == "-":
+            emit("-", rows.csv().encode())
+            return 0
         if rows is not None and options.csv:
             written.append(rows.write_csv(options.csv))
         if rows is not None and options.plot:

@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike
 
 from moldloft.fairing.curve import Fairing, fair_curve
 from moldloft.fairing.network import NetworkFairing, network
+from moldloft.fairing.page import page, write_page
 from moldloft.fairing.patches import PatchesFairing, patches
 from moldloft.fairing.report import Finding, Numbers
 from moldloft.fairing.spline import (
@@ -54,7 +55,9 @@ __all__ = [
     "grid_metric",
     "monotone_runs",
     "network",
+    "page",
     "patches",
+    "write_page",
 ]
 
 
