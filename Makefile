@@ -50,7 +50,7 @@ $(VENV)/.installed: $(SOURCES)
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@echo "building and installing moldloft into $(VENV) (a first build takes a few minutes)"
 	@$(PIP) install 'maturin>=1.10,<2'
-	@MATURIN_PEP517_ARGS="--profile $(PROFILE)" $(PIP) install --no-build-isolation --editable .
+	@PATH="$$PWD/$(BIN):$$PATH" MATURIN_PEP517_ARGS="--profile $(PROFILE)" $(PIP) install --no-build-isolation --editable .
 	@touch $@
 
 $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
