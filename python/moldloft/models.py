@@ -674,7 +674,7 @@ class Model:
         >>> box = moldloft.loads(BOX)
         >>> s = box.stability(40, cg=(0, 0, 0.4), density=1)
         >>> round(math.degrees(s.vanishing()), 2), s.stable
-        (59.96, True)
+        (80.21, True)
         """
         from moldloft.stability import Opening, Stability
 

@@ -5,7 +5,7 @@
 >>> x = np.linspace(0, 1, 41)
 >>> y = np.round(0.1 * np.sin(np.pi * x), 3)           # a curve read off to three decimals
 >>> faired = fair(np.column_stack([x, y]), 5e-4)       # never farther than half the last digit
->>> faired.deviation_certified <= 5e-4
+>>> faired.deviation_data <= 5e-4
 True
 >>> faired.jumps_after < 1e-3 * faired.jumps_before
 True
