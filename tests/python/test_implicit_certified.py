@@ -73,7 +73,7 @@ def test_clearances_that_are_plateaus():
     assert balls[0].nearest((0, 0, 0)).distance == pytest.approx(1)
 
 
-# Where the contact is a corner of cells, as in the box of the set itself, the bodies are still joined.
+# Where the contact is a corner of cells, as in the box of the set itself, bodies are joined.
 JOINED = pytest.mark.xfail(strict=True, reason="a contact at a corner of cells is not found")
 
 
