@@ -163,3 +163,57 @@ def test_the_aerofoils_of_a_package(tmp_path):
     assert len(refused) <= 0.02 * len(files) + 1, refused
     assert not beyond and not bends
     assert len(flagged) <= 0.02 * len(files) + 1, flagged
+
+
+def matrix_text(form):
+    x, z = np.arange(9.0), np.array([0.25, 0.5, 1.0, 1.5, 2.0, 2.5])
+    y = np.round(hull(x[:, None] * 10 / 8, z[None]), 3)
+    if form == "waterlines":
+        rows = [f"WL {float(b)!r}; " + "; ".join(repr(float(v)) for v in y[:, k]) for k, b in enumerate(z)]
+        head = "waterline; " + "; ".join(repr(float(v)) for v in x)
+    elif form == "stations, blanks":
+        rows = [f"{a:g}  " + "  ".join(f"{v:7.3f}" for v in y[k]) for k, a in enumerate(x)]
+        head = "station  " + "  ".join(f"{v:g}" for v in z)
+    else:
+        rows = [f"{a:g};" + ";".join(f"{v:.3f}" for v in y[k]).replace(".", ",") for k, a in
+                enumerate(x)]  # fmt: skip
+        head = ("station;" + ";".join(f"{v:g}" for v in z)).replace(".", ",")
+    return "\n".join(["# of a hull", head, *rows]) + "\n", x, z, y
+
+
+@pytest.mark.parametrize("form", ["waterlines", "stations, blanks", "decimal commas"])
+def test_matrices_of_offsets_come_back_in_their_form(cli, tmp_path, form):
+    text, x, z, y = matrix_text(form)
+    path = tmp_path / "offsets.csv"
+    path.write_text(text)
+    file = read_points(path)
+    assert file.offsets and file.table.shape == (54, 3)
+    for station, breadth, level in file.table.tolist():
+        assert breadth == y[list(x).index(station), list(z).index(level)]
+    for (station, *_), line in zip(file.points.tolist(), file.lines, strict=True):
+        assert form == "waterlines" or text.split("\n")[line - 1].startswith(f"{station:g}")
+    cli("fair", path, "--tol", 0.001, "-o", "out.csv")
+    out = read_points(tmp_path / "out.csv")
+    assert out.matrix is not None and (out.table[:, [0, 2]] == file.table[:, [0, 2]]).all()
+    moved = np.abs(out.table - file.table).max()
+    assert 0 < moved <= 0.001 * (1 + 1e-12)
+    assert (tmp_path / "out.csv").read_text().split("\n")[:2] == text.split("\n")[:2]
+
+
+def test_what_a_matrix_lacks(tmp_path):
+    text, *_ = matrix_text("waterlines")
+    path = tmp_path / "offsets.csv"
+    head, first, *rest = text.split("\n")[1:]
+    gone = "\n".join([head, first.replace("; 0.0", "; x"), *rest])
+    assert gone != text
+    path.write_text(gone)
+    assert read_points(path).offsets
+    for wrong, words in (
+        (text.replace("waterline", "half-breadths"), "what the rows are"),
+        (text.replace("WL 0.5", "WL 0.25"), "a second row"),
+        (text.replace("WL 0.5", "keel"), "value of a row"),
+        (text.replace("WL 0.5;", "WL 0.5; six;"), "found"),
+    ):
+        path.write_text(wrong)
+        with pytest.raises(FairingError, match=words):
+            read_points(path)

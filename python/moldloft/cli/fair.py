@@ -167,7 +167,17 @@ def add(parser: argparse.ArgumentParser) -> None:
         default="near",
         help="which of the results within the tolerance: near (the default: no fairer than noise "
         "of that size asks for, unmoved where there is little to gain), fairest, budget=SHARE of "
-        "such noise, nearest=SHARE above the least",
+        "such noise, nearest=SHARE above the least, energy=MOST (the nearest that measures at "
+        "most this), closest (the nearest that has the shapes asked for)",
+    )
+    parser.add_argument(
+        "--shape",
+        metavar="WORD[=I-J]",
+        action="append",
+        default=[],
+        help="what shape the curve has: convex, concave, one-way (no inflection), straight, arc, "
+        "each of the whole curve or between two points (arc=9-15; straight=1-9:0,1 in a "
+        "direction); pieces=K of monotone curvature; within=X,Y:MOST; side=X,Y; may be repeated",
     )
     parser.add_argument(
         "--release",
@@ -192,6 +202,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--block", type=int, help="the block of a Plot3D file, from 1")
     parser.add_argument("-o", "--output", metavar="OUT", help="the faired points or surface")
     parser.add_argument("--plot", metavar="P.png", help="pictures of it; .png or .svg")
+    parser.add_argument(
+        "--report",
+        metavar="P.html",
+        help="one page about it: pictures to scale, every point and its move, the spline",
+    )
     parser.add_argument("--log", metavar="FILE", help="the local steps, replayable, as CSV")
     parser.add_argument("--json", action="store_true", help="the report as data")
     parser.add_argument(
@@ -223,9 +238,10 @@ def _spacing(text: str) -> Any:
 
 def _goal(text: str) -> Any:
     word, equals, share = text.partition("=")
-    if word not in ("near", "fairest", "budget", "nearest"):
+    if word not in ("near", "fairest", "budget", "nearest", "energy", "closest"):
         raise argparse.ArgumentTypeError(
-            f"`{word}` is not a goal; there are: near, fairest, budget=SHARE, nearest=SHARE"
+            f"`{word}` is not a goal; there are: near, fairest, budget=SHARE, nearest=SHARE, "
+            "energy=MOST, closest"
         )
     try:
         return (word, float(share)) if equals else word
@@ -278,6 +294,8 @@ def run(options: argparse.Namespace) -> int:
     """Fairs and reports."""
     if options.plot and Path(options.plot).suffix.lower() not in (".png", ".svg"):
         raise Error(f"a plot is .png or .svg, not `{options.plot}`")
+    if options.report and Path(options.report).suffix.lower() not in (".html", ".htm"):
+        raise Error(f"a report is .html, not `{options.report}`")
     if options.tol is None and not options.json:
         print(
             "warning: without a tolerance nothing keeps the result near the data: steps without "
@@ -312,6 +330,11 @@ def run(options: argparse.Namespace) -> int:
                 raise Error("--plot: several blocks; choose one with --block")
             result.plot(options.plot)
             files.append(options.plot)
+        if options.report:
+            from moldloft.fairing.page import write_page
+
+            progress.stage(f"writing {options.report}")
+            files.append(write_page(result, options.report, f"Fairing of {source.title}"))
     data["files"] = [str(f) for f in files]
     if options.json:
         print_json(data)
@@ -442,10 +465,34 @@ def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[s
         if options.release == "auto"
         else _places(options.release, count, "--release"),
         "bends": options.bends,
+        "shape": _shapes(options.shape, count),
         "count": options.count,
         "steps": steps,
         "log": bool(options.log),
     }
+
+
+def _shapes(texts: list[str], count: int) -> list[Any]:
+    """Shapes as :func:`moldloft.fair` takes them."""
+    from moldloft import _core
+
+    out: list[Any] = []
+    for text in texts:
+        try:
+            word, first, last, way, number = _core.fair_shape(text, count)
+        except FairingError as error:
+            raise Error(f"--shape: {error}") from None
+        if word == "pieces":
+            out.append((word, first))
+        elif word == "within":
+            out.append((word, way, number))
+        elif word == "side":
+            out.append((word, way))
+        elif word == "straight":
+            out.append((word, first, last, way))
+        else:
+            out.append((word, first, last))
+    return out
 
 
 def _encode_curve(result: Fairing, path: Path, like: PointFile | None) -> bytes:

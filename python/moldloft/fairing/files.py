@@ -14,6 +14,7 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.errors import FairingError, FileError, FormatError
+from moldloft.fairing.matrix import Matrix, matrix
 from moldloft.fairing.tables import plain
 from moldloft.files import Output, commit
 from moldloft.grids import Plot3DVariant, decode_plot3d, encode_plot3d
@@ -71,6 +72,8 @@ class PointFile:
     """The rows of a table of offsets as they were."""
     places: list[int] = field(default_factory=list)
     """Of each row of the curves the row of the table."""
+    matrix: Matrix | None = None
+    """Where the offsets stand in a table with a row for each waterline or station."""
 
     @property
     def width(self) -> int:
@@ -112,6 +115,20 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
         text = data.decode("utf-8")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
+    try:
+        table = matrix(text)
+    except FairingError as error:
+        raise FairingError(f"{path}: {error}") from error
+    if table is not None:
+        offsets, lines, where, inches = table
+        if len({s for s, *_ in offsets}) > 1:
+            said = ["lengths in feet, inches and eighths are read as inches"] if inches else []
+            rows = np.array(offsets)
+            comma = any("," in where.lines[k][a:b] for k, a, b in where.places)
+            file = PointFile(
+                path, rows, lines, [range(len(rows))], [], None, None, said, inches, comma
+            )
+            return replace(_as_offsets(file), matrix=where)
     try:
         made = plain(text)
         rows, found = _core.read_points(made.text.encode())
@@ -194,6 +211,13 @@ def _at(path: Path, error: FormatError) -> FairingError:
 
 def points_text(points: Floats, like: PointFile | None = None, delimiter: str = ",") -> str:
     """Rows of points as text that reads back to the bit, in the form of a file read."""
+    if like is not None and like.matrix is not None and like.table is not None:
+        if (points[:, [0, 2]] != like.table[:, [0, 2]]).any():
+            raise FairingError(
+                "the stations and waterlines of such a table stay: --along 0,1, or an ending of "
+                "another form"
+            )
+        return like.matrix.written([_cell(y, like) for y in points[:, 1]])
     if like is not None and (like.inches or like.comma):
         return _own_form(points, like)
     own = delimiter if like is None else (like.delimiter or " ")
@@ -203,6 +227,13 @@ def points_text(points: Floats, like: PointFile | None = None, delimiter: str = 
     blocks = [(block.start, block.stop) for block in like.blocks] if like else []
     rows = np.ascontiguousarray(points, dtype=np.float64)
     return _core.points_text(rows, separator, head, blocks, halves)
+
+
+def _cell(x: float, like: PointFile) -> str:
+    if like.inches:
+        return sixteenths(x)
+    text = repr(float(x) + 0.0)
+    return text.replace(".", ",") if like.comma else text
 
 
 def sixteenths(inches: float) -> str:
@@ -222,19 +253,13 @@ def sixteenths(inches: float) -> str:
 
 def _own_form(points: Floats, like: PointFile) -> str:
     """Rows with decimal commas, or in feet, inches and eighths."""
-
-    def number(x: float) -> str:
-        if like.inches:
-            return sixteenths(x)
-        return repr(float(x) + 0.0).replace(".", ",")
-
     separator = {"\t": "\t", None: " "}.get(like.delimiter, "; " if like.comma else ", ")
     lines = [line.removeprefix("# ") if like.inches else line for line in like.head]
     starts = {block.start for block in like.blocks} - {0}
     for k, row in enumerate(points):
         if k in starts and not like.offsets:
             lines.append("")
-        lines.append(separator.join(number(x) for x in row))
+        lines.append(separator.join(_cell(x, like) for x in row))
     return "\n".join(lines) + "\n"
 
 

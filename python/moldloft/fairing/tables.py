@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from moldloft.errors import FairingError
 
-__all__ = ["Plain", "eighths", "length", "plain"]
+__all__ = ["MISSING", "Plain", "eighths", "length", "plain"]
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _SLIP = re.compile(r"[-+.\dOoIl]+")
@@ -20,7 +20,7 @@ _EIGHTHS = re.compile(r"([-\u2212]?)(\d+)-(\d+)-(\d+)([+\u00bd-]?)")
 _FEET = re.compile(
     r"([-\u2212]?)(\d+)['\u2032]\s*-?\s*(?:(\d+)(?:\s+(\d+)/(\d+))?|(\d+)/(\d+))?\s*[\"\u2033]?"
 )
-_MISSING = frozenset(("", "x", "X", "-", "\u2013", "\u2014", "null", "nan", "NaN", "n/a"))
+MISSING = frozenset(("", "x", "X", "-", "\u2013", "\u2014", "null", "nan", "NaN", "n/a"))
 
 _AXES = {
     "x": "x",
@@ -203,7 +203,7 @@ def _named(lines: list[str], out: Plain) -> list[str]:
             made.append(lines[k])
             continue
         chosen = [cells[at] for _, at in order]
-        gone = [c for c in chosen if c in _MISSING]
+        gone = [c for c in chosen if c in MISSING]
         if gone and out.stations:
             made.append(f"# {lines[k]}")
             out.notes.append(f"line {k + 1}: a missing cell, the row is left out")

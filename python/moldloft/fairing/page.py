@@ -1,0 +1,422 @@
+"""A fairing as one HTML page: pictures by place and to scale, and every point in a table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.errors import Error
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    from moldloft.fairing.curve import Fairing
+    from moldloft.fairing.network import NetworkFairing
+    from moldloft.fairing.spline import Samples, Spline
+    from moldloft.fairing.surface import SurfaceFairing
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["page", "write_page"]
+
+BEFORE, AFTER, QUIET, WRONG = "#c2571a", "#1f5fa8", "#8a8f98", "#b00020"
+
+_STYLE = (
+    "body{font:14px/1.45 sans-serif;max-width:64em;margin:2em auto;padding:0 1em;color:#1b1f24}"
+    "h1{font-size:1.4em}h2{font-size:1.1em;margin:1.8em 0 .4em}p.about{color:#555;margin:.2em 0}"
+    "table{border-collapse:collapse;margin:.6em 0;font-variant-numeric:tabular-nums}"
+    "td,th{border-bottom:1px solid #ddd;padding:2px 10px;text-align:right}"
+    "td:first-child,th:first-child{text-align:left}tr.limit td{background:#fdf3e7}"
+    "tr.wrong td{background:#fde4e7}svg{width:100%;height:auto;background:#fff}"
+    "pre{background:#f6f7f9;padding:.8em;overflow-x:auto}"
+    "figure{margin:0}figcaption{color:#555;font-size:.92em}"
+    "@media print{body{margin:0;max-width:none}h2{break-after:avoid}figure{break-inside:avoid}}"
+)
+
+WIDE = 960.0
+
+
+class _Picture:
+    """Lines of the plane as SVG, each unit as long along both axes unless asked otherwise."""
+
+    def __init__(self, corners: Floats, height: float | None = None) -> None:
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        size = high - low
+        largest = float(size.max()) or 1.0
+        pad = 0.04 * largest
+        self.margin = 28.0
+        inner = WIDE - 2 * self.margin
+        if height is None:
+            self.scale = np.full(2, inner / max(float(size[0]) + 2 * pad, 0.6 * largest))
+            tall = float(size[1] + 2 * pad) * self.scale[1]
+            self.height = tall + 2 * self.margin
+            self.origin = np.array([low[0] - pad, low[1] - pad])
+            spare = inner - (size[0] + 2 * pad) * self.scale[0]
+            self.origin[0] -= 0.5 * spare / self.scale[0]
+        else:
+            safe = np.where(size > 0, size, 1.0)
+            self.height = height
+            self.scale = np.array([inner / safe[0], (height - 2 * self.margin) / (1.08 * safe[1])])
+            self.origin = low - np.array([0.0, 0.04 * safe[1]])
+        self.parts: list[str] = []
+
+    def place(self, points: Floats) -> Floats:
+        """Points in the picture."""
+        out = (np.asarray(points) - self.origin) * self.scale
+        return np.column_stack([self.margin + out[:, 0], self.height - self.margin - out[:, 1]])
+
+    def line(self, points: Floats, colour: str, width: float = 1.2, dash: str = "") -> None:
+        at = self.place(points)
+        d = "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in at)
+        dashed = f' stroke-dasharray="{dash}"' if dash else ""
+        self.parts.append(
+            f'<path d="{d}" fill="none" stroke="{colour}" stroke-width="{width}"{dashed}/>'
+        )
+
+    def segments(self, a: Floats, b: Floats, colour: str, width: float = 0.6) -> None:
+        pairs = zip(self.place(a), self.place(b), strict=True)
+        d = "".join(f"M{p[0]:.2f} {p[1]:.2f}L{q[0]:.2f} {q[1]:.2f}" for p, q in pairs)
+        self.parts.append(f'<path d="{d}" stroke="{colour}" stroke-width="{width}" fill="none"/>')
+
+    def dots(self, points: Floats, colour: str, titles: Sequence[str], radius: float = 2.2) -> None:
+        for (x, y), title in zip(self.place(points), titles, strict=True):
+            self.parts.append(
+                f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{radius}" fill="{colour}">'
+                f"<title>{escape(title)}</title></circle>"
+            )
+
+    def text(self, x: float, y: float, text: str, colour: str = "#333", end: bool = False) -> None:
+        anchor = ' text-anchor="end"' if end else ""
+        self.parts.append(
+            f'<text x="{x:.1f}" y="{y:.1f}" font-size="12" font-family="sans-serif" '
+            f'fill="{colour}"{anchor}>{escape(text)}</text>'
+        )
+
+    def bar(self) -> None:
+        """A length that fits the picture, with its number."""
+        length = _round(0.18 * WIDE / float(self.scale[0]))
+        x, y = self.margin, self.height - 8
+        self.parts.append(
+            f'<path d="M{x} {y}h{length * self.scale[0]:.2f}" stroke="#333" stroke-width="1.5"/>'
+        )
+        self.text(x + float(length * self.scale[0]) + 6, y + 4, f"{length:g}")
+
+    def svg(self, label: str) -> str:
+        return (
+            f'<svg viewBox="0 0 {WIDE:g} {self.height:.1f}" role="img" '
+            f'aria-label="{escape(label)}">' + "".join(self.parts) + "</svg>"
+        )
+
+
+def _round(x: float) -> float:
+    """1, 2 or 5 times a power of ten, at most `x`."""
+    if not (np.isfinite(x) and x > 0):
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(x))
+    return float(next(k * power for k in (5.0, 2.0, 1.0) if k * power <= x * (1 + 1e-12)))
+
+
+def _plane(points: Floats) -> tuple[int, int]:
+    spread = np.ptp(points, axis=0)
+    least = 2 if spread[2] <= 1e-12 * spread.max() else int(np.argmin(spread))
+    i, j = (c for c in range(3) if c != least)
+    return i, j
+
+
+def _figure(picture: _Picture, caption: str) -> str:
+    return f"<figure>{picture.svg(caption)}<figcaption>{escape(caption)}</figcaption></figure>"
+
+
+def _number(x: float) -> str:
+    return f"{x:.6g}"
+
+
+def _table(head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]]) -> str:
+    top = "".join(f"<th>{escape(h)}</th>" for h in head)
+    body = "".join(
+        (f'<tr class="{kind}">' if kind else "<tr>")
+        + "".join(f"<td>{escape(c)}</td>" for c in cells)
+        + "</tr>"
+        for kind, cells in rows
+    )
+    return f"<table><tr>{top}</tr>{body}</table>"
+
+
+def exaggeration(moves: Floats, extent: float) -> float:
+    """A round factor that shows the largest move as about a twentieth of the extent.
+
+    Examples
+    --------
+    >>> exaggeration(np.array([0.001, 0.0004]), 10.0)
+    500.0
+    """
+    largest = float(np.max(moves, initial=0.0))
+    return max(1.0, _round(0.05 * extent / largest)) if largest > 0 else 1.0
+
+
+def _moved(
+    data: Floats,
+    moved: Floats,
+    tol: float | None,
+    curves: Sequence[tuple[Spline, Spline]],
+    axes: tuple[int, int],
+    wrong: set[int],
+) -> str:
+    """The shape to scale, with the moves of points drawn larger at their places."""
+    ij = list(axes)
+    away = moved - data
+    lengths = np.linalg.norm(away, axis=1)
+    extent = float(np.ptp(data, axis=0).max())
+    factor = exaggeration(lengths, extent)
+    lines = [(a.samples(12).points, b.samples(12).points) for a, b in curves]
+    corners = np.vstack([data[:, ij], (data + factor * away)[:, ij], *(b[:, ij] for _, b in lines)])
+    picture = _Picture(corners)
+    for before, after in lines:
+        picture.line(before[:, ij], BEFORE, 0.8)
+        picture.line(after[:, ij], AFTER, 1.3)
+    full = tol is not None and tol > 0
+    at_limit = lengths >= (1 - 1e-4) * tol if full and tol is not None else lengths < 0
+    picture.segments(data[:, ij], (data + factor * away)[:, ij], "#555", 0.8)
+    for mask, colour in ((~at_limit, QUIET), (at_limit, BEFORE)):
+        picked = np.flatnonzero(mask & ~np.isin(np.arange(len(data)), list(wrong)))
+        titles = [f"point {k + 1}: moved {lengths[k]:.3g}" for k in picked]
+        picture.dots(data[picked][:, ij], colour, titles)
+    for k in wrong:
+        picture.dots(data[[k]][:, ij], WRONG, [f"point {k + 1}: probably wrong"], 3.5)
+    picture.bar()
+    named = "".join("xyz"[c] for c in axes)
+    picture.text(WIDE - 8, 16, f"{named[0]} to the right, {named[1]} up", QUIET, end=True)
+    reached = int(at_limit.sum())
+    said = f"; {reached} points (orange) are at their tolerance" if reached else ""
+    return _figure(
+        picture,
+        f"To scale: before orange, after blue. Moves of the points are drawn {factor:g} times as "
+        f"long; the largest is {lengths.max(initial=0.0):.3g}{said}.",
+    )
+
+
+def _even_turns(spline: Spline, most: float = 0.05, rows: int = 400) -> Samples:
+    """Samples that follow length and turn alike: enough teeth at a nose."""
+    fine = spline.samples(24)
+    steps = np.linalg.norm(np.diff(fine.points, axis=0), axis=1)
+    length = float(steps.sum()) or 1.0
+    bend = np.abs(fine.curvature)
+    turn = 0.5 * (bend[1:] + bend[:-1]) * steps
+    way = steps / length / 0.005 + turn / most
+    run = np.concatenate([[0.0], np.cumsum(way)])
+    count = int(min(max(run[-1], 60), rows))
+    keep = np.linspace(0.0, run[-1], count + 1)
+    t = np.interp(keep, run, fine.t)
+    return spline.at(np.clip(t, 0, 1))
+
+
+def _by_length(samples: Samples) -> Floats:
+    """The size of the curvature at places even in length."""
+    bend = np.interp(np.linspace(0, 1, 1001), samples.arc, np.abs(samples.curvature))
+    return np.asarray(bend)
+
+
+def _comb(fairing: Fairing, axes: tuple[int, int]) -> str:
+    ij = list(axes)
+    after = _even_turns(fairing.spline)
+    bend = np.abs(after.curvature)
+    extent = float(np.ptp(after.points, axis=0).max())
+    largest = float(bend.max())
+    if largest * extent <= 1e-9:
+        return "<p>The curve is straight: it has no comb.</p>"
+    # A nose would leave the rest without teeth: these are cut where they are.
+    usual = float(np.percentile(_by_length(after), 80))
+    cut = largest if largest <= 8 * usual else max(3 * usual, 1e-3 * largest)
+    scale = 0.22 * extent / cut
+    tangent = after.first[:, ij]
+    size = np.linalg.norm(tangent, axis=1, keepdims=True)
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.where(size > 0, size, 1)
+    teeth = np.clip(after.curvature, -cut, cut)[:, None] * scale
+    feet = after.points[:, ij]
+    tips = feet - teeth * normal
+    picture = _Picture(np.vstack([feet, tips]))
+    picture.segments(feet, tips, AFTER, 0.5)
+    picture.line(tips, AFTER, 1.1)
+    picture.line(feet, "#1b1f24", 1.4)
+    picture.bar()
+    said = f"; teeth beyond {cut:.3g} are cut (largest {largest:.4g})" if cut < largest else ""
+    return _figure(picture, f"Curvature comb of the faired curve, to scale{said}.")
+
+
+def _bends(fairing: Fairing) -> str:
+    """Curvature along the length, before and after; logarithmic where it spans decades."""
+    before, after = fairing.original.samples(12), fairing.spline.samples(12)
+    bend = np.abs(after.curvature)
+    largest, usual = float(bend.max()), float(np.median(_by_length(after)))
+    swamped = usual > 0 and largest > 30 * usual
+
+    def shown(values: Floats) -> Floats:
+        if not swamped:
+            return values
+        floor = 0.3 * usual
+        return np.asarray(np.sign(values) * np.log1p(np.abs(values) / floor))
+
+    a, b = shown(before.curvature), shown(after.curvature)
+    low, high = float(b.min()), float(b.max())
+    room = 0.5 * (high - low) or max(abs(high), 1e-300)
+    low, high = max(low - room, float(a.min())), min(high + room, float(a.max()))
+    low, high = min(low, float(b.min())), max(high, float(b.max()))
+    picture = _Picture(np.array([[0.0, low], [1.0, high]]), 260.0)
+    picture.line(np.column_stack([before.arc, np.clip(a, low, high)]), BEFORE, 0.8)
+    picture.line(np.column_stack([after.arc, b]), AFTER, 1.4)
+    if low < 0 < high:
+        picture.line(np.array([[0.0, 0.0], [1.0, 0.0]]), "#999", 0.6, "4 3")
+    picture.text(WIDE - 8, 16, f"largest {largest:.4g}, median {usual:.4g}", QUIET, end=True)
+    picture.text(8, picture.height - 8, "share of the length", QUIET)
+    how = "on a logarithmic scale" if swamped else "cut where it was rougher before"
+    return _figure(picture, f"Curvature along the curve, {how}: before orange, after blue.")
+
+
+def _points(data: Floats, after: Floats, off: Floats, tol: float | None, wrong: set[int]) -> str:
+    """Every point: as given, as faired, the distance and its share of the tolerance."""
+    width = 2 if np.ptp(data[:, 2]) == 0 and not data[:, 2].any() else 3
+    names = "xyz"[:width]
+    head = ["point", *names, *(f"{c} faired" for c in names), "distance"]
+    if tol:
+        head.append("of the tolerance")
+    rows = []
+    for k, (p, q, d) in enumerate(zip(data, after, off, strict=True)):
+        cells = [str(k + 1), *(_number(float(x)) for x in (*p[:width], *q[:width]))]
+        cells.append(f"{d:.3g}")
+        if tol:
+            cells.append(f"{100 * d / tol:.0f} %")
+        limit = bool(tol) and d >= (1 - 1e-4) * (tol or 0.0)
+        rows.append(("wrong" if k in wrong else "limit" if limit else "", cells))
+    return _table(head, rows)
+
+
+def _three(points: Floats) -> Floats:
+    out = np.zeros((len(points), 3))
+    out[:, : points.shape[1]] = points
+    return out
+
+
+def _of_curve(fairing: Fairing) -> list[str]:
+    data = fairing.data
+    after = _three(fairing.points)
+    axes = _plane(fairing.original.samples(4).points)
+    wrong = {f.index for f in (*fairing.findings, *fairing.corrected) if f.kind == "outlier"}
+    off = fairing.residuals
+    if off is None:
+        off = np.linalg.norm(after - data, axis=1)
+    parts = ["<h2>Shape</h2>"]
+    parts.append(
+        _moved(data, after, fairing.tol, [(fairing.original, fairing.spline)], axes, wrong)
+    )
+    parts += ["<h2>Curvature</h2>", _bends(fairing), _comb(fairing, axes)]
+    parts += ["<h2>Points</h2>", _points(data, after, np.asarray(off), fairing.tol, wrong)]
+    spline = fairing.spline
+    rows = [
+        ("", [str(k + 1), *(repr(float(x)) for x in p)])
+        for k, p in enumerate(spline.control_points)
+    ]
+    knots = ", ".join(f"{float(k):.9g}" for k in spline.knots)
+    parts += [
+        f"<h2>Spline of degree {spline.degree}</h2>",
+        f"<p>Knots: {knots}</p>",
+        _table(["control point", "x", "y", "z"], rows),
+    ]
+    return parts
+
+
+def _of_network(fairing: NetworkFairing) -> list[str]:
+    data, after = fairing.data, _three(fairing.points)
+    if fairing.points.shape[1] == 2:
+        views = [("Plan", (0, 1))]
+    else:
+        views = [("Plan", (0, 1)), ("Profile", (0, 2)), ("Body plan", (1, 2))]
+    wrong = {f.index for _, f in fairing.findings if f.kind == "outlier"}
+    pairs = list(zip(fairing.originals, fairing.curves, strict=True))
+    parts = []
+    for name, axes in views:
+        if min(float(np.ptp(data[:, c])) for c in axes) > 0:
+            parts += [f"<h2>{name}</h2>", _moved(data, after, fairing.tol, pairs, axes, wrong)]
+    off = np.linalg.norm(after - data, axis=1)
+    parts += ["<h2>Points</h2>", _points(data, after, off, fairing.tol, wrong)]
+    if fairing.findings:
+        said = "".join(f"<li>curve {k + 1}: {escape(f.text)}</li>" for k, f in fairing.findings)
+        parts += ["<h2>Findings</h2>", f"<ul>{said}</ul>"]
+    return parts
+
+
+def _of_surface(fairing: SurfaceFairing) -> list[str]:
+    before, after = (s.grid(61, 41) for s in (fairing.original, fairing.surface))
+    data = fairing.data.reshape(-1, 3)
+    moved = np.asarray(fairing.points).reshape(-1, fairing.points.shape[-1])
+    away = np.linalg.norm(_three(moved) - data, axis=1)
+    extent = float(np.ptp(data, axis=0).max())
+    factor = exaggeration(away, extent)
+    parts = []
+    for name, axes in (("Plan", (0, 1)), ("Profile", (0, 2)), ("Body plan", (1, 2))):
+        ij = list(axes)
+        if min(float(np.ptp(data[:, c])) for c in axes) <= 0:
+            continue
+        picture = _Picture(np.vstack([before.reshape(-1, 3)[:, ij], after.reshape(-1, 3)[:, ij]]))
+        for grid, colour, width in ((before, BEFORE, 0.5), (after, AFTER, 0.8)):
+            for k in range(0, grid.shape[0], 4):
+                picture.line(grid[k][:, ij], colour, width)
+            for k in range(0, grid.shape[1], 4):
+                picture.line(grid[:, k][:, ij], colour, width)
+        tips = data + factor * (_three(moved) - data)
+        picture.segments(data[:, ij], tips[:, ij], "#555", 0.8)
+        picture.bar()
+        caption = (
+            f"To scale: before orange, after blue; moves of the points {factor:g} times as long, "
+            f"the largest {away.max(initial=0.0):.3g}."
+        )
+        parts += [f"<h2>{name}</h2>", _figure(picture, caption)]
+    return parts
+
+
+def page(fairing: Fairing | NetworkFairing | SurfaceFairing, title: str = "Fairing") -> str:
+    """The HTML page of a fairing; it needs no other file and no network.
+
+    Parameters
+    ----------
+    fairing
+        What :func:`moldloft.fair` or :func:`moldloft.fairing.network` returned.
+    title
+        Its heading.
+    """
+    from moldloft.fairing.curve import Fairing
+    from moldloft.fairing.network import NetworkFairing
+
+    if isinstance(fairing, Fairing):
+        parts = _of_curve(fairing)
+    elif isinstance(fairing, NetworkFairing):
+        parts = _of_network(fairing)
+    elif hasattr(fairing, "surface"):
+        parts = _of_surface(fairing)
+    else:
+        raise Error("a page is made of a curve, a surface or a network: choose one block")
+    facts: Any = str(fairing)
+    return (
+        f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>'
+        f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style>'
+        f"<h1>{escape(title)}</h1><pre>{escape(facts)}</pre>" + "".join(parts) + "</html>\n"
+    )
+
+
+def write_page(
+    fairing: Fairing | NetworkFairing | SurfaceFairing,
+    path: str | PathLike[str],
+    title: str = "Fairing",
+) -> Path:
+    """Writes :func:`page` into a file, all of it or nothing."""
+    from moldloft.files import Output, commit
+
+    path = Path(path)
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise Error(f"a page is .html, not `{path}`")
+    return commit(path.parent, [Output(path.name, page(fairing, title).encode())])[0]
