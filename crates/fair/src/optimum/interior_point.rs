@@ -804,7 +804,9 @@ pub(crate) fn solve<const D: usize>(
             idle += 1;
         }
         let rounded = state.complementarity() <= ROUNDING * gap;
-        let most = if best.is_some() { MOST_IDLE } else { MOST_TRIALS };
+        // Half-spaces are entered step by step.
+        let trials = if halves > 0 { MOST_ITERATIONS } else { MOST_TRIALS };
+        let most = if best.is_some() { MOST_IDLE } else { trials };
         if meets && gap <= (accuracy * value).max(floor) || idle > most {
             break;
         }
