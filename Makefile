@@ -1,4 +1,7 @@
 # `make demo` needs only Rust and Python >= 3.10; the workbench's page needs Node.js besides. CI runs `make test`.
+#
+# The tests run a development build of the extension, which shares all that it compiles with the Rust tests and checks
+# its own assertions; `make demo` and `make optimised` build what users get.
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -10,6 +13,11 @@ BIN := $(VENV)/bin
 EXE :=
 endif
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+# What a package that is not there yet is built with.
+PROFILE ?= dev
+demo optimised: PROFILE = release
+BUILT = $${CARGO_TARGET_DIR:-target}/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))
 
 SOURCES := pyproject.toml Cargo.toml $(shell find crates -name '*.rs' -o -name Cargo.toml -o -name '*.sdl')
 
@@ -27,7 +35,10 @@ PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildca
 # Without Node.js everything but the workbench is there.
 WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
 
-.PHONY: setup demo web test check reference soak clean help
+ENGINE := python/moldloft/workbench/wasm/engine.wasm.gz
+WASM := wasm32-unknown-unknown
+
+.PHONY: setup demo optimised web engine test check reference site release soak clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -38,7 +49,8 @@ setup: $(VENV)/.with-tests $(VENV)/.with-browser ## .venv with the package and e
 $(VENV)/.installed: $(SOURCES)
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@echo "building and installing moldloft into $(VENV) (a first build takes a few minutes)"
-	@$(PIP) install --editable .
+	@$(PIP) install 'maturin>=1.10,<2'
+	@PATH="$$PWD/$(BIN):$$PATH" MATURIN_PEP517_ARGS="--profile $(PROFILE)" $(PIP) install --no-build-isolation --editable .
 	@touch $@
 
 $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
@@ -46,8 +58,8 @@ $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
 	@$(BIN)/python -c "$$TEST_PACKAGES" > $(VENV)/test-packages.txt
 	@$(PIP) install --requirement $(VENV)/test-packages.txt
 	@echo "building the language server"
-	@cargo build --quiet --release -p moldloft-lsp
-	@cp $${CARGO_TARGET_DIR:-target}/release/moldloft-lsp$(EXE) $(BIN)/
+	@cargo build --quiet --profile $(PROFILE) -p moldloft-lsp
+	@cp $(BUILT)/moldloft-lsp$(EXE) $(BIN)/
 	@touch $@
 
 web: $(PAGE) ## the page of the workbench; needs Node.js
@@ -55,8 +67,18 @@ web: $(PAGE) ## the page of the workbench; needs Node.js
 $(PAGE): $(PAGE_SOURCES)
 	@command -v npm >/dev/null || { echo "the page of the workbench needs Node.js 20 or newer and npm"; exit 1; }
 	@echo "building the page of the workbench"
-	@cd web && npm ci --no-audit --no-fund --loglevel=error && npm run --silent build -- --logLevel warn
+	@cd web && npm ci --no-audit --no-fund --loglevel=error && npm run --silent build
 	@touch $@
+
+# The engine for pages that compute by themselves; optimised by itself, it takes as long as the rest of the house.
+engine: ## the engine for `export --html`; needs the target wasm32-unknown-unknown
+	@test -d "$$(rustc --print sysroot)/lib/rustlib/$(WASM)" || { \
+		echo "the engine for pages needs the target $(WASM): rustup target add $(WASM)"; exit 1; }
+	@echo "building the engine for pages (it takes a while)"
+	@cargo build --quiet --profile engine --target $(WASM) -p moldloft-wasm
+	@mkdir -p $(dir $(ENGINE))
+	@gzip -9 -n -c $${CARGO_TARGET_DIR:-target}/$(WASM)/engine/moldloft_engine.wasm > $(ENGINE).new
+	@mv $(ENGINE).new $(ENGINE)
 
 # What the tests of the page need, where it can be had: a browser that runs without a display.
 $(VENV)/.with-browser:
@@ -69,6 +91,10 @@ $(VENV)/.with-browser:
 
 demo: $(VENV)/.installed ## the sailing yacht of examples/sailboat as panels, files, hydrostatics and a picture
 	@$(BIN)/moldloft build examples/sailboat/hull.sdl --to gdf stl obj vtp vts p3d svg png -o out/sailboat
+
+optimised: ## the package in .venv anew, as users get it: for benchmarks
+	@rm -f $(VENV)/.installed
+	@$(MAKE) --no-print-directory PROFILE=release $(VENV)/.installed
 
 test: setup check ## every check and test
 	@$(BIN)/python -m pytest
@@ -84,9 +110,16 @@ check: setup ## formatting, lints, types and the Rust tests
 reference: $(VENV)/.installed ## docs/reference.md anew from the declarations
 	@$(BIN)/moldloft doc --markdown > docs/reference.md
 	@$(BIN)/moldloft doc --pictures docs/kinds
+	@$(BIN)/python -m moldloft.stubs
+
+site: $(VENV)/.with-tests ## the documentation, in out/site
+	@$(BIN)/mkdocs build --quiet --strict
+
+release: ## wheel with language server and page, sdist, notices, bill of materials; in dist/
+	@$(PYTHON) tools/release.py
 
 soak: export MOLDLOFT_SOAK = 1
 soak: test ## the long random tests in full
 
 clean: ## removes what was built
-	rm -rf $(VENV) out target web/node_modules python/moldloft/workbench/page
+	rm -rf $(VENV) out dist target web/node_modules python/moldloft/workbench/page python/moldloft/workbench/wasm

@@ -34,27 +34,52 @@ if TYPE_CHECKING:
     from moldloft.fairing import fair
     from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
     from moldloft.implicit import Field, Set
+    from moldloft.loading import load, loads
     from moldloft.mesh import Mesh, Patch
-    from moldloft.models import Model, Param, load, loads
+    from moldloft.models import Model, Param
     from moldloft.nurbs import Nurbs
-    from moldloft.objects import Object
+    from moldloft.objects import (
+        Bead,
+        Body,
+        Contours,
+        Curve,
+        FieldObject,
+        Frame,
+        Magnet,
+        Object,
+        Plane,
+        Point,
+        Relabel,
+        Ring,
+        SetObject,
+        Snake,
+        Solid,
+        Surface,
+    )
     from moldloft.searches import Branch, Intersection, NearestPoints
     from moldloft.sketches import Sketch, SketchError
 
 __all__ = [
+    "Bead",
     "Block",
     "Blocks",
+    "Body",
     "Branch",
     "Builder",
+    "Contours",
+    "Curve",
     "Diagnostic",
     "Error",
     "FairingError",
     "Field",
+    "FieldObject",
     "FileError",
     "FormatError",
+    "Frame",
     "HydrostaticTable",
     "Hydrostatics",
     "Intersection",
+    "Magnet",
     "Mesh",
     "Model",
     "ModelError",
@@ -63,10 +88,18 @@ __all__ = [
     "Object",
     "Param",
     "Patch",
+    "Plane",
+    "Point",
+    "Relabel",
     "RightingCurve",
+    "Ring",
     "Set",
+    "SetObject",
     "Sketch",
     "SketchError",
+    "Snake",
+    "Solid",
+    "Surface",
     "UnknownNameError",
     "__version__",
     "fair",
@@ -97,12 +130,27 @@ _HOMES = {
     "Patch": "moldloft.mesh",
     "Model": "moldloft.models",
     "Param": "moldloft.models",
-    "load": "moldloft.models",
-    "loads": "moldloft.models",
+    "load": "moldloft.loading",
+    "loads": "moldloft.loading",
     "model": "moldloft.builder",
     "param": "moldloft.builder",
     "Nurbs": "moldloft.nurbs",
+    "Bead": "moldloft.objects",
+    "Body": "moldloft.objects",
+    "Contours": "moldloft.objects",
+    "Curve": "moldloft.objects",
+    "FieldObject": "moldloft.objects",
+    "Frame": "moldloft.objects",
+    "Magnet": "moldloft.objects",
     "Object": "moldloft.objects",
+    "Plane": "moldloft.objects",
+    "Point": "moldloft.objects",
+    "Relabel": "moldloft.objects",
+    "Ring": "moldloft.objects",
+    "SetObject": "moldloft.objects",
+    "Snake": "moldloft.objects",
+    "Solid": "moldloft.objects",
+    "Surface": "moldloft.objects",
     "Branch": "moldloft.searches",
     "Intersection": "moldloft.searches",
     "NearestPoints": "moldloft.searches",
@@ -112,7 +160,7 @@ _HOMES = {
 }
 
 # Submodules that may be named after `import moldloft` alone.
-_MODULES = ("fairing", "functions", "grids", "implicit")
+_MODULES = ("fairing", "functions", "grids", "implicit", "kinds")
 
 
 def __getattr__(name: str) -> object:

@@ -9,352 +9,46 @@ from __future__ import annotations
 
 import contextlib
 import inspect
-import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import update_wrapper
-from typing import Any
+from typing import Any, Generic, ParamSpec
 
 from moldloft import _core
+from moldloft.expressions import (
+    Expr,
+    FieldShape,
+    Handle,
+    SetShape,
+    Shape,
+    arguments,
+    literal,
+    object_named,
+    result,
+    spelled,
+)
+from moldloft.language import entry, page, signature
+from moldloft.loading import Origin
 from moldloft.models import Model
 
-__all__ = ["Builder", "Expr", "Handle", "Kind", "ModelFunction", "Range", "model", "param"]
+__all__ = [
+    "Builder",
+    "Expr",
+    "Function",
+    "Handle",
+    "Kind",
+    "ModelFunction",
+    "Range",
+    "Shape",
+    "model",
+    "param",
+]
+
+P = ParamSpec("P")
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
-_SUM, _PRODUCT, _SIGN, _POWER, _ATOM = range(5)
-
-
-class Expr:
-    """A number of a model, as an expression of the language; it also knows its value, if it can.
-
-    Arithmetic and NumPy's elementary functions give further expressions. Comparisons look at the
-    value, so that a model function may branch. Turning an expression into a float would cut it
-    off from its parameters and raises.
-    """
-
-    __array_priority__ = 1000
-
-    def __init__(self, text: str, value: float | None = None, rank: int = _ATOM) -> None:
-        self.text = text
-        self._value = value
-        self._rank = rank
-
-    @property
-    def value(self) -> float:
-        """The number in this run of the model function."""
-        if self._value is None:
-            raise TypeError(
-                f"the value of `{self.text}` is not known while the model function runs; "
-                "branch on parameters instead"
-            )
-        return self._value
-
-    def _in(self, rank: int) -> str:
-        return self.text if self._rank >= rank else f"({self.text})"
-
-    def _binary(self, other: object, sign: str, rank: int, *, swap: bool = False) -> Any:
-        right = _expr(other)
-        if right is None:
-            return NotImplemented
-        a, b = (right, self) if swap else (self, right)
-        left_rank = rank + 1 if sign == "^" else rank
-        text = f"{a._in(left_rank)} {sign} {b._in(rank + 1)}"
-        return Expr(text, _apply(_ARITHMETIC[sign], a, b), rank)
-
-    def __add__(self, other: object) -> Any:
-        return self._binary(other, "+", _SUM)
-
-    def __radd__(self, other: object) -> Any:
-        return self._binary(other, "+", _SUM, swap=True)
-
-    def __sub__(self, other: object) -> Any:
-        return self._binary(other, "-", _SUM)
-
-    def __rsub__(self, other: object) -> Any:
-        return self._binary(other, "-", _SUM, swap=True)
-
-    def __mul__(self, other: object) -> Any:
-        return self._binary(other, "*", _PRODUCT)
-
-    def __rmul__(self, other: object) -> Any:
-        return self._binary(other, "*", _PRODUCT, swap=True)
-
-    def __truediv__(self, other: object) -> Any:
-        return self._binary(other, "/", _PRODUCT)
-
-    def __rtruediv__(self, other: object) -> Any:
-        return self._binary(other, "/", _PRODUCT, swap=True)
-
-    def __pow__(self, other: object) -> Any:
-        return self._binary(other, "^", _POWER)
-
-    def __rpow__(self, other: object) -> Any:
-        return self._binary(other, "^", _POWER, swap=True)
-
-    def __neg__(self) -> Expr:
-        return Expr(f"-{self._in(_POWER)}", _apply(lambda a: -a, self), _SIGN)
-
-    def __pos__(self) -> Expr:
-        return self
-
-    def __abs__(self) -> Expr:
-        return _function("abs", abs, self)
-
-    def __float__(self) -> float:
-        raise TypeError(
-            f"`{self.text}` cannot become a float: the model would no longer follow its "
-            "parameters. Use NumPy's functions (np.sin, np.sqrt) instead of those of math, and "
-            ".value where only the number matters"
-        )
-
-    __int__ = __float__
-    __index__ = __float__
-
-    def __bool__(self) -> bool:
-        return bool(self.value)
-
-    def __hash__(self) -> int:
-        return hash(self.text)
-
-    def __eq__(self, other: object) -> bool:
-        right = _expr(other)
-        return right is not None and self.value == right.value
-
-    def __lt__(self, other: object) -> bool:
-        return self.value < _required(other).value
-
-    def __le__(self, other: object) -> bool:
-        return self.value <= _required(other).value
-
-    def __gt__(self, other: object) -> bool:
-        return self.value > _required(other).value
-
-    def __ge__(self, other: object) -> bool:
-        return self.value >= _required(other).value
-
-    def __repr__(self) -> str:
-        return f"Expr({self.text!r})"
-
-    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **kwargs: Any) -> Any:
-        """NumPy's elementary functions, and its arithmetic between arrays and expressions."""
-        import numpy as np
-
-        if method != "__call__" or kwargs:
-            return NotImplemented
-        if any(isinstance(x, np.ndarray) and x.ndim for x in inputs):
-            arrays = np.broadcast_arrays(*(np.asarray(x, dtype=object) for x in inputs))
-            out = np.empty(arrays[0].shape, dtype=object)
-            for k in np.ndindex(*out.shape):
-                out[k] = ufunc(*(a[k] for a in arrays))
-            return out
-        name = ufunc.__name__
-        if name in _OPERATORS:
-            return _OPERATORS[name](*inputs)
-        if name in _FUNCTIONS:
-            word, plain = _FUNCTIONS[name]
-            return _function(word, plain, *(_required(x) for x in inputs))
-        raise TypeError(f"numpy.{name} has no counterpart in the language")
-
-
-def _apply(function: Callable[..., float], *args: Expr) -> float | None:
-    values = [a._value for a in args]
-    if any(v is None for v in values):
-        return None
-    try:
-        return float(function(*values))
-    except (ArithmeticError, ValueError):
-        return None
-
-
-def _function(word: str, plain: Callable[..., float], *args: Expr) -> Expr:
-    return Expr(f"{word}({', '.join(a.text for a in args)})", _apply(plain, *args))
-
-
-_ARITHMETIC: dict[str, Callable[[float, float], float]] = {
-    "+": lambda a, b: a + b,
-    "-": lambda a, b: a - b,
-    "*": lambda a, b: a * b,
-    "/": lambda a, b: a / b,
-    "^": lambda a, b: a**b,
-}
-_FUNCTIONS: dict[str, tuple[str, Callable[..., float]]] = {
-    "sqrt": ("sqrt", math.sqrt),
-    "sin": ("sin", math.sin),
-    "cos": ("cos", math.cos),
-    "tan": ("tan", math.tan),
-    "arcsin": ("asin", math.asin),
-    "arccos": ("acos", math.acos),
-    "arctan": ("atan", math.atan),
-    "arctan2": ("atan2", math.atan2),
-    "exp": ("exp", math.exp),
-    "log": ("log", math.log),
-    "log10": ("log10", math.log10),
-    "sinh": ("sinh", math.sinh),
-    "cosh": ("cosh", math.cosh),
-    "tanh": ("tanh", math.tanh),
-    "absolute": ("abs", abs),
-    "floor": ("floor", math.floor),
-    "ceil": ("ceil", math.ceil),
-    "hypot": ("hypot", math.hypot),
-    "minimum": ("min", min),
-    "maximum": ("max", max),
-    "deg2rad": ("radians", math.radians),
-    "rad2deg": ("degrees", math.degrees),
-}
-_OPERATORS: dict[str, Callable[..., Any]] = {
-    "add": lambda a, b: _required(a) + _required(b),
-    "subtract": lambda a, b: _required(a) - _required(b),
-    "multiply": lambda a, b: _required(a) * _required(b),
-    "divide": lambda a, b: _required(a) / _required(b),
-    "power": lambda a, b: _required(a) ** _required(b),
-    "negative": lambda a: -_required(a),
-    "positive": lambda a: a,
-    "square": lambda a: a * a,
-    "less": lambda a, b: _required(a) < _required(b),
-    "less_equal": lambda a, b: _required(a) <= _required(b),
-    "greater": lambda a, b: _required(a) > _required(b),
-    "greater_equal": lambda a, b: _required(a) >= _required(b),
-}
-
-
-def _literal(x: float) -> str:
-    if not math.isfinite(x):
-        raise ValueError(f"a number of a model must be finite, not {x}")
-    return repr(int(x)) if x == int(x) and abs(x) < 1e15 else repr(x)
-
-
-def _expr(x: object) -> Expr | None:
-    if isinstance(x, Expr):
-        return x
-    if isinstance(x, bool) or not (isinstance(x, (int, float)) or hasattr(x, "__float__")):
-        return None
-    value = float(x)
-    return Expr(_literal(value), value, _ATOM if value >= 0 else _SIGN)
-
-
-def _required(x: object) -> Expr:
-    expr = _expr(x)
-    if expr is None:
-        raise TypeError(f"expected a number, found {type(x).__name__}")
-    return expr
-
-
-def _spelled(x: object) -> str:
-    """An argument as the language writes it."""
-    if isinstance(x, Handle):
-        return x.name
-    if isinstance(x, Shape):
-        return x.text
-    if isinstance(x, str):
-        escaped = x.replace("\\", "\\\\").replace('"', '\\"')
-        return f'"{escaped}"'
-    expr = _expr(x)
-    if expr is not None:
-        return expr.text
-    if isinstance(x, Sequence) or hasattr(x, "__iter__"):
-        return "{" + ", ".join(_spelled(item) for item in x) + "}"
-    raise TypeError(f"{type(x).__name__} cannot be an argument of an object")
-
-
-class Handle:
-    """An object under its name, to build others on.
-
-    ``P.x`` is an expression, and so is the component of a point of a curve or surface,
-    ``hull(0.5, 0.25).y``.
-    """
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-
-    def __call__(self, *parameters: object) -> Handle:
-        """A point of the curve or surface."""
-        return Handle(f"{self.name}({', '.join(_spelled(p) for p in parameters)})")
-
-    def __getattr__(self, member: str) -> Expr:
-        if member.startswith("_"):
-            raise AttributeError(member)
-        return Expr(f"{self.name}.{member}")
-
-    def __repr__(self) -> str:
-        return f"<Handle: {self.name}>"
-
-
-class Shape:
-    """A field or set of a model, as an expression of the language.
-
-    Fields combine by ``+ - * /`` and ``**``, sets by ``|``, ``&``, ``-``, ``^``, and ``-`` is the
-    complement. Functions such as ``sphere`` and ``set`` come from :mod:`moldloft.functions`.
-    """
-
-    __array_ufunc__ = None
-
-    def __init__(self, text: str, rank: int = _ATOM) -> None:
-        self.text = text
-        self._rank = rank
-
-    def _in(self) -> str:
-        return self.text if self._rank == _ATOM else f"({self.text})"
-
-    def _binary(self, other: object, sign: str, *, swap: bool = False) -> Any:
-        if isinstance(other, Shape):
-            right = other._in()
-        elif isinstance(other, Handle):
-            right = other.name
-        else:
-            number = _expr(other)
-            if number is None:
-                return NotImplemented
-            right = number._in(_ATOM)
-        a, b = (right, self._in()) if swap else (self._in(), right)
-        return Shape(f"{a} {sign} {b}", _SUM)
-
-    def __add__(self, other: object) -> Any:
-        return self._binary(other, "+")
-
-    def __radd__(self, other: object) -> Any:
-        return self._binary(other, "+", swap=True)
-
-    def __sub__(self, other: object) -> Any:
-        return self._binary(other, "-")
-
-    def __rsub__(self, other: object) -> Any:
-        return self._binary(other, "-", swap=True)
-
-    def __mul__(self, other: object) -> Any:
-        return self._binary(other, "*")
-
-    def __rmul__(self, other: object) -> Any:
-        return self._binary(other, "*", swap=True)
-
-    def __truediv__(self, other: object) -> Any:
-        return self._binary(other, "/")
-
-    def __pow__(self, exponent: int) -> Any:
-        return self._binary(exponent, "^")
-
-    def __or__(self, other: object) -> Any:
-        return self._binary(other, "|")
-
-    def __and__(self, other: object) -> Any:
-        return self._binary(other, "&")
-
-    def __xor__(self, other: object) -> Any:
-        return self._binary(other, "^")
-
-    def __neg__(self) -> Shape:
-        return Shape(f"-{self._in()}", _SIGN)
-
-    def __abs__(self) -> Shape:
-        return Shape(f"abs({self.text})")
-
-    def __call__(self, point: object) -> Expr:
-        """The value at a point."""
-        return Expr(f"{self._in()}({_spelled(point)})")
-
-    def __repr__(self) -> str:
-        return f"Shape({self.text!r})"
 
 
 class Function:
@@ -362,12 +56,12 @@ class Function:
 
     def __init__(self, name: str) -> None:
         self.name = name
+        self.__doc__ = page(entry(name))
+        self.__signature__ = signature(entry(name))
 
-    def __call__(self, *args: object, **named: object) -> Shape:
+    def __call__(self, *args: object, **named: object) -> Any:
         """The call; the arguments are those of the language."""
-        words = [_spelled(a) for a in args]
-        words += [f"{key} = {_spelled(value)}" for key, value in named.items()]
-        return Shape(f"{self.name}({', '.join(words)})")
+        return result(entry(self.name)["class"], f"{self.name}({arguments(args, named)})")
 
     def __repr__(self) -> str:
         return f"<Function: {self.name}>"
@@ -381,8 +75,10 @@ class Kind:
 
     def __init__(self, name: str) -> None:
         self.name = name
+        self.__doc__ = page(entry(name))
+        self.__signature__ = signature(entry(name))
 
-    def __call__(self, name: str, *args: object, **named: object) -> Handle:
+    def __call__(self, name: str, /, *args: object, **named: object) -> Any:
         """Declare an object of this kind; the arguments are those of the language."""
         return Builder.current().declare(self.name, name, args, named)
 
@@ -444,12 +140,14 @@ class Builder:
     ) -> Handle:
         """Declare an object; the arguments are those of the language."""
         _check_name(name)
-        words = [_spelled(a) for a in args]
-        words += [f"{key} = {_spelled(value)}" for key, value in named.items()]
-        self._lines.append(f"{kind} {name}({', '.join(words)});")
-        return Handle(name)
+        self._lines.append(f"{kind} {name}({arguments(args, named)});")
+        try:
+            class_ = entry(kind)["class"]
+        except KeyError:
+            class_ = ""
+        return object_named(class_, name)
 
-    def field(self, name: str, value: Shape | float) -> Shape:
+    def field(self, name: str, value: Shape | Handle | float) -> FieldShape:
         """Declare a field: an implicit function under a name.
 
         >>> from moldloft import functions as f, kinds as k
@@ -467,16 +165,17 @@ class Builder:
         >>> round(b.model().eval("volume(half)"), 3)
         2.094
         """
-        return self._implicit("field", name, value)
+        self._implicit("field", name, value)
+        return FieldShape(name)
 
-    def set(self, name: str, value: Shape) -> Shape:
+    def set(self, name: str, value: Shape | Handle) -> SetShape:
         """Declare a set: the solid sides of fields, combined, under a name; see :meth:`field`."""
-        return self._implicit("set", name, value)
+        self._implicit("set", name, value)
+        return SetShape(name)
 
-    def _implicit(self, word: str, name: str, value: Shape | float) -> Shape:
+    def _implicit(self, word: str, name: str, value: object) -> None:
         _check_name(name)
-        self._lines.append(f"{word} {name} = {_spelled(value)};")
-        return Shape(name)
+        self._lines.append(f"{word} {name} = {spelled(value)};")
 
     def param(
         self,
@@ -490,15 +189,15 @@ class Builder:
     ) -> Expr:
         """Declare a design parameter; ``value`` is its value in this run."""
         _check_name(name)
-        text = f"param {'int' if whole else 'float'} {name} = {_literal(float(default))}"
+        text = f"param {'int' if whole else 'float'} {name} = {literal(float(default))}"
         if low is not None and high is not None:
-            text += f" in [{_literal(float(low))}, {_literal(float(high))}]"
+            text += f" in [{literal(float(low))}, {literal(float(high))}]"
         self._lines.append(text + ";")
         return Expr(name, float(default if value is None else value))
 
     def model(self) -> Model:
         """The model of what was declared."""
-        from moldloft.models import loads
+        from moldloft.loading import loads
 
         return loads(self.text, name="model.py.sdl")
 
@@ -533,10 +232,10 @@ def param(
     return Range(float(default), low, high, whole)
 
 
-class ModelFunction:
+class ModelFunction(Generic[P]):
     """A function of design parameters that declares objects; made by :func:`model`."""
 
-    def __init__(self, function: Callable[..., object]) -> None:
+    def __init__(self, function: Callable[P, object]) -> None:
         self._function = function
         self._params: dict[str, Range] = {}
         for name, parameter in inspect.signature(function).parameters.items():
@@ -553,9 +252,19 @@ class ModelFunction:
                 )
         update_wrapper(self, function)
 
-    def __call__(self, **values: float) -> Model:
+    def __call__(self, *args: P.args, **values: P.kwargs) -> Model:
         """The model for these values of the parameters; the others have their defaults."""
-        return _PythonModel(self, self._checked(values))
+        given: dict[str, Any] = dict(values)
+        if len(args) > len(self._params):
+            raise TypeError(
+                f"{self._function.__name__} has {len(self._params)} parameters; "
+                f"{len(args)} were given"
+            )
+        for name, value in zip(self._params, args, strict=False):
+            if name in given:
+                raise TypeError(f"the parameter `{name}` was given twice")
+            given[name] = value
+        return _PythonModel(self, self._checked(given))
 
     def _checked(self, values: Mapping[str, float]) -> dict[str, float]:
         for name in values:
@@ -573,7 +282,8 @@ class ModelFunction:
                 )
                 for name, p in self._params.items()
             }
-            self._function(**args)
+            function: Callable[..., object] = self._function
+            function(**args)
         return builder.text
 
     @property
@@ -582,7 +292,7 @@ class ModelFunction:
         return list(self._params)
 
 
-def model(function: Callable[..., object]) -> ModelFunction:
+def model(function: Callable[P, object]) -> ModelFunction[P]:
     """Make a model of a function whose arguments are design parameters.
 
     Examples
@@ -595,10 +305,10 @@ def model(function: Callable[..., object]) -> ModelFunction:
     ...     b = k.Line("b", k.AbsPoint("C", 0, breadth, 0), k.AbsPoint("D", length, breadth, 0))
     ...     k.RuledSurf("S", a, b, divisions=[2, 2])
     >>> m = plate(length=3)
-    >>> m.eval("S.area"), m.derivative("S.area", "breadth")
+    >>> round(m.eval("S.area"), 9), round(m.derivative("S.area", "breadth"), 9)
     (6.0, 3.0)
     >>> m["breadth"] = 5
-    >>> m.eval("S.area")
+    >>> round(m.eval("S.area"), 9)
     15.0
     """
     return ModelFunction(function)
@@ -607,14 +317,24 @@ def model(function: Callable[..., object]) -> ModelFunction:
 class _PythonModel(Model):
     """A model whose text is written again by its function when a parameter changes."""
 
-    def __init__(self, function: ModelFunction, values: dict[str, float]) -> None:
+    def __init__(self, function: ModelFunction[Any], values: dict[str, float]) -> None:
         self._source = function
         self._values = values
         text = function.text(values)
-        super().__init__(_core.Document.from_text(f"{function.__name__}.sdl", text, None, []))  # type: ignore[attr-defined]
+        name = f"{function.__name__}.sdl"  # type: ignore[attr-defined]
+        super().__init__(_core.Document.from_text(name, text, None, []), Origin(name))
         if values:
             self._document.set(list(values.items()))
         self.check()
+
+    def _state(self) -> tuple[Any, ...]:
+        # The function itself may be nowhere to be imported: a copy is the program that it wrote.
+        changed = {p.name: p.value for p in self.params.values() if p.value != p.default}
+        return self._origin, self.text, changed, self._refined
+
+    def copy(self) -> Model:
+        """A model of its own with the same parameters, still written by its function."""
+        return _PythonModel(self._source, dict(self._values))
 
     def __setitem__(self, name: str, value: float) -> None:
         self.set({name: value})

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic
@@ -46,11 +47,56 @@ class Error(Exception):
     def __str__(self) -> str:
         return str(self.args[0])
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        recorded = [
+            d if isinstance(d, Recorded) else Recorded(d.to_dict(), str(d))
+            for d in self.diagnostics
+        ]
+        more = {name: value for name, value in vars(self).items() if name != "diagnostics"}
+        return _again, (type(self), self.args[0], recorded, more)
+
     @property
     def rendered(self) -> str:
         """The message as a terminal shows it: diagnostics as they are, others after ``error:``."""
         text = str(self).rstrip()
         return text if self.diagnostics else f"error: {text}"
+
+
+class Recorded:
+    """A diagnostic that was pickled, with the same attributes."""
+
+    def __init__(self, data: dict[str, Any], text: str) -> None:
+        self._data = data
+        self._text = text
+
+    def to_dict(self) -> dict[str, Any]:
+        """The facts as data."""
+        return self._data
+
+    @property
+    def is_error(self) -> bool:
+        """Whether it is an error."""
+        return self._data.get("severity") == "error"
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in self._data:
+            raise AttributeError(name)
+        value = self._data[name]
+        if isinstance(value, dict):
+            return SimpleNamespace(**value)
+        if name == "secondary":
+            return [SimpleNamespace(**label) for label in value]
+        return value
+
+    def __str__(self) -> str:
+        return self._text
+
+
+def _again(made: type[Error], message: str, recorded: list[Any], more: dict[str, Any]) -> Error:
+    error = made.__new__(made)
+    Error.__init__(error, message, recorded)
+    vars(error).update(more)
+    return error
 
 
 class ModelError(Error, ValueError):

@@ -7,6 +7,7 @@ The rows are those of the Rust crate ``export``, and those of the formats that P
 from __future__ import annotations
 
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -140,6 +141,14 @@ PYTHON_ROWS = (
         writer="moldloft.lines_plan:encode_pdf",
     ),
     Format(
+        "lines-dxf",
+        "the lines plan at full size as DXF: splines on layers (needs ezdxf)",
+        suffix="lines.dxf",
+        holds="drawing",
+        text=True,
+        writer="moldloft.lines_plan:encode_dxf",
+    ),
+    Format(
         "offsets",
         "stations, waterlines and half-breadths (.csv)",
         suffix="csv",
@@ -187,7 +196,12 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     if ends:
         files = f"files that end in `.{wanted}` may be of several formats"
         raise Error(f"{files}; say which format: {' or '.join(ends)}")
-    raise Error(f"unknown format `{name}`; expected one of: {', '.join(row.name for row in rows)}")
+    known = [word for row in rows for word in (row.name, *row.aliases)]
+    near = get_close_matches(wanted, known, 1, 0.7)
+    if near:
+        raise Error(f"unknown format `{name}`; did you mean `{near[0]}`?")
+    names = ", ".join(row.name for row in rows)
+    raise Error(f"unknown format `{name}`; expected one of: {names}")
 
 
 def markdown() -> str:

@@ -2,7 +2,7 @@
 
 >>> from moldloft import functions as f
 >>> f.sphere([0, 0, 0], 2) - 1
-Shape('sphere({0, 0, 0}, 2) - 1')
+FieldShape('sphere({0, 0, 0}, 2) - 1')
 
 The names are those of the language; ``moldloft doc --list`` lists them. Kinds of objects are in
 :mod:`moldloft.kinds`.

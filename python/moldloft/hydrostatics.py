@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from moldloft.errors import Error
 from moldloft.units import ANGLES, DIMENSIONS, Units
@@ -164,6 +164,11 @@ class Hydrostatics:
             del kept["derivatives"]
         return kept
 
+    def _repr_html_(self) -> str:
+        from moldloft.display import state_html
+
+        return state_html(self)
+
     def unit(self, figure: str) -> str:
         """The unit of a figure, empty where the model states none."""
         return self.units.of(figure)
@@ -249,6 +254,17 @@ class _Rows:
         """True when an open edge is under water in some row."""
         return any(row.floods for row in self.rows)
 
+    #: The figures that a notebook shows.
+    _shown: ClassVar[tuple[str, ...]] = ()
+
+    def _repr_html_(self) -> str:
+        from moldloft.display import rows_html
+
+        return rows_html(self, self._shown)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {len(self.rows)} rows>"
+
     def as_list(self) -> list[dict[str, Any]]:
         """The rows as dictionaries."""
         return [row.as_dict() for row in self.rows]
@@ -283,6 +299,11 @@ class _Rows:
 class HydrostaticTable(_Rows):
     """Hydrostatics over a range of drafts; see :meth:`moldloft.Model.hydrostatic_table`."""
 
+    _shown = (
+        *("draft", "volume", "displacement", "lcb", "vcb", "waterplane_area", "lcf"),
+        *("kmt", "kml", "tpc", "mtc", "cb", "cp", "cm", "cwp"),
+    )
+
     def plot(self, path: str | os.PathLike[str]) -> Path:
         """Draw the hydrostatic curves: displacement, centres and metacentres over the draft.
 
@@ -309,6 +330,8 @@ class HydrostaticTable(_Rows):
 
 class RightingCurve(_Rows):
     """Righting arms over heel; see :meth:`moldloft.Model.righting_curve`."""
+
+    _shown = ("heel", "gz", "righting_moment", "trim", "draft", "freeboard")
 
     @property
     def heels(self) -> NDArray[np.float64]:

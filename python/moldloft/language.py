@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import inspect
+import keyword
+import textwrap
+from functools import cache
 from typing import Any
 
 from moldloft import _core
 from moldloft._core import Shape
 
-__all__ = ["Shape", "format_text", "reference"]
+__all__ = [
+    "Shape",
+    "attributes",
+    "entry",
+    "format_text",
+    "meaning",
+    "page",
+    "reference",
+    "search",
+    "signature",
+]
 
 
 def reference() -> list[dict[str, Any]]:
@@ -18,6 +32,227 @@ def reference() -> list[dict[str, Any]]:
     ('surface', True)
     """
     return _core.reference()
+
+
+def attributes() -> list[dict[str, Any]]:
+    """The named arguments that every kind takes besides its own.
+
+    >>> [field["name"] for field in attributes()][:3]
+    ['colour', 'visible', 'layer']
+    """
+    return [
+        {
+            "name": name,
+            "class": class_,
+            "many": name == "tags",
+            "required": False,
+            "default": None,
+            "help": text,
+        }
+        for name, class_, text in _ATTRIBUTES
+    ]
+
+
+#: As `crates/registry/src/attributes.rs` declares them; a test compares the names.
+_ATTRIBUTES = (
+    ("colour", "integer", "Colour index, 0 to 255."),
+    ("visible", "integer", "Shown when positive, hidden when 0 or negative."),
+    ("layer", "integer", "Layer, 0 to 255."),
+    (
+        "divisions",
+        "integer",
+        "Panels along the curve, or of each parameter; 0: as neighbours have.",
+    ),
+    ("subdivisions", "integer", "Steps in each division, or in u and in v."),
+    ("size", "number", "Aimed length of panels, or along u and along v."),
+    ("spacing", "value", "uniform, cosine, start, end, or the growth from panel to panel."),
+    ("tags", "text", "What the patch is: wetted, lid, waterline, symmetry or names of your own."),
+    ("orientation", "integer", "1 reverses the normals of a surface's panels."),
+    ("attributes", "text", "Attributes of a model file, kept as they are."),
+)
+
+
+@cache
+def _rows() -> dict[str, dict[str, Any]]:
+    return {row["name"]: row for row in reference()}
+
+
+def entry(name: str) -> dict[str, Any]:
+    """The row of a kind or function; a ``KeyError`` where there is none."""
+    return _rows()[name]
+
+
+def meaning(field: dict[str, Any]) -> str:
+    """What an argument is, as docstrings have it: its help, unit, range and default.
+
+    >>> meaning(entry("RelPoint")["fields"][1])
+    'Offset along x. Default 0.'
+    """
+    words = [str(field["help"]).strip()]
+    facts = []
+    low, high = field["min"], field["max"]
+    if low is not None and high is not None:
+        facts.append(f"{low:g} to {high:g}")
+    elif low is not None:
+        facts.append(f"at least {low:g}")
+    elif high is not None:
+        facts.append(f"at most {high:g}")
+    default = field["default"]
+    if default not in (None, ""):
+        facts.append(f"default {default:g}" if isinstance(default, float) else f"default {default}")
+    if facts:
+        text = ", ".join(facts)
+        words.append(text[0].upper() + text[1:] + ".")
+    return " ".join(words)
+
+
+def page(row: dict[str, Any]) -> str:
+    """The docstring of a kind or function: numpydoc, from its declaration."""
+    lines = [str(row["doc"]).strip()]
+    fields = row["fields"]
+    if row["is_kind"] or fields:
+        lines += ["", "Parameters", "----------"]
+        if row["is_kind"]:
+            lines += ["name : str", "    The name of the object."]
+        for field in fields:
+            class_ = f"list of {field['class']}" if field["many"] else str(field["class"])
+            optional = "" if field["required"] else ", optional"
+            lines.append(f"{field['name']} : {class_}{optional}")
+            lines += textwrap.wrap(
+                meaning(field), 92, initial_indent="    ", subsequent_indent="    "
+            )
+        if row["is_kind"]:
+            names = ", ".join(field["name"] for field in attributes())
+            lines += ["**attributes"]
+            lines += textwrap.wrap(
+                f"By name, of every kind: {names}.",
+                92,
+                initial_indent="    ",
+                subsequent_indent="    ",
+            )
+    lines += ["", "Returns", "-------", str(row["class"])]
+    if row["example"]:
+        lines += ["", "Notes", "-----", "In the language::", ""]
+        lines += [f"    {line}".rstrip() for line in str(row["example"]).strip().splitlines()]
+    return "\n".join(lines) + "\n"
+
+
+#: Functions whose last argument, a list, may be given item by item.
+SPREAD = frozenset({"list", "points", "join", "stack"})
+
+
+def signature(row: dict[str, Any]) -> inspect.Signature:
+    """The arguments of a kind or function, as ``help`` and editors show them."""
+    parameter = inspect.Parameter
+    found = []
+    if row["is_kind"]:
+        found.append(parameter("name", parameter.POSITIONAL_ONLY))
+    fields = [f for f in row["fields"] if f["name"].isidentifier()]
+    if not fields and not row["is_kind"]:
+        return inspect.Signature([parameter("args", parameter.VAR_POSITIONAL)])
+    optional = False
+    by_name = []
+    for field in fields:
+        # After an argument that may be left out all others are named, or may be left out too.
+        optional = optional or not field["required"]
+        default = parameter.empty if field["required"] else field["default"]
+        kind = parameter.KEYWORD_ONLY if optional and field["required"] else None
+        name = field["name"] + ("_" if keyword.iskeyword(field["name"]) else "")
+        if field["many"] and row["name"] in SPREAD:
+            found.append(parameter(name, parameter.VAR_POSITIONAL))
+        elif kind is not None:
+            by_name.append(parameter(name, kind, default=default))
+        else:
+            found.append(parameter(name, parameter.POSITIONAL_OR_KEYWORD, default=default))
+    if row["is_kind"]:
+        own = {field["name"] for field in fields}
+        by_name += [
+            parameter(field["name"], parameter.KEYWORD_ONLY, default=None)
+            for field in attributes()
+            if field["name"] not in own
+        ]
+    return inspect.Signature([*found, *by_name])
+
+
+#: What users call things that the reference calls otherwise.
+SYNONYMS = {
+    "loft": ("LoftSurf", "skin"),
+    "skin": ("LoftSurf", "loft"),
+    "sweep": ("SweepSurf", "TranSurf"),
+    "revolve": ("RevSurf",),
+    "revolution": ("RevSurf",),
+    "extrude": ("TranSurf",),
+    "translate": ("TranSurf", "translated"),
+    "nurbs": ("BCurve", "BSurf", "NUB"),
+    "spline": ("BCurve", "CCurve"),
+    "bspline": ("BCurve",),
+    "interpolate": ("CCurve",),
+    "bead": ("Bead",),
+    "magnet": ("Magnet",),
+    "snake": ("Snake",),
+    "ring": ("Ring",),
+    "intersection": ("IntSnake", "IntPoint", "IntBead", "IntMagnet", "intersect"),
+    "project": ("ProjSnake", "ProjPoint", "ProjMagnet"),
+    "geodesic": ("GeoSnake",),
+    "fillet": ("Fillet", "Blend"),
+    "blend": ("Blend",),
+    "mirror": ("Mirr",),
+    "trim": ("SubSurf", "TrimSurf", "SubCurve"),
+    "patch": ("SubSurf", "TangBoundSurf", "BoundSurf"),
+    "coons": ("BoundSurf", "tfi"),
+    "weight": ("Weight",),
+    "mass": ("Weight", "mass_centre"),
+    "spacing": ("Relabel", "cosine", "geometric", "d_tanh"),
+    "distribution": ("Relabel", "cosine", "geometric", "d_tanh"),
+    "aerofoil": ("Foil", "naca", "read_aerofoil"),
+    "airfoil": ("Foil", "naca", "read_aerofoil"),
+    "section": ("Contours", "Foil"),
+    "waterline": ("ZContours",),
+    "station": ("XContours",),
+    "buttock": ("YContours",),
+    "box": ("cuboid", "SetBody"),
+    "boolean": ("set", "SetBody"),
+    "union": ("set",),
+    "difference": ("set",),
+    "solve": ("SolveSet",),
+    "constraint": ("SolveSet",),
+    "join": ("Join",),
+    "fair": ("Fair", "fair"),
+    "smooth": ("Fair", "fair", "elliptic"),
+    "grid": ("tfi", "elliptic", "hyperbolic", "o_grid", "c_grid"),
+}
+
+
+def search(words: str) -> list[dict[str, Any]]:
+    """Rows that a phrase may mean, the best first: by name, summary, documentation and synonym.
+
+    >>> "CLoftSurf" in [row["name"] for row in search("loft")]
+    True
+    """
+    wanted = words.lower().split()
+    scored: list[tuple[int, int, dict[str, Any]]] = []
+    for row in reference():
+        name = row["name"].lower()
+        text = f"{row['doc']} {row['class']}".lower()
+        summary = str(row["summary"]).lower()
+        score = 0
+        for word in wanted:
+            stem = word.rstrip("s") if len(word) > 4 else word
+            near = SYNONYMS.get(word) or SYNONYMS.get(stem) or ()
+            if stem in name:
+                score += 8 - (len(name) > len(stem))
+            elif any(part.lower() in name for part in near):
+                score += 6
+            elif stem in summary:
+                score += 3
+            elif stem in text:
+                score += 1
+            else:
+                score = 0
+                break
+        if score:
+            scored.append((-score, len(scored), row))
+    return [row for _, _, row in sorted(scored, key=lambda item: item[:2])]
 
 
 def format_text(name: str, text: bytes) -> str:

@@ -1,7 +1,7 @@
 """The lines plan on one sheet: profile, half-breadth plan and body plan to one scale.
 
 Sections are solved on the surfaces, and drawn as cubic curves through their points and tangents.
-The sheet is a list of curves and texts in millimetres of paper; SVG and PDF are written from it.
+The sheet is a list of curves and texts in millimetres of paper; SVG, PDF and DXF are written from it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from moldloft.errors import Error
 if TYPE_CHECKING:
     from moldloft.models import Model
 
-__all__ = ["Plan", "draw", "lines_plan", "pdf", "svg"]
+__all__ = ["Plan", "draw", "dxf", "lines_plan", "pdf", "svg"]
 
 SHEETS = {"A4": (297, 210), "A3": (420, 297), "A2": (594, 420), "A1": (841, 594), "A0": (1189, 841)}
 """Sheets of ISO 5457, landscape, in mm."""
@@ -57,6 +57,8 @@ class Path2:
 
     layer: str
     points: np.ndarray[Any, np.dtype[np.float64]]
+    straight: bool = False
+    """Whether every piece is a straight line."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +81,10 @@ class Plan:
     """Of the sheet, in mm."""
     scale: float
     """Its denominator."""
+    unit: str
+    """The model's unit of length."""
+    metres: float
+    """The model's unit of length, in metres."""
     paths: list[Path2] = field(default_factory=list)
     """The curves."""
     texts: list[Text] = field(default_factory=list)
@@ -92,7 +98,7 @@ class Plan:
         for a, b in pairwise(points):
             p, q = np.array(a, dtype=float), np.array(b, dtype=float)
             pieces += [p + (q - p) / 3, p + (q - p) * 2 / 3, q]
-        self.paths.append(Path2(layer, np.array(pieces)))
+        self.paths.append(Path2(layer, np.array(pieces), straight=True))
 
     def label(
         self, x: float, y: float, text: str, size: float = 2.5, *, anchor: str = "middle"
@@ -254,11 +260,11 @@ def lines_plan(
         raise Error(f"a scale has a positive denominator, not {scale}")
     lines = _Lines(model)
     mirrored = "y" in model.symmetry
-    afloat = model.hydrostatics(density=density) if lines.low[2] < 0 < lines.high[2] else None
-    if afloat is not None and afloat.waterline_low_x is not None:
-        ends = (afloat.waterline_low_x, afloat.waterline_high_x or lines.high[0])
+    flotation = model.hydrostatics(density=density) if lines.low[2] < 0 < lines.high[2] else None
+    if flotation is not None and flotation.waterline_low_x is not None:
+        ends = (flotation.waterline_low_x, flotation.waterline_high_x or lines.high[0])
     else:
-        afloat, ends = None, (float(lines.low[0]), float(lines.high[0]))
+        flotation, ends = None, (float(lines.low[0]), float(lines.high[0]))
     unit, metres = model.length_unit
     mm = metres * 1000
     length, height = float(lines.high[0] - lines.low[0]), float(lines.high[2] - lines.low[2])
@@ -290,7 +296,7 @@ def lines_plan(
         raise Error(f"the plan does not fit on {sheet or 'A0'} at this scale")
     name, denominator = choice
     width, tall = SHEETS[name]
-    plan = Plan(float(width), float(tall), denominator)
+    plan = Plan(float(width), float(tall), denominator, unit, metres)
     f = mm / denominator
     left, bottom = 20.0 + gap, border + block[1] + gap
     # Places of the origins of the views on the paper.
@@ -398,7 +404,7 @@ def lines_plan(
                 curve.tangents[:, 1] * math.cos(angle) - curve.tangents[:, 2] * math.sin(angle)
             ) * np.sign(curve.points[:, 1] + 1e-300)
             put("diagonals", [_Curve(flat, slopes)], 0, 1, half)
-    _title_block(plan, block, title, name, unit, metres, afloat, lines, ends, mirrored)
+    _title_block(plan, block, title, name, unit, metres, flotation, lines, ends, mirrored)
     return plan
 
 
@@ -409,7 +415,7 @@ def _title_block(
     sheet: str,
     unit: str,
     metres: float,
-    afloat: Any,
+    flotation: Any,
     lines: _Lines,
     ends: tuple[float, float],
     mirrored: bool,
@@ -428,24 +434,24 @@ def _title_block(
     sizes = lines.high - lines.low
     beam = 2 * max(abs(lines.low[1]), abs(lines.high[1])) if mirrored else sizes[1]
     rows = [("L OA", sizes[0], "length"), ("B", beam, "length"), ("D", sizes[2], "length")]
-    if afloat is not None:
+    if flotation is not None:
         rows += [
             ("L WL", ends[1] - ends[0], "length"),
-            ("B WL", afloat.waterline_beam, "length"),
-            ("T", afloat.draft, "length"),
-            ("volume", afloat.volume, "volume"),
-            ("displacement", afloat.displacement, "displacement"),
-            ("LCB", afloat.lcb, "length"),
-            ("LCF", afloat.lcf, "length"),
-            ("wetted area", afloat.wetted_area, "area"),
-            ("CB", afloat.cb, ""),
-            ("CP", afloat.cp, ""),
-            ("CM", afloat.cm, ""),
-            ("CWP", afloat.cwp, ""),
+            ("B WL", flotation.waterline_beam, "length"),
+            ("T", flotation.draft, "length"),
+            ("volume", flotation.volume, "volume"),
+            ("displacement", flotation.displacement, "displacement"),
+            ("LCB", flotation.lcb, "length"),
+            ("LCF", flotation.lcf, "length"),
+            ("wetted area", flotation.wetted_area, "area"),
+            ("CB", flotation.cb, ""),
+            ("CP", flotation.cp, ""),
+            ("CM", flotation.cm, ""),
+            ("CWP", flotation.cwp, ""),
         ]
     powers = {"length": unit, "area": f"{unit}²", "volume": f"{unit}³", "": ""}
-    if afloat is not None:
-        powers["displacement"] = afloat.unit("displacement")
+    if flotation is not None:
+        powers["displacement"] = flotation.unit("displacement")
     plan.label(x + 4, y + block[1] - 6, title or "LINES PLAN", 5, anchor="start")
     text = f"scale 1:{plan.scale:g}   sheet {sheet}   lengths in {unit}"
     text += "   x from the origin, aft positive"
@@ -552,6 +558,54 @@ def pdf(plan: Plan) -> bytes:
     return data
 
 
+def dxf(plan: Plan) -> bytes:
+    """The sheet as DXF R2018 by ezdxf, at full size in the model's unit.
+
+    Each curve is one spline of degree 3 with the control points of the plan, each straight line a line or
+    polyline; layers have the widths and dashes of the drawing, dashes and texts the size that they have on
+    paper at the plan's scale.
+    """
+    from moldloft.cad import needed
+    from moldloft.cad.dxf import UNITS, saved
+
+    ezdxf: Any = needed("ezdxf", "ezdxf", "writing DXF")
+    full = plan.scale / (1000 * plan.metres)
+    document = ezdxf.new("R2018", setup=False)
+    document.header["$INSUNITS"] = UNITS[plan.unit]
+    document.header["$LWDISPLAY"] = 1
+    document.styles.add("plan", font="arial.ttf")
+    for name, (width, dashes) in _LAYERS.items():
+        layer = document.layers.add(name, lineweight=round(100 * width))
+        if dashes:
+            pattern = [size if k % 2 == 0 else -size for k, size in enumerate(dashes)]
+            pattern = [full * size for size in pattern]
+            document.linetypes.add(name, [full * sum(dashes), *pattern])
+            layer.dxf.linetype = name
+    space = document.modelspace()
+    for path in plan.paths:
+        points = path.points * full
+        attributes = {"layer": path.layer}
+        if path.straight:
+            ends = points[::3].tolist()
+            if len(ends) == 2:
+                space.add_line(*ends, dxfattribs=attributes)
+            else:
+                space.add_lwpolyline(ends, dxfattribs=attributes)
+            continue
+        pieces = (len(points) - 1) // 3
+        spline = space.add_spline(dxfattribs=attributes)
+        spline.dxf.degree = 3
+        spline.control_points = [(x, y, 0.0) for x, y in points.tolist()]
+        inner = np.repeat(np.arange(1, pieces), 3)
+        spline.knots = [0.0] * 4 + inner.astype(float).tolist() + [float(pieces)] * 4
+        spline.dxf.flags = 8
+    for text in plan.texts:
+        # The height of capitals is 0.72 of the size of Helvetica.
+        place = {"layer": "text", "style": "plan", "height": 0.72 * text.size * full}
+        space.add_text(text.text, dxfattribs=place).set_placement((text.x * full, text.y * full))
+    return saved(document)
+
+
 def encode_svg(model: Model, stem: str) -> bytes:
     """The row ``lines-svg`` of the table of formats."""
     return svg(lines_plan(model, title=stem))
@@ -562,15 +616,20 @@ def encode_pdf(model: Model, stem: str) -> bytes:
     return pdf(lines_plan(model, title=stem))
 
 
+def encode_dxf(model: Model, stem: str) -> bytes:
+    """The row ``lines-dxf`` of the table of formats."""
+    return dxf(lines_plan(model, title=stem))
+
+
 def draw(model: Model, path: str | os.PathLike[str], **options: Any) -> Path:
-    """Write the lines plan of a model; the file's ending, ``.svg`` or ``.pdf``, gives its form.
+    """Write the lines plan of a model; the file's ending, ``.svg``, ``.pdf`` or ``.dxf``, gives its form.
 
     Options are those of :func:`lines_plan`.
     """
     from moldloft.files import Output, commit
 
     path = Path(path)
-    writers = {".svg": svg, ".pdf": pdf}
+    writers = {".svg": svg, ".pdf": pdf, ".dxf": dxf}
     if path.suffix.lower() not in writers:
         raise Error(f"no lines plan ends in `{path.suffix}`; expected one of: {', '.join(writers)}")
     plan = lines_plan(model, **options)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from moldloft import _core
 
-__all__ = ["Mesh", "Patch"]
+__all__ = ["Mesh", "Patch", "Quality"]
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,15 @@ class Patch:
         return self.stop - self.start
 
 
+class Quality(dict[str, dict[str, Any]]):
+    """How well shaped the panels are, by patch; a table in a notebook."""
+
+    def _repr_html_(self) -> str:
+        from moldloft.display import quality_html
+
+        return quality_html(self)
+
+
 class Mesh:
     """Panels of all shown surfaces of a model, at one state of it.
 
@@ -78,7 +87,7 @@ class Mesh:
     (False, 8)
     """
 
-    def __init__(self, core: _core.Mesh, symmetry: str = "") -> None:
+    def __init__(self, core: _core.Mesh | _Frozen, symmetry: str = "") -> None:
         self._core = core
         self._symmetry = symmetry
 
@@ -107,7 +116,7 @@ class Mesh:
         known = ", ".join(patch.name for patch in self.patches)
         raise UnknownNameError(f"unknown patch `{name}`; expected one of: {known or 'none'}")
 
-    def quality(self) -> dict[str, dict[str, Any]]:
+    def quality(self) -> Quality:
         """How well shaped the panels are, by patch: see :attr:`Patch.quality`.
 
         >>> import moldloft
@@ -120,7 +129,7 @@ class Mesh:
         >>> round(jump["max"], 9)
         2.0
         """
-        return {patch.name: patch.quality for patch in self.patches}
+        return Quality({patch.name: patch.quality for patch in self.patches})
 
     def closure(self, *, level: float | None = 0.0) -> dict[str, Any]:
         """What is open, by patch and edge, and what closes it.
@@ -160,6 +169,64 @@ class Mesh:
         """The enclosed volume; for an open mesh the signed volume of the cone from the origin."""
         return float(self.summary["volume"])
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _thawed, (_frozen(self), self._symmetry)
+
+    def _repr_html_(self) -> str:
+        from moldloft.display import mesh_html
+
+        return mesh_html(self)
+
     def __repr__(self) -> str:
         count = f"{self.summary['panels']} panels, {self.summary['vertices']} vertices"
         return f"<Mesh: {count}, {'closed' if self.closed else 'open'}>"
+
+
+@dataclass(frozen=True)
+class _Frozen:
+    """A mesh without its model: what a pickle holds."""
+
+    arrays: tuple[Any, Any]
+    data: tuple[dict[str, Any], list[Any], list[dict[str, Any]]]
+    closures: dict[tuple[str, float | None], dict[str, Any]]
+
+    def vertices(self) -> Any:
+        return self.arrays[0]
+
+    def faces(self) -> Any:
+        return self.arrays[1]
+
+    def summary(self) -> dict[str, Any]:
+        return self.data[0]
+
+    def blocks(self) -> list[Any]:
+        return self.data[1]
+
+    def patches(self) -> list[dict[str, Any]]:
+        return self.data[2]
+
+    def closure(self, mirrors: str, level: float | None) -> dict[str, Any]:
+        try:
+            return self.closures[mirrors, level]
+        except KeyError:
+            from moldloft.errors import Error
+
+            raise Error(
+                "a mesh that was pickled knows its closure for the levels 0 and None only\n"
+                "help: pickle the model, and take its mesh where it is unpickled"
+            ) from None
+
+
+def _frozen(mesh: Mesh) -> _Frozen:
+    core = mesh._core
+    if isinstance(core, _Frozen):
+        return core
+    return _Frozen(
+        (core.vertices(), core.faces()),
+        (core.summary(), core.blocks(), core.patches()),
+        {(mesh._symmetry, level): core.closure(mesh._symmetry, level) for level in (0.0, None)},
+    )
+
+
+def _thawed(frozen: _Frozen, symmetry: str) -> Mesh:
+    return Mesh(frozen, symmetry)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import inspect
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
-from moldloft.errors import Error, FileError, ModelError, UnknownNameError
+from moldloft.errors import Error, ModelError, UnknownNameError
 from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
-from moldloft.objects import Object
+from moldloft.objects import object_of
 from moldloft.units import Units
 from moldloft.weights import Weight, WeightTable
 
@@ -21,11 +20,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from moldloft.blocks import Blocks
-    from moldloft.implicit import Field, Set
+    from moldloft.loading import Origin
     from moldloft.mesh import Mesh
+    from moldloft.objects import Entry
     from moldloft.stability import Stability
 
-__all__ = ["Model", "Param", "load", "loads"]
+__all__ = ["Model", "Param"]
 
 
 @dataclass(frozen=True)
@@ -46,95 +46,6 @@ class Param:
     """True when it takes whole numbers only."""
 
 
-def load(
-    path: str | os.PathLike[str],
-    *,
-    library: Sequence[str | os.PathLike[str]] = (),
-    functions: Mapping[str, Callable[..., Any] | Field | Set] | None = None,
-    strict: bool = True,
-) -> Model:
-    """Load a model from a file.
-
-    Parameters
-    ----------
-    path
-        An ``.sdl`` program, an ``.ms2`` model file or a ``.skt`` sketch.
-    library
-        Folders, besides the model's own, from which it may load.
-    functions
-        Python functions that the model may call, by the names it calls them. They take and
-        return floats, vectors ``(3,)`` and arrays; where derivatives are asked for they are given
-        :class:`moldloft.numbers.Dual` numbers, on which arithmetic and NumPy's elementary
-        functions work. A :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set` is
-        called without arguments: ``field f = scan();``.
-    strict
-        Whether errors raise. Without it they are in :attr:`Model.diagnostics` only, and
-        what does not depend on a failed object lives on.
-
-    Raises
-    ------
-    ModelError
-        When the model has an error.
-    FileError
-        When the file cannot be read.
-    """
-    folders = [os.fspath(folder) for folder in library]
-    model = Model(_core.Document.open(os.fspath(path), folders))
-    _add_functions(model, functions)
-    if strict:
-        unread = [d for d in model.diagnostics if d.id == "cannot-read"]
-        if unread and not model.text:
-            raise FileError(str(unread[0]).rstrip(), unread)
-        model.check()
-    return model
-
-
-def loads(
-    text: str,
-    *,
-    name: str = "model.sdl",
-    library: Sequence[str | os.PathLike[str]] = (),
-    functions: Mapping[str, Callable[..., Any] | Field | Set] | None = None,
-    strict: bool = True,
-) -> Model:
-    """Load a model from a text.
-
-    Parameters
-    ----------
-    text
-        The program, or the model file's content.
-    name
-        The name that messages show; ``.ms2`` at its end means a model file.
-    library
-        Folders from which the text may load.
-    functions
-        As for :func:`load`.
-    strict
-        As for :func:`load`.
-
-    Raises
-    ------
-    ModelError
-        When the model has an error.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> def rise(x):
-    ...     return np.sqrt(x) + 1
-    >>> text = "param float a = 4 in [1, 9]; AbsPoint P(0, 0, rise(a));"
-    >>> m = loads(text, functions={"rise": rise})
-    >>> m["P"].z, m.derivative("P.z", "a")
-    (3.0, 0.25)
-    """
-    folders = [os.fspath(folder) for folder in library]
-    model = Model(_core.Document.from_text(name, text, None, folders))
-    _add_functions(model, functions)
-    if strict:
-        model.check()
-    return model
-
-
 def _wrapped(value: Any) -> Any:
     """Fields and sets as users know them."""
     if isinstance(value, _core.Field):
@@ -150,31 +61,12 @@ def _wrapped(value: Any) -> Any:
     return value
 
 
-def _add_functions(
-    model: Model, functions: Mapping[str, Callable[..., Any] | Field | Set] | None
-) -> None:
-    for name, function in (functions or {}).items():
-        if not name.isidentifier() or not name.isascii():
-            raise ValueError(
-                f"{name!r} is not a valid name: expected a letter, then letters, digits and _"
-            )
-        core = getattr(function, "_core", None)
-        if isinstance(core, (_core.Field, _core.Set)):
-            model._document.add_shape(name, core)
-            continue
-        if not callable(function):
-            raise TypeError(f"`{name}` is neither a function nor a field or set")
-        arguments = list(inspect.signature(function).parameters)
-        doc = inspect.getdoc(function) or f"The Python function {name}."
-        model._document.add_function(name, arguments, doc, function)
-
-
 class Model:
     """A model: named objects that depend on each other, and the text that declares them.
 
     ``m["beam"]`` is a parameter's value and ``m["hull"]`` an object; ``m["beam"] = 4.5`` changes
-    the model, and only what depends on it is computed again. Made by :func:`load` and
-    :func:`loads`.
+    the model, and only what depends on it is computed again. Made by :func:`moldloft.load` and
+    :func:`moldloft.loads`.
 
     Examples
     --------
@@ -198,8 +90,44 @@ class Model:
     moldloft.errors.UnknownNameError: unknown parameter or object `beem`; did you mean `beam`?
     """
 
-    def __init__(self, document: _core.Document) -> None:
+    def __init__(self, document: _core.Document, origin: Origin | None = None) -> None:
         self._document = document
+        self._origin = origin
+        self._refined = 0
+
+    # -- copies ----------------------------------------------------------------------------
+
+    def copy(self) -> Model:
+        """A model of its own in the same state: text, parameters, Python functions.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("param float a = 1 in [0, 9]; AbsPoint P(a, 0, 0);")
+        >>> m["a"] = 3
+        >>> other = m.copy()
+        >>> other["a"] = 5
+        >>> m["P"].x, other["P"].x
+        (3.0, 5.0)
+        """
+        from moldloft.loading import restored
+
+        return restored(*self._state())
+
+    def __copy__(self) -> Model:
+        return self.copy()
+
+    def __deepcopy__(self, _: dict[int, Any]) -> Model:
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        from moldloft.loading import restored
+
+        return restored, self._state()
+
+    def _state(self) -> tuple[Any, ...]:
+        changed = {p.name: p.value for p in self.params.values() if p.value != p.default}
+        return self._origin, self.text, changed, self._refined
 
     # -- reading ---------------------------------------------------------------------------
 
@@ -215,7 +143,7 @@ class Model:
 
     @property
     def diagnostics(self) -> list[_core.Diagnostic]:
-        """What is wrong or worth knowing, errors first found first."""
+        """Errors, warnings and remarks, in the order in which they were found."""
         return self._document.diagnostics()
 
     @property
@@ -309,6 +237,7 @@ class Model:
         Coarse grid points recur in fine grids, so that the grids of 0, 1, 2, ... are nested.
         """
         self._document.refine(times)
+        self._refined = times
 
     @property
     def text(self) -> str:
@@ -333,12 +262,38 @@ class Model:
     def __iter__(self) -> Iterator[str]:
         return iter(self.objects)
 
-    def __getitem__(self, name: str) -> Any:
+    def __len__(self) -> int:
+        return len(self.objects)
+
+    def __bool__(self) -> bool:
+        return True
+
+    def keys(self) -> list[str]:
+        """The names of all parameters and objects.
+
+        >>> import moldloft
+        >>> moldloft.loads("param float a = 1 in [0, 2]; AbsPoint P(a, 0, 0);").keys()
+        ['a', 'P']
+        """
+        return [*self.params, *self.objects]
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.keys()
+
+    if TYPE_CHECKING:
+        # A number or an object of any class; a variable's array is in `variables`.
+        def __getitem__(self, name: str) -> Entry: ...
+    else:
+
+        def __getitem__(self, name: str) -> Any:
+            return self._entry(name)
+
+    def _entry(self, name: str) -> Any:
         value = self._document.param(name)
         if value is not None:
             return value
         if self._document.has(name):
-            return Object(self._document, name)
+            return object_of(self, name)
         variables = self.variables
         if name in variables:
             return variables[name]
@@ -991,5 +946,14 @@ class Model:
         """The model's text in another form: ``"sdl"`` or ``"ms2"``."""
         return self._document.convert(to)
 
+    def _repr_html_(self) -> str:
+        from moldloft.display import model_html
+
+        return model_html(self)
+
     def __repr__(self) -> str:
-        return f"<Model: {len(self.objects)} objects, {len(self.params)} parameters>"
+        objects, params = len(self.objects), len(self.params)
+        return (
+            f"<Model: {objects} object{'s' * (objects != 1)}, "
+            f"{params} parameter{'s' * (params != 1)}>"
+        )

@@ -2,30 +2,57 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
+
+from moldloft.errors import Error, ModelError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from moldloft._core import Document
     from moldloft.fairing.surface import Look
+    from moldloft.models import Model
     from moldloft.nurbs import Nurbs
     from moldloft.searches import Intersection, NearestPoints
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Object"]
+__all__ = [
+    "Bead",
+    "Body",
+    "Contours",
+    "Curve",
+    "FieldObject",
+    "Frame",
+    "Magnet",
+    "Object",
+    "Plane",
+    "Point",
+    "Relabel",
+    "Ring",
+    "SetObject",
+    "Snake",
+    "Solid",
+    "Surface",
+    "WrongClassError",
+    "object_of",
+]
 
-_OWN = frozenset({"_document", "name"})
+_OWN = frozenset({"_model", "name"})
+
+
+class WrongClassError(ModelError, AttributeError):
+    """An object was asked for what objects of its class do not have."""
 
 
 class Object:
     """A named object of a model.
 
     It is a name and no copy: after a change of the model it shows the new shape. Calling it
-    evaluates a curve or a surface; its numbers are read and written as attributes.
+    evaluates a curve or a surface; its numbers are read and written as attributes. What it can do
+    depends on its class, which is its type: :class:`Point`, :class:`Curve`, :class:`Surface`, ...
 
     Examples
     --------
@@ -44,15 +71,17 @@ class Object:
     ['A', 'B']
     """
 
-    __slots__ = ("_document", "name")
-
-    _document: Document
+    _model: Model
     name: str
     """Its name in the model."""
 
-    def __init__(self, document: Document, name: str) -> None:
-        object.__setattr__(self, "_document", document)
+    def __init__(self, model: Model, name: str) -> None:
+        object.__setattr__(self, "_model", model)
         object.__setattr__(self, "name", name)
+
+    @property
+    def _document(self) -> Document:
+        return self._model._document
 
     @property
     def kind(self) -> str:
@@ -79,62 +108,6 @@ class Object:
         """False when it failed or waits for one that did."""
         return bool(self._facts()["ok"])
 
-    def __call__(self, *parameters: ArrayLike) -> Floats:
-        """Positions on the curve at ``t``, or on the surface at ``u, v``.
-
-        Of a field or set the values at points ``(…, 3)``.
-
-        Parameters
-        ----------
-        *parameters
-            One array for a curve, two for a surface (broadcast against each other); the shape
-            runs over [0, 1].
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape ``(…, 3)``: that of the parameters and the coordinates.
-        """
-        if len(parameters) == 1 and self.class_ in ("field", "set"):
-            values: Floats = self.value(parameters[0])
-            return values
-        if len(parameters) == 1:
-            t = np.asarray(parameters[0], dtype=np.float64)
-            flat = self._document.curve(self.name, np.ascontiguousarray(t.ravel()))
-            return flat.reshape(*t.shape, 3)
-        if len(parameters) == 2:
-            u, v = np.broadcast_arrays(*(np.asarray(p, dtype=np.float64) for p in parameters))
-            flat = self._document.surface(
-                self.name, np.ascontiguousarray(u.ravel()), np.ascontiguousarray(v.ravel())
-            )
-            return flat.reshape(*u.shape, 3)
-        raise TypeError(f"a curve takes t and a surface u, v; {len(parameters)} were given")
-
-    @overload
-    def grid(self, nu: int, nv: int) -> Floats: ...
-    @overload
-    def grid(self, nu: int, nv: int, *, normals: bool) -> Floats | tuple[Floats, Floats]: ...
-
-    def grid(self, nu: int, nv: int, *, normals: bool = False) -> Floats | tuple[Floats, Floats]:
-        """Positions of a surface on an even grid of its parameters.
-
-        Parameters
-        ----------
-        nu, nv
-            Numbers of points along u and v, at least 2.
-        normals
-            Also the unit normals, along the product of the derivatives by u and v; zero where
-            the surface is singular.
-
-        Returns
-        -------
-        numpy.ndarray or tuple of two
-            Shape ``(nu, nv, 3)``.
-        """
-        if normals:
-            return self._document.grid_with_normals(self.name, nu, nv)
-        return self._document.grid(self.name, nu, nv)
-
     @property
     def value(self) -> Any:
         """Its value.
@@ -151,49 +124,104 @@ class Object:
 
         return _wrapped(self._document.eval(self.name))
 
-    def look(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Look:
-        """Normals, curvatures and reflections of a surface.
+    def delete(self) -> None:
+        """Removes the object from the model and its text; refused while others depend on it."""
+        self._document.delete(self.name)
 
-        Parameters
-        ----------
-        u, v
-            Parameters in [0, 1] along each direction, or numbers of even ones.
-        """
-        from moldloft.fairing.surface import Look, _parameters
+    def rename(self, name: str) -> None:
+        """Gives the object another name, everywhere in the text."""
+        self._document.rename(self.name, name)
+        object.__setattr__(self, "name", name)
 
-        return Look(self._document.look(self.name, _parameters(u), _parameters(v)))
+    @property
+    def members(self) -> list[str]:
+        """The names of its numbers and parts: ``x`` of a point, ``area`` of a surface.
 
-    def to_nurbs(self, *, accuracy: float | None = None, degree: int = 3) -> Nurbs:
-        """The curve, snake, surface or solid as a NURBS.
-
-        Shapes that are piecewise polynomial or rational are exact but for rounding. Others are
-        fitted; :attr:`Nurbs.error` bounds the distance everywhere, not at samples.
-
-        Parameters
-        ----------
-        accuracy
-            The largest error of a fit, by default 1e-6 of the shape's diagonal.
-        degree
-            The degree along parameters in which the shape is not polynomial, 1 to 9.
-
-        Raises
-        ------
-        ModelError
-            When the object is something else.
-        Error
-            When no NURBS comes near enough, with the bound that was reached and its place.
-
-        Examples
-        --------
         >>> import moldloft
-        >>> m = moldloft.loads("BCurve c({{0, 0, 0}, {1, 2, 0}, {3, 2, 1}, {4, 0, 0}});")
-        >>> m["c"].to_nurbs()
-        <Nurbs: curve of degree 3, 4 control points, exact>
+        >>> moldloft.loads("AbsPoint A(1, 2, 3);")["A"].members
+        ['x', 'y', 'z']
         """
-        from moldloft import _core
-        from moldloft.nurbs import Nurbs
+        line = f"{self.name}."
+        return [word for word in self._document.complete(line) if word.isidentifier()]
 
-        return Nurbs._of(_core.nurbs(self._document, self.name, accuracy, degree))
+    if not TYPE_CHECKING:
+        # Types list the members of each class; others are found when they are used.
+        def __getattr__(self, member: str) -> Any:
+            if member.startswith("_"):
+                raise AttributeError(member)
+            if member in _METHODS:
+                message = f"`{self.name}` is a {self.class_}; `{member}` is of {_METHODS[member]}"
+                raise WrongClassError(message)
+            try:
+                return self._document.eval(f"{self.name}.{member}")
+            except Error as error:
+                raise AttributeError(str(error)) from error
+
+    def __setattr__(self, member: str, value: float) -> None:
+        if member in _OWN or isinstance(getattr(type(self), member, None), property):
+            raise AttributeError(f"`{member}` of an object cannot be set")
+        self._document.set([(f"{self.name}.{member}", float(value))])
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self.members})
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return object_of, (self._model, self.name)
+
+    def _repr_html_(self) -> str:
+        from moldloft.display import object_html
+
+        return object_html(self)
+
+    def _facts(self) -> dict[str, Any]:
+        return self._document.object(self.name)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Object):
+            return NotImplemented
+        return self._document is other._document and self.name == other.name
+
+    def __hash__(self) -> int:
+        return hash(self.name)
+
+    def __repr__(self) -> str:
+        try:
+            return f"<{self.kind} {self.name}>"
+        except Error:
+            return f"<{type(self).__name__} {self.name}, which is not in the model any more>"
+
+
+class Point(Object):
+    """A point; ``np.asarray`` gives its coordinates, and each of them can be set."""
+
+    x: float
+    y: float
+    z: float
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Floats:
+        """The coordinates, ``(3,)``."""
+        return np.array([self.x, self.y, self.z], dtype=dtype or np.float64)
+
+
+class Bead(Point):
+    """A point on a curve."""
+
+    t: float
+
+
+class Magnet(Point):
+    """A point on a surface."""
+
+    u: float
+    v: float
+
+
+class Ring(Bead, Magnet):
+    """A point on a snake."""
+
+
+class _Located(Object):
+    """What searches go to: curves and surfaces."""
 
     def nearest(self, points: ArrayLike) -> NearestPoints:
         """The points of a curve or surface that are nearest to given ones, all at once.
@@ -272,40 +300,249 @@ class Object:
 
         return intersect(self, other)
 
-    def delete(self) -> None:
-        """Removes the object from the model and its text; refused while others depend on it."""
-        self._document.delete(self.name)
+    def to_nurbs(self, *, accuracy: float | None = None, degree: int = 3) -> Nurbs:
+        """The curve, snake, surface or solid as a NURBS.
 
-    def rename(self, name: str) -> None:
-        """Gives the object another name, everywhere in the text."""
-        self._document.rename(self.name, name)
-        object.__setattr__(self, "name", name)
+        Shapes that are piecewise polynomial or rational are exact but for rounding. Others are
+        fitted; :attr:`Nurbs.error` bounds the distance everywhere, not at samples.
 
-    def __getattr__(self, member: str) -> Any:
-        if member.startswith("_"):
-            raise AttributeError(member)
-        from moldloft.errors import Error
+        Parameters
+        ----------
+        accuracy
+            The largest error of a fit, by default 1e-6 of the shape's diagonal.
+        degree
+            The degree along parameters in which the shape is not polynomial, 1 to 9.
 
-        try:
-            return self._document.eval(f"{self.name}.{member}")
-        except Error as error:
-            raise AttributeError(str(error)) from error
+        Raises
+        ------
+        ModelError
+            When the object is something else.
+        Error
+            When no NURBS comes near enough, with the bound that was reached and its place.
 
-    def __setattr__(self, member: str, value: float) -> None:
-        if member in _OWN or isinstance(getattr(type(self), member, None), property):
-            raise AttributeError(f"`{member}` of an object cannot be set")
-        self._document.set([(f"{self.name}.{member}", float(value))])
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("BCurve c({{0, 0, 0}, {1, 2, 0}, {3, 2, 1}, {4, 0, 0}});")
+        >>> m["c"].to_nurbs()
+        <Nurbs: curve of degree 3, 4 control points, exact>
+        """
+        from moldloft import _core
+        from moldloft.nurbs import Nurbs
 
-    def _facts(self) -> dict[str, Any]:
-        return self._document.object(self.name)
+        return Nurbs._of(_core.nurbs(self._document, self.name, accuracy, degree))
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Object):
-            return NotImplemented
-        return self._document is other._document and self.name == other.name
 
-    def __hash__(self) -> int:
-        return hash(self.name)
+class Curve(_Located):
+    """A curve; calling it gives its points."""
 
-    def __repr__(self) -> str:
-        return f"<{self.kind} {self.name}>"
+    length: float
+
+    if TYPE_CHECKING:
+
+        def __call__(self, t: ArrayLike, /) -> Floats:
+            """Positions at ``t`` in [0, 1]: shape ``(…, 3)`` for parameters of shape ``(…)``."""
+            ...
+    else:
+
+        def __call__(self, *parameters: ArrayLike) -> Floats:
+            """Positions at ``t`` in [0, 1]: shape ``(…, 3)`` for parameters of shape ``(…)``."""
+            if len(parameters) != 1:
+                raise ModelError(
+                    f"a curve takes t, and a surface u, v; {len(parameters)} parameters given"
+                )
+            t = np.asarray(parameters[0], dtype=np.float64)
+            flat = self._document.curve(self.name, np.ascontiguousarray(t.ravel()))
+            return flat.reshape(*t.shape, 3)
+
+
+class Snake(Curve):
+    """A curve on a surface."""
+
+
+class Surface(_Located):
+    """A surface; calling it gives its points."""
+
+    area: float
+    volume: float
+    centroid: Floats
+
+    if TYPE_CHECKING:
+
+        def __call__(self, u: ArrayLike, v: ArrayLike, /) -> Floats:
+            """Positions at ``u, v`` in [0, 1], which are broadcast; of shape ``(…, 3)``."""
+            ...
+    else:
+
+        def __call__(self, *parameters: ArrayLike) -> Floats:
+            """Positions at ``u, v`` in [0, 1], which are broadcast; of shape ``(…, 3)``."""
+            if len(parameters) != 2:
+                count = f"{len(parameters)} parameter{'s' * (len(parameters) != 1)}"
+                raise ModelError(f"a surface takes u, v, and a curve t; {count} given")
+            u, v = np.broadcast_arrays(*(np.asarray(p, np.float64) for p in parameters))
+            flat = self._document.surface(
+                self.name, np.ascontiguousarray(u.ravel()), np.ascontiguousarray(v.ravel())
+            )
+            return flat.reshape(*u.shape, 3)
+
+    @overload
+    def grid(self, nu: int, nv: int, *, normals: Literal[False] = ...) -> Floats: ...
+    @overload
+    def grid(self, nu: int, nv: int, *, normals: Literal[True]) -> tuple[Floats, Floats]: ...
+
+    def grid(self, nu: int, nv: int, *, normals: bool = False) -> Floats | tuple[Floats, Floats]:
+        """Positions of a surface on an even grid of its parameters.
+
+        Parameters
+        ----------
+        nu, nv
+            Numbers of points along u and v, at least 2.
+        normals
+            Also the unit normals, along the product of the derivatives by u and v; zero where
+            the surface is singular.
+
+        Returns
+        -------
+        numpy.ndarray or tuple of two
+            Shape ``(nu, nv, 3)``.
+        """
+        for name, count in (("nu", nu), ("nv", nv)):
+            if not 0 < count < 1 << 31:
+                raise ModelError(f"{name} = {count} points: expected a whole number from 2 on")
+        if normals:
+            return self._document.grid_with_normals(self.name, nu, nv)
+        return self._document.grid(self.name, nu, nv)
+
+    def look(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Look:
+        """Normals, curvatures and reflections of a surface.
+
+        Parameters
+        ----------
+        u, v
+            Parameters in [0, 1] along each direction, or numbers of even ones.
+        """
+        from moldloft.fairing.surface import Look, _parameters
+
+        return Look(self._document.look(self.name, _parameters(u), _parameters(v)))
+
+
+class Solid(Object):
+    """A parametric solid."""
+
+    volume: float
+
+    def to_nurbs(self, *, accuracy: float | None = None, degree: int = 3) -> Nurbs:
+        """The curve, snake, surface or solid as a NURBS.
+
+        Shapes that are piecewise polynomial or rational are exact but for rounding. Others are
+        fitted; :attr:`Nurbs.error` bounds the distance everywhere, not at samples.
+
+        Parameters
+        ----------
+        accuracy
+            The largest error of a fit, by default 1e-6 of the shape's diagonal.
+        degree
+            The degree along parameters in which the shape is not polynomial, 1 to 9.
+
+        Raises
+        ------
+        ModelError
+            When the object is something else.
+        Error
+            When no NURBS comes near enough, with the bound that was reached and its place.
+        """
+        from moldloft import _core
+        from moldloft.nurbs import Nurbs
+
+        return Nurbs._of(_core.nurbs(self._document, self.name, accuracy, degree))
+
+
+class Body(Object):
+    """A body of triangles."""
+
+    volume: float
+    area: float
+    centroid: Floats
+
+
+class Plane(Object):
+    """A plane."""
+
+
+class Frame(Object):
+    """A frame of three axes."""
+
+
+class Contours(Object):
+    """A family of plane sections."""
+
+
+class Relabel(Object):
+    """A law that redistributes a parameter."""
+
+
+class _Implicit(Object):
+    """A field or set."""
+
+    def __call__(self, points: ArrayLike, /) -> Floats:
+        """The values at points ``(…, 3)``."""
+        values: Floats = self.value(points)
+        return values
+
+
+class FieldObject(_Implicit):
+    """A field: ``value`` is its :class:`moldloft.Field`."""
+
+
+class SetObject(_Implicit):
+    """A set: ``value`` is its :class:`moldloft.Set`."""
+
+
+_CLASSES: dict[str, type[Object]] = {
+    "point": Point,
+    "bead": Bead,
+    "magnet": Magnet,
+    "ring": Ring,
+    "curve": Curve,
+    "snake": Snake,
+    "surface": Surface,
+    "solid": Solid,
+    "mesh": Body,
+    "plane": Plane,
+    "frame": Frame,
+    "contours": Contours,
+    "relabel": Relabel,
+    "field": FieldObject,
+    "set": SetObject,
+}
+
+#: Methods of some classes, for the message of the others.
+_METHODS = {
+    "nearest": "curves and surfaces",
+    "intersect": "curves and surfaces",
+    "to_nurbs": "curves, snakes, surfaces and solids",
+    "grid": "surfaces",
+    "look": "surfaces",
+}
+
+
+def object_of(model: Model, name: str) -> Object:
+    """The object of a name, as one of its class."""
+    return _CLASSES.get(model._document.object(name)["class"], Object)(model, name)
+
+
+if TYPE_CHECKING:
+
+    class Entry(Surface, Curve, Ring, Solid, Body, FieldObject, SetObject, float):
+        """What ``m["name"]`` is to a type checker: a number or an object of any class.
+
+        ``isinstance(m["hull"], moldloft.Surface)`` narrows it. When the program runs it is a float
+        or an object of one class.
+        """
+
+        length: float
+        area: float
+        volume: float
+        centroid: Floats
+
+        def __call__(self, *parameters: ArrayLike) -> Floats: ...

@@ -87,6 +87,11 @@ class WeightTable:
         writer.writerows([[row[n] for n in names] for row in self.as_list()])
         return text.getvalue()
 
+    def _repr_html_(self) -> str:
+        from moldloft.display import weights_html
+
+        return weights_html(self)
+
     def __str__(self) -> str:
         from moldloft.cli.console import table
 

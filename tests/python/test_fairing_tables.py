@@ -169,7 +169,10 @@ def matrix_text(form):
     x, z = np.arange(9.0), np.array([0.25, 0.5, 1.0, 1.5, 2.0, 2.5])
     y = np.round(hull(x[:, None] * 10 / 8, z[None]), 3)
     if form == "waterlines":
-        rows = [f"WL {float(b)!r}; " + "; ".join(repr(float(v)) for v in y[:, k]) for k, b in enumerate(z)]
+        rows = [
+            f"WL {float(b)!r}; " + "; ".join(repr(float(v)) for v in y[:, k])
+            for k, b in enumerate(z)
+        ]
         head = "waterline; " + "; ".join(repr(float(v)) for v in x)
     elif form == "stations, blanks":
         rows = [f"{a:g}  " + "  ".join(f"{v:7.3f}" for v in y[k]) for k, a in enumerate(x)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 import zlib
 from pathlib import Path
@@ -11,7 +12,7 @@ import pytest
 
 import moldloft
 from conftest import SAILBOAT
-from moldloft.lines_plan import _overlap, draw, lines_plan, pdf, svg
+from moldloft.lines_plan import _overlap, draw, dxf, lines_plan, pdf, svg
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +55,33 @@ def test_files(plan, tmp_path):
     assert draw(hull, tmp_path / "plan.svg").read_bytes().startswith(b"<svg")
     hull.write(tmp_path / "hull.lines.pdf", format="lines-pdf")
     assert (tmp_path / "hull.lines.pdf").stat().st_size > 4000
+
+
+def test_dxf_is_at_full_size_with_true_curves():
+    ezdxf = pytest.importorskip("ezdxf")
+    hull = moldloft.load(Path(SAILBOAT, "hull.sdl"))
+    plan = lines_plan(hull, title="hull", diagonals=[(1.0, 0.6)])
+    data = dxf(plan)
+    assert data == dxf(plan)
+    drawing = ezdxf.read(io.StringIO(data.decode()))
+    assert not drawing.audit().errors
+    assert drawing.header["$INSUNITS"] == 2
+    space = drawing.modelspace()
+    splines = space.query("SPLINE")
+    assert len(splines) == sum(not path.straight for path in plan.paths) > 30
+    full = plan.scale / 304.8
+    for spline, path in zip(splines, (p for p in plan.paths if not p.straight), strict=True):
+        tool = spline.construction_tool()
+        ends = np.array(list(tool.points([0, tool.max_t])))
+        assert ends[:, :2] == pytest.approx(path.points[[0, -1]] * full, abs=1e-9)
+        # A joint of the pieces is a point of the curve.
+        joint = np.array(tool.point(1.0))
+        assert joint[:2] == pytest.approx(path.points[3] * full, abs=1e-9)
+    (waterline,) = [s for s in splines if s.dxf.layer == "dwl"]
+    points = np.array(waterline.control_points)
+    assert np.ptp(points[::3, 0]) == pytest.approx(27.38620965, rel=1e-7)
+    assert drawing.layers.get("diagonals").dxf.linetype == "diagonals"
+    assert {text.dxf.text for text in space.query("TEXT")} == {text.text for text in plan.texts}
 
 
 @pytest.mark.parametrize(

@@ -404,13 +404,19 @@ def test_only_this_page_is_served(model_file: Callable[..., Path]) -> None:
         # The token buys one strict cookie; without it there is no socket.
         assert request(app, "POST", "/token", b"wrong", origin=HOME)[0] == 403
         assert request(app, "POST", "/token", b"x" * 5000, origin=HOME)[0] == 403
-        status, head, _ = request(app, "POST", "/token", server._token.encode(), origin=HOME)
+        token = server._token.encode()
+        status, head, _ = request(app, "POST", "/token", token, origin=HOME)
         cookie = head["set-cookie"]
         assert status == 204 and "HttpOnly" in cookie and "SameSite=strict" in cookie
         assert "moldloft-" in cookie
         assert request(app, kind="websocket", path="/ws", origin=HOME)[0] == 4401
         value = cookie.split(";")[0]
         assert request(app, kind="websocket", path="/ws", origin=HOME, cookie=value)[0] == 101
+        # A used token is worth nothing, but to the browser that has the cookie.
+        assert server._token.encode() != token
+        assert request(app, "POST", "/token", token, origin=HOME)[0] == 403
+        assert request(app, "POST", "/token", token, origin=HOME, cookie=value)[0] == 204
+        assert request(app, "POST", "/token", server._token.encode(), origin=HOME)[0] == 204
     finally:
         hub.draft.close(keep=False)
 
@@ -450,7 +456,7 @@ HOSTILE = '<img src=x onerror="document.title=1">'
 def test_a_page_in_a_file_carries_names_as_data(
     model_file: Callable[..., Path], tmp_path: Path
 ) -> None:
-    from moldloft.workbench.still import still_page
+    from moldloft.workbench.export import exported_page
 
     text = (
         LINE
@@ -458,7 +464,7 @@ def test_a_page_in_a_file_carries_names_as_data(
         + f"print({json.dumps(HOSTILE)});\n"
     )
     try:
-        page = still_page(model_file(text), values={"w": 3}).decode()
+        page = exported_page(model_file(text), values={"w": 3}, living=False).decode()
     except Error as error:
         pytest.skip(str(error))
     assert page.count("<script") == 2 and HOSTILE not in page and "alert(1)</script>" not in page

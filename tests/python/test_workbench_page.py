@@ -24,6 +24,8 @@ CHROMIUM = next(
 )
 PAGE = ROOT / "python" / "moldloft" / "workbench" / "page" / "index.html"
 
+ENGINE = PAGE.parents[1] / "wasm" / "engine.wasm.gz"
+
 pytestmark = [
     pytest.mark.skipif(
         CHROMIUM is None, reason="no chromium here: `make setup` installs it as root on Debian"
@@ -310,17 +312,164 @@ def _children(pid: int) -> list[int]:
     return [int(word) for word in listed.split()]
 
 
-def test_a_file_opens_without_a_server(browser: Any, cli: Any, tmp_path: Path) -> None:
+class File:
+    """A page of `export --html`, opened from the disk."""
+
+    def __init__(self, path: Path, browser: Any) -> None:
+        self.context = browser.new_context(viewport={"width": 1400, "height": 860})
+        self.page = self.context.new_page()
+        self.faults: list[str] = []
+        self.page.on("console", lambda m: self.faults.append(m.text) if m.type == "error" else None)
+        self.page.on("pageerror", lambda e: self.faults.append(str(e)))
+        self.requests: list[str] = []
+        self.page.on("request", lambda r: self.requests.append(r.url))
+        self.path = path
+        self.open()
+
+    def open(self) -> None:
+        self.page.goto(f"{self.path.as_uri()}?norender")
+        self.page.locator("body[data-state=alive]").wait_for(timeout=60_000)
+
+    def hand(self, call: str) -> Any:
+        return self.page.evaluate(f"() => window.moldloft.{call}")
+
+    until = Bench.until
+
+    def running(self) -> None:
+        self.page.locator("body[data-engine=ready]").wait_for(timeout=120_000)
+
+    def close(self) -> None:
+        assert not self.faults
+        assert all(u.startswith(("file:", "blob:", "data:")) for u in self.requests)
+        self.context.close()
+
+
+def test_a_still_file_opens_without_a_server(browser: Any, cli: Any, tmp_path: Path) -> None:
+    cli("export", "--html", "--still", SAILBOAT / "hull.sdl", "-o", "hull.html")
+    assert (tmp_path / "hull.html").stat().st_size < 1_600_000
+    file = File(tmp_path / "hull.html", browser)
+    assert len(file.hand("items()")) > 5
+    assert file.page.get_by_role("slider", name="beam", exact=True).is_disabled()
+    file.close()
+
+
+needs_engine = pytest.mark.skipif(
+    not ENGINE.exists(),
+    reason="the engine for pages is not built: `make engine` needs the target "
+    "wasm32-unknown-unknown",
+)
+
+
+@needs_engine
+def test_a_file_is_alive_without_a_server(browser: Any, cli: Any, tmp_path: Path) -> None:
     cli("export", "--html", SAILBOAT / "hull.sdl", "-o", "hull.html")
-    context = browser.new_context()
-    page = context.new_page()
-    faults: list[str] = []
-    page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
-    requests: list[str] = []
-    page.on("request", lambda r: requests.append(r.url))
-    page.goto((tmp_path / "hull.html").as_uri())
-    page.locator("body[data-state=alive]").wait_for()
-    assert page.evaluate("() => window.moldloft.items().length") > 5
-    assert page.get_by_role("slider", name="beam", exact=True).is_disabled()
-    assert not faults and all(u.startswith(("file:", "blob:", "data:")) for u in requests)
-    context.close()
+    file = File(tmp_path / "hull.html", browser)
+    # The scene is there before the engine is.
+    first = file.hand("positions('hull')")
+    assert len(first) > 300
+    file.running()
+    assert file.hand("positions('hull')") == first
+    page = file.page
+    slider = page.get_by_role("slider", name="beam", exact=True)
+    slider.focus()
+    area = file.until(lambda: file.hand("model.watched"))[0]["value"]
+    # Two quick presses are two steps, and both are in the text.
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    file.until(lambda: "beam = 10.071 in" in file.hand("text()"))
+    file.until(lambda: file.hand("model.params")[0]["value"] == 10.071)
+    file.until(lambda: file.hand("model.watched")[0]["value"] > area)
+    assert not file.hand("model.faults")
+    # A broken text keeps the last shape; a repaired one is followed.
+    count = len(file.hand("items()"))
+    editor = page.get_by_role("textbox", name="program")
+    editor.focus()
+    page.keyboard.press("Control+End")
+    page.keyboard.type("AbsPoint Q(1, 2")
+    file.until(lambda: file.hand("model.faults"))
+    assert len(file.hand("items()")) == count
+    page.keyboard.type(", 3);")
+    file.until(lambda: not file.hand("model.faults") and len(file.hand("items()")) == count + 1)
+    # What was changed is there again after a reload, and goes when it is dropped.
+    file.open()
+    file.running()
+    file.until(lambda: "AbsPoint Q(1, 2, 3);" in file.hand("text()"))
+    file.until(lambda: len(file.hand("items()")) == count + 1)
+    page.keyboard.press("Control+K")
+    page.keyboard.type("as it came")
+    page.keyboard.press("Enter")
+    file.until(lambda: file.hand("text()") == HULL)
+    file.close()
+
+
+@needs_engine
+def test_a_text_that_fails_in_a_file_can_be_changed(
+    browser: Any, cli: Any, tmp_path: Path, model_file: Callable[..., Path]
+) -> None:
+    cli("export", "--html", model_file("AbsPoint P(1, 2, 3);\n"), "-o", "small.html")
+    file = File(tmp_path / "small.html", browser)
+    file.running()
+    # A subroutine that calls itself needs more than a browser's stack.
+    editor = file.page.get_by_role("textbox", name="program")
+    editor.focus()
+    file.page.keyboard.press("Control+End")
+    file.page.keyboard.insert_text("float f(float x) { return f(x + 1) + 1; }\nfloat y = f(0);\n")
+    stopped = "engine was stopped"
+    file.until(
+        lambda: file.hand("model.faults") or stopped in file.page.locator(".banner").inner_text()
+    )
+    for _ in range(2):
+        file.page.keyboard.press("Control+Z")
+    file.until(lambda: file.hand("text()") == "AbsPoint P(1, 2, 3);\n")
+    file.until(lambda: not file.hand("model.faults"))
+    file.page.keyboard.press("Control+End")
+    file.page.keyboard.insert_text("AbsPoint Q(2, 2, 3);\n")
+    file.until(lambda: len(file.hand("items()")) == 2)
+    file.close()
+
+
+@needs_engine
+def test_a_file_carries_what_the_model_reads(browser: Any, cli: Any, tmp_path: Path) -> None:
+    cli("export", "--html", ROOT / "examples" / "wingbody" / "layers.sdl", "-o", "layers.html")
+    text = (tmp_path / "layers.html").read_text(encoding="utf-8")
+    assert str(ROOT) not in text, "a page says nothing of the machine that it was made on"
+    file = File(tmp_path / "layers.html", browser)
+    first = file.hand("items()")
+    file.running()
+    file.until(lambda: file.hand("items()") == first)
+    assert not [f for f in file.hand("model.faults") if f["severity"] == "error"]
+    file.close()
+
+
+OFFSETS = "x, y, z\n0.5, 0.25, 0\n0.5, 0.5, 0.1\n0.25, 0.75, -0.2\n"
+PLATE = (
+    "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(1, 1, 0);\n"
+    "Line l(A, B); Line m(C, D); RuledSurf s(l, m);\nAbsPoint P(0.5, 0.5, 1);\n"
+)
+
+
+def test_foreign_points_have_their_deviation(bench: Callable[..., Bench], tmp_path: Path) -> None:
+    b = bench(PLATE)
+    (tmp_path / "offsets.csv").write_text(OFFSETS)
+    with b.page.expect_file_chooser() as chosen:
+        b.page.keyboard.press("Control+K")
+        b.page.keyboard.type("lay a mesh")
+        b.page.keyboard.press("Enter")
+    chosen.value.set_files(str(tmp_path / "offsets.csv"))
+    # rms of 0, 0.1, 0.2 and the largest.
+    b.page.get_by_text("offsets.csv: rms 0.1291, largest 0.2").wait_for()
+    assert not b.faults
+
+
+def test_section_areas_follow(bench: Callable[..., Bench]) -> None:
+    b = bench(HULL)
+    b.page.get_by_role("tab", name="Section areas").click()
+    b.page.get_by_role("img", name="section areas").wait_for()
+    label = b.page.get_by_role("img", name="section areas").get_attribute("aria-label")
+    slider = b.page.get_by_role("slider", name="beam", exact=True)
+    slider.focus()
+    b.page.keyboard.press("PageUp")
+    b.until(
+        lambda: b.page.get_by_role("img", name="section areas").get_attribute("aria-label") != label
+    )
+    assert b.page.locator(".plot .before").count() == 1 and not b.faults

@@ -85,6 +85,8 @@ export class Editor {
   private pushing = false
   private timer = 0
   private online = false
+  /** What changed the text lately, by the version that it changed. */
+  private past: { version: number; changes: ChangeSet }[] = []
   /** Called when what is typed is not yet with the hub, or is again. */
   onPending: (pending: boolean) => void = () => {}
   onCursor: (offset: number) => void = () => {}
@@ -147,6 +149,7 @@ export class Editor {
   begin(text: string, version: number, keep: boolean): void {
     const mine = this.text
     const had = keep && mine !== text
+    this.past = []
     this.view.dispatch({ effects: this.shared.reconfigure([]) })
     this.replace(text, true)
     this.view.dispatch({ effects: this.shared.reconfigure(collab({ startVersion: version })) })
@@ -202,6 +205,8 @@ export class Editor {
     const news = updates.slice(known - from)
     if (news.length === 0) return
     const made = news.map((u) => ({ changes: ChangeSet.fromJSON(u.changes), clientID: u.clientID }))
+    made.forEach((u, k) => this.past.push({ version: known + k, changes: u.changes }))
+    if (this.past.length > 400) this.past.splice(0, this.past.length - 200)
     const tr = receiveUpdates(this.view.state, made)
     this.view.dispatch(tr)
     this.onPending(this.pending)
@@ -249,10 +254,18 @@ export class Editor {
     while (this.pending && this.online) await new Promise((r) => setTimeout(r, 5))
   }
 
-  /** Edits that the engine made, as one step of the history. */
-  apply(edits: Edit[]): void {
+  /** Edits that the engine made of a version of the text, as one step of the history. */
+  apply(edits: Edit[], version = this.version): void {
     if (!edits.length) return
-    this.view.dispatch({ changes: edits, annotations: isolateHistory.of('full'), userEvent: 'input.hand' })
+    const since = this.past.filter((p) => p.version >= version)
+    if (this.version - version !== since.length) return this.onTrouble('The text has changed too much meanwhile: do it again')
+    // What was typed meanwhile moves the places.
+    const later = [...since.map((p) => p.changes), ...(this.pending ? sendableUpdates(this.view.state).map((u) => u.changes) : [])]
+    const changes = edits.map((e) => {
+      const from = later.reduce((at, c) => c.mapPos(at, 1), e.from)
+      return { from, to: Math.max(from, later.reduce((at, c) => c.mapPos(at, -1), e.to)), insert: e.insert }
+    })
+    this.view.dispatch({ changes, annotations: isolateHistory.of('full'), userEvent: 'input.hand' })
   }
 
   // What is known of the text.
@@ -331,7 +344,7 @@ export class Editor {
     if (!now || now === old) return
     try {
       const { head } = await this.link.ask('rename', { offset: word.from, new: now })
-      this.apply(head.edits)
+      this.apply(head.edits, head.version)
     } catch (error) {
       this.onTrouble((error as Error).message)
     }
@@ -340,7 +353,7 @@ export class Editor {
   async format(): Promise<void> {
     try {
       const { head } = await this.link.ask('format')
-      this.apply(head.edits)
+      this.apply(head.edits, head.version)
     } catch (error) {
       this.onTrouble((error as Error).message)
     }

@@ -10,7 +10,7 @@ export interface Handlers {
   select(name: string): void
   hover(name: string): void
   say(words: string): void
-  apply(edits: any[]): void
+  apply(edits: any[], version?: number): void
   synced(): Promise<void>
   status(words: string): void
   open(name: string): void
@@ -33,6 +33,8 @@ interface Drag {
   names: string[]
   axis: number | null
   plane: number | null
+  /** True while the place is to be on the surface under the pointer. */
+  onSurface: boolean
   moved: boolean
   ready: boolean
   last: [number, number]
@@ -95,7 +97,7 @@ export class Hands {
   private async grab(item: Drawn, x: number, y: number): Promise<void> {
     this.act.select(item.object)
     const start = this.view.place(item)
-    const drag: Drag = { item, start, target: start.clone(), handles: [], own: [], names: [], axis: null, plane: null, moved: false, ready: false, last: [x, y] }
+    const drag: Drag = { item, start, target: start.clone(), handles: [], own: [], names: [], axis: null, plane: null, onSurface: false, moved: false, ready: false, last: [x, y] }
     this.drag = drag
     try {
       await this.act.synced()
@@ -104,7 +106,7 @@ export class Hands {
       Object.assign(drag, { handles: head.handles, own: head.own, ready: true })
       drag.names = this.chosen(drag)
       const said = drag.own.length ? `${item.object}: ${drag.own.join(', ')}` : `${item.object} follows from an expression: choose what moves it`
-      this.act.status(`${said} · X Y Z lock an axis, digits enter a value, Esc takes it back`)
+      this.act.status(`${said} · X Y Z lock an axis, S keeps it on the surface below, digits enter a value, Esc takes it back`)
       if (drag.moved) this.aim(...drag.last, false)
     } catch (error) {
       if (this.drag === drag) this.drag = null
@@ -206,7 +208,13 @@ export class Hands {
     const { ray } = this.view.ray(x, y)
     let basis = [camera.right, camera.up]
     let snapped = ''
-    if (drag.axis !== null) {
+    if (drag.onSurface) {
+      // At the silhouette the last place stays: never on to what is behind.
+      const hit = this.view.surfaceAt(x, y, drag.item.object)
+      if (hit) drag.target.copy(hit.point)
+      basis = [unit(0), unit(1), unit(2)]
+      snapped = hit ? hit.object : 'the surface left behind'
+    } else if (drag.axis !== null) {
       // The point of the axis that is nearest to the ray.
       const a = unit(drag.axis)
       const [w, b] = [drag.start.clone().sub(ray.origin), ray.direction.dot(a)]
@@ -268,7 +276,7 @@ export class Hands {
     this.drag = null
     try {
       const { head } = await this.link.ask('drag_end', { commit })
-      if (commit) this.act.apply(head.edits ?? [])
+      if (commit) this.act.apply(head.edits ?? [], head.version)
     } catch (error) {
       this.act.status((error as Error).message)
     }
@@ -297,7 +305,8 @@ export class Hands {
     const drag = this.drag
     if (drag) {
       const axis = AXES.indexOf(e.key.toLowerCase())
-      if (axis >= 0 && !e.shiftKey) drag.axis = drag.axis === axis ? null : axis
+      if (e.key.toLowerCase() === 's') drag.onSurface = !drag.onSurface
+      else if (axis >= 0 && !e.shiftKey) drag.axis = drag.axis === axis ? null : axis
       else if (axis >= 0) [drag.axis, drag.plane] = [null, drag.plane === axis ? null : axis]
       else if (e.key === 'Escape') return this.cancel()
       else if (/^[\d=.\-]$/.test(e.key)) return this.enter(drag, e)

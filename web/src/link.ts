@@ -11,6 +11,8 @@ export class Refused extends Error {
 export interface Link {
   /** True when nothing can be changed. */
   readonly still: boolean
+  /** True when the text is in this page alone. */
+  readonly local: boolean
   ask(kind: string, fields?: Facts): Promise<Frame>
   tell(message: Facts): Promise<Facts>
   onFrame: (frame: Frame) => void
@@ -22,6 +24,7 @@ type Waiting = { resolve: (answer: any) => void; reject: (error: Error) => void 
 
 export class SocketLink implements Link {
   readonly still = false
+  readonly local = false
   onFrame: (frame: Frame) => void = () => {}
   onMessage: (message: Facts) => void = () => {}
   onState: (state: 'up' | 'down') => void = () => {}
@@ -35,7 +38,7 @@ export class SocketLink implements Link {
     if (token) {
       history.replaceState(null, '', location.pathname)
       const reply = await fetch('/token', { method: 'POST', body: token, credentials: 'same-origin' })
-      if (!reply.ok) throw new Refused('this address has been used up: take the one that `moldloft view` printed')
+      if (!reply.ok) throw new Refused('this address has been used: `moldloft view` prints the next one')
     }
     this.connect()
   }
@@ -102,6 +105,7 @@ export class SocketLink implements Link {
 /** The scene that a file carries. */
 export class StillLink implements Link {
   readonly still = true
+  readonly local = true
   onFrame: (frame: Frame) => void = () => {}
   onMessage: (message: Facts) => void = () => {}
   onState: (state: 'up' | 'down') => void = () => {}

@@ -2,11 +2,12 @@
 
 import './style.css'
 import { Editor } from './editor'
-import { ramp } from './colour'
+import { ramp, type Scale } from './colour'
 import { h, shown, store, stored } from './dom'
 import type { Frame } from './frame'
 import { Hands } from './hands'
 import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
+import { LivingLink, WorkerEngine } from './living'
 import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
 import { Sheets, type SheetName } from './sheets'
 import { changed, model } from './state'
@@ -15,13 +16,28 @@ import type { Standard } from './camera'
 
 const nonce = document.querySelector<HTMLMetaElement>('meta[name=nonce]')?.content ?? ''
 
-/** The link: a file carries its last scene, a server has an engine. */
+/** The link: a server has an engine; a file carries its last scene, and an engine where the package has one. */
 function linked(): Link & { start(): Promise<void> } {
   const carried = document.getElementById('moldloft-model')
   if (!carried?.textContent) return new SocketLink()
-  const { hello, frames } = JSON.parse(carried.textContent)
+  const { hello, frames, files } = JSON.parse(carried.textContent)
   const bytes = (text: string) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer as ArrayBuffer
-  return new StillLink(hello, Object.fromEntries(Object.entries(frames as Record<string, string>).map(([k, v]) => [k, bytes(v)])))
+  const first: Record<string, ArrayBuffer> = Object.fromEntries(Object.entries(frames as Record<string, string>).map(([k, v]) => [k, bytes(v)]))
+  const part = (id: string) => document.getElementById(id)?.textContent ?? ''
+  if (!document.getElementById('moldloft-worker')) return new StillLink(hello, first)
+  // A file may start a worker of a blob only.
+  const make = () => new Worker(URL.createObjectURL(new Blob([JSON.parse(part('moldloft-worker'))], { type: 'text/javascript' })))
+  const beginning = async () => {
+    // The engine comes last in the file: what is seen does not wait for it.
+    if (document.readyState === 'loading') await new Promise((r) => document.addEventListener('DOMContentLoaded', r, { once: true }))
+    return { packed: part('moldloft-engine'), name: hello.name, files }
+  }
+  const living = new LivingLink(hello, first.open ?? null, new WorkerEngine(make, beginning))
+  living.onReady = () => {
+    document.body.dataset.engine = 'ready'
+    showSaved()
+  }
+  return living
 }
 
 const link = linked()
@@ -42,7 +58,9 @@ const $ = <K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Record<str
 const title = $('h1', {}, 'Moldloft')
 const file = $('span', { class: 'file' })
 const saved = $('span', { class: 'saved', role: 'status' })
-const saveButton = $('button', { class: 'primary', title: 'Write the text to the file (Ctrl+S)' }, 'Save')
+const saveButton = link.local
+  ? $('button', { class: 'primary', title: 'The text as a file (Ctrl+S)' }, 'Download')
+  : $('button', { class: 'primary', title: 'Write the text to the file (Ctrl+S)' }, 'Save')
 const paletteButton = $('button', { title: 'All commands (Ctrl+K)' }, 'Commands', $('kbd', {}, 'Ctrl K'))
 const themeButton = $('button', { class: 'icon', 'aria-label': 'light or dark', title: 'Light or dark' }, '◐')
 const helpButton = $('button', { class: 'icon', 'aria-label': 'help', title: 'Help (F1)' }, '?')
@@ -169,12 +187,19 @@ const setting = new Newest<Record<string, number>>(
   (a, b) => ({ ...a, ...b }),
 )
 
-async function edits(kind: string, fields: Record<string, unknown> = {}): Promise<void> {
+/** One after the other: the engine must have what the last one wrote before it writes the next. */
+let writing: Promise<void> = Promise.resolve()
+function edits(kind: string, fields: Record<string, unknown> = {}): Promise<void> {
+  writing = writing.then(() => written(kind, fields))
+  return writing
+}
+
+async function written(kind: string, fields: Record<string, unknown>): Promise<void> {
   try {
     await editor.synced()
     await setting.settled()
     const { head } = await link.ask(kind, fields)
-    editor.apply(head.edits ?? [])
+    editor.apply(head.edits ?? [], head.version)
     if (head.kept?.length) say(`${head.kept.join(', ')} follows from an expression: the value holds for this session and is not in the text`)
   } catch (error) {
     say((error as Error).message)
@@ -209,7 +234,7 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
   },
   locate: (name) => locate(name, true),
   show: (place) => editor.show(place, true),
-  apply: (list) => editor.apply(list),
+  apply: (list, version) => editor.apply(list, version),
   toggle(name) {
     const o = model.objects.find((k) => k.name === name)
     if (o && !o.shown) {
@@ -278,7 +303,7 @@ const hands = new Hands(view, link, viewHost, {
   hover: actions.hover,
   say,
   status: say,
-  apply: (list) => editor.apply(list),
+  apply: (list, version) => editor.apply(list, version),
   synced: () => editor.synced(),
   open: (name) => void locate(name, true),
 })
@@ -291,14 +316,27 @@ strip(footer, actions)
 
 function showSaved(): void {
   const waits = editor.pending
+  if (link.local && !link.still) {
+    const running = document.body.dataset.engine === 'ready'
+    saved.textContent = !running ? 'the engine starts…' : !dirty ? 'as it was' : keeps() ? 'changed, kept in this browser' : 'changed, not saved'
+    saved.dataset.state = dirty ? 'dirty' : 'saved'
+    return
+  }
   saved.textContent = link.still ? 'as it was' : !online ? (waits ? 'not connected: what you type is kept in this page' : 'not connected') : waits ? 'sending…' : dirty ? 'draft kept, not in the file' : 'saved'
   saved.dataset.state = !online ? 'off' : dirty || waits ? 'dirty' : 'saved'
+}
+
+/** Whether this browser keeps what is stored: one without storage forgets. */
+function keeps(): boolean {
+  store('keeps', true)
+  return stored('keeps', false)
 }
 
 async function save(force = false): Promise<void> {
   try {
     await editor.synced()
     const answer = await link.tell({ kind: 'save', force })
+    if (link.local) return give(new Blob([answer.text], { type: 'text/plain' }), model.name)
     if (answer.kind === 'conflict') conflict(answer.theirs)
     else {
       dirty = false
@@ -346,13 +384,35 @@ function take(frame: Frame): void {
     fitted = true
     view.fit()
   }
+  if (head.rev !== undefined && head.rev !== model.rev && head.watched === undefined && model.watched.length) measure()
   if (scene && field) fields.push(undefined)
   if (scene && combs.size) combing.push(undefined)
+  if (scene && view.clip) sectioning.push(undefined)
+  if (scene && foreign.length) deviating.push(undefined)
   if (head.rev !== undefined && head.rev !== model.rev) {
     model.rev = head.rev
     changed('rev')
   }
   document.body.dataset.state = 'alive'
+}
+
+// Watched numbers follow the scene: at once while they are quick, else now and then, slow ones when the hand rests:
+// a slider that moves does not wait for them.
+let took = 0
+let resting = 0
+const measuring = new Newest<void>(async () => {
+  const from = performance.now()
+  await link.ask('measure').catch(() => undefined)
+  took = performance.now() - from
+})
+function measure(): void {
+  if (took < 4) return measuring.push(undefined)
+  if (took < 60 && resting) return
+  clearTimeout(resting)
+  resting = window.setTimeout(() => {
+    resting = 0
+    measuring.push(undefined)
+  }, 150)
 }
 
 link.onFrame = take
@@ -383,7 +443,11 @@ link.onMessage = (message) => {
       break
     case 'engine':
       if (message.state === 'lost') warn(`The engine was stopped: ${message.reason}. Your text is safe.`)
-      else warn('')
+      else {
+        warn('')
+        if (!link.local) void link.ask('watch', { expressions: model.watched.map((w) => w.expression) }).catch(() => undefined)
+        void relay()
+      }
       break
     case 'full':
       warn(message.error)
@@ -400,15 +464,22 @@ async function begin(hello: any): Promise<void> {
   document.title = `${hello.name} · Moldloft`
   dirty = hello.dirty
   editor.begin(hello.text, hello.version, again)
+  if (hello.words) editor.words(hello.words)
+  if (hello.watched) {
+    model.watched = hello.watched
+    changed('watched')
+  }
   if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Take the file” in the commands drops them.')
   showSaved()
   try {
+    // A file's own scene is there at once; a server's is asked for with all that is to be drawn.
+    if (link.local) await link.ask('open')
     if (!link.still) await link.ask('show', { contours })
-    await link.ask('open')
+    if (!link.local) await link.ask('open')
     const usual = view.items.size && [...view.items.values()].some((i) => i.kind === 'patch') ? ['mesh.area', 'hydrostatics.displacement', 'hydrostatics.lcb', 'hydrostatics.kmt'] : []
     const watched = stored<string[]>(`watch.${model.name}`, usual)
-    if (!link.still && watched.length) await link.ask('watch', { expressions: watched })
-    if (!again && !link.still) editor.words((await link.ask('words')).head.words)
+    if (!link.still) await link.ask('watch', { expressions: watched })
+    if (!again && !link.local) editor.words((await link.ask('words')).head.words)
   } catch (error) {
     if (error instanceof Refused) say(error.message)
   }
@@ -423,6 +494,7 @@ const fields = new Newest<void>(async () => {
   try {
     const frame = await link.ask('field', by ? { field, by } : { field })
     view.field(frame, SIGNED.has(field))
+    view.overlay('arrows', field === 'derivative' ? view.arrows() : null, 0x8a2d1f)
     showLegend()
   } catch (error) {
     say((error as Error).message)
@@ -430,18 +502,19 @@ const fields = new Newest<void>(async () => {
 })
 
 function showLegend(): void {
-  const s = view.fieldScale
-  legend.hidden = view.paint !== 'field' || !s
+  const s = view.paint === 'field' ? view.fieldScale : deviation
+  legend.hidden = !s
   if (!s) return
   const bar = $('div', { class: 'ramp' })
   bar.style.background = ramp(s.signed)
-  const name = field === 'derivative' ? `motion by ${by}` : field.replace('_', ' ')
+  const name = view.paint !== 'field' ? `deviation, ${model.unit}` : field === 'derivative' ? `motion by ${by}` : field.replace('_', ' ')
   legend.replaceChildren($('span', { class: 'key' }, name), bar, $('span', { class: 'mono low' }, shown(s.low, 3)), $('span', { class: 'mono high' }, shown(s.high, 3)))
 }
 
 function paint(p: Paint, name = '', parameter = ''): void {
   ;[view.paint, field, by] = [p, name, parameter]
-  legend.hidden = p !== 'field'
+  showLegend()
+  if (name !== 'derivative') view.overlay('arrows', null)
   if (p === 'field') fields.push(undefined)
   view.settle()
   buildToolbar()
@@ -475,6 +548,72 @@ function comb(): void {
   if (combs.size) combing.push(undefined)
   else view.overlay('combs', null)
 }
+
+// Meshes and offsets of other programs over the model.
+
+interface Foreign {
+  name: string
+  position: Float32Array
+  triangle: Uint32Array
+  edge: Uint32Array
+  deviation: Float32Array | null
+}
+let foreign: Foreign[] = []
+let deviation: Scale | null = null
+const files = new Map<string, string>()
+const LARGEST_OVERLAY = 11 << 20
+
+function laid(frame: Frame): void {
+  const { overlays } = frame.head
+  foreign = (overlays as any[]).map((o) => {
+    const old = foreign.find((f) => f.name === o.name)
+    return {
+      name: o.name,
+      position: o.position ? frame.floats(o.position) : old!.position,
+      triangle: o.triangle ? frame.numbers(o.triangle) : old!.triangle,
+      edge: o.edge ? frame.numbers(o.edge) : old!.edge,
+      deviation: o.deviation ? frame.floats(o.deviation) : null,
+    }
+  })
+  deviation = view.foreign(foreign)
+  showLegend()
+  const words = (overlays as any[]).map((o) => (o.rms === undefined ? `${o.name}: the model has no surface to compare with` : `${o.name}: rms ${shown(o.rms, 4)}, largest ${shown(o.largest, 4)} ${model.unit}`))
+  if (words.length) say(words.join(' · '))
+}
+const deviating = new Newest<void>(async () => {
+  if (foreign.length) await link.ask('deviation').then(laid, () => undefined)
+})
+
+async function lay(file: File): Promise<void> {
+  if (file.size > LARGEST_OVERLAY) return say(`${file.name} is larger than ${LARGEST_OVERLAY >> 20} MiB`)
+  const bytes = new Uint8Array(await file.arrayBuffer())
+  let raw = ''
+  for (let k = 0; k < bytes.length; k += 0x8000) raw += String.fromCharCode(...bytes.subarray(k, k + 0x8000))
+  try {
+    laid(await link.ask('overlay', { name: file.name, data: btoa(raw) }))
+    files.set(file.name, btoa(raw))
+  } catch (error) {
+    say((error as Error).message)
+  }
+}
+async function unlay(): Promise<void> {
+  files.clear()
+  laid(await link.ask('remove_overlay'))
+}
+/** A new engine is given them again. */
+async function relay(): Promise<void> {
+  for (const [name, data] of files) await link.ask('overlay', { name, data }).then(laid, (error) => say(error.message))
+}
+function choose(): void {
+  const input = $('input', { type: 'file', accept: '.stl,.obj,.gdf,.csv,.txt,.dat,.xyz', multiple: true })
+  input.addEventListener('change', () => [...(input.files ?? [])].forEach((f) => void lay(f)))
+  input.click()
+}
+viewHost.addEventListener('dragover', (e) => e.preventDefault())
+viewHost.addEventListener('drop', (e) => {
+  e.preventDefault()
+  if (!link.still) for (const f of e.dataTransfer?.files ?? []) void lay(f)
+})
 
 const sectioning = new Newest<void>(async () => {
   if (!view.clip) return view.overlay('section', null)
@@ -554,7 +693,7 @@ function give(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(a.href), 10_000)
 }
 
-const SHEETS: [SheetName, string][] = [['model', 'Model'], ['lines', 'Lines plan'], ['hydrostatics', 'Hydrostatics'], ['mesh', 'Mesh'], ['graph', 'Dependencies'], ['curvature', 'Curvature']]
+const SHEETS: [SheetName, string][] = [['model', 'Model'], ['lines', 'Lines plan'], ['hydrostatics', 'Hydrostatics'], ['areas', 'Section areas'], ['mesh', 'Mesh'], ['graph', 'Dependencies'], ['curvature', 'Curvature']]
 function sheet(name: SheetName): void {
   sheets.show(name)
   toolbar.hidden = name !== 'model'
@@ -563,8 +702,8 @@ function sheet(name: SheetName): void {
 
 function commands(): Command[] {
   return [
-    { name: 'Save', keys: 'Ctrl+S', run: () => void save() },
-    { name: 'Take the file: drop unsaved changes', run: () => void link.tell({ kind: 'revert' }).catch((e) => say(e.message)) },
+    { name: link.local ? 'Download the text' : 'Save', keys: 'Ctrl+S', run: () => void save() },
+    { name: link.local ? 'Take the text as it came: drop changes' : 'Take the file: drop unsaved changes', run: () => void link.tell({ kind: 'revert' }).catch((e) => say(e.message)) },
     { name: 'Fit the model', keys: 'F', run: () => view.fit() },
     ...looks.map(([n, words, key]) => ({ name: `View: ${words}`, keys: key, run: () => look(n) })),
     { name: 'Perspective or orthographic', keys: 'O', run: () => ((view.camera.perspective = !view.camera.perspective), view.fit()) },
@@ -591,6 +730,8 @@ function commands(): Command[] {
       if (!hands.measuring) view.overlay('measure', null)
       buildToolbar()
     } },
+    { name: 'Lay a mesh or offsets over the model (STL, OBJ, GDF, table)', run: choose },
+    { name: 'Remove what lies over the model', run: () => void unlay().catch((e) => say(e.message)) },
     { name: 'Curvature comb of the selected curve', keys: 'K', run: comb },
     ...[0, 1, 2].map((k) => ({ name: `Section across ${'xyz'[k]}`, keys: `Shift+${'XYZ'[k]}`, run: () => cut(view.clip?.axis === k ? null : k) })),
     ...SHEETS.map(([n, words], k) => ({ name: `Sheet: ${words}`, keys: `Alt+${k + 1}`, run: () => sheet(n) })),
@@ -680,7 +821,7 @@ function palette(): void {
 
 function help(): void {
   const rows = commands().filter((c) => c.keys).map((c) => $('tr', {}, $('td', {}, $('kbd', {}, c.keys!)), $('td', {}, c.name)))
-  const hand = [['drag', 'orbit'], ['right or middle drag, Shift+drag', 'pan'], ['wheel, pinch', 'zoom to the pointer'], ['click', 'select'], ['double click', 'go to the declaration'], ['drag a point', 'move it: the number in the text follows'], ['X Y Z while dragging', 'along an axis; with Shift across it'], ['digits while dragging', 'enter the value'], ['Alt while dragging', 'no snapping'], ['Esc', 'take it back']]
+  const hand = [['drag', 'orbit'], ['right or middle drag, Shift+drag', 'pan'], ['wheel, pinch', 'zoom to the pointer'], ['click', 'select'], ['double click', 'go to the declaration'], ['drag a point', 'move it: the number in the text follows'], ['X Y Z while dragging', 'along an axis; with Shift across it'], ['S while dragging', 'on the surface under the pointer'], ['digits while dragging', 'enter the value'], ['Alt while dragging', 'no snapping'], ['Esc', 'take it back']]
   const dialog = $('dialog', { class: 'help', 'aria-label': 'help' }, $('h2', {}, 'Keys and gestures'),
     $('div', { class: 'columns' }, $('table', {}, $('tbody', {}, ...hand.map(([k, w]) => $('tr', {}, $('td', {}, k), $('td', {}, w))))), $('table', {}, $('tbody', {}, ...rows))),
     $('button', { class: 'primary', onclick: () => dialog.close() }, 'Close'))

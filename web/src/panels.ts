@@ -12,7 +12,7 @@ export interface Actions {
   hover(name: string): void
   locate(name: string): Promise<void>
   show(place: [number, number]): void
-  apply(edits: { from: number; to: number; insert: string }[]): void
+  apply(edits: { from: number; to: number; insert: string }[], version?: number): void
   toggle(name: string): void
   isolate(name: string | null): void
   inspect(name: string, by: string | null): Promise<any>

@@ -5,13 +5,14 @@ import { Newest, type Link } from './link'
 import { model, on } from './state'
 import type { Actions } from './panels'
 
-export type SheetName = 'model' | 'lines' | 'hydrostatics' | 'mesh' | 'graph' | 'curvature'
+export type SheetName = 'model' | 'lines' | 'hydrostatics' | 'areas' | 'mesh' | 'graph' | 'curvature'
 
 export class Sheets {
   current: SheetName = 'model'
   private readonly requests = new Newest<void>(() => this.build())
   private urls: string[] = []
   private marked: Record<string, number> | null = null
+  private curve: Curve | null = null
 
   constructor(private readonly host: HTMLElement, private readonly link: Link, private readonly act: Actions & { selected: () => string }) {
     on(['rev'], () => this.refresh())
@@ -32,7 +33,7 @@ export class Sheets {
   private async build(): Promise<void> {
     const name = this.current
     try {
-      const made = await (name === 'lines' ? this.lines() : name === 'hydrostatics' ? this.hydrostatics() : name === 'mesh' ? this.mesh() : name === 'graph' ? this.graph() : name === 'curvature' ? this.curvature() : [])
+      const made = await (name === 'lines' ? this.lines() : name === 'hydrostatics' ? this.hydrostatics() : name === 'areas' ? this.areas() : name === 'mesh' ? this.mesh() : name === 'graph' ? this.graph() : name === 'curvature' ? this.curvature() : [])
       if (this.current === name && name !== 'model') this.host.replaceChildren(...made)
     } catch (error) {
       if (this.current === name && (error as Error).message !== 'superseded') this.host.replaceChildren(h('p', { class: 'quiet pad' }, (error as Error).message))
@@ -64,6 +65,19 @@ export class Sheets {
     const again = h('button', { onclick: () => ((this.marked = null), this.refresh()) }, 'Mark now')
     return [h('div', { class: 'pad' }, h('h3', {}, 'Hydrostatics'), h('p', { class: 'quiet' }, `At the waterplane z = 0; lengths in ${model.unit}. The third column is the change since the mark.`), again,
       h('table', {}, h('thead', {}, h('tr', {}, h('th', {}, 'figure'), h('th', {}, 'value'), h('th', {}, 'change'))), h('tbody', {}, ...rows)))]
+  }
+
+  /** The curve of section areas, and what it was at the mark. */
+  private async areas(): Promise<HTMLElement[]> {
+    const frame = await this.link.ask('section_areas', { count: 101 })
+    const { place, area } = frame.head.areas
+    const now = { x: frame.floats(place), y: frame.floats(area) }
+    this.curve ??= now
+    const again = h('button', { onclick: () => ((this.curve = null), this.refresh()) }, 'Mark now')
+    const label = `section areas, at most ${shown(Math.max(...now.y), 4)} ${model.unit}²`
+    return [h('div', { class: 'pad' }, h('h3', {}, 'Section areas'),
+      h('p', { class: 'quiet' }, `Below the waterplane z = 0, both sides; in ${model.unit}² over x in ${model.unit}. The pale curve is that of the mark.`), again,
+      h('figure', { class: 'plan' }, plot(now, this.curve === now ? null : this.curve, model.unit, label)))]
   }
 
   private async mesh(): Promise<HTMLElement[]> {
@@ -163,22 +177,29 @@ export class Sheets {
     const frame = await this.link.ask('combs', { names: wanted })
     return (frame.head.combs as any[]).map((comb) => {
       const [x, y] = [frame.floats(comb.length), frame.floats(comb.curvature)]
-      return h('figure', { class: 'plan' }, h('figcaption', {}, `Curvature of ${comb.name} over its length`), plot(x, y, model.unit))
+      return h('figure', { class: 'plan' }, h('figcaption', {}, `Curvature of ${comb.name} over its length`), plot({ x, y }, null, model.unit, `curvature from 0 to ${shown(Math.max(...y), 3)}`))
     })
   }
 }
 
-/** A line over axes with round numbers. */
-function plot(xs: Float32Array, ys: Float32Array, unit: string): HTMLElement {
+interface Curve {
+  x: Float32Array
+  y: Float32Array
+}
+
+/** A line over axes that name their ends, with a pale one to compare. */
+function plot(now: Curve, before: Curve | null, unit: string, label: string): HTMLElement {
   const [w, height, left, bottom] = [640, 220, 62, 30]
-  const most = Math.max(...ys, 1e-12)
-  const end = xs[xs.length - 1] || 1
-  const X = (x: number) => left + ((w - left - 12) * x) / end
+  const both = before ? [before, now] : [now]
+  const most = Math.max(...both.flatMap((c) => [...c.y]), 1e-12)
+  const [start, end] = [Math.min(...both.map((c) => c.x[0])), Math.max(...both.map((c) => c.x[c.x.length - 1]))]
+  const X = (x: number) => left + ((w - left - 12) * (x - start)) / (end - start || 1)
   const Y = (y: number) => height - bottom - ((height - bottom - 12) * y) / most
-  const path = Array.from(xs, (x, k) => `${k ? 'L' : 'M'}${X(x).toFixed(1)} ${Y(ys[k]).toFixed(1)}`).join('')
-  const picture = s('svg', { viewBox: `0 0 ${w} ${height}`, class: 'plot', role: 'img', 'aria-label': `curvature from 0 to ${shown(most, 3)}` },
-    s('path', { d: `M${left} 12V${height - bottom}H${w - 12}`, class: 'axis' }), s('path', { d: path, class: 'curve' }),
+  const path = (c: Curve) => Array.from(c.x, (x, k) => `${k ? 'L' : 'M'}${X(x).toFixed(1)} ${Y(c.y[k]).toFixed(1)}`).join('')
+  const picture = s('svg', { viewBox: `0 0 ${w} ${height}`, class: 'plot', role: 'img', 'aria-label': label },
+    s('path', { d: `M${left} 12V${height - bottom}H${w - 12}`, class: 'axis' }),
+    ...both.map((c) => s('path', { d: path(c), class: c === now ? 'curve' : 'curve before' })),
     s('text', { x: left - 6, y: 18, class: 'end' }, shown(most, 3)), s('text', { x: left - 6, y: height - bottom, class: 'end' }, '0'),
-    s('text', { x: w - 12, y: height - 10, class: 'end' }, `${shown(end, 4)} ${unit}`), s('text', { x: left, y: height - 10 }, '0'))
+    s('text', { x: w - 12, y: height - 10, class: 'end' }, `${shown(end, 4)} ${unit}`), s('text', { x: left, y: height - 10 }, shown(start, 4)))
   return h('div', {}, picture)
 }

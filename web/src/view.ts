@@ -1,7 +1,7 @@
 // The picture of the model: what the engine sends, and nothing computed from it but colours.
 
 import {
-  BufferAttribute, BufferGeometry, Box3, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, Plane, Points,
+  BufferAttribute, BufferGeometry, Box3, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, Plane, Points, PointsMaterial,
   Raycaster, Scene, ShaderMaterial, Vector2, Vector3, WebGLRenderer,
 } from 'three'
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js'
@@ -108,6 +108,7 @@ export class View {
   private readonly model = new Group()
   private readonly image = new Group()
   private readonly extras = new Group()
+  private readonly others = new Group()
   private readonly dots: Points
   private dotItems: Drawn[] = []
   private readonly resolution = new Vector2(1, 1)
@@ -128,7 +129,7 @@ export class View {
     this.canvas = this.renderer.domElement
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
     host.append(this.canvas)
-    this.scene.add(this.model, this.image, this.extras)
+    this.scene.add(this.model, this.image, this.extras, this.others)
     const material = new ShaderMaterial({
       uniforms: { pixels: { value: 7 * this.renderer.getPixelRatio() } },
       vertexShader: `attribute vec3 tint; varying vec3 vTint; uniform float pixels; attribute float big;
@@ -162,8 +163,12 @@ export class View {
     const { head } = frame
     if (head.mirror !== undefined) this.symmetry = head.mirror
     for (const key of head.removed ?? []) this.remove(JSON.stringify(key))
+    if (head.all) {
+      const kept = new Set((head.items ?? []).map((item: any) => JSON.stringify(item.key)))
+      for (const key of [...this.items.keys()]) if (!kept.has(key)) this.remove(key)
+    }
     for (const item of head.items ?? []) this.put(frame, item)
-    if (!head.items && head.mirror === undefined) return false
+    if (!head.items && !head.all && head.mirror === undefined) return false
     this.settle()
     return true
   }
@@ -292,7 +297,7 @@ export class View {
   private line(kind: string): LineMaterial | LineBasicMaterial {
     let found = this.lineMaterials.get(kind)
     if (!found) {
-      const widths: Record<string, number> = { rim: 1.4, curve: 1.6, wire: 2.4, contour: 1.4, grid: 1, frame: 1.6, chosen: 3, hover: 2.6, extra: 1.4, stale: 1.2 }
+      const widths: Record<string, number> = { rim: 1.4, curve: 1.6, wire: 2.4, contour: 1.4, grid: 1, frame: 1.6, chosen: 3, hover: 2.6, extra: 1.4, stale: 1.2, foreign: 0.8 }
       if (kind === 'edge') found = new LineBasicMaterial({ transparent: true, opacity: 0.22 })
       else found = new LineMaterial({ linewidth: widths[kind] ?? 1.4 })
       if (found instanceof LineMaterial) found.resolution.copy(this.resolution)
@@ -307,7 +312,7 @@ export class View {
     const d = this.dark
     const inks: Record<string, number> = {
       edge: d ? 0xdfe6ee : 0x1b2530, rim: d ? 0xc9d3de : 0x2b3541, curve: d ? 0x7fb0e6 : 0x2a5d9c, wire: d ? 0xe6edf5 : 0x1b2533, contour: d ? 0xe2b66b : 0x8a5a12,
-      grid: d ? 0x8a97a5 : 0x7a8794, frame: d ? 0xa0acb8 : 0x5c6875, chosen: 0xe8711a, hover: 0xf09a52, extra: 0xc2412d, stale: d ? 0x727d89 : 0xa3acb6,
+      grid: d ? 0x8a97a5 : 0x7a8794, frame: d ? 0xa0acb8 : 0x5c6875, chosen: 0xe8711a, hover: 0xf09a52, extra: 0xc2412d, stale: d ? 0x727d89 : 0xa3acb6, foreign: d ? 0x9aa7b4 : 0x4a5560,
     }
     for (const [kind, m] of this.lineMaterials) m.color.set(inks[kind] ?? 0x556270)
   }
@@ -439,6 +444,69 @@ export class View {
       item.geometry.setAttribute('tint', new BufferAttribute(tint, 3))
     }
     this.settle()
+  }
+
+  /** Arrows along a field of vectors, at some of the vertices: the longest is an eighth of the model. */
+  arrows(): number[][] {
+    const fielded = [...this.items.values()].filter((i) => i.field && i.components === 3 && i.group.visible)
+    const total = fielded.reduce((n, i) => n + i.field!.length / 3, 0)
+    const step = Math.max(1, Math.ceil(total / 600))
+    let most = 0
+    for (const i of fielded) for (let k = 0; k + 2 < i.field!.length; k += 3) most = Math.max(most, Math.hypot(i.field![k], i.field![k + 1], i.field![k + 2]))
+    if (!(most > 0) || !Number.isFinite(most)) return []
+    const factor = this.bounds.getSize(new Vector3()).length() / 8 / most
+    const runs: number[][] = []
+    for (const item of fielded) {
+      for (let k = 0; k < item.field!.length / 3; k += step) {
+        const from = new Vector3().fromArray(item.position, 3 * k).add(item.origin)
+        const along = new Vector3().fromArray(item.field!, 3 * k).multiplyScalar(factor)
+        const length = along.length()
+        if (!(length > this.bounds.getSize(new Vector3()).length() * 2e-3)) continue
+        const tip = from.clone().add(along)
+        runs.push([...from.toArray(), ...tip.toArray()])
+        // Two strokes of the head, across the direction of view.
+        const across = along.clone().cross(this.camera.towards).normalize().multiplyScalar(0.12 * length)
+        const back = tip.clone().addScaledVector(along, -0.25)
+        runs.push([...back.clone().add(across).toArray(), ...tip.toArray(), ...back.sub(across).toArray()])
+      }
+    }
+    return runs
+  }
+
+  /** Meshes and points of other programs over the model, coloured by their distance from it. */
+  foreign(all: { name: string; position: Float32Array; triangle: Uint32Array; edge: Uint32Array; deviation: Float32Array | null }[]): Scale | null {
+    this.others.clear()
+    const known = all.map((o) => o.deviation).filter((d) => d !== null)
+    const span = known.length ? scale(known, true) : null
+    for (const one of all) {
+      const g = new BufferGeometry()
+      g.setAttribute('position', new BufferAttribute(one.position, 3))
+      const tint = new Float32Array(one.position.length)
+      for (let k = 0; k < tint.length / 3; k++) tint.set(one.deviation && span ? coloured(one.deviation[k], span) : [0.5, 0.5, 0.5], 3 * k)
+      g.setAttribute('tint', new BufferAttribute(tint, 3))
+      if (one.triangle.length) {
+        g.setIndex(new BufferAttribute(one.triangle, 1))
+        g.computeVertexNormals()
+        this.others.add(new Mesh(g, this.material('', 0, 1, 1)))
+      } else {
+        g.setAttribute('color', new BufferAttribute(tint, 3))
+        const points = new Points(g, new PointsMaterial({ size: 7 * this.renderer.getPixelRatio(), sizeAttenuation: false, vertexColors: true, depthTest: false }))
+        this.others.add(points)
+      }
+      if (one.edge.length) this.others.add(this.fat(one.edge, one.position, 'foreign'))
+    }
+    this.draw()
+    return span
+  }
+
+  /** The place of a surface under a place of the picture, but not of an object. */
+  surfaceAt(x: number, y: number, but: string): Picked | null {
+    const hits = this.ray(x, y).intersectObjects([this.model], true)
+    for (const hit of hits) {
+      const item = hit.object instanceof Mesh && !(hit.object as any).isLineSegments2 && hit.object.visible ? owners.get(hit.object) : undefined
+      if (item && item.object !== but) return { object: item.object, kind: item.kind, point: hit.point }
+    }
+    return null
   }
 
   /** Lines that are drawn besides: combs, sections, measures, arrows. */

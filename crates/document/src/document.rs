@@ -13,7 +13,7 @@ use moldloft_model::{Applied, Extent, Graph};
 use moldloft_num::Dual4;
 use moldloft_panel::{Nominal, Panelling};
 use moldloft_registry::{Kept, Registry, Row, Scalar, Value};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -33,6 +33,7 @@ pub struct Document {
     pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
     pub(crate) panelled: Option<(u64, Arc<Panelled>)>,
     pub(crate) bodied: Option<Arc<crate::measures::bodied::Bodied>>,
+    pub(crate) whole: HashMap<&'static str, crate::measures::bodied::Whole>,
     pub(crate) blocked: Option<(u64, Arc<crate::measures::blocks::Blocked>)>,
     /// The counts of divisions at the text's own values, and the version of the text.
     nominal: Option<(u64, Nominal)>,
@@ -117,6 +118,7 @@ impl Document {
             dual: None,
             panelled: None,
             bodied: None,
+            whole: HashMap::new(),
             blocked: None,
             nominal: None,
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },

@@ -35,7 +35,7 @@ pub use document::{Document, Panelled};
 pub use editor::{Completion, CompletionKind};
 pub use measures::blocks::Blocked;
 pub use measures::contour_lines::Section;
-pub use measures::floating::{AfloatOptions, FloatAnswer, FloatRequest, Immersion, WeightItem};
+pub use measures::floating::{FloatAnswer, FloatRequest, FlotationOptions, Immersion, WeightItem};
 pub use measures::hydrostatics::Options as FloatOptions;
 pub use measures::surface_fields::PatchFields;
 pub use moldloft_lang::{NoFiles, Param, ReadError, ReadText, SolveStatus, World, registry};

@@ -6,6 +6,7 @@
 use moldloft_lang::{ReadError, ReadText, World};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The most bytes of one file.
 const LARGEST: u64 = 256 << 20;
@@ -78,6 +79,33 @@ impl World for FileWorld {
         }
         let name = if from.is_none() { path.into() } else { found.display().to_string() };
         Ok(ReadText { name, bytes: bytes.into() })
+    }
+}
+
+/// A text that was read: as it was asked for, by which text, and what it was.
+pub type ReadAs = (String, Option<String>, ReadText);
+
+/// A world that notes what is read, so that a page can carry it.
+pub struct Noted<W> {
+    world: W,
+    read: Arc<Mutex<Vec<ReadAs>>>,
+}
+
+impl<W: World> Noted<W> {
+    /// That world; what is read is noted in `read`, each asking once.
+    pub fn new(world: W, read: Arc<Mutex<Vec<ReadAs>>>) -> Self {
+        Self { world, read }
+    }
+}
+
+impl<W: World> World for Noted<W> {
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, ReadError> {
+        let found = self.world.read(path, from)?;
+        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        if !read.iter().any(|(p, f, _)| p == path && f.as_deref() == from) {
+            read.push((path.into(), from.map(str::to_owned), found.clone()));
+        }
+        Ok(found)
     }
 }
 

@@ -4,7 +4,8 @@
 //! coefficients are not negligible is halved. What is left of them bounds the distance to the surface.
 
 use crate::bernstein::{MOST_DEGREE, basis, halves};
-use moldloft_num::{Real, Surface, Vec3};
+use crate::breaks::break_rate;
+use moldloft_num::{Order, Real, Surface, Vec3};
 use std::sync::OnceLock;
 
 /// A polynomial patch, of which `reversed` has its normal against S_u x S_v.
@@ -177,7 +178,8 @@ pub(crate) fn cells_of<T: Real>(
     let [bu, bv] = surface.breaks();
     let [ju, jv] = surface.joints();
     let (us, vs) = (ends(bu, ju), ends(bv, jv));
-    let mut stack: Vec<([f64; 4], [u32; 2])> = Vec::new();
+    let (us, vs) = (moving(surface, 0, &us), moving(surface, 1, &vs));
+    let mut stack: Vec<([T; 4], [u32; 2])> = Vec::new();
     for u in us.windows(2).rev() {
         for v in vs.windows(2).rev() {
             stack.push(([u[0], u[1], v[0], v[1]], [0, 0]));
@@ -203,8 +205,8 @@ pub(crate) fn cells_of<T: Real>(
             let mut deeper = depth;
             deeper[along] += 1;
             let parts = match along {
-                0 => [[u0, 0.5 * (u0 + u1), v0, v1], [0.5 * (u0 + u1), u1, v0, v1]],
-                _ => [[u0, u1, v0, 0.5 * (v0 + v1)], [u0, u1, 0.5 * (v0 + v1), v1]],
+                0 => [[u0, (u0 + u1) * 0.5, v0, v1], [(u0 + u1) * 0.5, u1, v0, v1]],
+                _ => [[u0, u1, v0, (v0 + v1) * 0.5], [u0, u1, (v0 + v1) * 0.5, v1]],
             };
             stack.push((parts[1], deeper));
             stack.push((parts[0], deeper));
@@ -215,17 +217,57 @@ pub(crate) fn cells_of<T: Real>(
     Some(cells)
 }
 
+/// How far beside a break a side of it is looked at, in shares of the cell.
+const BESIDE: f64 = 1e-9;
+
+/// The ends of the cells along u (0) or v (1), each with the derivatives of its place: without them a derivative would
+/// miss the strip that passes from one side of a corner to the other.
+fn moving<T: Real>(surface: &dyn Surface<T>, along: usize, ends: &[f64]) -> Vec<T> {
+    let last = ends.len() - 1;
+    let end = |(k, &t): (usize, &f64)| {
+        let inner = T::PARTS > 1 && 0 < k && k < last;
+        let aside = |k: usize| BESIDE * (ends[k + 1] - ends[k]);
+        if inner { break_rate(surface, along, t, [aside(k - 1), aside(k)]) + t } else { T::from(t) }
+    };
+    ends.iter().enumerate().map(end).collect()
+}
+
+/// Positions of a surface on a grid of parameters of which the first and the last may be moving breaks: there the side
+/// that the grid is on counts.
+fn moving_grid<T: Real>(surface: &dyn Surface<T>, us: &[T], vs: &[T]) -> Vec<Vec3<T>> {
+    let inside = |ts: &[T], k: usize| {
+        let step = BESIDE * (ts[ts.len() - 1].re() - ts[0].re());
+        match k {
+            0 => step,
+            k if k + 1 == ts.len() => -step,
+            _ => 0.0,
+        }
+    };
+    let mut points = Vec::with_capacity(us.len() * vs.len());
+    for (i, &u) in us.iter().enumerate() {
+        let du = inside(us, i);
+        for (j, &v) in vs.iter().enumerate() {
+            let dv = inside(vs, j);
+            // The derivatives beside the corner; the place itself.
+            let jet = surface.jet(T::from(u.re() + du), T::from(v.re() + dv), Order::First);
+            let beside = jet.p - jet.u * T::from(du) - jet.v * T::from(dv)
+                + jet.u * (u - u.re())
+                + jet.v * (v - v.re());
+            let place = surface.jet(T::from(u.re()), T::from(v.re()), Order::Zero).p;
+            points.push(beside - Vec3::lifted(beside.re()) + Vec3::lifted(place.re()));
+        }
+    }
+    points
+}
+
 /// Places off the Chebyshev points at which an interpolation is compared.
 const PROBES: [f64; 3] = [0.071, 0.457, 0.893];
 
 /// The interpolation of a surface on [u0, u1] x [v0, v1] at Chebyshev points, of the lowest degree that keeps it.
-fn fit<T: Real>(
-    surface: &dyn Surface<T>,
-    [u0, u1, v0, v1]: [f64; 4],
-    reversed: bool,
-) -> Option<Cell<T>> {
+fn fit<T: Real>(surface: &dyn Surface<T>, frame: [T; 4], reversed: bool) -> Option<Cell<T>> {
     const N: usize = MOST_DEGREE + 1;
     let tables = tables();
+    let [u0, u1, v0, v1] = frame.map(|t| t.re());
     let within = |a: f64, b: f64, s: f64| match s {
         0.0 => a,
         1.0 => b,
@@ -233,8 +275,14 @@ fn fit<T: Real>(
     };
     let us: Vec<f64> = tables.nodes.iter().map(|&s| within(u0, u1, s)).collect();
     let vs: Vec<f64> = tables.nodes.iter().map(|&s| within(v0, v1, s)).collect();
-    let mut points = vec![Vec3::zero(); N * N];
-    surface.grid(&us, &vs, &mut points, None);
+    let points = if frame.iter().all(|t| t.is_constant()) {
+        let mut points = vec![Vec3::zero(); N * N];
+        surface.grid(&us, &vs, &mut points, None);
+        points
+    } else {
+        let along = |a: T, b: T| tables.nodes.iter().map(|&s| a + (b - a) * s).collect::<Vec<T>>();
+        moving_grid(surface, &along(frame[0], frame[1]), &along(frame[2], frame[3]))
+    };
     if !points.iter().all(|p| p.is_finite()) {
         return None;
     }

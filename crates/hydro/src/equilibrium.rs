@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::figures::displaced;
-use crate::{Afloat, Attitude, Water, afloat};
+use crate::{Attitude, Flotation, Water, flotation};
 use moldloft_mesh::Symmetry;
 use moldloft_num::{Real, Vec3, solve_dense};
 use std::fmt;
@@ -33,7 +33,7 @@ pub enum Status {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solved<T> {
     /// The figures there.
-    pub afloat: Afloat<T>,
+    pub flotation: Flotation<T>,
     /// Whether it is one.
     pub status: Status,
     /// Newton steps.
@@ -155,9 +155,9 @@ pub fn equilibrium<T: Real>(
             unknowns[k] += dx;
         }
     }
-    let afloat = afloat(body, water, Attitude::of(unknowns), loading.centre);
-    let stable = afloat.stable.unwrap_or(true);
-    Ok(Solved { afloat, status, iterations, residual, stable, lolls })
+    let flotation = flotation(body, water, Attitude::of(unknowns), loading.centre);
+    let stable = flotation.stable.unwrap_or(true);
+    Ok(Solved { flotation, status, iterations, residual, stable, lolls })
 }
 
 /// The equations of rest, made dimensionless: volume, trimming arm, heeling arm.
@@ -342,7 +342,7 @@ impl<'m> Problem<'m, f64> {
     }
 
     fn stable(&self, at: [f64; 3]) -> bool {
-        let found = afloat(self.body, self.water, Attitude::of(at), self.loading.centre);
+        let found = flotation(self.body, self.water, Attitude::of(at), self.loading.centre);
         found.stable.unwrap_or(true)
     }
 

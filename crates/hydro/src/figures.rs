@@ -12,7 +12,7 @@ pub(crate) struct Floating<T> {
     pub figures: Hydrostatics<T>,
     /// The integral of x y over the waterplane about its centre.
     pub product_moment: T,
-    /// See [`crate::Afloat::errors`].
+    /// See [`crate::Flotation::errors`].
     pub errors: [f64; 6],
 }
 

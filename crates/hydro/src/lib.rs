@@ -8,23 +8,25 @@
 //!
 //! Invariant: this crate knows surfaces and panels only, no names, no files; no result depends on threads.
 
-mod afloat;
 mod bernstein;
 mod body;
+mod breaks;
 mod cell;
 mod equilibrium;
 mod figures;
+mod flotation;
 mod gauss;
 mod integrals;
 mod measures;
 mod section;
 mod strip;
 
-pub use afloat::{Afloat, Attitude, Water, afloat, bottom, bounds};
 pub use body::{Body, Measures, Side, USUAL_ACCURACY, surface_measures};
+pub use breaks::break_rate;
 pub use cell::Cell;
 pub use equilibrium::{FloatError, Loading, Solved, Status, equilibrium};
 pub use figures::hydrostatics;
+pub use flotation::{Attitude, Flotation, Water, bottom, bounds, flotation};
 pub use measures::{curve_measures, solid_measures};
 pub use section::section_area;
 

@@ -1,81 +1,146 @@
 //! Lengths and volumes with their centres, by quadrature on the shapes themselves.
 
 use crate::gauss::gauss;
-use moldloft_num::{Curve, Order, Real, Solid, Vec3, integrate};
+use moldloft_num::{Curve, Order, Real, Solid, Vec3, gauss_legendre};
+use moldloft_spline::curve_integral;
 
 /// Relative differences below this count as none.
 const ACCURACY: f64 = 1e-11;
 
+/// The volume of a solid has settled when halves of its parts change no more than this share of it.
+const SETTLED: f64 = 1e-11;
+
 /// The length of a curve and the centre of its length.
 pub fn curve_measures<T: Real>(curve: &dyn Curve<T>) -> (T, Vec3<T>) {
-    let mut ends = vec![0.0];
-    let mut breaks = curve.joints();
-    breaks.extend(curve.breaks());
-    breaks.retain(|t| *t > 0.0 && *t < 1.0);
-    breaks.sort_by(f64::total_cmp);
-    ends.extend(breaks);
-    ends.push(1.0);
-    let (mut length, mut moment) = (T::zero(), Vec3::zero());
-    for pair in ends.windows(2).filter(|p| p[1] > p[0]) {
-        let [a, b] = [pair[0], pair[1]].map(T::from);
-        let speed = |t: T| {
-            let square = curve.jet(t, Order::First)[1].norm_sq();
-            if square.re() > 0.0 { square.sqrt() } else { T::zero() }
-        };
-        let rough = moldloft_num::gauss_legendre(a, b, speed).re().abs();
-        let reach = curve.jet(a, Order::Zero)[0].re().norm() + rough;
-        length += integrate(a, b, ACCURACY * rough, speed);
-        let along = |axis: usize| {
-            integrate(a, b, ACCURACY * rough * reach, |t| {
-                speed(t) * curve.jet(t, Order::Zero)[0][axis]
-            })
-        };
-        moment += Vec3::new(along(0), along(1), along(2));
+    let speed = |t: T| {
+        let square = curve.jet(t, Order::First)[1].norm_sq();
+        if square.re() > 0.0 { square.sqrt() } else { T::zero() }
+    };
+    let whole =
+        |accuracy: f64, f: &dyn Fn(T) -> T| curve_integral(curve, T::zero(), T::one(), accuracy, f);
+    let rough = gauss_legendre(T::zero(), T::one(), speed).re().abs();
+    let middle = curve.jet(T::from(0.5), Order::Zero)[0];
+    let length = whole(ACCURACY * rough, &speed);
+    if length.re() <= 0.0 {
+        return (length, curve.jet(T::zero(), Order::Zero)[0]);
     }
-    let centre =
-        if length.re() > 0.0 { moment / length } else { curve.jet(T::zero(), Order::Zero)[0] };
-    (length, centre)
+    // About a place of the curve, so that one far away loses no digits.
+    let moment = |axis: usize| {
+        let arm = |t: T| speed(t) * (curve.jet(t, Order::Zero)[0][axis] - middle[axis]);
+        whole(ACCURACY * rough * rough, &arm)
+    };
+    let moment = Vec3::new(moment(0), moment(1), moment(2));
+    (length, middle + moment / length)
 }
 
-/// The volume of a solid and its centre: eight Gauss points along each parameter of so many equal pieces that
-/// twice as many change nothing. `None` when a place is not finite.
-pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>)> {
-    let sums = |pieces: usize| {
+/// A part of a solid that may be halved: the worst first, the earlier of two alike.
+struct Part<T> {
+    low: [f64; 3],
+    high: [f64; 3],
+    sums: Sums<T>,
+    /// How far the sums of its halves are from its own, and the parameter along which they are farthest.
+    error: f64,
+    along: usize,
+    halves: [Sums<T>; 2],
+    depth: u32,
+}
+
+/// A volume and its first moments.
+#[derive(Clone, Copy)]
+struct Sums<T> {
+    volume: T,
+    moment: Vec3<T>,
+}
+
+/// The most parts of a solid, and how often one is halved.
+const MOST_PARTS: usize = 1000;
+const DEEPEST: u32 = 48;
+
+/// A part that was halved more often has a kink inside.
+const KINKED: u32 = 20;
+
+/// The volume of a solid, its centre, and an estimate of the error of the volume. `None` when a place is not finite.
+///
+/// By Gauss points, eight along each parameter of a part; the part whose halves differ most from it is halved along
+/// the parameter of that difference, so that a kink inside is closed in upon. Where there is one, derivatives have
+/// no bound: the error is infinite then.
+pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)> {
+    let sums = |low: [f64; 3], high: [f64; 3]| -> Sums<T> {
         let (mut volume, mut moment) = (T::zero(), Vec3::zero());
-        let rule: Vec<(f64, f64)> = (0..pieces)
-            .flat_map(|k| {
-                let step = 1.0 / pieces as f64;
-                gauss(8).iter().map(move |(s, w)| ((k as f64 + s) * step, w * step))
-            })
-            .collect();
-        for &(u, a) in &rule {
-            for &(v, b) in &rule {
-                for &(w, c) in &rule {
+        let rule = |k: usize| {
+            let (low, step) = (low[k], high[k] - low[k]);
+            gauss(8).iter().map(move |(s, w)| (low + step * s, w * step))
+        };
+        for (u, a) in rule(0) {
+            for (v, b) in rule(1) {
+                for (w, c) in rule(2) {
                     let jet = solid.jet(u.into(), v.into(), w.into());
-                    let part = jet.u.cross(jet.v).dot(jet.w) * (a * b * c);
+                    let part = jet.jacobian() * (a * b * c);
                     volume += part;
                     moment += jet.p * part;
                 }
             }
         }
-        (volume, moment)
+        Sums { volume, moment }
     };
-    let mut last = sums(1);
-    for pieces in [2, 4] {
-        let next = sums(pieces);
-        let off = (next.0 - last.0).re().abs();
-        let near = off <= 1e-9 * next.0.re().abs();
-        last = next;
-        if near {
+    let part = |low: [f64; 3], high: [f64; 3], whole: Sums<T>, depth: u32| -> Part<T> {
+        let tried = [0, 1, 2].map(|axis| {
+            let middle = 0.5 * (low[axis] + high[axis]);
+            let (mut end, mut start) = (high, low);
+            (end[axis], start[axis]) = (middle, middle);
+            let halves = [sums(low, end), sums(start, high)];
+            let both = halves[0].volume + halves[1].volume;
+            ((both - whole.volume).re().abs(), halves)
+        });
+        let along = (0..3).fold(0, |k, j| if tried[j].0 > tried[k].0 { j } else { k });
+        let (error, halves) = tried[along];
+        Part { low, high, sums: whole, error, along, halves, depth }
+    };
+    let (low, high) = ([0.0; 3], [1.0; 3]);
+    let mut open = vec![part(low, high, sums(low, high), 0)];
+    let mut settled: Vec<Part<T>> = Vec::new();
+    let mut size = open[0].sums.volume.re().abs();
+    while let Some(at) =
+        (0..open.len()).reduce(|a, b| if open[b].error > open[a].error { b } else { a })
+    {
+        let left: f64 = open.iter().map(|p| p.error).sum();
+        if left <= SETTLED * size || !left.is_finite() || open.len() + settled.len() >= MOST_PARTS {
             break;
         }
+        let worst = open.swap_remove(at);
+        if worst.depth >= DEEPEST {
+            settled.push(worst);
+            continue;
+        }
+        let middle = 0.5 * (worst.low[worst.along] + worst.high[worst.along]);
+        let (mut end, mut start) = (worst.high, worst.low);
+        (end[worst.along], start[worst.along]) = (middle, middle);
+        let [lower, upper] = worst.halves;
+        open.push(part(worst.low, end, lower, worst.depth + 1));
+        open.push(part(start, worst.high, upper, worst.depth + 1));
+        size = size.max(open.iter().chain(&settled).map(|p| p.sums.volume.re()).sum::<f64>().abs());
     }
-    let (volume, moment) = last;
+    let (mut volume, mut moment, mut error) = (T::zero(), Vec3::zero(), 0.0);
+    for part in open.iter().chain(&settled) {
+        for half in &part.halves {
+            volume += half.volume;
+            moment += half.moment;
+        }
+        error += part.error;
+    }
+    // A kink that was closed in upon may move when a parameter does, and what passes over it is in no part.
+    let kinked = open.iter().chain(&settled).any(|part| part.depth > KINKED);
+    if T::PARTS > 1
+        && kinked
+        && !(volume.is_constant() && [moment.x, moment.y, moment.z].iter().all(|x| x.is_constant()))
+    {
+        error = f64::INFINITY;
+    }
     if !volume.is_finite() || !moment.is_finite() {
         return None;
     }
     if volume.re() == 0.0 {
-        return Some((T::zero(), solid.eval(0.5.into(), 0.5.into(), 0.5.into())));
+        return Some((T::zero(), solid.eval(0.5.into(), 0.5.into(), 0.5.into()), error));
     }
-    Some((volume.abs(), moment / volume))
+    Some((volume.abs(), moment / volume, error))
 }

@@ -1,6 +1,6 @@
 //! Closed forms.
 
-use crate::{Attitude, Body, Side, Water, afloat};
+use crate::{Attitude, Body, Side, Water, flotation};
 use moldloft_num::{Dual, Jet, Real, SurfaceFormula, Vec3};
 use moldloft_testing::{Random, soak};
 use std::f64::consts::PI;
@@ -48,7 +48,7 @@ fn a_sphere_is_measured() {
 }
 
 #[test]
-fn a_sphere_afloat() {
+fn a_floating_sphere() {
     // Down to a sliver, at the level of an edge of cells, and all but under.
     for h in [0.01, 0.3, 0.9, 1.0, 1.5, 1.99] {
         let ball = ellipsoid([1.0; 3], Vec3::zero(), 1e-8);
@@ -76,7 +76,7 @@ fn an_ellipsoid_below_any_plane() {
         let norm = w.iter().map(|x| x * x).sum::<f64>().sqrt();
         let delta = random.between(-0.95, 0.95);
         let attitude = Attitude { level: delta * norm, trim, heel };
-        let found = afloat(&body, Water::default(), attitude, None);
+        let found = flotation(&body, Water::default(), attitude, None);
         let abc = axes[0] * axes[1] * axes[2];
         let share = 2.0 / 3.0 + delta - delta.powi(3) / 3.0;
         let volume = PI * abc * share;
@@ -151,13 +151,13 @@ fn a_torus_half_immersed_and_on_its_side() {
     let body = Body::new(&[side], [], Vec::new(), 8.0, 1e-7).unwrap();
     let volume = 2.0 * PI * PI * big * small * small;
     assert!((body.measures().volume - volume).abs() < 1e-6);
-    let flat = afloat(&body, Water::default(), Attitude::upright(0.0), None);
+    let flat = flotation(&body, Water::default(), Attitude::upright(0.0), None);
     assert!((flat.earth.volume - volume / 2.0).abs() < 1e-6);
     let ring = PI * ((big + small).powi(2) - (big - small).powi(2));
     let plane = flat.earth.waterplane.unwrap();
     assert!((plane.area - ring).abs() < 1e-6 && (plane.beam - 2.0 * (big + small)).abs() < 1e-9);
     let upright = Attitude { heel: PI / 2.0, ..Attitude::upright(0.0) };
-    let two = afloat(&body, Water::default(), upright, None);
+    let two = flotation(&body, Water::default(), upright, None);
     assert!((two.earth.volume - volume / 2.0).abs() < 1e-6);
     assert!((two.earth.waterplane.unwrap().area - 2.0 * PI * small * small).abs() < 1e-6);
 }
@@ -179,7 +179,7 @@ impl SurfaceFormula for Bowl {
 fn a_skin_with_an_infinite_tangent() {
     let side = Side { surface: &Bowl, reversed: false, open_edges: [false, false, true, false] };
     let body = Body::new(&[side], [], Vec::new(), 2.0, 1e-6).unwrap();
-    let found = afloat(&body, Water::default(), Attitude::upright(0.0), None);
+    let found = flotation(&body, Water::default(), Attitude::upright(0.0), None);
     let off = (found.earth.volume.abs() - PI / 2.0).abs();
     assert!(off <= found.errors[0] && found.errors[0] < 1e-5, "{off} {:?}", found.errors);
     let area = PI / 6.0 * (5f64.powf(1.5) - 1.0);

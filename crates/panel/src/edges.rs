@@ -48,6 +48,8 @@ pub(crate) trait PatchLookup<T: Real> {
     fn owner(&self, draft: u32) -> Key;
     /// A point object, by its identity in the graph that was planned.
     fn point(&self, key: Key) -> Option<&Point<T>>;
+    /// The derivatives of the place of a knuckle along u (0) or v (1) of a draft, with a real part of 0.
+    fn knuckle_rate(&self, draft: u32, along: usize, at: f64) -> Option<T>;
 }
 
 /// The parameters of the divisions of edge `k` of a draft, from 0 to 1.
@@ -118,8 +120,20 @@ fn parameter<T: Real>(source: MarkSource, places: &impl PatchLookup<T>) -> Optio
         MarkSource::Knuckle { draft, edge, piece, share, .. } => {
             let k = usize::from(edge);
             let pieces = pieces(&places.edges(draft)?.edges[k], places.owner(draft), k)?;
-            let piece = pieces.get(usize::from(piece))?;
-            Some(piece.from.t + (piece.to.t - piece.from.t) * share)
+            let p = usize::from(piece);
+            let piece = pieces.get(p)?;
+            let begin = if p == 0 { T::zero() } else { pieces[p - 1].until };
+            let reach = piece.until - begin;
+            // The knuckle goes where its corner goes, and the ends of the piece go their own ways.
+            let place = if T::PARTS == 1 {
+                T::from(share)
+            } else {
+                let at = begin.re() + reach.re() * share;
+                let moved = places.knuckle_rate(draft, k % 2, at)? - begin - reach * share;
+                let moved = moved / reach;
+                moved - moved.re() + share
+            };
+            Some(piece.from.t + (piece.to.t - piece.from.t) * place)
         }
     }
 }

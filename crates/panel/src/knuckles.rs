@@ -11,7 +11,7 @@ const TURN: f64 = 1e-5;
 
 /// A break is one to rounding, since it may have been shared out among pieces; tangents are taken so far
 /// before and after it.
-const ASIDE: f64 = 1e-9;
+pub(crate) const ASIDE: f64 = 1e-9;
 
 /// Each break is tried at so many places along it.
 const TRIALS: usize = 5;

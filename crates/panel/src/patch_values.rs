@@ -4,8 +4,10 @@
 use crate::border_curves;
 use crate::draft::surface_of;
 use crate::edges::{EdgePlan, PatchLookup, along_edge, evaluated};
+use crate::knuckles::ASIDE;
 use crate::roots::{MarkSource, Stop};
 use crate::topology::{PanelTopology, PatchTopology};
+use moldloft_hydro::break_rate;
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
 use moldloft_num::trace::{Edges, Key};
@@ -122,5 +124,10 @@ impl<T: Scalar> PatchLookup<T> for PatchValues<'_, T> {
             Value::Point(point) => Some(point),
             _ => None,
         }
+    }
+
+    fn knuckle_rate(&self, draft: u32, along: usize, at: f64) -> Option<T> {
+        let surface = self.surfaces[draft as usize].as_ref()?;
+        Some(break_rate(&**surface, along, at, [ASIDE; 2]))
     }
 }

@@ -10,7 +10,7 @@ use crate::value::to_python;
 use crate::work::{interruptible, interruptible_shared};
 use moldloft_diag::Sources;
 use moldloft_document::searches::Searches;
-use moldloft_document::{AfloatOptions, Document, FloatAnswer, FloatRequest, Format, Immersion};
+use moldloft_document::{Document, FloatAnswer, FloatRequest, FlotationOptions, Format, Immersion};
 use moldloft_export::{SplinePatch, WriteOptions, format_named, spline_patches};
 use moldloft_host::FileWorld;
 use moldloft_model::Object;
@@ -554,8 +554,15 @@ impl PyDocument {
             FloatRequest { immersion, trim, heel }
         };
         let requests: Vec<FloatRequest> = rows.into_iter().map(request).collect();
-        let options =
-            AfloatOptions { density, gravity, centimetre, centre, one_side, of_weights, accuracy };
+        let options = FlotationOptions {
+            density,
+            gravity,
+            centimetre,
+            centre,
+            one_side,
+            of_weights,
+            accuracy,
+        };
         let names = by.clone();
         let answers = self.long_checked(py, move |d| d.floating(&requests, options, &by))?;
         answers.iter().map(|answer| float_facts(py, answer, &names)).collect()

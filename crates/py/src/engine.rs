@@ -5,14 +5,13 @@
 //! The parent has the text and may end this process at any time. A request `cancel` stops the one that is
 //! under way; everything else is answered in order.
 
-use moldloft_host::FileWorld;
+use moldloft_host::{FileWorld, Noted, ReadAs};
 use moldloft_session::Session;
 use pyo3::prelude::*;
 use std::io::{Read, Write};
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc;
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
 /// The longest request.
 const LONGEST: u32 = 64 << 20;
@@ -78,7 +77,8 @@ fn read(input: &mut impl Read) -> Option<Vec<u8>> {
 /// A session in this process, for pages that are made once.
 #[pyclass(name = "Session", module = "moldloft._core")]
 pub struct PySession {
-    inner: std::sync::Mutex<Session>,
+    inner: Mutex<Session>,
+    read: Arc<Mutex<Vec<ReadAs>>>,
 }
 
 #[pymethods]
@@ -91,17 +91,31 @@ impl PySession {
         folder: Option<String>,
         library: Vec<String>,
     ) -> Self {
+        let read = Arc::<Mutex<Vec<ReadAs>>>::default();
         let session = py.detach(|| {
-            let world = Box::new(FileWorld::new(folder.as_deref().map(Path::new), &library));
-            Session::new(world, name, text)
+            let files = FileWorld::new(folder.as_deref().map(Path::new), &library);
+            Session::new(Box::new(Noted::new(files, read.clone())), name, text)
         });
-        Self { inner: std::sync::Mutex::new(session) }
+        Self { inner: Mutex::new(session), read }
+    }
+
+    /// The files that were read: as they were asked for, by which text, their names and bytes.
+    fn files<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> Vec<(String, Option<String>, String, Bound<'py, pyo3::types::PyBytes>)> {
+        let read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        let one = |(path, from, text): &ReadAs| {
+            let bytes = pyo3::types::PyBytes::new(py, &text.bytes);
+            (path.clone(), from.clone(), text.name.clone(), bytes)
+        };
+        read.iter().map(one).collect()
     }
 
     /// The reply to a request, as a frame.
     fn answer<'py>(&self, py: Python<'py>, request: &str) -> Bound<'py, pyo3::types::PyBytes> {
         let frame = py.detach(|| {
-            let mut session = self.inner.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            let mut session = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
             session.answer(request)
         });
         pyo3::types::PyBytes::new(py, &frame)

@@ -7,7 +7,9 @@ use moldloft_document::Document;
 use moldloft_model::Object;
 use moldloft_num::Vec3;
 use moldloft_registry::{Unit, Value as Quantity};
+use rustc_hash::FxHasher;
 use serde_json::{Value, json};
+use std::hash::{Hash, Hasher};
 
 /// The most items of a list that are spelled out.
 const MOST_SHOWN: usize = 8;
@@ -34,6 +36,23 @@ pub fn params(document: &Document, text: &str) -> Value {
         })
     };
     document.params().iter().map(one).collect()
+}
+
+/// A word that changes when [`objects`] does, found without spelling them out.
+pub fn objects_stamp(document: &Document) -> u64 {
+    let graph = document.graph();
+    let mut hasher = FxHasher::default();
+    for o in graph.objects() {
+        o.name.hash(&mut hasher);
+        o.row.name.hash(&mut hasher);
+        o.value().map_or(o.row.class, Quantity::class).name().hash(&mut hasher);
+        (o.fault().is_some(), o.blocked_by().is_some(), o.head.shown()).hash(&mut hasher);
+        o.parents.len().hash(&mut hasher);
+        for key in &o.parents {
+            key.hash(&mut hasher);
+        }
+    }
+    hasher.finish()
 }
 
 /// The objects in the order of declaration.

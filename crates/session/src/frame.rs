@@ -73,6 +73,8 @@ pub struct Known {
     items: HashMap<(u8, Arc<str>), Stamps>,
     /// Texts of other facts that were sent, by their names.
     facts: HashMap<&'static str, String>,
+    /// Stamps of facts that are long, by their names.
+    stamps: HashMap<&'static str, u64>,
 }
 
 impl Known {
@@ -82,6 +84,19 @@ impl Known {
         if self.facts.get(key) != Some(&text) {
             self.facts.insert(key, text);
             frame.put(key, value);
+        }
+    }
+
+    /// Adds a fact whose stamp is not that of what was sent before.
+    pub fn stamped(
+        &mut self,
+        frame: &mut Frame,
+        key: &'static str,
+        stamp: u64,
+        value: impl FnOnce() -> Value,
+    ) {
+        if self.stamps.insert(key, stamp) != Some(stamp) {
+            frame.put(key, value());
         }
     }
 

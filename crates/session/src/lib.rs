@@ -25,6 +25,7 @@ mod drag;
 mod facts;
 mod fields;
 pub mod frame;
+mod overlay;
 mod patches;
 mod reply;
 mod request;

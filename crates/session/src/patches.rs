@@ -6,6 +6,7 @@
 use moldloft_mesh::{Mesh, Patch, is_triangle};
 use moldloft_num::Vec3;
 use rustc_hash::FxHashMap;
+use std::sync::Arc;
 
 /// Cosine of 40 degrees: a sharper turn between panels is a crease.
 const CREASE: f64 = 0.766;
@@ -23,14 +24,15 @@ pub struct Connections {
     pub copies: Vec<u32>,
 }
 
-/// A patch with vertices of its own.
-pub struct DrawnPatch {
+/// What is drawn of panels at one state.
+#[derive(Clone)]
+pub struct Drawn {
     /// Positions.
     pub points: Vec<Vec3>,
     /// Unit normals, outward.
     pub normals: Vec<Vec3>,
-    /// Connectivity.
-    pub connections: Connections,
+    /// Connectivity; the same one as long as it does not change.
+    pub connections: Arc<Connections>,
 }
 
 /// Panels by the patch's own vertices.
@@ -83,57 +85,104 @@ impl Local {
     }
 }
 
-/// What is drawn of a patch.
-pub fn drawn(mesh: &Mesh, patch: &Patch) -> DrawnPatch {
-    let local = Local::new(mesh, patch);
-    let points: Vec<Vec3> = local.global.iter().map(|&v| mesh.positions()[v as usize]).collect();
-    of_faces(points, &local.faces, &local.global)
+/// A patch of a topology, prepared once for all its positions.
+pub struct PreparedPatch {
+    global: Vec<u32>,
+    panels: Prepared,
 }
 
-/// What is drawn of panels; vertices of one identity share their normal.
-pub fn of_faces(mut points: Vec<Vec3>, faces: &[[u32; 4]], identity: &[u32]) -> DrawnPatch {
-    let turned = |f: &[u32; 4]| {
-        let [a, b, c, d] = f.map(|v| points[v as usize]);
-        (c - a).cross(d - b)
-    };
-    let flat: Vec<Vec3> = faces.iter().map(turned).collect();
-    let size = identity.iter().copied().max().map_or(0, |v| v as usize + 1);
-    let mut sums = vec![Vec3::zero(); size];
-    for (face, normal) in faces.iter().zip(&flat) {
-        for &v in corners(face) {
-            sums[identity[v as usize] as usize] += *normal;
-        }
-    }
-    let mut normals: Vec<Vec3> = identity
-        .iter()
-        .map(|&v| sums[v as usize].normalized().unwrap_or(Vec3::of(0.0, 0.0, 1.0)))
-        .collect();
-    let mut connections = Connections::default();
-    let own = points.len() as u32;
-    for (face, flat) in faces.iter().zip(&flat) {
-        let unit = flat.normalized();
-        let corner = |v: u32,
-                      points: &mut Vec<Vec3>,
-                      normals: &mut Vec<Vec3>,
-                      copies: &mut Vec<u32>| {
-            let Some(unit) = unit.filter(|n| n.dot(normals[v as usize]) < CREASE) else { return v };
-            copies.push(v);
-            points.push(points[v as usize]);
-            normals.push(unit);
-            own + copies.len() as u32 - 1
-        };
-        let corners: Vec<u32> = corners(face)
+impl PreparedPatch {
+    /// Prepares a patch.
+    pub fn new(mesh: &Mesh, patch: &Patch) -> Self {
+        let local = Local::new(mesh, patch);
+        // Vertices of one identity, numbered among those of the patch.
+        let mut number = FxHashMap::default();
+        let identity: Vec<u32> = local
+            .global
             .iter()
-            .map(|&v| corner(v, &mut points, &mut normals, &mut connections.copies))
+            .map(|v| {
+                let next = number.len() as u32;
+                *number.entry(*v).or_insert(next)
+            })
             .collect();
-        match corners[..] {
-            [a, b, c, d] => connections.triangles.extend([a, b, c, a, c, d]),
-            [a, b, c] => connections.triangles.extend([a, b, c]),
-            _ => {}
-        }
+        Self { panels: Prepared::new(local.faces, identity), global: local.global }
     }
-    sides(faces, identity, &mut connections);
-    DrawnPatch { points, normals, connections }
+
+    /// The positions of its vertices in a mesh of its topology.
+    pub fn points(&self, mesh: &Mesh) -> Vec<Vec3> {
+        self.global.iter().map(|&v| mesh.positions()[v as usize]).collect()
+    }
+
+    /// What is drawn at these positions.
+    pub fn drawn(&mut self, points: &[Vec3]) -> Drawn {
+        self.panels.drawn(points.to_vec())
+    }
+}
+
+/// Panels, prepared once for all positions of their vertices.
+pub struct Prepared {
+    faces: Vec<[u32; 4]>,
+    /// Vertices of one identity share their normal.
+    identity: Vec<u32>,
+    /// How many identities there are.
+    count: usize,
+    /// As they were drawn last.
+    known: Arc<Connections>,
+}
+
+impl Prepared {
+    /// Panels of vertices whose identities are numbered from 0.
+    pub fn new(faces: Vec<[u32; 4]>, identity: Vec<u32>) -> Self {
+        let count = identity.iter().copied().max().map_or(0, |v| v as usize + 1);
+        let mut known = Connections::default();
+        sides(&faces, &identity, &mut known);
+        Self { faces, identity, count, known: Arc::new(known) }
+    }
+
+    /// What is drawn at these positions.
+    pub fn drawn(&mut self, mut points: Vec<Vec3>) -> Drawn {
+        let turned = |f: &[u32; 4]| {
+            let [a, b, c, d] = f.map(|v| points[v as usize]);
+            (c - a).cross(d - b)
+        };
+        let flat: Vec<Vec3> = self.faces.iter().map(turned).collect();
+        let mut sums = vec![Vec3::zero(); self.count];
+        for (face, normal) in self.faces.iter().zip(&flat) {
+            for &v in corners(face) {
+                sums[self.identity[v as usize] as usize] += *normal;
+            }
+        }
+        let mut normals: Vec<Vec3> = self
+            .identity
+            .iter()
+            .map(|&v| sums[v as usize].normalized().unwrap_or(Vec3::of(0.0, 0.0, 1.0)))
+            .collect();
+        let own = points.len() as u32;
+        let mut copies = Vec::new();
+        let mut triangles = Vec::with_capacity(6 * self.faces.len());
+        for (face, flat) in self.faces.iter().zip(&flat) {
+            let unit = flat.normalized();
+            let mut drawn = *face;
+            for v in &mut drawn[..corners(face).len()] {
+                let at = *v as usize;
+                let Some(unit) = unit.filter(|n| n.dot(normals[at]) < CREASE) else { continue };
+                *v = own + copies.len() as u32;
+                copies.push(at as u32);
+                points.push(points[at]);
+                normals.push(unit);
+            }
+            let [a, b, c, d] = drawn;
+            triangles.extend([a, b, c]);
+            if !is_triangle(*face) {
+                triangles.extend([a, c, d]);
+            }
+        }
+        if self.known.triangles != triangles || self.known.copies != copies {
+            let (edges, rim) = (self.known.edges.clone(), self.known.rim.clone());
+            self.known = Arc::new(Connections { triangles, edges, rim, copies });
+        }
+        Drawn { points, normals, connections: self.known.clone() }
+    }
 }
 
 fn corners(face: &[u32; 4]) -> &[u32] {
@@ -206,7 +255,11 @@ mod tests {
     #[test]
     fn creases_are_sharp() {
         let cube = cube();
-        let drawn = drawn(&cube, &cube.patches()[0]);
+        let mut patch = PreparedPatch::new(&cube, &cube.patches()[0]);
+        let points = patch.points(&cube);
+        let drawn = patch.drawn(&points);
+        // What has not changed is the same.
+        assert!(Arc::ptr_eq(&patch.drawn(&points).connections, &drawn.connections));
         // Every corner turns by more than 40 degrees from each of its faces.
         assert_eq!(drawn.points.len(), 8 + 24);
         assert_eq!(drawn.connections.triangles.len(), 36);

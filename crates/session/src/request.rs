@@ -89,11 +89,13 @@ pub enum Ask {
         #[serde(default)]
         by: Option<String>,
     },
-    /// Expressions whose values come with every change.
+    /// Expressions to watch; the reply has their values.
     Watch {
         /// The expressions.
         expressions: Vec<String>,
     },
+    /// The values of what is watched.
+    Measure,
     /// Values of expressions, once.
     Evaluate {
         /// The expressions.
@@ -130,6 +132,26 @@ pub enum Ask {
         axis: usize,
         /// The coordinate.
         value: f64,
+    },
+    /// Lays a foreign mesh or a table of points over the model; the reply has the overlays.
+    Overlay {
+        /// The name of the file: its ending says what it is.
+        name: String,
+        /// Its bytes in base64.
+        data: String,
+    },
+    /// Takes an overlay away, or all; the reply has those that are left.
+    RemoveOverlay {
+        /// Which.
+        #[serde(default)]
+        name: Option<String>,
+    },
+    /// How far the overlays are from the surfaces.
+    Deviation,
+    /// Immersed areas of sections across x along the model.
+    SectionAreas {
+        /// How many sections.
+        count: usize,
     },
     /// Closure and quality of the mesh.
     Mesh,
@@ -195,7 +217,6 @@ impl Ask {
                 | Ask::DragTo { .. }
                 | Ask::DragEnd { .. }
                 | Ask::Show { .. }
-                | Ask::Watch { .. }
         )
     }
 }

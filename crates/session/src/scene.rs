@@ -3,9 +3,9 @@
 //! A scene is made anew at each change; what comes out the same keeps its stamp, so that a viewer is sent
 //! only what it has not. What has lost its value while the model has errors stays as it was, with the reason.
 
-use crate::patches::{self, Connections};
+use crate::patches::{self, Connections, Prepared, PreparedPatch};
 use moldloft_document::{Document, Section};
-use moldloft_mesh::Topology;
+use moldloft_mesh::{Mesh, Topology};
 use moldloft_model::Object;
 use moldloft_num::{Box3, Order, Vec3};
 use moldloft_picture::patch_colour;
@@ -143,14 +143,58 @@ fn relative(points: &[Vec3]) -> ([f64; 3], Arc<Vec<f32>>) {
     (origin.to_array(), Arc::new(points.iter().flat_map(near).collect()))
 }
 
+/// What stays while the patches of a topology move, and how each was drawn last.
+struct KnownPatches {
+    topology: Arc<Topology>,
+    hues: Vec<u8>,
+    patches: Vec<KnownPatch>,
+}
+
+struct KnownPatch {
+    /// Unique in the scene.
+    name: Arc<str>,
+    prepared: PreparedPatch,
+    points: Vec<Vec3>,
+    origin: [f64; 3],
+    positions: Arc<Vec<f32>>,
+    normals: Arc<Vec<f32>>,
+    connections: Arc<Connections>,
+}
+
+impl KnownPatches {
+    fn new(mesh: &Mesh) -> Self {
+        let mut twice: FxHashMap<&str, usize> = FxHashMap::default();
+        let mut patches = Vec::with_capacity(mesh.patches().len());
+        for patch in mesh.patches() {
+            let name = &patch.info.name;
+            let count = twice.entry(name).or_default();
+            *count += 1;
+            patches.push(KnownPatch {
+                name: if *count == 1 {
+                    name.as_str().into()
+                } else {
+                    format!("{name} ({count})").into()
+                },
+                prepared: PreparedPatch::new(mesh, patch),
+                points: Vec::new(),
+                origin: [0.0; 3],
+                positions: Arc::default(),
+                normals: Arc::default(),
+                connections: Arc::default(),
+            });
+        }
+        Self { topology: mesh.topology().clone(), hues: patches::hues(mesh), patches }
+    }
+}
+
 /// All that is drawn.
 #[derive(Default)]
 pub struct Scene {
     items: Vec<Item>,
     /// The next stamp.
     clock: u64,
-    /// The hues of the patches of a topology.
-    hues: Option<(Arc<Topology>, Vec<u8>)>,
+    /// The patches of a topology.
+    known: Option<KnownPatches>,
     /// Whether sections are drawn.
     pub contours: bool,
     /// Names of things that stay although the model hides them.
@@ -208,27 +252,32 @@ impl Scene {
     fn patches(&mut self, document: &mut Document) -> Vec<Item> {
         let Ok(panelled) = document.panelled() else { return Vec::new() };
         let mesh = &panelled.mesh;
-        if !self.hues.as_ref().is_some_and(|(t, _)| Arc::ptr_eq(t, mesh.topology())) {
-            self.hues = Some((mesh.topology().clone(), patches::hues(mesh)));
-        }
-        let hues = self.hues.as_ref().map_or(&[][..], |(_, hues)| hues);
-        let mut twice: FxHashMap<&str, usize> = FxHashMap::default();
+        let known = match self.known.take() {
+            Some(known) if Arc::ptr_eq(&known.topology, mesh.topology()) => known,
+            _ => KnownPatches::new(mesh),
+        };
+        let known = self.known.insert(known);
         let mut made = Vec::with_capacity(mesh.patches().len());
-        for (k, patch) in mesh.patches().iter().enumerate() {
-            let drawn = patches::drawn(mesh, patch);
-            let name = &patch.info.name;
-            let count = twice.entry(name).or_default();
-            *count += 1;
-            let unique = if *count == 1 { name.clone() } else { format!("{name} ({count})") };
-            let owner = owner(document, name);
-            let item = Item::new(ItemKind::Patch, &unique, owner).at(&drawn.points);
+        for (k, (patch, known_patch)) in mesh.patches().iter().zip(&mut known.patches).enumerate() {
+            let points = known_patch.prepared.points(mesh);
+            if points != known_patch.points || known_patch.positions.is_empty() {
+                let drawn = known_patch.prepared.drawn(&points);
+                (known_patch.origin, known_patch.positions) = relative(&drawn.points);
+                known_patch.normals = Arc::new(flat(&drawn.normals));
+                known_patch.connections = drawn.connections;
+                known_patch.points = points;
+            }
+            let owner = owner(document, &patch.info.name);
             made.push(Item {
+                name: known_patch.name.clone(),
                 colour: patch_colour(patch, k),
-                hue: hues.get(k).copied().unwrap_or(0),
-                normals: Arc::new(flat(&drawn.normals)),
-                connections: Arc::new(drawn.connections),
+                hue: known.hues.get(k).copied().unwrap_or(0),
+                origin: known_patch.origin,
+                positions: known_patch.positions.clone(),
+                normals: known_patch.normals.clone(),
+                connections: known_patch.connections.clone(),
                 patch: Some(k),
-                ..item
+                ..Item::new(ItemKind::Patch, "", owner)
             });
         }
         made
@@ -370,9 +419,9 @@ fn faces(item: Item, solid: &SolidRef<f64>) -> Item {
         }
     }
     let identity: Vec<u32> = (0..points.len() as u32).collect();
-    let drawn = patches::of_faces(points, &panels, &identity);
+    let drawn = Prepared::new(panels, identity).drawn(points);
     let normals = Arc::new(flat(&drawn.normals));
-    Item { normals, connections: Arc::new(drawn.connections), ..item.at(&drawn.points) }
+    Item { normals, connections: drawn.connections, ..item.at(&drawn.points) }
 }
 
 fn contour((k, section): (usize, &Section)) -> Item {

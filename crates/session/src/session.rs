@@ -4,6 +4,7 @@ use crate::drag::Drag;
 use crate::facts;
 use crate::fields::field;
 use crate::frame::{Frame, Known};
+use crate::overlay::Overlays;
 use crate::request::{Ask, Request};
 use crate::scene::Scene;
 use crate::text::{byte, changed, difference, unit};
@@ -22,6 +23,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The most viewers; the one that was there first is forgotten.
 const MOST_TABS: usize = 64;
+
+/// The most sections of a curve of areas, and its accuracy: that of the hydrostatics, whose body is at hand.
+const MOST_SECTIONS: usize = 401;
+const AREA_ACCURACY: f64 = 1e-6;
 
 /// Points of a comb.
 const COMB_POINTS: usize = 129;
@@ -42,6 +47,7 @@ pub struct Session {
     drawn: Option<u64>,
     tabs: HashMap<u64, Tab>,
     drag: Option<Drag>,
+    overlays: Overlays,
     cancel: Arc<AtomicBool>,
 }
 
@@ -97,6 +103,7 @@ impl Session {
             drawn: None,
             tabs: HashMap::new(),
             drag: None,
+            overlays: Overlays::default(),
             cancel,
         }
     }
@@ -151,6 +158,8 @@ impl Session {
         }
         if let Ask::Open = request.ask {
             self.tabs.remove(&tab);
+            // What the viewer still has of an earlier engine is gone.
+            frame.put("all", true);
         }
         if matches!(request.ask, Ask::Text { .. } | Ask::Splice { .. })
             && let Some(version) = request.version
@@ -183,20 +192,18 @@ impl Session {
         {
             self.tabs.remove(&oldest);
         }
-        let watched = self.tabs.entry(tab).or_default().watched.clone();
-        let watched = facts::values(&mut self.document, &watched, None);
         let document = &self.document;
         let known = &mut self.tabs.entry(tab).or_default().known;
         known.scene(frame, self.scene.items());
         known.fact(frame, "params", facts::params(document, &self.text));
-        known.fact(frame, "objects", facts::objects(document));
+        let stamp = facts::objects_stamp(document);
+        known.stamped(frame, "objects", stamp, || facts::objects(document));
         let diagnostics = document.diagnostics();
         known.fact(frame, "diagnostics", facts::diagnostics(document, &self.text, &diagnostics));
         known.fact(frame, "printed", document.printed().iter().take(1000).cloned().collect());
         known.fact(frame, "mirror", document.symmetry().into());
         known.fact(frame, "unit", length_unit(document).0.into());
         known.fact(frame, "program", document.is_program().into());
-        known.fact(frame, "watched", watched);
     }
 
     fn carry_out(&mut self, ask: Ask, tab: u64, frame: &mut Frame) -> Answer {
@@ -252,7 +259,9 @@ impl Session {
             }
             Ask::Watch { expressions } => {
                 self.tabs.entry(tab).or_default().watched = expressions;
+                self.measure(tab, frame);
             }
+            Ask::Measure => self.measure(tab, frame),
             Ask::Evaluate { expressions, by } => {
                 let values = facts::values(&mut self.document, &expressions, by.as_deref());
                 frame.put("values", values);
@@ -280,6 +289,16 @@ impl Session {
             }
             Ask::Combs { names } => self.combs(&names, frame),
             Ask::Section { axis, value } => self.section(axis, value, frame)?,
+            Ask::Overlay { name, data } => {
+                self.overlays.add(&name, &data)?;
+                self.overlays.put(&mut self.document, frame, true);
+            }
+            Ask::RemoveOverlay { name } => {
+                self.overlays.remove(name.as_deref());
+                self.overlays.put(&mut self.document, frame, true);
+            }
+            Ask::Deviation => self.overlays.put(&mut self.document, frame, false),
+            Ask::SectionAreas { count } => self.section_areas(count, frame)?,
             Ask::Mesh => self.mesh(frame)?,
             Ask::Hydrostatics => {
                 let options = self.document.hydrostatic_options();
@@ -339,6 +358,12 @@ impl Session {
             }
         }
         Ok(())
+    }
+
+    /// The watched numbers. They are asked for when the scene is there: it never waits for hydrostatics.
+    fn measure(&mut self, tab: u64, frame: &mut Frame) {
+        let expressions = self.tabs.entry(tab).or_default().watched.clone();
+        frame.put("watched", facts::values(&mut self.document, &expressions, None));
     }
 
     fn take_text(&mut self, text: String) {
@@ -449,6 +474,21 @@ impl Session {
             }
         }
         frame.put("lines", lines);
+        Ok(())
+    }
+
+    fn section_areas(&mut self, count: usize, frame: &mut Frame) -> Answer {
+        let bounds = self.document.panelled()?.mesh.bounds();
+        let (low, high) = (bounds.low.x, bounds.high.x);
+        let steps = count.clamp(2, MOST_SECTIONS) - 1;
+        let at = |k: usize| low + (high - low) * k as f64 / steps as f64;
+        let stations: Vec<f64> = (0..=steps).map(at).collect();
+        let areas = self.document.section_areas(&stations, &[0.0], AREA_ACCURACY)?;
+        let place: Vec<f32> = stations.iter().map(|&x| x as f32).collect();
+        let area: Vec<f32> = areas.iter().map(|levels| levels[0][0] as f32).collect();
+        let place = frame.floats("place", &place);
+        let area = frame.floats("area", &area);
+        frame.put("areas", json!({"place": place, "area": area}));
         Ok(())
     }
 

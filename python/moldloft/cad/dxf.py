@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from moldloft.models import Model
     from moldloft.nurbs import Nurbs
 
-__all__ = ["encode"]
+__all__ = ["UNITS", "encode", "saved"]
 
-_UNITS = {"in": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6}
+UNITS = {"in": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6}
 """$INSUNITS of DXF."""
 
 _CLOSED, _RATIONAL, _PLANAR = 1, 4, 8
@@ -39,7 +39,7 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
     ezdxf: Any = needed("ezdxf", "ezdxf", "writing DXF")
     shape = boundary(model, accuracy=accuracy, name=stem)
     document = ezdxf.new("R2018", setup=False)
-    document.header["$INSUNITS"] = _UNITS[_core.length_unit(model._document)[0]]
+    document.header["$INSUNITS"] = UNITS[_core.length_unit(model._document)[0]]
     space = document.modelspace()
     done: set[int] = set()
     for face in shape.faces:
@@ -54,8 +54,20 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
             _spline(space, curve, _layer(document, name, colour))
     if not len(space):
         raise Error("cannot write dxf: the model shows no surface and no curve")
+    return saved(document)
+
+
+def saved(document: Any) -> bytes:
+    """The bytes of a document of ezdxf, without times and random names: the same for the same content."""
+    ezdxf: Any = needed("ezdxf", "ezdxf", "writing DXF")
+    document.ezdxf_metadata()["CREATED_BY_EZDXF"] = "moldloft"
     out = io.StringIO()
-    document.write(out)
+    before = ezdxf.options.write_fixed_meta_data_for_testing
+    ezdxf.options.write_fixed_meta_data_for_testing = True
+    try:
+        document.write(out)
+    finally:
+        ezdxf.options.write_fixed_meta_data_for_testing = before
     data: bytes = out.getvalue().encode("utf-8")
     return data
 

@@ -54,7 +54,7 @@ def load_cad(path: str | os.PathLike[str], *, units: str = "m") -> Model:
     """A model of a CAD file; see :func:`program`. Remarks are warnings of Python."""
     import warnings
 
-    from moldloft.models import loads
+    from moldloft.loading import loads
 
     text, remarks = program(path, units=units)
     for remark in remarks:

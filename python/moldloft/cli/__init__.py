@@ -2,36 +2,115 @@
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from typing import TYPE_CHECKING
 
-__all__ = ["main"]
+if TYPE_CHECKING:
+    from argparse import Namespace
 
-COMMANDS = {
-    "build": "run, mesh and measure a model, and write files",
-    "hydro": "hydrostatics, equilibrium, tables over drafts, righting arms",
-    "check": "report what is wrong with a model",
-    "run": "run a program that prints and writes its own files",
-    "repl": "interactive prompt",
-    "lsp": "start the language server for editors",
-    "eval": "print values of expressions in a model's names",
-    "new": "write a starter model",
-    "fmt": "format as canonical text",
-    "convert": "convert between programs, model files, tables of offsets and sketches",
-    "formats": "print the table of file formats",
-    "graph": "draw the dependency graph as SVG",
-    "view": "open the workbench: see, edit and drag a model in the browser",
-    "export": "write a model as one page that opens offline",
-    "render": "render a picture without a display",
-    "sketch": "run a sketch file, or open a sketch prompt",
-    "fair": "fair points, a curve or a surface within a certified tolerance",
-    "doc": "show the reference of entity kinds and functions",
+    from moldloft.cli.parser import Parser
+
+__all__ = ["COMMANDS", "GROUPS", "main", "whole_parser"]
+
+GROUPS = {
+    "Begin": {
+        "new": "write a starter model",
+        "view": "open the workbench: see, edit and drag a model in the browser",
+        "doc": "show the reference of entity kinds and functions",
+    },
+    "Models": {
+        "build": "run, mesh and measure a model, and write files",
+        "check": "report what is wrong with a model",
+        "eval": "print values of expressions in a model's names",
+        "hydro": "hydrostatics, equilibrium, tables over drafts, righting arms",
+        "render": "render a picture without a display",
+        "graph": "draw the dependency graph as SVG",
+        "export": "write a model as one page that opens offline",
+    },
+    "Texts and formats": {
+        "fmt": "format as canonical text",
+        "convert": "convert between programs, model files, tables of offsets and sketches",
+        "formats": "print the table of file formats",
+    },
+    "Programs, curves and sketches": {
+        "run": "run a program that prints and writes its own files",
+        "repl": "interactive prompt",
+        "fair": "fair points, a curve or a surface within a certified tolerance",
+        "sketch": "run a sketch file, or open a sketch prompt",
+    },
+    "Shells and editors": {
+        "completion": "print the completion script of a shell",
+        "lsp": "start the language server for editors",
+    },
 }
-"""Commands with a line about each; the module of the same name has ``add`` and ``run``."""
+"""Commands in groups, with a line about each; their modules have ``add`` and ``run``."""
+
+COMMANDS = {name: line for group in GROUPS.values() for name, line in group.items()}
+"""The commands with a line about each."""
+
+EXAMPLES = {
+    "build": """\
+  moldloft build hull.sdl                               table of patches and figures
+  moldloft build hull.sdl --set beam=4.2 --to gdf stl -o out
+  moldloft build a.sdl b.sdl --to stl --keep-going -q   several models
+  moldloft build - --to stl -o - < hull.sdl > hull.stl  from a pipe into a pipe""",
+    "check": """\
+  moldloft check hull.sdl
+  moldloft check 'models/*.sdl' -q                      status 1 if one has an error
+  cat hull.sdl | moldloft check - --json""",
+    "eval": """\
+  moldloft eval hull.sdl 'hull(0.5, 0.25)' 'hull.area' 'hydrostatics.volume'
+  moldloft eval hull.sdl '-P21.y' --set beam=4 --json""",
+    "hydro": """\
+  moldloft hydro hull.sdl --draft 1.2 --density salt
+  moldloft hydro hull.sdl --table -0.5,1,16 --csv table.csv --plot table.png
+  moldloft hydro hull.sdl --displacement 40 --cg 0,0,1.2 --density 1 --gz -10,90,21
+  moldloft hydro hull.sdl --weights --density salt --criteria""",
+    "render": """\
+  moldloft render hull.sdl -o hull.png --size 1600x900
+  moldloft render tee.sdl --traced tee -o - > tee.png""",
+    "graph": """\
+  moldloft graph hull.sdl -o hull.svg
+  moldloft graph hull.sdl --json""",
+    "export": """\
+  moldloft export --html hull.sdl -o hull.html""",
+    "fmt": """\
+  moldloft fmt hull.sdl                                 to standard output
+  moldloft fmt --check '*.sdl'                          names the files that would change
+  moldloft fmt -w *.sdl""",
+    "convert": """\
+  moldloft convert boat.ms2 -o boat.sdl                 a MultiSurf model file
+  moldloft convert offsets.csv -o hull.sdl              a table of offsets
+  moldloft convert part.step -o part.sdl --units mm     CAD surfaces
+  moldloft convert hull.sdl --to iges -o hull.igs""",
+    "run": """\
+  moldloft run missile.sdl -o out                       what the program itself writes
+  moldloft run missile.sdl --to p3d vts --refine 1""",
+    "repl": """\
+  moldloft repl
+  moldloft repl hull.sdl""",
+    "doc": """\
+  moldloft doc BCurve
+  moldloft doc loft                                     searches names, texts and synonyms
+  moldloft doc --list""",
+    "new": """\
+  moldloft new boat.sdl""",
+    "view": """\
+  moldloft view hull.sdl
+  moldloft view hull.sdl --no-browser --port 8765       over SSH, with a forwarded port""",
+    "sketch": """\
+  moldloft sketch bracket.skt --set width=30
+  moldloft sketch""",
+    "completion": """\
+  moldloft completion bash > ~/.local/share/bash-completion/completions/moldloft
+  moldloft completion zsh > "${fpath[1]}/_moldloft"
+  moldloft completion fish > ~/.config/fish/completions/moldloft.fish""",
+}
+"""Examples at the end of each command's help."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -63,34 +142,66 @@ def _run(arguments: list[str]) -> int:
 
         print(f"moldloft {__version__}")
         return 0
+    from moldloft.cli.colour import choose, painted
     from moldloft.errors import Error
 
     try:
-        options = _parser(arguments).parse_args(arguments)
+        options = _parsed(arguments)
     except SystemExit as end:
         return int(end.code or 0)
+    choose(options.color)
     try:
         status: int = options.run(options)
     except Error as error:
-        print(error.rendered, file=sys.stderr)
+        print(painted(error.rendered, sys.stderr), file=sys.stderr)
         return 1
     return status
 
 
-def _parser(arguments: list[str]) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parsed(arguments: list[str]) -> Namespace:
+    from moldloft.cli.parser import nearest, usage_error
+
+    word = next((a for a in arguments if not a.startswith("-")), None)
+    if word is not None and word not in COMMANDS:
+        usage_error(f"unknown command `{word}`{nearest(word, COMMANDS)}", "moldloft")
+    if word is None and not {"-h", "--help"} & set(arguments):
+        usage_error("no command was given", "moldloft")
+    found: Namespace = whole_parser([] if word is None else [word]).parse_args(arguments)
+    return found
+
+
+def whole_parser(loaded: Sequence[str]) -> Parser:
+    """The parser of all commands, with the arguments of those that are ``loaded``."""
+    from moldloft.cli.parser import Parser
+
+    lines = []
+    for title, group in GROUPS.items():
+        lines += [f"{title}:", *(f"  {name:<12}{line}" for name, line in group.items()), ""]
+    parser = Parser(
         prog="moldloft",
+        usage="moldloft COMMAND [arguments]",
         description="Describe a shape, relate its parts, panel it, measure it.",
-        epilog="`moldloft COMMAND --help` describes each.",
+        epilog="\n".join(lines) + "`moldloft COMMAND --help` describes each, with examples.",
     )
     parser.add_argument("-V", "--version", action="store_true", help="print the version")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=Parser)
+    # The epilog lists the commands in groups.
+    commands.help = "see below"
     for name, line in COMMANDS.items():
-        command = commands.add_parser(name, help=line, description=line[0].upper() + line[1:] + ".")
-        if name in arguments:
-            module = import_module(f"moldloft.cli.{name}")
-            module.add(command)
-            command.set_defaults(run=module.run)
+        command = commands.add_parser(name, description=line[0].upper() + line[1:] + ".")
+        if name not in loaded:
+            continue
+        if name in EXAMPLES:
+            command.epilog = f"Examples:\n{EXAMPLES[name]}"
+        module = import_module(f"moldloft.cli.{name}")
+        module.add(command)
+        command.add_argument(
+            "--color",
+            choices=["auto", "always", "never"],
+            default="auto",
+            help="colours of messages; default: on a terminal, unless NO_COLOR is set",
+        )
+        command.set_defaults(run=module.run, parser=command)
     return parser
 
 

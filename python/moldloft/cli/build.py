@@ -8,13 +8,19 @@ import time
 from pathlib import Path
 from typing import Any
 
+from moldloft.cli.colour import painted
 from moldloft.cli.console import (
     Progress,
     add_model,
+    add_quiet,
     block_problems,
+    each_model,
+    emit,
+    format_argument,
     open_model,
-    print_json,
     report,
+    say,
+    stem_of,
     table,
     water,
 )
@@ -32,22 +38,22 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     from moldloft.files import FORMATS
 
-    add_model(parser)
+    add_model(parser, several=True)
     parser.add_argument(
         "--to",
         metavar="FORMAT",
         nargs="+",
         action="extend",
-        type=_format,
+        type=format_argument,
         default=[],
-        help="files to write: " + "; ".join(f"{name} ({line})" for name, line in FORMATS.items()),
+        help="files to write: " + ", ".join(FORMATS) + "; `moldloft formats` describes them",
     )
     parser.add_argument(
         "-o",
         "--output",
         metavar="DIR",
         default=".",
-        help="folder for the files; default: the current one",
+        help="folder for the files; default: the current one; - is standard output, for one file",
     )
     parser.add_argument(
         "--level", metavar="Z", type=float, default=0.0, help="height of the water, by default 0"
@@ -96,23 +102,25 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--json", action="store_true", help="one object instead of the table")
     parser.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="write the formats that can be written when others cannot; the status is still 1",
+    )
+    add_quiet(parser)
+    parser.add_argument(
         "--watch", action="store_true", help="rebuild on save, with a picture; Ctrl-C ends"
     )
 
 
-def _format(name: str) -> str:
-    from moldloft.files import format_named
-
-    try:
-        return format_named(name)
-    except Error as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
-
-
 def run(options: argparse.Namespace) -> int:
     """Builds once, or at every save."""
+    if options.output == "-" and (len(options.to) != 1 or options.watch or options.json):
+        raise Error("-o - takes one format, without --json and --watch: its file is the output")
     if not options.watch:
-        return _build(options)
+        return each_model(options, _build)
+    (options.model,) = options.models[:1]
+    if len(options.models) > 1:
+        raise Error("--watch takes one model")
     if "png" not in options.to:
         options.to.append("png")
     while True:
@@ -145,7 +153,9 @@ def _stamp(path: str) -> tuple[int, int]:
     return (status.st_mtime_ns, status.st_size)
 
 
-def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int:
+def _build(
+    options: argparse.Namespace, sources: list[str] | None = None
+) -> tuple[int, dict[str, Any]]:
     from moldloft.files import Output, commit, file_name, produce
     from moldloft.formats import formats
 
@@ -169,8 +179,9 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
 
         outputs: list[Output] = []
         halves: list[str] = []
-        folder = Path(options.output)
-        stem = Path(options.model).stem
+        refused: list[tuple[str, Error]] = []
+        folder = Path("." if options.output == "-" else options.output)
+        stem = stem_of(options)
         for name in dict.fromkeys(options.to):
             progress.stage(f"writing {name}")
             path = folder / file_name(stem, name)
@@ -178,17 +189,29 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
             lids = options.lids and row.lids
             immersed = options.immersed and row.immersed
             plain = {"whole": options.whole, "triangles": options.triangles}
-            outputs += produce(
-                model,
-                name,
-                path,
-                lids=lids,
-                immersed=immersed,
-                tags=options.tag,
-                **(plain if row.plain_panels else {}),
-            )
+            try:
+                outputs += produce(
+                    model,
+                    name,
+                    path,
+                    lids=lids,
+                    immersed=immersed,
+                    tags=options.tag,
+                    **(plain if row.plain_panels else {}),
+                )
+            except Error as error:
+                refused.append((name, error))
+                continue
             if row.plain_panels and model.symmetry and not options.whole:
                 halves.append(name)
+        if refused and (not options.keep_going or not outputs):
+            raise _refusals(refused, options)
+        if options.output == "-":
+            if len(outputs) > 1:
+                names = ", ".join(output.name for output in outputs)
+                raise Error(f"{options.to[0]} is several files: {names}; give a folder with -o")
+            emit("-", outputs[0].data)
+            outputs = []
         written = commit(folder, outputs) if outputs else []
     # Remarks of the panelling have joined those of the run.
     report(model.diagnostics)
@@ -201,35 +224,48 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
     if floating is not None:
         units = {name: floating.unit(name) for name in data["hydrostatics"]}
         data["units"] = {name: unit for name, unit in units.items() if unit}
-    if options.json:
-        print_json(data)
-    else:
-        print(summary(model, mesh, floating, data, verbose=options.verbose))
+    if refused:
+        data["ok"] = False
+        data["refused"] = {name: str(error) for name, error in refused}
+        print(painted(_refusals(refused, options).rendered, sys.stderr), file=sys.stderr)
+    if not options.json:
+        say(options, summary(model, mesh, floating, data, verbose=options.verbose))
         if options.quality:
-            print("\n" + worst_panels(mesh))
+            say(options, "\n" + worst_panels(mesh))
             if floating is not None:
-                print("\n" + _panels_against_shape(model, floating, options))
-    return 0
+                say(options, "\n" + _panels_against_shape(model, floating, options))
+    return (1 if refused else 0), data
 
 
-def _report_errors(model: Model, options: argparse.Namespace) -> int:
+def _refusals(refused: list[tuple[str, Error]], options: argparse.Namespace) -> Error:
+    """All formats that cannot be written, as one error."""
+    if len(refused) == 1 and (options.keep_going or len(options.to) == 1):
+        return refused[0][1]
+    text = "\n".join(f"{name}: {str(error).rstrip()}" for name, error in refused)
+    if not options.keep_going and len(refused) < len(set(options.to)):
+        text += "\nhelp: --keep-going writes the other formats"
+    return Error(text)
+
+
+def _report_errors(model: Model, options: argparse.Namespace) -> tuple[int, dict[str, Any]]:
     report(model.diagnostics)
-    if options.json:
-        print_json(
-            {
-                "ok": False,
-                "objects": _objects(model),
-                "meshes": [],
-                "total": None,
-                "hydrostatics": None,
-                "files": [],
-                "diagnostics": [d.to_dict() for d in model.diagnostics],
-            }
-        )
-    else:
-        failed = sum(not o["ok"] for o in _objects(model))
-        print(f"{options.model}: errors; {failed} objects failed; nothing was written")
-    return 1
+    objects = _objects(model)
+    if not options.json:
+        wrong = sum(d.is_error for d in model.diagnostics)
+        failed = sum(not o["ok"] for o in objects)
+        words = [f"{wrong} error{'s' * (wrong != 1)}"]
+        if failed:
+            words.append(f"{failed} object{'s' * (failed != 1)} not made")
+        say(options, f"{options.model}: {', '.join(words)}; nothing was written")
+    return 1, {
+        "ok": False,
+        "objects": objects,
+        "meshes": [],
+        "total": None,
+        "hydrostatics": None,
+        "files": [],
+        "diagnostics": [d.to_dict() for d in model.diagnostics],
+    }
 
 
 def _objects(model: Model) -> list[dict[str, Any]]:

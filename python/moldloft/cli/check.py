@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from moldloft.cli.console import (
     Progress,
     add_model,
+    add_quiet,
     block_problems,
+    each_model,
     open_model,
-    print_json,
     report,
+    say,
 )
 
 if TYPE_CHECKING:
@@ -22,7 +24,8 @@ __all__ = ["add", "run"]
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    add_model(parser)
+    add_model(parser, several=True)
+    add_quiet(parser)
     parser.add_argument(
         "--quality",
         action="store_true",
@@ -32,7 +35,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Checks the model."""
+    """Checks each model."""
+    return each_model(options, _check)
+
+
+def _check(options: argparse.Namespace) -> tuple[int, Any]:
     with Progress() as progress:
         progress.stage(f"checking {options.model}")
         model = open_model(options)
@@ -50,15 +57,16 @@ def run(options: argparse.Namespace) -> int:
         if not options.quality:
             mesh = None
     errors = sum(d.is_error for d in diagnostics)
+    data: dict[str, Any] = {}
     if options.json:
         data = {"ok": errors == 0, "diagnostics": [d.to_dict() for d in diagnostics]}
         if mesh is not None:
             data |= {"quality": mesh.quality(), "closure": mesh.closure()}
-        print_json(data)
     else:
         report(diagnostics)
+        count = len(model.objects)
         if errors == 0:
-            print(f"{options.model}: {len(model.objects)} objects, no errors")
+            say(options, f"{options.model}: {count} object{'s' * (count != 1)}, no errors")
         if mesh is not None and mesh.patches:
             from moldloft.cli.build import worst_panels
 
@@ -66,4 +74,4 @@ def run(options: argparse.Namespace) -> int:
             for edge in mesh.closure()["edges"]:
                 closed_by = f", closed by {edge['closed_by']}" if edge["closed_by"] else ""
                 print(f"open edge: {edge['patch']}, {edge['edge']}{closed_by}")
-    return 1 if errors else 0
+    return (1 if errors else 0), data

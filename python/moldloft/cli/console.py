@@ -8,6 +8,7 @@ import math
 import sys
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -19,11 +20,18 @@ if TYPE_CHECKING:
 __all__ = [
     "Progress",
     "add_model",
+    "add_quiet",
     "assignment",
     "block_problems",
+    "each_model",
+    "emit",
+    "expanded",
+    "format_argument",
     "open_model",
     "print_json",
     "report",
+    "say",
+    "stem_of",
     "table",
     "water",
 ]
@@ -41,10 +49,14 @@ def assignment(text: str) -> tuple[str, float]:
     return name.strip(), number
 
 
-def add_model(parser: argparse.ArgumentParser) -> None:
-    """Arguments of every command that runs a model."""
+def add_model(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
+    """Arguments of every command that runs a model, or ``several``."""
     parser.add_argument(
-        "model", metavar="MODEL", help="an .sdl program, an .ms2 model file or a .skt sketch"
+        "models" if several else "model",
+        metavar="MODEL",
+        nargs="+" if several else None,
+        help="an .sdl program, an .ms2 model file or a .skt sketch; - reads standard input"
+        + ("; several, and quoted patterns such as 'hulls/*.sdl'" if several else ""),
     )
     parser.add_argument(
         "--set",
@@ -70,12 +82,111 @@ def add_model(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_quiet(parser: argparse.ArgumentParser) -> None:
+    """The option that leaves messages about success out."""
+    parser.add_argument(
+        "-q", "--quiet", action="store_true", help="only errors, warnings and remarks"
+    )
+
+
+def say(options: argparse.Namespace, text: str) -> None:
+    """Prints a message about success: none when quiet, on standard error beside a file there."""
+    if not getattr(options, "quiet", False):
+        out = sys.stderr if getattr(options, "output", None) == "-" else sys.stdout
+        print(text, file=out)
+
+
+def expanded(words: list[str]) -> list[str]:
+    """File names of words: quoted patterns become the files that they match, in order.
+
+    Raises
+    ------
+    Error
+        When nothing matches a pattern.
+    """
+    from glob import glob
+
+    from moldloft.errors import Error
+
+    found: list[str] = []
+    for word in words:
+        if any(c in word for c in "*?[") and not Path(word).exists():
+            matches = sorted(glob(word, recursive=True))  # noqa: PTH207 (patterns may be absolute)
+            if not matches:
+                raise Error(f"no file matches `{word}`")
+            found += matches
+        else:
+            found.append(word)
+    return list(dict.fromkeys(found))
+
+
+def each_model(
+    options: argparse.Namespace, one: Callable[[argparse.Namespace], tuple[int, Any]]
+) -> int:
+    """Runs a command for each of its models; the worst status, and with ``--json`` their data.
+
+    The data of one model is an object, that of several a list of them.
+    """
+    from moldloft.cli.colour import painted
+    from moldloft.errors import Error
+
+    names = expanded(options.models)
+    if len(names) > 1 and getattr(options, "output", None) == "-":
+        raise Error("standard output takes one model: give a folder with -o")
+    worst, collected = 0, []
+    for name in names:
+        options.model = name
+        try:
+            status, data = one(options)
+        except Error as error:
+            if len(names) == 1:
+                raise
+            print(painted(error.rendered, sys.stderr), file=sys.stderr)
+            status, data = 1, {"ok": False, "error": str(error)}
+        worst = max(worst, status)
+        collected.append(data if len(names) == 1 else {"model": name, **(data or {})})
+    if getattr(options, "json", False):
+        print_json(collected[0] if len(names) == 1 else collected)
+    return worst
+
+
+def stem_of(options: argparse.Namespace) -> str:
+    """The name of a model's files: that of its file without ending."""
+    return "stdin" if options.model == "-" else Path(options.model).stem
+
+
+def emit(path: str | Path, data: bytes) -> Path | None:
+    """Writes a file whole or not at all; ``-`` is standard output, and then no path is given."""
+    from moldloft.files import Output, commit
+
+    if str(path) == "-":
+        sys.stdout.flush()
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+        return None
+    path = Path(path)
+    return commit(path.parent, [Output(path.name, data)])[0]
+
+
+def _from_standard_input(options: argparse.Namespace) -> Model:
+    from moldloft.errors import FileError
+    from moldloft.loading import loads
+
+    try:
+        text = sys.stdin.buffer.read().decode()
+    except UnicodeDecodeError as error:
+        raise FileError("cannot read standard input: it is not UTF-8 text") from error
+    kind = "ms2" if text.lstrip().startswith("MultiSurf") else "sdl"
+    folders = [*options.library, "."]
+    return loads(text, name=f"stdin.{kind}", library=folders, strict=False)
+
+
 def open_model(options: argparse.Namespace) -> Model:
     """The model of the arguments, with the values of ``--set``."""
     from moldloft.errors import Error
     from moldloft.files import ending
     from moldloft.formats import formats
-    from moldloft.models import load
+    from moldloft.loading import load
 
     named = ending(Path(options.model))
     written = [row for row in formats().values() if named in (row.name, row.suffix) and named]
@@ -84,7 +195,10 @@ def open_model(options: argparse.Namespace) -> Model:
             f"{options.model} is not a model but what models are written to: {written[0].about};"
             " expected a program (.sdl), a model file (.ms2) or a sketch (.skt)"
         )
-    model = load(options.model, library=options.library, strict=False)
+    if options.model == "-":
+        model = _from_standard_input(options)
+    else:
+        model = load(options.model, library=options.library, strict=False)
     if options.refine:
         if options.refine < 0:
             raise Error("--refine takes a whole number of at least 0")
@@ -96,8 +210,10 @@ def open_model(options: argparse.Namespace) -> Model:
 
 def report(diagnostics: list[Diagnostic]) -> None:
     """Prints diagnostics on standard error."""
+    from moldloft.cli.colour import painted
+
     for diagnostic in diagnostics:
-        print(str(diagnostic), file=sys.stderr)
+        print(painted(str(diagnostic), sys.stderr), file=sys.stderr)
 
 
 def block_problems(model: Model) -> list[Diagnostic]:
@@ -188,6 +304,17 @@ class Progress:
             elif self._said != self._stage:
                 print(f"{self._stage} …", file=sys.stderr, flush=True)
             self._said = self._stage
+
+
+def format_argument(name: str) -> str:
+    """The name of a format, for options."""
+    from moldloft.errors import Error
+    from moldloft.files import format_named
+
+    try:
+        return format_named(name)
+    except Error as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def water(text: str) -> float | str:

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from moldloft.cli.console import add_model, open_model, report
+from moldloft.cli.console import add_model, emit, format_argument, open_model, report, stem_of
 from moldloft.errors import Error
 
 __all__ = ["add", "run"]
@@ -20,9 +20,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to",
         metavar="FORMAT",
-        choices=list(FORMATS),
+        type=format_argument,
         help="default: that of -o, else the other one of sdl and ms2: "
-        + "; ".join(f"{name} ({line})" for name, line in FORMATS.items()),
+        + ", ".join(FORMATS)
+        + "; `moldloft formats` describes them",
     )
     parser.add_argument("-o", "--output", metavar="FILE", help="default: standard output, for text")
     parser.add_argument(
@@ -44,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
     from moldloft.files import commit, ending, format_named, produce
     from moldloft.formats import formats
 
-    target = Path(options.output) if options.output else None
+    target = Path(options.output) if options.output not in (None, "-") else None
     named = ending(target) if target else ""
     if options.model.lower().endswith((".step", ".stp", ".iges", ".igs")):
         return _from_cad(options, target, format_named(options.to or named or "sdl"))
@@ -61,17 +62,24 @@ def run(options: argparse.Namespace) -> int:
     elif form in ("sdl", "ms2"):
         sys.stdout.write(model.convert(form))
     elif formats()[form].text:
-        (output,) = produce(model, form, Path(f"{Path(options.model).stem}.{form}"))
+        (output,) = produce(model, form, Path(f"{stem_of(options)}.{form}"))
         sys.stdout.write(output.data.decode())
+    elif options.output == "-":
+        files = produce(model, form, Path(f"{stem_of(options)}.{form}"))
+        if len(files) > 1:
+            raise Error(f"{form} is several files: name the first with -o")
+        emit("-", files[0].data)
     else:
-        raise Error(f"{form} is binary and cannot be printed: name the file with -o")
+        raise Error(
+            f"{form} is binary and cannot be printed: name the file with -o; `-o -` prints it"
+        )
     return 0
 
 
 def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> int:
     from moldloft.cad.importing import program
     from moldloft.files import Output, commit, produce
-    from moldloft.models import loads
+    from moldloft.loading import loads
 
     text, remarks = program(options.model, units=options.units)
     for remark in remarks:
@@ -92,7 +100,7 @@ def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> in
 def _from_offsets(options: argparse.Namespace, target: Path | None, form: str) -> int:
     from moldloft import offsets
     from moldloft.files import Output, commit, produce
-    from moldloft.models import loads
+    from moldloft.loading import loads
 
     text = offsets.read(options.model).program(curves=options.curves)
     if form == "sdl":

@@ -14,7 +14,9 @@ __all__ = ["add", "markdown", "run"]
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    parser.add_argument("name", metavar="NAME", nargs="?", help="a kind or function")
+    parser.add_argument(
+        "name", metavar="NAME", nargs="?", help="a kind or function, or words to search for"
+    )
     parser.add_argument(
         "--list", action="store_true", help="list all of them, with class and fields"
     )
@@ -27,7 +29,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prints the reference."""
-    from moldloft.language import reference
+    from moldloft.language import reference, search
 
     rows = reference()
     if options.markdown:
@@ -50,9 +52,19 @@ def run(options: argparse.Namespace) -> int:
             print(text)
         return 0
     row = next((row for row in rows if row["name"] == options.name), None)
+    known = [*(row["name"] for row in rows), *_STATEMENTS]
+    near = difflib.get_close_matches(options.name, known, n=1)
+    # A misspelt name is an error; a word that names nothing is searched for.
+    misspelt = bool(near) and options.name[:1].isupper()
+    found = [] if row is not None or misspelt or options.pictures else search(options.name)
+    if found:
+        if options.json:
+            print_json(found)
+        else:
+            print(f"no entry is called `{options.name}`; these may be meant:\n")
+            print(_list(found[:_MOST_FOUND], summary=True))
+        return 0
     if row is None:
-        known = [*(row["name"] for row in rows), *_STATEMENTS]
-        near = difflib.get_close_matches(options.name, known, n=1)
         hint = f"; did you mean `{near[0]}`?" if near else "; see `moldloft doc --list`"
         raise UnknownNameError(f"unknown kind or function `{options.name}`{hint}")
     if options.pictures:
@@ -116,12 +128,24 @@ def _draw(rows: list[dict[str, Any]], folder: str) -> None:
     print(f"{len(outputs)} pictures in {folder}")
 
 
-def _list(rows: list[dict[str, Any]]) -> str:
+#: The most rows of a search.
+_MOST_FOUND = 15
+
+
+def _list(rows: list[dict[str, Any]], *, summary: bool = False) -> str:
+    if summary:
+        cells = [[row["name"], row["class"], _first_line(row["summary"])] for row in rows]
+        return table(["name", "class", "what"], cells, left=3)
     return table(
         ["name", "class", "arguments"],
         [[row["name"], row["class"], ", ".join(f["name"] for f in row["fields"])] for row in rows],
         left=3,
     )
+
+
+def _first_line(text: str) -> str:
+    line = " ".join(str(text).split())
+    return line if len(line) <= 76 else line[:75].rsplit(" ", 1)[0] + " …"
 
 
 def _signature(row: dict[str, Any]) -> str:

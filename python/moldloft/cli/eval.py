@@ -6,6 +6,7 @@ import argparse
 from typing import Any
 
 from moldloft.cli.console import add_model, open_model, print_json, report
+from moldloft.cli.parser import Parser
 
 __all__ = ["add", "as_data", "as_text", "run"]
 
@@ -13,6 +14,8 @@ __all__ = ["add", "as_data", "as_text", "run"]
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     add_model(parser)
+    if isinstance(parser, Parser):
+        parser.minus_is_a_value()
     parser.add_argument("expressions", metavar="EXPR", nargs="+", help="such as 'hull(.5,.25)'")
     parser.add_argument("--json", action="store_true", help="one list, vectors as [x, y, z]")
 

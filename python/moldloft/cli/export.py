@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
-from moldloft.cli.console import add_model
+from moldloft.cli.console import add_model, emit
 
 __all__ = ["add", "run"]
 
@@ -17,19 +18,31 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--html",
         action="store_true",
         required=True,
-        help="a page with the model's text, scene, numbers and dependencies; needs no server",
+        help="a page that opens without server and network; it computes by itself where this "
+        "package has the engine for pages",
     )
-    parser.add_argument("-o", "--output", metavar="FILE", help="default: MODEL.html")
+    parser.add_argument(
+        "--still",
+        action="store_true",
+        help="leave the engine out: a smaller page of the model as it is",
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="default: MODEL.html; - is standard output"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
     """Writes the page."""
-    from moldloft.files import Output, commit
-    from moldloft.workbench.still import still_page
+    from moldloft.workbench.export import exported_page
+    from moldloft.workbench.page import NO_ENGINE, engine_packed
 
     source = Path(options.model)
-    page = still_page(source, values=dict(options.set), library=options.library)
-    path = Path(options.output or f"{source.stem}.html")
-    commit(path.parent, [Output(path.name, page)])
-    print(path)
+    page = exported_page(
+        source, values=dict(options.set), library=options.library, living=not options.still
+    )
+    if not options.still and engine_packed() is None:
+        print(f"note: the page shows the model as it is: {NO_ENGINE}", file=sys.stderr)
+    path = options.output or f"{source.stem}.html"
+    if emit(path, page) is not None:
+        print(path)
     return 0

@@ -35,7 +35,6 @@ rows with the same numbers are one point of all curves that have it. Points coun
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = _EPILOG
     parser.add_argument("file", metavar="FILE", help="points, a Plot3D surface, or MODEL:OBJECT")
     parser.add_argument(
@@ -802,7 +801,7 @@ class _Object(_Source):
 
     def __init__(self, model: str, name: str, options: argparse.Namespace) -> None:
         from moldloft.fairing.objects import sampled
-        from moldloft.models import load
+        from moldloft.loading import load
 
         loaded = load(model, library=options.library)
         if options.set:

@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from moldloft.cli.console import expanded
 from moldloft.errors import FileError
 
 __all__ = ["add", "run"]
@@ -13,7 +14,9 @@ __all__ = ["add", "run"]
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    parser.add_argument("files", metavar="FILE", nargs="+", help=".sdl programs")
+    parser.add_argument(
+        "files", metavar="FILE", nargs="+", help=".sdl programs, patterns; - is standard input"
+    )
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--check", action="store_true", help="name the files that would change")
     how.add_argument("-w", "--write", action="store_true", help="write the files")
@@ -26,10 +29,10 @@ def run(options: argparse.Namespace) -> int:
     from moldloft.language import format_text
 
     status = 0
-    for file in options.files:
+    for file in expanded(options.files):
         path = Path(file)
         try:
-            old = path.read_bytes()
+            old = sys.stdin.buffer.read() if file == "-" else path.read_bytes()
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
             raise FileError(f"cannot read `{file}`: {reason}") from error
@@ -43,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
             if new != old:
                 print(f"{file} would be formatted")
                 status = 1
-        elif options.write:
+        elif options.write and file != "-":
             if new != old:
                 commit(path.parent, [Output(path.name, new)])
         else:

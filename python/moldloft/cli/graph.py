@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
-from moldloft.cli.console import add_model, open_model, print_json, report
+from moldloft.cli.console import (
+    add_model,
+    emit,
+    open_model,
+    print_json,
+    report,
+    stem_of,
+)
 
 __all__ = ["add", "run"]
 
@@ -13,14 +19,15 @@ __all__ = ["add", "run"]
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     add_model(parser)
-    parser.add_argument("-o", "--output", metavar="FILE", help="default: MODEL.graph.svg")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="default: MODEL.graph.svg; - is standard output"
+    )
     parser.add_argument("--json", action="store_true", help="nodes and edges as data, no picture")
 
 
 def run(options: argparse.Namespace) -> int:
     """Draws all objects, the failed ones too."""
     from moldloft.digraph import Node, digraph_svg
-    from moldloft.files import Output, commit
 
     model = open_model(options)
     report(model.diagnostics)
@@ -32,8 +39,8 @@ def run(options: argparse.Namespace) -> int:
         print_json({"nodes": [{key: f[key] for key in keys} for f in facts], "edges": edges})
         return status
     nodes = [Node(f["name"], f["kind"], f["class"], f["parents"], f["ok"]) for f in facts]
-    stem = Path(options.model).stem
-    path = Path(options.output or f"{stem}.graph.svg")
-    commit(path.parent, [Output(path.name, digraph_svg(nodes, stem).encode())])
-    print(path)
+    stem = stem_of(options)
+    path = options.output or f"{stem}.graph.svg"
+    if emit(path, digraph_svg(nodes, stem).encode()) is not None:
+        print(path)
     return status

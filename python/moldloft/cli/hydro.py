@@ -11,6 +11,7 @@ from typing import Any
 from moldloft.cli.console import (
     Progress,
     add_model,
+    emit,
     open_model,
     print_json,
     report,
@@ -124,7 +125,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", action="store_true", help="figures as data with their units; angles in degrees"
     )
-    parser.add_argument("--csv", metavar="FILE", help="write the rows, with units in the header")
+    parser.add_argument(
+        "--csv",
+        metavar="FILE",
+        help="write the rows, with units in the header; - is standard output",
+    )
     parser.add_argument(
         "--plot", metavar="FILE", help="draw the table or the arms (.png, .svg, .pdf)"
     )
@@ -189,18 +194,21 @@ def run(options: argparse.Namespace) -> int:
             return _criteria(model, options)
         if options.kn:
             return _cross_curves(model, options)
-        afloat, rows = _measured(model, options)
+        flotation, rows = _measured(model, options)
         written: list[Path] = []
+        if rows is not None and options.csv == "-":
+            emit("-", rows.csv().encode())
+            return 0
         if rows is not None and options.csv:
             written.append(rows.write_csv(options.csv))
         if rows is not None and options.plot:
             progress.stage("drawing")
             written.append(rows.plot(options.plot))
-    _warn([afloat] if rows is None else list(rows))
+    _warn([flotation] if rows is None else list(rows))
     if options.json:
-        print_json(_data(afloat) if rows is None else [_data(row) for row in rows])
+        print_json(_data(flotation) if rows is None else [_data(row) for row in rows])
     elif rows is None:
-        print(_one(afloat))
+        print(_one(flotation))
     else:
         print(_table(rows))
     if not options.json:
@@ -247,11 +255,11 @@ def _measured(
         free = None
         if options.fixed and options.cg:
             free = [name for name in _ANGLES if name not in kept]
-        afloat = model.equilibrium(
+        flotation = model.equilibrium(
             options.displacement, free=free, trim=trim, heel=heel, sides=options.sides, **common
         )
     else:
-        afloat = model.hydrostatics(
+        flotation = model.hydrostatics(
             level=options.level,
             draft=options.draft,
             trim=trim,
@@ -263,7 +271,7 @@ def _measured(
         if options.units:
             rows = type(rows)([row.converted(options.units) for row in rows])
         return rows.rows[0], rows
-    return (afloat.converted(options.units) if options.units else afloat), None
+    return (flotation.converted(options.units) if options.units else flotation), None
 
 
 def _data(row: Hydrostatics) -> dict[str, Any]:
@@ -381,25 +389,25 @@ def _warn(rows: list[Hydrostatics]) -> None:
         print("warning: unstable upright; this is the attitude of loll", file=sys.stderr)
 
 
-def _one(afloat: Hydrostatics) -> str:
-    sides = {"both": "both sides", "one": "one side", "whole": "the whole body"}[afloat.sides]
+def _one(flotation: Hydrostatics) -> str:
+    sides = {"both": "both sides", "one": "one side", "whole": "the whole body"}[flotation.sides]
     lines = [f"hydrostatics, {sides}"]
-    figures = {k: v for k, v in afloat.as_dict().items() if k not in _HIDDEN}
+    figures = {k: v for k, v in flotation.as_dict().items() if k not in _HIDDEN}
     width = max(map(len, figures))
     for name, value in figures.items():
         text = f"{value:.8g}" if isinstance(value, float) else str(value)
         if name in _ANGLES:
             text = f"{math.degrees(value):.8g} degrees"
-        elif afloat.unit(name):
-            text += f" {afloat.unit(name)}"
-        if name in afloat.bounds:
-            text += f" ± {afloat.bounds[name]:.1g}"
-        slopes = afloat.derivatives.get(name, {})
+        elif flotation.unit(name):
+            text += f" {flotation.unit(name)}"
+        if name in flotation.bounds:
+            text += f" ± {flotation.bounds[name]:.1g}"
+        slopes = flotation.derivatives.get(name, {})
         more = "".join(f"  d/d{by} {slope:.6g}" for by, slope in slopes.items())
         lines.append(f"  {name.ljust(width)}  {text}{more}")
-    if afloat.open_edges:
+    if flotation.open_edges:
         lines.append(
-            f"  {afloat.open_edges} open edges of the skin below the water: results are unreliable"
+            f"  {flotation.open_edges} open edges of the skin below the water: results are unreliable"
         )
     return "\n".join(lines)
 

@@ -6,6 +6,7 @@ The server is a program of its own, ``moldloft-lsp``; this finds it and hands ov
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import shutil
 import subprocess
@@ -42,7 +43,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def server() -> Path:
-    """The path of the server: ``MOLDLOFT_LSP``, beside this Python, in a checkout, on the path.
+    """The path of the server.
+
+    ``MOLDLOFT_LSP``, beside this Python, in the package, in a checkout, on the path: the first.
 
     Raises
     ------
@@ -54,12 +57,17 @@ def server() -> Path:
         if not Path(given).is_file():
             raise Error(f"MOLDLOFT_LSP names `{given}`, which is not a file")
         return Path(given)
+    package = Path(__file__).resolve().parents[1] / "bin" / _NAME
     checkout = Path(__file__).resolve().parents[3]
     target = Path(os.environ.get("CARGO_TARGET_DIR", checkout / "target"))
-    candidates = [Path(sys.executable).parent / _NAME]
+    candidates = [Path(sys.executable).parent / _NAME, package]
     candidates += [target / profile / _NAME for profile in ("release", "debug")]
     for candidate in candidates:
         if candidate.is_file():
+            if os.name != "nt" and not os.access(candidate, os.X_OK):
+                # An unpacked wheel may have lost the mark of a program.
+                with contextlib.suppress(OSError):
+                    candidate.chmod(0o755)
             return candidate
     found = shutil.which(_NAME)
     if found:

@@ -7,7 +7,16 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from moldloft.cli.console import Progress, add_model, open_model, report
+from moldloft.cli.console import (
+    Progress,
+    add_model,
+    add_quiet,
+    emit,
+    open_model,
+    report,
+    say,
+    stem_of,
+)
 
 if TYPE_CHECKING:
     from moldloft.models import Model
@@ -58,7 +67,10 @@ def _traced(options: argparse.Namespace, model: Model) -> bytes:
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     add_model(parser)
-    parser.add_argument("-o", "--output", metavar="FILE", help="default: MODEL.png")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="default: MODEL.png; - is standard output"
+    )
+    add_quiet(parser)
     parser.add_argument(
         "--size", metavar="WxH", type=_size, default=(1200, 800), help="pixels; default 1200x800"
     )
@@ -84,9 +96,8 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Draws what has a value; errors are reported besides."""
     from moldloft.errors import Error
-    from moldloft.files import Output, commit
 
-    if options.output and Path(options.output).suffix.lower() != ".png":
+    if options.output not in (None, "-") and Path(options.output).suffix.lower() != ".png":
         found = Path(options.output).name
         raise Error(f"a picture is a PNG file: name it with `.png`, not `{found}`")
     with Progress() as progress:
@@ -94,11 +105,12 @@ def run(options: argparse.Namespace) -> int:
         model = open_model(options)
         report(model.diagnostics)
         progress.stage("drawing")
-        path = Path(options.output or f"{Path(options.model).stem}.png")
+        path = options.output or f"{stem_of(options)}.png"
         if options.traced is None:
             picture = model.picture(*options.size)
         else:
             picture = _traced(options, model)
-        commit(path.parent, [Output(path.name, picture)])
-    print(path)
+        emit(path, picture)
+    if path != "-":
+        say(options, path)
     return 1 if model.has_errors else 0

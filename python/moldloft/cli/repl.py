@@ -9,16 +9,16 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable
 from typing import Any
 
 from moldloft.cli.eval import as_text
 from moldloft.errors import Error, ModelError
-from moldloft.models import Model, load, loads
+from moldloft.loading import load, loads
+from moldloft.models import Model
 
 __all__ = ["Session", "add", "run"]
 
-_HISTORY_LENGTH = 2_000
 _MOST_ITEMS = 8
 _HELP = """\
 A statement (curve c[5];), a call (arc(c, 0, PI, 1);) or an expression (c[5].x).
@@ -150,12 +150,12 @@ def run(options: argparse.Namespace) -> int:
     failed = False
     for diagnostic in model.diagnostics:
         print(str(diagnostic), file=sys.stderr)
-    with _line_editor(session) if terminal else contextlib.nullcontext():
+    with _editor(session) if terminal else contextlib.nullcontext(input) as ask:
         if terminal:
             print("moldloft repl: :help lists the commands, exit ends", file=sys.stderr)
         while True:
             try:
-                entry = _read(terminal)
+                entry = _read(ask if terminal else None)
             except EOFError:
                 break
             except KeyboardInterrupt:
@@ -202,12 +202,37 @@ def _command(session: Session, entry: str) -> list[str] | None:
     raise Error(f"unknown command `{word}`; :help lists them")
 
 
-def _read(terminal: bool) -> str:
+def _editor(session: Session) -> contextlib.AbstractContextManager[Callable[[str], str]]:
+    from moldloft.cli.editor import line_editor
+    from moldloft.cli.journal import state_folder
+
+    def keywords() -> set[str]:
+        from moldloft.language import reference
+
+        return {row["name"] for row in reference()} | _WORDS
+
+    return line_editor(
+        state_folder().with_name("repl-history"),
+        session.model.completions,
+        keywords=keywords,
+        delimiters=' \t\n()[]{},;=+-*/^|&<>!.:"',
+    )
+
+
+#: Words of the language that are no kinds and functions, for highlighting.
+_WORDS = {
+    *("param", "float", "int", "string", "vector", "curve", "surface", "farray", "field", "set"),
+    *("for", "in", "if", "then", "else", "while", "foreach", "return", "subroutine", "function"),
+    *("load", "break", "continue", "assert", "print", "file", "returned", "global"),
+}
+
+
+def _read(ask: Callable[[str], str] | None) -> str:
     """An entry: lines until all brackets are closed."""
     entry = ""
     while True:
-        if terminal:
-            line = input("... " if entry else "> ")
+        if ask is not None:
+            line = ask("... " if entry else "> ")
         else:
             line = sys.stdin.readline()
             if not line:
@@ -239,34 +264,3 @@ def _open_brackets(text: str) -> int:
                 depth += (c in "([{") - (c in ")]}")
             previous = c
     return depth
-
-
-@contextlib.contextmanager
-def _line_editor(session: Session) -> Iterator[None]:
-    """History and completion, where the platform has them."""
-    try:
-        import readline
-    except ImportError:
-        yield
-        return
-    from moldloft.cli.journal import state_folder
-
-    path = state_folder().with_name("repl-history")
-    with contextlib.suppress(OSError):
-        readline.read_history_file(path)
-    readline.set_history_length(_HISTORY_LENGTH)
-
-    def complete(_: str, number: int) -> str | None:
-        line = readline.get_line_buffer()[: readline.get_endidx()]
-        found = session.model.completions(line)
-        return found[number] if number < len(found) else None
-
-    readline.set_completer_delims(' \t\n()[]{},;=+-*/^|&<>!.:"')
-    readline.set_completer(complete)
-    readline.parse_and_bind("tab: complete")
-    try:
-        yield
-    finally:
-        with contextlib.suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            readline.write_history_file(path)

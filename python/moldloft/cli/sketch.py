@@ -6,7 +6,7 @@ import argparse
 import contextlib
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,13 +19,12 @@ if TYPE_CHECKING:
 
 __all__ = ["add", "run"]
 
-_HISTORY_LENGTH = 2000
-
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    parser.epilog = (
-        "Without FILE, commands are read from standard input: a prompt with history and "
+    parser.description = (
+        "Runs a sketch file, or opens a sketch prompt. Without FILE, commands are read from "
+        "standard input: a prompt with history and "
         "completion on a terminal. HELP lists the commands, HELP VERB explains one."
     )
     parser.add_argument(
@@ -169,12 +168,12 @@ class Host:
         terminal = sys.stdin.isatty()
         self._begin(terminal)
         assert self.journal is not None
-        with _line_editor(self.sketch) if terminal else contextlib.nullcontext():
+        with _editor(self.sketch) if terminal else contextlib.nullcontext(input) as ask:
             if terminal:
                 print("moldloft sketch: HELP lists the commands, QUIT ends", file=sys.stderr)
             while not self.session.over():
                 try:
-                    line = self._read(terminal)
+                    line = self._read(ask if terminal else None)
                 except EOFError:
                     break
                 except KeyboardInterrupt:
@@ -190,11 +189,11 @@ class Host:
                 file=sys.stderr,
             )
 
-    def _read(self, terminal: bool) -> str:
-        if terminal:
+    def _read(self, ask: Callable[[str], str] | None) -> str:
+        if ask is not None:
             name = self.session.active() or "sketch"
             mark = "&" if self.session.begun() else "?" if self.session.asks() else ">"
-            return input(f"{name}{mark} ")
+            return ask(f"{name}{mark} ")
         line = sys.stdin.readline()
         if not line:
             raise EOFError
@@ -259,32 +258,10 @@ def _offer(left: Left, file: str | None) -> str:
     )
 
 
-@contextlib.contextmanager
-def _line_editor(sketch: Sketch) -> Iterator[None]:
-    """History and completion, where the platform has them."""
-    try:
-        import readline
-    except ImportError:
-        yield
-        return
+def _editor(sketch: Sketch) -> contextlib.AbstractContextManager[Callable[[str], str]]:
+    from moldloft.cli.editor import line_editor
     from moldloft.cli.journal import state_folder
 
-    path = state_folder() / "history"
-    with contextlib.suppress(OSError):
-        readline.read_history_file(path)
-    readline.set_history_length(_HISTORY_LENGTH)
-
-    def complete(_: str, number: int) -> str | None:
-        line = readline.get_line_buffer()[: readline.get_endidx()]
-        found = sketch.session.complete(line)
-        return found[number] + " " if number < len(found) else None
-
-    readline.set_completer_delims(" ,=;")
-    readline.set_completer(complete)
-    readline.parse_and_bind("tab: complete")
-    try:
-        yield
-    finally:
-        with contextlib.suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            readline.write_history_file(path)
+    return line_editor(
+        state_folder() / "history", sketch.session.complete, delimiters=" ,=;", after=" "
+    )

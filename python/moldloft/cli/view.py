@@ -59,7 +59,8 @@ async def _serve(options: argparse.Namespace, hub_type: type, server_type: type)
         budget=options.budget,
         memory=int(options.memory * (1 << 30)),
     )
-    server = server_type(hub, options.port)
+    # Each address opens one browser; the next is printed when it has been used.
+    server = server_type(hub, options.port, lambda url: print(url, flush=True))
 
     def ready() -> None:
         print(server.url, flush=True)

@@ -93,12 +93,12 @@ def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Matr
     Raises
     ------
     FairingError
-        With the line of a cell that is no length, or of a row of another width.
+        With the line of a cell that cannot be read as a length, or of a row of another width.
 
     Examples
     --------
     >>> rows, *_ = matrix("waterline; 0; 1; 2; 3\n0.5; 0; 1; 1.5; x\n1; 0.1; 1.2; 1.6; 1.7\n")
-    >>> rows[1], len(rows)
+    >>> rows[2], len(rows)
     ((1.0, 1.0, 0.5), 7)
     """
     lines = text.lstrip("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from moldloft.fairing.curve import Fairing
     from moldloft.fairing.network import NetworkFairing
+    from moldloft.fairing.patches import PatchesFairing
     from moldloft.fairing.spline import Samples, Spline
     from moldloft.fairing.surface import SurfaceFairing
 
@@ -379,7 +380,9 @@ def _of_surface(fairing: SurfaceFairing) -> list[str]:
     return parts
 
 
-def page(fairing: Fairing | NetworkFairing | SurfaceFairing, title: str = "Fairing") -> str:
+def page(
+    fairing: Fairing | NetworkFairing | SurfaceFairing | PatchesFairing, title: str = "Fairing"
+) -> str:
     """The HTML page of a fairing; it needs no other file and no network.
 
     Parameters
@@ -388,15 +391,21 @@ def page(fairing: Fairing | NetworkFairing | SurfaceFairing, title: str = "Fairi
         What :func:`moldloft.fair` or :func:`moldloft.fairing.network` returned.
     title
         Its heading.
+
+    Raises
+    ------
+    Error
+        For several blocks at once.
     """
     from moldloft.fairing.curve import Fairing
     from moldloft.fairing.network import NetworkFairing
+    from moldloft.fairing.surface import SurfaceFairing
 
     if isinstance(fairing, Fairing):
         parts = _of_curve(fairing)
     elif isinstance(fairing, NetworkFairing):
         parts = _of_network(fairing)
-    elif hasattr(fairing, "surface"):
+    elif isinstance(fairing, SurfaceFairing):
         parts = _of_surface(fairing)
     else:
         raise Error("a page is made of a curve, a surface or a network: choose one block")
@@ -409,7 +418,7 @@ def page(fairing: Fairing | NetworkFairing | SurfaceFairing, title: str = "Fairi
 
 
 def write_page(
-    fairing: Fairing | NetworkFairing | SurfaceFairing,
+    fairing: Fairing | NetworkFairing | SurfaceFairing | PatchesFairing,
     path: str | PathLike[str],
     title: str = "Fairing",
 ) -> Path:

@@ -27,13 +27,16 @@ __all__ = ["Hub", "Tab"]
 Send = Callable[["str | bytes"], Awaitable[None]]
 
 #: Requests of which only the newest of a tab counts.
-NEWEST = {"set", "drag_to", "sync", "hover", "complete", "inspect", "section", "field", "combs"}
+NEWEST = {
+    "set", "drag_to", "sync", "hover", "complete", "inspect", "section", "field", "combs",
+    "deviation", "measure",
+}  # fmt: skip
 
 #: What a page may ask of the engine.
 ASKED = NEWEST | {
     "open", "commit", "reset", "write", "drag_begin", "drag_end", "watch", "evaluate", "show",
-    "mesh", "hydrostatics", "export", "formats", "definition", "locate", "rename", "format",
-    "words", "ping",
+    "mesh", "hydrostatics", "section_areas", "overlay", "remove_overlay", "export", "formats",
+    "definition", "locate", "rename", "format", "words", "ping",
 }  # fmt: skip
 
 #: After these other tabs have something new, too.

@@ -6,12 +6,21 @@ from importlib import resources
 
 from moldloft.errors import Error
 
-__all__ = ["page_files"]
+__all__ = ["NO_ENGINE", "engine_packed", "page_files", "worker_script"]
 
 _NO_PAGE = (
     "the page of the workbench is not built: run `make web` in the clone (it needs Node.js 20 or "
     "newer), or install a released wheel"
 )
+
+#: What is missing for pages that compute by themselves.
+NO_ENGINE = (
+    "the engine for pages is not built: run `make engine` in the clone (it needs the target "
+    "wasm32-unknown-unknown: `rustup target add wasm32-unknown-unknown`), or install a released "
+    "wheel"
+)
+
+_FOLDER = resources.files("moldloft") / "workbench"
 
 
 def page_files() -> dict[str, bytes]:
@@ -22,7 +31,7 @@ def page_files() -> dict[str, bytes]:
     Error
         When the page was not built.
     """
-    root = resources.files("moldloft") / "workbench" / "page"
+    root = _FOLDER / "page"
     index = root / "index.html"
     if not index.is_file():
         raise Error(_NO_PAGE)
@@ -30,3 +39,14 @@ def page_files() -> dict[str, bytes]:
     for entry in (root / "assets").iterdir():
         files[f"/assets/{entry.name}"] = entry.read_bytes()
     return files
+
+
+def engine_packed() -> bytes | None:
+    """The engine in WebAssembly, packed by gzip; ``None`` when it was not built."""
+    engine = _FOLDER / "wasm" / "engine.wasm.gz"
+    return engine.read_bytes() if engine.is_file() else None
+
+
+def worker_script() -> str:
+    """The script of the worker that holds the engine."""
+    return (_FOLDER / "page" / "worker.js").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import hmac
 import json
 import secrets
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from starlette.applications import Starlette
@@ -98,10 +98,15 @@ class Server:
         The model.
     port
         The port; any free one when 0.
+    announce
+        Is given the next address when one has been used.
     """
 
-    def __init__(self, hub: Hub, port: int = 0) -> None:
+    def __init__(
+        self, hub: Hub, port: int = 0, announce: Callable[[str], None] = lambda url: None
+    ) -> None:
         self.hub = hub
+        self._announce = announce
         self._files = page_files()
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -200,15 +205,24 @@ class Server:
             body += chunk
             if len(body) > 200:
                 return Response("refused", status_code=403, headers=self._headers())
+        response = Response(status_code=204, headers=self._headers())
+        if self._known(request.cookies):
+            return response
         if not hmac.compare_digest(body, self._token.encode()):
             return Response("refused", status_code=403, headers=self._headers())
-        response = Response(status_code=204, headers=self._headers())
+        # A token buys one cookie: who reads it later, in a history or over a shoulder, has nothing.
+        self._token = secrets.token_urlsafe(32)
+        self._announce(self.url)
         response.set_cookie(self._cookie, self._session, httponly=True, samesite="strict", path="/")
         return response
 
+    def _known(self, cookies: Mapping[str, str]) -> bool:
+        """Whether a browser has exchanged a token."""
+        given = cookies.get(self._cookie, "")
+        return hmac.compare_digest(given.encode(), self._session.encode())
+
     async def _talk(self, socket: WebSocket) -> None:
-        given = socket.cookies.get(self._cookie, "")
-        if not hmac.compare_digest(given.encode(), self._session.encode()):
+        if not self._known(socket.cookies):
             await socket.close(4401)
             return
         await socket.accept()

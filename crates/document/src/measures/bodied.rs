@@ -1,7 +1,8 @@
-//! What is remembered of the skin of a model: its surfaces, and its body at an accuracy.
+//! What is remembered of the whole model: its skin, its body at an accuracy, its numbers.
 
 use moldloft_hydro::Body;
 use moldloft_panel::Skin;
+use moldloft_registry::Value;
 
 /// The skin of a model, and its body at an accuracy.
 #[derive(Debug)]
@@ -11,4 +12,17 @@ pub(crate) struct Bodied {
     pub accuracy: f64,
     pub skin: Skin,
     pub body: Body<f64>,
+}
+
+/// Numbers of the whole model by their names.
+pub(crate) type Numbers = Vec<(&'static str, Value<f64>)>;
+
+/// The numbers of `mesh` or `hydrostatics`.
+pub(crate) struct Whole {
+    /// When they were found.
+    pub clock: u64,
+    /// The planes that mirrored it.
+    pub symmetry: String,
+    /// The numbers.
+    pub numbers: Numbers,
 }

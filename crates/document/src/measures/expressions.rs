@@ -1,6 +1,7 @@
 //! What is computed from a model: expressions, panels, hydrostatics, and their derivatives.
 
 use crate::document::{Document, Source};
+use crate::measures::bodied::{Numbers, Whole};
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::USUAL_ACCURACY;
@@ -21,19 +22,33 @@ impl Document {
     /// What is wrong with it.
     pub fn eval(&mut self, text: &str) -> Result<Value<f64>, Vec<Diagnostic>> {
         if let Some((group, number)) = self.whole_name(text) {
-            let found = if group == "mesh" {
-                let panelled = self.panelled().map_err(|d| vec![d])?;
-                mesh_numbers(&panelled.mesh)
-            } else {
-                let bodied = self.bodied(USUAL_ACCURACY).map_err(|d| vec![d])?;
-                body_numbers(&bodied.body, &self.symmetry())
-            };
+            let found = self.whole_numbers(group).map_err(|d| vec![d])?;
             return one_of(found, group, number).map_err(|d| vec![d]);
         }
         let mut evaluation = std::mem::take(&mut self.plain);
         let value = self.eval_in(&mut evaluation, text);
         self.plain = evaluation;
         value
+    }
+
+    /// The numbers of `mesh` or `hydrostatics`, found once and remembered until something changes: who watches one
+    /// of them usually watches several.
+    fn whole_numbers(&mut self, group: &'static str) -> Result<Numbers, Diagnostic> {
+        let clock = self.plain.graph.last_change();
+        let symmetry = self.symmetry();
+        if let Some(known) = self.whole.get(group)
+            && known.clock == clock
+            && known.symmetry == symmetry
+        {
+            return Ok(known.numbers.clone());
+        }
+        let numbers = if group == "mesh" {
+            mesh_numbers(&self.panelled()?.mesh)
+        } else {
+            body_numbers(&self.bodied(USUAL_ACCURACY)?.body, &symmetry)
+        };
+        self.whole.insert(group, Whole { clock, symmetry, numbers: numbers.clone() });
+        Ok(numbers)
     }
 
     fn eval_in<T: Scalar>(
@@ -64,11 +79,11 @@ impl Document {
 
     /// The parts of `mesh.area`, a number of the joined panels, or of `hydrostatics.volume`, one of the surfaces;
     /// unless the model has an object of that name.
-    fn whole_name<'t>(&self, text: &'t str) -> Option<(&'t str, &'t str)> {
+    fn whole_name<'t>(&self, text: &'t str) -> Option<(&'static str, &'t str)> {
         let (group, number) = text.trim().rsplit_once('.')?;
         let word = number.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        let known = matches!(group, "mesh" | "hydrostatics") && self.graph().find(group).is_none();
-        (known && word).then_some((group, number))
+        let group = ["mesh", "hydrostatics"].into_iter().find(|g| *g == group)?;
+        (word && self.graph().find(group).is_none()).then_some((group, number))
     }
 
     /// Derivatives of expressions by parameters (or literals of objects): `[expression][by]`,

@@ -3,8 +3,8 @@
 use crate::Document;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::{
-    Afloat, Attitude, Body, FloatError, Loading, Solved, Status, Water, afloat, bottom, bounds,
-    equilibrium, section_area,
+    Attitude, Body, FloatError, Flotation, Loading, Solved, Status, Water, bottom, bounds,
+    equilibrium, flotation, section_area,
 };
 use moldloft_lang::run::weight::{WEIGHT, mass_and_centre};
 use moldloft_lang::run::whole::not_finite;
@@ -46,7 +46,7 @@ pub enum Immersion {
 
 /// What all requests have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AfloatOptions {
+pub struct FlotationOptions {
     /// Mass per volume of the water.
     pub density: f64,
     /// Acceleration of gravity in the model's unit.
@@ -103,7 +103,7 @@ impl Document {
     pub fn floating(
         &mut self,
         requests: &[FloatRequest],
-        options: AfloatOptions,
+        options: FlotationOptions,
         by: &[String],
     ) -> Result<Vec<FloatAnswer>, Vec<Diagnostic>> {
         let symmetry = self.symmetry();
@@ -125,7 +125,7 @@ impl Document {
             let carried = document.carried(graph, options)?;
             let all = self::answers(&body, &symmetry, requests, options, carried);
             for (answer, solved) in answers.iter_mut().zip(all) {
-                let figures = solved.map_err(cannot_float)?.0.afloat.figures();
+                let figures = solved.map_err(cannot_float)?.0.flotation.figures();
                 for (column, (_, x)) in answer.derivatives.iter_mut().zip(figures) {
                     column.extend((0..count).map(|k| x.eps[k]));
                 }
@@ -182,7 +182,7 @@ impl Document {
     fn carried<T: Scalar>(
         &self,
         graph: &Graph<T>,
-        options: AfloatOptions,
+        options: FlotationOptions,
     ) -> Result<Option<(T, Vec3<T>)>, Vec<Diagnostic>> {
         if !options.of_weights {
             return Ok(None);
@@ -226,7 +226,7 @@ fn answers<T: Real>(
     body: &Body<T>,
     symmetry: &str,
     requests: &[FloatRequest],
-    options: AfloatOptions,
+    options: FlotationOptions,
     carried: Option<(T, Vec3<T>)>,
 ) -> Vec<Answered<T>> {
     let lengthwise = symmetry.contains('x').then(|| body.with_mirror_image(0));
@@ -253,16 +253,16 @@ fn answers<T: Real>(
         if options.one_side && half && heels(request) {
             return Err(FloatError::HalfHeels);
         }
-        let AfloatOptions { density, gravity, centimetre, .. } = options;
+        let FlotationOptions { density, gravity, centimetre, .. } = options;
         let water = Water { density, gravity, symmetry: shown, centimetre };
         let centre = options.centre.map(|c| Vec3::from(c.map(T::from)));
         let centre = centre.or(carried.map(|c| c.1));
         let (trim, heel) = (T::from(request.trim), T::from(request.heel));
         let given = |level: T| {
-            let afloat = afloat(body, water, Attitude { level, trim, heel }, centre);
+            let flotation = flotation(body, water, Attitude { level, trim, heel }, centre);
             let status = Status::Converged;
-            let stable = afloat.stable.unwrap_or(true);
-            Solved { afloat, status, iterations: 0, residual: 0.0, stable, lolls: false }
+            let stable = flotation.stable.unwrap_or(true);
+            Solved { flotation, status, iterations: 0, residual: 0.0, stable, lolls: false }
         };
         Ok(match request.immersion {
             Immersion::Level(level) => (given(T::from(level)), false, sides),
@@ -283,8 +283,8 @@ fn answers<T: Real>(
 }
 
 fn answer((solved, sought, sides): &(Solved<f64>, bool, &'static str)) -> FloatAnswer {
-    let Afloat { earth, .. } = &solved.afloat;
-    let figures = solved.afloat.figures();
+    let Flotation { earth, .. } = &solved.flotation;
+    let figures = solved.flotation.figures();
     FloatAnswer {
         derivatives: vec![Vec::new(); figures.len()],
         figures,
@@ -295,8 +295,8 @@ fn answer((solved, sought, sides): &(Solved<f64>, bool, &'static str)) -> FloatA
         },
         iterations: solved.iterations,
         residual: solved.residual,
-        bounds: bounds(&solved.afloat),
-        stable: if *sought { solved.afloat.stable } else { None },
+        bounds: bounds(&solved.flotation),
+        stable: if *sought { solved.flotation.stable } else { None },
         lolls: solved.lolls,
         open_edges: earth.open_edges,
         closure_error: earth.closure_error,

@@ -2,7 +2,7 @@
 //! input of which designers are most often guilty, each with what was expected and how to fix it.
 
 use crate::common::{ids, open, sound, told};
-use moldloft_document::{AfloatOptions, Document, FloatRequest, Immersion, registry};
+use moldloft_document::{Document, FloatRequest, FlotationOptions, Immersion, registry};
 
 #[test]
 fn sketches_that_cannot_be_met_and_that_read_too_much() {
@@ -27,22 +27,76 @@ fn sketches_that_cannot_be_met_and_that_read_too_much() {
     assert!(ids(&document).contains(&"too-many-files".to_string()), "{:?}", told(&document));
 }
 
+/// A sloping side.
+const SIDE: &str =
+    "AbsPoint A(0, 0, -1); AbsPoint B(4, 0, -1); AbsPoint C(0, 1, 1); AbsPoint D(4, 1, 1);
+                    Line l(A, B); Line m(C, D); RuledSurf S(l, m);";
+
+const OPTIONS: FlotationOptions = FlotationOptions {
+    density: 1.0,
+    gravity: 9.81,
+    centimetre: 0.01,
+    centre: None,
+    one_side: false,
+    of_weights: false,
+    accuracy: 1e-6,
+};
+
+#[test]
+fn weights_that_are_asked_for_must_be_there() {
+    let mut document = sound(SIDE);
+    let immersion = Immersion::Mass { mass: 1.0, free_trim: false, free_heel: false };
+    let options = FlotationOptions { of_weights: true, ..OPTIONS };
+    let request = FloatRequest { immersion, trim: 0.0, heel: 0.0 };
+    let faults = document.floating(&[request], options, &[]).unwrap_err();
+    assert_eq!(faults[0].id, "no-weights");
+    assert!(faults[0].expectation().unwrap().contains("Weight"), "{faults:?}");
+}
+
+#[test]
+fn a_symmetric_model_that_shows_both_halves_has_no_hydrostatics() {
+    let text = format!("Model info(symmetry = \"y\");\n{SIDE} MirrSurf port(S, \"y=0\");");
+    let mut document = open(&text);
+    let faults = document.eval("hydrostatics.volume").unwrap_err();
+    assert_eq!(faults[0].id, "mirrored-twice");
+    assert!(faults[0].message.contains("y = 0"), "{faults:?}");
+    let place = document.sources().slice(faults[0].span());
+    assert!(["S", "port"].contains(&place), "{place}: {faults:?}");
+}
+
+/// A path with corners that no halving of the solid meets, and its volume by Cavalieri.
+#[test]
+fn a_weight_of_a_solid_with_kinks_inside() {
+    let mut document = sound(
+        "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(1, 1, 0);
+         Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint E(0, 0, 1); AbsPoint F(0.3, 0, 1.4);
+         AbsPoint G(0, 0.5, 3.7); CCurve path({A, E, F, G}, degree = 1);
+         TranSolid T(S, path); Weight w(T, per = 2);",
+    );
+    let mass = crate::common::number(&mut document, "w.mass");
+    assert!((mass - 2.0 * 3.7).abs() < 1e-8, "{mass}");
+    let height = crate::common::number(&mut document, "w.z");
+    assert!((height - 0.5 * 3.7).abs() < 1e-8, "{height}");
+    // What passes over a corner that moves is not known.
+    let faults = document.derivatives(&["w.mass".into()], &["F.z".into()]).unwrap_err();
+    assert!(faults.iter().any(|d| d.message.contains("`w`")), "{faults:?}");
+}
+
+#[test]
+fn a_surface_with_places_beyond_all_numbers_has_no_area() {
+    let mut document = open(
+        "AbsPoint A(-1.7e308, 0, 0); AbsPoint B(1.7e308, 0, 0); AbsPoint C(0, 1.7e308, 0);
+         AbsPoint D(0, -1.7e308, 1); Line a(A, B); Line b(C, D); RuledSurf S(a, b);",
+    );
+    let faults = document.eval("S.area").unwrap_err();
+    assert_eq!(faults[0].id, "no-body");
+}
+
 #[test]
 fn what_has_no_centre_cannot_float_freely() {
-    let mut document = sound(
-        "AbsPoint A(0, 0, -1); AbsPoint B(4, 0, -1); AbsPoint C(0, 1, 1); AbsPoint D(4, 1, 1);
-         Line l(A, B); Line m(C, D); RuledSurf S(l, m);",
-    );
+    let mut document = sound(SIDE);
     let immersion = Immersion::Mass { mass: 1.0, free_trim: true, free_heel: false };
-    let options = AfloatOptions {
-        density: 1.0,
-        gravity: 9.81,
-        centimetre: 0.01,
-        centre: None,
-        one_side: false,
-        of_weights: false,
-        accuracy: 1e-6,
-    };
+    let options = OPTIONS;
     let faults = document
         .floating(&[FloatRequest { immersion, trim: 0.0, heel: 0.0 }], options, &[])
         .unwrap_err();

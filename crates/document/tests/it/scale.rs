@@ -4,7 +4,7 @@ use crate::common::{ids, number, open, sound, told, vector};
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
-/// Far above what these take, far below what something quadratic would.
+/// Far above what these take on a quiet machine, far below what something quadratic would; looked at in long runs alone.
 const SOON: Duration = Duration::from_secs(20);
 
 fn timed<R>(what: &str, f: impl FnOnce() -> R) -> R {
@@ -12,7 +12,7 @@ fn timed<R>(what: &str, f: impl FnOnce() -> R) -> R {
     let result = f();
     let taken = start.elapsed();
     println!("{what}: {:.3} s", taken.as_secs_f64());
-    assert!(taken < SOON, "{what} took {taken:?}");
+    assert!(!moldloft_testing::soak() || taken < SOON, "{what} took {taken:?}");
     result
 }
 

@@ -119,7 +119,7 @@ fn edits_solve_again() {
         "param float draft = 1 in [0.1, 4]; param float weight = 24;
          AbsPoint A(0, 0, -draft); AbsPoint B(6, 0, -draft); AbsPoint C(6, 2, -draft); AbsPoint D(0, 2, -draft);
          Line ab(A, B); Line dc(D, C); RuledSurf bottom(ab, dc, divisions = {2, 2});
-         SolveSet afloat({draft}, {bottom.area*draft - weight});",
+         SolveSet draft_of({draft}, {bottom.area*draft - weight});",
     );
     assert!((number(&mut document, "draft") - 2.0).abs() < 1e-14);
     assert!((derivative(&mut document, "draft", "weight") - 1.0 / 12.0).abs() < 1e-14);

@@ -82,7 +82,7 @@ fn a_barge_floats_upright() {
     let solved =
         equilibrium(&barge, water, loading(mass, [0.0; 3]), Attitude::upright(0.0)).unwrap();
     assert_eq!(solved.status, Status::Converged);
-    let a = solved.afloat;
+    let a = solved.flotation;
     close(a.drafts[1], draft, 1e-12);
     close(a.earth.volume, L * B * draft, 1e-10);
     // BM_T = B^2 / 12 T, BM_L = L^2 / 12 T, KB = T / 2, KG = H / 2.
@@ -108,9 +108,9 @@ fn a_wall_sided_box_rights_itself_by_the_formula() {
         let start = Attitude { heel, ..Attitude::upright(0.0) };
         let solved = equilibrium(&barge, Water::default(), loading, start).unwrap();
         let gz = (gm + 0.5 * bm * heel.tan().powi(2)) * heel.sin();
-        close(solved.afloat.gz.unwrap(), gz, 1e-12);
-        close(solved.afloat.attitude.trim, 0.0, 1e-12);
-        close(solved.afloat.trim_arm.unwrap(), 0.0, 1e-11);
+        close(solved.flotation.gz.unwrap(), gz, 1e-12);
+        close(solved.flotation.attitude.trim, 0.0, 1e-12);
+        close(solved.flotation.trim_arm.unwrap(), 0.0, 1e-11);
     }
 }
 
@@ -124,7 +124,7 @@ fn weight_off_the_middle_trims_and_heels() {
     let solved = equilibrium(&barge, Water::default(), at, Attitude::upright(0.0)).unwrap();
     assert_eq!(solved.status, Status::Converged);
     assert!(solved.stable && solved.iterations < 12, "{}", solved.iterations);
-    let a = solved.afloat;
+    let a = solved.flotation;
     assert!(a.attitude.trim > 0.0 && a.attitude.heel > 0.0, "the heavy side goes down");
     close(a.gz.unwrap(), 0.0, 1e-12);
     close(a.trim_arm.unwrap(), 0.0, 1e-12);
@@ -132,7 +132,7 @@ fn weight_off_the_middle_trims_and_heels() {
     assert!(a.drafts[2] > a.drafts[1] && a.drafts[1] > a.drafts[0]);
 
     let only = Loading { free_heel: false, ..loading(L * B * draft, [0.3, 0.0, -0.2]) };
-    let a = equilibrium(&barge, Water::default(), only, Attitude::upright(0.0)).unwrap().afloat;
+    let a = equilibrium(&barge, Water::default(), only, Attitude::upright(0.0)).unwrap().flotation;
     let tan = a.attitude.trim.tan();
     let (bm, kb) = (L * L / (12.0 * draft), draft / 2.0);
     let gm = kb + bm - (H / 2.0 - 0.2);
@@ -145,7 +145,7 @@ fn a_sphere_in_water() {
     let ball = ellipsoid([1.0; 3], Vec3::zero(), 1e-9);
     let mass = 2.0 * PI / 3.0;
     let at = Loading { free_trim: false, free_heel: false, ..loading(mass, [0.0, 0.0, -0.2]) };
-    let a = equilibrium(&ball, Water::default(), at, Attitude::upright(0.0)).unwrap().afloat;
+    let a = equilibrium(&ball, Water::default(), at, Attitude::upright(0.0)).unwrap().flotation;
     close(a.attitude.level, 0.0, 1e-10);
     close(a.gm.unwrap()[0], 0.2, 1e-9);
     close(a.buoyancy_centre.unwrap().z, -3.0 / 8.0, 1e-9);
@@ -160,11 +160,11 @@ fn an_unstable_equilibrium_is_called_so_and_left() {
     let at = |free_heel| Loading { free_heel, ..loading(30.0, [0.0; 3]) };
     let solved = equilibrium(&tall, Water::default(), at(false), Attitude::upright(0.0)).unwrap();
     assert!(solved.status == Status::Converged && !solved.stable);
-    assert!(solved.afloat.gm.unwrap()[0] < 0.0);
+    assert!(solved.flotation.gm.unwrap()[0] < 0.0);
     let solved = equilibrium(&tall, Water::default(), at(true), Attitude::upright(0.0)).unwrap();
     assert!(solved.status == Status::Converged && solved.stable && solved.lolls, "{solved:?}");
-    close(solved.afloat.gz.unwrap(), 0.0, 1e-9);
-    close(solved.afloat.attitude.heel, PI / 2.0, 1e-9);
+    close(solved.flotation.gz.unwrap(), 0.0, 1e-9);
+    close(solved.flotation.attitude.heel, PI / 2.0, 1e-9);
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn the_angle_of_loll_of_a_box() {
         let at = loading(40.0, [0.0, 0.0, kg - 1.25]);
         let solved = equilibrium(&barge, Water::default(), at, Attitude::upright(0.0)).unwrap();
         assert!(solved.stable && solved.lolls && solved.status == Status::Converged, "{kg}");
-        close(solved.afloat.attitude.heel, heel, 1e-10);
+        close(solved.flotation.attitude.heel, heel, 1e-10);
     }
 }
 
@@ -211,11 +211,11 @@ fn an_open_hull_knows_its_freeboard() {
     let open = box_of([L, B, H], 2, false);
     let draft = 2.0;
     let at = Loading { free_heel: false, ..loading(L * B * draft, [0.0, 0.0, -0.5]) };
-    let a = equilibrium(&open, Water::default(), at, Attitude::upright(0.0)).unwrap().afloat;
+    let a = equilibrium(&open, Water::default(), at, Attitude::upright(0.0)).unwrap().flotation;
     close(a.freeboard.unwrap(), H - draft, 1e-12);
     assert_eq!(a.earth.open_edges, 0);
     let heeled = Attitude { heel: 0.7, ..Attitude::upright(0.0) };
-    let a = equilibrium(&open, Water::default(), at, heeled).unwrap().afloat;
+    let a = equilibrium(&open, Water::default(), at, heeled).unwrap().flotation;
     assert!(a.freeboard.unwrap() < 0.0 && a.earth.open_edges > 0, "the deck edge is under");
     let sinks = Loading { mass: 1.01 * L * B * H, ..at };
     let sinks = equilibrium(&open, Water::default(), sinks, Attitude::upright(0.0));
@@ -229,7 +229,7 @@ fn derivatives_of_the_equilibrium_equal_central_differences() {
     let solve = |x: [f64; 4]| {
         let barge = box_of([x[0], x[1], H], 3, true);
         let at = loading(x[2], [x[3], 0.06, -0.2]);
-        equilibrium(&barge, Water::default(), at, Attitude::upright(0.0)).unwrap().afloat
+        equilibrium(&barge, Water::default(), at, Attitude::upright(0.0)).unwrap().flotation
     };
     let x: [Dual4; 4] = std::array::from_fn(|k| Dual4::seeded(base[k], k));
     let barge = box_of([x[0], x[1], Dual4::from(H)], 3, true);
@@ -240,7 +240,7 @@ fn derivatives_of_the_equilibrium_equal_central_differences() {
         free_heel: true,
     };
     let start = Attitude::upright(Dual4::from(0.0));
-    let exact = equilibrium(&barge, Water::default(), at, start).unwrap().afloat;
+    let exact = equilibrium(&barge, Water::default(), at, start).unwrap().flotation;
     for k in 0..4 {
         let h = 1e-5;
         let (mut up, mut down) = (base, base);

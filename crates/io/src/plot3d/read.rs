@@ -195,7 +195,8 @@ pub(super) fn sizes(words: &[i64], axes: usize) -> Option<Vec<[usize; 3]>> {
         for (n, word) in block.iter_mut().zip(size) {
             *n = usize::try_from(*word).ok().filter(|n| *n > 0)?;
         }
-        block.iter().try_fold(1usize, |count, n| count.checked_mul(*n)).filter(|c| *c < 1 << 40)?;
+        let points = block.iter().try_fold(1u64, |count, n| count.checked_mul(*n as u64));
+        points.filter(|c| *c < 1 << 40)?;
         all.push(block);
     }
     Some(all)

@@ -41,6 +41,7 @@ const MOST_PRINTED: usize = 64 << 20;
 pub(crate) const DEEPEST: u32 = 2_500;
 
 /// The stack that a run needs: the deepest nesting times the largest frame, with room to spare.
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) const STACK_BYTES: usize = 192 << 20;
 
 /// The id of a diagnostic that is not shown, because its cause was reported already.

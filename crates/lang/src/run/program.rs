@@ -1,7 +1,9 @@
 //! A program as a producer of objects.
 
 use crate::model_file::names::plain_name;
-use crate::run::interpreter::{Inputs, Interpreter, STACK_BYTES};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::run::interpreter::STACK_BYTES;
+use crate::run::interpreter::{Inputs, Interpreter};
 use crate::run::sketches::Site;
 use crate::source::env::{Environment, Evaluation};
 use crate::source::fault_location;
@@ -51,6 +53,7 @@ pub enum NotLiteral {
 }
 
 /// Runs `f` where a deeply nested program finds enough stack.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, f);
@@ -59,6 +62,12 @@ pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
             Err(panic) => std::panic::resume_unwind(panic),
         }
     })
+}
+
+/// A page in a browser has no threads and one stack, which its maker chose.
+#[cfg(target_arch = "wasm32")]
+pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
+    f()
 }
 
 impl Program<'_> {

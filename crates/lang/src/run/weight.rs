@@ -9,6 +9,9 @@ use moldloft_registry::export::StaticRow;
 use moldloft_registry::{Array, Build, CallError, Context, Kind, Row, Scalar, Value};
 use std::sync::Arc;
 
+/// An error of a volume that is refused, relative to it.
+const ROUGH: f64 = 1e-6;
+
 /// The name of the kind of weights.
 pub const WEIGHT: &str = "Weight";
 /// The name of the kind of their sums.
@@ -85,7 +88,17 @@ impl<T: Real> Build<T> for Weight<T> {
                 (Some(m.area), m.area_centre)
             }
             Value::Solid(solid) => {
-                let (volume, centre) = solid_measures(&**solid).ok_or_else(unsound)?;
+                let (volume, centre, error) = solid_measures(&**solid).ok_or_else(unsound)?;
+                if error > ROUGH * volume.re() {
+                    let found = format!("a volume of {} that is known to {error:.1e}", volume.re());
+                    return Err(CallError::new(
+                        "rough-volume",
+                        "the volume of the solid does not settle",
+                    )
+                    .expected("a solid without kinks that run across its parameters")
+                    .found(found)
+                    .in_field(Self::AT));
+                }
                 (Some(volume), centre)
             }
             Value::Body(body) => (Some(body.volume), body.centroid),

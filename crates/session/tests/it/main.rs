@@ -2,5 +2,6 @@
 //! forms say; nothing that is typed, set or dragged loses the text.
 
 mod drags;
+mod overlays;
 mod scenes;
 mod viewer;

@@ -5,6 +5,7 @@ mod others;
 mod points;
 mod snakes;
 mod surfaces;
+mod weights;
 
 use crate::laws::program::Program;
 
@@ -17,6 +18,7 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         snakes::arguments,
         surfaces::arguments,
         others::arguments,
+        weights::arguments,
     ];
     families.iter().find_map(|family| family(p, kind))
 }

@@ -100,7 +100,7 @@ impl Default for Water {
 
 /// The figures of a body at an attitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Afloat<T> {
+pub struct Flotation<T> {
     /// How it lies.
     pub attitude: Attitude<T>,
     /// The figures of the turned body, in axes that are level; x is level along the body, y across.
@@ -139,7 +139,7 @@ pub struct Afloat<T> {
     pub stable: Option<bool>,
 }
 
-impl<T: Real> Afloat<T> {
+impl<T: Real> Flotation<T> {
     /// Every figure by the name that tables, JSON and derivatives use, in a fixed order; those
     /// without meaning are left out. Centres are in the body's axes, extents of the waterplane in
     /// level ones.
@@ -180,9 +180,9 @@ impl<T: Real> Afloat<T> {
 
 /// The bounds of the main figures by name: estimates of the errors of quadrature and interpolation, carried to the
 /// figures at first order.
-pub fn bounds<T: Real>(afloat: &Afloat<T>) -> Vec<(&'static str, f64)> {
-    let [volume, moment, wetted, area, first, second] = afloat.errors;
-    let h = &afloat.earth;
+pub fn bounds<T: Real>(flotation: &Flotation<T>) -> Vec<(&'static str, f64)> {
+    let [volume, moment, wetted, area, first, second] = flotation.errors;
+    let h = &flotation.earth;
     let v = h.volume.re().abs().max(f64::MIN_POSITIVE);
     let density = (h.displacement.re() / h.volume.re()).abs();
     let mut rows = vec![("volume", volume)];
@@ -202,11 +202,11 @@ pub fn bounds<T: Real>(afloat: &Afloat<T>) -> Vec<(&'static str, f64)> {
         let radius = |i: T| second / v + i.re().abs() / v * (volume / v);
         let (t, l) = (radius(w.transverse_moment), radius(w.longitudinal_moment));
         rows.extend([("bmt", t), ("bml", l), ("kmt", t + centre), ("kml", l + centre)]);
-        if afloat.gm.is_some() {
+        if flotation.gm.is_some() {
             rows.extend([("gmt", t + centre), ("gml", l + centre)]);
         }
     }
-    if afloat.gz.is_some() {
+    if flotation.gz.is_some() {
         rows.extend([("gz", centre), ("trim_arm", centre)]);
     }
     rows
@@ -215,12 +215,12 @@ pub fn bounds<T: Real>(afloat: &Afloat<T>) -> Vec<(&'static str, f64)> {
 /// The figures of the body at an attitude; `gravity_centre` is in the body's axes.
 ///
 /// With a skin of one side ([`Symmetry`]) the heel must be zero.
-pub fn afloat<T: Real>(
+pub fn flotation<T: Real>(
     body: &Body<T>,
     water: Water,
     attitude: Attitude<T>,
     gravity_centre: Option<Vec3<T>>,
-) -> Afloat<T> {
+) -> Flotation<T> {
     let turned = attitude.turned(body);
     let Water { density, gravity, symmetry, centimetre } = water;
     let Floating { figures: earth, product_moment, errors } =
@@ -253,7 +253,7 @@ pub fn afloat<T: Real>(
         (None, Some(arms)) => Some(arms.z.re() > 0.0),
         (None, None) => None,
     };
-    Afloat {
+    Flotation {
         attitude,
         buoyancy_centre: earth.buoyancy_centre.map(|c| attitude.body_from(c)),
         flotation_centre: plane.map(|p| attitude.body_from(p.centre)),

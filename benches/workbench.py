@@ -1,0 +1,115 @@
+"""Latency of the workbench: from a slider's event to the new buffers in the page, drawing off.
+
+Every parameter of an example is moved 40 times, in a page that computes by itself
+(`export --html`, the engine in WebAssembly) and in one behind the server (`view`). Needs
+`playwright` and a Chromium. Machines are shared: a fixed computation in the page is timed beside
+each row, and the lowest time is the one to trust.
+
+    python benches/workbench.py [--moves N] [MODEL ...]
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import sync_playwright
+
+from moldloft.workbench.export import exported_page
+from moldloft.workbench.page import engine_packed
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+MODELS = [
+    "sailboat/hull.sdl",
+    "sailboat/yacht.sdl",
+    "wing/wing.sdl",
+    "submarine/submarine.sdl",
+    "wingbody/wingbody.sdl",
+    "platform/platform.sdl",
+    "propeller/propeller.sdl",
+]
+FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+
+MOVES = """async ([name, count]) => {
+  const slider = document.querySelector(`input[type=range][aria-label="${name}"]`)
+  const [low, high] = [Number(slider.min), Number(slider.max)]
+  const { stamps } = window.moldloft
+  stamps.length = 0
+  for (let k = 0; k < count; k++) {
+    const before = stamps.length
+    slider.value = low + (high - low) * (0.3 + (0.4 * ((k * 7) % count)) / count)
+    slider.dispatchEvent(new Event('input', { bubbles: true }))
+    const end = performance.now() + 5000
+    while (stamps.length === before && performance.now() < end)
+      await new Promise((r) => setTimeout(r))
+  }
+  return stamps.map((s) => s.to - s.from)
+}"""
+
+#: A computation of about 10 ms on a quiet machine.
+FIXED = """() => {
+  const from = performance.now()
+  let x = 0.5
+  for (let k = 0; k < 3e6; k++) x = 3.9 * x * (1 - x)
+  return performance.now() - from + 0 * x
+}"""
+
+
+def measured(page: Any, moves: int, what: str) -> None:
+    """A row for each parameter."""
+    page.evaluate("() => moldloft.settled()")
+    for name in page.evaluate("() => moldloft.model.params.map((p) => p.name)"):
+        page.evaluate(MOVES, [name, moves])  # The second compilation comes while it runs.
+        times = sorted(page.evaluate(MOVES, [name, moves]))
+        if not times:
+            print(f"  {what:8} {name:18} no answer")
+            continue
+        late = times[min(len(times) - 1, int(0.95 * len(times)))]
+        print(
+            f"  {what:8} {name:18} lowest {times[0]:6.1f}  median {statistics.median(times):6.1f}"
+            f"  95 % {late:6.1f} ms   (fixed {page.evaluate(FIXED):.1f} ms)",
+            flush=True,
+        )
+
+
+def main() -> None:
+    """Runs."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--moves", type=int, default=40)
+    parser.add_argument("models", nargs="*", default=MODELS)
+    options = parser.parse_args()
+    with sync_playwright() as p, tempfile.TemporaryDirectory() as folder:
+        browser = p.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        for name in options.models:
+            model = EXAMPLES / name
+            print(name)
+            page = browser.new_page()
+            if engine_packed() is not None:
+                file = Path(folder) / "page.html"
+                file.write_bytes(exported_page(model))
+                page.goto(file.as_uri() + "?norender")
+                page.locator("body[data-engine=ready]").wait_for(timeout=120_000)
+                measured(page, options.moves, "worker")
+            command = [sys.executable, "-m", "moldloft", "view", str(model), "--no-browser"]
+            server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+            try:
+                assert server.stdout is not None
+                url = server.stdout.readline().strip()
+                page.goto(url.replace("/#", "/?norender#"))
+                page.locator("body[data-state=alive]").wait_for(timeout=120_000)
+                measured(page, options.moves, "server")
+            finally:
+                server.terminate()
+                server.wait()
+            page.close()
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()

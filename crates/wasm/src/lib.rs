@@ -1,0 +1,136 @@
+//! The engine inside of a page: a session in WebAssembly.
+//!
+//! `bytes in -> Session -> bytes out`
+//!
+//! The page asks for room with `room`, writes a message there and calls `start` (once) or `answer`; what
+//! `answer` returns is the length of the frame at `reply`. The message of `start` is
+//! `u32 length, JSON, bytes of the files`; that of `answer` is a request in JSON.
+//!
+//! What goes wrong inside ends the instance, after `env.panicked` was given the words: the page makes
+//! another one of the same text.
+//!
+//! Invariant: computes nothing: `session` answers. The unsafe code is what the linker's names need.
+
+#![cfg(target_arch = "wasm32")]
+#![allow(unsafe_code)]
+
+use moldloft_lang::{ReadError, ReadText, World};
+use moldloft_session::Session;
+use serde::Deserialize;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+#[link(wasm_import_module = "env")]
+unsafe extern "C" {
+    /// Takes the words of a panic.
+    fn panicked(words: *const u8, length: usize);
+}
+
+/// What a page begins with.
+#[derive(Deserialize)]
+struct Start {
+    /// The model's name; its ending says what it is.
+    name: String,
+    /// The text.
+    text: String,
+    /// The files that the model reads, as it asks for them.
+    #[serde(default)]
+    files: Vec<Carried>,
+}
+
+/// A file that the page carries.
+#[derive(Deserialize)]
+struct Carried {
+    /// As the text spells it.
+    path: String,
+    /// The name of the text that asks.
+    from: Option<String>,
+    /// Its own name.
+    name: String,
+    /// Its first byte behind the JSON.
+    offset: usize,
+    /// How many.
+    count: usize,
+}
+
+/// The files that the page carries, and no others.
+struct CarriedFiles(HashMap<(String, Option<String>), ReadText>);
+
+impl World for CarriedFiles {
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, ReadError> {
+        let known = self.0.get(&(path.to_owned(), from.map(str::to_owned)));
+        known.cloned().ok_or_else(|| ReadError {
+            message: format!("cannot read `{path}`: this page does not carry it"),
+            help: Some("`moldloft view` reads the files beside the model".into()),
+        })
+    }
+}
+
+#[derive(Default)]
+struct Engine {
+    input: Vec<u8>,
+    session: Option<Session>,
+    reply: Vec<u8>,
+}
+
+thread_local! {
+    static ENGINE: RefCell<Engine> = RefCell::default();
+}
+
+/// Room for a message of so many bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn room(bytes: usize) -> *mut u8 {
+    ENGINE.with_borrow_mut(|engine| {
+        engine.input.clear();
+        engine.input.resize(bytes, 0);
+        engine.input.as_mut_ptr()
+    })
+}
+
+/// Begins with the model of the message; false when that is none.
+#[unsafe(no_mangle)]
+pub extern "C" fn start() -> bool {
+    std::panic::set_hook(Box::new(|info| {
+        let words = info.to_string();
+        // SAFETY: the host copies the words before it returns.
+        unsafe { panicked(words.as_ptr(), words.len()) }
+    }));
+    ENGINE.with_borrow_mut(|engine| {
+        let input = std::mem::take(&mut engine.input);
+        engine.session = begun(&input);
+        engine.session.is_some()
+    })
+}
+
+fn begun(message: &[u8]) -> Option<Session> {
+    let (length, rest) = message.split_first_chunk::<4>()?;
+    let (json, bytes) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
+    let start: Start = serde_json::from_slice(json).ok()?;
+    let mut files = HashMap::new();
+    for file in start.files {
+        let data = bytes.get(file.offset..file.offset.checked_add(file.count)?)?;
+        let read = ReadText { name: file.name, bytes: Arc::from(data) };
+        files.insert((file.path, file.from), read);
+    }
+    Some(Session::new(Box::new(CarriedFiles(files)), &start.name, &start.text))
+}
+
+/// Answers the request of the message; the length of the frame.
+#[unsafe(no_mangle)]
+pub extern "C" fn answer() -> usize {
+    ENGINE.with_borrow_mut(|engine| {
+        let request = String::from_utf8_lossy(&engine.input);
+        engine.reply = match &mut engine.session {
+            Some(session) => session.answer(&request),
+            None => Vec::new(),
+        };
+        engine.reply.len()
+    })
+}
+
+/// The frame that `answer` made.
+#[unsafe(no_mangle)]
+pub extern "C" fn reply() -> *const u8 {
+    ENGINE.with_borrow(|engine| engine.reply.as_ptr())
+}

@@ -1,0 +1,63 @@
+"""Draws the gallery and writes its page: `python docs/gallery.py [NAME ...]`."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import moldloft
+
+ROOT = Path(__file__).resolve().parents[1]
+MODELS = sorted((ROOT / "examples" / "gallery").glob("*.sdl"))
+PICTURES = ROOT / "docs" / "images" / "gallery"
+
+HEAD = """# Gallery
+
+Models to start from: each is one file of less than 150 lines with parameters and their ranges, and its figures are checked against
+closed forms or another calculation in `tests/python/test_gallery.py`. Made by `docs/gallery.py`.
+
+```
+moldloft view examples/gallery/catamaran.sdl
+moldloft build examples/gallery/spar.sdl --set draft=80 --to gdf png -o out
+```
+"""
+
+
+def about(path: Path) -> str:
+    """The comment at the beginning of a model."""
+    found = re.match(r"((?:#.*\n)+)", path.read_text(encoding="utf-8"))
+    assert found, f"{path.name} begins with a comment"
+    return " ".join(line.lstrip("# ") for line in found[1].splitlines())
+
+
+def page() -> str:
+    """The text of docs/gallery.md."""
+    parts = [HEAD]
+    for path in MODELS:
+        model = moldloft.load(path)
+        rows = [
+            f"| `{p.name}` | {p.default:g} | {p.low:g} to {p.high:g} |"
+            for p in model.params.values()
+        ]
+        title = path.stem.replace("_", " ").capitalize()
+        parts.append(
+            f"\n## {title}\n\n{about(path)}\n\n![{title}](images/gallery/{path.stem}.png)\n\n"
+            f"[`{path.name}`](../examples/gallery/{path.name})\n\n"
+            "| parameter | default | range |\n| --- | --- | --- |\n" + "\n".join(rows) + "\n"
+        )
+    return "".join(parts)
+
+
+def main() -> None:
+    """Draws the models that are named, or all, and writes the page."""
+    PICTURES.mkdir(exist_ok=True)
+    for path in MODELS:
+        if len(sys.argv) == 1 or path.stem in sys.argv[1:]:
+            model = moldloft.load(path)
+            (PICTURES / f"{path.stem}.png").write_bytes(model.picture(560, 360))
+    (ROOT / "docs" / "gallery.md").write_text(page(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""What the site needs besides the pages: sources that pages link to, and the list of changes.
+
+Links that leave `docs` are those to sources; the files are put into the site, so that it is whole
+when it is opened from a folder.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+
+_LINK = re.compile(r"\]\(((?:\.\./)+[^)#\s]+)(#[^)]*)?\)")
+
+
+def _target(page: str, link: str) -> str | None:
+    """The path in the repository that a page of the site links to, if that is outside `docs`."""
+    path = (ROOT / "docs" / page).parent.joinpath(link).resolve()
+    if not path.is_relative_to(ROOT) or path.is_relative_to(ROOT / "docs"):
+        return None
+    return path.relative_to(ROOT).as_posix()
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """Adds the linked sources and the changes to the site."""
+    from mkdocs.structure.files import File
+
+    linked = set()
+    for file in files.documentation_pages():
+        for link, _ in _LINK.findall(file.content_string):
+            target = _target(file.src_uri, link)
+            if target and (ROOT / target).is_file():
+                linked.add(target)
+    for target in sorted(linked):
+        text = (ROOT / target).read_text(encoding="utf-8")
+        files.append(File.generated(config, f"source/{target}.txt", content=text))
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    files.append(File.generated(config, "changes.md", content=changes))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
+    """Turns links to sources into links to their copies in the site."""
+    here = page.file.src_uri
+    up = "../" * here.count("/")
+
+    def moved(found: re.Match[str]) -> str:
+        target = _target(here, found[1])
+        if target is None:
+            return found[0]
+        if not (ROOT / target).is_file():
+            return f"](https://github.com/moldloft/moldloft/tree/main/{target})"
+        return f"]({up}source/{target}.txt)"
+
+    return _LINK.sub(moved, markdown)

@@ -1,0 +1,72 @@
+"""Colours of what is printed: on a terminal, unless ``NO_COLOR`` is set or they are refused."""
+
+from __future__ import annotations
+
+import os
+import re
+from typing import IO
+
+__all__ = ["choose", "painted"]
+
+_RED, _YELLOW, _BLUE, _CYAN, _GREEN = "31;1", "33;1", "34;1", "36;1", "32;1"
+
+#: What is painted of a line, with its colour: the first that matches.
+_RULES = (
+    (re.compile(r"(error(?:\[[^\]]*\])?:)"), _RED),
+    (re.compile(r"(warning(?:\[[^\]]*\])?:)"), _YELLOW),
+    (re.compile(r"((?:note|remark|info)(?:\[[^\]]*\])?:)"), _BLUE),
+    (re.compile(r"((?:help|expected|found)(?:\[[^\]]*\])?:)"), _CYAN),
+    (
+        re.compile(r"((?:usage|examples|positional arguments|options|[A-Z][a-z]+(?: [a-z]+)*):)"),
+        _GREEN,
+    ),
+)
+_MARKS = re.compile(r"^([ \d]*\|\s*)(\^+|-+)(?=\s|$)")
+_PLACE = re.compile(r"^( *--> )(.*)$")
+
+_choice = "auto"
+
+
+def choose(word: str) -> None:
+    """Colours ``"always"``, ``"never"`` or, with ``"auto"``, on terminals."""
+    global _choice
+    _choice = word
+
+
+def _wanted(stream: IO[str]) -> bool:
+    if _choice != "auto":
+        return _choice == "always"
+    if os.environ.get("NO_COLOR"):
+        return False
+    if os.environ.get("FORCE_COLOR") or os.environ.get("CLICOLOR_FORCE"):
+        return True
+    return stream.isatty() and os.environ.get("TERM") != "dumb"
+
+
+def painted(text: str, stream: IO[str]) -> str:
+    """A text as the stream shows it: with colours if it has them.
+
+    Diagnostics and help texts keep their words; only escapes are added.
+    """
+    if not _wanted(stream):
+        return text
+    return "\n".join(_line(line) for line in text.split("\n"))
+
+
+def _line(line: str) -> str:
+    place = _PLACE.match(line)
+    if place:
+        return f"\x1b[{_BLUE}m{place[1]}\x1b[0m{place[2]}"
+    marks = _MARKS.match(line)
+    if marks:
+        colour = _RED if marks[2].startswith("^") else _BLUE
+        rest = line[marks.end() :]
+        return f"\x1b[{_BLUE}m{marks[1]}\x1b[{colour}m{marks[2]}{rest}\x1b[0m"
+    stripped = line.lstrip(" =")
+    for rule, colour in _RULES:
+        found = rule.match(stripped)
+        if found:
+            at = len(line) - len(stripped)
+            end = at + found.end(1)
+            return f"{line[:at]}\x1b[{colour}m{line[at:end]}\x1b[0m{line[end:]}"
+    return line

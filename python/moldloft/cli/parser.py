@@ -1,0 +1,90 @@
+"""The command line's grammar: argparse, with what people expect of a command today.
+
+No abbreviations of options, negative numbers as values, the nearest name where a word is unknown,
+one line for a usage error instead of the whole usage, and colours on a terminal.
+"""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import re
+import sys
+from collections.abc import Iterable
+from typing import Any, NoReturn
+
+from moldloft.cli.colour import painted
+
+__all__ = ["Parser", "nearest", "usage_error"]
+
+#: Numbers, and numbers with commas, after a minus: values and no options.
+_NEGATIVE = re.compile(r"-(\d|\.\d)[\d.,eE+:-]*$")
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The hint about a word that is unknown.
+
+    >>> nearest("bulid", ["build", "check"])
+    '; did you mean `build`?'
+    """
+    near = difflib.get_close_matches(word, list(known), 1, 0.6)
+    return f"; did you mean `{near[0]}`?" if near else ""
+
+
+def usage_error(message: str, prog: str) -> NoReturn:
+    """Says what is wrong with the command line and ends with status 2."""
+    text = f"error: {message}\nhelp: `{prog} --help` lists the arguments"
+    print(painted(text, sys.stderr), file=sys.stderr)
+    raise SystemExit(2)
+
+
+class _Help(argparse.RawDescriptionHelpFormatter):
+    """Help as wide as the terminal up to 100 columns, texts as they were written."""
+
+    def __init__(self, prog: str, **options: Any) -> None:
+        import shutil
+
+        options.setdefault("max_help_position", 28)
+        options["width"] = min(shutil.get_terminal_size().columns, 100) - 2
+        super().__init__(prog, **options)
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser of arguments; see the module."""
+
+    def __init__(self, **options: Any) -> None:
+        options.setdefault("formatter_class", _Help)
+        options.setdefault("allow_abbrev", False)
+        super().__init__(**options)
+        self._negative_number_matcher = _NEGATIVE
+
+    def minus_is_a_value(self) -> None:
+        """Words with one minus are values: the parser has no options of one letter but ``-h``."""
+        self._negative_number_matcher = re.compile(r"-(?!h$|-)")
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse does it; an unknown option is refused with the nearest one."""
+        found, left = self.parse_known_args(args, namespace)
+        if left:
+            own = getattr(found, "parser", self)
+            word = left[0].partition("=")[0]
+            if word.startswith("-"):
+                own.error(f"unknown option `{word}`{nearest(word, own._option_string_actions)}")
+            own.error(f"unexpected argument `{left[0]}`")
+        return found
+
+    def error(self, message: str) -> NoReturn:
+        """Says what is wrong in a line."""
+        message = re.sub(r"^argument (\S+): ", r"\1: ", message)
+        found = re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)", message)
+        if found:
+            known = [word.strip(" '") for word in found[2].split(",")]
+            hint = nearest(found[1], known)
+            expected = hint or f"; expected one of: {', '.join(known)}"
+            message = message[: found.start()] + f"`{found[1]}` is unknown{expected}"
+        usage_error(message, self.prog)
+
+    def print_help(self, file: Any = None) -> None:
+        """Help, in colours on a terminal."""
+        out = file or sys.stdout
+        out.write(painted(self.format_help(), out))

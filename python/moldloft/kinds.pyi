@@ -1,0 +1,8365 @@
+# Made by `make reference` from the declarations in `crates/`; not edited by hand.
+"""The kinds of entities, for models written in Python."""
+
+from collections.abc import Sequence
+from typing import Any, TypeAlias
+
+from numpy.typing import NDArray
+
+from moldloft.expressions import (
+    AnyHandle,
+    AnyShape,
+    BeadHandle,
+    BodyHandle,
+    ContoursHandle,
+    CurveHandle,
+    Expr,
+    FieldShape,
+    FrameHandle,
+    MagnetHandle,
+    PlaneHandle,
+    PointHandle,
+    RelabelHandle,
+    RingHandle,
+    SetShape,
+    SnakeHandle,
+    SolidHandle,
+    SurfaceHandle,
+)
+
+_Any: TypeAlias = AnyHandle | AnyShape
+_Number: TypeAlias = float | Expr | _Any
+_Integer: TypeAlias = int | Expr | _Any
+_Text: TypeAlias = str | _Any
+_Array: TypeAlias = NDArray[Any]
+_Vector: TypeAlias = PointHandle | Sequence[float | Expr] | _Array | _Any
+_Numbers: TypeAlias = Sequence[float | Expr] | _Array | _Any
+_Item: TypeAlias = PointHandle | Sequence[float | Expr] | _Array
+_Vectors: TypeAlias = Sequence[_Item | Sequence[_Item]] | _Array | _Any
+_Point: TypeAlias = _Vector
+_Bead: TypeAlias = BeadHandle | _Any
+_Magnet: TypeAlias = MagnetHandle | _Any
+_Ring: TypeAlias = RingHandle | _Any
+_Curve: TypeAlias = CurveHandle | _Any
+_Snake: TypeAlias = SnakeHandle | _Any
+_Surface: TypeAlias = SurfaceHandle | _Any
+_Solid: TypeAlias = SolidHandle | _Any
+_Plane: TypeAlias = PlaneHandle | str | _Any
+_Mirror: TypeAlias = _Plane | _Point | CurveHandle
+_Side: TypeAlias = SnakeHandle | MagnetHandle | _Any
+_Along: TypeAlias = CurveHandle | BeadHandle | _Any
+_AlongSnake: TypeAlias = SnakeHandle | RingHandle | _Any
+_Onto: TypeAlias = SurfaceHandle | MagnetHandle | _Any
+_Target: TypeAlias = _Plane | SurfaceHandle | CurveHandle | _Point | FieldShape
+_Frame: TypeAlias = FrameHandle | _Point
+_Contours: TypeAlias = ContoursHandle | _Any
+_Relabel: TypeAlias = RelabelHandle | _Any
+_Field: TypeAlias = FieldShape | PlaneHandle | float | Expr | _Any
+_Set: TypeAlias = SetShape | FieldShape | PlaneHandle | _Any
+_Body: TypeAlias = BodyHandle | _Any
+
+def AbsPoint(
+    name: str,
+    /,
+    x: _Number,
+    y: _Number,
+    z: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """A point given by its coordinates: X = (x, y, z).
+
+    Three degrees of freedom (Letcher and Shook 1995).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    x : number
+        First coordinate.
+    y : number
+        Second coordinate.
+    z : number
+        Third coordinate.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 2, 0.5);
+    """
+    ...
+def RelPoint(
+    name: str,
+    /,
+    point: _Point,
+    dx: _Number | None = ...,
+    dy: _Number | None = ...,
+    dz: _Number | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """A point at a fixed offset from another: X = P + (dx, dy, dz).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        The point it is relative to.
+    dx : number, optional
+        Offset along x. Default 0.
+    dy : number, optional
+        Offset along y. Default 0.
+    dz : number, optional
+        Offset along z. Default 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 2, 0.5); RelPoint B(A, 0, 0, 1.5);
+    """
+    ...
+def MirrPoint(
+    name: str,
+    /,
+    point: _Point,
+    mirror: _Mirror,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """The mirror image of a point: X = 2 F - P, with F the foot of the perpendicular from P to the
+    plane or line, or the point to mirror in.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        The point to mirror.
+    mirror : mirror
+        The mirror: a plane, line or point.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 2, 0.5); MirrPoint B(A, "y=0");
+    """
+    ...
+def FramePoint(
+    name: str,
+    /,
+    point: _Point | None = ...,
+    frame: _Frame | None = ...,
+    a: _Number | None = ...,
+    b: _Number | None = ...,
+    c: _Number | None = ...,
+    type: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """A point at an offset from another, in the axes of a frame.
+
+    Type 0: the offset is (a, b, c) along the axes. Type 1: cylindrical, a the distance from the z
+    axis, b the angle from x toward y, c the height. Type 2: spherical, a the distance, b the
+    longitude, c the latitude. Without a point it is the frame's origin; a point in place of a frame
+    gives the axes of the world there.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point, optional
+        The point it is relative to.
+    frame : frame, optional
+        The frame whose axes are meant; those of the world when not given.
+    a : number, optional
+        First coordinate. Default 0.
+    b : number, optional
+        Second coordinate; an angle in types 1 and 2. Default 0.
+    c : number, optional
+        Third coordinate; an angle in type 2. Default 0.
+    type : integer, optional
+        0 Cartesian, 1 cylindrical, 2 spherical. 0 to 2, default 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 0, 0); RPYFrame keel(A, 0.35, 0, 0.1); FramePoint p(A, keel, 0, 0, -3); FramePoint q(p, keel, 2, 0.5, 1, type = 1); FramePoint r(q, A, 2, 0.5, 1, 2);
+    """
+    ...
+def PolarPoint(
+    name: str,
+    /,
+    point: _Point | None = ...,
+    frame: _Frame | None = ...,
+    theta: _Number | None = ...,
+    phi: _Number | None = ...,
+    *,
+    r: _Number,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """A point at a distance and direction from another, in the axes of a frame:
+    X = P + r (cos phi cos theta, cos phi sin theta, sin phi).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point, optional
+        The point it is relative to; the frame's origin when not given.
+    frame : frame, optional
+        The frame whose axes are meant; those of the world when not given.
+    r : number
+        Distance.
+    theta : number, optional
+        Longitude, from x toward y. Default 0.
+    phi : number, optional
+        Latitude, from the xy plane toward z. Default 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 0, 0); RPYFrame keel(A, 0.35, 0, 0.1); PolarPoint p(A, keel, 2, 0.5, 0.2);
+    """
+    ...
+def OffsetPoint(
+    name: str,
+    /,
+    magnet: _Magnet,
+    distance: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """A point off a surface: X = S(u, v) + d n, with n the unit normal along S_u x S_v.
+
+    At a pole the normal is the limit along the parameter line that ends there.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnet : magnet
+        The magnet on the surface.
+    distance : number
+        The distance, on the side of the natural normal if positive.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.25, 0.5); OffsetPoint q(p, 0.75);
+    """
+    ...
+def TanPoint(
+    name: str,
+    /,
+    bead: _Bead,
+    distance: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """A point on the tangent of a curve: X = C(t) + d C'(t) / |C'(t)|.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    bead : bead
+        The bead on the curve.
+    distance : number
+        The distance, in the direction of increasing parameter if positive.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); AbsBead b(c, 0.25); TanPoint p(b, 1.5);
+    """
+    ...
+def RotatPoint(
+    name: str,
+    /,
+    point: _Point,
+    line: _Curve,
+    angle: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """A point turned about a line by an angle, right-handed (Rodrigues).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        The point to turn.
+    line : curve
+        The axis, from the line's first end to its last.
+    angle : number
+        The angle.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 2, 0.5); AbsPoint B(0, 0, 0); AbsPoint C(3, 1, 0); Line axis(B, C); RotatPoint p(A, axis, 0.75);
+    """
+    ...
+def CopyPoint(
+    name: str,
+    /,
+    point: _Point,
+    from_: _Point,
+    to: _Point,
+    sx: _Number | None = ...,
+    sy: _Number | None = ...,
+    sz: _Number | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """A point copied from one place to another, scaled along the axes:
+    X = to + (sx, sy, sz) (P - from), coordinate by coordinate.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        The point to copy.
+    from : point
+        A point that is moved to `to`.
+    to : point
+        The image of `from`.
+    sx : number, optional
+        Scale along x. Default 1.
+    sy : number, optional
+        Scale along y. Default 1.
+    sz : number, optional
+        Scale along z. Default 1.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 2, 0.5); AbsPoint B(0, 0, 0); AbsPoint C(3, 1, 0); CopyPoint p(A, B, C, 2, 1, -1);
+    """
+    ...
+def BlendPoint(
+    name: str,
+    /,
+    points: _Vectors,
+    weights: _Numbers | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """The weighted sum of points: X = sum w_i P_i.
+
+    There is a warning when the weights do not add up to 1. Weights that do make it a blend that moves with its points; the weights 1, -1, 1 give
+    the fourth corner of a parallelogram. Equal weights when none are given.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        The points.
+    weights : list of number, optional
+        Their weights, which should add up to 1.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 2, 0.5); AbsPoint B(0, 0, 0); AbsPoint C(3, 1, 0); BlendPoint fourth({A, B, C}, {1, -1, 1}); BlendPoint middle({A, C});
+    """
+    ...
+def CentroidPoint(
+    name: str,
+    /,
+    objects: Sequence[object] | _Array | _Any,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """The centroid of points, of curves by their length, of surfaces by their area, or of solids and closed
+    bodies of triangles by their volume.
+
+    A list is of one class: a point has neither length nor area to weigh against a curve. Left-handed
+    solids count like right-handed ones; where a solid is folded, what is covered twice counts twice.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    objects : list of value
+        Points, curves, surfaces or solids.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); BCurve l({A, B, D}); Line m(C, D); RuledSurf S(l, m); CentroidPoint p({A, B, C}); CentroidPoint q({l, m}); CentroidPoint r({S}); AbsPoint E(0, 3, 0); Line up(A, E); TranSolid block(S, up); CentroidPoint s({block});
+    """
+    ...
+def ProjPoint(
+    name: str,
+    /,
+    point: _Point,
+    mirror: _Target,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """The foot of the perpendicular from a point to a plane, line, surface or the zero set of a field; for a
+    mirror that is a point, that point.
+
+    On the zero set of a field it is the foot found by descent along the field.
+
+    On a surface it is the nearest foot; from a magnet of the surface the one that descent from
+    there leads to. A foot beyond an edge is clamped to the edge and reported.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        The point to project.
+    mirror : target
+        The target of the projection.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 2, 0.5); AbsPoint B(0, 0, 0); AbsPoint C(3, 1, 0); Line axis(B, C); ProjPoint foot(A, axis); AbsPoint D(0, 3, 2); Line m(D, A); RuledSurf S(axis, m); ProjPoint on(D, S);
+    """
+    ...
+def IntPoint(
+    name: str,
+    /,
+    shape1: _Target,
+    shape2: _Target,
+    shape3: _Target,
+    near: _Point | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """The point that three planes, surfaces or zero sets of fields have in common.
+
+    With magnets instead of surfaces it is the one that Newton's method from there leads to. Without
+    them all are looked for: the one nearest to `near` is taken, or that nearest to the middle of the
+    surfaces' parameters, and the others are reported.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    shape1 : target
+        A plane, a surface (or a magnet of it near the point that is meant), or a field.
+    shape2 : target
+        Another.
+    shape3 : target
+        A third.
+    near : point, optional
+        Of several common points the one nearest to this is meant.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); IntPoint p(S, "x=0", "y=0"); XPlane x(1.5); YPlane y(2); ZPlane z(3); IntPoint q(x, y, z); AbsPoint E(1, 0.5, -2); AbsPoint F(2, 4, -2); AbsPoint G(3, -1, 4); AbsPoint H(2, 4, 4); Line n(E, F); Line o(G, H); RuledSurf T(n, o); IntPoint r(S, T, y);
+    """
+    ...
+def AbsBead(
+    name: str,
+    /,
+    curve: _Curve,
+    t: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BeadHandle:
+    """A point on a curve at a given parameter: X = C(t).
+
+    Outside [0, 1] it is on the natural continuation of the curve's formula. On a snake it is a
+    ring: it knows its place on the surface too.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve it is on.
+    t : number
+        Its parameter.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    bead
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); Line l(A, B); AbsBead b(l, 0.25);
+    """
+    ...
+def RelBead(
+    name: str,
+    /,
+    bead: _Bead,
+    dt: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BeadHandle:
+    """A point on the curve of another bead, at a fixed difference of parameter: X = C(t + dt).
+
+    When the other bead moves, the difference of parameters stays the same, not the length
+    of the curve between them.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    bead : bead
+        The bead it is relative to.
+    dt : number
+        Difference of parameter.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    bead
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); Line l(A, B); AbsBead b(l, 0.25); RelBead c(b, 0.5);
+    """
+    ...
+def ArcLenBead(
+    name: str,
+    /,
+    start: _Along,
+    length: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BeadHandle:
+    """The bead at a given length along a curve from another bead, or from its start; negative lengths
+    run backwards.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    start : curve or bead
+        A bead, or a curve for its start.
+    length : number
+        The length.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    bead
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); ArcLenBead b(c, 1.5); ArcLenBead d(b, -0.5);
+    """
+    ...
+def CopyBead(
+    name: str,
+    /,
+    bead: _Bead,
+    curve: _Curve,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BeadHandle:
+    """The bead of another curve at the parameter of a bead: X = C(t).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    bead : bead
+        The bead whose parameter is copied.
+    curve : curve
+        The target curve.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    bead
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); Line l(A, C); AbsBead b(c, 0.25); CopyBead d(b, l);
+    """
+    ...
+def AbsMagnet(
+    name: str,
+    /,
+    surface: _Surface,
+    u: _Number,
+    v: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> MagnetHandle:
+    """A point on a surface at given parameters: X = S(u, v).
+
+    Outside [0, 1] it is on the natural continuation of the surface's formula.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface it is on.
+    u : number
+        Its first parameter.
+    v : number
+        Its second parameter.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    magnet
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.25, 0.5);
+    """
+    ...
+def RelMagnet(
+    name: str,
+    /,
+    magnet: _Magnet,
+    du: _Number | None = ...,
+    dv: _Number | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> MagnetHandle:
+    """A point on the surface of another magnet, at a fixed difference of parameters:
+    X = S(u + du, v + dv).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnet : magnet
+        The magnet it is relative to.
+    du : number, optional
+        Difference of the first parameter. Default 0.
+    dv : number, optional
+        Difference of the second parameter. Default 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    magnet
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.25, 0.5); RelMagnet q(p, 0.5, 0.125);
+    """
+    ...
+def CopyMagnet(
+    name: str,
+    /,
+    magnet: _Magnet,
+    surface: _Surface,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> MagnetHandle:
+    """The magnet of another surface at the parameters of a magnet: X = S(u, v).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnet : magnet
+        The magnet whose parameters are copied.
+    surface : surface
+        The target surface.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    magnet
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); RuledSurf T(m, l); AbsMagnet p(S, 0.25, 0.375); CopyMagnet q(p, T);
+    """
+    ...
+def AbsRing(
+    name: str,
+    /,
+    snake: _Snake,
+    t: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RingHandle:
+    """A point on a snake at a given parameter: X = S(w(t)).
+
+    It is a bead of the snake and a magnet of the surface at once.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake
+        The snake it lives on.
+    t : number
+        Its parameter.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    ring
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); AbsRing r(s, 0.5);
+    """
+    ...
+def RelRing(
+    name: str,
+    /,
+    ring: _Ring,
+    dt: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RingHandle:
+    """A point on the snake of another ring, at a fixed difference of parameter: X = S(w(t + dt)).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    ring : ring
+        The ring it is relative to.
+    dt : number
+        Difference of parameter.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    ring
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); AbsRing r(s, 0.5); RelRing q(r, 0.25);
+    """
+    ...
+def ArcLenRing(
+    name: str,
+    /,
+    start: _Along,
+    length: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RingHandle:
+    """The ring at a given length along a snake from another ring, or from its start: as an
+    arc-length bead.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    start : curve or bead
+        A ring, or a snake for its start.
+    length : number
+        The length.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    ring
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); ArcLenRing r(s, 0.5); ArcLenRing q(r, 0.25);
+    """
+    ...
+def CopyRing(
+    name: str,
+    /,
+    ring: _Ring,
+    snake: _Snake,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RingHandle:
+    """The ring of another snake at the parameter of a ring: X = S(w(t)).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    ring : ring
+        The ring whose parameter is copied.
+    snake : snake
+        The target snake.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    ring
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); UVSnake t(S, "v", 0.3); AbsRing r(s, 0.3); CopyRing q(r, t);
+    """
+    ...
+def IntBead(
+    name: str,
+    /,
+    curve: _Along,
+    target: _Target,
+    point: _Point | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BeadHandle:
+    """The point where a curve meets a plane, a surface, another curve or a sphere: C(t) on the target. From a bead it is found by damped Newton iteration; without one, of all such points the one nearest to t = 0.5 is taken and the others are reported.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve or bead
+        The curve, or a bead of it near the place that is meant.
+    target : target
+        A plane, surface (or magnet), curve (or bead), or the centre of a sphere.
+    point : point, optional
+        For a plane: the parallel plane through this point is meant. For a centre: the sphere
+        through this point.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    bead
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); BCurve c({A, B, C, D}); XPlane middle(2); IntBead b(c, middle); AbsBead near(c, 0.1); IntBead d(near, "y=0", {0, 1, 0});
+    """
+    ...
+def XYZBead(
+    name: str,
+    /,
+    curve: _Along,
+    axis: _Text,
+    value: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BeadHandle:
+    """The point of a curve with a given coordinate x, y or z. From a bead it is found by damped Newton iteration; without one, of all such points the one nearest to t = 0.5 is taken.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve or bead
+        The curve, or a bead of it near the place that is meant.
+    axis : text
+        The coordinate: "x", "y" or "z".
+    value : number
+        Its value.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    bead
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); XYZBead b(c, "x", 1.25);
+    """
+    ...
+def ProjBead(
+    name: str,
+    /,
+    curve: _Along,
+    point: _Point,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BeadHandle:
+    """The foot of the perpendicular from a point to a curve: C'(t) . (C(t) - P) = 0, where the distance is least. From a bead it is the foot that descent leads to; without one the nearest of all. Where the foot would lie beyond an end, the end is taken and reported.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve or bead
+        The curve, or a bead of it near the place that is meant.
+    point : point
+        The point to project.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    bead
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); AbsPoint P(1, 3, 1); ProjBead b(c, P);
+    """
+    ...
+def ProxBead(
+    name: str,
+    /,
+    curve: _Along,
+    point: _Point,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BeadHandle:
+    """The point of a curve nearest to a given point, of the whole curve and ends included. Equally near ones are reported.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve or bead
+        The curve, or a bead of it near the place that is meant.
+    point : point
+        The point to be near to.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    bead
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); AbsPoint P(1, 3, 1); ProxBead b(c, P);
+    """
+    ...
+def ProjMagnet(
+    name: str,
+    /,
+    point: _Point,
+    surface: _Onto,
+    mirror: _Mirror | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> MagnetHandle:
+    """The projection of a point onto a surface: along the surface's normal (the foot of the
+    perpendicular), along a direction, or away from a point.
+
+    From a magnet it is what Newton's method leads to; without one the nearest of all. A foot that
+    beyond an edge is clamped to the edge and reported.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        The point to project.
+    surface : surface or magnet
+        The surface, or a magnet of it near the place that is meant.
+    mirror : mirror, optional
+        Along what: a plane's normal, a line's direction, or away from a point. Not given: along
+        the surface's own normal.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    magnet
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint P(1, 2, 4); ProjMagnet foot(P, S); ProjMagnet below(P, S, "z=0"); AbsPoint eye(1, 1, 9); AbsMagnet near(S, 0.3, 0.5); ProjMagnet shadow(P, near, eye);
+    """
+    ...
+def ProxMagnet(
+    name: str,
+    /,
+    point: _Point,
+    surface: _Onto,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> MagnetHandle:
+    """The point of a surface nearest to a given point, of the whole surface and edges included.
+    Equally near ones are reported.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        The point to be near to.
+    surface : surface or magnet
+        The surface.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    magnet
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint P(1, 2, 4); ProxMagnet m1(P, S);
+    """
+    ...
+def IntMagnet(
+    name: str,
+    /,
+    curve: _Along,
+    surface: _Onto,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> MagnetHandle:
+    """The point where a curve goes through a surface, as a point of the surface: C(t) = S(u, v).
+
+    The bead names the curve and a start t, the magnet the surface and a start (u, v).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve or bead
+        The curve, or a bead of it.
+    surface : surface or magnet
+        The surface, or a magnet of it.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    magnet
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint P(1, 2, 4); AbsPoint Q(2, 1, -3); Line n(P, Q); IntMagnet hit(n, S);
+    """
+    ...
+def XYZMagnet(
+    name: str,
+    /,
+    surface: _Onto,
+    axis1: _Text,
+    value1: _Number,
+    axis2: _Text,
+    value2: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> MagnetHandle:
+    """The point of a surface with two given coordinates.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface or magnet
+        The surface, or a magnet of it near the place that is meant.
+    axis1 : text
+        The first coordinate: "x", "y" or "z".
+    value1 : number
+        Its value.
+    axis2 : text
+        The second coordinate, another one.
+    value2 : number
+        Its value.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    magnet
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); XYZMagnet m1(S, "x", 1, "z", 0.75);
+    """
+    ...
+def TanMagnet(
+    name: str,
+    /,
+    magnet: _Magnet,
+    a: _Number | None = ...,
+    b: _Number | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> MagnetHandle:
+    """The point of a surface near another magnet, at distances measured in the tangent plane there:
+    the foot on the surface of S + a e1 + b e2, with e1 the direction of S_u and e2 the one
+    perpendicular to it towards S_v.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnet : magnet
+        The magnet it is relative to.
+    a : number, optional
+        Distance along u. Default 0.
+    b : number, optional
+        Distance across. Default 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    magnet
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.5, 0.5); TanMagnet q(p, 0.5, -0.25);
+    """
+    ...
+def IntRing(
+    name: str,
+    /,
+    snake: _AlongSnake,
+    target: _Target,
+    point: _Point | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RingHandle:
+    """The point where a curve meets a plane, a surface, another curve or a sphere: C(t) on the target. From a bead it is found by damped Newton iteration; without one, of all such points the one nearest to t = 0.5 is taken and the others are reported.
+
+    The same on a snake, as a ring.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake or ring
+        The snake, or a ring of it near the place that is meant.
+    target : target
+        A plane, surface (or magnet), curve (or bead), or the centre of a sphere.
+    point : point, optional
+        For a plane: the parallel plane through this point is meant. For a centre: the sphere
+        through this point.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    ring
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "v", 0.4); XPlane p(1.5); IntRing r(s, p);
+    """
+    ...
+def XYZRing(
+    name: str,
+    /,
+    snake: _AlongSnake,
+    axis: _Text,
+    value: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RingHandle:
+    """The point of a curve with a given coordinate x, y or z. From a bead it is found by damped Newton iteration; without one, of all such points the one nearest to t = 0.5 is taken.
+
+    The same on a snake, as a ring.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake or ring
+        The snake, or a ring of it near the place that is meant.
+    axis : text
+        The coordinate: "x", "y" or "z".
+    value : number
+        Its value.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    ring
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); XYZRing r(s, "z", 1);
+    """
+    ...
+def ProjRing(
+    name: str,
+    /,
+    snake: _AlongSnake,
+    point: _Point,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RingHandle:
+    """The foot of the perpendicular from a point to a curve: C'(t) . (C(t) - P) = 0, where the distance is least. From a bead it is the foot that descent leads to; without one the nearest of all. Where the foot would lie beyond an end, the end is taken and reported.
+
+    The same on a snake, as a ring.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake or ring
+        The snake, or a ring of it near the place that is meant.
+    point : point
+        The point to project.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    ring
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); AbsPoint P(1, 3, 1); ProjRing r(s, P);
+    """
+    ...
+def ProxRing(
+    name: str,
+    /,
+    snake: _AlongSnake,
+    point: _Point,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RingHandle:
+    """The point of a curve nearest to a given point, of the whole curve and ends included. Equally near ones are reported.
+
+    The same on a snake, as a ring.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake or ring
+        The snake, or a ring of it near the place that is meant.
+    point : point
+        The point to be near to.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    ring
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); AbsPoint P(1, 3, 1); ProxRing r(s, P);
+    """
+    ...
+def Line(
+    name: str,
+    /,
+    p1: _Point,
+    p2: _Point,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A straight line: C(t) = (1 - t) P1 + t P2.
+
+    Coincident points are allowed, but then the line serves no purpose that needs a direction. A line
+    from a point to itself is that point: as a master it makes a pole. Lines between the same two
+    points are one for meshes, and so are the straight edges of surfaces between them.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    p1 : point
+        Start.
+    p2 : point
+        End.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); Line l(A, B);
+    """
+    ...
+def Arc(
+    name: str,
+    /,
+    p1: _Point,
+    p2: _Point,
+    p3: _Point,
+    type: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A circular arc, uniform in angle.
+
+    Six types (types 1 and 3 to 6 are our numbers for those of the catalogue): 1 through p1, p2 and
+    p3; 2 from p1 about the centre p2, the shorter way to the direction of p3; 3 from p1, tangent to
+    the line toward p2, to p3; 4 from p1 to p3, tangent there to the line that comes from p2; 5 the
+    semicircle from p1 to p2 on the side of p3; 6 the full circle from p1 about the centre p2,
+    setting out toward the side of p3.
+
+    Points in line make types 1 to 4 a straight line, which the arc approaches smoothly.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    p1 : point
+        First point.
+    p2 : point
+        Second point.
+    p3 : point
+        Third point.
+    type : integer, optional
+        One of the six types. 1 to 6, default 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 0, 0); AbsPoint B(0.6, 0.8, 0.1); AbsPoint C(-1, 0, 0); Arc a(A, B, C, type = 1);
+    """
+    ...
+def BCurve(
+    name: str,
+    /,
+    points: _Vectors,
+    degree: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A B-spline curve: C(t) = sum N_i(t) P_i with clamped uniform knots (de Boor 1978).
+
+    It begins at the first point and ends at the last, tangent to the polygon there, and is only
+    attracted by the others. With N points the degree is at most N - 1: a higher one is lowered to
+    that.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        Control points, two or more.
+    degree : integer, optional
+        Polynomial degree: 1 is a polyline, 2 quadratic, 3 cubic. 1 to 25, default 3.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); BCurve c({A, B, C, D}, degree = 2);
+    """
+    ...
+def CCurve(
+    name: str,
+    /,
+    points: _Vectors,
+    degree: _Integer | None = ...,
+    ends: _Text | None = ...,
+    start: _Vector | None = ...,
+    end: _Vector | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """An interpolating spline: the twice differentiable piecewise cubic through the points, with
+    knots at the cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
+
+    With the default ends two points give a line, three a parabola, four or more the spline whose
+    first two and last two pieces are one polynomial each. Neighbouring points must differ.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        The points it passes through, two or more.
+    degree : integer, optional
+        3 for the cubic spline, 1 for a polyline. 1 to 3, default 3.
+    ends : text, optional
+        End conditions: "notaknot", "natural", "bessel", "quadratic", "clamped" or "periodic".
+        Default notaknot.
+    start : vector, optional
+        Slope dC/dt at the start, for clamped ends.
+    end : vector, optional
+        Slope dC/dt at the end, for clamped ends.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); AbsPoint E(6, 0.5, 2); CCurve c({A, B, C, D, E}); CCurve d({A, B, C, D}, ends = "clamped", start = {3, 1, 0}, end = {4, -2, 1});
+    """
+    ...
+def XCurve(
+    name: str,
+    /,
+    axis: object,
+    points: _Vectors,
+    ends: _Text | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """An explicit spline: one coordinate runs evenly with t, and the other two are cubic splines of
+    it through the points.
+
+    That coordinate must ascend or descend from point to point.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    axis : value
+        The coordinate that runs evenly: "x", "y" or "z", or 1, 2 or 3.
+    points : list of point
+        The points it passes through, two or more.
+    ends : text, optional
+        End conditions: "notaknot", "natural", "bessel", "quadratic" or "periodic". Default
+        notaknot.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); XCurve c("x", {A, B, C, D}); XCurve d(1, {D, C, B, A}, ends = "natural");
+    """
+    ...
+def NURBCurve(
+    name: str,
+    /,
+    points: _Vectors,
+    degree: _Integer | None = ...,
+    knots: _Numbers | None = ...,
+    weights: _Numbers | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A rational B-spline curve: C(t) = sum w_i N_i(t) P_i / sum w_i N_i(t).
+
+    The knots are all listed, end knots included: as many as points, plus the degree, plus one. They
+    may run over any range, which is brought to [0, 1]. Without knots they are clamped and uniform,
+    without weights the weights are 1.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        Control points, two or more.
+    degree : integer, optional
+        Polynomial degree. 1 to 25, default 3.
+    knots : list of number, optional
+        Knots, end knots included, ascending.
+    weights : list of number, optional
+        Weights of the points, positive.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 0, 0); AbsPoint B(1, 1, 0.2); AbsPoint C(0, 1, 0); NURBCurve quarter({A, B, C}, 2, weights = {1, 0.7, 1}); NURBCurve c({A, B, C}, 1, {0, 0, 0.45, 1, 1});
+    """
+    ...
+def Conic(
+    name: str,
+    /,
+    p1: _Point,
+    p2: _Point,
+    p3: _Point,
+    a1: _Number | None = ...,
+    a2: _Number | None = ...,
+    type: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A conic section in the plane of three points: C = P1 + f(a) (P2 - P1) + g(a) (P3 - P1), where
+    a = a1 + t (a2 - a1).
+
+    Type 1 is an ellipse, f = cos a and g = sin a, with its centre at p1 and p2, p3 the ends of
+    conjugate half diameters (of the half axes where they are perpendicular). Type 2 is a branch of
+    a hyperbola, f = cosh a and g = sinh a, and type 3 a parabola, f = a^2 and g = a (our numbers).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    p1 : point
+        Centre, or vertex of a parabola.
+    p2 : point
+        The point of a = 0 on an ellipse or hyperbola.
+    p3 : point
+        The end of the conjugate half diameter.
+    a1 : number, optional
+        Start of the curve. Default 0.
+    a2 : number, optional
+        End; a full turn when not given. Default 6.28319.
+    type : integer, optional
+        1 for an ellipse, 2 for a hyperbola, 3 for a parabola. 1 to 3, default 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint O(0, 0, 0); AbsPoint A(3, 0, 0); AbsPoint B(0.2, 2, 1); Conic e(O, A, B, a1 = 0.25, a2 = 4); Conic h(O, A, B, -1, 1, 2); Conic p(O, A, B, -0.5, 1, type = 3);
+    """
+    ...
+def FoilCurve(
+    name: str,
+    /,
+    points: _Vectors,
+    family: object | None = ...,
+    mean: _Text | None = ...,
+    camber_at: _Number | None = ...,
+    load: _Number | None = ...,
+    nose_index: _Number | None = ...,
+    thickness_at: _Number | None = ...,
+    tail: _Text | None = ...,
+    offset: _Text | None = ...,
+    section: _Curve | None = ...,
+    ordinates: _Vectors | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A foil section: thickness form and mean line of a NACA family, or ordinates of one's own,
+    between 3, 4 or 5 points.
+
+    Three points are nose, thickness point and tail of half a section, which runs from nose to tail.
+    Four are tail, thickness point, nose and lower tail of a symmetric section; five have a lower
+    thickness point before the lower tail, and half of what the two thickness points add up to is
+    the camber. These run from the tail along the upper side to the nose, at t = 1/2, and back. Only
+    the distance of a thickness point from the chord counts: it is half the nominal thickness.
+
+    The parameter is the square root of the position along the chord, so that the nose is smooth; the
+    speed vanishes nowhere. Forms: NACA Reports 460, 492, 537 and 824, TM X-3069 (6-series, for the
+    thickness ratio that the points have), Brockett 1966 (66tmb).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        Three, four or five points.
+    family : value, optional
+        Thickness form: "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A",
+        "64A", "65A" or "66tmb", or its number in this list. Default 4-digit.
+    mean : text, optional
+        Mean line: "flat", "parabolic", "210" to "250", "221" to "241", "a" or "a modified"; ""
+        is the usual one of the family.
+    camber_at : number, optional
+        Place of the greatest camber of the parabolic mean line, in chords. Default 0.4.
+    load : number, optional
+        Extent a of the uniform load of the mean line "a"; 0.8 for 66tmb, else 1, when not
+        given.
+    nose_index : number, optional
+        Nose index of the modified form: 6 is the plain nose, 0 a sharp one. Default 6.
+    thickness_at : number, optional
+        Place of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
+    tail : text, optional
+        "closed" draws the tail to its points, "open" leaves the thickness that the form has
+        there. Default closed.
+    offset : text, optional
+        "affine" sets thickness off across the chord, "normal" across the mean line. Default
+        affine.
+    section : curve, optional
+        A curve of ordinates (x, half thickness, camber) from nose to tail instead of a family.
+    ordinates : list of vector, optional
+        Ordinates {x, half thickness, camber} from nose to tail instead of a family.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint N(0, 0, 0); AbsPoint U(0.3, 0.1, 0); AbsPoint D(0.5, -0.02, 0.01); AbsPoint T(1, 0.01, 0); FoilCurve naca4412({T, U, N, D, T}, offset = "normal"); FoilCurve half({N, U, T}, "16"); FoilCurve own({N, U, T}, ordinates = {{0, 0, 0}, {0.3, 1, 0}, {1, 0, 0}});
+    """
+    ...
+def Helix(
+    name: str,
+    /,
+    point: _Point,
+    line: _Curve,
+    angle: _Number,
+    pitch: _Number | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A helix: the point turned about the line by t angle, right-handed, and moved along it by
+    t pitch angle / (2 pi), with pitch the advance per turn.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        Start.
+    line : curve
+        Its axis, from the line's first end to its last.
+    angle : number
+        Angle by which it turns.
+    pitch : number, optional
+        Advance per turn. Default 0.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 0, 0.5); AbsPoint O(0, 0, 0); AbsPoint Z(0.1, 0, 2); Line axis(O, Z); Helix h(A, axis, 9.5, 0.75);
+    """
+    ...
+def PolyCurve(
+    name: str,
+    /,
+    curves: Sequence[_Curve] | _Any,
+    breaks: _Numbers | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """Curves end to end: piece k of N is run from t = (k - 1) / N to k / N, or between the breaks
+    given.
+
+    Each piece begins where the one before ends, within the model's tolerance; a piece is never
+    turned round. Meshes join along the pieces.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curves : list of curve
+        The curves, in order.
+    breaks : list of number, optional
+        The parameters at which pieces meet, ascending between 0 and 1; equal shares when not
+        given.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); BCurve c({A, B, C}); Line l(C, D); PolyCurve both({c, l}); PolyCurve late({c, l}, {0.7});
+    """
+    ...
+def Join(
+    name: str,
+    /,
+    first: _Curve,
+    second: _Curve,
+    tolerance: _Number | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A declared join: two edges of patches that lie in one place are one for meshes, though they are made
+    of different things. It is the first edge.
+
+    Edges are spelled as members: `Join j(a.v1, b.v0);` joins edge v = 1 of `a` to edge v = 0 of `b`; curves
+    and snakes that run along whole edges serve as well. They may run in opposite directions. What is made
+    of the same curves and points joins without. It is an error when the edges are farther apart than the
+    tolerance anywhere; the vertices are those of the patch declared first.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    first : curve
+        An edge.
+    second : curve
+        The other edge.
+    tolerance : number, optional
+        How far apart the two may be; the model's tolerance when not given. At least 0.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(0, 0, 2); AbsPoint D(2, 1, 2); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint P(2, 1, 2); AbsPoint Q(0, 0, 2); AbsPoint E(0, 3, 2); AbsPoint F(2, 3, 2); Line p(P, Q); Line q(F, E); RuledSurf R(p, q); EdgeSnake a(3, S); EdgeSnake b(1, R); Join j(a, b);
+    """
+    ...
+def SubCurve(
+    name: str,
+    /,
+    bead1: _Bead,
+    bead2: _Bead,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """The part of a curve between two of its beads: C(t) = P((1 - t) t1 + t t2), where P is the
+    curve and t1, t2 the parameters of the beads. It may run backwards.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    bead1 : bead
+        Start.
+    bead2 : bead
+        End, on the same curve.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); BCurve c({A, B, C, D}); AbsBead b(c, 0.9); AbsBead d(c, 0.2); SubCurve part(b, d);
+    """
+    ...
+def BSubCurve(
+    name: str,
+    /,
+    beads: Sequence[_Bead] | _Any,
+    degree: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A curve run by a B-spline law: C(t) = P(b(t)), where P is the curve of the beads and b the
+    clamped uniform B-spline with their parameters as coefficients.
+
+    It begins at the first bead and ends at the last; the others draw its divisions toward them.
+    With N beads the degree is at most N - 1: a higher one is lowered to that.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    beads : list of bead
+        Beads of one curve, two or more.
+    degree : integer, optional
+        Polynomial degree of the law. 1 to 25, default 3.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); BCurve c({A, B, C, D}); AbsBead b(c, 0.1); AbsBead d(c, 0.3); AbsBead e(c, 0.9); BSubCurve part({b, d, e}, degree = 2);
+    """
+    ...
+def RelCurve(
+    name: str,
+    /,
+    curve: _Curve,
+    p1: _Point,
+    p2: _Point,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A curve moved to new ends: C(t) = c(t) + (1 - t) (P1 - c(0)) + t (P2 - c(1)).
+
+    Ends moved alike give a parallel copy.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve it is relative to.
+    p1 : point
+        Start.
+    p2 : point
+        End.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); AbsPoint D(0, 0, 1); AbsPoint E(3.5, 2, 1.5); RelCurve d(c, D, E);
+    """
+    ...
+def CopyCurve(
+    name: str,
+    /,
+    curve: _Curve,
+    from_: _Point,
+    to: _Point,
+    sx: _Number | None = ...,
+    sy: _Number | None = ...,
+    sz: _Number | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A curve copied from one place to another, scaled along the axes: C(t) = to + (sx, sy, sz)
+    (c(t) - from), coordinate by coordinate.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve to copy.
+    from : point
+        A point that is moved to `to`.
+    to : point
+        The image of `from`.
+    sx : number, optional
+        Scale along x. Default 1.
+    sy : number, optional
+        Scale along y. Default 1.
+    sz : number, optional
+        Scale along z. Default 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); CopyCurve d(c, A, C, 2, 0.5, -1);
+    """
+    ...
+def RotatCurve(
+    name: str,
+    /,
+    curve: _Curve,
+    line: _Curve,
+    angle: _Number,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A curve turned about a line by an angle, right-handed.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve to turn.
+    line : curve
+        The axis, from the line's first end to its last.
+    angle : number
+        The angle.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); Line axis(A, C); RotatCurve d(c, axis, 0.75);
+    """
+    ...
+def OffsetCurve(
+    name: str,
+    /,
+    curve: _Curve,
+    distance: _Number,
+    plane: _Plane,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A curve at a distance from another, sideways in a plane: C(t) = c(t) + d T x n / |T x n|, with T
+    the tangent and n the normal of the plane; to the right of the direction of travel, seen from the
+    positive side, if d is positive.
+
+    It is refused where the distance exceeds the radius of curvature on that side, since the offset
+    has a cusp there.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve that is offset.
+    distance : number
+        The distance.
+    plane : plane
+        The plane in which, or parallel to which, it is offset.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 2, 0.25); AbsPoint C(4, 0, 0); BCurve c({A, B, C}); OffsetCurve outside(c, -0.5, "z=0"); OffsetCurve inside(c, 0.25, "z=0");
+    """
+    ...
+def BFitCurve(
+    name: str,
+    /,
+    curve: _Curve,
+    degree: _Integer | None = ...,
+    points: _Integer | None = ...,
+    accuracy: _Number | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A B-spline fitted to a curve by least squares: with clamped uniform knots, the ends of the
+    curve, and the least sum of squared distances at equal parameters.
+
+    The number of control points decides how near it comes: its member `residual` is the greatest
+    distance between the two at equal parameters. With `accuracy` it is refused when it
+    comes no nearer than that.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve to come near to.
+    degree : integer, optional
+        Polynomial degree. 1 to 25, default 3.
+    points : integer, optional
+        Number of control points, more than the degree. 2 to 10000, default 8.
+    accuracy : number, optional
+        The greatest distance allowed between the two at equal parameters. At least 0.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); CCurve c({A, B, C, D}); BFitCurve fit(c, 3, 6, 0.05);
+    """
+    ...
+def NUBFitCurve(
+    name: str,
+    /,
+    curve: _Curve,
+    degree: _Integer | None = ...,
+    accuracy: _Number | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    knots: _Numbers,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A B-spline fitted to a curve as by BFitCurve, with knots of one's own.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve to come near to.
+    degree : integer, optional
+        Polynomial degree. 1 to 25, default 3.
+    knots : list of number
+        The parameters where pieces meet, from 0 to 1, each once.
+    accuracy : number, optional
+        The greatest distance allowed between the two at equal parameters. At least 0.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); CCurve c({A, B, C, D}); NUBFitCurve fit(c, 3, {0, 0.3, 0.55, 1});
+    """
+    ...
+def ProcCurve(
+    name: str,
+    /,
+    bead: _Bead,
+    point: _Point,
+    t1: _Number | None = ...,
+    t2: _Number | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """The locus of a point when a bead that it depends on sweeps its curve: C(t) is where `point` is with
+    `bead` at the parameter t1 + t (t2 - t1).
+
+    Everything between bead and point is evaluated anew at each place. The curve is a chain of
+    polynomials through such places, halved until they agree with it to about 1e-12 of its size;
+    derivatives by what the model depends on are those of the places. Where the bead itself is does not
+    matter.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    bead : bead
+        The bead that moves.
+    point : point
+        The point that follows.
+    t1 : number, optional
+        Start of the bead. Default 0.
+    t2 : number, optional
+        End. Default 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); AbsBead b(c, 0.5); Line l(A, C); ProjPoint foot(b, l); BlendPoint m({b, foot}); ProcCurve way(b, m);
+    """
+    ...
+def MirrCurve(
+    name: str,
+    /,
+    curve: _Curve,
+    mirror: _Mirror,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """The mirror image of a curve in a plane, line or point, point by point: C(t) = 2 F(t) - P(t),
+    with F the foot of the perpendicular from P.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve to mirror.
+    mirror : mirror
+        The mirror: a plane, line or point.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 1, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); MirrCurve port(c, "y=0");
+    """
+    ...
+def ProjCurve(
+    name: str,
+    /,
+    curve: _Curve,
+    mirror: _Target,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """The projection of a curve onto a plane, line, point, surface or the zero set of a field, point by point, as a curve in
+    space.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve to project.
+    mirror : target
+        The target of the projection.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 1, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); ProjCurve flat(c, "z=0");
+    """
+    ...
+def IntCurve(
+    name: str,
+    /,
+    surface: _Onto,
+    target: _Target,
+    start: _Magnet | None = ...,
+    end: _Magnet | None = ...,
+    point: _Point | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """The curve in space along which a surface meets a plane, another surface or the zero set of a
+    field, as [`IntSnake`], where the surface it is on does not matter.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface or magnet
+        The surface, or a magnet of it near the branch that is meant.
+    target : target
+        The plane, the other surface (or a magnet of it), or the field of which it is the zero
+        set.
+    start : magnet, optional
+        Start: a magnet or ring of the intersection.
+    end : magnet, optional
+        End.
+    point : point, optional
+        For a plane: the parallel plane through this point is meant.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); XPlane x(2.5); IntCurve c(S, x); AbsBead b(c, 0.5);
+    """
+    ...
+def LineSnake(
+    name: str,
+    /,
+    m1: _Magnet,
+    m2: _Magnet,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """The curve on a surface that is straight in the parameter plane:
+    X(t) = S((1 - t) w1 + t w2), with w1, w2 the parameters of two magnets.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    m1 : magnet
+        Start.
+    m2 : magnet
+        End, on the same surface.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.9, 0.8); LineSnake s(p, q);
+    """
+    ...
+def BSnake(
+    name: str,
+    /,
+    magnets: Sequence[_Magnet] | _Any,
+    degree: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """The curve on a surface that is a B-spline in the parameter plane:
+    X(t) = S(sum N_i(t) w_i), with w_i the parameters of the magnets and clamped uniform knots.
+
+    With N magnets the degree is at most N - 1: a higher one is lowered to that.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnets : list of magnet
+        Magnets of one surface, two or more.
+    degree : integer, optional
+        Polynomial degree of the path. 1 to 25, default 3.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.9, 0.3); AbsMagnet r(S, 0.8, 0.9); BSnake s({p, q, r}, degree = 2);
+    """
+    ...
+def EdgeSnake(
+    name: str,
+    /,
+    edge: _Integer,
+    surface: _Surface,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """An edge of a surface, in the direction of increasing parameter.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    edge : integer
+        The edge: 1 is v = 0, 2 is u = 1, 3 is v = 1, 4 is u = 0. 1 to 4.
+    surface : surface
+        The surface.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); EdgeSnake s(2, S);
+    """
+    ...
+def ContactSnake(
+    name: str,
+    /,
+    fillet: _Surface,
+    side: _Integer,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """The contact line of a fillet with one of its two surfaces: a snake of that surface, and the fillet's edge.
+
+    It runs as the fillet's u does. A part of the surface that ends in it (`SubSurf`, `TrimSurf`) has the
+    fillet's vertices there, by identity: rings at t = 0 and 1 are the corners. Over the seam of a closed
+    surface it runs on, its place going over from 1 to 0; where the way of a ball that rolls round
+    begins is chosen by the magnet given to the fillet, and at the seam the snake is without a jump.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    fillet : surface
+        The fillet: a RollFillet or a FilletSurf.
+    side : integer
+        1 for its first surface, 2 for its second. 1 to 2.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0.2); AbsPoint D(4, 3, 0); AbsPoint E(0, 2.5, -1); AbsPoint F(4, 2, -1); AbsPoint G(0, 2.5, 3); AbsPoint H(4, 2.25, 3); Line a(A, B); Line b(C, D); RuledSurf floor(a, b, visible = 0); Line c(E, F); Line d(G, H); RuledSurf wall(c, d, visible = 0); RollFillet S(floor, wall, 0.8); ContactSnake low(S, 1); ContactSnake high(S, 2); EdgeSnake front(1, floor); EdgeSnake top(3, wall); SubSurf deck({front, low}); SubSurf bulkhead({high, top});
+    """
+    ...
+def UVSnake(
+    name: str,
+    /,
+    surface: _Surface,
+    parameter: _Text,
+    value: _Number,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """A parameter line of a surface: X(t) = S(value, t), or X(t) = S(t, value).
+
+    At the values 0 and 1 it is the edge of the surface itself, for meshes that join there.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface.
+    parameter : text
+        The parameter that is held: "u" or "v". The snake runs along the other.
+    value : number
+        The value at which it is held.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); UVSnake r(S, "u", 0.4); UVSnake s(S, "v", 0.25);
+    """
+    ...
+def ArcSnake(
+    name: str,
+    /,
+    m1: _Magnet,
+    m2: _Magnet,
+    m3: _Magnet,
+    type: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """A circular arc in the parameter plane of a surface, of the six types of an arc.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    m1 : magnet
+        First magnet.
+    m2 : magnet
+        Second magnet, on the same surface.
+    m3 : magnet
+        Third magnet, on the same surface.
+    type : integer, optional
+        One of the six types. 1 to 6, default 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.5, 0.3); AbsMagnet r(S, 0.8, 0.2); ArcSnake s(p, q, r);
+    """
+    ...
+def CSnake(
+    name: str,
+    /,
+    magnets: Sequence[_Magnet] | _Any,
+    degree: _Integer | None = ...,
+    ends: _Text | None = ...,
+    start: _Vector | None = ...,
+    end: _Vector | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """An interpolating spline in the parameter plane of a surface, as a C-curve.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnets : list of magnet
+        Magnets of one surface, two or more.
+    degree : integer, optional
+        3 for the cubic spline, 1 for a polyline. 1 to 3, default 3.
+    ends : text, optional
+        End conditions: "notaknot", "natural", "bessel", "quadratic", "clamped" or "periodic".
+        Default notaknot.
+    start : vector, optional
+        Slope {du/dt, dv/dt, 0} at the start, for clamped ends.
+    end : vector, optional
+        Slope {du/dt, dv/dt, 0} at the end, for clamped ends.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.5, 0.3); AbsMagnet r(S, 0.8, 0.2); CSnake s({p, q, r}); CSnake t({p, q, r}, ends = "clamped", start = {1, 1, 0}, end = {1, -0.5, 0});
+    """
+    ...
+def NURBSnake(
+    name: str,
+    /,
+    magnets: Sequence[_Magnet] | _Any,
+    degree: _Integer | None = ...,
+    knots: _Numbers | None = ...,
+    weights: _Numbers | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """A rational B-spline in the parameter plane of a surface, as a NURB-curve.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnets : list of magnet
+        Magnets of one surface, two or more.
+    degree : integer, optional
+        Polynomial degree. 1 to 25, default 3.
+    knots : list of number, optional
+        Knots, end knots included, ascending.
+    weights : list of number, optional
+        Weights of the magnets, positive.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.5, 0.3); AbsMagnet r(S, 0.8, 0.2); NURBSnake s({p, q, r}, 2, weights = {1, 0.7, 1});
+    """
+    ...
+def ConicSnake(
+    name: str,
+    /,
+    m1: _Magnet,
+    m2: _Magnet,
+    m3: _Magnet,
+    a1: _Number | None = ...,
+    a2: _Number | None = ...,
+    type: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """A conic section in the parameter plane of a surface, as a conic.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    m1 : magnet
+        Centre, or vertex of a parabola.
+    m2 : magnet
+        The point of angle 0 on an ellipse or hyperbola, on the same surface.
+    m3 : magnet
+        The end of the conjugate half diameter, on the same surface.
+    a1 : number, optional
+        Start of the snake. Default 0.
+    a2 : number, optional
+        End; a full turn when not given. Default 6.28319.
+    type : integer, optional
+        1 for an ellipse, 2 for a hyperbola, 3 for a parabola. 1 to 3, default 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.5, 0.5); AbsMagnet q(S, 0.8, 0.4); AbsMagnet r(S, 0.6, 0.7); ConicSnake s(p, q, r, 0.5, 5);
+    """
+    ...
+def FoilSnake(
+    name: str,
+    /,
+    magnets: Sequence[_Magnet] | _Any,
+    family: object | None = ...,
+    mean: _Text | None = ...,
+    camber_at: _Number | None = ...,
+    load: _Number | None = ...,
+    nose_index: _Number | None = ...,
+    thickness_at: _Number | None = ...,
+    tail: _Text | None = ...,
+    offset: _Text | None = ...,
+    section: _Curve | None = ...,
+    ordinates: _Vectors | None = ...,
+    metric: _Vector | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """A foil section in the parameter plane of a surface, between 3, 4 or 5 magnets, as a foil curve.
+
+    It is a true foil in space only where the surface is a scaled plane; on a cylinder with u its
+    angle and v a length, `metric` = {radius^2, 0, 1} makes thickness perpendicular to the chord as
+    measured on the unrolled surface.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnets : list of magnet
+        Three, four or five magnets of one surface.
+    family : value, optional
+        Thickness form: "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A",
+        "64A", "65A" or "66tmb", or its number in this list. Default 4-digit.
+    mean : text, optional
+        Mean line: "flat", "parabolic", "210" to "250", "221" to "241", "a" or "a modified"; ""
+        is the usual one of the family.
+    camber_at : number, optional
+        Place of the greatest camber of the parabolic mean line, in chords. Default 0.4.
+    load : number, optional
+        Extent a of the uniform load of the mean line "a"; 0.8 for 66tmb, else 1, when not
+        given.
+    nose_index : number, optional
+        Nose index of the modified form: 6 is the plain nose, 0 a sharp one. Default 6.
+    thickness_at : number, optional
+        Place of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
+    tail : text, optional
+        "closed" draws the tail to its points, "open" leaves the thickness that the form has
+        there. Default closed.
+    offset : text, optional
+        "affine" sets thickness off across the chord, "normal" across the mean line. Default
+        affine.
+    section : curve, optional
+        A curve of ordinates (x, half thickness, camber) from nose to tail instead of a family.
+    ordinates : list of vector, optional
+        Ordinates {x, half thickness, camber} from nose to tail instead of a family.
+    metric : vector, optional
+        Metric of the parameter plane: {uu, uv, vv}; {1, 0, 1} when not given.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet n(S, 0.2, 0.4); AbsMagnet u(S, 0.4, 0.55); AbsMagnet d(S, 0.5, 0.4); AbsMagnet t(S, 0.9, 0.5); FoilSnake root({t, u, n, d, t}); FoilSnake half({n, u, t}, "16", metric = {16, 1, 5});
+    """
+    ...
+def RelSnake(
+    name: str,
+    /,
+    snake: _Snake,
+    m1: _Magnet,
+    m2: _Magnet,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """A snake moved to new ends in the parameter plane: w(t) + (1 - t) (w1 - w(0)) + t (w2 - w(1)).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake
+        The snake it is relative to.
+    m1 : magnet
+        Start, on the same surface.
+    m2 : magnet
+        End, on the same surface.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.5, 0.3); AbsMagnet r(S, 0.8, 0.2); BSnake s({p, q, r}); AbsMagnet a(S, 0.2, 0.5); AbsMagnet b(S, 0.9, 0.7); RelSnake t(s, a, b);
+    """
+    ...
+def CopySnake(
+    name: str,
+    /,
+    snake: _Snake,
+    surface: _Surface,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """The snake of another surface with the same path in the parameter plane: X = S(w(t)).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake
+        The snake whose path is copied.
+    surface : surface
+        The target surface.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); RuledSurf T(m, l); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.8, 0.3); LineSnake s(p, q); CopySnake t(s, T);
+    """
+    ...
+def PolySnake(
+    name: str,
+    /,
+    snakes: Sequence[_Snake] | _Any,
+    breaks: _Numbers | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """Snakes of one surface end to end, which is a snake again: as a poly-curve.
+
+    The pieces must meet in the parameter plane: one that crosses the seam of a closed surface is
+    refused.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snakes : list of snake
+        The snakes, in order.
+    breaks : list of number, optional
+        The parameters at which pieces meet, ascending between 0 and 1; equal shares when not
+        given.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.1, 0.2); AbsMagnet q(S, 0.9, 0.1); AbsMagnet r(S, 0.8, 0.9); LineSnake s(p, q); LineSnake t(q, r); PolySnake both({s, t});
+    """
+    ...
+def ProjSnake(
+    name: str,
+    /,
+    curve: _Curve,
+    surface: _Onto,
+    mirror: _Mirror | None = ...,
+    ends: Sequence[_Magnet] | _Any | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """The projection of a curve onto a surface, point by point, which is a snake: along the surface's
+    normals, along a direction, or away from a point.
+
+    The foot of the start of the curve is found first, near the magnet if one is given; from there
+    the projection follows the curve without a jump. Each point of it is on the surface and is
+    the projection to rounding. Where the projection leaves the surface or grazes it, there is no
+    snake.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve to project.
+    surface : surface or magnet
+        The surface, or a magnet of it near the projection of the start of the curve.
+    mirror : mirror, optional
+        Along what: a plane's normal, a line's direction, or away from a point. Not given: along
+        the surface's own normals.
+    ends : list of magnet, optional
+        Magnets at the two ends, which other snakes end in too, so that patches join there.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint P(1, 1, 2); AbsPoint Q(3, 1, 2); AbsPoint R(2, 1.2, 2.5); BCurve c({P, R, Q}); ProjSnake s(c, S); ProjSnake t(c, S, "z=0"); AbsPoint eye(2, 1.5, 8); ProjSnake u(c, S, eye);
+    """
+    ...
+def IntSnake(
+    name: str,
+    /,
+    surface: _Onto,
+    target: _Target,
+    start: _Magnet | None = ...,
+    end: _Magnet | None = ...,
+    point: _Point | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """The curve along which a surface meets a plane or another surface, as a snake of the first; its
+    parameter is the share of its length.
+
+    From a magnet the branch through the place nearest to it is taken; from a bare surface the one
+    that comes nearest to its middle, and others are reported. The snake runs along n1 x n2, the
+    product of both normals, from edge to edge; or from the magnet `start` to the magnet `end`, which
+    lie on the intersection and give it their identity there, so that patches join. A closed branch
+    begins at the place nearest to the magnet, or to S(0.3, 0.4) without one. Each point of it lies on
+    both, to rounding. Across the seam of a closed surface it runs on: its place
+    on the surface goes over from u = 1 to u = 0 there.
+
+    All branches longer than 2 % of the size are found that cross at an angle somewhere. Where the
+    shapes only touch there is none.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface or magnet
+        The surface that the snake lies on, or a magnet of it near the branch that is meant.
+    target : target
+        The plane, the other surface (or a magnet of it), or the field of which it is the zero
+        set.
+    start : magnet, optional
+        Start: a magnet or ring of the intersection.
+    end : magnet, optional
+        End.
+    point : point, optional
+        For a plane: the parallel plane through this point is meant.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); Line l(A, B); Line m(C, D); RuledSurf S(l, m); ZPlane z(0.5); IntSnake w(S, z); AbsPoint E(2, -1, -2); AbsPoint F(2, 4, -2); AbsPoint G(3, -1, 4); AbsPoint H(2, 4, 4); Line n(E, F); Line o(G, H); RuledSurf T(n, o); IntSnake x(S, T); IntRing r(x, "y=0", {0, 1, 0}); AbsMagnet near(S, 0.5, 0.5); IntSnake y(near, T, start = r);
+    """
+    ...
+def GeoSnake(
+    name: str,
+    /,
+    m1: _Magnet,
+    m2: _Magnet,
+    turns_u: _Integer | None = ...,
+    turns_v: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """The shortest path on a surface between two magnets, or more exactly a geodesic: a curve that turns
+    neither left nor right on the surface. It is run evenly, so t is the share of its length.
+
+    Of several geodesics it is the one that Newton's method leads to from the straight line of the
+    parameter plane: on surfaces that are not bent much between the magnets, the shortest. On a closed
+    surface those over its seam are tried, too, and the shortest is taken (of equal ones that which stays
+    within the seam); `turns_u` and `turns_v` ask for another. Its place on the surface goes over from 1
+    to 0 at the seam.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    m1 : magnet
+        Start.
+    m2 : magnet
+        End, on the same surface.
+    turns_u : integer, optional
+        Number of forward crossings of the seam u = 0; negative: backward. Not given: 0, or 1 or
+        -1 where that is shorter. -10 to 10.
+    turns_v : integer, optional
+        The same for the seam v = 0. -10 to 10.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.9, 0.8); GeoSnake s(p, q); AbsPoint O(0, 0, -4); AbsPoint X(4, 0, -4); Line axis(O, X); AbsPoint F(0, 0, -3); AbsPoint G(4, 0, -3.5); Line k(F, G); RevSurf R(k, axis); AbsMagnet a(R, 0.1, 0.3); AbsMagnet b(R, 0.9, 0.9); GeoSnake g(a, b); GeoSnake round(a, b, turns_v = 1);
+    """
+    ...
+def SubSnake(
+    name: str,
+    /,
+    ring1: _Ring,
+    ring2: _Ring,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """The part of a snake between two of its rings, which is a snake again: as a sub-curve.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    ring1 : ring
+        Start.
+    ring2 : ring
+        End, on the same snake.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); AbsRing r(s, 0.9); AbsRing q(s, 0.25); SubSnake part(r, q);
+    """
+    ...
+def BSubSnake(
+    name: str,
+    /,
+    rings: Sequence[_Ring] | _Any,
+    degree: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """A snake run by a B-spline law, which is a snake again: as a B-sub-curve.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    rings : list of ring
+        Rings of one snake, two or more.
+    degree : integer, optional
+        Polynomial degree of the law. 1 to 25, default 3.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, "u", 0.4); AbsRing r(s, 0.9); AbsRing q(s, 0.75); AbsRing p(s, 0.25); BSubSnake part({r, q, p}, degree = 2);
+    """
+    ...
+def RuledSurf(
+    name: str,
+    /,
+    c1: _Curve,
+    c2: _Curve,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """Straight rulings between two curves: S(u, v) = (1 - v) C1(u) + v C2(u).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    c1 : curve
+        Edge v = 0.
+    c2 : curve
+        Edge v = 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m);
+    """
+    ...
+def BLoftSurf(
+    name: str,
+    /,
+    curves: Sequence[_Curve] | _Any,
+    degree: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A surface attracted by its master curves: S(u, v) = sum N_i(v) C_i(u), with N_i the B-splines
+    of clamped uniform knots. It passes through the first and the last master only.
+
+    With N masters the degree is at most N - 1: a higher one is lowered to that (Letcher and Shook
+    1995).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curves : list of curve
+        Master curves, two or more, in order of v.
+    degree : integer, optional
+        Polynomial degree across the masters. 1 to 25, default 3.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); BLoftSurf S({a, b, c}, degree = 2);
+    """
+    ...
+def CLoftSurf(
+    name: str,
+    /,
+    curves: Sequence[_Curve] | _Any,
+    degree: _Integer | None = ...,
+    ends: _Text | None = ...,
+    start: _Vector | None = ...,
+    end: _Vector | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A surface that passes through its master curves: S(u, v) is the interpolating spline through
+    the points C_1(u) ... C_N(u), evaluated at v; its knots are their chord lengths at that u.
+
+    Two masters give rulings, three parabolas, four or more cubic splines, as for a C-curve (Letcher
+    and Shook 1995). Neighbouring masters must not meet, unless all meet in one point.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curves : list of curve
+        Master curves, two or more, in order of v.
+    degree : integer, optional
+        3 for cubic splines across the masters, 1 for polylines. 1 to 3, default 3.
+    ends : text, optional
+        End conditions: "notaknot", "natural", "bessel", "quadratic", "clamped" or "periodic".
+        Default notaknot.
+    start : vector, optional
+        Slope dX/dv at the first master, the same all along it, for clamped ends.
+    end : vector, optional
+        Slope dX/dv at the last master, the same all along it, for clamped ends.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8});
+    """
+    ...
+def XLoftSurf(
+    name: str,
+    /,
+    axis: _Integer | None = ...,
+    ends: _Text | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    curves: Sequence[_Curve] | _Any,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A surface that passes through its master curves, as an explicit spline at each u: one coordinate
+    is the independent variable and linear in v, the others are cubic splines of it.
+
+    Unlike those of a C-loft its knots are that coordinate of the masters, which must increase or
+    decrease from master to master at every u.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    axis : integer, optional
+        The independent coordinate: 1 for x, 2 for y, 3 for z. 1 to 3, default 1.
+    curves : list of curve
+        Master curves, two or more, in order of v.
+    ends : text, optional
+        End conditions: "notaknot", "natural", "bessel" or "quadratic". Default notaknot.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); XLoftSurf hull(1, {a, b, c, d}); XLoftSurf N(1, {d, c, a}, ends = "natural");
+    """
+    ...
+def ArcLoftSurf(
+    name: str,
+    /,
+    c1: _Curve,
+    c2: _Curve,
+    c3: _Curve,
+    type: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """Circular arcs by three curves: at each u the arc of the type, as for `Arc`, whose three points are
+    those of the curves at u.
+
+    Where the three points are in line types 1, 3 and 4 are straight when the second lies between the
+    others, and have no finite radius when it lies beyond; types 5 and 6 have no plane there. Such u
+    are refused and named.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    c1 : curve
+        The curve of the first points.
+    c2 : curve
+        The curve of the second points.
+    c3 : curve
+        The curve of the third points.
+    type : integer, optional
+        One of the six types of `Arc`. 1 to 6, default 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(0, 1, 1); AbsPoint C(0, 2, 0); AbsPoint D(4, 0, 0.5); AbsPoint E(4, 1.5, 2); AbsPoint F(4, 2.5, 0); AbsPoint G(2, 1, 2); Line a(A, D); BCurve b({B, G, E}, 2); Line c(C, F); ArcLoftSurf roof(a, b, c); ArcLoftSurf sector(a, b, c, 2); ArcLoftSurf tangent(a, b, c, 3); ArcLoftSurf late(a, b, c, 4); ArcLoftSurf half(a, c, b, 5); ArcLoftSurf pipe(a, b, c, 6);
+    """
+    ...
+def BSurf(
+    name: str,
+    /,
+    points: _Vectors,
+    nu: _Integer,
+    nv: _Integer,
+    degree_u: _Integer | None = ...,
+    degree_v: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A B-spline surface of a net of points: S(u, v) = sum N_i(u) N_j(v) P_ij, with clamped uniform
+    knots (de Boor 1978).
+
+    It passes through the four corner points and is attracted by the others. A degree that the net
+    is too small for is lowered to the number of points less one.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        Net of points, v running fastest: nu rows of nv points.
+    nu : integer
+        Points along u. At least 2.
+    nv : integer
+        Points along v. At least 2.
+    degree_u : integer, optional
+        Polynomial degree in u. 1 to 25, default 3.
+    degree_v : integer, optional
+        Polynomial degree in v. 1 to 25, default 3.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(0, 1, 1); AbsPoint C(1, 0, 1); AbsPoint D(1, 1, 0); BSurf S({A, B, C, D}, nu = 2, nv = 2, degree_u = 1, degree_v = 1);
+    """
+    ...
+def NURBSurf(
+    name: str,
+    /,
+    points: _Vectors,
+    nu: _Integer,
+    nv: _Integer,
+    degree_u: _Integer | None = ...,
+    degree_v: _Integer | None = ...,
+    weights: _Numbers | None = ...,
+    knots_u: _Numbers | None = ...,
+    knots_v: _Numbers | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A rational B-spline surface (NURBS) of a net of points: S(u, v) = sum w_ij N_i(u) N_j(v) P_ij /
+    sum w_ij N_i(u) N_j(v) (Piegl and Tiller 1997, equation 4.11).
+
+    Knot vectors list every knot, end knots included: nu + degree_u + 1 of them, ascending; they are
+    scaled to run from 0 to 1. Without them they are clamped and uniform, without weights all are 1.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        Net of points, v running fastest: nu rows of nv points.
+    nu : integer
+        Points along u. At least 2.
+    nv : integer
+        Points along v. At least 2.
+    degree_u : integer, optional
+        Polynomial degree in u. 1 to 25, default 3.
+    degree_v : integer, optional
+        Polynomial degree in v. 1 to 25, default 3.
+    weights : list of number, optional
+        Positive weights in the order of the points; all 1 if not given.
+    knots_u : list of number, optional
+        Knots in u: nu + degree_u + 1 ascending numbers; uniform if not given.
+    knots_v : list of number, optional
+        Knots in v: nv + degree_v + 1 ascending numbers; uniform if not given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 0, 0); AbsPoint B(1, 1, 0); AbsPoint C(0, 1, 0.2); AbsPoint D(2, 0, 1); AbsPoint E(2, 2, 1.5); AbsPoint F(0, 2, 1); AbsPoint G(1, 0, 3); AbsPoint H(1, 1, 2); AbsPoint I(0, 1, 3); NURBSurf S({A, B, C, D, E, F}, nu = 2, nv = 3, degree_u = 1, degree_v = 2, weights = {1, 0.7071, 1, 1, 0.7071, 1}); NURBSurf T({A, B, C, D, E, F, G, H, I}, nu = 3, nv = 3, degree_u = 1, degree_v = 2, knots_u = {0, 0, 0.25, 1, 1}, knots_v = {0, 0, 0, 2, 2, 2});
+    """
+    ...
+def FoilLoftSurf(
+    name: str,
+    /,
+    curves: Sequence[_Curve] | _Any,
+    family: object | None = ...,
+    mean: _Text | None = ...,
+    camber_at: _Number | None = ...,
+    load: _Number | None = ...,
+    nose_index: _Number | None = ...,
+    thickness_at: _Number | None = ...,
+    tail: _Text | None = ...,
+    offset: _Text | None = ...,
+    section: _Curve | None = ...,
+    ordinates: _Vectors | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """Foil sections by three, four or five curves: at each u the section, as for `FoilCurve`, that is
+    laid between the points of the curves at u. A wing, a keel, a blade.
+
+    Of three curves (nose, thickness, tail) v runs from nose to tail; of four (upper tail,
+    thickness, nose, lower tail) and five (a lower thickness before the lower tail) from the upper
+    tail to the nose, at v = 1/2, and back. The sections of the 6-series have the form of the
+    thickness ratio at u. Where all curves meet in a point, the wing ends in it; elsewhere nose and
+    tail are apart.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curves : list of curve
+        Three, four or five curves.
+    family : value, optional
+        Thickness form: "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A",
+        "64A", "65A" or "66tmb", or its number in this list. Default 4-digit.
+    mean : text, optional
+        Mean line: "flat", "parabolic", "210" to "250", "221" to "241", "a" or "a modified"; ""
+        is the usual one of the family.
+    camber_at : number, optional
+        Place of the greatest camber of the parabolic mean line, in chords. Default 0.4.
+    load : number, optional
+        Extent a of the uniform load of the mean line "a"; 0.8 for 66tmb, else 1, when not
+        given.
+    nose_index : number, optional
+        Nose index of the modified form: 6 is the plain nose, 0 a sharp one. Default 6.
+    thickness_at : number, optional
+        Place of the greatest thickness of the modified form, from 0.2 to 0.6. Default 0.3.
+    tail : text, optional
+        "closed" draws the tail to its points, "open" leaves the thickness that the form has
+        there. Default closed.
+    offset : text, optional
+        "affine" sets thickness off across the chord, "normal" across the mean line. Default
+        affine.
+    section : curve, optional
+        A curve of ordinates (x, half thickness, camber) from nose to tail instead of a family.
+    ordinates : list of vector, optional
+        Ordinates {x, half thickness, camber} from nose to tail instead of a family.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint N(0, 0, 0); AbsPoint U(0.4, 0.12, 0); AbsPoint T(1, 0, 0.01); AbsPoint O(0.5, 0, 3); AbsPoint V(0.7, 0.05, 3); AbsPoint W(1.1, -0.03, 3); AbsPoint D(0.4, -0.05, 0); AbsPoint E(0.7, -0.04, 3); Line nose(N, O); Line up(U, V); Line tail(T, W); Line low(D, E); FoilLoftSurf wing({tail, up, nose, low, tail}); FoilLoftSurf half({nose, up, tail}, "modified", nose_index = 4); FoilLoftSurf sharp({tail, up, nose, tail}, "16", offset = "normal");
+    """
+    ...
+def RevSurf(
+    name: str,
+    /,
+    curve: _Curve,
+    line: _Curve,
+    a1: _Number | None = ...,
+    a2: _Number | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A curve turned about a line: S(u, v) is C(u) turned by a1 + v (a2 - a1), right-handed about the
+    direction from the line's start to its end (Rodrigues).
+
+    An end of the curve on the line gives a pole. A full turn closes the surface.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve that is turned.
+    line : curve
+        The line about which it is turned.
+    a1 : number, optional
+        Angle at v = 0, in radians (degrees in model files). Default 0.
+    a2 : number, optional
+        Angle at v = 1, in radians (degrees in model files). Default 6.28319.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); Line axis(O, X); AbsPoint A(-1, 0, 0.1); AbsPoint B(0, 1.5, 0.2); AbsPoint C(2, 0.5, 0); BCurve c({A, B, C}); RevSurf S(c, axis, 0.25, 2.5);
+    """
+    ...
+def TranSurf(
+    name: str,
+    /,
+    c1: _Curve,
+    c2: _Curve,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A curve moved along another: S(u, v) = C1(u) + (C2(v) - C2(0)).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    c1 : curve
+        The curve that is moved: edge v = 0.
+    c2 : curve
+        The curve along which it is moved.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 1, 2); AbsPoint E(1, 1, 3); BCurve l({A, B, C}); BCurve m({A, D, E}); TranSurf S(l, m);
+    """
+    ...
+def SweepSurf(
+    name: str,
+    /,
+    profile: _Curve,
+    path: _Curve,
+    frame: _Text | None = ...,
+    up: _Vector | None = ...,
+    twist: _Numbers | None = ...,
+    scale: _Numbers | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A curve carried along a path by a frame that moves with it: S(u, v) = path(v) + F(v) (profile(u) -
+    path(0)), with F(0) = 1, so that edge v = 0 is the profile.
+
+    The frame "minimal" does not turn about the tangent of the path (rotation-minimising; Wang,
+    Juettler, Zheng and Liu 2008); "up" keeps one axis as upright as the tangent allows; "fixed" does
+    not turn at all, so that the profile is only moved, along a path that may have corners. `twist` and
+    `scale` are laws along v: the coefficients of a clamped uniform B-spline of degree 3 or less, so
+    that {a, b} goes linearly from a to b. The twist is right-handed about the tangent ("fixed": that
+    at v = 0).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    profile : curve
+        The curve that is carried: edge v = 0.
+    path : curve
+        The curve along which it is carried.
+    frame : text, optional
+        Motion of the frame: "minimal", "up" or "fixed". Default minimal.
+    up : vector, optional
+        The direction that stays upright with frame = "up"; z if not given.
+    twist : list of number, optional
+        Angles about the tangent along v, in radians.
+    scale : list of number, optional
+        Factors of the profile's size along v.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(3, 2, 0.5); AbsPoint D(3, 3, 3); BCurve path({A, B, C, D}); AbsPoint P(0, 0.5, 0); AbsPoint Q(0.1, 0.3, 0.6); AbsPoint R(0, -0.5, 0.2); BCurve profile({P, Q, R}); SweepSurf S(profile, path); SweepSurf upright(profile, path, "up", up = {0, 0.1, 1}); SweepSurf screw(profile, path, twist = {0, 0, 1.5}, scale = {1, 0.5}); SweepSurf moved(profile, path, "fixed", scale = {1, 0.5});
+    """
+    ...
+def BlendSurf(
+    name: str,
+    /,
+    curves: Sequence[_Curve] | _Any,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing
+    parameter: the bilinear Coons patch P_u + P_v - P_uv (Coons 1967).
+
+    Of three curves the edge u = 0 is the point where the first and the third begin. Curves that do
+    not meet at the corners are errors; they are never reversed.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curves : list of curve
+        The four (or three) boundary curves.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 1); AbsPoint C(5, 4, 0); AbsPoint D(0, 3, 1); AbsPoint E(2, -1, 2); AbsPoint F(2, 4, -1); BCurve south({A, E, B}, 2); Line east(B, C); BCurve north({D, F, C}, 2); Line west(A, D); BlendSurf S({south, east, north, west}); Line slope(A, C); BlendSurf three({south, east, slope});
+    """
+    ...
+def BlendCenter(
+    name: str,
+    /,
+    curves: Sequence[_Curve] | _Any,
+    centre: _Point,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A patch between four curves that passes through a point in its middle: the Coons patch plus
+    16 u (1 - u) v (1 - v) times the vector from its own middle to the point.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curves : list of curve
+        The four (or three) boundary curves.
+    centre : point
+        The point at u = v = 0.5.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 1); AbsPoint C(5, 4, 0); AbsPoint D(0, 3, 1); AbsPoint E(2, -1, 2); AbsPoint F(2, 4, -1); BCurve south({A, E, B}, 2); Line east(B, C); BCurve north({D, F, C}, 2); Line west(A, D); AbsPoint top(2, 2, 3); BlendCenter S({south, east, north, west}, top);
+    """
+    ...
+def TanBoundary(
+    name: str,
+    /,
+    sides: Sequence[_Curve] | _Any,
+    free: Sequence[_Integer] | _Array | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing parameter,
+    that is tangent to the surfaces of those that are snakes, unless they are listed as `free`.
+
+    It is the bicubically blended Coons patch (Coons 1967) of the curves and of slopes across them,
+    with the twists of Gregory (1974), which need not agree at the corners. The slope across a snake
+    lies in the tangent plane of its surface; its components along the snake and perpendicular to it go
+    linearly from those of the one neighbouring edge to those of the other. Across a free edge it is
+    that of the bilinear patch. A neighbour must leave a tangent edge in the tangent plane there, as
+    snakes of the same surface do: otherwise no patch is tangent at that corner. Of three curves the
+    edge u = 0 is the point where the first and the third begin.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    sides : list of curve
+        The four (or three) boundary curves; snakes for the edges that are tangent to a surface.
+    free : list of integer, optional
+        The numbers (from 1) of sides that are left free though they are snakes.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0.5); AbsPoint C(0, 3, 0.2); AbsPoint D(4, 3, 0); AbsPoint G(2, 1, 0.6); BCurve a({A, G, B}, 2); Line b(C, D); RuledSurf floor(a, b); EdgeSnake low(3, floor); BlendPoint I({C, A}, {1.5, -0.5}); BlendPoint J({D, B}, {1.5, -0.5}); AbsPoint E(0, 6, 2); AbsPoint F(4, 6, 1.5); BCurve west({C, I, E}, 2); BCurve east({D, J, F}, 2); Line high(E, F); TanBoundary S({low, east, high, west}); TanBoundary plain({low, east, high, west}, free = {1});
+    """
+    ...
+def DevSurf(
+    name: str,
+    /,
+    c1: _Curve,
+    c2: _Curve,
+    along: object | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A developable surface between two curves, a plate bent without stretching: straight
+    rulings from C1(s) to C2(t) along which the tangent plane is one, det[C1'(s), C2'(t), C2(t) - C1(s)]
+    = 0; S(u, v) = (1 - v) C1(s(u)) + v C2(t(u)).
+
+    Rulings run from that of both starts to that of both ends. Where those are no rulings of the plate,
+    fans complete it: cones about an end of a curve. By itself u is (s + t) / 2, and no edge is
+    divided as its curve is: build neighbours on an EdgeSnake of this surface. With `along` = "c1" (or
+    "c2") u is the parameter of that curve, so that meshes join along it; a fan about one of its ends
+    is refused then. It is refused where no pair of places has a common tangent plane, or rulings would
+    cross between the curves.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    c1 : curve
+        Edge v = 0.
+    c2 : curve
+        Edge v = 1.
+    along : value, optional
+        Whose parameter u is: "both", "c1" or "c2". Default both.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0.75, 0); AbsPoint C(4, 0, 0); AbsPoint D(0.5, 0, 2); AbsPoint E(2, 1.5, 2.25); AbsPoint F(4.5, 0.25, 2); BCurve l({A, B, C}); BCurve m({D, E, F}); DevSurf plate(l, m); AbsPoint G(0.5, -1, 3); CopyCurve k(l, A, G, 0.5, 0.5, 0.5); DevSurf cone(l, k, "c1");
+    """
+    ...
+def ExpandedSurf(
+    name: str,
+    /,
+    surface: _Surface,
+    frame: _Frame | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A developable surface laid flat: the plate before it is bent, with all lengths and angles as on the
+    surface, at equal parameters.
+
+    Its lines u = const must be straight with one tangent plane along each, as those of DevSurf, of cones
+    and of cylinders are. The plate lies in the xy plane of `frame` (of the world when none is given), its
+    normal along z: the first ruling along y with its middle at the origin. From ruling to ruling the
+    direction turns as it does in the tangent plane, which turns along with the surface (parallel
+    transport; do Carmo 1976, section 4-4). The image of a snake is its CopySnake on the plate.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface to lay flat.
+    frame : frame, optional
+        The frame in which it is laid.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0.75, 0.25); AbsPoint C(4, 0, 0); AbsPoint D(0.5, 0.25, 2); BCurve l({A, B, C}); Line up(A, D); TranSurf hull(l, up); ExpandedSurf plate(hull); AbsPoint O(0, 0, 5); RPYFrame table(O, 0.2, 0, 0.5); ExpandedSurf there(hull, table);
+    """
+    ...
+def FilletSurf(
+    name: str,
+    /,
+    snake1: _Snake,
+    snake2: _Snake,
+    m1: _Number | None = ...,
+    m2: _Number | None = ...,
+    continuity: _Integer | None = ...,
+    direction1: _Text | None = ...,
+    direction2: _Text | None = ...,
+    closed: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A fillet between two snakes, tangent to their surfaces: for each u a cubic from the first snake
+    at v = 0 to the second at v = 1, whose end tangents lie in the two tangent planes.
+
+    The tangents are perpendicular to the snakes ("perpendicular"), along the chord between the two
+    snakes as seen in the tangent plane ("chord"), or along a parameter line of the surface ("u",
+    "v"); they are `m1` and `m2` times as long as the chord (1.17 comes closest to a circular quarter).
+    With `continuity = 2` it is a quintic whose curvature across equals that of both surfaces, too.
+    Where snakes are closed, `closed = 1` says that the edges u = 0 and u = 1 are one line.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake1 : snake
+        Edge v = 0.
+    snake2 : snake
+        Edge v = 1.
+    m1 : number, optional
+        Length of the tangent at v = 0, in chords between the snakes. At least 0, default 1.
+    m2 : number, optional
+        Length of the tangent at v = 1, in chords between the snakes. At least 0, default 1.
+    continuity : integer, optional
+        1 for common tangent planes, 2 for common curvature across, too. 1 to 2, default 1.
+    direction1 : text, optional
+        Direction at the first surface: "perpendicular", "chord", "u" or "v". Default
+        perpendicular.
+    direction2 : text, optional
+        Direction at the second surface: "perpendicular", "chord", "u" or "v". Default
+        perpendicular.
+    closed : integer, optional
+        1 when the edges u = 0 and u = 1 are one line. 0 to 1, default 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0.5); AbsPoint C(0, 3, 0.2); AbsPoint D(4, 3, 0); AbsPoint E(0, 4, 1); AbsPoint F(4, 4.5, 1); AbsPoint G(0, 4, 4); AbsPoint H(4, 4.2, 4); AbsPoint I(2, 1, 0.6); BCurve a({A, I, B}, 2); Line b(C, D); RuledSurf floor(a, b); Line c(E, F); Line d(G, H); RuledSurf wall(c, d); UVSnake low(floor, "v", 0.7); UVSnake high(wall, "v", 0.2); FilletSurf S(low, high); FilletSurf G2(low, high, 1.2, 0.9, continuity = 2, direction2 = "chord"); FilletSurf across(low, high, direction1 = "v");
+    """
+    ...
+def RollFillet(
+    name: str,
+    /,
+    surface1: _Onto,
+    surface2: _Onto,
+    radius: _Number,
+    side1: _Integer | None = ...,
+    side2: _Integer | None = ...,
+    radii: _Numbers | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A fillet that a rolling ball leaves between two surfaces: circular arcs from where the ball touches
+    the first, at v = 0, to where it touches the second, at v = 1; tangent to both.
+
+    The centre of the ball is where both surfaces, offset by the radius, meet; it rolls from edge to edge
+    or round, and u is the share of the way of its centre. Which way it goes and where among several is
+    as for IntSnake: the ball that touches nearest to a magnet, if one is given. With `radii` the radius
+    follows a law along u (the coefficients of a clamped uniform B-spline of degree 3 or less): there the
+    centre lies in the plane across the way of a ball of `radius`, and arcs are those through both points
+    of contact, which is still tangent to both surfaces. A ball larger than a radius of curvature of
+    either surface on its side would turn back, and is refused.
+
+    Where it touches, `ContactSnake` gives the snakes on both surfaces that are its edges v = 0 and
+    v = 1: parts of the surfaces that end in these (`SubSurf`, `TrimSurf`) join the fillet exactly.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface1 : surface or magnet
+        The first surface, or a magnet of it near where the ball is meant to touch.
+    surface2 : surface or magnet
+        The second surface, or a magnet of it.
+    radius : number
+        The radius of the ball. At least 0.
+    side1 : integer, optional
+        Side of the ball: 1 on the side of the natural normal of the first surface, -1 on the
+        other. -1 to 1, default 1.
+    side2 : integer, optional
+        The same for the second surface. -1 to 1, default 1.
+    radii : list of number, optional
+        Radii along u: the coefficients of a B-spline.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0.2); AbsPoint D(4, 3, 0); AbsPoint E(0, 2.5, -1); AbsPoint F(4, 2, -1); AbsPoint G(0, 2.5, 3); AbsPoint H(4, 2.25, 3); Line a(A, B); Line b(C, D); RuledSurf floor(a, b); Line c(E, F); Line d(G, H); RuledSurf wall(c, d); RollFillet S(floor, wall, 0.8); RollFillet more(floor, wall, 0.5, radii = {0.25, 0.5, 0.75}, visible = 0);
+    """
+    ...
+def SubSurf(
+    name: str,
+    /,
+    sides: Sequence[_Side] | _Any,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
+    and w a patch of its parameter plane.
+
+    Two sides w1, w2 are edges v = 0 and v = 1: w = (1 - v) w1(u) + v w2(u). Four sides are the edges
+    v = 0, u = 1, v = 1, u = 0, in this order and each in increasing parameter, so the third and the
+    fourth run against a walk round the patch; w is the bilinear Coons patch (Coons 1967). Three are
+    the same with the edge u = 0 a single point, where the first and the third begin. A magnet is a
+    side without length. Sides that do not meet are refused, never turned round, and so are patches
+    that are folded. Two sides that end where they begin, at one point or at the seam of a closed
+    surface, make a closed band; a closed snake and a magnet within it a whole cap.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    sides : list of side
+        Two, three or four snakes and magnets of one surface.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet p(S, 0.1, 0.2); AbsMagnet q(S, 0.9, 0.1); AbsMagnet r(S, 0.8, 0.9); AbsMagnet s(S, 0.2, 0.7); AbsMagnet t(S, 0.5, 0.3); BSnake south({p, t, q}); LineSnake east(q, r); LineSnake north(s, r); LineSnake west(p, s); LineSnake middle(p, r); SubSurf part({south, east, north, west}); SubSurf half({south, north}, visible = 0); SubSurf fan({south, r}, visible = 0); SubSurf three({south, east, middle}, visible = 0);
+    """
+    ...
+def TrimSurf(
+    name: str,
+    /,
+    surface: _Surface,
+    loops: Sequence[_Snake] | _Any,
+    whole: _Integer | None = ...,
+    rim: _Integer | None = ...,
+    nu: _Integer | None = ...,
+    nv: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BodyHandle:
+    """The part of a surface within loops of snakes on it, as triangles.
+
+    Snakes that follow one another make a loop; one may run backwards, and a closed snake is a loop by
+    itself. The first loop is the outer one and the others are holes in it; with `whole = 1` the outer
+    one is the boundary of the surface and all loops are holes. The interior contains points of the surface's
+    own nu x nv divisions that are not too near the border; the triangles between are Delaunay's (in
+    parameters scaled to lengths). All vertices are on the surface.
+
+    Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours: patches,
+    fillets and other trimmed surfaces whose edges run along the same snakes have its vertices there,
+    by identity. Divisions flow over such edges from the one to the other; `rim` states those of each
+    snake, and a contradiction is reported.
+
+    Where a sub-surface serves (`SubSurf`: two, three or four sides), prefer it: it has a net of panels.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface that is trimmed.
+    loops : list of snake
+        Snakes on it, loop after loop.
+    whole : integer, optional
+        1 when the whole surface is kept but for holes. 0 to 1, default 0.
+    rim : integer, optional
+        Divisions of each snake. Not given: as its neighbours have them, or 12. 1 to 10000.
+    nu : integer, optional
+        Divisions along u of the surface's grid inside the border. 1 to 1000, default 12.
+    nv : integer, optional
+        Divisions of the surface along v. 1 to 1000, default 12.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    mesh
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0.5); AbsPoint C(4, 0, 0); AbsPoint D(0, 3, 0); AbsPoint E(4, 3, 1); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m, visible = 0); AbsMagnet p(S, 0.5, 0.45); AbsMagnet q(S, 0.71, 0.45); AbsMagnet r(S, 0.5, 0.7); ArcSnake round(q, p, r, type = 6); AbsMagnet a(S, 0.1, 0.15); AbsMagnet b(S, 0.95, 0.2); AbsMagnet c(S, 0.8, 0.93); LineSnake ab(a, b); LineSnake cb(c, b); LineSnake ca(c, a); TrimSurf window(S, {round}, whole = 1); TrimSurf part(S, {ab, cb, ca}, visible = 0);
+    """
+    ...
+def MirrSurf(
+    name: str,
+    /,
+    surface: _Surface,
+    mirror: _Mirror,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """The mirror image of a surface in a plane, line or point, point by point.
+
+    A plane or point reverses the natural normal; panels keep the side of the original's all the
+    same.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface to mirror.
+    mirror : mirror
+        The mirror: a plane, line or point.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); MirrSurf port(S, "y=0");
+    """
+    ...
+def RotatSurf(
+    name: str,
+    /,
+    surface: _Surface,
+    line: _Curve,
+    angle: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A surface turned about a line, right-handed about the direction from the line's start to its end
+    (Rodrigues). Images of joined surfaces under the same turn are joined.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface to turn.
+    line : curve
+        The line about which it is turned.
+    angle : number
+        The angle, in radians (degrees in model files).
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0.2); Line axis(O, X); RotatSurf blade(S, axis, 1.25);
+    """
+    ...
+def CopySurf(
+    name: str,
+    /,
+    surface: _Surface,
+    from_: _Point,
+    to: _Point,
+    sx: _Number | None = ...,
+    sy: _Number | None = ...,
+    sz: _Number | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A copy of a surface, shifted and stretched: p goes to `to` + diag(sx, sy, sz) (p - `from`).
+
+    A negative product of the three factors reverses the natural normal; panels keep the side of
+    the original's all the same.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface to copy.
+    from : point
+        The point that is moved to `to`.
+    to : point
+        Its image.
+    sx : number, optional
+        Stretch along x. Default 1.
+    sy : number, optional
+        Stretch along y. Default 1.
+    sz : number, optional
+        Stretch along z. Default 1.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsPoint P(1, 8, 0.5); CopySurf beside(S, A, P); CopySurf small(S, A, P, 0.5, -0.25, 0.4);
+    """
+    ...
+def ProjSurf(
+    name: str,
+    /,
+    surface: _Surface,
+    mirror: _Mirror,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A surface projected to a plane, along its normal: each point goes to its foot.
+
+    The image of a surface perpendicular to the plane degenerates; panels overlap there.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface to project.
+    mirror : mirror
+        The plane to project it to.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); YPlane p(2.5); ProjSurf shadow(S, p); ProjSurf flat(S, "y=0");
+    """
+    ...
+def RelSurf(
+    name: str,
+    /,
+    surface: _Surface,
+    p00: _Point,
+    p10: _Point,
+    p11: _Point,
+    p01: _Point,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A surface whose four corners are moved to given points: S plus the bilinear blend of the corners'
+    displacements. Between the corners each edge keeps its shape but for a linear change.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface it follows.
+    p00 : point
+        The corner (u, v) = (0, 0).
+    p10 : point
+        The corner (1, 0).
+    p11 : point
+        The corner (1, 1).
+    p01 : point
+        The corner (0, 1).
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsPoint P(0, 2, 0); AbsPoint Q(4.5, 2, 0.5); AbsPoint R(4, 2, 3); AbsPoint T(0, 1.5, 2); RelSurf moved(S, P, Q, R, T);
+    """
+    ...
+def OffsetSurf(
+    name: str,
+    /,
+    surface: _Surface,
+    distance: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with
+    n = S_u x S_v / |S_u x S_v|; on the other side for a negative distance.
+
+    At a pole the normal is the limit along the parameter line that ends there. The offset is an error
+    where the distance exceeds a radius of curvature on that side, since it is folded there, and where
+    the surface has no normal.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface that is offset.
+    distance : number
+        The distance, on the side of the natural normal if positive.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0.5); AbsPoint C(4, 0, 0); AbsPoint D(0, 0.5, 2); AbsPoint E(2, 2, 2); AbsPoint F(4, 1, 3); BCurve l({A, B, C}); BCurve m({D, E, F}); RuledSurf S(l, m); OffsetSurf plate(S, 0.25); OffsetSurf inside(S, -0.5);
+    """
+    ...
+def PolySurf(
+    name: str,
+    /,
+    surfaces: Sequence[_Surface] | _Any,
+    along: object | None = ...,
+    breaks: _Numbers | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """Surfaces side by side as one: piece k of N is run from u = (k - 1) / N to k / N (from v, with
+    `along` = "v"), or between the breaks given.
+
+    Each piece begins where the one before ends: edge u = 1 of the one is edge u = 0 of the other,
+    point by point at equal v, within the model's tolerance. A piece is never reversed. Meshes join
+    along the pieces' own edges.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surfaces : list of surface
+        The surfaces, in order.
+    along : value, optional
+        The parameter along which they follow one another: "u" or "v". Default u.
+    breaks : list of number, optional
+        The parameters at which pieces meet, ascending between 0 and 1; equal shares when not
+        given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(2, 2, 2); AbsPoint F(4, 1, 3); AbsPoint G(1, 2, 0.5); BCurve a({A, G, B}, 2); Line b(D, E); RuledSurf R(a, b); Line c(B, C); Line d(E, F); RuledSurf S(c, d); PolySurf both({R, S}); PolySurf early({R, S}, breaks = {0.375}); AbsPoint H(0, 1, 4); AbsPoint I(2, 3, 4); Line e(H, I); RuledSurf T(b, e); PolySurf up({R, T}, "v");
+    """
+    ...
+def BFitSurf(
+    name: str,
+    /,
+    surface: _Surface,
+    degree_u: _Integer | None = ...,
+    degree_v: _Integer | None = ...,
+    nu: _Integer | None = ...,
+    nv: _Integer | None = ...,
+    accuracy: _Number | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A B-spline surface fitted to another by least squares: with clamped uniform knots and the corners
+    of the surface.
+
+    The lines v = const are fitted first, then their control points across, which is the fit of the
+    tensor product; each edge is the fit of the surface's edge. The member `residual` is the greatest
+    distance between the two at equal parameters. With `accuracy` it is refused when it comes no nearer
+    than that.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface to come near to.
+    degree_u : integer, optional
+        Polynomial degree in u. 1 to 25, default 3.
+    degree_v : integer, optional
+        Polynomial degree in v. 1 to 25, default 3.
+    nu : integer, optional
+        Number of control points along u, more than the degree. 2 to 1000, default 8.
+    nv : integer, optional
+        Number of control points along v, more than the degree. 2 to 1000, default 8.
+    accuracy : number, optional
+        The greatest distance allowed between the two at equal parameters. At least 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(2, 2, 2.5); AbsPoint F(4, 1, 3); CCurve l({A, B, C}); CCurve m({D, E, F}); RuledSurf S(l, m); BFitSurf fit(S, 3, 2, 5, 3, 0.05);
+    """
+    ...
+def NUBFitSurf(
+    name: str,
+    /,
+    surface: _Surface,
+    degree_u: _Integer | None = ...,
+    degree_v: _Integer | None = ...,
+    accuracy: _Number | None = ...,
+    *,
+    knots_u: _Numbers,
+    knots_v: _Numbers,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A B-spline surface fitted to another as by BFitSurf, with knots of one's own.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The surface to come near to.
+    degree_u : integer, optional
+        Polynomial degree in u. 1 to 25, default 3.
+    degree_v : integer, optional
+        Polynomial degree in v. 1 to 25, default 3.
+    knots_u : list of number
+        The parameters u where pieces meet, from 0 to 1, each once.
+    knots_v : list of number
+        The parameters v where pieces meet, from 0 to 1, each once.
+    accuracy : number, optional
+        The greatest distance allowed between the two at equal parameters. At least 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(2, 2, 2.5); AbsPoint F(4, 1, 3); CCurve l({A, B, C}); CCurve m({D, E, F}); RuledSurf S(l, m); NUBFitSurf fit(S, 3, 1, {0, 0.4, 1}, {0, 1});
+    """
+    ...
+def ProcSurf(
+    name: str,
+    /,
+    bead: _Bead,
+    curve: _Curve,
+    t1: _Number | None = ...,
+    t2: _Number | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """The surface that a curve describes when a bead that it depends on sweeps its curve: S(u, v) is the
+    place u of `curve` with `bead` at the parameter t1 + v (t2 - t1).
+
+    Everything between bead and curve is evaluated anew at each place of the bead, as for `ProcCurve`:
+    along v the surface is a chain of polynomials through such curves, halved until they agree with it
+    to about 1e-12 of its size.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    bead : bead
+        The bead that moves.
+    curve : curve
+        The curve that follows.
+    t1 : number, optional
+        Start of the bead. Default 0.
+    t2 : number, optional
+        End. Default 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); AbsBead b(c, 0.5); AbsPoint D(0, 0, 3); AbsPoint E(3, 0, 3); Line l(D, E); ProjPoint foot(b, l); RelPoint m(b, 0, -0.5, 1); BCurve rib({b, m, foot}, 2); ProcSurf skin(b, rib);
+    """
+    ...
+def FaceSurf(
+    name: str,
+    /,
+    face: _Integer,
+    solid: _Solid,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A face of a solid as a surface: 1 is u = 0, 2 is u = 1, 3 is v = 0, 4 is v = 1, 5 is w = 0, 6 is
+    w = 1. Its parameters are the solid's other two, in order.
+
+    A solid that has it as a face shares the vertices of the first solid there.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    face : integer
+        The number of the face. 1 to 6.
+    solid : solid
+        The solid.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 2, 0); AbsPoint D(2, 2, 0); AbsPoint E(0, 0, 2); AbsPoint F(2, 0, 2); Line a(A, B); Line b(C, D); Line c(E, F); RuledSurf low(a, b); RuledSurf side(a, c); Line up(A, E); TranSolid S(low, up); FaceSurf top(6, S); TranSolid next(top, up);
+    """
+    ...
+def RuledSolid(
+    name: str,
+    /,
+    s1: _Surface,
+    s2: _Surface,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SolidHandle:
+    """A solid between two surfaces: X(u, v, w) = (1 - w) S1(u, v) + w S2(u, v).
+
+    Solids whose surfaces join along an edge join along the face over it, when they are divided
+    alike.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    s1 : surface
+        The face w = 0.
+    s2 : surface
+        The face w = 1.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    solid
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 2, 0); AbsPoint D(2, 2, 0.5); AbsPoint E(0, 0, 2); AbsPoint F(2, 0, 3); AbsPoint G(0, 2, 2); AbsPoint H(2, 2, 2); AbsPoint I(1, 1, 3); Line a(A, B); Line b(C, D); RuledSurf low(a, b); BCurve c({E, I, F}, 2); Line d(G, H); RuledSurf high(c, d); RuledSolid S(low, high, divisions = {4, 4, 6});
+    """
+    ...
+def BLoftSolid(
+    name: str,
+    /,
+    surfaces: Sequence[_Surface] | _Any,
+    degree: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SolidHandle:
+    """A solid attracted by its surfaces: X(u, v, w) = sum N_i(w) S_i(u, v), with N_i the B-splines of
+    clamped uniform knots. It has the first and the last surface as faces.
+
+    With N surfaces the degree is at most N - 1: a higher one is lowered to that.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surfaces : list of surface
+        Surfaces, two or more, in order of w.
+    degree : integer, optional
+        Polynomial degree across the surfaces. 1 to 25, default 3.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    solid
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 2, 0); AbsPoint D(2, 2, 0.5); AbsPoint E(0.5, 0, 2); AbsPoint F(3, 0, 2); AbsPoint G(0.5, 2, 2); AbsPoint H(3, 3, 2); AbsPoint I(0, 0, 4); AbsPoint J(2, 0, 4); AbsPoint K(0, 2, 4.5); AbsPoint L(2, 2, 4); Line a(A, B); Line b(C, D); Line c(E, F); Line d(G, H); Line e(I, J); Line f(K, L); RuledSurf low(a, b); RuledSurf middle(c, d); RuledSurf high(e, f); BLoftSolid S({low, middle, high}, degree = 2);
+    """
+    ...
+def CLoftSolid(
+    name: str,
+    /,
+    surfaces: Sequence[_Surface] | _Any,
+    ends: _Text | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SolidHandle:
+    """A solid that passes through its surfaces: at each u and v the interpolating spline through their
+    points there, with knots at chord lengths, evaluated at w.
+
+    Two surfaces give rulings, three parabolas, four or more cubic splines. Neighbouring surfaces must
+    not meet, unless all meet in one point.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surfaces : list of surface
+        Surfaces, two or more, in order of w.
+    ends : text, optional
+        End conditions: "notaknot", "natural", "bessel" or "quadratic". Default notaknot.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    solid
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 2, 0); AbsPoint D(2, 2, 0.5); AbsPoint E(0.5, 0, 2); AbsPoint F(3, 0, 2); AbsPoint G(0.5, 2, 2); AbsPoint H(3, 3, 2); AbsPoint I(0, 0, 4); AbsPoint J(2, 0, 4); AbsPoint K(0, 2, 4.5); AbsPoint L(2, 2, 4); Line a(A, B); Line b(C, D); Line c(E, F); Line d(G, H); Line e(I, J); Line f(K, L); RuledSurf low(a, b); RuledSurf middle(c, d); RuledSurf high(e, f); CLoftSolid S({low, middle, high}); CLoftSolid N({low, middle, high}, "natural");
+    """
+    ...
+def BSolid(
+    name: str,
+    /,
+    points: _Vectors,
+    nu: _Integer,
+    nv: _Integer,
+    nw: _Integer,
+    degree_u: _Integer | None = ...,
+    degree_v: _Integer | None = ...,
+    degree_w: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SolidHandle:
+    """A B-spline solid of a net of points: X(u, v, w) = sum N_i(u) N_j(v) N_k(w) P_ijk, with clamped
+    uniform knots.
+
+    It passes through the eight corner points and is attracted by the others. A degree that the net is
+    too small for is lowered to the number of points less one.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        Net of points, w running fastest, then v: nu times nv rows of nw points.
+    nu : integer
+        Points along u. At least 2.
+    nv : integer
+        Points along v. At least 2.
+    nw : integer
+        Points along w. At least 2.
+    degree_u : integer, optional
+        Polynomial degree in u. 1 to 25, default 3.
+    degree_v : integer, optional
+        Polynomial degree in v. 1 to 25, default 3.
+    degree_w : integer, optional
+        Polynomial degree in w. 1 to 25, default 3.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    solid
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(0, 0, 2); AbsPoint C(0, 2, 0); AbsPoint D(0, 2, 2); AbsPoint E(1, 0.5, 0); AbsPoint F(1, 0, 3); AbsPoint G(1, 2, 0); AbsPoint H(1, 2.5, 2); AbsPoint I(3, 0, 0); AbsPoint J(3, 0, 2); AbsPoint K(3, 2, 0); AbsPoint L(3, 2, 2); BSolid S({A, B, C, D, E, F, G, H, I, J, K, L}, nu = 3, nv = 2, nw = 2);
+    """
+    ...
+def BlendSolid(
+    name: str,
+    /,
+    surfaces: Sequence[_Surface] | _Any,
+    turns: Sequence[_Integer] | _Array | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SolidHandle:
+    """A solid between six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1: their transfinite blend, the three
+    ruled solids less the three of edges plus that of the corners (Gordon and Hall 1973).
+
+    The parameters of a face are the solid's other two, in order: (v, w), (u, w), (u, v). A surface that
+    runs otherwise is turned by its number in `turns`: 1 if its u runs along the second of the two, plus
+    2 if its u and plus 4 if its v runs against the solid's. Faces must meet along the twelve edges.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surfaces : list of surface
+        The six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1.
+    turns : list of integer, optional
+        Orientation of each surface, 0 to 7; all 0 if not given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    solid
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 2, 0); AbsPoint D(2, 2, 0); AbsPoint E(0, 0, 2); AbsPoint F(2, 0, 3); AbsPoint G(0, 2, 2); AbsPoint H(2.5, 2, 2); AbsPoint M(1, -0.5, 0); BCurve ab({A, M, B}, 2); Line cd(C, D); Line ef(E, F); Line gh(G, H); Line ac(A, C); Line bd(B, D); Line eg(E, G); Line fh(F, H); Line ae(A, E); Line bf(B, F); Line cg(C, G); Line dh(D, H); BlendSurf west({ac, cg, eg, ae}); BlendSurf east({bf, fh, dh, bd}); BlendSurf south({ab, bf, ef, ae}); BlendSurf north({cd, dh, gh, cg}); BlendSurf low({ab, bd, cd, ac}); BlendSurf high({ef, fh, gh, eg}); BlendSolid S({west, east, south, north, low, high}, turns = {0, 1, 0, 0, 0, 0});
+    """
+    ...
+def TranSolid(
+    name: str,
+    /,
+    surface: _Surface,
+    curve: _Curve,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SolidHandle:
+    """A surface moved along a curve without turning: X(u, v, w) = S(u, v) + C(w) - C(0).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The face w = 0.
+    curve : curve
+        The curve along which it is moved.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    solid
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 2, 0); AbsPoint D(2, 2, 0.5); AbsPoint E(0.5, 0, 2); AbsPoint F(1, 1, 4); Line a(A, B); Line b(C, D); RuledSurf low(a, b); BCurve way({A, E, F}); TranSolid S(low, way);
+    """
+    ...
+def SweepSolid(
+    name: str,
+    /,
+    surface: _Surface,
+    path: _Curve,
+    frame: _Text | None = ...,
+    up: _Vector | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SolidHandle:
+    """A surface carried along a path by a frame that moves with it: X(u, v, w) = path(w) + F(w)
+    (S(u, v) - path(0)), with F(0) = 1, so that the face w = 0 is the surface. The frames are those
+    of `SweepSurf`.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surface : surface
+        The face w = 0.
+    path : curve
+        The curve along which it is carried.
+    frame : text, optional
+        Motion of the frame: "minimal", "up" or "fixed". Default minimal.
+    up : vector, optional
+        The direction that stays upright with frame = "up"; z if not given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    solid
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 2, 0); AbsPoint D(2, 2, 0.5); AbsPoint E(0.5, 0, 2); AbsPoint F(1, 1, 4); Line a(A, B); Line b(C, D); RuledSurf low(a, b); BCurve way({A, E, F}); SweepSolid S(low, way); SweepSolid U(low, way, "up", up = {1, 0, 0});
+    """
+    ...
+def Relabel(
+    name: str,
+    /,
+    values: _Numbers,
+    degree: _Integer | None = ...,
+    partial: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RelabelHandle:
+    """A redistribution that is a B-spline function of the parameter: R(t) = sum N_i(t) r_i, with
+    clamped uniform knots (as a B-sub-curve has its beads' parameters).
+
+    The values run from 0 to 1 and ascend; with `partial = 1` they run from any value to a greater one,
+    and the law leaves the rest of the curve out, or goes on beyond its ends. With N values the degree is at most N - 1: a higher one
+    is lowered to that. Degree 1 is straight between its breaks, so parts of other curves stay parts
+    of them.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    values : list of number
+        Values from 0 to 1, two or more.
+    degree : integer, optional
+        Polynomial degree. 1 to 25, default 3.
+    partial : integer, optional
+        1 when the values may begin and end elsewhere than at 0 and 1. 0 to 1, default 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    relabel
+
+    Notes
+    -----
+    In the language::
+
+        Relabel r({0, 0.1, 0.6, 0.8, 1}, degree = 2); AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); Line l(A, B, relabel = r);
+    """
+    ...
+def CosRelabel(
+    name: str,
+    /,
+    dense: _Text | None = ...,
+    weight: _Number | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RelabelHandle:
+    """A cosine redistribution: R(t) = (1 - w) t + w f(t), with f = (1 - cos pi t) / 2 dense at both ends,
+    1 - cos(pi t / 2) at the start or sin(pi t / 2) at the end.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    dense : text, optional
+        Dense end: "both", "start" or "end". Default both.
+    weight : number, optional
+        Share w of the cosine, 0 to 1. 0 to 1, default 1.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    relabel
+
+    Notes
+    -----
+    In the language::
+
+        CosRelabel r(); CosRelabel s("start", 0.8);
+    """
+    ...
+def GeoRelabel(
+    name: str,
+    /,
+    ratio: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RelabelHandle:
+    """A geometric redistribution: R(t) = (q^t - 1) / (q - 1). Of many equal steps of t the last becomes q
+    times the first; q = 1 changes nothing.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    ratio : number
+        Ratio q of the last step to the first; below 1 the law is dense at the end. 1e-09 to
+        1e+09.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    relabel
+
+    Notes
+    -----
+    In the language::
+
+        GeoRelabel r(4);
+    """
+    ...
+def TanhRelabel(
+    name: str,
+    /,
+    strength: _Number,
+    dense: _Text | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RelabelHandle:
+    """A hyperbolic tangent redistribution (Vinokur, J. Comput. Phys. 50, 1983): dense at both ends
+    R(t) = 1/2 + tanh(d (t - 1/2)) / (2 tanh(d/2)), at the start 1 + tanh(d (t - 1)) / tanh d, at the end
+    the mirror image of that.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    strength : number
+        Strength d, 0 to 100; 0 changes nothing. 0 to 100.
+    dense : text, optional
+        Dense end: "both", "start" or "end". Default both.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    relabel
+
+    Notes
+    -----
+    In the language::
+
+        TanhRelabel r(3); TanhRelabel s(2.5, "end");
+    """
+    ...
+def TableRelabel(
+    name: str,
+    /,
+    parameters: _Numbers,
+    values: _Numbers,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RelabelHandle:
+    """A redistribution by a table: the monotone piecewise cubic through (parameter, value) pairs
+    (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
+
+    The pairs run from (0, 0) to (1, 1); both columns ascend.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    parameters : list of number
+        Parameters t from 0 to 1.
+    values : list of number
+        Values R(t) from 0 to 1, as many.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    relabel
+
+    Notes
+    -----
+    In the language::
+
+        TableRelabel r({0, 0.25, 0.5, 1}, {0, 0.15, 0.4, 1});
+    """
+    ...
+def ArcLenRelabel(
+    name: str,
+    /,
+    curve: _Curve,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RelabelHandle:
+    """A redistribution by length: R is the inverse of s(t) / L, with s the length along a curve and L
+    all of it, so that equal steps of t are equal lengths.
+
+    It is meant as the relabel of a curve of the same shape: of a copy, a neighbour, or a curve on the
+    same points. The curve must move at both ends.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve whose length counts.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    relabel
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(4, 2, 1); BCurve c({A, B, C}); ArcLenRelabel r(c); BCurve even({A, B, C}, relabel = r);
+    """
+    ...
+def CopyRelabel(
+    name: str,
+    /,
+    curve: _Curve,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RelabelHandle:
+    """The law by which another curve's parameter was redistributed, so that neighbours match. Of a
+    curve without one it changes nothing; of an image it is its original's.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve whose relabel is copied.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    relabel
+
+    Notes
+    -----
+    In the language::
+
+        CosRelabel cosine(); AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(4, 2, 1); BCurve c({A, B, C}, relabel = cosine); CopyRelabel r(c); Line l(A, C, relabel = r);
+    """
+    ...
+def InvRelabel(
+    name: str,
+    /,
+    relabel: _Relabel,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RelabelHandle:
+    """The inverse of a relabel, which undoes it: R(t) is the parameter at which the other has the value
+    t. The other must have a slope at both ends.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    relabel : relabel
+        The relabel to undo.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    relabel
+
+    Notes
+    -----
+    In the language::
+
+        CosRelabel cosine("both", 0.9); InvRelabel r(cosine);
+    """
+    ...
+def ComposeRelabel(
+    name: str,
+    /,
+    relabels: Sequence[_Relabel] | _Any,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> RelabelHandle:
+    """Relabels one after another: of {a, b} it is R(t) = b(a(t)).
+
+    On a curve that is relabelled by b already, a relabel by a is the same.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    relabels : list of relabel
+        Relabels, the one that sees t first.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    relabel
+
+    Notes
+    -----
+    In the language::
+
+        CosRelabel cosine(); GeoRelabel growth(3); ComposeRelabel r({growth, cosine});
+    """
+    ...
+def XPlane(
+    name: str,
+    /,
+    x: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PlaneHandle:
+    """The plane of the points with a given x; its normal is (1, 0, 0).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    x : number
+        The coordinate that all points of the plane have.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    plane
+
+    Notes
+    -----
+    In the language::
+
+        XPlane amidships(15);
+    """
+    ...
+def YPlane(
+    name: str,
+    /,
+    y: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PlaneHandle:
+    """The plane of the points with a given y; its normal is (0, 1, 0).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    y : number
+        The coordinate that all points of the plane have.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    plane
+
+    Notes
+    -----
+    In the language::
+
+        YPlane centre(0);
+    """
+    ...
+def ZPlane(
+    name: str,
+    /,
+    z: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PlaneHandle:
+    """The plane of the points with a given z; its normal is (0, 0, 1).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    z : number
+        The coordinate that all points of the plane have.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    plane
+
+    Notes
+    -----
+    In the language::
+
+        ZPlane waterline(0.25);
+    """
+    ...
+def OffsetPlane(
+    name: str,
+    /,
+    plane: _Plane,
+    distance: _Number,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PlaneHandle:
+    """The plane at a given distance from another, on the side of its normal if positive.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    plane : plane
+        The plane it is parallel to.
+    distance : number
+        The distance.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    plane
+
+    Notes
+    -----
+    In the language::
+
+        ZPlane waterline(0); OffsetPlane deck(waterline, 1.5);
+    """
+    ...
+def ThreePointPlane(
+    name: str,
+    /,
+    p1: _Point,
+    p2: _Point,
+    p3: _Point,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PlaneHandle:
+    """The plane through three points (3PtPlane of model files); its normal is along
+    (P2 - P1) x (P3 - P1).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    p1 : point
+        First point.
+    p2 : point
+        Second point.
+    p3 : point
+        Third point.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    plane
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0.5); AbsPoint C(0, 1, 0.25); ThreePointPlane deck(A, B, C);
+    """
+    ...
+def TwoPointPlane(
+    name: str,
+    /,
+    p1: _Point,
+    p2: _Point,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PlaneHandle:
+    """The plane through one point with its normal toward another (2PtPlane of model files).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    p1 : point
+        A point of the plane.
+    p2 : point
+        A point in the direction of the normal.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    plane
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, -1, 2); TwoPointPlane deck(A, B);
+    """
+    ...
+def PlaneThroughPoint(
+    name: str,
+    /,
+    point: _Point,
+    plane: _Plane,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PlaneHandle:
+    """The plane through a point, parallel to another plane.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        A point of the plane.
+    plane : plane
+        The plane it is parallel to.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    plane
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 2, 3); ZPlane water(0); PlaneThroughPoint deck(A, water);
+    """
+    ...
+def TanPlane(
+    name: str,
+    /,
+    magnet: _Magnet,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PlaneHandle:
+    """The tangent plane of a surface at a magnet, with the surface's normal; at a pole the limit along
+    the parameter line that leads there.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnet : magnet
+        The point of contact.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    plane
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.25, 0.5); TanPlane t(p);
+    """
+    ...
+def NormalPlane(
+    name: str,
+    /,
+    bead: _Bead,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PlaneHandle:
+    """The plane normal to a curve at a bead; its normal is the tangent, in the direction of increasing
+    parameter.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    bead : bead
+        The point of intersection with the curve.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    plane
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); AbsBead b(c, 0.25); NormalPlane across(b);
+    """
+    ...
+def ThreePointFrame(
+    name: str,
+    /,
+    p1: _Point,
+    p2: _Point,
+    p3: _Point,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> FrameHandle:
+    """The frame of three points: its origin is the first, its x axis points to the second, and the
+    third lies in its xy plane on the side of positive y.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    p1 : point
+        Origin.
+    p2 : point
+        A point of the positive x axis.
+    p3 : point
+        A point of the xy plane.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    frame
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 0, 0); AbsPoint B(2, 0.5, 0); AbsPoint C(0, 1, 0.25); ThreePointFrame f(A, B, C); FramePoint p(A, f, 1, 2, 3);
+    """
+    ...
+def RPYFrame(
+    name: str,
+    /,
+    point: _Point,
+    roll: _Number | None = ...,
+    pitch: _Number | None = ...,
+    yaw: _Number | None = ...,
+    frame: _Frame | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> FrameHandle:
+    """The frame at a point, turned from the axes of another (of the world when none is given) by yaw
+    about z, then by pitch about the new y, then by roll about the new x; all right-handed.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    point : point
+        Origin.
+    roll : number, optional
+        Angle about the x axis. Default 0.
+    pitch : number, optional
+        Angle about the y axis. Default 0.
+    yaw : number, optional
+        Angle about the z axis. Default 0.
+    frame : frame, optional
+        The frame whose axes are turned.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    frame
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(1, 0, 0); RPYFrame keel(A, 0.35, 0, 0.1); FramePoint p(A, keel, 0, 0, -3); RPYFrame bulb(p, 0, -0.2, 0, keel); FramePoint q(p, bulb, 1, 2, 3);
+    """
+    ...
+def XContours(
+    name: str,
+    /,
+    first: _Integer,
+    last: _Integer,
+    start: _Number,
+    step: _Number,
+    surfaces: Sequence[_Surface] | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> ContoursHandle:
+    """Sections x = start + i step, for i from first to last: the stations of a hull.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    first : integer
+        First index i.
+    last : integer
+        Last index i.
+    start : number
+        Position of the section with index 0.
+    step : number
+        Distance of neighbouring sections.
+    surfaces : list of surface, optional
+        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    contours
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, -1); AbsPoint B(30, 0, -1.5); AbsPoint C(0, 3, 2); AbsPoint D(15, 8, 2); AbsPoint E(30, 4, 2.5); Line keel(A, B); BCurve sheer({C, D, E}, 2); RuledSurf hull(keel, sheer); XContours stations(0, 10, 1.8, 2.735);
+    """
+    ...
+def YContours(
+    name: str,
+    /,
+    first: _Integer,
+    last: _Integer,
+    start: _Number,
+    step: _Number,
+    surfaces: Sequence[_Surface] | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> ContoursHandle:
+    """Sections y = start + i step, for i from first to last: the buttocks of a hull.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    first : integer
+        First index i.
+    last : integer
+        Last index i.
+    start : number
+        Position of the section with index 0.
+    step : number
+        Distance of neighbouring sections.
+    surfaces : list of surface, optional
+        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    contours
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, -1); AbsPoint B(30, 0, -1.5); AbsPoint C(0, 3, 2); AbsPoint D(15, 8, 2); AbsPoint E(30, 4, 2.5); Line keel(A, B); BCurve sheer({C, D, E}, 2); RuledSurf hull(keel, sheer); YContours buttocks(0, 4, 0.5, 0.75);
+    """
+    ...
+def ZContours(
+    name: str,
+    /,
+    first: _Integer,
+    last: _Integer,
+    start: _Number,
+    step: _Number,
+    surfaces: Sequence[_Surface] | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> ContoursHandle:
+    """Sections z = start + i step, for i from first to last: the waterlines of a hull.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    first : integer
+        First index i.
+    last : integer
+        Last index i.
+    start : number
+        Position of the section with index 0.
+    step : number
+        Distance of neighbouring sections.
+    surfaces : list of surface, optional
+        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    contours
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, -1); AbsPoint B(30, 0, -1.5); AbsPoint C(0, 3, 2); AbsPoint D(15, 8, 2); AbsPoint E(30, 4, 2.5); Line keel(A, B); BCurve sheer({C, D, E}, 2); RuledSurf hull(keel, sheer); ZContours waterlines(-2, 4, 0, 0.5);
+    """
+    ...
+def PlaneContours(
+    name: str,
+    /,
+    plane: _Plane,
+    first: _Integer,
+    last: _Integer,
+    start: _Number,
+    step: _Number,
+    surfaces: Sequence[_Surface] | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> ContoursHandle:
+    """Sections by planes parallel to a given one, at the distances start + i step from it along its
+    normal, for i from first to last: diagonals, cant frames.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    plane : plane
+        The plane of distance 0.
+    first : integer
+        First index i.
+    last : integer
+        Last index i.
+    start : number
+        Distance of the section with index 0 from the plane.
+    step : number
+        Distance of neighbouring sections.
+    surfaces : list of surface, optional
+        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    contours
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 0.5, 2); TwoPointPlane deck(A, B); AbsPoint P(0, 0, -1); AbsPoint Q(4, 0, -1); AbsPoint R(0, 2, 1.5); AbsPoint S(2, 3, 2.5); AbsPoint T(4, 2, 1.5); Line low(P, Q); BCurve high({R, S, T}, 2); RuledSurf side(low, high); PlaneContours diagonals(deck, 0, 4, -1, 0.5);
+    """
+    ...
+def CylinderContours(
+    name: str,
+    /,
+    line: _Curve,
+    first: _Integer,
+    last: _Integer,
+    start: _Number,
+    step: _Number,
+    surfaces: Sequence[_Surface] | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> ContoursHandle:
+    """Sections by cylinders about a line, of the radii start + i step, for i from first to last: the
+    sections of a propeller blade.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    line : curve
+        The common axis: the line through the ends of a curve.
+    first : integer
+        First index i.
+    last : integer
+        Last index i.
+    start : number
+        Radius of the section with index 0.
+    step : number
+        Difference of neighbouring radii.
+    surfaces : list of surface, optional
+        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    contours
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint O(0, 0, 0); AbsPoint X(1, 0.25, 0); Line shaft(O, X); AbsPoint P(0, 0, -1); AbsPoint Q(4, 0, -1); AbsPoint R(0, 2, 1.5); AbsPoint S(2, 3, 2.5); AbsPoint T(4, 2, 1.5); Line low(P, Q); BCurve high({R, S, T}, 2); RuledSurf side(low, high); CylinderContours radii(shaft, 0, 8, 1, 0.25);
+    """
+    ...
+def AngleContours(
+    name: str,
+    /,
+    line: _Curve,
+    first: _Integer,
+    last: _Integer,
+    start: _Number,
+    step: _Number,
+    zero: _Point | None = ...,
+    surfaces: Sequence[_Surface] | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> ContoursHandle:
+    """Sections by half-planes through a line, at the angles start + i step about it (right-handed), for
+    i from first to last: the meridians of a body of revolution.
+
+    Angle 0 is on the side of the point `zero` or, without one, of the z-axis (of the x-axis when
+    the line is within a degree of z).
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    line : curve
+        The common axis: the line through the ends of a curve.
+    first : integer
+        First index i.
+    last : integer
+        Last index i.
+    start : number
+        Angle of the section with index 0, in radians (degrees in model files).
+    step : number
+        Angle between neighbouring sections, in radians (degrees in model files).
+    zero : point, optional
+        A point in the half-plane of angle 0.
+    surfaces : list of surface, optional
+        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    contours
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint O(0, 0, 0); AbsPoint X(1, 0.25, 0); Line shaft(O, X); AbsPoint up(0, 0.5, 2); AbsPoint P(0, 0, -1); AbsPoint Q(4, 0, -1); AbsPoint R(0, 2, 1.5); AbsPoint S(2, 3, 2.5); AbsPoint T(4, 2, 1.5); Line low(P, Q); BCurve high({R, S, T}, 2); RuledSurf side(low, high); AngleContours meridians(shaft, 0, 3, -1, 0.5); AngleContours others(shaft, 0, 3, 0.25, 0.5, zero = up);
+    """
+    ...
+def RealList(
+    name: str,
+    /,
+    values: _Numbers,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """A list of numbers under a name, for use wherever a list of numbers is expected.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    values : list of number
+        The numbers.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    farray
+
+    Notes
+    -----
+    In the language::
+
+        RealList spacing({0, 0.25, 0.5, 1}); AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); TableRelabel r(spacing, {0, 0.1, 0.4, 1}); Line l(A, B, relabel = r);
+    """
+    ...
+def KnotList(
+    name: str,
+    /,
+    values: _Numbers,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """A list of knots under a name: non-decreasing numbers, for use wherever a list of numbers is
+    asked for.
+
+    The spline determines the number of knots and their multiplicity.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    values : list of number
+        The knots, two or more, in ascending order; equal ones are multiple knots.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    farray
+
+    Notes
+    -----
+    In the language::
+
+        KnotList k({0, 0, 0, 0.4, 1, 1, 1});
+    """
+    ...
+def EntityList(
+    name: str,
+    /,
+    objects: Sequence[object] | _Array | _Any,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """Objects under a common name, for use wherever a list of such objects is expected: the wetted
+    surfaces, the points of a curve.
+
+    A list among the objects adds its own.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    objects : list of value
+        The objects.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    list
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(2, 2, 1); EntityList ends({A, B}); EntityList all({ends, C}); BCurve c(all, degree = 2);
+    """
+    ...
+def FairCurve(
+    name: str,
+    /,
+    points: _Vectors,
+    tolerance: _Number,
+    measure: _Text | None = ...,
+    as_: _Text | None = ...,
+    breaks: Sequence[_Integer] | _Array | _Any | None = ...,
+    ends: _Text | None = ...,
+    mode: _Text | None = ...,
+    degree: _Integer | None = ...,
+    closed: _Integer | None = ...,
+    joins: Sequence[_Curve] | _Any | None = ...,
+    weights: _Numbers | None = ...,
+    knots: _Numbers | None = ...,
+    spacing: _Text | None = ...,
+    goal: _Text | None = ...,
+    along: _Vector | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A fair B-spline curve within a tolerance of the one through its points.
+
+    Of all splines with knots at the points that stay within the tolerance of each point, `goal` says
+    which is taken; parameters and knots follow the points' spacing. Points that are as fair as the
+    tolerance allows do not move. The result is continuous in the points. Points can be control points
+    or be faired themselves instead (`as`); these, curves that join others and the mode "faithful"
+    take the number of a point for its parameter, as the report of 1991 does. In mode "faithful" the
+    worst knots are removed and re-inserted one after the other (Farin and Sapidis 1989), one step per
+    point, and which knot comes first may change with the points.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        Points, at least degree + 2 of them (closed: 2 degree + 2).
+    tolerance : number
+        How far the curve may be from each of the points; 0 passes through all. At least 0.
+    measure : text, optional
+        The measure to minimise: "second", "third", "jumps", "jump-lengths", "bending" or
+        "variation". Default second.
+    as : text, optional
+        Meaning of the points: "fit" (the curve passes through them before it is faired),
+        "control" (its control points) or "points" (they are faired and then interpolated).
+        Default fit.
+    breaks : list of integer, optional
+        Numbers of points, from 1, that are intended breaks: they stay, and nothing is smoothed
+        across them. A curve through its points has corners there; a closed one begins at the
+        first of them.
+    ends : text, optional
+        What open ends keep of the curve through the points: "free" (within the tolerance),
+        "position", "tangent" or "curvature". Default position.
+    mode : text, optional
+        "optimum" or "faithful". Default optimum.
+    degree : integer, optional
+        Polynomial degree. 2 to 9, default 3.
+    closed : integer, optional
+        1 for a closed curve, whose first point is not repeated. 0 to 1, default 0.
+    joins : list of curve, optional
+        Curves that it runs on from, or into, with the same tangent direction and curvature:
+        each begins or ends where this one does. They stay as they are; `ends` is for the other
+        end.
+    weights : list of number, optional
+        Positive weights of the control points (`as = "control"`), which make it rational and
+        stay as they are. They count as constants: derivatives do not go through them.
+    knots : list of number, optional
+        Knots of the control points (`as = "control"`) of an open curve, degree + 1 more of
+        them, non-decreasing; constants too.
+    spacing : text, optional
+        How points get their parameters: "chord", "centripetal", a coordinate ("x", "y" or "z",
+        for offsets at stations), or "index". Default chord.
+    goal : text, optional
+        Which of the curves within the tolerance: "near" (no fairer than noise of the
+        tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
+        same, moved in any case) or "fairest". Default near.
+    along : vector, optional
+        The direction in which the curve may leave its points, such as {0, 1, 0} for offsets at
+        fixed stations; any direction without it.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 0.52, 0); AbsPoint C(2, 0.83, 0); AbsPoint D(3, 0.88, 0); AbsPoint E(4, 0.81, 0); AbsPoint F(5, 0.49, 0); AbsPoint G(6, 0, 0); FairCurve c({A, B, C, D, E, F, G}, 0.05);
+    """
+    ...
+def FairSnake(
+    name: str,
+    /,
+    magnets: Sequence[_Magnet] | _Any,
+    tolerance: _Number,
+    measure: _Text | None = ...,
+    ends: _Text | None = ...,
+    mode: _Text | None = ...,
+    degree: _Integer | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SnakeHandle:
+    """A fair curve on a surface: its path in the parameter plane is faired within a tolerance.
+
+    The path passes through the magnets' parameters before it is faired; the tolerance is a
+    distance in the parameter plane. See `FairCurve`.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    magnets : list of magnet
+        Magnets of one surface, at least degree + 2 of them.
+    tolerance : number
+        Largest distance from the path through the magnets, in u and v. At least 0.
+    measure : text, optional
+        The measure to minimise; see `FairCurve`. Default second.
+    ends : text, optional
+        Kept at the ends: "position", "tangent" or "curvature". Default tangent.
+    mode : text, optional
+        "optimum" or "faithful". Default optimum.
+    degree : integer, optional
+        Polynomial degree of the path. 2 to 9, default 3.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    snake
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 3); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0, 0.2); AbsMagnet q(S, 0.3, 0.32); AbsMagnet r(S, 0.5, 0.29); AbsMagnet s(S, 0.7, 0.33); AbsMagnet t(S, 1, 0.2); FairSnake f({p, q, r, s, t}, 0.02);
+    """
+    ...
+def FairSurf(
+    name: str,
+    /,
+    points: _Vectors,
+    tolerance: _Number,
+    measure: _Text | None = ...,
+    as_: _Text | None = ...,
+    degree: _Integer | None = ...,
+    breaks_u: Sequence[_Integer] | _Array | _Any | None = ...,
+    breaks_v: Sequence[_Integer] | _Array | _Any | None = ...,
+    mode: _Text | None = ...,
+    passes: _Integer | None = ...,
+    rims: object | None = ...,
+    weights: _Numbers | None = ...,
+    knots_u: _Numbers | None = ...,
+    knots_v: _Numbers | None = ...,
+    spacing: _Text | None = ...,
+    goal: _Text | None = ...,
+    along: _Vector | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A fair B-spline surface within a tolerance of the one through a grid of points.
+
+    All rows and columns of the net are faired at once: the sum of the measure over both
+    directions is the least within the tolerance. The four corners keep position, tangents and
+    twist. Mode "faithful" fairs curve after curve as the report of 1991 has it, first those of
+    constant v, then those of constant u, `passes` times over, three steps per point: its result
+    depends on that order and may jump where two knots tie.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : curve or surface
+        A grid of points, at least degree + 2 in each direction.
+    tolerance : number
+        Largest distance of each point from the surface (`as = "control"`, of the surface from
+        the one with these control points); 0 leaves it unchanged. At least 0.
+    measure : text, optional
+        The measure to minimise; see `FairCurve`. Default second.
+    as : text, optional
+        Meaning of the points: "fit" or "control". Default fit.
+    degree : integer, optional
+        Polynomial degree in both directions. 2 to 9, default 3.
+    breaks_u : list of integer, optional
+        SparseRows (numbers of points along u, from 1) that are knuckle lines: their points
+        stay, and nothing is smoothed across them. A surface through its points has a sharp edge
+        there.
+    breaks_v : list of integer, optional
+        The same along v.
+    mode : text, optional
+        "optimum" or "faithful". Default optimum.
+    passes : integer, optional
+        Passes of the faithful mode. 1 to 100, default 1.
+    rims : value, optional
+        Kept at the rims, so that neighbours still fit: "corners" (only these), "position",
+        "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
+        Default corners.
+    weights : farray, optional
+        Positive weights of the control points (`as = "control"`), a grid like the points, which
+        make it rational and stay as they are. They count as constants: derivatives do not go
+        through them.
+    knots_u : list of number, optional
+        Knots along u of the control points (`as = "control"`), degree + 1 more of them, none
+        decreasing; constants too.
+    knots_v : list of number, optional
+        The same along v.
+    spacing : text, optional
+        How points get their parameters, as for `FairCurve`: the mean over all lines of the grid
+        in each direction. The mode "faithful" takes "index", and so do control points. Default
+        chord.
+    goal : text, optional
+        Which of the surfaces within the tolerance; see `FairCurve`. Default near.
+    along : vector, optional
+        The direction in which the surface may leave its points, such as {0, 1, 0} for offsets;
+        any direction without it.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; g[3,] = g[2,] + {0, 1, 0.1}; g[4,] = g[2,] + {0, 2, 0}; g[5,] = g[1,] + {0, 4, 0}; FairSurf s(g, 0.02);
+    """
+    ...
+def FairNet(
+    name: str,
+    /,
+    curves: Sequence[object] | _Array | _Any,
+    tolerance: _Number,
+    measure: _Text | None = ...,
+    breaks: _Vectors | None = ...,
+    keep: _Text | None = ...,
+    along: _Vector | None = ...,
+    degree: _Integer | None = ...,
+    mode: _Text | None = ...,
+    passes: _Integer | None = ...,
+    spacing: _Text | None = ...,
+    goal: _Text | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """Curves that share points, faired together within a tolerance: the stations, waterlines and
+    buttocks of a hull.
+
+    Each curve is a list of points; a point object in several lists is one point of all
+    these curves. All points move at once, none by more than the tolerance, so that the sum of the
+    measure over all curves is the least; each curve then passes through its moved points, so that
+    curves still meet where they did. A list that ends with its first point is a closed curve. The
+    value is the list of the faired curves: `net[2]` is the second, `NetCurve` makes it an object.
+    Equal coordinates alone join nothing.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curves : list of value
+        The curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
+    tolerance : number
+        Largest move of each point; 0 leaves all unchanged. At least 0.
+    measure : text, optional
+        The measure to minimise; see `FairCurve`. Default second.
+    breaks : list of point, optional
+        Points that are intended breaks: they stay, nothing is smoothed across them, and curves
+        have corners there.
+    keep : text, optional
+        Kept ends of open curves: "corners" (the points at which every curve that has them
+        ends), "ends" or "none". Default corners.
+    along : vector, optional
+        The direction in which points may move, such as {0, 1, 0} for offsets of stations and
+        waterlines; any direction without it.
+    degree : integer, optional
+        Polynomial degree. 2 to 9, default 3.
+    mode : text, optional
+        "optimum", or "faithful": curve after curve in the order of the list, knots removed and
+        re-inserted one by one, three steps per point. The result then depends on that order and
+        may jump where two knots tie. Default optimum.
+    passes : integer, optional
+        Passes of the faithful mode. 1 to 100, default 1.
+    spacing : text, optional
+        How points get their parameters along each curve, as for `FairCurve`; a coordinate is
+        taken where it rises or falls along a curve, chords elsewhere. The mode "faithful" takes
+        "index". Default chord.
+    goal : text, optional
+        Which of the results within the tolerance; see `FairCurve`. Default near.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    list
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A1(0, 0, 0); AbsPoint A2(1, 0.5, 0); AbsPoint A3(2, 0.83, 0); AbsPoint A4(3, 0.88, 0); AbsPoint A5(4, 1.02, 0); AbsPoint B2(1, 0.6, 1); AbsPoint C2(1, 0.72, 2); AbsPoint D2(1, 0.7, 3); AbsPoint E2(1, 0.66, 4); FairNet n({{A1, A2, A3, A4, A5}, {A2, B2, C2, D2, E2}}, 0.05); NetCurve waterline(n, 1); NetCurve station(n, 2);
+    """
+    ...
+def NetCurve(
+    name: str,
+    /,
+    net: object,
+    index: _Integer,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """One curve of a faired network.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    net : value
+        The network, a `FairNet`.
+    index : integer
+        The number of the curve in the list of the network, from 1. At least 1.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 0.52, 0); AbsPoint C(2, 0.83, 0); AbsPoint D(3, 0.88, 0); AbsPoint E(4, 0.81, 0); FairNet n({{A, B, C, D, E}}, 0.05); NetCurve c(n, 1);
+    """
+    ...
+def FairPatches(
+    name: str,
+    /,
+    surfaces: Sequence[_Vectors] | _Any,
+    tolerance: _Number,
+    measure: _Text | None = ...,
+    as_: _Text | None = ...,
+    degree: _Integer | None = ...,
+    seams: _Text | None = ...,
+    rims: object | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """Surfaces with common edges, faired together within a tolerance, so that tangents and curvature run
+    on across the edges.
+
+    Each grid of points is a surface; where a side of one has the same points as a side of another (or
+    of itself), in either direction, they share a seam. All points of all surfaces move at once, those
+    of a seam for both, so that the sum of the measure over all curves of the nets is the least. Across
+    seams the surfaces stay together (`seams = "position"`), with continuous tangent planes ("tangent")
+    or curvature too ("curvature"): the ratio of the parameters' speeds on both sides is read from the
+    surfaces as given. Corners that lie on no seam keep position, tangents and twist. The value is the
+    list of the faired surfaces: `NetSurf` makes one an object.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    surfaces : list of curve or surface
+        Grids of points, each at least degree + 2 in each direction.
+    tolerance : number
+        Largest move of control points; 0 leaves all unchanged. At least 0.
+    measure : text, optional
+        The measure to minimise; see `FairCurve`. Default second.
+    as : text, optional
+        Meaning of the points: "fit" or "control". Default fit.
+    degree : integer, optional
+        Polynomial degree in both directions. 2 to 9, default 3.
+    seams : text, optional
+        Continuity across seams: "position", "tangent" or "curvature". Default curvature.
+    rims : value, optional
+        Kept at rims that are not seams; see `FairSurf`. Default corners.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    list
+
+    Notes
+    -----
+    In the language::
+
+        Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; surface h[5, 5]; vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; g[3,] = g[2,] + {0, 1, 0.2}; g[4,] = g[2,] + {0, 2, 0.32}; g[5,] = g[1,] + {0, 4, 0.7}; h[1,] = g[5,]; h[2,] = g[5,] + {0, 1, 0.01}; h[3,] = g[5,] + {0, 2, 0}; h[4,] = g[5,] + {0, 3, -0.04}; h[5,] = g[5,] + {0, 4, -0.1}; FairPatches n({g, h}, 0.2); NetSurf first(n, 1); NetSurf second(n, 2);
+    """
+    ...
+def NetSurf(
+    name: str,
+    /,
+    net: object,
+    index: _Integer,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """One surface of several that are faired together.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    net : value
+        The surfaces, a `FairPatches`.
+    index : integer
+        The number of the surface in their list, from 1. At least 1.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; g[1,] = distc(a, t); g[2,] = g[1,] + {0, 1, 0.3}; g[3,] = g[1,] + {0, 2, 0.4}; g[4,] = g[1,] + {0, 3, 0.3}; g[5,] = g[1,] + {0, 4, 0}; FairPatches n({g}, 0.02); NetSurf s(n, 1);
+    """
+    ...
+def Field(
+    name: str,
+    /,
+    field: _Field,
+    of: Sequence[object] | _Array | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """An implicit function under a name: what `field f = ...;` declares.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    field : field
+        The function.
+    of : list of value, optional
+        The objects that it was computed from.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    field
+
+    Notes
+    -----
+    In the language::
+
+        Field ball(sphere({0, 0, 0}, 1));
+    """
+    ...
+def Set(
+    name: str,
+    /,
+    set: _Set,
+    of: Sequence[object] | _Array | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """A set under a name: what `set s = ...;` declares.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    set : set
+        The set.
+    of : list of value, optional
+        The objects that it was computed from.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        Set ball(set(sphere({0, 0, 0}, 1)));
+    """
+    ...
+def FaceSet(
+    name: str,
+    /,
+    body: _Body,
+    faces: Sequence[_Integer] | _Array | _Any | None = ...,
+    rounds: _Vectors | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """A closed body of plane and round faces as a set: half-spaces, cylinders and cones, all exact. The
+    `body` of a sketch is one.
+
+    A round face goes straight from an arc to a copy of it, shifted and scaled. Its five vectors are,
+    for an arc of an ellipse, centre, half-diameter to the start, the one conjugate to it, shift of the
+    centre, and {angle, scale, number of the face}; for a parabola, start, point where the tangents of
+    its ends meet, end, shift, and {0, scale, number of the face}. The scale is 1 for cylinders and 0
+    for a cone whose apex is the shifted centre. Velocity x shift points outward.
+
+    Of more than 200 faces, or where they cross too often for a list of half-spaces or round faces touch
+    each other, it is the set by distances from the triangles.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    body : mesh
+        The body; triangles of round faces are chords of them.
+    faces : list of integer, optional
+        The number of the face of each triangle; triangles in one plane make a face by default.
+    rounds : list of vector, optional
+        The round faces, five vectors each.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}); FaceSet s(b, {1, 2, 3, 4});
+    """
+    ...
+def SetBody(
+    name: str,
+    /,
+    set: _Set,
+    low: _Point | None = ...,
+    high: _Point | None = ...,
+    depth: _Integer | None = ...,
+    accuracy: _Number | None = ...,
+    simplify: _Number | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BodyHandle:
+    """The surface of a set as triangles: a mesh like any other.
+
+    Its panels are a patch for each primitive that shows, called after the set or field that it came from
+    (`part.pipe`), with its colour, and its material as a tag. Solids are closed, oriented and manifold; where the box cuts them, its
+    faces close them (`part.cap -x`). Sheets are open, wires are polylines and points are points. The
+    members `volume` and `centroid` are corrected for the distance of the triangles from the surface.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    set : set
+        The set.
+    low : point, optional
+        Low corner of the box; found around a set that has an end.
+    high : point, optional
+        High corner of the box.
+    depth : integer, optional
+        Number of halvings of the longest side of the box: cells of its 2^depth-th part. 6 when
+        no accuracy is asked. 1 to 16.
+    accuracy : number, optional
+        Largest distance of triangle centres from the surface: estimated by refining.
+    simplify : number, optional
+        Largest distance from the surface when triangles are merged; none are merged by default.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    mesh
+
+    Notes
+    -----
+    In the language::
+
+        set ball = set(sphere({0, 0, 0}, 1)); SetBody b(ball, depth = 4);
+    """
+    ...
+def ConjugateArc(
+    name: str,
+    /,
+    centre: _Point,
+    start: _Point,
+    quarter: _Point,
+    sweep: _Number,
+    end: _Point | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """An arc of a circle or ellipse by two conjugate half-diameters:
+    C(t) = M + (S - M) cos(t sweep) + (Q - M) sin(t sweep).
+
+    It is circular when both half-diameters are perpendicular and equally long. The fillets, circles
+    and ellipses of sketches are of this kind.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    centre : point
+        Centre M.
+    start : point
+        Start S, at t = 0.
+    quarter : point
+        The point Q a quarter turn after the start.
+    sweep : number
+        The angle swept from t = 0 to 1, in radians; negative turns away from Q.
+    end : point, optional
+        The point object at t = 1, where there is one.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint M(0, 0, 0); AbsPoint S(2, 0, 0); AbsPoint Q(0, 1, 0); ConjugateArc c(M, S, Q, 1.5707963267948966);
+    """
+    ...
+def CubicChain(
+    name: str,
+    /,
+    points: _Vectors,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A chain of cubic Bézier pieces, each over an equal part of t; neighbours share a point.
+
+    The quadratics and Overhauser cubics of sketches are of this kind.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        The Bézier points: 3 n + 1 of n pieces.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        CubicChain c({{0,0,0}, {1,1,0}, {2,1,0}, {3,0,0}, {4,-1,0}, {5,0,1}, {6,0,0}});
+    """
+    ...
+def FacePatch(
+    name: str,
+    /,
+    corners: _Vectors,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A face by its corners, as a surface for magnets, snakes and projections.
+
+    Four corners P1 to P4 make the bilinear patch with P1 at (0, 0), P2 at (1, 0), P3 at (1, 1) and P4
+    at (0, 1); with three, P3 is the whole side v = 1. More corners make the rectangle around them in
+    the plane of Newell's normal, u along the line from P1 to P2. The natural normal is that of corners
+    that run counter-clockwise.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    corners : list of point
+        The corners in order.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        FacePatch f({{0,0,0}, {4,0,0}, {4,3,0}, {0,3,1}});
+    """
+    ...
+def MeshBody(
+    name: str,
+    /,
+    points: _Vectors,
+    triangles: Sequence[_Integer] | _Array | _Any,
+    volume: _Number | None = ...,
+    area: _Number | None = ...,
+    centroid: _Vector | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BodyHandle:
+    """A body bounded by triangles. The solid of a sketch is one.
+
+    Its members are `volume`, `area` and `centroid`: those of the triangles unless better ones are
+    given, as sketches do for bodies with curves.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of vector
+        The vertices.
+    triangles : list of integer
+        Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
+    volume : number, optional
+        The exact volume, where it is known.
+    area : number, optional
+        The exact area, where it is known.
+    centroid : vector, optional
+        The exact centroid, where it is known.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    mesh
+
+    Notes
+    -----
+    In the language::
+
+        MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4});
+    """
+    ...
+def Model(
+    name: str,
+    /,
+    symmetry: _Text | None = ...,
+    units: _Text | None = ...,
+    version: _Text | None = ...,
+    lines: Sequence[_Text] | _Any | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """The model's properties: the planes it is mirrored in, its unit, and the header of the
+    model file that it came from.
+
+    A model has one at most. With `symmetry = "y"` the objects are the half on one side of y = 0,
+    and hydrostatics count both.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    symmetry : text, optional
+        The mirror planes, as letters: "y" for y = 0, "xy" for x = 0 and y = 0.
+    units : text, optional
+        The units of length, mass, force and angle, such as "m t kN": of each at most one.
+    version : text, optional
+        The version of the model file, such as "0.35" or "1.44".
+    lines : list of text, optional
+        The other lines of the model file's header.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    list
+
+    Notes
+    -----
+    In the language::
+
+        Model info(symmetry = "y", units = "m kg");
+    """
+    ...
+def SolveSet(
+    name: str,
+    /,
+    unknowns: _Numbers,
+    conditions: _Numbers,
+    steps: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """Parameters that are found so that as many numbers become zero, by damped Newton steps from the
+    values that they are given.
+
+    The unknowns are parameters of the program, and what is built on them is built on the solution;
+    their ranges bound the search. The conditions are numbers computed from them, each zero when it
+    holds: `hull.volume - 100`. `s.x` is the solution of the unknown x, `s.residual` the largest
+    condition left, `s.iterations` the number of steps.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    unknowns : list of number
+        The parameters to find, by name.
+    conditions : list of number
+        As many numbers that become zero.
+    steps : integer, optional
+        The most steps. 1 to 1000, default 50.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    farray
+
+    Notes
+    -----
+    In the language::
+
+        param float x = 1 in [0, 5]; param float y = 1; AbsPoint A(x, y, 0); AbsPoint B(0, 0, 0); Line l(A, B); SolveSet s({x, y}, {l.length - 5, A.x - 0.75*A.y});
+    """
+    ...
+def Weight(
+    name: str,
+    /,
+    at: object,
+    mass: _Number | None = ...,
+    per: _Number | None = ...,
+    group: _Text | None = ...,
+    margin: _Number | None = ...,
+    status: _Text | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """A mass and its centre: a part of a ship's weight.
+
+    The mass is given, or follows from a mass per length of a curve, per area of a surface, per volume of a solid or
+    body. `w.mass` is the mass with its margin, `w.centre`, `w.x`, `w.y`, `w.z` are the centre: numbers of the program.
+    `m.weights()` in Python and `moldloft hydro --weights` list all of them by group.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    at : value
+        Where it is: a point or {x, y, z}; or a curve, surface, solid or body whose centre it
+        has.
+    mass : number, optional
+        The mass.
+    per : number, optional
+        Instead of the mass: mass per length of the curve, per area of the surface, per volume
+        of the solid.
+    group : text, optional
+        The group it is listed in.
+    margin : number, optional
+        A margin that is added to the mass, in percent. Default 0.
+    status : text, optional
+        How the mass is known: "estimated", "calculated" or "weighed". Default estimated.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    farray
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); Line l(A, B); Line m(C, D); RuledSurf S(l, m); Weight plating(S, per = 0.05, group = "hull"); Weight engine({2, 0, 0.5}, mass = 3, group = "machinery", margin = 5); WeightSum light({plating, engine});
+    """
+    ...
+def WeightSum(
+    name: str,
+    /,
+    weights: Sequence[object] | _Array | _Any,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> AnyHandle:
+    """The sum of weights: their mass and common centre.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    weights : list of value
+        Weights, and sums of weights.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    farray
+
+    Notes
+    -----
+    In the language::
+
+        Weight engine({2, 0, 0.5}, mass = 3); Weight ballast({1, 0, -1}, mass = 2); WeightSum all({engine, ballast});
+    """
+    ...

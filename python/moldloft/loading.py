@@ -1,0 +1,163 @@
+"""Loading models from files and texts, and making them again from what a copy holds."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from moldloft import _core
+from moldloft.errors import FileError
+from moldloft.models import Model
+
+if TYPE_CHECKING:
+    from moldloft.implicit import Field, Set
+
+__all__ = ["Origin", "load", "loads", "restored"]
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What a model was made of besides its text: enough to make it again, here or elsewhere."""
+
+    name: str
+    """The name that messages show."""
+    folder: str | None = None
+    """The folder that the text may load from."""
+    library: tuple[str, ...] = ()
+    """Further folders."""
+    functions: dict[str, Any] = field(default_factory=dict)
+    """Python functions by the names that the text calls them."""
+
+
+def _absolute(folders: Sequence[str]) -> tuple[str, ...]:
+    return tuple(os.fspath(Path(folder).absolute()) for folder in folders)
+
+
+def restored(origin: Origin | None, text: str, values: Mapping[str, float], refined: int) -> Model:
+    """A model again in the state that a copy or a pickle holds."""
+    origin = origin or Origin("model.sdl")
+    document = _core.Document.from_text(origin.name, text, origin.folder, list(origin.library))
+    model = Model(document, origin)
+    _add_functions(model, origin.functions)
+    if refined:
+        model.refine(refined)
+    if values:
+        model.set(values)
+    return model
+
+
+def load(
+    path: str | os.PathLike[str],
+    *,
+    library: Sequence[str | os.PathLike[str]] = (),
+    functions: Mapping[str, Callable[..., Any] | Field | Set] | None = None,
+    strict: bool = True,
+) -> Model:
+    """Load a model from a file.
+
+    Parameters
+    ----------
+    path
+        An ``.sdl`` program, an ``.ms2`` model file or a ``.skt`` sketch.
+    library
+        Folders, besides the model's own, from which it may load.
+    functions
+        Python functions that the model may call, by the names it calls them. They take and
+        return floats, vectors ``(3,)`` and arrays; where derivatives are asked for they are given
+        :class:`moldloft.numbers.Dual` numbers, on which arithmetic and NumPy's elementary
+        functions work. A :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set` is
+        called without arguments: ``field f = scan();``.
+    strict
+        Whether errors raise. Without it they are in :attr:`Model.diagnostics` only, and
+        what does not depend on a failed object lives on.
+
+    Raises
+    ------
+    ModelError
+        When the model has an error.
+    FileError
+        When the file cannot be read.
+    """
+    folders = [os.fspath(folder) for folder in library]
+    place = Path(path)
+    origin = Origin(
+        place.name, os.fspath(place.parent.absolute()), _absolute(folders), dict(functions or {})
+    )
+    model = Model(_core.Document.open(os.fspath(path), folders), origin)
+    _add_functions(model, functions)
+    if strict:
+        unread = [d for d in model.diagnostics if d.id == "cannot-read"]
+        if unread and not model.text:
+            raise FileError(str(unread[0]).rstrip(), unread)
+        model.check()
+    return model
+
+
+def loads(
+    text: str,
+    *,
+    name: str = "model.sdl",
+    library: Sequence[str | os.PathLike[str]] = (),
+    functions: Mapping[str, Callable[..., Any] | Field | Set] | None = None,
+    strict: bool = True,
+) -> Model:
+    """Load a model from a text.
+
+    Parameters
+    ----------
+    text
+        The program, or the model file's content.
+    name
+        The name that messages show; ``.ms2`` at its end means a model file.
+    library
+        Folders from which the text may load.
+    functions
+        As for :func:`load`.
+    strict
+        As for :func:`load`.
+
+    Raises
+    ------
+    ModelError
+        When the model has an error.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> def rise(x):
+    ...     return np.sqrt(x) + 1
+    >>> text = "param float a = 4 in [1, 9]; AbsPoint P(0, 0, rise(a));"
+    >>> m = loads(text, functions={"rise": rise})
+    >>> m["P"].z, m.derivative("P.z", "a")
+    (3.0, 0.25)
+    """
+    folders = [os.fspath(folder) for folder in library]
+    origin = Origin(name, None, _absolute(folders), dict(functions or {}))
+    model = Model(_core.Document.from_text(name, text, None, folders), origin)
+    _add_functions(model, functions)
+    if strict:
+        model.check()
+    return model
+
+
+def _add_functions(
+    model: Model, functions: Mapping[str, Callable[..., Any] | Field | Set] | None
+) -> None:
+    for name, function in (functions or {}).items():
+        if not name.isidentifier() or not name.isascii():
+            raise ValueError(
+                f"{name!r} is not a valid name: expected a letter, then letters, digits and _"
+            )
+        core = getattr(function, "_core", None)
+        if isinstance(core, (_core.Field, _core.Set)):
+            model._document.add_shape(name, core)
+            continue
+        if not callable(function):
+            raise TypeError(f"`{name}` is neither a function nor a field or set")
+        arguments = list(inspect.signature(function).parameters)
+        doc = inspect.getdoc(function) or f"The Python function {name}."
+        model._document.add_function(name, arguments, doc, function)

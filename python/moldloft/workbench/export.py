@@ -1,0 +1,171 @@
+"""A model as one file that opens offline: the workbench with its scene and its engine."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path, PurePath
+from typing import Any
+
+from moldloft import _core
+from moldloft.errors import Error
+from moldloft.workbench.hub import head_of
+from moldloft.workbench.page import engine_packed, page_files, worker_script
+from moldloft.workbench.text import applied, read
+
+__all__ = ["exported_page"]
+
+# A page with an engine runs scripts and WebAssembly of its own, and asks nothing of anybody.
+_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline'{engine}; style-src 'unsafe-inline'; "
+    "img-src data: blob:; base-uri 'none'; form-action 'none'"
+)
+#: What a page watches at first of a model that has panels.
+_WATCHED = ["mesh.area", "hydrostatics.displacement", "hydrostatics.lcb", "hydrostatics.kmt"]
+
+_ENGINE_POLICY = " 'wasm-unsafe-eval' blob:; worker-src blob:"
+
+
+def exported_page(
+    path: Path,
+    *,
+    values: Mapping[str, float] | None = None,
+    library: Sequence[str] = (),
+    living: bool = True,
+) -> bytes:
+    """The page of a model's file: alive where the package has the engine for pages.
+
+    Parameters
+    ----------
+    path
+        The model.
+    values
+        Parameters, and literals of objects, that differ from the text's.
+    library
+        Further folders that the model may read.
+    living
+        False for a page without the engine: a fraction of the size, and nothing moves.
+
+    Raises
+    ------
+    Error
+        When a value cannot be set, or the page was not built.
+    """
+    stored = read(path)
+    session = _core.Session(path.name, stored.text, str(path.resolve().parent), list(library))
+
+    def asked(**request: object) -> bytes:
+        frame = session.answer(json.dumps(request))
+        if "error" in (head := head_of(frame)):
+            why = str(head["error"])
+            raise Error(why)
+        return frame
+
+    asked(kind="show", contours=True)
+    if values:
+        asked(kind="set", values=dict(values))
+    objects = head_of(asked(kind="sync")).get("objects", [])
+    shown = any(o["class"] in ("surface", "mesh") for o in objects)
+    watched = _WATCHED if shown else []
+    engine = engine_packed() if living else None
+    text = stored.text
+    if values and engine is not None:
+        # The page's own engine begins with the text: what differs is written into it.
+        reply = head_of(asked(kind="commit"))
+        if reply.get("kept"):
+            names = ", ".join(reply["kept"])
+            raise Error(
+                f"`{names}` follows from an expression: change the text, or leave the engine out "
+                "(`--still`)"
+            )
+        text = _edited(text, reply.get("edits", []))
+        asked(kind="text", text=text)
+    frames = {"open": asked(kind="sync", tab=1)}
+    hello = {
+        "kind": "hello",
+        "name": path.name,
+        "text": text,
+        "version": 0,
+        "dirty": False,
+        "words": head_of(asked(kind="words"))["words"],
+        "watched": head_of(asked(kind="watch", expressions=watched))["watched"],
+    }
+    data = {
+        "hello": hello,
+        "frames": {kind: base64.b64encode(frame).decode() for kind, frame in frames.items()},
+        "files": [] if engine is None else _carried(session.files(), path.resolve().parent),
+    }
+    return _assembled(path.name, json.dumps(data), engine).encode()
+
+
+def _edited(text: str, edits: Sequence[Mapping[str, Any]]) -> str:
+    """The text after edits that do not overlap, whose places count UTF-16 units."""
+    length = len(text.encode("utf-16-le", "surrogatepass")) // 2
+    steps: list[Any] = []
+    at = 0
+    for edit in sorted(edits, key=lambda e: int(e["from"])):
+        steps += [edit["from"] - at] if edit["from"] > at else []
+        steps.append([edit["to"] - edit["from"], *str(edit["insert"]).split("\n")])
+        at = edit["to"]
+    return applied(text, [*steps, length - at] if length > at else steps)
+
+
+def _carried(
+    files: Sequence[tuple[str, str | None, str, bytes]], folder: Path
+) -> list[dict[str, str | None]]:
+    """The files that the model read, under names that say nothing of this machine."""
+
+    def public(name: str | None) -> str | None:
+        if name is None:
+            return None
+        place = PurePath(name)
+        return place.relative_to(folder).as_posix() if place.is_relative_to(folder) else place.name
+
+    return [
+        {
+            "path": path,
+            "from": public(asker),
+            "name": public(name),
+            "data": base64.b64encode(data).decode(),
+        }
+        for path, asker, name, data in files
+    ]
+
+
+def _assembled(name: str, data: str, engine: bytes | None) -> str:
+    """One file of the built page's parts. What a model says is data, and never ends its element."""
+    files = page_files()
+    index = files["/index.html"].decode()
+    (script,) = [text.decode() for path, text in files.items() if path.endswith(".js")]
+    styles = "\n".join(text.decode() for path, text in files.items() if path.endswith(".css"))
+    module, style = r"<script type=\"module\"[^>]*></script>", r"<link rel=\"stylesheet\"[^>]*>"
+    index = re.sub(rf"\s*(?:{module}|{style})", "", index)
+    script = re.sub(r"</(script)", r"<\\/\1", script, flags=re.I).replace("<!--", "<\\!--")
+    policy = _POLICY.format(engine="" if engine is None else _ENGINE_POLICY)
+    policy = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
+    head = f"{policy}\n<style>{styles}</style>\n"
+    parts = [f'<script type="application/json" id="moldloft-model">{_as_data(data)}</script>']
+    if engine is not None:
+        worker = _as_data(json.dumps(worker_script()))
+        parts.append(f'<script type="application/json" id="moldloft-worker">{worker}</script>')
+    # The script runs when the elements before it are there: the engine, which is long, comes last.
+    parts.append(f'<script>(() => {{"use strict";{script}\n}})()</script>')
+    if engine is not None:
+        packed = base64.b64encode(engine).decode()
+        parts.append(
+            f'<script type="application/octet-stream" id="moldloft-engine">{packed}</script>'
+        )
+    body = "\n".join(parts) + "\n"
+    index = index.replace("__NONCE__", "")
+    before, title, after = index.partition("<title>Moldloft</title>")
+    index = f"{before}{head}<title>{html.escape(name)}</title>{after if title else ''}"
+    start, end, rest = index.rpartition("</body>")
+    return f"{start}{body}{end}{rest}"
+
+
+def _as_data(text: str) -> str:
+    """JSON that no parser of pages takes for anything else."""
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

@@ -1,0 +1,215 @@
+"""The gallery: every model builds; its figures are closed forms or those of other sums."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import moldloft
+
+GALLERY = Path(__file__).resolve().parents[2] / "examples" / "gallery"
+NAMES = sorted(path.stem for path in GALLERY.glob("*.sdl"))
+SETS = {name for name in NAMES if "SetBody" in (GALLERY / f"{name}.sdl").read_text()}
+SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
+
+
+def model(name: str) -> moldloft.Model:
+    return moldloft.load(GALLERY / f"{name}.sdl")
+
+
+def test_there_are_models_for_every_trade() -> None:
+    assert len(NAMES) >= 17
+
+
+#: Bodies of sets take seconds each: in the ordinary run one of them stands for all.
+QUICK = [n for n in NAMES if SOAK or n not in SETS or n == "swath"]
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_model_is_short_and_has_parameters(name: str) -> None:
+    text = (GALLERY / f"{name}.sdl").read_text(encoding="utf-8")
+    assert text.startswith("# ") and text.count("\n") < 150
+    m = model(name)
+    assert not [d for d in m.diagnostics if d.is_error]
+    assert len(m.params) >= 3
+    assert all(p.low <= p.default <= p.high for p in m.params.values())
+    page = (GALLERY.parents[1] / "docs" / "gallery.md").read_text(encoding="utf-8")
+    for p in m.params.values():
+        assert f"| `{p.name}` | {p.default:g} | {p.low:g} to {p.high:g} |" in page
+
+
+@pytest.mark.parametrize(
+    "name", [n for n in NAMES if n not in SETS and (SOAK or n not in ("spar", "ducted_fan"))]
+)
+def test_panels_stay_connected_at_the_ends_of_all_ranges(name: str) -> None:
+    m = model(name)
+    faces = m.mesh().faces.copy()
+    for end in ("low", "high"):
+        for p in list(m.params.values()):
+            before = m[p.name]
+            m[p.name] = getattr(p, end)
+            assert not m.has_errors, (name, p.name, end)
+            np.testing.assert_array_equal(m.mesh().faces, faces)
+            m[p.name] = before
+    assert not [d for d in m.junctions() if d.is_error]
+
+
+@pytest.mark.soak
+@pytest.mark.skipif(not SOAK, reason="MOLDLOFT_SOAK=1")
+@pytest.mark.parametrize("name", sorted(SETS))
+def test_bodies_of_sets_are_closed(name: str) -> None:
+    assert model(name).mesh().closed
+
+
+@pytest.mark.soak
+@pytest.mark.skipif(not SOAK, reason="MOLDLOFT_SOAK=1")
+def test_spar() -> None:
+    m = model("spar")
+    for radius in (4.7, 5.5):
+        m["radius"] = radius
+        tank, height, taper, draft = (m[n] for n in ("tank", "tank_height", "taper", "draft"))
+        cone = math.pi * taper / 3 * (tank**2 + tank * radius + radius**2)
+        rest = math.pi * radius**2 * (draft - height - taper)
+        h = m.hydrostatics(by=["radius"])
+        assert h.volume == pytest.approx(math.pi * tank**2 * height + cone + rest, rel=1e-9)
+        slope = math.pi * (taper / 3 * (tank + 2 * radius) + 2 * radius * (draft - height - taper))
+        assert h.derivatives["volume"]["radius"] == pytest.approx(slope, rel=1e-7)
+        assert h.waterplane_area == pytest.approx(math.pi * radius**2, rel=1e-9)
+
+
+def test_caisson() -> None:
+    m = model("caisson")
+    for length in (24, 30):
+        m["length"] = length
+        assert m.eval("volume(caisson)") == pytest.approx(m.eval("concrete"), rel=1e-9)
+
+
+def test_bottle_holds_what_its_profile_holds() -> None:
+    m = model("bottle")
+    for wall in (1.2, 2.0):
+        m["wall"] = wall
+        volumes = []
+        for name in ("outer", "inner"):
+            x, _, z = m[f"{name}.profile"](np.linspace(0, 1, 200_001)).T
+            cones = (x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / 3
+            volumes.append(math.pi * float(np.sum(cones * np.diff(z))))
+        mesh = m.mesh()
+        assert mesh.closed
+        # The panels' volume comes from below, by their chords.
+        assert mesh.volume == pytest.approx(volumes[0] - volumes[1], rel=0.01)
+    assert 500e3 < volumes[1] < 900e3
+
+
+def test_arch_dam() -> None:
+    m = model("arch_dam")
+    exact = m.eval("dam.volume")
+    # Slices across the dam at even heights, by the shoelace of their outlines.
+    v = np.linspace(0, 1, 401)
+    water, air = (
+        m[n](np.linspace(0, 1, 201)[None, :], v[:, None]) for n in ("upstream", "downstream")
+    )
+    outline = np.concatenate([water, air[:, ::-1]], axis=1)
+    x, y, z = np.moveaxis(outline, -1, 0)
+    if np.ptp(z[0]) > 1e-6:
+        water, air = (
+            m[n](v[:, None], np.linspace(0, 1, 201)[None, :]) for n in ("upstream", "downstream")
+        )
+        outline = np.concatenate([water.swapaxes(0, 1), air.swapaxes(0, 1)[:, ::-1]], axis=1)
+        x, y, z = np.moveaxis(outline, -1, 0)
+    areas = 0.5 * np.abs(np.sum(x * np.roll(y, -1, 1) - np.roll(x, -1, 1) * y, axis=1))
+    heights = z.mean(axis=1)
+    slices = abs(float(np.sum((areas[1:] + areas[:-1]) / 2 * np.diff(heights))))
+    assert exact == pytest.approx(slices, rel=0.02)
+    assert not m.blocks().problems
+
+
+def test_catamaran_by_the_parallel_axis() -> None:
+    m = model("catamaran")
+    first = m.hydrostatics(by=["spacing"])
+    assert first.derivatives["volume"]["spacing"] == pytest.approx(0, abs=1e-6)
+    s = m["spacing"]
+    m["spacing"] = 11
+    second = m.hydrostatics()
+    moved = second.waterplane_area * (11**2 - s**2) / 4
+    assert second.waterplane_it - first.waterplane_it == pytest.approx(moved, rel=1e-6)
+    assert second.volume == pytest.approx(first.volume, rel=1e-9)
+
+
+def test_planing_hull_has_its_deadrise() -> None:
+    m = model("planing")
+    m["deadrise"] = 20
+    keel, chine = m["k5"], m["c5"]
+    assert math.degrees(math.atan2(chine.z - keel.z, chine.y)) == pytest.approx(20, abs=1e-9)
+
+
+def test_nacelle() -> None:
+    m = model("nacelle")
+    assert m.eval("fan_face.area") == pytest.approx(math.pi * m["fan"] ** 2 / 2, rel=1e-9)
+    # Cowl and duct share the highlight, and both leave it along the radius.
+    cowl, duct = m["cowl_line"], m["duct_line"]
+    assert np.allclose(cowl(0), duct(1))
+    for curve, t in ((cowl, 1e-6), (duct, 1 - 1e-6)):
+        way = curve(t) - m["highlight"].value
+        assert abs(way[0]) < 1e-3 * abs(way[2])
+
+
+def test_turbine_blade_has_its_chords() -> None:
+    m = model("turbine_blade")
+    for k, (width, place) in enumerate(
+        zip(m.variables["width"], m.variables["place"], strict=True), 1
+    ):
+        tail, nose = (np.asarray(m[f"{n}[{k}]"]) for n in ("tail", "nose"))
+        assert np.linalg.norm(tail - nose) == pytest.approx(m["chord"] * width)
+        assert tail[2] == pytest.approx(place * m["radius"])
+    assert m.derivative("blade.area", "chord") > 0
+
+
+def test_the_rower_sinks_the_shell_by_her_mass() -> None:
+    m = model("rowing_shell")
+    mass = m.weights().mass
+    assert mass == pytest.approx(88 + 1.6 * m["hull"].area * 2 * 1.1, rel=0.6)
+    h = m.hydrostatics(density="fresh")
+    assert 0.05 < h.volume < 0.2
+
+
+def test_ducted_fan_has_equal_blades() -> None:
+    m = model("ducted_fan")
+    areas = [m.eval(f"b{k}.skin.area") for k in range(1, 6)]
+    assert np.allclose(areas, areas[0], rtol=1e-6)
+
+
+def test_car_body_is_as_wide_as_asked() -> None:
+    m = model("car_body")
+    y = m.mesh().vertices[:, 1]
+    assert y.min() > -1e-9 and 0.93 * m["width"] < 2 * y.max() < 1.05 * m["width"]
+
+
+def test_lattice_and_bracket_in_closed_form() -> None:
+    if not SOAK:
+        pytest.skip("MOLDLOFT_SOAK=1")
+    m = model("lattice")
+    assert m.eval("volume(lattice)") == pytest.approx(m["size"] ** 3 / 2, rel=1e-6)
+    m = model("bracket")
+    assert m.eval("volume(bracket)") == pytest.approx(m.eval("metal"), rel=1e-3)
+
+
+def test_solid_where_it_should_be() -> None:
+    """Points in walls, cells, culverts, slots and vents."""
+
+    def inside(name: str, set_: str, points: dict[tuple[float, float, float], bool]) -> None:
+        values = model(name)[set_](list(points))
+        assert ((values < 0) == list(points.values())).all(), (name, values)
+
+    swath = {(20, 9, -3.4): True, (20, 9, 1): True, (20, 10.4, 0): False, (20, 9, 3): False}
+    inside("swath", "side", swath)
+    if not SOAK:
+        return
+    lock = {(40, 1, 8): True, (40, 9, 8): False, (40, 1.5, 2.5): False, (40, 9, 1): True}
+    inside("lock", "lock", lock)
+    inside("bracket", "bracket", {(35, 30, 4): True, (4, 30, 40): True, (49, 15, 4): False})
+    inside("bracket", "bracket", {(9, 30, 9): True, (15, 30, 19): False})
+    inside("helmet", "helmet", {(0, 95, 10): True, (0, 0, 0): False, (-130, 0, 10): True})

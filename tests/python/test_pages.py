@@ -1,0 +1,184 @@
+"""The documentation: every program, Python block and command of every page, and the site itself."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import moldloft
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+PAGES = sorted(p for p in DOCS.rglob("*.md") if p.parent.name != "inside")
+
+#: Pages whose blocks go on from one another, and how many of the last stand alone.
+CUMULATIVE = {"tutorial.md"}
+
+#: Pages that are made, or run elsewhere: `test_docs.py`, `test_diagnostics_page.py`, Rust.
+ELSEWHERE = {"reference.md", "implicit.md", "tutorial.md", "diagnostics.md"}
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    text = page.read_text(encoding="utf-8")
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.M | re.S)
+
+
+def named(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix().removeprefix("docs/")
+
+
+PROGRAMS = [
+    pytest.param(page, text, id=f"{named(page)}-{k}")
+    for page in [ROOT / "README.md", *PAGES]
+    if page.name not in ELSEWHERE
+    for k, text in enumerate(blocks(page, "sdl"))
+]
+
+
+@pytest.mark.parametrize(("page", "text"), PROGRAMS)
+def test_a_program_of_a_page_runs(page: Path, text: str) -> None:
+    folder = [str(ROOT / "examples" / "missile"), str(ROOT / "examples" / "sketch")]
+    model = moldloft.loads(text, library=folder, strict=False)
+    assert not model.diagnostics, "\n".join(map(str, model.diagnostics))
+
+
+#: The stability of a decked hull at every heel takes minutes on a slow machine.
+LONG = set() if os.environ.get("MOLDLOFT_SOAK") else {"hydrostatics.md"}
+
+PYTHON = [page for page in PAGES if page.name not in ELSEWHERE | LONG and blocks(page, "python")]
+
+
+@pytest.fixture
+def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with the examples, as a reader has them."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    return tmp_path
+
+
+_HULL = "import moldloft\nm = moldloft.load('examples/sailboat/hull.sdl')\n"
+
+_DECKED = """
+import moldloft
+from pathlib import Path
+text = Path("examples/sailboat/hull.sdl").read_text()
+m = moldloft.loads(text + '''
+AbsPoint Q1(30, 0, 2.76);
+Line middle(P11, Q1); RuledSurf deck(hull.u0, middle, divisions = {20, 4});
+Line post(Q1, P34); RuledSurf transom(hull.v1, post, divisions = {10, 4});
+''')
+"""
+
+_GRIDS = """
+from pathlib import Path
+import numpy as np
+from moldloft import grids
+u, v = np.meshgrid(np.linspace(0, 1, 5), np.linspace(0, 1, 4), indexing="ij")
+grids.write_plot3d("body.x", [np.stack([u, v, u * v], axis=-1)])
+x = (1 - np.cos(np.linspace(0, np.pi, 21))) / 2
+y = 0.6 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+upper, lower = np.c_[x, y][::-1], np.c_[x, -y][1:]
+rows = "".join(f"{a:.6f} {b:.6f}\\n" for a, b in [*upper, *lower])
+Path("naca0012.dat").write_text("NACA 0012\\n" + rows)
+"""
+
+#: What a page's Python blocks take as given.
+GIVEN = {"hydrostatics.md": _DECKED, "cad.md": _HULL, "panels.md": _HULL, "grids.md": _GRIDS}
+
+
+@pytest.mark.parametrize("page", PYTHON, ids=named)
+def test_the_python_of_a_page_runs(page: Path, workplace: Path) -> None:
+    namespace: dict[str, object] = {"__name__": "page"}
+    exec(GIVEN.get(page.name, ""), namespace)
+    for k, block in enumerate(blocks(page, "python")):
+        exec(compile(block, f"{named(page)}, block {k + 1}", "exec"), namespace)
+
+
+def commands(page: Path) -> list[list[str]]:
+    """The commands of a page's shell blocks: what follows `moldloft` up to a pipe or a comment."""
+    found = []
+    for block in blocks(page, "(?:sh|bash|console)?"):
+        for line in block.splitlines():
+            if not line.startswith("moldloft "):
+                continue
+            line = re.split(r"\s{3,}", line)[0]
+            words = shlex.split(line, comments=True)[1:]
+            for sign in ("|", ">", "<", "&&", ">>"):
+                if sign in words:
+                    words = words[: words.index(sign)]
+            found.append([word for word in words if word != "…"])
+    return found
+
+
+@cache
+def whole_parser() -> argparse.ArgumentParser:
+    from moldloft.cli import COMMANDS, whole_parser
+
+    return whole_parser(list(COMMANDS))
+
+
+@pytest.mark.parametrize("page", [ROOT / "README.md", *PAGES], ids=lambda p: p.stem)
+def test_the_commands_of_a_page_are_commands(page: Path) -> None:
+    for words in commands(page):
+        if "..." in words or words[:1] == ["--help"] or "--help" in words:
+            continue
+        try:
+            whole_parser().parse_args(words)
+        except SystemExit:
+            pytest.fail(f"{page.name}: moldloft {' '.join(words)}")
+
+
+def test_examples_in_help_are_commands() -> None:
+    from moldloft.cli import COMMANDS, EXAMPLES
+
+    assert set(EXAMPLES) <= set(COMMANDS)
+    for name, text in EXAMPLES.items():
+        for line in text.splitlines():
+            line = re.split(r"\s{3,}", line.strip())[0]
+            if "|" in line:
+                line = line.split("|")[1].strip()
+            words = shlex.split(re.split(r" [<>]", line)[0])
+            assert words[0] == "moldloft" and words[1] == name
+            whole_parser().parse_args(words[1:])
+
+
+def test_the_naval_architects_commands_run(cli, workplace: Path) -> None:
+    page = DOCS / "tutorials" / "naval-architect.md"
+    exec(compile(blocks(page, "python")[0], page.name, "exec"), {})
+    for words in commands(page):
+        cli(*words)
+
+
+def test_the_site_is_whole(tmp_path: Path) -> None:
+    """Built strictly: no page without a place, no link or anchor that is not there."""
+    pytest.importorskip("mkdocs")
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", tmp_path],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
+    )
+    assert done.returncode == 0, done.stderr
+    index = (tmp_path / "search" / "search_index.js").read_text(encoding="utf-8")
+    for word in ("CLoftSurf", "righting", "geodesic"):
+        assert word in index
+    pages = list(tmp_path.rglob("*.html"))
+    assert len(pages) > 30
+    # It opens from a folder: nothing is fetched from elsewhere.
+    for page in (tmp_path / "index.html", tmp_path / "relational.html"):
+        text = page.read_text(encoding="utf-8")
+        remote = r'(?:src|href)="https?://(?!github\.com)[^"]*\.(?:js|css|woff2?)'
+        assert not re.findall(remote, text)
+    nav = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
+    for page in PAGES:
+        assert named(page) in nav, f"{named(page)} is on no menu"

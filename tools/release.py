@@ -1,0 +1,319 @@
+"""Builds what is released: ``python tools/release.py [wheel] [sdist] [smoke]``, by default all.
+
+``wheel``  the page (if npm is there), the language server, and the wheel with both inside
+``sdist``  the source distribution, the notices of bundled software and the bill of materials
+``smoke``  installs the wheel into an empty environment, without Rust and Node.js on the path, and
+           uses it: command, language server, extras that can be had
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import tempfile
+import venv
+import zipfile
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+DIST = ROOT / "dist"
+WINDOWS = platform.system() == "Windows"
+EXE = ".exe" if WINDOWS else ""
+
+
+def run(*command: str | Path, **options: Any) -> None:
+    """Runs a command and ends with its message when it fails."""
+    words = [str(word) for word in command]
+    print("+", " ".join(words), flush=True)
+    subprocess.run(words, check=True, cwd=options.pop("cwd", ROOT), **options)
+
+
+def output(*command: str) -> str:
+    """What a command prints."""
+    done = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
+    return done.stdout
+
+
+def metadata() -> dict[str, Any]:
+    """The Rust packages that the extension and the server are built of."""
+    data: dict[str, Any] = json.loads(
+        output("cargo", "metadata", "--format-version=1", "--locked", "--all-features")
+    )
+    return data
+
+
+def bundled() -> list[dict[str, Any]]:
+    """What the wheel holds of others: crates, and packages of the page."""
+    data = metadata()
+    by_id = {package["id"]: package for package in data["packages"]}
+    nodes = {node["id"]: node for node in data["resolve"]["nodes"]}
+    roots = [p["id"] for p in data["packages"] if p["name"] in ("moldloft-py", "moldloft-lsp")]
+    seen: set[str] = set()
+    left = list(roots)
+    while left:
+        one = left.pop()
+        if one in seen:
+            continue
+        seen.add(one)
+        # Dependencies of tests and build scripts are in no binary.
+        left += [
+            dep["pkg"]
+            for dep in nodes[one]["deps"]
+            if any(kind["kind"] is None for kind in dep["dep_kinds"])
+        ]
+    rows = []
+    for one in seen:
+        package = by_id[one]
+        if package["source"] is None:
+            continue
+        folder = Path(package["manifest_path"]).parent
+        rows.append(
+            {
+                "type": "cargo",
+                "name": package["name"],
+                "version": package["version"],
+                "licence": (package["license"] or "").replace("/", " OR "),
+                "texts": sorted(
+                    p for p in folder.iterdir() if p.name.lower().startswith(("licen", "copying"))
+                ),
+            }
+        )
+    lock = json.loads((ROOT / "web" / "package-lock.json").read_text(encoding="utf-8"))
+    for place, facts in lock["packages"].items():
+        if not place or facts.get("dev") or facts.get("link"):
+            continue
+        name = place.rsplit("node_modules/", 1)[1]
+        folder = ROOT / "web" / place
+        files = sorted(folder.iterdir()) if folder.is_dir() else []
+        rows.append(
+            {
+                "type": "npm",
+                "name": name,
+                "version": facts["version"],
+                "licence": facts.get("license", ""),
+                "texts": [p for p in files if p.name.lower().startswith(("licen", "copying"))],
+            }
+        )
+    return sorted(rows, key=lambda row: (row["type"], row["name"], row["version"]))
+
+
+#: Licences that may be in what is released.
+PERMISSIVE = {
+    *("MIT", "MIT-0", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause"),
+    *("BSD-3-Clause", "ISC", "Zlib", "0BSD", "Unlicense", "Unicode-3.0", "CC0-1.0", "BSL-1.0"),
+}
+
+
+def permitted(licence: str) -> bool:
+    """Whether one of the alternatives of a licence expression is permissive in all its parts.
+
+    >>> permitted("MIT OR GPL-3.0"), permitted("(MIT OR Apache-2.0) AND Unicode-3.0")
+    (True, True)
+    >>> permitted("GPL-3.0"), permitted("")
+    (False, False)
+    """
+    return all(
+        any(word.strip(" ()") in PERMISSIVE for word in part.split(" OR "))
+        for part in licence.split(" AND ")
+    )
+
+
+def notices(rows: list[dict[str, Any]]) -> str:
+    """The licences of all bundled software, each text once."""
+    texts: dict[str, list[str]] = {}
+    lines = ["Moldloft contains software of others, under these licences.", ""]
+    for row in rows:
+        if not permitted(row["licence"]):
+            raise SystemExit(f"{row['name']}: the licence `{row['licence']}` is not permissive")
+        title = f"{row['name']} {row['version']}"
+        lines.append(f"{title} ({row['type']}): {row['licence']}")
+        for path in row["texts"]:
+            if path.is_file():
+                text = path.read_text(encoding="utf-8", errors="replace").strip()
+                texts.setdefault(text, []).append(title)
+    for text, titles in texts.items():
+        lines += ["", "=" * 80, ", ".join(dict.fromkeys(titles)), "-" * 80, text]
+    return "\n".join(lines) + "\n"
+
+
+def bill(rows: list[dict[str, Any]], version: str) -> dict[str, Any]:
+    """The bill of materials, CycloneDX 1.5."""
+    return {
+        "bomFormat": "CycloneDX",
+        "specVersion": "1.5",
+        "version": 1,
+        "metadata": {"component": {"type": "application", "name": "moldloft", "version": version}},
+        "components": [
+            {
+                "type": "library",
+                "name": row["name"],
+                "version": row["version"],
+                "purl": f"pkg:{row['type']}/{row['name'].replace('@', '%40')}@{row['version']}",
+                "licenses": [{"expression": row["licence"]}],
+            }
+            for row in rows
+        ],
+    }
+
+
+def version() -> str:
+    """The version of the workspace."""
+    for line in (ROOT / "Cargo.toml").read_text(encoding="utf-8").splitlines():
+        if line.startswith("version"):
+            return line.split('"')[1]
+    raise SystemExit("Cargo.toml states no version")
+
+
+def write_papers() -> list[dict[str, Any]]:
+    """The notices and the bill of materials, beside what is released."""
+    DIST.mkdir(exist_ok=True)
+    rows = bundled()
+    (DIST / "NOTICES.txt").write_text(notices(rows), encoding="utf-8")
+    path = DIST / f"moldloft-{version()}.cdx.json"
+    path.write_text(json.dumps(bill(rows, version()), indent=1), encoding="utf-8")
+    print(f"{len(rows)} bundled packages: {DIST / 'NOTICES.txt'}, {path}")
+    return rows
+
+
+def maturin() -> list[str]:
+    """The command of maturin: of this Python, or of an environment made for it."""
+    try:
+        import maturin  # noqa: F401
+    except ImportError:
+        run(sys.executable, "-m", "pip", "install", "--quiet", "maturin>=1.10,<2")
+    return [sys.executable, "-m", "maturin"]
+
+
+def wheel() -> None:
+    """The wheel with the page, the language server and the notices inside."""
+    if shutil.which("npm"):
+        web = ROOT / "web"
+        npm = shutil.which("npm") or "npm"
+        run(npm, "ci", "--no-audit", "--no-fund", "--loglevel=error", cwd=web)
+        run(npm, "run", "--silent", "build", cwd=web)
+    else:
+        print("npm is not there: the wheel will have no workbench page")
+    run("cargo", "build", "--release", "--locked", "-p", "moldloft-lsp")
+    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    package = ROOT / "python" / "moldloft"
+    inside = package / "bin"
+    inside.mkdir(exist_ok=True)
+    write_papers()
+    try:
+        shutil.copy2(target / "release" / f"moldloft-lsp{EXE}", inside)
+        shutil.copy2(DIST / "NOTICES.txt", inside)
+        run(*maturin(), "build", "--release", "--locked", "--out", DIST)
+    finally:
+        shutil.rmtree(inside)
+    for path in sorted(DIST.glob("*.whl")):
+        print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
+
+
+def sdist() -> None:
+    """The source distribution, which builds, and holds documents, examples and tests."""
+    write_papers()
+    run(*maturin(), "sdist", "--out", DIST)
+    for path in sorted(DIST.glob("*.tar.gz")):
+        with tarfile.open(path) as archive:
+            names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
+        wanted = ("docs/tutorial.md", "examples/sailboat/hull.sdl", "CHANGELOG.md", "README.md")
+        wanted += ("tests/python/test_api.py", "crates/py/Cargo.toml", "LICENSE-MIT", "Cargo.lock")
+        missing = [name for name in wanted if name not in names]
+        if missing:
+            raise SystemExit(f"{path.name} lacks {', '.join(missing)}")
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB, sha256 {digest}")
+
+
+_USE = """
+import moldloft
+m = moldloft.loads(open("boat.sdl").read())
+assert m.hydrostatics().volume > 0
+assert "<table" in m._repr_html_()
+import pickle
+assert pickle.loads(pickle.dumps(m)).keys() == m.keys()
+print("python:", m)
+"""
+
+
+def smoke() -> None:
+    """Uses the wheel where there is nothing else."""
+    wheels = sorted(DIST.glob("*.whl"))
+    if not wheels:
+        raise SystemExit("there is no wheel in dist/: `python tools/release.py wheel`")
+    newest = max(wheels, key=lambda path: path.stat().st_mtime)
+    with zipfile.ZipFile(newest) as archive:
+        names = archive.namelist()
+    for wanted in (f"moldloft/bin/moldloft-lsp{EXE}", "moldloft/bin/NOTICES.txt"):
+        if wanted not in names:
+            raise SystemExit(f"{newest.name} lacks {wanted}")
+    page = "moldloft/workbench/page/index.html" in names
+    print(f"{newest.name}: workbench page {'inside' if page else 'not inside'}")
+    with tempfile.TemporaryDirectory() as folder:
+        home = Path(folder)
+        venv.create(home / "env", with_pip=True)
+        scripts = home / "env" / ("Scripts" if WINDOWS else "bin")
+        python = scripts / f"python{EXE}"
+        run(python, "-m", "pip", "install", "--quiet", newest)
+        paths = [str(scripts)]
+        if not WINDOWS:
+            paths += ["/usr/bin", "/bin"]
+        clean = {**os.environ, "PATH": os.pathsep.join(paths)}
+        clean.pop("PYTHONPATH", None)
+        command = scripts / f"moldloft{EXE}"
+        run(command, "--version", cwd=home, env=clean)
+        run(command, "new", "boat", cwd=home, env=clean)
+        run(command, "build", "boat.sdl", "--to", "gdf", "stl", "step", "png", cwd=home, env=clean)
+        run(command, "lsp", "--where", cwd=home, env=clean)
+        _server_answers(command, home, clean)
+        run(python, "-c", _USE, cwd=home, env=clean)
+        size = sum(
+            path.stat().st_size
+            for path in (home / "env").rglob("*")
+            if path.is_file() and "moldloft" in path.parts
+        )
+        print(f"installed: {size / 1e6:.1f} MB, without NumPy")
+
+
+def _server_answers(command: Path, home: Path, clean: dict[str, str]) -> None:
+    """Asks the language server to begin and to end."""
+    messages = [
+        {"id": 1, "method": "initialize", "params": {"capabilities": {}}},
+        {"method": "initialized", "params": {}},
+        {"id": 2, "method": "shutdown"},
+        {"method": "exit"},
+    ]
+    data = b""
+    for message in messages:
+        body = json.dumps({"jsonrpc": "2.0", **message}).encode()
+        data += b"Content-Length: %d\r\n\r\n%s" % (len(body), body)
+    done = subprocess.run(
+        [str(command), "lsp"], input=data, capture_output=True, cwd=home, env=clean, timeout=60
+    )
+    if b'"capabilities"' not in done.stdout:
+        raise SystemExit(f"the language server does not answer: {done.stderr.decode()}")
+    print("language server: answers")
+
+
+def main() -> None:
+    """Runs the steps that are named, or all."""
+    steps = {"wheel": wheel, "sdist": sdist, "smoke": smoke}
+    wanted = sys.argv[1:] or list(steps)
+    for name in wanted:
+        if name not in steps:
+            raise SystemExit(__doc__)
+    print(f"{platform.platform()}, Python {sysconfig.get_python_version()}")
+    for name in wanted:
+        steps[name]()
+
+
+if __name__ == "__main__":
+    main()
