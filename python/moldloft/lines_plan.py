@@ -1,7 +1,8 @@
 """The lines plan on one sheet: profile, half-breadth plan and body plan to one scale.
 
 Sections are solved on the surfaces, and drawn as cubic curves through their points and tangents.
-The sheet is a list of curves and texts in millimetres of paper; SVG, PDF and DXF are written from it.
+The sheet is a list of curves and texts in millimetres of paper; SVG, PDF and DXF are written
+from it.
 """
 
 from __future__ import annotations
@@ -561,9 +562,9 @@ def pdf(plan: Plan) -> bytes:
 def dxf(plan: Plan) -> bytes:
     """The sheet as DXF R2018 by ezdxf, at full size in the model's unit.
 
-    Each curve is one spline of degree 3 with the control points of the plan, each straight line a line or
-    polyline; layers have the widths and dashes of the drawing, dashes and texts the size that they have on
-    paper at the plan's scale.
+    Each curve is one spline of degree 3 with the control points of the plan, each straight line a
+    line or polyline; layers have the widths and dashes of the drawing, dashes and texts the size
+    that they have on paper at the plan's scale.
     """
     from moldloft.cad import needed
     from moldloft.cad.dxf import UNITS, saved
@@ -622,7 +623,7 @@ def encode_dxf(model: Model, stem: str) -> bytes:
 
 
 def draw(model: Model, path: str | os.PathLike[str], **options: Any) -> Path:
-    """Write the lines plan of a model; the file's ending, ``.svg``, ``.pdf`` or ``.dxf``, gives its form.
+    """Write the lines plan of a model; the file's ending, ``.svg``, ``.pdf`` or ``.dxf``, says how.
 
     Options are those of :func:`lines_plan`.
     """

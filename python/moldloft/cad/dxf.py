@@ -58,7 +58,7 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
 
 
 def saved(document: Any) -> bytes:
-    """The bytes of a document of ezdxf, without times and random names: the same for the same content."""
+    """The bytes of a document of ezdxf, without times and random names: the same each time."""
     ezdxf: Any = needed("ezdxf", "ezdxf", "writing DXF")
     document.ezdxf_metadata()["CREATED_BY_EZDXF"] = "moldloft"
     out = io.StringIO()

@@ -407,7 +407,8 @@ def _one(flotation: Hydrostatics) -> str:
         lines.append(f"  {name.ljust(width)}  {text}{more}")
     if flotation.open_edges:
         lines.append(
-            f"  {flotation.open_edges} open edges of the skin below the water: results are unreliable"
+            f"  {flotation.open_edges} open edges of the skin below the water: "
+            "results are unreliable"
         )
     return "\n".join(lines)
 
