@@ -245,11 +245,10 @@ where
             let optimum = solve(trial.exp())?;
             let value = measured(&optimum);
             // Conditions may keep the data farther off than the budget.
-            if conditioned && high.is_none() && value > 0.0 && low.0.is_finite() {
-                if low.1 - value < 1e-6 {
-                    best = Some((trial, value, optimum));
-                    break;
-                }
+            let settled = low.0.is_finite() && low.1 - value < 1e-6;
+            if conditioned && high.is_none() && value > 0.0 && settled {
+                best = Some((trial, value, optimum));
+                break;
             }
             let better = best.as_ref().is_none_or(|b| value.abs() < b.1.abs());
             if better {
