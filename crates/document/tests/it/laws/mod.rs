@@ -382,12 +382,10 @@ fn derivatives_equal_differences_on_random_models_of_all_kinds() {
             .map(|seed| {
                 let mut redrawn = 0;
                 let mut draws = (0..5).map(|k| check(seed + k * 1000 * parts() as u64));
-                let begin = std::time::Instant::now();
                 let tally = draws.find_map(|tally| {
                     redrawn += usize::from(tally.is_none());
                     tally
                 });
-                println!("seed {seed}: {:?} {tally:?}", begin.elapsed());
                 (tally.expect("one of five draws is a model"), redrawn)
             })
             .collect()
