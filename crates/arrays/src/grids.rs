@@ -58,7 +58,7 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
         GridError::Diverged { .. } => with("diverged")
             .expected("a converging iteration")
             .help("reduce omega, or relax the spacing and angle at the walls"),
-        GridError::Cancelled => return with("cancelled"),
+        GridError::Spent(spent) => return spent.into(),
         GridError::Heights { value, .. } => {
             with("not-monotone").expected("heights that increase from 0").found(value.to_string())
         }
@@ -282,7 +282,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             walls,
             on,
         };
-        let done = elliptic_until(&grid, &options, &context.cancel)
+        let done = elliptic_until(&grid, &options, &context.budget)
             .map_err(|error| fault(error, Self::S))?;
         if !done.converged && self.n > 0 {
             context.remark(
@@ -465,7 +465,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
                     Box::new(InPlane { normal: unit })
                 }
             };
-            hyperbolic_curve_until(&curve, &*support, &options, &context.cancel)
+            hyperbolic_curve_until(&curve, &*support, &options, &context.budget)
         } else {
             if self.on.is_some() {
                 return Err(CallError::new("unused-argument", "`on` is for grids off curves")
@@ -474,7 +474,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
             }
             let GridArg(grid) =
                 GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
-            hyperbolic_until(&grid, &options, &context.cancel)
+            hyperbolic_until(&grid, &options, &context.budget)
         };
         let marched = marched.map_err(|error| match error {
             GridError::Heights { .. } => fault(error, Self::HEIGHTS),

@@ -149,7 +149,7 @@ impl<T: Scalar> Build<T> for EllipticBlock<T> {
             omega: self.omega.re(),
             walls,
         };
-        let done = elliptic_volume_until(&grid, &options, &context.cancel)
+        let done = elliptic_volume_until(&grid, &options, &context.budget)
             .map_err(|error| fault(error, Self::LAYERS))?;
         if !done.converged && self.n > 0 {
             let change = done.history.last().copied().unwrap_or(f64::INFINITY);
@@ -245,7 +245,7 @@ fn marched<T: Scalar>(
 ) -> Result<Value<T>, CallError> {
     let heights = heights.row().map_err(|fault| fault.in_field(field))?;
     let options = Hyperbolic::new(heights).with_sides([ends; 4]);
-    let marched = hyperbolic_curve_until(curve, &Flat, &options, &context.cancel).map_err(
+    let marched = hyperbolic_curve_until(curve, &Flat, &options, &context.budget).map_err(
         |error| match error {
             GridError::Heights { .. } => fault(error, field),
             error => fault(error, s),

@@ -1,5 +1,6 @@
 use crate::solve::Solved;
 use indexmap::IndexMap;
+use moldloft_budget::Budget;
 use moldloft_diag::{Diagnostic, Sources};
 use moldloft_lang::World;
 use moldloft_lang::run::interpreter::{Inputs, Settings};
@@ -15,7 +16,6 @@ use moldloft_panel::{Nominal, Panelling};
 use moldloft_registry::{Kept, Registry, Row, Scalar, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// A model as its user sees it: a text, its parameters, the objects it makes, and what is
 /// computed from them. Opening never fails: what is wrong is in [`Document::diagnostics`].
@@ -40,7 +40,7 @@ pub struct Document {
     pub(crate) applied: Applied,
     /// The solve sets of the last run.
     pub(crate) solved: Vec<Solved>,
-    cancelled: Arc<AtomicBool>,
+    budget: Arc<Budget>,
     /// What calls keep, of the plain run and of those with derivatives alike.
     kept: Kept,
     pub(crate) settings: Settings,
@@ -70,7 +70,17 @@ pub struct Panelled {
 impl Document {
     /// Opens the model at `path`.
     pub fn open(registry: Registry, world: Box<dyn World>, path: &str) -> Self {
-        let mut document = Self::empty(registry, world);
+        Self::open_within(registry, world, path, Arc::default())
+    }
+
+    /// As [`Self::open`]; `budget` is what runs may use, also the first one, which it may cancel.
+    pub fn open_within(
+        registry: Registry,
+        world: Box<dyn World>,
+        path: &str,
+        budget: Arc<Budget>,
+    ) -> Self {
+        let mut document = Self { budget, ..Self::empty(registry, world) };
         match document.world.read(path, None) {
             Ok(read) => match moldloft_syntax::decode(&read.bytes, &read.name) {
                 Ok(text) => document.take_text(&read.name, text.to_string()),
@@ -92,14 +102,14 @@ impl Document {
         document
     }
 
-    /// As [`Self::from_text`]; setting `cancel` stops a run that is under way, also this first one.
-    pub fn watched(
+    /// As [`Self::from_text`]; `budget` is what runs may use, also this first one, which it may cancel.
+    pub fn from_text_within(
         registry: Registry,
         world: Box<dyn World>,
         (name, text): (&str, &str),
-        cancel: Arc<AtomicBool>,
+        budget: Arc<Budget>,
     ) -> Self {
-        let mut document = Self { cancelled: cancel, ..Self::empty(registry, world) };
+        let mut document = Self { budget, ..Self::empty(registry, world) };
         document.take_text(name, text.to_string());
         document
     }
@@ -123,7 +133,7 @@ impl Document {
             nominal: None,
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },
             solved: Vec::new(),
-            cancelled: Arc::default(),
+            budget: Arc::default(),
             kept: Kept::default(),
             settings: Settings::default(),
         }
@@ -209,13 +219,13 @@ impl Document {
         report: bool,
     ) -> Applied {
         let mut found = Vec::new();
-        evaluation.graph.set_cancel_flag(self.cancelled.clone());
+        evaluation.graph.set_budget(self.budget.clone());
         evaluation.graph.keep_in(self.kept.clone());
         let inputs = Inputs {
             overrides: &self.overrides,
             seed,
             seeded_objects,
-            cancelled: &self.cancelled,
+            budget: &self.budget,
             settings: self.settings,
         };
         let sketch = match &self.source {
@@ -545,9 +555,9 @@ impl Document {
         &self.plain.env.printed
     }
 
-    /// Setting this stops a run that is under way.
-    pub fn cancel_handle(&self) -> Arc<AtomicBool> {
-        self.cancelled.clone()
+    /// What its work may use; it cancels what is under way.
+    pub fn budget(&self) -> Arc<Budget> {
+        self.budget.clone()
     }
 
     /// The text, with direct edits written into it.

@@ -3,6 +3,7 @@
 //! Shapes are prepared for searches once, and kept by the name of their object as long as it has the
 //! same shape. Answers do not depend on what is kept.
 
+use moldloft_budget::Budget;
 use moldloft_locate::branches::{Branches, CutSurface};
 use moldloft_locate::march::Crossing;
 use moldloft_locate::roots::{all_curve_curve, all_curve_surface, all_on_level};
@@ -11,7 +12,6 @@ use moldloft_num::{Plane, Vec3};
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Points that a thread answers at a time.
@@ -98,13 +98,13 @@ impl CommonPoints {
 
 impl Searches {
     /// The points of a curve or surface that are nearest to given ones; `None` for anything else.
-    /// After `cancel` is set the answer is incomplete.
+    /// When `budget` is spent the answer is incomplete.
     pub fn nearest(
         &self,
         name: &str,
         value: &Value<f64>,
         points: &[Vec3],
-        cancel: &AtomicBool,
+        budget: &Budget,
     ) -> Option<NearestPoints> {
         match value {
             Value::Surface(surface) => {
@@ -112,13 +112,13 @@ impl Searches {
                 let found =
                     self.prepared(name, surface, |k| &mut k.surfaces, SurfaceRef::same, prepare);
                 let answer = |p: Vec3| found.nearest(&**surface, p);
-                Some(NearestPoints::Surface(answered(points, cancel, answer)))
+                Some(NearestPoints::Surface(answered(points, budget, answer)))
             }
             Value::Curve(curve) => {
                 let prepare = |c: &CurveRef<f64>| NearestCurve::new(&**c);
                 let found = self.prepared(name, curve, |k| &mut k.curves, CurveRef::same, prepare);
                 let answer = |p: Vec3| found.nearest(&**curve, p);
-                Some(NearestPoints::Curve(answered(points, cancel, answer)))
+                Some(NearestPoints::Curve(answered(points, budget, answer)))
             }
             _ => None,
         }
@@ -196,11 +196,11 @@ impl Searches {
 /// Answers of many points, in their order.
 fn answered<const N: usize>(
     points: &[Vec3],
-    cancel: &AtomicBool,
+    budget: &Budget,
     answer: impl Fn(Vec3) -> Nearest<N> + Sync,
 ) -> Vec<Nearest<N>> {
     let chunk = |points: &[Vec3]| -> Vec<Nearest<N>> {
-        if cancel.load(Ordering::Relaxed) {
+        if budget.is_spent() {
             return Vec::new();
         }
         points.iter().map(|p| answer(*p)).collect()

@@ -1,5 +1,6 @@
 //! What can be wrong with a primitive, a set, a blend or a question to them.
 
+use moldloft_budget::Spent;
 use moldloft_num::{Box3, Vec3};
 use std::fmt;
 
@@ -129,8 +130,8 @@ pub enum FieldError {
     },
     /// A function from outside, which has no text.
     Outside,
-    /// The caller asked to stop.
-    Cancelled,
+    /// The caller asked to stop, or memory or time are used up.
+    Spent(Spent),
     /// A primitive had no finite value.
     NoValue {
         /// Where.
@@ -215,7 +216,7 @@ impl fmt::Display for FieldError {
                     "a function from outside (a scan, a surface, a Python function) has no text"
                 )
             }
-            Self::Cancelled => write!(f, "cancelled"),
+            Self::Spent(spent) => write!(f, "{spent}"),
             Self::NoValue { at } => {
                 write!(f, "the field has no finite value at ({}, {}, {})", at.x, at.y, at.z)
             }
@@ -270,4 +271,10 @@ pub(crate) fn unit<T: moldloft_num::Real>(
     v: moldloft_num::Vec3<T>,
 ) -> Result<moldloft_num::Vec3<T>, FieldError> {
     finite(what, v)?.normalized().ok_or(FieldError::Degenerate { what })
+}
+
+impl From<Spent> for FieldError {
+    fn from(spent: Spent) -> Self {
+        Self::Spent(spent)
+    }
 }

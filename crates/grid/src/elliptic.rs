@@ -6,9 +6,9 @@ use crate::control::{WallReport, WallTerms, middlecoff, wall_reports};
 use crate::lines::{Change, Control, Rows, larger, transposed_control};
 use crate::zebra::Banks;
 use crate::{Edge, GridError, SurfaceGrid};
+use moldloft_budget::Budget;
 use moldloft_num::{Order, Real, Surface, Vec3};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the grid is drawn to besides smoothness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,29 +87,29 @@ pub fn elliptic<T: Real>(
     grid: &SurfaceGrid<T>,
     options: &Elliptic<T>,
 ) -> Result<Smoothed<T>, GridError> {
-    elliptic_until(grid, options, &AtomicBool::new(false))
+    elliptic_until(grid, options, &Budget::default())
 }
 
-/// As [`elliptic`]; ends early when `cancel` is set.
+/// As [`elliptic`]; ends early when `budget` is spent.
 ///
 /// # Errors
-/// Also [`GridError::Cancelled`].
+/// Also [`GridError::Spent`].
 pub fn elliptic_until<T: Real>(
     grid: &SurfaceGrid<T>,
     options: &Elliptic<T>,
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> Result<Smoothed<T>, GridError> {
     // Rows side by side that fill the widest registers; numbers with derivatives fill several.
     match T::PARTS {
-        1 => smoothed::<T, 8>(grid, options, cancel),
-        _ => smoothed::<T, 2>(grid, options, cancel),
+        1 => smoothed::<T, 8>(grid, options, budget),
+        _ => smoothed::<T, 2>(grid, options, budget),
     }
 }
 
 fn smoothed<T: Real, const L: usize>(
     grid: &SurfaceGrid<T>,
     options: &Elliptic<T>,
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> Result<Smoothed<T>, GridError> {
     grid.check_count(3)?;
     grid.check_finite()?;
@@ -160,9 +160,7 @@ fn smoothed<T: Real, const L: usize>(
     let mut done = 0;
     let mut converged = false;
     while done < options.sweeps {
-        if cancel.load(Ordering::Relaxed) {
-            return Err(GridError::Cancelled);
-        }
+        budget.poll()?;
         let mut met = true;
         if let (Some(terms), Some(base)) = (&mut terms, &base) {
             let now = merged(&points, turned);

@@ -2,6 +2,7 @@
 
 use crate::Edge;
 use crate::marching::outcome::MarchFailure;
+use moldloft_budget::Spent;
 use std::fmt;
 
 /// A corner of a grid.
@@ -76,8 +77,8 @@ pub enum GridError {
         /// The sweep or layer, from 1.
         step: usize,
     },
-    /// The call was cancelled.
-    Cancelled,
+    /// The call was cancelled, or memory or time are used up.
+    Spent(Spent),
     /// Heights do not ascend from 0.
     Heights {
         /// The index, from 1, of the one that does not.
@@ -121,7 +122,7 @@ impl fmt::Display for GridError {
             }
             Self::March(failure) => write!(f, "{failure}"),
             Self::Diverged { step } => write!(f, "the grid grew beyond bounds in step {step}"),
-            Self::Cancelled => write!(f, "the run was cancelled"),
+            Self::Spent(spent) => write!(f, "{spent}"),
             Self::Heights { at, value } => {
                 write!(f, "heights ascend from 0, but height {at} is {value}")
             }
@@ -131,3 +132,9 @@ impl fmt::Display for GridError {
 }
 
 impl std::error::Error for GridError {}
+
+impl From<Spent> for GridError {
+    fn from(spent: Spent) -> Self {
+        Self::Spent(spent)
+    }
+}

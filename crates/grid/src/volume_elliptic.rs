@@ -4,9 +4,9 @@
 //! four colours. Holds: faces stay to the bit; the same bits at any number of threads.
 
 use crate::{Face, GridError, VolumeGrid};
+use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A face at which the grid shall have a first cell, at right angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,15 +67,15 @@ const FADE: f64 = 0.3;
 /// Walls count as met when cells, relatively, and angles, in radians, are off by no more.
 const WALL_ACCURACY: f64 = 1e-6;
 
-/// The grid with its inner points moved towards a solution; its faces stay. Ends when `cancel` is set.
+/// The grid with its inner points moved towards a solution; its faces stay. Ends when `budget` is spent.
 ///
 /// # Errors
 /// [`GridError::TooFew`] with fewer than 3 points along an index; [`GridError::PointNotFinite`];
-/// [`GridError::Diverged`]; [`GridError::Cancelled`].
+/// [`GridError::Diverged`]; [`GridError::Spent`].
 pub fn elliptic_volume_until<T: Real>(
     grid: &VolumeGrid<T>,
     options: &EllipticVolume<T>,
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> Result<SmoothedVolume<T>, GridError> {
     let least = grid.size.into_iter().min().unwrap_or(0);
     if least < 3 {
@@ -114,15 +114,11 @@ pub fn elliptic_volume_until<T: Real>(
         };
         let mut most = 0.0f64;
         for colour in 0..4 {
-            if cancel.load(Ordering::Relaxed) {
-                return Err(GridError::Cancelled);
-            }
-            let step = pass(&mut grid, axis, colour, options.omega, &planes, cancel);
+            budget.poll()?;
+            let step = pass(&mut grid, axis, colour, options.omega, &planes, budget);
             most = if step <= most { most } else { step };
         }
-        if cancel.load(Ordering::Relaxed) {
-            return Err(GridError::Cancelled);
-        }
+        budget.poll()?;
         if !most.is_finite() {
             return Err(GridError::Diverged { step: history.len() + 1 });
         }
@@ -259,7 +255,7 @@ fn pass<T: Real>(
     colour: usize,
     omega: f64,
     controls: &[[T; 3]],
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> f64 {
     let [a, b] = Face { axis, last: false }.others();
     let (na, nb, n) = (grid.size[a], grid.size[b], grid.size[axis]);
@@ -269,7 +265,7 @@ fn pass<T: Real>(
         .collect();
     let now = &*grid;
     let solve = |&(p, q): &(usize, usize)| -> Vec<Vec3<T>> {
-        if cancel.load(Ordering::Relaxed) {
+        if budget.is_spent() {
             return Vec::new();
         }
         let at = |p: usize, q: usize, k: usize| {

@@ -1,28 +1,37 @@
 //! Files, as far as a model may see them: the world of the extension, the command and the language
 //! server.
 //!
-//! Invariant: nothing outside the given folders is read for a model, links resolved.
+//! Invariant: nothing outside the given folders is read for a model, links resolved; nothing whose name begins with a
+//! dot; regular files only.
 
 use moldloft_lang::{ReadError, ReadText, World};
+use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The most bytes of one file.
-const LARGEST: u64 = 256 << 20;
+pub const LARGEST: u64 = 256 << 20;
+
+/// The most bytes that one model reads.
+const MOST_READ: u64 = 1 << 30;
 
 /// Reads files inside the model's folder and the library path, and nowhere else.
 #[derive(Clone, Debug)]
 pub struct FileWorld {
     /// Folders that may be read, links resolved; the model's own first.
     roots: Vec<PathBuf>,
+    /// Bytes that were read so far.
+    read: Arc<AtomicU64>,
 }
 
 impl FileWorld {
     /// A world for a model in `folder` (`None` for a model without a file).
     pub fn new(folder: Option<&Path>, library: &[String]) -> Self {
         let folders = folder.into_iter().chain(library.iter().map(Path::new));
-        Self { roots: folders.filter_map(|folder| folder.canonicalize().ok()).collect() }
+        let roots = folders.filter_map(|folder| folder.canonicalize().ok()).collect();
+        Self { roots, read: Arc::default() }
     }
 
     /// A world for the model file at `path`: its folder, and that of what it links to.
@@ -62,24 +71,94 @@ impl World for FileWorld {
         };
         let found = self.find(path, from).map_err(|error| failed(path, &error))?;
         // What the user names may be a link to anywhere; what a model names must stay inside.
-        if from.is_some() && !self.roots.iter().any(|root| found.starts_with(root)) {
-            let help = "a model reads files in its own folder and in the folders given by \
-                        `--library`";
-            return Err(refused("it is outside the model's folders", Some(help.into())));
+        if from.is_some() {
+            let inside = self.roots.iter().find_map(|root| found.strip_prefix(root).ok());
+            let Some(inside) = inside else {
+                let help = "a model reads files in its own folder and in the folders given by \
+                            `--library`";
+                return Err(refused("it is outside the model's folders", Some(help.into())));
+            };
+            if hidden(inside) || hidden(Path::new(path)) {
+                let help = "a model reads no file or folder whose name begins with a dot";
+                return Err(refused("its name is hidden", Some(help.into())));
+            }
         }
-        if found.is_dir() {
-            return Err(refused("it is a folder", None));
-        }
-        let file = std::fs::File::open(&found).map_err(|error| failed(path, &error))?;
-        let mut bytes = Vec::new();
-        // One byte more than allowed tells a file that is too large, whatever its length claims.
-        file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| failed(path, &error))?;
-        if bytes.len() as u64 > LARGEST {
-            return Err(refused("it is larger than 256 MiB", None));
+        let bytes = match read_regular(&found) {
+            Ok(bytes) => bytes,
+            Err(ReadFault::System(error)) => return Err(failed(path, &error)),
+            Err(fault) => return Err(refused(&fault.to_string(), None)),
+        };
+        let count = bytes.len() as u64;
+        if self.read.fetch_add(count, Ordering::Relaxed) + count > MOST_READ {
+            return Err(refused("the model reads more than 1 GiB", None));
         }
         let name = if from.is_none() { path.into() } else { found.display().to_string() };
         Ok(ReadText { name, bytes: bytes.into() })
     }
+}
+
+/// True when a folder or file on the path has a name that begins with a dot.
+fn hidden(path: &Path) -> bool {
+    path.components().any(|part| match part {
+        Component::Normal(name) => name.as_encoded_bytes().first() == Some(&b'.'),
+        _ => false,
+    })
+}
+
+/// Why a file is not read.
+#[derive(Debug)]
+pub enum ReadFault {
+    /// It cannot be opened or read.
+    System(std::io::Error),
+    /// It is a folder.
+    Folder,
+    /// It is a pipe, a socket or a device.
+    Special,
+    /// It is larger than [`LARGEST`].
+    Large,
+}
+
+impl std::fmt::Display for ReadFault {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::System(error) => write!(f, "{error}"),
+            Self::Folder => write!(f, "it is a folder"),
+            Self::Special => write!(f, "it is not a regular file"),
+            Self::Large => write!(f, "it is larger than {} MiB", LARGEST >> 20),
+        }
+    }
+}
+
+/// The bytes of a regular file.
+///
+/// # Errors
+/// [`ReadFault`]; a pipe is refused at once, not waited for.
+pub fn read_regular(path: &Path) -> Result<Vec<u8>, ReadFault> {
+    let file = open(path).map_err(ReadFault::System)?;
+    let kind = file.metadata().map_err(ReadFault::System)?;
+    if kind.is_dir() {
+        return Err(ReadFault::Folder);
+    }
+    if !kind.is_file() {
+        return Err(ReadFault::Special);
+    }
+    let mut bytes = Vec::new();
+    // One byte more than allowed shows that a file is too large, whatever its length claims.
+    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(ReadFault::System)?;
+    if bytes.len() as u64 > LARGEST { Err(ReadFault::Large) } else { Ok(bytes) }
+}
+
+#[cfg(unix)]
+fn open(path: &Path) -> std::io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    // Without waiting: a pipe that nobody writes to would be waited for.
+    const NONBLOCK: i32 = if cfg!(target_os = "linux") { 0o4000 } else { 4 };
+    OpenOptions::new().read(true).custom_flags(NONBLOCK).open(path)
+}
+
+#[cfg(not(unix))]
+fn open(path: &Path) -> std::io::Result<File> {
+    OpenOptions::new().read(true).open(path)
 }
 
 /// A text that was read: as it was asked for, by which text, and what it was.

@@ -187,7 +187,7 @@ impl<T: Real> Body<T> {
         // All of it is under water, and moments are about its middle.
         let moved = self.mapped(|p| p - Vec3::lifted(centre), false);
         let above = T::from(2.0 * self.size + bounds.diagonal());
-        let all = moved.integrals(above, [T::zero(); 2]);
+        let all = moved.wanted_integrals(above, [T::zero(); 2], Wanted::Skin);
         let Immersed { sums, errors, .. } = &all;
         let fit = self.fit_errors(&bounds);
         let volume = (sums.forms[0] + sums.forms[1]) * 0.5;

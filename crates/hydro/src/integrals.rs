@@ -115,6 +115,19 @@ pub(crate) struct Immersed<T> {
     pub waterline: Vec<Strip<T>>,
 }
 
+#[cfg(test)]
+thread_local! {
+    static HALVED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+}
+
+/// What `work` returns, and how many cells it halves.
+#[cfg(test)]
+pub(crate) fn counted<R>(work: impl FnOnce() -> R) -> (R, usize) {
+    let before = HALVED.with(std::cell::Cell::get);
+    let made = work();
+    (made, HALVED.with(std::cell::Cell::get) - before)
+}
+
 /// The most cells that are halved.
 const MOST_HALVED: usize = 20_000;
 
@@ -155,6 +168,9 @@ pub(crate) enum Wanted {
     All,
     /// Volume and its first moments: what an equilibrium needs.
     Displacement,
+    /// All of a skin that need not be closed: what is open counts as much as what is enclosed, for the volume of a
+    /// flat skin or an upright wall is no measure of it.
+    Skin,
 }
 
 /// The integrals below `level`, each to about `accuracy` of its size; `origin` is (x0, y0), `size` that of the body.
@@ -184,7 +200,13 @@ pub(crate) fn immersed<T: Real>(
                 errors[k] += part.errors[k];
             }
         }
-        let volume = sums.forms[2].re().abs().max(1e-12 * size.powi(3));
+        let mut volume = sums.forms[2].re().abs().max(1e-12 * size.powi(3));
+        if wanted == Wanted::Skin {
+            let ends = [sums.open[0], sums.open[1], sums.plane[0]].map(|x| x.re().abs());
+            let walls = [sums.forms[0], sums.forms[1]].map(|x| x.re().abs());
+            volume = ends.into_iter().fold(volume, |v, x| v.max(x * size));
+            volume = walls.into_iter().fold(volume, f64::max);
+        }
         let area = sums.wetted.re().abs().max(1e-9 * size * size);
         let plane = sums.plane[0].re().abs().max(1e-3 * area);
         scale.copy_from_slice(&[
@@ -196,7 +218,7 @@ pub(crate) fn immersed<T: Real>(
             plane * size * size,
         ]);
     }
-    let count = if wanted == Wanted::All { 6 } else { 2 };
+    let count = if wanted == Wanted::Displacement { 2 } else { 6 };
     let worst = |e: &Errors| (0..count).map(|k| e[k] / scale[k]).fold(0.0, f64::max);
     let mut heap: BinaryHeap<Candidate> = parts
         .iter()
@@ -228,6 +250,8 @@ pub(crate) fn immersed<T: Real>(
         }
         halved += 1;
     }
+    #[cfg(test)]
+    HALVED.with(|count| count.set(count.get() + halved));
     // Summed anew: subtraction leaves rounding.
     let mut all = Immersed { sums: Sums::zero(), errors: [0.0; 6], waterline: Vec::new() };
     for part in parts.into_iter().flatten() {
@@ -285,20 +309,34 @@ fn points(degree: usize) -> usize {
     }
 }
 
+/// Whether [`points`] along a parameter are exact for second moments, so that only areas have an error along it.
+fn exact_along(degree: usize) -> bool {
+    2 * degree <= MOST
+}
+
 fn is_exact<T: Real>(strip: &Strip<T>) -> bool {
-    strip.cell.degree().iter().all(|&d| 2 * d <= MOST)
+    strip.cell.degree().into_iter().all(exact_along)
+}
+
+/// Points of the finer (0) or the coarser (1) rule. Beside a parameter along which rules are not exact, both are so
+/// along one of low degree: what they differ by is the error of the other.
+fn points_beside(degree: usize, coarser: usize, other_exact: bool) -> usize {
+    match (exact_along(degree), other_exact) {
+        (true, false) => (2 * degree.max(1) + 1) - coarser,
+        _ => points(degree) - if degree == 1 { 1 } else { 2 } * coarser,
+    }
 }
 
 /// The integrals over a strip by the finer (0) or the coarser (1) rule.
 fn integrated<T: Real>(strip: &Strip<T>, cut: Cut<T>, origin: Vec3<T>, coarser: usize) -> Sums<T> {
     let mut sums = Sums::zero();
     let degree = strip.cell.degree();
-    let fewer = if degree == [1, 1] { 1 } else { 2 };
-    let across = points(degree[strip.inner]) - fewer * coarser;
-    let outer = if strip.is_cut() {
-        OUTER[coarser]
-    } else {
-        points(degree[1 - strip.inner]) - fewer * coarser
+    let [inner, beside] = [degree[strip.inner], degree[1 - strip.inner]];
+    let outer_exact = !strip.is_cut() && exact_along(beside);
+    let across = points_beside(inner, coarser, outer_exact);
+    let outer = match strip.is_cut() {
+        true => OUTER[coarser],
+        false => points_beside(beside, coarser, exact_along(inner)),
     };
     let length = strip.to - strip.from;
     let sign = strip.sign();

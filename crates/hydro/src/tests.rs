@@ -206,3 +206,45 @@ fn derivatives_are_exact() {
     assert!((w.re - plane).abs() < 1e-8 && (w.eps[1] - plane / a).abs() < 1e-8);
     assert!((w.eps[0] - PI * a * b * (-2.0 * d / c)).abs() < 1e-7, "{:?}", w.eps);
 }
+
+/// A revolved line: from (r0, z0) to (r1, z1), over an angle.
+struct Revolved {
+    line: [[f64; 2]; 2],
+    angle: f64,
+}
+
+impl SurfaceFormula for Revolved {
+    type Scalar = f64;
+    fn at<J: Jet<f64>>(&self, u: J, v: J) -> Vec3<J> {
+        let [[r0, z0], [r1, z1]] = self.line;
+        let r = u * (r1 - r0) + J::fixed(r0);
+        let a = v * self.angle;
+        Vec3::new(r * a.cos(), r * a.sin(), u * (z1 - z0) + J::fixed(z0))
+    }
+}
+
+/// Walls, discs, cones and tubes have no volume of their own: their areas take a few cells all the same.
+#[test]
+fn open_skins_take_few_cells() {
+    let mut random = Random::new(5);
+    for case in 0..60 {
+        let r = [random.between(0.0, 9.0), random.between(0.1, 9.0)];
+        let z = [random.between(-70.0, -20.0), random.between(0.0, 30.0)];
+        let line = match case % 5 {
+            0 => [[0.0, z[0]], [r[1], z[0]]],
+            1 => [[r[1], z[0]], [r[1], z[1]]],
+            2 => [[r[0], z[0]], [r[1], z[0]]],
+            3 => [[0.0, z[0]], [r[1], z[1]]],
+            _ => [[r[0], z[0]], [r[1], z[1]]],
+        };
+        let angle = [PI, 0.5 * PI, 2.0 * PI, 1.3][case % 4];
+        let [[r0, z0], [r1, z1]] = line;
+        let exact = 0.5 * angle * (r0 + r1) * (r1 - r0).hypot(z1 - z0);
+        let surface = Revolved { line, angle };
+        let (found, halved) =
+            crate::integrals::counted(|| crate::surface_measures(&surface, 1e-6).unwrap());
+        assert!((found.area - exact).abs() <= found.bounds[0] + 1e-13 * exact, "{case}: {found:?}");
+        assert!(found.bounds[0] <= 1e-6 * exact, "{case}");
+        assert!(halved <= 20, "{case}: {halved} halved");
+    }
+}

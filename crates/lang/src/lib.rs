@@ -17,7 +17,6 @@ pub mod source;
 pub mod value;
 
 pub use functions::context::{BUILTINS, Builtin, MOST_REFINED};
-pub use run::interpreter::MOST_STEPS;
 pub use source::env::{Evaluation, Param, SolveStatus};
 pub use source::{LIBRARIES, NoFiles, ReadError, ReadText, World};
 pub use value::display;

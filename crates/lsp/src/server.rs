@@ -5,13 +5,13 @@ use moldloft::diag::{DiagnosticData, LabelData, Severity};
 use moldloft::document::{CompletionKind, Document, NoFiles, World};
 use moldloft::host::FileWorld;
 use moldloft::lang::LIBRARIES;
+use moldloft_budget::Budget;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
@@ -73,7 +73,7 @@ enum State {
 struct Running {
     /// Which run it is.
     serial: u64,
-    cancel: Arc<AtomicBool>,
+    budget: Arc<Budget>,
     since: Instant,
     /// When it was asked to stop.
     stopped: Option<Instant>,
@@ -83,7 +83,7 @@ struct Running {
 
 impl Running {
     fn stop(&mut self) {
-        self.cancel.store(true, Ordering::Relaxed);
+        self.budget.cancel();
         self.stopped.get_or_insert_with(Instant::now);
     }
 
@@ -209,11 +209,11 @@ impl Server {
     fn start(&mut self, uri: &str, document: Option<Box<Document>>) {
         let Some(open) = self.open.get_mut(uri) else { return };
         self.runs += 1;
-        let cancel = document.as_ref().map_or_else(Arc::default, |d| d.cancel_handle());
-        cancel.store(false, Ordering::Relaxed);
+        let budget = document.as_ref().map_or_else(Arc::default, |d| d.budget());
+        budget.resume();
         open.state = State::Running(Running {
             serial: self.runs,
-            cancel: cancel.clone(),
+            budget: budget.clone(),
             since: Instant::now(),
             stopped: None,
             outdated: false,
@@ -228,9 +228,10 @@ impl Server {
                     document.set_text(&text);
                     document
                 }
-                None => Box::new(opened(&uri, &text, cancel)),
+                None => Box::new(opened(&uri, &text, budget)),
             });
             let document = catch_unwind(run).ok();
+            moldloft_budget::settle();
             // After the end of the server nobody listens; that is not a fault.
             let _ = events.send(Event::Ran(Ran { uri, serial, document }));
         });
@@ -584,7 +585,7 @@ fn related(label: &LabelData, uri: &str) -> Value {
 }
 
 /// The model of a text: what it loads is sought beside its file.
-fn opened(uri: &str, text: &str, cancel: Arc<AtomicBool>) -> Document {
+fn opened(uri: &str, text: &str, budget: Arc<Budget>) -> Document {
     let (world, name): (Box<dyn World>, String) = match path_of(uri) {
         Some(path) => {
             let folder = path.parent().unwrap_or(Path::new(".")).to_path_buf();
@@ -592,7 +593,7 @@ fn opened(uri: &str, text: &str, cancel: Arc<AtomicBool>) -> Document {
         }
         None => (Box::new(NoFiles), uri.to_string()),
     };
-    Document::watched(moldloft::document::registry(), world, (&name, text), cancel)
+    Document::from_text_within(moldloft::document::registry(), world, (&name, text), budget)
 }
 
 /// The path of a file address.

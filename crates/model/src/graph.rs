@@ -5,6 +5,7 @@
 use crate::memo::Memo;
 use crate::object::{Failure, Object, State};
 use indexmap::IndexMap;
+use moldloft_budget::{Budget, Spent};
 use moldloft_diag::nearest;
 use moldloft_num::trace::Key;
 use moldloft_registry::{Attributes, CallError, Class, Context, FieldId, Kept, Row, Scalar, Value};
@@ -12,7 +13,6 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap, HashSet};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// Shapes nested deeper than this are refused, so that evaluating one never exhausts the stack.
 pub const DEEPEST_NESTING: u32 = 100;
@@ -55,6 +55,8 @@ pub struct Graph<T: Scalar> {
     memo: Memo<T>,
     /// Objects that sweep a point; some may have gone, some stand twice.
     sweeps: Vec<Key>,
+    /// Objects that were not found out, because the budget was spent; some may have gone.
+    unfinished: Vec<Key>,
     context: Context,
 }
 
@@ -126,6 +128,12 @@ impl<T: Scalar> Graph<T> {
             self.remove_undeclared();
         }
         self.unlink();
+        // What was cancelled, or went beyond its budget, may succeed now.
+        for key in std::mem::take(&mut self.unfinished) {
+            if self.get(key).is_some() {
+                self.mark_pending(key);
+            }
+        }
         self.evaluate_pending();
         if extent == Extent::Whole {
             // Nothing refers to them any more: everything was declared anew or has gone.
@@ -152,9 +160,14 @@ impl<T: Scalar> Graph<T> {
         self.context.clone()
     }
 
-    /// Sets the flag that cancels long evaluations.
-    pub fn set_cancel_flag(&mut self, cancel: Arc<AtomicBool>) {
-        self.context.cancel = cancel;
+    /// What evaluations may use.
+    pub fn budget(&self) -> &Budget {
+        &self.context.budget
+    }
+
+    /// Sets what evaluations may use.
+    pub fn set_budget(&mut self, budget: Arc<Budget>) {
+        self.context.budget = budget;
     }
 
     /// Says where calls keep what spares work later.
@@ -396,6 +409,9 @@ impl<T: Scalar> Graph<T> {
                 Err(fault) => return State::Failed(Failure::CallError(fault)),
             }
         }
+        if let Err(spent) = self.context.budget.poll() {
+            return State::Failed(Failure::CallError(spent.into()));
+        }
         let call = || T::call(&object.row, &args, &self.context);
         // A kind that panics is our fault, but it must not take the model with it.
         let called = std::panic::catch_unwind(std::panic::AssertUnwindSafe(call));
@@ -453,11 +469,15 @@ impl<T: Scalar> Graph<T> {
         if object.row.sweep.is_some() {
             self.sweeps.push(key);
         }
+        if matches!(&state, State::Failed(Failure::CallError(f)) if Spent::is_id(f.id)) {
+            self.unfinished.push(key);
+        }
         let object = self.object_mut(key);
         if object.state.same(&state) {
             return;
         }
         let (was, is) = (object.state.is_failure(), state.is_failure());
+
         let (warned, warns) = (object.state.warns(), state.warns());
         object.state = state;
         object.changed_at = clock;
@@ -564,6 +584,12 @@ impl<T: Scalar> Graph<T> {
     }
 }
 
+fn too_many_objects(most: u64) -> CallError {
+    CallError::new("too-many-objects", "the model has too many objects")
+        .expected(format!("at most {most}"))
+        .help("allow more: `--limit objects=1e6`, `moldloft.limits(objects=...)`")
+}
+
 impl<T: Scalar> Run<'_, T> {
     /// Declares an object. What the previous run declared alike keeps its shape.
     ///
@@ -575,6 +601,10 @@ impl<T: Scalar> Run<'_, T> {
         let clock = self.graph.clock;
         let order = self.graph.declared;
         let Some(key) = self.graph.find(name) else {
+            let most = moldloft_budget::limits().objects;
+            if self.graph.names.len() as u64 >= most {
+                return Err(too_many_objects(most));
+            }
             return Ok(self.insert(name, row, args, head, origin));
         };
         let object = self.graph.object_mut(key);
@@ -626,12 +656,12 @@ impl<T: Scalar> Run<'_, T> {
             self.check_cycle(key, &args)?;
             self.graph.connect(key, args);
         }
-        // What was cancelled was never found out.
-        let cancelled = matches!(
+        // What was cancelled, or went beyond its budget, was never found out.
+        let unknown = matches!(
             &self.graph.object(key).state,
-            State::Failed(Failure::CallError(fault)) if fault.id == "cancelled"
+            State::Failed(Failure::CallError(fault)) if Spent::is_id(fault.id)
         );
-        if !same || !same_row || cancelled {
+        if !same || !same_row || unknown {
             self.graph.object_mut(key).row = row.clone();
             self.graph.mark_pending(key);
         }

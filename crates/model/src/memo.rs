@@ -117,7 +117,7 @@ fn count<T: Scalar>(value: &Value<T>) -> usize {
     }
 }
 
-/// Equal arguments have equal fingerprints; shapes count by their class only.
+/// Equal arguments have equal fingerprints; curves and surfaces count by their class only.
 fn fingerprint<T: Scalar>(row: &Arc<Row>, args: &[Value<T>]) -> u64 {
     let mut hasher = DefaultHasher::new();
     row.name.hash(&mut hasher);
@@ -138,6 +138,8 @@ fn hash<T: Scalar>(value: &Value<T>, h: &mut DefaultHasher) {
         Value::List(items) => items.iter().for_each(|item| hash(item, h)),
         Value::Object(key) => key.hash(h),
         Value::Point(p) => vector(p.xyz, h),
+        Value::Field(f) => f.fingerprint().hash(h),
+        Value::Set(s) => s.fingerprint().hash(h),
         _ => {}
     }
 }

@@ -18,6 +18,7 @@ use crate::patch_values::{PatchValues, evaluated_all, names};
 use crate::roots::Roots;
 use crate::topology::{self, Counts, EdgeRun, Nominal, PanelTopology, PatchTopology};
 use crate::triangle_bodies::{self, MeshedBody};
+use moldloft_budget::Spent;
 use moldloft_mesh::{Mesh, Topology};
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::Key;
@@ -26,6 +27,9 @@ use moldloft_registry::{CallError, Scalar, SurfaceRef};
 use std::cell::LazyCell;
 use std::collections::HashMap;
 use std::sync::Arc;
+
+/// Bytes that a panel takes while it is made and joined.
+const BYTES: u64 = 200;
 
 /// The most panels of a model.
 pub const MOST_PANELS: u64 = 20_000_000;
@@ -97,6 +101,7 @@ impl Panelling {
         if total > MOST_PANELS {
             return Err(too_many_panels(total));
         }
+        graph.budget().grow(total * BYTES)?;
         let before = before.filter(|b| *b.structure == made.structure);
         let structure = before.map_or_else(|| Arc::new(made.structure), |b| b.structure.clone());
         let names = match before {
@@ -113,8 +118,9 @@ impl Panelling {
             (unchanged && !hangs(&structure.patches[patch])).then(|| before.raw[patch].clone())
         };
         let evaluated = evaluated_all(&structure, &names, graph, kept);
-        // Every draft has a value in its own graph.
-        let raw: Vec<_> = evaluated.into_iter().flatten().collect();
+        // Every draft has a value in its own graph, unless the budget is spent.
+        let raw = evaluated.into_iter().collect::<Option<Vec<_>>>();
+        let raw = raw.ok_or_else(|| graph.budget().poll().err().unwrap_or(Spent::Cancelled))?;
         let mut points = raw.clone();
         let size = points.iter().flat_map(|p| p.iter()).fold(Box3::EMPTY, |b, &p| b.including(p));
         let zeros = zeros(&structure, &points, size.diagonal());

@@ -33,6 +33,9 @@ pub(crate) fn evaluated_all<T: Scalar>(
             return Some(points);
         }
         let surface = known.surfaces[patch].as_ref()?;
+        if graph.budget().is_spent() {
+            return None;
+        }
         let edge = |k: usize| along_edge(k, patch as u32, &known);
         let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
         Some(Arc::new(evaluated(surface, &edges)))

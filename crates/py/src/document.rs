@@ -8,6 +8,7 @@ use crate::fair::Look;
 use crate::mesh::PyMesh;
 use crate::value::to_python;
 use crate::work::{interruptible, interruptible_shared};
+use moldloft_budget::Budget;
 use moldloft_diag::Sources;
 use moldloft_document::searches::Searches;
 use moldloft_document::{Document, FloatAnswer, FloatRequest, FlotationOptions, Format, Immersion};
@@ -38,7 +39,7 @@ const LARGE: usize = 50_000;
 #[pyclass(frozen, name = "Document", module = "moldloft._core")]
 pub struct PyDocument {
     inner: Arc<Mutex<Document>>,
-    cancel: Arc<AtomicBool>,
+    budget: Arc<Budget>,
     /// True once the model may call Python: a run then needs Python's lock on another thread.
     calls_python: AtomicBool,
     /// Shapes prepared for searches.
@@ -52,9 +53,9 @@ type Outcome<R> = Result<R, Vec<moldloft_diag::Diagnostic>>;
 
 impl PyDocument {
     fn new(document: Document) -> Self {
-        let cancel = document.cancel_handle();
+        let budget = document.budget();
         let inner = Arc::new(Mutex::new(document));
-        Self { inner, cancel, calls_python: AtomicBool::new(false), searches: Arc::default() }
+        Self { inner, budget, calls_python: AtomicBool::new(false), searches: Arc::default() }
     }
 
     fn lock<'a>(&'a self, py: Python<'_>) -> MutexGuard<'a, Document> {
@@ -69,7 +70,7 @@ impl PyDocument {
         work: impl FnOnce(&mut Document) -> R + Send + 'static,
     ) -> PyResult<R> {
         let inner = self.inner.clone();
-        interruptible_shared(py, &self.cancel, move || {
+        interruptible_shared(py, &self.budget, move || {
             work(&mut inner.lock().unwrap_or_else(PoisonError::into_inner))
         })
     }
@@ -101,9 +102,9 @@ impl PyDocument {
         &self.searches
     }
 
-    /// What stops long work.
-    pub(crate) fn cancel_handle(&self) -> &Arc<AtomicBool> {
-        &self.cancel
+    /// What long work may use; it cancels it.
+    pub(crate) fn budget(&self) -> &Arc<Budget> {
+        &self.budget
     }
 
     /// The model as a boundary representation.
@@ -143,9 +144,10 @@ impl PyDocument {
     #[staticmethod]
     fn open(py: Python<'_>, path: String, library: Vec<String>) -> PyResult<Self> {
         let world = Box::new(FileWorld::around(&path, &library));
-        let never = AtomicBool::new(false);
-        let open = move || Document::open(moldloft_document::registry(), world, &path);
-        interruptible(py, &never, open).map(Self::new)
+        let budget = Arc::<Budget>::default();
+        let own = budget.clone();
+        let open = move || Document::open_within(moldloft_document::registry(), world, &path, own);
+        interruptible(py, &budget, open).map(Self::new)
     }
 
     #[staticmethod]
@@ -157,9 +159,12 @@ impl PyDocument {
         library: Vec<String>,
     ) -> PyResult<Self> {
         let world = Box::new(FileWorld::new(folder.as_deref().map(Path::new), &library));
-        let never = AtomicBool::new(false);
-        let open = move || Document::from_text(moldloft_document::registry(), world, &name, &text);
-        interruptible(py, &never, open).map(Self::new)
+        let budget = Arc::<Budget>::default();
+        let own = budget.clone();
+        let open = move || {
+            Document::from_text_within(moldloft_document::registry(), world, (&name, &text), own)
+        };
+        interruptible(py, &budget, open).map(Self::new)
     }
 
     fn diagnostics(&self, py: Python<'_>) -> Vec<Diagnostic> {

@@ -5,12 +5,12 @@
 //! The parent has the text and may end this process at any time. A request `cancel` stops the one that is
 //! under way; everything else is answered in order.
 
+use moldloft_budget::Budget;
 use moldloft_host::{FileWorld, Noted, ReadAs};
 use moldloft_session::Session;
 use pyo3::prelude::*;
 use std::io::{Read, Write};
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
 /// The longest request.
@@ -35,14 +35,14 @@ pub fn engine(py: Python<'_>, name: String, folder: Option<String>, library: Vec
 }
 
 fn serve(name: &str, folder: Option<&str>, library: &[String]) {
-    let cancel = Arc::new(AtomicBool::new(false));
+    let budget = Arc::<Budget>::default();
     let (sender, requests) = mpsc::channel::<String>();
-    let flag = cancel.clone();
+    let shared = budget.clone();
     std::thread::spawn(move || {
         let mut input = std::io::stdin().lock();
         while let Some(message) = read(&mut input) {
             if message == CANCEL {
-                flag.store(true, Ordering::Relaxed);
+                shared.cancel();
             } else if sender.send(String::from_utf8_lossy(&message).into_owned()).is_err() {
                 return;
             }
@@ -50,7 +50,7 @@ fn serve(name: &str, folder: Option<&str>, library: &[String]) {
     });
     let Ok(text) = requests.recv() else { return };
     let world = Box::new(FileWorld::new(folder.map(Path::new), library));
-    let mut session = Session::watched(world, name, &text, cancel);
+    let mut session = Session::within(world, name, &text, budget);
     let mut output = std::io::stdout().lock();
     for request in requests {
         let frame = session.answer(&request);

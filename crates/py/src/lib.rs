@@ -17,6 +17,7 @@ mod foreign;
 mod formats;
 mod grids;
 mod implicit;
+mod limits;
 mod mesh;
 mod nurbs;
 mod reference;
@@ -26,6 +27,10 @@ mod value;
 mod work;
 
 use pyo3::pymodule;
+
+/// Counts the bytes that the extension holds, for [`moldloft_budget::Budget`].
+#[global_allocator]
+static ALLOCATOR: moldloft_budget::Counting = moldloft_budget::Counting;
 
 /// The compiled part of Moldloft.
 #[pymodule]
@@ -59,6 +64,8 @@ mod _core {
     #[pymodule_export]
     use crate::implicit::{PyFacets, PyField, PySet};
     #[pymodule_export]
+    use crate::limits::{held_memory, limits, set_limits};
+    #[pymodule_export]
     use crate::mesh::PyMesh;
     #[pymodule_export]
     use crate::nurbs::{brep, length_unit, nurbs};
@@ -73,6 +80,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::limits::take_usual();
         crate::work::register(module)
     }
 }

@@ -88,7 +88,7 @@ pub fn nurbs<'py>(
             _ => unreachable!("checked above"),
         }
     };
-    let made = interruptible_shared(py, document.cancel_handle(), work)?;
+    let made = interruptible_shared(py, document.budget(), work)?;
     match made.map_err(|e| plain_error(format!("`{name}` as a NURBS: {e}")))? {
         Made::Curve(n) => data(py, &n),
         Made::Surface(n) => data(py, &n),

@@ -61,13 +61,13 @@ pub fn nearest<'py>(
 ) -> PyResult<Answers<'py>> {
     let numbers = points.as_slice()?;
     let points: Vec<Vec3> = numbers.chunks_exact(3).map(|p| Vec3::of(p[0], p[1], p[2])).collect();
-    let (cancel, searches) = (document.cancel_handle(), document.searches().clone());
+    let (budget, searches) = (document.budget(), document.searches().clone());
     let value = document.value(py, name)?;
     let refused = wrong_class(name, "a curve or a surface has nearest points", &value);
-    let (stop, large) = (cancel.clone(), points.len() > LARGE);
+    let (stop, large) = (budget.clone(), points.len() > LARGE);
     let key = name.to_owned();
     let search = move || searches.nearest(&key, &value, &points, &stop);
-    let found = if large { interruptible_shared(py, cancel, search)? } else { py.detach(search) };
+    let found = if large { interruptible_shared(py, budget, search)? } else { py.detach(search) };
     match found {
         Some(NearestPoints::Surface(found)) => arrays_of(py, &found),
         Some(NearestPoints::Curve(found)) => arrays_of(py, &found),
@@ -128,8 +128,8 @@ fn met<'py>(
     let (searches, key) = (document.searches().clone(), name.to_owned());
     let short = matches!(with, With::Plane(_));
     let search = move || searches.intersection(&key, &value, &with);
-    let cancel = document.cancel_handle();
-    let found = if short { py.detach(search) } else { interruptible_shared(py, cancel, search)? };
+    let budget = document.budget();
+    let found = if short { py.detach(search) } else { interruptible_shared(py, budget, search)? };
     match found {
         Some(Meeting::Points(points)) => points_dict(py, points),
         Some(Meeting::Branches(found, two)) => branches_dict(py, &found, two),

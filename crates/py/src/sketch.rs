@@ -3,7 +3,10 @@
 use crate::arrays;
 use crate::error::{plain_error, unknown_name};
 use crate::work::interruptible;
+use moldloft_budget::Budget;
 use moldloft_diag::Severity;
+use moldloft_host::{FileWorld, read_regular};
+use moldloft_lang::World;
 use moldloft_mesh::Mesh;
 use moldloft_num::Vec3;
 use moldloft_picture::{Camera, Line, Options, render};
@@ -12,13 +15,9 @@ use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyBytes;
-use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// The most bytes of one file.
-const LARGEST: u64 = 64 << 20;
 
 /// Edges on pictures: dark grey.
 const EDGE_COLOUR: [u8; 3] = [0x30, 0x36, 0x40];
@@ -26,23 +25,29 @@ const EDGE_COLOUR: [u8; 3] = [0x30, 0x36, 0x40];
 /// In picture points.
 const EDGE_WIDTH: f32 = 1.5;
 
-/// Reads what a person names: beside the running script first, then from the present folder.
+/// Reads what a person names: beside the running script first, then from the present folder. What the lines of a
+/// file name is read as a model reads: inside of the folder only.
 struct Disk {
     folder: Option<PathBuf>,
+    confined: Arc<AtomicBool>,
 }
 
 impl Files for Disk {
     fn read(&self, name: &str) -> Result<String, String> {
+        let text = |bytes: &[u8]| match std::str::from_utf8(bytes) {
+            Ok(text) => Ok(text.to_owned()),
+            Err(_) => Err("it is not UTF-8 text".into()),
+        };
+        if self.confined.load(Ordering::Relaxed) {
+            let folder = self.folder.clone().unwrap_or_else(|| PathBuf::from("."));
+            let from = folder.join("sketch");
+            let read = FileWorld::new(Some(&folder), &[]).read(name, from.to_str());
+            return read.map_err(|error| error.message).and_then(|read| text(&read.bytes));
+        }
         let beside = self.folder.iter().map(|f| f.join(name)).find(|p| p.exists());
         let path = beside.unwrap_or_else(|| PathBuf::from(name));
-        let reason = |e: std::io::Error| e.to_string();
-        let file = std::fs::File::open(&path).map_err(reason)?;
-        let mut bytes = Vec::new();
-        file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(reason)?;
-        if bytes.len() as u64 > LARGEST {
-            return Err("it is larger than 64 MiB".into());
-        }
-        String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".into())
+        let bytes = read_regular(&path).map_err(|fault| fault.to_string())?;
+        text(&bytes)
     }
 }
 
@@ -54,6 +59,8 @@ type Answer<'py> =
 #[pyclass(frozen, name = "SketchSession", module = "moldloft._core")]
 pub struct PySketch {
     inner: Arc<Mutex<Session>>,
+    /// True while lines of a file are run.
+    confined: Arc<AtomicBool>,
 }
 
 impl PySketch {
@@ -69,7 +76,7 @@ impl PySketch {
         work: impl FnOnce(&mut Session) -> R + Send + 'static,
     ) -> PyResult<R> {
         let inner = self.inner.clone();
-        let never = AtomicBool::new(false);
+        let never = Budget::default();
         interruptible(py, &never, move || {
             work(&mut inner.lock().unwrap_or_else(PoisonError::into_inner))
         })
@@ -114,7 +121,14 @@ impl PySketch {
     #[new]
     fn new(folder: Option<String>) -> Self {
         let folder = folder.as_deref().map(Path::new).map(Path::to_path_buf);
-        Self { inner: Arc::new(Mutex::new(Session::with_files(Box::new(Disk { folder })))) }
+        let confined = Arc::<AtomicBool>::default();
+        let disk = Disk { folder, confined: confined.clone() };
+        Self { inner: Arc::new(Mutex::new(Session::with_files(Box::new(disk)))), confined }
+    }
+
+    /// From now on, lines read files inside of the folder only, as those of a file must, or anywhere.
+    fn confine(&self, on: bool) {
+        self.confined.store(on, Ordering::Relaxed);
     }
 
     fn run_line<'py>(&self, py: Python<'py>, line: String) -> PyResult<Vec<Answer<'py>>> {

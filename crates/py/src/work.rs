@@ -1,5 +1,6 @@
 //! Long work without Python's lock, Ctrl-C, and calls into Python from such work.
 
+use moldloft_budget::{Budget, settle};
 use pyo3::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -18,11 +19,11 @@ const STACK: usize = 8 << 20;
 
 /// Runs `work` on a thread of its own, without Python's lock, and looks out for Ctrl-C.
 ///
-/// After Ctrl-C `cancel` is set, and stays so, and the exception raised. Work that does not look at
+/// After Ctrl-C `budget` is cancelled, and stays so, and the exception raised. Work that does not look at
 /// it goes on unseen until it ends, and calls that need what it holds wait for it.
 pub fn interruptible<R: Send + 'static>(
     py: Python<'_>,
-    cancel: &AtomicBool,
+    budget: &Budget,
     work: impl FnOnce() -> R + Send + 'static,
 ) -> PyResult<R> {
     let slot = Arc::new(Mutex::new(None));
@@ -31,7 +32,8 @@ pub fn interruptible<R: Send + 'static>(
         let made = work();
         *slot.lock().expect("nothing panics while it is locked") = Some(made);
     };
-    unseen(py, cancel, Box::new(run))?;
+    let _timed = budget.timed();
+    unseen(py, budget, Box::new(run))?;
     let made = result.lock().expect("nothing panics while it is locked").take();
     Ok(made.expect("the work has ended without panic"))
 }
@@ -39,13 +41,14 @@ pub fn interruptible<R: Send + 'static>(
 /// [`interruptible`] without the type of its result, so that it is compiled once.
 fn unseen(
     py: Python<'_>,
-    cancel: &AtomicBool,
+    budget: &Budget,
     work: Box<dyn FnOnce() + Send + 'static>,
 ) -> PyResult<()> {
     let (sender, receiver) = mpsc::channel();
     let run = move || {
         // After an interrupt nobody receives; that is not a fault.
         let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
+        settle();
     };
     std::thread::Builder::new().stack_size(STACK).spawn(run)?;
     let receiver = Mutex::new(receiver);
@@ -62,7 +65,7 @@ fn unseen(
             Ok(Err(panic)) => resume_unwind(panic),
             Err(_) => {
                 if let Err(interrupt) = py.check_signals() {
-                    cancel.store(true, Ordering::Relaxed);
+                    budget.cancel();
                     let _ = receive(STOP_TIMEOUT);
                     return Err(interrupt);
                 }
@@ -71,14 +74,14 @@ fn unseen(
     }
 }
 
-/// [`interruptible`] for a flag that later work shares: it is lowered again after an interrupt.
+/// [`interruptible`] for a budget that later work shares: it is resumed after an interrupt.
 pub fn interruptible_shared<R: Send + 'static>(
     py: Python<'_>,
-    cancel: &AtomicBool,
+    budget: &Budget,
     work: impl FnOnce() -> R + Send + 'static,
 ) -> PyResult<R> {
-    let outcome = interruptible(py, cancel, work);
-    cancel.store(false, Ordering::Relaxed);
+    let outcome = interruptible(py, budget, work);
+    budget.resume();
     outcome
 }
 

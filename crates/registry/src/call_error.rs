@@ -1,6 +1,7 @@
 //! Faults of calls: what is wrong, and with which argument.
 
 use crate::Class;
+use moldloft_budget::Spent;
 use moldloft_num::trace::Key;
 
 /// A field of a row: the constants that `#[derive(Kind)]` emits for a struct, `Self::RADIUS` for its field
@@ -39,6 +40,15 @@ pub struct ArgumentPlace {
     pub argument: Argument,
     /// The item of a list argument, from 0.
     pub item: Option<usize>,
+}
+
+impl From<Spent> for CallError {
+    fn from(spent: Spent) -> Self {
+        match spent {
+            Spent::Cancelled => Self::new(spent.id(), "the run was cancelled"),
+            _ => Self::new(spent.id(), spent.to_string()).help(spent.help()),
+        }
+    }
 }
 
 /// Why a call failed: the data of a diagnostic, before it knows its place in the text.

@@ -144,16 +144,22 @@ pub struct SurfaceRef<T: Real> {
 pub trait Implicit<T: Real>: Field<T> + Any {
     /// True when both are the same expression of the same bits under the same names.
     fn alike(&self, o: &Self) -> bool;
+    /// A number by which those that are not alike mostly differ.
+    fn fingerprint(&self) -> u64;
 }
 
 /// An [`Implicit`] whose type was forgotten.
 trait Erased<T: Real>: Field<T> + Any {
     fn alike_any(&self, o: &dyn Any) -> bool;
+    fn print(&self) -> u64;
 }
 
 impl<T: Real, P: Implicit<T>> Erased<T> for P {
     fn alike_any(&self, o: &dyn Any) -> bool {
         o.downcast_ref::<P>().is_some_and(|o| self.alike(o))
+    }
+    fn print(&self) -> u64 {
+        self.fingerprint()
     }
 }
 
@@ -339,6 +345,11 @@ macro_rules! implicit_ref {
             pub fn get<P: Implicit<T>>(&self) -> Option<&P> {
                 let any: &dyn Any = &*self.shape;
                 any.downcast_ref()
+            }
+
+            /// See [`Implicit::fingerprint`].
+            pub fn fingerprint(&self) -> u64 {
+                self.shape.print()
             }
         }
 

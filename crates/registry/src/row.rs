@@ -2,9 +2,9 @@
 
 use crate::{CallError, Class, FieldId, FromValue, Kept, Value};
 use indexmap::IndexMap;
+use moldloft_budget::Budget;
 use moldloft_num::{Dual4, Real};
 use std::borrow::Cow;
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The tolerance of a model that states none, in its unit.
@@ -48,8 +48,8 @@ pub struct Context {
     pub tolerance: f64,
     /// How deep shapes are nested in the arguments.
     pub nesting: u32,
-    /// Set to true from elsewhere to end long calls.
-    pub cancel: Arc<AtomicBool>,
+    /// What calls may use; from elsewhere it ends long ones.
+    pub budget: Arc<Budget>,
     /// What calls keep from one to the next.
     pub kept: Kept,
     /// What calls have to say besides their values.
@@ -86,7 +86,7 @@ impl Default for Context {
         Self {
             tolerance: DEFAULT_TOLERANCE,
             nesting: 0,
-            cancel: Arc::default(),
+            budget: Arc::default(),
             kept: Kept::default(),
             remarks: Arc::default(),
         }

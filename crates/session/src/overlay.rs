@@ -1,13 +1,13 @@
 //! Foreign meshes and offsets laid over the model, and how far they are from it.
 
 use crate::frame::Frame;
+use moldloft_budget::Budget;
 use moldloft_document::Document;
 use moldloft_document::searches::{NearestPoints, Searches};
 use moldloft_mesh::{Mesh, is_triangle};
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::Value as Quantity;
 use serde_json::{Value, json};
-use std::sync::atomic::AtomicBool;
 
 /// The most vertices of all overlays.
 const MOST_VERTICES: usize = 2_000_000;
@@ -99,7 +99,7 @@ impl Overlays {
         mirrors: &[usize],
     ) -> Option<Vec<f64>> {
         let mut best: Option<Vec<f64>> = None;
-        let never = AtomicBool::new(false);
+        let never = Budget::default();
         for image in 0..1usize << mirrors.len() {
             let flips = mirrors.iter().enumerate().filter(|(k, _)| image >> k & 1 == 1);
             let flips: Vec<usize> = flips.map(|(_, &axis)| axis).collect();

@@ -8,6 +8,7 @@ use crate::overlay::Overlays;
 use crate::request::{Ask, Request};
 use crate::scene::Scene;
 use crate::text::{byte, changed, difference, unit};
+use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
 use moldloft_document::{CompletionKind, Document, World, registry};
 use moldloft_export::{FORMATS, WriteOptions, format_named, length_unit, write};
@@ -19,7 +20,6 @@ use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The most viewers; the one that was there first is forgotten.
 const MOST_TABS: usize = 64;
@@ -48,7 +48,7 @@ pub struct Session {
     tabs: HashMap<u64, Tab>,
     drag: Option<Drag>,
     overlays: Overlays,
-    cancel: Arc<AtomicBool>,
+    budget: Arc<Budget>,
 }
 
 /// A viewer.
@@ -87,12 +87,12 @@ type Answer = Result<(), Refusal>;
 impl Session {
     /// A session on a text; `name` as for [`Document::from_text`].
     pub fn new(world: Box<dyn World>, name: &str, text: &str) -> Self {
-        Self::watched(world, name, text, Arc::default())
+        Self::within(world, name, text, Arc::default())
     }
 
-    /// As [`Self::new`]; setting `cancel` stops the work that is under way.
-    pub fn watched(world: Box<dyn World>, name: &str, text: &str, cancel: Arc<AtomicBool>) -> Self {
-        let document = Document::watched(registry(), world, (name, text), cancel.clone());
+    /// As [`Self::new`]; `budget` is what its work may use; it cancels what is under way.
+    pub fn within(world: Box<dyn World>, name: &str, text: &str, budget: Arc<Budget>) -> Self {
+        let document = Document::from_text_within(registry(), world, (name, text), budget.clone());
         Self {
             document,
             text: text.into(),
@@ -104,7 +104,7 @@ impl Session {
             tabs: HashMap::new(),
             drag: None,
             overlays: Overlays::default(),
-            cancel,
+            budget,
         }
     }
 
@@ -143,7 +143,7 @@ impl Session {
             self.drawn = None;
             frame
         });
-        self.cancel.store(false, Ordering::Relaxed);
+        self.budget.resume();
         frame.put("id", id);
         frame.put("rev", self.rev);
         frame.put("version", self.version);

@@ -58,12 +58,12 @@ impl Document {
     ) -> Result<Value<T>, Vec<Diagnostic>> {
         let seeded_objects = HashSet::new();
         let no_overrides = IndexMap::new();
-        let cancelled = self.cancel_handle();
+        let budget = self.budget();
         let inputs = Inputs {
             overrides: &no_overrides,
             seed: &|_, x| x,
             seeded_objects: &seeded_objects,
-            cancelled: &cancelled,
+            budget: &budget,
             settings: self.settings,
         };
         let program = Program {

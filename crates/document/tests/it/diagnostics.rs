@@ -390,11 +390,29 @@ fn a_long_session_of_expressions_keeps_no_texts() {
 #[test]
 fn a_cancelled_run_says_so_and_can_be_made_again() {
     let mut document = open("float x = 0; for (i = 1:1e4) x += i; AbsPoint A(x, 0, 0);");
-    let handle = document.cancel_handle();
-    handle.store(true, std::sync::atomic::Ordering::Relaxed);
+    let budget = document.budget();
+    budget.cancel();
     document.run();
     assert_eq!(ids(&document), ["cancelled"]);
-    handle.store(false, std::sync::atomic::Ordering::Relaxed);
+    budget.resume();
     document.run();
     assert_eq!((ids(&document).len(), document.graph().len()), (0, 1));
+}
+
+#[test]
+fn what_a_cancelled_edit_left_is_evaluated_by_the_next() {
+    let text = "param float a = 1; param float b = 1; AbsPoint A(a, 0, 0); RelPoint B(A, b, 0, 0); \
+                AbsPoint C(b, b, b);";
+    let mut document = open(text);
+    let budget = document.budget();
+    budget.cancel();
+    let _ = document.set(&[("a".into(), 5.0)]);
+    assert!(document.diagnostics().iter().any(|d| d.id == "cancelled"));
+    let _ = document.set(&[("a".into(), 7.0)]);
+    budget.resume();
+    // An edit of something else evaluates what was left, too.
+    document.set(&[("b".into(), 2.0)]).unwrap();
+    assert_eq!(ids(&document), Vec::<&str>::new());
+    assert_eq!(crate::common::number(&mut document, "B.x"), 9.0);
+    assert_eq!(crate::common::number(&mut document, "C.y"), 2.0);
 }

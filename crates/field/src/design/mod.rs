@@ -8,8 +8,8 @@ use crate::expr::form::Form;
 use crate::measure::certified::{Effort, certified};
 use crate::query::separation::solid_within;
 use crate::{FieldError, Primitive, Set};
+use moldloft_budget::Budget;
 use moldloft_num::{Box3, Real};
-use std::sync::atomic::AtomicBool;
 
 /// A set as a union of intersections may have this many of these.
 const MOST_PIECES: usize = 64;
@@ -143,7 +143,7 @@ fn parallel<T: Real>(a: &Primitive<T>, b: &Primitive<T>) -> bool {
 fn shows<T: Real>(set: &Set<T>, over: &Option<Box3>) -> bool {
     let Some(over) = over else { return true };
     let size: f64 = (0..3).map(|k| over.high[k] - over.low[k]).product();
-    let found = certified(&set.re(), over, &Effort::of_cells(600), &AtomicBool::new(false));
+    let found = certified(&set.re(), over, &Effort::of_cells(600), &Budget::default());
     found.is_ok_and(|f| f.bracket.volume().high > 1e-12 * size)
 }
 

@@ -7,6 +7,8 @@ use crate::expr::oracle::{Affine, Oracle};
 use crate::expr::tape::Tape;
 use crate::{FieldError, error};
 use moldloft_num::{Box3, Field, Plane, Real, Vec3};
+use rustc_hash::FxHasher;
+use std::hash::{Hash, Hasher};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Arc, OnceLock};
 
@@ -46,6 +48,8 @@ pub(crate) struct Node<T: Real> {
     pub(crate) op: Op<T>,
     form: Form<T>,
     degree: u32,
+    /// By which different expressions mostly differ.
+    pub(crate) fingerprint: u64,
     tape: OnceLock<Arc<Tape<T>>>,
 }
 
@@ -78,6 +82,25 @@ impl<T: Real> Op<T> {
             Op::Binary(_, a, b) => [Some(a), Some(b)],
             _ => [None, None],
         }
+    }
+
+    fn fingerprint(&self) -> u64 {
+        let mut h = FxHasher::default();
+        std::mem::discriminant(self).hash(&mut h);
+        let mut number = |x: T| x.re().to_bits().hash(&mut h);
+        match self {
+            Op::Real(c) | Op::Over(_, c) => number(*c),
+            Op::Plane { normal, offset } => {
+                (0..3).for_each(|k| number(normal[k]));
+                number(*offset);
+            }
+            Op::User { oracle, .. } => Arc::as_ptr(oracle).cast::<()>().hash(&mut h),
+            Op::Unary(f, _) => f.hash(&mut h),
+            Op::Power(_, n) => n.hash(&mut h),
+            Op::Binary(f, ..) => f.hash(&mut h),
+        }
+        self.children().into_iter().flatten().for_each(|c| c.0.fingerprint.hash(&mut h));
+        h.finish()
     }
 
     /// The operands, in order.
@@ -129,7 +152,8 @@ impl<T: Real> Primitive<T> {
             Op::Binary(Binary::Atan2, a, b) => a.degree().max(b.degree()).saturating_add(1),
             Op::Binary(_, a, b) => a.degree().max(b.degree()),
         };
-        Self(Arc::new(Node { op, form, degree, tape: OnceLock::new() }))
+        let fingerprint = op.fingerprint();
+        Self(Arc::new(Node { op, form, degree, fingerprint, tape: OnceLock::new() }))
     }
 
     /// The same function, remembered as `form`.

@@ -4,10 +4,10 @@
 use super::{Facets, Memory, at_step};
 use crate::measure::certified::{Effort, certified};
 use crate::{FieldError, Options, Set};
+use moldloft_budget::Budget;
 use moldloft_mesh::{Mesh, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// A union of more sets than this is taken as one.
 const MOST: usize = 24;
@@ -58,7 +58,7 @@ fn contact<T>(over: &Box3, open: &[(Box3, T)]) -> Option<Vec3> {
 pub(super) fn parted(
     set: &Set,
     over: &Box3,
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> Result<Option<(Vec<Set>, Vec<Vec3>)>, FieldError> {
     let Some(parts) = operands(set) else { return Ok(None) };
     let size: f64 = (0..3).map(|k| over.high[k] - over.low[k]).product();
@@ -70,7 +70,7 @@ pub(super) fn parted(
                 continue;
             }
             let both = &parts[i] & &parts[j];
-            let shared = certified(&both, over, &Effort::of_cells(CELLS), cancel)?;
+            let shared = certified(&both, over, &Effort::of_cells(CELLS), budget)?;
             if shared.bracket.volume().high > SHARED * size {
                 let (a, b) = (group[i].min(group[j]), group[i].max(group[j]));
                 group.iter_mut().filter(|g| **g == b).for_each(|g| *g = a);

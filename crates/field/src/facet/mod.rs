@@ -41,7 +41,6 @@ use moldloft_num::{Box3, Vec3};
 use refine::{Rule, Tapes, refine};
 use smallvec::SmallVec;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use types::Block;
 use types::Reuse;
 pub use types::{Options, Resolution, Unresolved};
@@ -122,7 +121,7 @@ fn capped(set: &Set, over: &Box3) -> Result<Set, FieldError> {
 /// mesh, too.
 ///
 /// # Errors
-/// A box without volume or thinner than its cells, a resolution beyond the limit, a primitive without value, a cancelled call.
+/// A box without volume or thinner than its cells, a resolution beyond the limit, a primitive without value, a budget that is spent.
 ///
 /// # Example
 /// ```
@@ -304,9 +303,7 @@ fn whole(
         }
         if !asked {
             asked = true;
-            let never = AtomicBool::new(false);
-            let cancel = options.cancel.as_deref().unwrap_or(&never);
-            found.parted = contacts::parted(set, over, cancel)?;
+            found.parted = contacts::parted(set, over, &options.budget)?;
             if found.parted.is_some() {
                 let step = found.facets.step;
                 found.facets = found.again(set, over, (step, f64::INFINITY), options, None)?;

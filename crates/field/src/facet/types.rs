@@ -5,11 +5,11 @@ use super::cell::{Case, NONE, case};
 use super::vertex::{Placed, Surfaces};
 use crate::expr::tape::Tape;
 use crate::set::Leaf;
+use moldloft_budget::Budget;
 use moldloft_num::{Box3, Vec3};
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How fine facets are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,18 +33,14 @@ pub struct Options {
     /// Vertices stay on edges and corners even where triangles then cut others: integrals over the body do not
     /// mind, and lose most by edges that are cut off.
     pub sharp: bool,
-    /// Set it to true from elsewhere to stop.
-    pub cancel: Option<Arc<AtomicBool>>,
+    /// What the work may use.
+    pub budget: Arc<Budget>,
 }
 
 impl Options {
     /// Facets of that resolution, at most 20 million cells.
     pub fn new(resolution: Resolution) -> Self {
-        Self { resolution, limit: 2e7, sharp: false, cancel: None }
-    }
-
-    pub(crate) fn cancelled(&self) -> bool {
-        self.cancel.as_ref().is_some_and(|c| c.load(Ordering::Relaxed))
+        Self { resolution, limit: 2e7, sharp: false, budget: Arc::default() }
     }
 }
 

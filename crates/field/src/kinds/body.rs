@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Facets of that resolution, which stop when the model does.
 pub fn options(resolution: Resolution, context: &Context) -> Options {
-    Options { cancel: Some(context.cancel.clone()), ..Options::new(resolution) }
+    Options { budget: context.budget.clone(), ..Options::new(resolution) }
 }
 
 /// The surface of a set as triangles: a mesh like any other.

@@ -36,7 +36,7 @@ fn moments<T: Real>(
 ) -> Result<Moments<T>, FieldError> {
     let measure = Measure {
         agreement: accuracy.map(T::re),
-        cancel: Some(context.cancel.clone()),
+        budget: context.budget.clone(),
         ..Measure::default()
     };
     Ok(mass_of(set, &region.over, region.corners, &measure, &context.kept.of())?.best)

@@ -9,6 +9,9 @@ impl<T: Real> Implicit<T> for Primitive<T> {
     fn alike(&self, o: &Self) -> bool {
         self.same(o)
     }
+    fn fingerprint(&self) -> u64 {
+        self.0.fingerprint
+    }
 }
 
 impl<T: Real> Field<T> for Set<T> {
@@ -29,6 +32,9 @@ impl<T: Real> Field<T> for Set<T> {
 impl<T: Real> Implicit<T> for Set<T> {
     fn alike(&self, o: &Self) -> bool {
         self.same(o)
+    }
+    fn fingerprint(&self) -> u64 {
+        Set::fingerprint(self)
     }
 }
 
@@ -135,9 +141,12 @@ pub fn fault(error: &FieldError) -> CallError {
         FieldError::NoDistance { .. } => "no-distance",
         FieldError::NoEdge { .. } => "no-edge",
         FieldError::Outside => "no-text",
-        FieldError::Cancelled => "cancelled",
+        FieldError::Spent(spent) => spent.id(),
         FieldError::NoValue { .. } => "no-value",
     };
+    if let FieldError::Spent(spent) = error {
+        return (*spent).into();
+    }
     let fault = CallError::new(id, error.to_string());
     match error {
         FieldError::Division => {

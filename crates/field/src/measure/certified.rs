@@ -13,10 +13,10 @@ use crate::expr::tape::{Code, Tape};
 use crate::facet::sheets::solid_part;
 use crate::set::Leaf;
 use crate::{FieldError, Primitive, Set};
+use moldloft_budget::Budget;
 use moldloft_num::{Box3, Real, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How much work integrals may be.
 #[derive(Clone, Copy, Debug)]
@@ -105,7 +105,7 @@ struct Work<'a> {
     about: Vec3,
     /// The depth that all cells are divided to, when there is one.
     last: Option<u32>,
-    cancel: &'a AtomicBool,
+    budget: &'a Budget,
 }
 
 impl Work<'_> {
@@ -231,14 +231,14 @@ pub fn certified(
     set: &Set,
     over: &Box3,
     effort: &Effort,
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> Result<Certified, FieldError> {
     let over = solid_box(*over)?;
     // Sheets have no volume.
     let compiled = solid_part(set).compiled();
     let about = over.centre();
     let last = (effort.accuracy <= 0.0 && effort.depth < ALL).then_some(effort.depth);
-    let work = Work { about, last, cancel };
+    let work = Work { about, last, budget };
     let mut sealed = Moments::zero(about);
     let mut open: Vec<Open> = Vec::new();
     let mut cells = 1;
@@ -250,9 +250,7 @@ pub fn certified(
     let first = work.examined(&compiled.tape, sides(&over), 0, &mut TaylorRoom::default());
     take(first, &mut open);
     loop {
-        if work.cancel.load(Ordering::Relaxed) {
-            return Err(FieldError::Cancelled);
-        }
+        work.budget.poll()?;
         // The widest first; equally wide ones by place.
         let place = |c: &Open| c.sides.map(|s| s.low);
         open.sort_by(|a, b| {

@@ -12,9 +12,9 @@ use crate::facet::sheets::solid_part;
 use crate::facet::types::Flat;
 use crate::facet::{Facets, Options, Resolution};
 use crate::{FieldError, Lifter, Primitive, Set};
+use moldloft_budget::Budget;
 use moldloft_num::{Box3, Real, Vec3};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// Boxes may be halved this often at most.
 const DEEPEST: u32 = 12;
@@ -50,7 +50,7 @@ const USUAL: f64 = 1e-8;
 /// # Ok::<(), moldloft_field::FieldError>(())
 /// ```
 pub fn bracket(set: &Set, over: &Box3, depth: u32) -> Result<Moments<Interval>, FieldError> {
-    Ok(certified(set, over, &effort(depth)?, &AtomicBool::new(false))?.bracket)
+    Ok(certified(set, over, &effort(depth)?, &Budget::default())?.bracket)
 }
 
 fn effort(depth: u32) -> Result<Effort, FieldError> {
@@ -72,8 +72,8 @@ pub struct Measure {
     pub cells: Option<usize>,
     /// How well the volumes of two levels of facets agree; by default to 1e-8 of the box's volume.
     pub agreement: Option<f64>,
-    /// Set it to true from elsewhere to stop.
-    pub cancel: Option<Arc<AtomicBool>>,
+    /// What the work may use.
+    pub budget: Arc<Budget>,
 }
 
 impl Measure {
@@ -119,8 +119,7 @@ pub fn mass_of<T: Real>(
 ) -> Result<Mass<T>, FieldError> {
     let plain = set.re();
     let solid = solid_part(&plain);
-    let never = Arc::new(AtomicBool::new(false));
-    let cancel = measure.cancel.as_ref().unwrap_or(&never);
+    let budget = &measure.budget;
     let wanted = match (measure.depth, measure.accuracy) {
         (_, Some(accuracy)) => {
             let width = 2.0 * crate::error::positive("accuracy", accuracy)?;
@@ -129,7 +128,7 @@ pub fn mass_of<T: Real>(
         (Some(depth), None) => effort(depth)?,
         (None, None) => Effort::of_cells(CHECK),
     };
-    let checked = certified(&solid, over, &wanted, cancel)?;
+    let checked = certified(&solid, over, &wanted, budget)?;
     let width = checked.bracket.volume().width();
     if let Some(accuracy) = measure.accuracy
         && width > 2.0 * accuracy
@@ -160,7 +159,7 @@ pub fn mass_of<T: Real>(
     // What facets do not show.
     let thin = match checked.cells >= THIN {
         true => checked,
-        false => certified(&solid, over, &Effort::of_cells(THIN), cancel)?,
+        false => certified(&solid, over, &Effort::of_cells(THIN), budget)?,
     };
     let bracket = narrower(bracket, &thin);
     Ok(Mass { bracket, best: from_cells(&thin, &bracket) })
@@ -202,7 +201,7 @@ fn by_facets<T: Real>(
     for level in LEVELS[0]..=FINEST {
         let options = Options {
             sharp: true,
-            cancel: measure.cancel.clone(),
+            budget: measure.budget.clone(),
             ..Options::new(Resolution::Level(level))
         };
         let facets = memo.facet(solid, over, &options)?;

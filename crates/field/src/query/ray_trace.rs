@@ -74,7 +74,7 @@ fn clipped(start: Vec3, direction: Vec3, over: &Box3) -> Option<[f64; 2]> {
 /// The picture of a set within a box, whose faces cut it: three bytes a point, row by row from the top.
 ///
 /// # Errors
-/// A box without volume, a view without direction, a cancelled call.
+/// A box without volume, a view without direction, a budget that is spent.
 pub fn ray_trace(
     set: &Set,
     over: &Box3,
@@ -95,7 +95,7 @@ pub fn ray_trace(
         .into_par_iter()
         .map(|row| {
             let mut out = Vec::with_capacity(3 * width);
-            if options.cancelled() {
+            if options.budget.is_spent() {
                 return out;
             }
             for column in 0..width {
@@ -119,9 +119,7 @@ pub fn ray_trace(
             out
         })
         .collect();
-    if options.cancelled() {
-        return Err(FieldError::Cancelled);
-    }
+    options.budget.poll()?;
     Ok(rows.concat())
 }
 

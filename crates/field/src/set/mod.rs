@@ -6,7 +6,9 @@ use crate::expr::primitive::{Binary, Op};
 use crate::expr::tape::{Builder, Code, NO_LEAF, Tape};
 use crate::{Affine, FieldError, Primitive};
 use moldloft_num::{Box3, Real, Vec3};
+use rustc_hash::{FxHashMap, FxHashSet, FxHasher};
 use std::collections::BTreeMap;
+use std::hash::{Hash, Hasher};
 use std::ops::{BitAnd, BitOr, BitXor, Neg, Sub};
 use std::sync::Arc;
 
@@ -68,6 +70,8 @@ struct Node<T: Real> {
     kind: Kind<T>,
     /// Two operands of unions and intersections.
     operands: Vec<Set<T>>,
+    /// By which different sets mostly differ; attributes do not count.
+    fingerprint: u64,
 }
 
 impl<T: Real> Drop for Node<T> {
@@ -125,13 +129,25 @@ pub struct Leaf<T: Real = f64> {
 pub(crate) struct Compiled<T: Real> {
     pub(crate) tape: Arc<Tape<T>>,
     pub(crate) leaves: Vec<Leaf<T>>,
-    /// The number of the leaf at every place of the tree, in order.
+    /// The number of the leaf at every place of the tree, in order; those of a part that occurs many times once.
     pub(crate) places: Vec<u32>,
 }
 
 impl<T: Real> Set<T> {
     fn of(kind: Kind<T>, operands: Vec<Set<T>>) -> Self {
-        Self { node: Arc::new(Node { kind, operands }), attributes: None }
+        let mut h = FxHasher::default();
+        std::mem::discriminant(&kind).hash(&mut h);
+        if let Kind::Leaf(p) = &kind {
+            p.0.fingerprint.hash(&mut h);
+        }
+        operands.iter().for_each(|o| o.node.fingerprint.hash(&mut h));
+        let fingerprint = h.finish();
+        Self { node: Arc::new(Node { kind, operands, fingerprint }), attributes: None }
+    }
+
+    /// A number by which different sets mostly differ.
+    pub(crate) fn fingerprint(&self) -> u64 {
+        self.node.fingerprint
     }
 
     /// All of space.
@@ -341,10 +357,7 @@ impl<T: Real> Set<T> {
         let (a, b) = (self.compiled(), o.compiled());
         let said =
             |c: &Compiled<T>| c.leaves.iter().map(|l| l.attributes.clone()).collect::<Vec<_>>();
-        a.places == b.places
-            && a.tape.leaf == b.tape.leaf
-            && a.tape.same(&b.tape)
-            && said(&a) == said(&b)
+        a.tape.leaf == b.tape.leaf && a.tape.same(&b.tape) && said(&a) == said(&b)
     }
 
     /// What this handle says of the set.
@@ -389,7 +402,7 @@ impl<T: Real> Set<T> {
         }
     }
 
-    /// The set rebuilt from its leaves, each handle's attributes kept.
+    /// The set rebuilt from its leaves, each handle's attributes kept; what is shared stays shared.
     fn rebuilt<S: Real>(
         &self,
         leaf: &dyn Fn(&Primitive<T>) -> Set<S>,
@@ -397,8 +410,13 @@ impl<T: Real> Set<T> {
         combine: &dyn Fn(bool, Set<S>, Set<S>) -> Set<S>,
     ) -> Set<S> {
         let mut out: Vec<Set<S>> = Vec::new();
+        let mut known: FxHashMap<_, Set<S>> = FxHashMap::default();
         let mut stack = vec![(self, false)];
         while let Some((set, ready)) = stack.pop() {
+            if let Some(made) = known.get(&set.identity()) {
+                out.push(made.clone());
+                continue;
+            }
             let made = match (&set.node.kind, ready) {
                 (Kind::Everything, _) if turned => Set::nothing(),
                 (Kind::Nothing, _) if turned => Set::everything(),
@@ -416,10 +434,12 @@ impl<T: Real> Set<T> {
                     combine(matches!(kind, Kind::Union) != turned, left, right)
                 }
             };
-            out.push(match &set.attributes {
+            let made = match &set.attributes {
                 Some(a) => made.with((**a).clone()),
                 None => made,
-            });
+            };
+            known.insert(set.identity(), made.clone());
+            out.push(made);
         }
         out.pop().unwrap_or_else(Set::nothing)
     }
@@ -441,7 +461,8 @@ impl<T: Real> Set<T> {
         self.rebuilt(&|p| Self::of(Kind::Leaf(-p), Vec::new()), true, &Self::combined)
     }
 
-    /// What `leaf` makes of the primitives, joined up the tree: unions with `true`.
+    /// What `leaf` makes of the primitives, joined up the tree: unions with `true`. A part that occurs many times is
+    /// joined once.
     pub(crate) fn folded<R: Clone>(
         &self,
         leaf: &dyn Fn(&Primitive<T>) -> R,
@@ -450,8 +471,13 @@ impl<T: Real> Set<T> {
         join: &dyn Fn(bool, R, R) -> R,
     ) -> R {
         let mut out: Vec<R> = Vec::new();
+        let mut known: FxHashMap<*const Node<T>, R> = FxHashMap::default();
         let mut stack = vec![(self, false)];
         while let Some((set, ready)) = stack.pop() {
+            if let Some(made) = known.get(&Arc::as_ptr(&set.node)) {
+                out.push(made.clone());
+                continue;
+            }
             let made = match (&set.node.kind, ready) {
                 (Kind::Everything, _) => everything.clone(),
                 (Kind::Nothing, _) => nothing.clone(),
@@ -467,6 +493,9 @@ impl<T: Real> Set<T> {
                     join(matches!(kind, Kind::Union), a, b)
                 }
             };
+            if Arc::strong_count(&set.node) > 1 {
+                known.insert(Arc::as_ptr(&set.node), made.clone());
+            }
             out.push(made);
         }
         out.pop().unwrap_or(nothing)
@@ -532,14 +561,9 @@ impl<T: Real> Set<T> {
         self.compiled().leaves
     }
 
-    /// How many leaves the tree has.
+    /// How many leaves the tree has, those of a part as often as it occurs; at most `usize::MAX`.
     pub fn contents(&self) -> usize {
-        let (mut count, mut stack) = (0, vec![self]);
-        while let Some(set) = stack.pop() {
-            count += usize::from(matches!(set.node.kind, Kind::Leaf(_)));
-            stack.extend(&set.node.operands);
-        }
-        count
+        self.folded(&|_| 1, 0, 0, &|_, a: usize, b| a.saturating_add(b))
     }
 
     /// The highest degree of its primitives.
@@ -547,12 +571,15 @@ impl<T: Real> Set<T> {
         self.leaves().iter().map(|leaf| leaf.primitive.degree()).max().unwrap_or(0)
     }
 
-    /// The primitive at every place of the tree, in order.
+    /// The primitives of its leaves in order; those of a part that occurs many times once.
     pub(crate) fn traversal(&self) -> Vec<Primitive<T>> {
         let (mut out, mut stack) = (Vec::new(), vec![self]);
+        let mut seen: FxHashSet<*const Node<T>> = FxHashSet::default();
         while let Some(set) = stack.pop() {
-            out.extend(set.primitive().cloned());
-            stack.extend(set.node.operands.iter().rev());
+            if seen.insert(Arc::as_ptr(&set.node)) {
+                out.extend(set.primitive().cloned());
+                stack.extend(set.node.operands.iter().rev());
+            }
         }
         out
     }
@@ -562,13 +589,26 @@ impl<T: Real> Set<T> {
         let mut leaves: Vec<Leaf<T>> = Vec::new();
         let mut values: Vec<u32> = Vec::new();
         let mut places = Vec::new();
+        // A node under the same attributes has one value, and attributes under the same outer ones are the same.
+        let mut known: FxHashMap<(*const Node<T>, *const Attributes), u32> = FxHashMap::default();
+        type Inherited = FxHashMap<(*const Attributes, *const Attributes), Arc<Attributes>>;
+        let mut inherited = Inherited::default();
         let none = Arc::new(Attributes::default());
         let mut stack = vec![(self, false, none)];
         while let Some((set, ready, outer)) = stack.pop() {
             let here = match &set.attributes {
-                Some(own) => Arc::new(own.or(&outer)),
+                _ if ready => outer,
+                Some(own) => inherited
+                    .entry((Arc::as_ptr(own), Arc::as_ptr(&outer)))
+                    .or_insert_with(|| Arc::new(own.or(&outer)))
+                    .clone(),
                 None => outer,
             };
+            let key = (Arc::as_ptr(&set.node), Arc::as_ptr(&here));
+            if let Some(&at) = known.get(&key) {
+                values.push(at);
+                continue;
+            }
             let at = match (&set.node.kind, ready) {
                 // The ranges that svLis gives to the two constant sets.
                 (Kind::Everything, _) => builder.push(Code::Real(T::from(-1.0))),
@@ -596,6 +636,7 @@ impl<T: Real> Set<T> {
                     })
                 }
             };
+            known.insert(key, at);
             values.push(at);
         }
         let root = values.pop().unwrap_or(0);
@@ -626,38 +667,20 @@ impl<T: Real> Set<T> {
     /// As [`Set::member`] for a point that is known to lie on the surfaces of some primitives,
     /// whatever rounding says.
     pub fn member_knowing(&self, p: Vec3<T>, tolerance: f64, known: &[Primitive<T>]) -> Membership {
-        let mut out: Vec<Membership> = Vec::new();
-        let mut stack = vec![(self, false)];
-        while let Some((set, ready)) = stack.pop() {
-            let class = match (&set.node.kind, ready) {
-                (Kind::Everything, _) => Membership::Solid,
-                (Kind::Nothing, _) => Membership::Air,
-                (Kind::Leaf(f), _) => {
-                    let g = f.gradient(p);
-                    let near = g.value.re().abs() <= tolerance * g.slope.re().norm();
-                    let told = || known.iter().any(|k| k.same(f) || (-k).same(f));
-                    if g.value.re() == 0.0 || near || told() {
-                        Membership::Surface
-                    } else if g.value.re() < 0.0 {
-                        Membership::Solid
-                    } else {
-                        Membership::Air
-                    }
-                }
-                (_, false) => {
-                    stack.push((set, true));
-                    stack.extend(set.node.operands.iter().rev().map(|o| (o, false)));
-                    continue;
-                }
-                (kind, true) => {
-                    let b = out.pop().unwrap_or(Membership::Air);
-                    let a = out.pop().unwrap_or(Membership::Air);
-                    if matches!(kind, Kind::Union) { a.min(b) } else { a.max(b) }
-                }
-            };
-            out.push(class);
-        }
-        out.pop().unwrap_or(Membership::Air)
+        let leaf = |f: &Primitive<T>| {
+            let g = f.gradient(p);
+            let near = g.value.re().abs() <= tolerance * g.slope.re().norm();
+            let given = || known.iter().any(|k| k.same(f) || (-k).same(f));
+            if g.value.re() == 0.0 || near || given() {
+                Membership::Surface
+            } else if g.value.re() < 0.0 {
+                Membership::Solid
+            } else {
+                Membership::Air
+            }
+        };
+        let join = |union: bool, a: Membership, b| if union { a.min(b) } else { a.max(b) };
+        self.folded(&leaf, Membership::Solid, Membership::Air, &join)
     }
 }
 

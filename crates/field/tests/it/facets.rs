@@ -6,8 +6,6 @@ use moldloft_field::{
 };
 use moldloft_num::{Box3, Vec3};
 use std::f64::consts::PI;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 #[test]
 fn closed_forms_converge_at_second_order() {
@@ -200,8 +198,9 @@ fn bad_requests_are_refused() {
     assert!(matches!(facet(&ball, &cube(2.0), &at_depth(30)), Err(FieldError::TooFine { .. })));
     let zero = Options::new(Resolution::Accuracy(0.0));
     assert!(matches!(facet(&ball, &cube(2.0), &zero), Err(FieldError::NotPositive { .. })));
-    let stopped = Options { cancel: Some(Arc::new(AtomicBool::new(true))), ..at_depth(5) };
-    assert_eq!(facet(&ball, &cube(2.0), &stopped).unwrap_err(), FieldError::Cancelled);
+    let stopped = at_depth(5);
+    stopped.budget.cancel();
+    assert_eq!(facet(&ball, &cube(2.0), &stopped).unwrap_err().to_string(), "cancelled");
     let nan = Set::new(&(Primitive::axes()[0].clone() * f64::NAN));
     assert!(matches!(facet(&nan, &cube(2.0), &at_depth(3)), Err(FieldError::NoValue { .. })));
 }

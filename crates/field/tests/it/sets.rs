@@ -155,3 +155,42 @@ fn long_chains_neither_overflow_nor_crawl() {
     assert_eq!(s.complement().contents(), 100_001);
     assert_eq!(s.leaves().len(), 1);
 }
+
+/// Sets that double at each turn share their parts: everything that is asked of them takes as long as they have parts,
+/// not as their trees have leaves (2^60 here).
+#[test]
+fn what_is_shared_is_looked_at_once() {
+    let mut same = ball(0.0, 1.0);
+    let (mut shared, mut plain) = (ball(0.0, 0.7), ball(0.0, 0.7));
+    for k in 1..=60 {
+        let at = f64::from(k) / 60.0;
+        let (a, b) = (ball(at, 0.9), ball(-at, 0.8 + 0.2 * at));
+        // A & (A | B) = A, and (A | B) & (A | C) = A | (B & C).
+        same = &same & &(&same | &a);
+        shared = (&shared | &a) & (&shared | &b);
+        plain = &plain | &(&a & &b);
+    }
+    assert_eq!(shared.contents(), usize::MAX);
+    assert_eq!(shared.leaves().len(), 121);
+    assert_eq!(same.leaves().len(), 61);
+    let by_points: Vec<Vec3> = points().collect();
+    let values = |s: &Set| {
+        let mut out = vec![0.0; by_points.len()];
+        s.values(&by_points, &mut out);
+        out
+    };
+    assert_eq!(values(&same), values(&ball(0.0, 1.0)));
+    assert_eq!(values(&shared), values(&plain));
+    for p in points() {
+        assert_eq!(shared.member(p, 0.0), plain.member(p, 0.0));
+        assert_eq!((-&shared).value(p), -plain.value(p));
+        assert_eq!(shared.regularized().value(p), plain.value(p));
+    }
+    let over = Box3 { low: v(-0.2, 0.5, 0.5), high: v(0.2, 0.9, 0.9) };
+    let pruned = shared.pruned(&over);
+    let held = |p: &Vec3| (0..3).all(|k| over.low[k] <= p[k] && p[k] <= over.high[k]);
+    assert!(points().filter(held).all(|p| pruned.value(p) == plain.value(p)));
+    // Names reach shared parts as they reach others.
+    let named = (&same | &ball(5.0, 1.0)).named("whole");
+    assert!(named.leaves().iter().all(|l| l.attributes.name.as_deref() == Some("whole")));
+}

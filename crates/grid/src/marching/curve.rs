@@ -6,8 +6,8 @@ use super::outcome::{MarchFailure, Marched};
 use super::report::{self, Worst};
 use super::settings::{Hyperbolic, Side};
 use crate::{GridError, SurfaceGrid};
+use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
-use std::sync::atomic::AtomicBool;
 
 /// A surface that a grid stays on while it is marched.
 pub trait Support<T: Real>: Sync {
@@ -37,19 +37,19 @@ pub fn hyperbolic_curve<T: Real>(
     options: &Hyperbolic<T>,
 ) -> Result<Marched<T>, GridError> {
     let unit = normal.normalized().ok_or(GridError::NoNormal { at: [1, 1] })?;
-    hyperbolic_curve_until(curve, &Plane { normal: unit }, options, &AtomicBool::new(false))
+    hyperbolic_curve_until(curve, &Plane { normal: unit }, options, &Budget::default())
 }
 
 /// As [`hyperbolic_curve`], in a plane or on any other support, to the left as seen against its normal; ends when
-/// `cancel` is set.
+/// `budget` is spent.
 ///
 /// # Errors
-/// Also [`GridError::Cancelled`].
+/// Also [`GridError::Spent`].
 pub fn hyperbolic_curve_until<T: Real>(
     curve: &[Vec3<T>],
     support: &dyn Support<T>,
     options: &Hyperbolic<T>,
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> Result<Marched<T>, GridError> {
     let n = curve.len();
     if n < 3 {
@@ -70,7 +70,7 @@ pub fn hyperbolic_curve_until<T: Real>(
     }
     let ends = [options.sides[0], options.sides[1]];
     let front = CurveFront { wall, support, closed, ends };
-    let outcome = front::march(&front, options, cancel)?;
+    let outcome = front::march(&front, options, budget)?;
     let angles = front.wall_angles(&outcome.layers);
     let (layers, report) = report::settled(&front, options, outcome, angles)?;
     let seam = usize::from(closed);
@@ -255,7 +255,7 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
         edges.sum::<f64>() / count as f64
     }
 
-    fn step(&self, step: Step<'_, T>, _: &AtomicBool) -> Vec<Vec3<T>> {
+    fn step(&self, step: Step<'_, T>, _: &Budget) -> Vec<Vec3<T>> {
         let Step { r, before, d, s, last, smoothed: state, cap, dissipation, first } = step;
         let n = r.len();
         let half = T::from(0.5);

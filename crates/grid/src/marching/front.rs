@@ -4,8 +4,8 @@ use super::outcome::{FailureCause, MarchFailure};
 use super::report::Worst;
 use super::settings::Hyperbolic;
 use crate::GridError;
+use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// One step of a march.
 pub(super) struct Step<'a, T> {
@@ -36,7 +36,7 @@ pub(super) trait Front<T: Real> {
     /// The mean length of the edges.
     fn mean_edge(&self, r: &[Vec3<T>]) -> f64;
     /// The points after a step.
-    fn step(&self, step: Step<'_, T>, cancel: &AtomicBool) -> Vec<Vec3<T>>;
+    fn step(&self, step: Step<'_, T>, budget: &Budget) -> Vec<Vec3<T>>;
     /// The least scaled Jacobian, and its cell, between two layers.
     fn worst_cell(&self, below: &[Vec3<T>], above: &[Vec3<T>]) -> Worst;
     /// The indices, from 1, of a node or cell.
@@ -73,11 +73,11 @@ pub(super) struct Outcome<T> {
 pub(super) fn march<T: Real>(
     front: &impl Front<T>,
     options: &Hyperbolic<T>,
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> Result<Outcome<T>, GridError> {
     let mut farthest: Option<Outcome<T>> = None;
     for (k, (cap, dissipation)) in LADDER.into_iter().enumerate() {
-        let mut outcome = attempt(front, options, cap, dissipation * options.smoothing, cancel)?;
+        let mut outcome = attempt(front, options, cap, dissipation * options.smoothing, budget)?;
         outcome.rung = k + 1;
         let first_fails = matches!(
             outcome.failure,
@@ -98,7 +98,7 @@ fn attempt<T: Real>(
     options: &Hyperbolic<T>,
     cap: Option<f64>,
     dissipation: f64,
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> Result<Outcome<T>, GridError> {
     let heights = &options.heights;
     let mut outcome =
@@ -137,9 +137,7 @@ fn attempt<T: Real>(
         }
         let mut done = T::zero();
         while done.re() < target.re() * (1.0 - 1e-12) {
-            if cancel.load(Ordering::Relaxed) {
-                return Err(GridError::Cancelled);
-            }
+            budget.poll()?;
             let rest = target - done;
             let reached = heights[k - 1] + done;
             let (edge, node) = front.shortest_edge(&r);
@@ -169,10 +167,8 @@ fn attempt<T: Real>(
                 dissipation,
                 first: reached.re() == 0.0,
             };
-            let next = front.step(step, cancel);
-            if cancel.load(Ordering::Relaxed) {
-                return Err(GridError::Cancelled);
-            }
+            let next = front.step(step, budget);
+            budget.poll()?;
             if let Some(node) = next.iter().position(|p| !p.re().is_finite()) {
                 outcome.failure = Some(failure(node, FailureCause::NotFinite));
                 return Ok(outcome);

@@ -7,9 +7,9 @@ use super::outcome::{MarchFailure, Marched};
 use super::report::{self, Worst};
 use super::settings::{Hyperbolic, Side};
 use crate::{GridError, SurfaceGrid};
+use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The layers of a grid marched off a surface, along its normals s_i x s_j: the surface first.
 ///
@@ -26,17 +26,17 @@ pub fn hyperbolic<T: Real>(
     surface: &SurfaceGrid<T>,
     options: &Hyperbolic<T>,
 ) -> Result<Marched<T>, GridError> {
-    hyperbolic_until(surface, options, &AtomicBool::new(false))
+    hyperbolic_until(surface, options, &Budget::default())
 }
 
-/// As [`hyperbolic`]; ends when `cancel` is set.
+/// As [`hyperbolic`]; ends when `budget` is spent.
 ///
 /// # Errors
-/// Also [`GridError::Cancelled`].
+/// Also [`GridError::Spent`].
 pub fn hyperbolic_until<T: Real>(
     surface: &SurfaceGrid<T>,
     options: &Hyperbolic<T>,
-    cancel: &AtomicBool,
+    budget: &Budget,
 ) -> Result<Marched<T>, GridError> {
     surface.check_count(3)?;
     surface.check_finite()?;
@@ -63,7 +63,7 @@ pub fn hyperbolic_until<T: Real>(
     let wall = (0..size[0] * size[1]).map(|k| surface.at(k / size[1], k % size[1])).collect();
     let front = SurfaceFront { wall, size, closed, sides };
     front.check_normals()?;
-    let outcome = front::march(&front, options, cancel)?;
+    let outcome = front::march(&front, options, budget)?;
     let angles = front.wall_angles(&outcome.layers);
     let (layers, report) = report::settled(&front, options, outcome, angles)?;
     let whole = |layer: Vec<Vec3<T>>| {
@@ -396,7 +396,7 @@ impl<T: Real> Front<T> for SurfaceFront<T> {
         sum / f64::from(edges)
     }
 
-    fn step(&self, step: Step<'_, T>, cancel: &AtomicBool) -> Vec<Vec3<T>> {
+    fn step(&self, step: Step<'_, T>, budget: &Budget) -> Vec<Vec3<T>> {
         let Step { r, before, d, s, last, smoothed: state, cap, dissipation, first } = step;
         let nodes = self.nodes(r);
         let count = r.len();
@@ -468,7 +468,7 @@ impl<T: Real> Front<T> for SurfaceFront<T> {
         let mut moved: Vec<Vec3<T>> = equations.iter().map(|e| e.right).collect();
         self.lead_poles(d, &mut moved);
         for axis in [1, 0] {
-            moved = self.solved(axis, &equations, moved, cancel);
+            moved = self.solved(axis, &equations, moved, budget);
         }
         self.lead_poles(d, &mut moved);
         let mut next: Vec<Vec3<T>> = r.iter().zip(&moved).map(|(p, d)| *p + *d).collect();
@@ -580,11 +580,11 @@ impl<T: Real> SurfaceFront<T> {
         axis: usize,
         equations: &[Equation<T>],
         right: Vec<Vec3<T>>,
-        cancel: &AtomicBool,
+        budget: &Budget,
     ) -> Vec<Vec3<T>> {
         let (count, lines) = (self.size[axis], self.size[1 - axis]);
         let solve = |line: usize| -> Vec<Vec3<T>> {
-            if cancel.load(Ordering::Relaxed) {
+            if budget.is_spent() {
                 return vec![Vec3::zero(); count];
             }
             let mut system = System::unit(count);

@@ -1,10 +1,10 @@
 //! Grids marched off curves and surfaces, measured by the tests' own code.
 
 use crate::walls::{self, Wall, geometric};
+use moldloft_budget::{Budget, Spent};
 use moldloft_grid::*;
 use moldloft_num::{Dual4, Real, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::atomic::AtomicBool;
 
 const UP: Vec3 = Vec3 { x: 0.0, y: 0.0, z: 1.0 };
 
@@ -465,12 +465,13 @@ fn refusals_name_the_place() {
         }
     }
     let line = walls::corner(135.0, 21, None);
-    let set = AtomicBool::new(true);
+    let set = Budget::default();
+    set.cancel();
     let error =
         hyperbolic_curve_until(&line, &Flat, &Hyperbolic::new(even(9, 0.5)), &set).unwrap_err();
-    assert_eq!(error, GridError::Cancelled);
+    assert_eq!(error, GridError::Spent(Spent::Cancelled));
     let error = hyperbolic_until(&bent(90.0), &Hyperbolic::new(even(9, 0.3)), &set).unwrap_err();
-    assert_eq!(error, GridError::Cancelled);
+    assert_eq!(error, GridError::Spent(Spent::Cancelled));
 }
 
 #[test]
@@ -500,7 +501,7 @@ fn collars_stay_on_their_surface() {
         }
     }
     let error = |n: usize| {
-        let (a, cancel) = (0.5f64, AtomicBool::new(false));
+        let (a, cancel) = (0.5f64, Budget::default());
         let points = walls::round(n, |b| [a.sin() * b.cos(), a.sin() * b.sin()]);
         let points: Vec<Vec3> = points.iter().map(|p| Vec3::of(p.x, p.y, a.cos())).collect();
         let options = Hyperbolic::new(geometric(0.8, 0.01, 25)).with_sides([Side::Periodic; 4]);

@@ -1,10 +1,10 @@
 //! Volume grids: joined meshes, the figures of checkMesh, elliptic smoothing.
 
 use crate::walls::geometric;
+use moldloft_budget::{Budget, Spent};
 use moldloft_grid::*;
 use moldloft_num::Vec3;
 use std::f64::consts::PI;
-use std::sync::atomic::AtomicBool;
 
 fn cubes(count: usize, move_to: &[([usize; 3], [f64; 3])]) -> HexMesh {
     let mut grid = VolumeGrid::<f64>::from_fn([count + 1, 2, 2], |i, j, k| {
@@ -119,7 +119,7 @@ fn volume_walls_are_met() {
         omega: 1.0,
         walls: vec![wall],
     };
-    let free = AtomicBool::new(false);
+    let free = Budget::default();
     let done = elliptic_volume_until(&start, &options, &free).unwrap();
     println!("{} sweeps, {:?}, {}", done.sweeps, done.walls, done.jacobian);
     assert!(done.converged && done.jacobian > 0.85);
@@ -140,8 +140,12 @@ fn volume_walls_are_met() {
     options.sweeps = 20;
     let plain = elliptic_volume_until(&start, &options, &free).unwrap();
     assert!(!plain.converged || plain.sweeps <= 20);
-    let set = AtomicBool::new(true);
-    assert_eq!(elliptic_volume_until(&start, &options, &set).unwrap_err(), GridError::Cancelled);
+    let set = Budget::default();
+    set.cancel();
+    assert_eq!(
+        elliptic_volume_until(&start, &options, &set).unwrap_err(),
+        GridError::Spent(Spent::Cancelled)
+    );
 }
 
 /// A shell between spheres, r = 2^s along radial lines: a solution of the equations without controls, approached at
@@ -167,7 +171,7 @@ fn shells_converge_at_second_order() {
             omega: 1.3,
             walls: vec![],
         };
-        let done = elliptic_volume_until(&start, &options, &AtomicBool::new(false)).unwrap();
+        let done = elliptic_volume_until(&start, &options, &Budget::default()).unwrap();
         assert!(done.converged);
         done.grid.points().zip(exact.points()).map(|(p, q)| p.distance(q)).fold(0.0, f64::max)
     };

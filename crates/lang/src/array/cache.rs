@@ -68,7 +68,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     /// A recording that begins here.
     pub fn recorder(&self) -> Recorder<T> {
-        Recorder::new(self.budget.depth)
+        Recorder::new(self.usage.depth)
     }
 
     /// Keeps what was recorded, or gives the expression up.
@@ -105,7 +105,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn follow(&mut self, m: &Module, key: Key, recipe: &mut Recipe<T>) -> Outcome<T> {
         let Recipe { entries, functions, exponents, depth, tape, calls, lanes, values, .. } =
             recipe;
-        let base = self.budget.depth;
+        let base = self.usage.depth;
         let hidden = functions.iter().any(|symbol| self.hides_function(m, *symbol));
         if hidden || base + *depth >= DEEPEST {
             return Outcome::Misfit(Vec::new());
@@ -128,9 +128,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     let value = match self.variable(m, expr) {
                         Some(value) => Ok(value),
                         None => {
-                            self.budget.depth = base + depth;
+                            self.usage.depth = base + depth;
                             let value = self.expr(m, expr);
-                            self.budget.depth = base;
+                            self.usage.depth = base;
                             value
                         }
                     };

@@ -139,7 +139,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         };
         let kind = Kind::of(&value).filter(|_| !object);
-        let depth = self.budget.depth;
+        let depth = self.usage.depth;
         let cell = work.noted(|r| r.leaf(m, (id, read), depth, kind));
         Ok(Operand::Value(value, cell))
     }
@@ -194,10 +194,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !self.deeper(expr.span) {
             return Err(silent());
         }
-        let depth = self.budget.depth;
+        let depth = self.usage.depth;
         work.noting(|r| r.at_depth(depth));
         let operand = self.operator(m, expr.kind, expr.span, work);
-        self.budget.depth -= 1;
+        self.usage.depth -= 1;
         operand.map_err(|d| d.or_at(expr.span))
     }
 

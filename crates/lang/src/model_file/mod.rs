@@ -26,6 +26,7 @@ use crate::source::module::Modules;
 use crate::value::number_path::{self, NumberPath};
 use divisions::{Part, divisions, is_pair};
 use indexmap::IndexMap;
+use moldloft_budget::Budget;
 use moldloft_diag::{Diagnostic, FileId, Sources, Span};
 use moldloft_model::{Applied, Declaration, Extent, Object, Run};
 use moldloft_num::trace::Key;
@@ -38,7 +39,6 @@ use moldloft_syntax::model_file::{
 use names::{degrees, is_layer, is_real, our_word, system_name, words};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// More diagnostics of one run than this are counted, not listed.
 const MOST_DIAGNOSTICS: usize = 100;
@@ -176,9 +176,11 @@ impl ModelFileSource {
                 }
             }
             for (k, &at) in order.iter().enumerate() {
-                if k % 1024 == 0 && producer.inputs.cancelled.load(Ordering::Relaxed) {
+                if k % 1024 == 0
+                    && let Err(spent) = producer.inputs.budget.poll()
+                {
                     producer.env.stopped = true;
-                    producer.root(vec![Diagnostic::error("cancelled", "the run was cancelled")]);
+                    producer.root(vec![crate::run::usage::spent(spent)]);
                     break;
                 }
                 if producer.outcomes[at].is_none() {
@@ -978,7 +980,7 @@ pub fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, 
         overrides: &IndexMap::new(),
         seed: &|_, x| x,
         seeded_objects: &HashSet::new(),
-        cancelled: &AtomicBool::new(false),
+        budget: &Budget::default(),
         settings: Settings::default(),
     };
     source.run(host, &mut evaluation, inputs, &mut found);

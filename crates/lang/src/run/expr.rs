@@ -35,7 +35,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     return Err(silent());
                 }
                 let value = self.compound(m, id, expr.kind, expr.span);
-                self.budget.depth -= 1;
+                self.usage.depth -= 1;
                 let value = value.map_err(|d| d.or_at(expr.span))?;
                 self.charge(&value, expr.span)?;
                 Ok(value)

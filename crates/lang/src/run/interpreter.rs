@@ -2,8 +2,8 @@
 
 use crate::array::machine::ArrayMachine;
 use crate::array::recipe::Key as ExprKey;
-use crate::run::budget::Budget;
 use crate::run::read_log::ReadLog;
+use crate::run::usage::{self, Usage};
 use crate::source::env::{Environment, Param, Seed};
 use crate::source::module::{Loader, Module, Modules, Name, RoutineAt};
 use crate::source::scope::{Binding, Bound};
@@ -12,6 +12,7 @@ use crate::value::subarray::Place;
 use crate::value::variables::Called as _;
 use crate::value::variables::{self, Taken};
 use indexmap::IndexMap;
+use moldloft_budget::{Budget, Limits};
 use moldloft_diag::{Diagnostic, Span, nearest};
 use moldloft_model::{Extent, Run};
 use moldloft_num::trace::Key;
@@ -22,10 +23,6 @@ use moldloft_syntax::sdl::{
 };
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// The most statements and calls of a run.
-pub const MOST_STEPS: u64 = 20_000_000;
 
 /// The most errors of a run; hints that take a search go with the first of them only.
 const MOST_ERRORS: usize = 1_000;
@@ -55,8 +52,8 @@ pub struct Inputs<'a, T: Scalar> {
     pub seed: Seed<'a, T>,
     /// Objects with seeded literals, by name.
     pub seeded_objects: &'a HashSet<String>,
-    /// Set from outside to stop the run.
-    pub cancelled: &'a AtomicBool,
+    /// What the run may use; from outside it ends the run.
+    pub budget: &'a Budget,
     /// How the host wants the program run.
     pub settings: Settings,
 }
@@ -74,8 +71,8 @@ pub struct Settings {
 impl<'a, T: Scalar> Inputs<'a, T> {
     /// The same once more.
     pub fn again(&self) -> Inputs<'a, T> {
-        let &Inputs { overrides, seed, seeded_objects, cancelled, settings } = self;
-        Inputs { overrides, seed, seeded_objects, cancelled, settings }
+        let &Inputs { overrides, seed, seeded_objects, budget, settings } = self;
+        Inputs { overrides, seed, seeded_objects, budget, settings }
     }
 }
 
@@ -95,7 +92,9 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub run: &'a mut Run<'g, T>,
     pub env: &'a mut Environment<T>,
     pub inputs: Inputs<'a, T>,
-    pub budget: Budget,
+    pub usage: Usage,
+    /// The limits that the run began with.
+    limits: Limits,
     pub turns: u64,
     /// The components under way, by module.
     pub components: Vec<usize>,
@@ -138,7 +137,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             run,
             env,
             inputs,
-            budget: Budget::default(),
+            usage: Usage::default(),
+            limits: moldloft_budget::limits(),
             turns: 0,
             components: Vec::new(),
             told: HashSet::new(),
@@ -177,12 +177,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             return;
         }
         let diagnostic = self.at_call(diagnostic);
-        self.budget.errors += usize::from(diagnostic.is_error());
+        self.usage.errors += usize::from(diagnostic.is_error());
         let span = diagnostic.span();
         if self.told.insert((diagnostic.id.clone(), span)) {
             self.loader.diagnostics.push(diagnostic);
         }
-        if self.budget.errors >= MOST_ERRORS && !self.env.stopped {
+        if self.usage.errors >= MOST_ERRORS && !self.env.stopped {
             self.stop(
                 Diagnostic::error("too-many-errors", "the run was given up: too many errors")
                     .at(span)
@@ -217,13 +217,13 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         // Large arrays count for the memory they take, small ones for the time, that of a few
         // statements on numbers; lists are read item by item.
         let of_array = |n: usize| 3 + n / if n > 100_000 { 4 } else { 16 };
-        self.budget.steps += match value {
+        self.usage.steps += match value {
             Value::Numbers(a) => of_array(a.items.len()),
             Value::Vectors(a) => of_array(a.len()),
             Value::List(items) => 4 * items.len(),
             _ => return Ok(()),
         } as u64;
-        if self.budget.steps > MOST_STEPS && self.step(span) {
+        if self.usage.steps > self.limits.steps && self.step(span) {
             return Err(silent());
         }
         Ok(())
@@ -231,12 +231,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     /// True when the elements of another value will not stop the run.
     pub fn has_room(&self, count: usize) -> bool {
-        self.budget.steps + count as u64 <= MOST_STEPS
+        self.usage.steps + count as u64 <= self.limits.steps
     }
 
     /// Counts a call of a function that takes longer than a statement: about as long as so many.
     pub fn charge_call(&mut self) {
-        self.budget.steps += 40;
+        self.usage.steps += 40;
     }
 
     fn declare_routines(&mut self, module: &Module, at: usize) {
@@ -271,22 +271,24 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     /// Counts a step; true when the run must stop.
     pub fn step(&mut self, span: Span) -> bool {
-        self.budget.steps += 1;
+        self.usage.steps += 1;
         if self.env.stopped {
             return true;
         }
-        if self.budget.steps > MOST_STEPS {
+        let most = self.limits.steps;
+        if self.usage.steps > most {
             return self.stop(
-                Diagnostic::error("too-many-steps", "the program does not come to an end")
+                Diagnostic::error("too-many-steps", "the program takes too many steps")
                     .at(span)
-                    .expected(format!("at most {MOST_STEPS} statements"))
-                    .help("look for a loop whose condition always holds, or for arrays too large"),
+                    .expected(format!("at most {most} statements, calls and elements of values"))
+                    .help("look for a loop whose condition always holds, or for arrays too large")
+                    .help("allow more: `--limit steps=1e9`, `moldloft.limits(steps=...)`"),
             );
         }
-        if self.inputs.cancelled.load(Ordering::Relaxed) {
-            return self.stop(Diagnostic::error("cancelled", "the run was cancelled").at(span));
+        match self.inputs.budget.poll() {
+            Ok(()) => false,
+            Err(spent) => self.stop(usage::spent(spent).at(span)),
         }
-        false
     }
 
     pub fn stop(&mut self, diagnostic: Diagnostic) -> bool {
@@ -299,7 +301,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     /// Goes one level deeper; false when that is too deep.
     pub fn deeper(&mut self, span: Span) -> bool {
-        if self.budget.depth >= DEEPEST {
+        if self.usage.depth >= DEEPEST {
             self.stop(
                 Diagnostic::error("nested-too-deep", "calls nest too deep")
                     .at(span)
@@ -308,7 +310,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             );
             return false;
         }
-        self.budget.depth += 1;
+        self.usage.depth += 1;
         true
     }
 
@@ -346,7 +348,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             self.abandoned |= m.library;
             Flow::Next
         });
-        self.budget.depth -= 1;
+        self.usage.depth -= 1;
         match flow {
             _ if self.env.stopped => Flow::Stop,
             _ if self.abandoned && m.library => Flow::Return(None),
@@ -452,8 +454,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     /// # Errors
     /// When the program has printed too much; that was reported, and the run is over.
     pub fn print(&mut self, line: String, span: Span) -> Result<(), Diagnostic> {
-        self.budget.printed += line.len() + 24;
-        if self.budget.printed > MOST_PRINTED {
+        self.usage.printed += line.len() + 24;
+        if self.usage.printed > MOST_PRINTED {
             self.stop(
                 Diagnostic::error("too-much-output", "the program prints too much")
                     .at(span)
@@ -543,11 +545,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
         if !dims.is_empty() {
             let count = dims.iter().fold(1usize, |count, &n| count.saturating_mul(n));
-            let held = self.budget.held.saturating_add(count);
+            let held = self.usage.held.saturating_add(count);
             if held > MOST_HELD {
                 return Err(variables::too_many(held as f64, MOST_HELD as f64));
             }
-            self.budget.held = held;
+            self.usage.held = held;
         }
         let known = match (&value, &dims[..]) {
             (Some(_), _) | (_, []) => Known::default(),
@@ -758,12 +760,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     /// How many errors there are so far.
     pub fn error_count(&self) -> usize {
-        self.budget.errors
+        self.usage.errors
     }
 
     /// True while hints are worth a search.
     pub fn hints(&self) -> bool {
-        self.budget.errors < MOST_HINTS
+        self.usage.errors < MOST_HINTS
     }
 
     /// The most alike of the names that mean something here.

@@ -1,6 +1,5 @@
 //! The interpreter: statements, expressions, objects, loops, calls, components, sketches and solve sets.
 
-mod budget;
 mod component;
 pub(crate) mod expr;
 pub(crate) mod forward_reference;
@@ -13,5 +12,6 @@ mod read_log;
 mod routine;
 mod sketches;
 pub(crate) mod solve_set;
+pub(crate) mod usage;
 pub mod weight;
 pub mod whole;

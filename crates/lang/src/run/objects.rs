@@ -1,6 +1,6 @@
 //! Runs a program: declarations of objects, and the names they get.
 
-use crate::run::interpreter::Interpreter;
+use crate::run::interpreter::{Interpreter, silent};
 use crate::source::env::Origin;
 use crate::source::module::{Module, RoutineAt};
 use crate::source::scope::{Binding, Bound};
@@ -123,6 +123,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let origin = self.env.origins.len() as u32;
         let declaration = Declaration { name: full, row, args: filled, head, origin };
         let key = self.run.declare(declaration).map_err(|fault| {
+            if fault.id == "too-many-objects" {
+                let diagnostic = crate::source::fault_location::unplaced(&fault).at(name.span);
+                self.stop(diagnostic);
+                return silent();
+            }
             let diagnostic = crate::source::fault_location::unplaced(&fault).at(name.span);
             let first = self.run.find(full).and_then(|key| self.run.graph().get(key));
             match first.and_then(|o| crate::run::program::declared_at(self.modules, self.env, o)) {

@@ -84,14 +84,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !self.deeper(span) {
             return Err(silent());
         }
-        let held = self.budget.held;
+        let held = self.usage.held;
         self.env.scope.frames.push(frame);
         let outer = std::mem::replace(&mut self.current, at.module);
         let flow = self.statements(&callee, routine.body);
         self.current = outer;
         self.env.scope.frames.pop();
-        self.budget.depth -= 1;
-        self.budget.held = held;
+        self.usage.depth -= 1;
+        self.usage.held = held;
         if callee.library && std::mem::take(&mut self.abandoned) {
             // Told already; a caller in the library is left as well.
             self.abandoned = m.library;

@@ -1,12 +1,12 @@
 //! Arguments, errors and results that curves, nets and networks share.
 
+use moldloft_budget::Budget;
 use moldloft_fair::{Certificate, FairError, Measure, Space};
 use moldloft_num::Vec3;
 use moldloft_spline::KnotVector;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::atomic::AtomicBool;
 
 mod raised {
     pyo3::import_exception!(moldloft.errors, FairingError);
@@ -17,7 +17,7 @@ pub fn long<R: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<R, FairError> + Send + 'static,
 ) -> PyResult<R> {
-    crate::work::interruptible(py, &AtomicBool::new(false), work)?.map_err(fair_error)
+    crate::work::interruptible(py, &Budget::default(), work)?.map_err(fair_error)
 }
 
 /// A refusal, with the number of the point that it is about.

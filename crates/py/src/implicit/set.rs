@@ -6,6 +6,7 @@ use super::field::{PyField, values};
 use super::oracle::Slots;
 use crate::error::plain_error;
 use crate::work::interruptible;
+use moldloft_budget::Budget;
 use moldloft_field::{
     Affine, Attributes, Caster, FieldError, Light, Mass, Measure, Membership, Options, Pieces, Ray,
     RayTrace, Resolution, Set, facet_mixed,
@@ -16,7 +17,6 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 use rayon::prelude::*;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// A set of points.
 #[pyclass(frozen, name = "Set", module = "moldloft._core")]
@@ -38,11 +38,11 @@ impl PySet {
     fn long<R: Send + 'static>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&Set, Arc<AtomicBool>) -> Result<R, FieldError> + Send + 'static,
+        work: impl FnOnce(&Set, Arc<Budget>) -> Result<R, FieldError> + Send + 'static,
     ) -> PyResult<R> {
-        let cancel = Arc::new(AtomicBool::new(false));
-        let (set, flag) = (self.inner.clone(), cancel.clone());
-        let outcome = interruptible(py, &cancel, move || work(&set, flag))?;
+        let budget = Arc::<Budget>::default();
+        let (set, flag) = (self.inner.clone(), budget.clone());
+        let outcome = interruptible(py, &budget, move || work(&set, flag))?;
         finished(py, &self.slots, outcome)
     }
 }
@@ -369,9 +369,9 @@ impl PySet {
             (Some(depth), None) => Resolution::Depth(depth),
             (None, None) => Resolution::Level(6),
         };
-        let (pieces, over) = self.long(py, move |set, cancel| {
+        let (pieces, over) = self.long(py, move |set, budget| {
             let over = region(set, given(corners))?;
-            let options = Options { limit, cancel: Some(cancel), ..Options::new(resolution) };
+            let options = Options { limit, budget, ..Options::new(resolution) };
             let plain = set.leaves().iter().all(|l| !l.primitive.is_sheet());
             // Only what is given is taken over: what a caller times or counts is what was done.
             let pieces = if plain {
@@ -394,7 +394,7 @@ impl PySet {
         accuracy: Option<f64>,
         cells: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let found = self.long(py, move |set, cancel| {
+        let found = self.long(py, move |set, budget| {
             let over = match given(corners) {
                 Some(over) => over,
                 None => match moldloft_field::around(set)? {
@@ -402,8 +402,7 @@ impl PySet {
                     None => return Ok(None),
                 },
             };
-            let measure =
-                Measure { depth, accuracy, cells, cancel: Some(cancel), ..Measure::default() };
+            let measure = Measure { depth, accuracy, cells, budget, ..Measure::default() };
             moldloft_field::mass(set, &over, &measure).map(Some)
         })?;
         let Some(Mass { bracket, best }) = found else {
@@ -538,9 +537,9 @@ impl PySet {
             samples: looks.2,
             colours,
         };
-        let rgb = self.long(py, move |set, cancel| {
+        let rgb = self.long(py, move |set, budget| {
             let over = region(set, given(corners))?;
-            let options = Options { cancel: Some(cancel), ..Options::new(Resolution::Depth(1)) };
+            let options = Options { budget, ..Options::new(Resolution::Depth(1)) };
             moldloft_field::ray_trace(set, &over, &view, &options)
         })?;
         let png = moldloft_picture::encoded(&rgb, size[0], size[1]).map_err(plain_error)?;

@@ -1,0 +1,225 @@
+//! What a run may use, in one place: memory, steps, objects, time; and whether it was cancelled.
+//!
+//! Work that grows asks its [`Budget`]: [`Budget::grow`] before it allocates what a user's number asks for,
+//! [`Budget::poll`] in loops that may take long. What comes back is [`Spent`], with a message that says what was used
+//! up and how to allow more.
+//!
+//! Invariant: a budget never changes a result; work ends as if there were none, or with [`Spent`].
+
+mod machine;
+mod memory;
+
+pub use machine::usual_memory;
+pub use memory::{Counting, FLUSH, held, settle};
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// The limits of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Bytes on the heap of the process; none without a counting allocator.
+    pub memory: u64,
+    /// Statements and calls of a program, and the elements of its values.
+    pub steps: u64,
+    /// Objects of a model.
+    pub objects: u64,
+    /// Seconds of one request: a run, a mesh, a measure.
+    pub seconds: f64,
+}
+
+impl Limits {
+    /// What a program may use unless its host says otherwise: 4 GiB, 20 million steps, 250 000 objects, any time.
+    /// Hosts take [`usual_memory`] instead of 4 GiB.
+    pub const USUAL: Self =
+        Self { memory: 4 << 30, steps: 20_000_000, objects: 250_000, seconds: f64::INFINITY };
+}
+
+static MEMORY: AtomicU64 = AtomicU64::new(Limits::USUAL.memory);
+static STEPS: AtomicU64 = AtomicU64::new(Limits::USUAL.steps);
+static OBJECTS: AtomicU64 = AtomicU64::new(Limits::USUAL.objects);
+static SECONDS: AtomicU64 = AtomicU64::new(Limits::USUAL.seconds.to_bits());
+
+/// The limits of the process: those of every run that begins.
+pub fn limits() -> Limits {
+    Limits {
+        memory: MEMORY.load(Ordering::Relaxed),
+        steps: STEPS.load(Ordering::Relaxed),
+        objects: OBJECTS.load(Ordering::Relaxed),
+        seconds: f64::from_bits(SECONDS.load(Ordering::Relaxed)),
+    }
+}
+
+/// Sets the limits of the process.
+pub fn set_limits(limits: Limits) {
+    MEMORY.store(limits.memory, Ordering::Relaxed);
+    STEPS.store(limits.steps, Ordering::Relaxed);
+    OBJECTS.store(limits.objects, Ordering::Relaxed);
+    SECONDS.store(limits.seconds.to_bits(), Ordering::Relaxed);
+}
+
+/// Why work ended before it was done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spent {
+    /// The caller asked to stop.
+    Cancelled,
+    /// There is not enough memory.
+    Memory {
+        /// Bytes held, and those that were asked for.
+        needed: u64,
+        /// Bytes that are allowed.
+        allowed: u64,
+    },
+    /// The time is over.
+    Time {
+        /// Seconds that were allowed.
+        allowed: f64,
+    },
+}
+
+impl Spent {
+    /// A stable id, as diagnostics have it.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Cancelled => "cancelled",
+            Self::Memory { .. } => "out-of-memory",
+            Self::Time { .. } => "out-of-time",
+        }
+    }
+
+    /// True for the id of a fault that says nothing of the model: the same work may succeed another time.
+    pub fn is_id(id: &str) -> bool {
+        matches!(id, "cancelled" | "out-of-memory" | "out-of-time")
+    }
+
+    /// What can be done about it.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Cancelled => "",
+            Self::Memory { .. } => {
+                "make it coarser, or allow more: `--limit memory=8G`, `moldloft.limits(memory=...)`"
+            }
+            Self::Time { .. } => {
+                "make it coarser, or allow more: `--limit seconds=600`, `moldloft.limits(seconds=...)`"
+            }
+        }
+    }
+}
+
+impl std::fmt::Display for Spent {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
+        match *self {
+            Self::Cancelled => write!(f, "cancelled"),
+            Self::Memory { needed, allowed } => {
+                write!(
+                    f,
+                    "this needs {:.2} GiB of memory, {:.2} are allowed",
+                    gib(needed),
+                    gib(allowed)
+                )
+            }
+            Self::Time { allowed } => {
+                write!(f, "this takes longer than the {allowed} s that are allowed")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Spent {}
+
+/// What is left to a run. Shared by the threads that work for it and by who may cancel it.
+///
+/// # Example
+/// ```
+/// use moldloft_budget::{Budget, Spent};
+///
+/// let budget = Budget::default();
+/// assert_eq!(budget.poll(), Ok(()));
+/// assert!(matches!(budget.grow(1 << 60), Err(Spent::Memory { .. })));
+/// budget.cancel();
+/// assert_eq!(budget.poll(), Err(Spent::Cancelled));
+/// ```
+#[derive(Debug, Default)]
+pub struct Budget {
+    cancelled: AtomicBool,
+    /// When the time is over, in nanoseconds after [`origin`]; 0 for never.
+    deadline: AtomicU64,
+}
+
+/// The moment from which deadlines count.
+fn origin() -> Instant {
+    static ORIGIN: OnceLock<Instant> = OnceLock::new();
+    *ORIGIN.get_or_init(Instant::now)
+}
+
+/// Time that is counted; it ends with this.
+#[derive(Debug)]
+pub struct Timed<'a>(&'a Budget);
+
+impl Drop for Timed<'_> {
+    fn drop(&mut self) {
+        self.0.deadline.store(0, Ordering::Relaxed);
+    }
+}
+
+impl Budget {
+    /// Has the work end at its next look.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Lets work begin again after it was cancelled.
+    pub fn resume(&self) {
+        self.cancelled.store(false, Ordering::Relaxed);
+    }
+
+    /// True after [`Budget::cancel`].
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Begins to count the time of a request, where time is limited, until the answer is dropped.
+    pub fn timed(&self) -> Timed<'_> {
+        let seconds = limits().seconds;
+        if let Ok(allowed) = Duration::try_from_secs_f64(seconds) {
+            let end = origin().elapsed() + allowed;
+            let end = u64::try_from(end.as_nanos()).unwrap_or(0);
+            self.deadline.store(end.max(1), Ordering::Relaxed);
+        }
+        Timed(self)
+    }
+
+    /// Whether work may go on.
+    ///
+    /// # Errors
+    /// [`Spent`] once it was cancelled, or memory or time are used up.
+    #[inline]
+    pub fn poll(&self) -> Result<(), Spent> {
+        if self.is_cancelled() {
+            return Err(Spent::Cancelled);
+        }
+        self.grow(0)?;
+        let deadline = self.deadline.load(Ordering::Relaxed);
+        if deadline > 0 && origin().elapsed().as_nanos() > u128::from(deadline) {
+            return Err(Spent::Time { allowed: limits().seconds });
+        }
+        Ok(())
+    }
+
+    /// True when work must end; for loops that cannot return an error by themselves.
+    pub fn is_spent(&self) -> bool {
+        self.poll().is_err()
+    }
+
+    /// Whether so many bytes more may be held.
+    ///
+    /// # Errors
+    /// [`Spent::Memory`].
+    #[inline]
+    pub fn grow(&self, bytes: u64) -> Result<(), Spent> {
+        let (needed, allowed) = (held().saturating_add(bytes), MEMORY.load(Ordering::Relaxed));
+        if needed > allowed { Err(Spent::Memory { needed, allowed }) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,27 @@
+//! What a run has used, and what it says when that is too much.
+
+use moldloft_budget::Spent;
+use moldloft_diag::Diagnostic;
+
+/// Counts of a run, compared with its limits.
+#[derive(Debug, Default)]
+pub(crate) struct Usage {
+    /// Statements and calls, and the elements of values.
+    pub steps: u64,
+    /// How deep statements, expressions and calls nest.
+    pub depth: u32,
+    /// Elements of the declared arrays.
+    pub held: usize,
+    /// Bytes that were printed.
+    pub printed: usize,
+    /// Errors that were reported.
+    pub errors: usize,
+}
+
+/// Why a run ended before it was done.
+pub(crate) fn spent(spent: Spent) -> Diagnostic {
+    match spent {
+        Spent::Cancelled => Diagnostic::error("cancelled", "the run was cancelled"),
+        other => Diagnostic::error(other.id(), other.to_string()).help(other.help()),
+    }
+}
