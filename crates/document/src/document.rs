@@ -5,6 +5,7 @@ use moldloft_diag::{Diagnostic, Sources};
 use moldloft_lang::World;
 use moldloft_lang::run::interpreter::{Inputs, Settings};
 use moldloft_lang::run::program::{self, Program};
+use moldloft_lang::run::weight::{WEIGHT, mass_and_centre};
 use moldloft_lang::source::env::{Evaluation, Param, Seed};
 use moldloft_lang::source::module::Modules;
 use moldloft_lang::source::scope::Binding;
@@ -249,6 +250,7 @@ impl Document {
             found.extend(self.failures(evaluation));
             found.extend(self.remarks(evaluation));
             found.extend(self.doubled(evaluation));
+            found.extend(self.half_weights(evaluation));
             self.run_diagnostics = found;
         }
         applied
@@ -300,7 +302,6 @@ impl Document {
         diagnostics
     }
 
-    /// The warnings of objects that the user should know something of.
     /// Surfaces that are shown together with their mirror image in a plane in which the model is mirrored anyway.
     fn doubled<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         let letters = match &self.source {
@@ -356,6 +357,46 @@ impl Document {
         found
     }
 
+    /// Weights of one side's shapes in a mirrored model that do not say whether the other side counts.
+    fn half_weights<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
+        let letters = match &self.source {
+            Source::ModelFile(source) => source.symmetry(),
+            _ => moldloft_lang::model_file::header::text(&evaluation.graph, "symmetry"),
+        };
+        let mut found = Vec::new();
+        for object in evaluation.graph.objects().filter(|o| o.row.name == WEIGHT) {
+            let stated = |name: &str| {
+                let argument = object.row.field(name).and_then(|k| object.args.get(k));
+                argument.is_some_and(|a| !matches!(a, Value::Unset))
+            };
+            let Some((_, centre)) = object.value().and_then(mass_and_centre) else { continue };
+            let (size, centre) = (centre.re().norm(), centre.re().to_array());
+            let aside = |axis: usize| centre[axis].abs() > 1e-9 * size;
+            let planes: String = ['x', 'y', 'z']
+                .into_iter()
+                .enumerate()
+                .filter_map(|(k, c)| (letters.contains(c) && aside(k)).then_some(c))
+                .collect();
+            if !stated("per") || stated("images") || planes.is_empty() {
+                continue;
+            }
+            let message = format!(
+                "`{}` is the weight of one side: the model is mirrored, and the other side is not counted",
+                object.name
+            );
+            let mut diagnostic = Diagnostic::error("half-weight", message)
+                .help(format!("`images = \"{planes}\"` counts the mirror images, too"))
+                .help("`images = \"\"` says that it is there once")
+                .object(&*object.name);
+            if let Some(span) = self.declared_at(evaluation, object) {
+                diagnostic = diagnostic.at(span);
+            }
+            found.push(diagnostic);
+        }
+        found
+    }
+
+    /// The warnings of objects that the user should know something of.
     pub(crate) fn remarks<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.remarked() == 0 {
             return Vec::new();

@@ -85,7 +85,7 @@ fn round_values(low: f64, high: f64) -> Vec<f64> {
     if !(rough.is_finite() && rough > 0.0) {
         return Vec::new();
     }
-    let ten = 10f64.powf(rough.log10().floor());
+    let ten = libm::pow(10.0, libm::log10(rough).floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|k| k * ten).into_iter().find(|&s| s >= rough);
     let step = step.unwrap_or(10.0 * ten);
     let first = (low / step).floor() as i64 + 1;

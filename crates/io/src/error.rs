@@ -1,6 +1,7 @@
 //! Errors of readers and writers: what is wrong with the data, and where in the file.
 
 use moldloft_mesh::{Blocks, Mesh, MeshError};
+use moldloft_num::Vec3;
 use std::fmt;
 
 /// Why a mesh cannot be written.
@@ -55,6 +56,15 @@ pub enum WriteError {
         /// A patch with such a panel.
         patch: String,
     },
+    /// The places are too far from the origin for the format's single precision.
+    Single {
+        /// The format.
+        format: &'static str,
+        /// A patch that would lose its shape.
+        patch: String,
+        /// Distance between neighbouring numbers there.
+        step: Bits,
+    },
     /// A number does not fit its column.
     TooWide {
         /// The format.
@@ -103,6 +113,12 @@ impl fmt::Display for WriteError {
             Self::AboveWater { format, patch } => write!(
                 f,
                 "{format} takes no panels above the water, z = 0, but patch `{patch}` reaches above it"
+            ),
+            Self::Single { format, patch, step } => write!(
+                f,
+                "{format} has single precision, of steps of {} so far from the origin, in which patch `{patch}` loses \
+                 its shape; move the model to the origin, or write stl-text, obj or ply",
+                step.value()
             ),
             Self::TooWide { format, value } => {
                 write!(f, "the coordinate {} does not fit a column of {format}", value.value())
@@ -170,6 +186,34 @@ pub(crate) fn check_positions(mesh: &Mesh, limit: f64) -> Result<(), WriteError>
         let grid = patch.block.iter().flat_map(|b| &b.vertices);
         if let Some(&vertex) = faces.chain(grid).find(|&&v| !good(v)) {
             return Err(WriteError::NotFinite { patch: patch.info.name.clone(), vertex });
+        }
+    }
+    Ok(())
+}
+
+/// The share of a patch's area that single precision may turn or change.
+const LOST: f64 = 0.01;
+
+/// Refuses a mesh with a patch that loses its shape in single precision.
+pub(crate) fn check_single(mesh: &Mesh, format: &'static str) -> Result<(), WriteError> {
+    let at = |v: u32| mesh.positions()[v as usize];
+    let rounded = |p: Vec3| p.map(|x| f64::from(x as f32));
+    let largest =
+        mesh.positions().iter().flat_map(|p| p.to_array()).fold(0.0f64, |m, x| m.max(x.abs()));
+    for patch in mesh.patches() {
+        let (mut all, mut lost) = (0.0, 0.0);
+        for face in &mesh.faces()[patch.faces.clone()] {
+            let [a, b, c, d] = face.map(at);
+            let exact = (c - a).cross(d - b);
+            let [a, b, c, d] = [a, b, c, d].map(rounded);
+            all += exact.norm();
+            lost += (exact - (c - a).cross(d - b)).norm();
+        }
+        if lost > LOST * all && all > 0.0 {
+            let largest = largest as f32;
+            let step = f64::from(f32::from_bits(largest.to_bits() + 1)) - f64::from(largest);
+            let patch = patch.info.name.clone();
+            return Err(WriteError::Single { format, patch, step: Bits::of(step) });
         }
     }
     Ok(())

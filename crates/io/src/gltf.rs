@@ -8,6 +8,7 @@ use crate::WriteError;
 use crate::error::check_positions;
 use crate::text::{json, put};
 use moldloft_mesh::{Mesh, Patch};
+use moldloft_num::Vec3;
 
 /// The file. Quads are split along their shorter diagonal; no normals are stored, so viewers shade
 /// each facet flat. `colour` gives the sRGB colour of a patch by its index, `metres` the length of the
@@ -23,6 +24,7 @@ pub fn write(
 ) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::from(f32::MAX))?;
     let triangles = mesh.triangulated();
+    let origin = origin(mesh);
     let mut data: Vec<u8> = Vec::new();
     let (mut nodes, mut meshes, mut materials) = (String::new(), String::new(), String::new());
     let (mut accessors, mut views, mut children) = (String::new(), String::new(), String::new());
@@ -37,7 +39,7 @@ pub fn write(
         let (mut low, mut high) = ([f32::MAX; 3], [f32::MIN; 3]);
         let start = data.len();
         for &v in &own {
-            let p = mesh.positions()[v as usize].to_array().map(|x| x as f32 + 0.0);
+            let p = (mesh.positions()[v as usize] - origin).to_array().map(|x| x as f32 + 0.0);
             for axis in 0..3 {
                 low[axis] = low[axis].min(p[axis]);
                 high[axis] = high[axis].max(p[axis]);
@@ -94,8 +96,11 @@ pub fn write(
         shown += 1;
     }
     let root = format!(
-        "{{\"name\":{},\"matrix\":[{m},0,0,0,0,0,-{m},0,0,{m},0,0,0,0,0,1]{}}}",
+        "{{\"name\":{},\"matrix\":[{m},0,0,0,0,0,-{m},0,0,{m},0,0,{},{},{},1]{}}}",
         json(name),
+        origin.x * metres + 0.0,
+        origin.z * metres + 0.0,
+        -origin.y * metres + 0.0,
         // An empty list of children is not allowed.
         if shown == 0 { String::new() } else { format!(",\"children\":[{children}]") },
         m = metres
@@ -115,6 +120,24 @@ pub fn write(
     text.push('}');
     container(text.into_bytes(), data)
 }
+
+/// Where the numbers of the file begin: the model's origin, or a round place near the model when it is so far away that
+/// single precision would lose digits. The file's root moves everything back.
+fn origin(mesh: &Mesh) -> Vec3 {
+    let bounds = mesh.bounds();
+    let far = bounds.low.to_array().into_iter().chain(bounds.high.to_array());
+    let far = far.fold(0.0f64, |m, x| m.max(x.abs()));
+    if !(far > FAR * bounds.diagonal()) || !far.is_finite() {
+        return Vec3::zero();
+    }
+    // A multiple of a power of two with at most 20 digits, so that it is a number of single precision.
+    let exponent = ((far.to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    let step = 2f64.powi(exponent - 19);
+    bounds.centre().map(|x| (x / step).round() * step)
+}
+
+/// A model this many times its size away from the origin gets an origin of its own.
+const FAR: f64 = 16.0;
 
 /// The container: a header of 12 bytes, then the chunks of text and data, each a multiple of four.
 fn container(mut text: Vec<u8>, data: Vec<u8>) -> Result<Vec<u8>, WriteError> {

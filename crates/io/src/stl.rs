@@ -5,7 +5,7 @@
 //! Binary: 80 bytes of anything, a count, then per triangle its normal, three corners (single
 //! precision, little endian) and two unused bytes (3D Systems 1989, Appendix).
 
-use crate::error::check_positions;
+use crate::error::{check_positions, check_single};
 use crate::text::{Line, put, quoted, real, utf8, word};
 use crate::{Place, ReadError, StructuredGrid, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
@@ -20,9 +20,10 @@ const TRIANGLE: usize = 50;
 /// because their neighbours need them.
 ///
 /// # Errors
-/// Positions that are not finite in single precision; more than 2^32 - 1 triangles.
+/// Positions that are not finite in single precision, or so far from the origin that shapes are lost in it; more than 2^32 - 1 triangles.
 pub fn write(mesh: &Mesh, name: &str) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::from(f32::MAX))?;
+    check_single(mesh, FORMAT)?;
     let triangles = mesh.triangulated();
     // The header must not begin with `solid`, the mark of the text form.
     let mut out = format!("binary STL: {name}").into_bytes();

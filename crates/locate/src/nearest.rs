@@ -474,7 +474,14 @@ pub fn nearest_in_curve(
     // From the border of a piece on into the neighbours, and to full accuracy.
     let whole = |foot: Foot<1>| curve_foot(curve, p, foot.at[0], [0.0, 1.0], tree.size);
     let feet = nearest_of(feet, near, tree.size).into_iter().map(whole).collect();
-    let feet = nearest_of(feet, near, tree.size);
+    let mut feet = nearest_of(feet, near, tree.size);
+    if feet.is_empty() {
+        // Distances beyond all numbers: no piece is nearer than another.
+        feet.push(Foot {
+            converged: false,
+            ..whole(curve_foot(curve, p, 0.5, [0.0, 1.0], tree.size))
+        });
+    }
     solution(&[start.unwrap_or(0.5)], feet)
 }
 

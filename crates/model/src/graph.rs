@@ -14,6 +14,9 @@ use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap, HashSet};
 use std::sync::Arc;
 
+/// The largest number of a shape: the sixth powers of lengths, which curvatures take, stay finite.
+const LARGEST: f64 = 1e50;
+
 /// Shapes nested deeper than this are refused, so that evaluating one never exhausts the stack.
 pub const DEEPEST_NESTING: u32 = 100;
 
@@ -409,6 +412,13 @@ impl<T: Scalar> Graph<T> {
                 Err(fault) => return State::Failed(Failure::CallError(fault)),
             }
         }
+        for (k, arg) in args.iter().enumerate() {
+            let largest = arg.largest();
+            if largest > LARGEST {
+                let fault = too_large("a number", largest).in_field(object.row.id(k));
+                return State::Failed(Failure::CallError(fault));
+            }
+        }
         if let Err(spent) = self.context.budget.poll() {
             return State::Failed(Failure::CallError(spent.into()));
         }
@@ -431,6 +441,10 @@ impl<T: Scalar> Graph<T> {
                 .found("NaN or infinity")
                 .help("look for a division by zero or a number far too large in its data");
             return State::Failed(Failure::CallError(fault));
+        }
+        let largest = value.largest();
+        if largest > LARGEST {
+            return State::Failed(Failure::CallError(too_large("a coordinate", largest)));
         }
         if value.depth() > DEEPEST_NESTING {
             let fault =
@@ -582,6 +596,13 @@ impl<T: Scalar> Graph<T> {
             }
         }
     }
+}
+
+fn too_large(what: &str, found: f64) -> CallError {
+    CallError::new("too-large", format!("{what} is too large to compute with"))
+        .expected(format!("at most {LARGEST:e}"))
+        .found(format!("{found:e}"))
+        .help("choose a larger unit of length")
 }
 
 fn too_many_objects(most: u64) -> CallError {

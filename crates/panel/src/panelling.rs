@@ -42,6 +42,22 @@ pub fn too_many_panels(count: u64) -> CallError {
         .help("lower the divisions of the surfaces")
 }
 
+/// Refuses a patch with places that are no numbers, such as the limit at a pole that an object does not take.
+fn check_finite(name: &str, points: &[Vec3]) -> Result<(), CallError> {
+    // Zero times a number is zero, times infinity or NaN it is NaN.
+    let sum: f64 = points.iter().map(|p| p.x * 0.0 + p.y * 0.0 + p.z * 0.0).sum();
+    if sum == 0.0 {
+        return Ok(());
+    }
+    let bad = points.iter().filter(|p| !p.is_finite()).count();
+    let message = format!("`{name}` has {bad} vertices that are not finite");
+    Err(CallError::new("not-finite", message)
+        .expected("finite coordinates")
+        .found("NaN or infinity")
+        .help("look for edges of no length and tangents of no direction in what it is made of")
+        .help(format!("or hide it: {name}(..., visible = 0)")))
+}
+
 /// An edge, or a whole patch, within this share of the model's size from a coordinate plane lies in
 /// it: rounding of a sine must not open a seam or leave slivers at a plane of symmetry.
 const IN_PLANE: f64 = 1e-12;
@@ -121,6 +137,9 @@ impl Panelling {
         // Every draft has a value in its own graph, unless the budget is spent.
         let raw = evaluated.into_iter().collect::<Option<Vec<_>>>();
         let raw = raw.ok_or_else(|| graph.budget().poll().err().unwrap_or(Spent::Cancelled))?;
+        for (patch, points) in structure.patches.iter().zip(&raw) {
+            check_finite(&patch.name, points)?;
+        }
         let mut points = raw.clone();
         let size = points.iter().flat_map(|p| p.iter()).fold(Box3::EMPTY, |b, &p| b.including(p));
         let zeros = zeros(&structure, &points, size.diagonal());

@@ -410,6 +410,23 @@ impl<T: Real> Value<T> {
         }
     }
 
+    /// The largest of its numbers and coordinates, without sign; zero for shapes. NaN and infinity do not count.
+    pub fn largest(&self) -> f64 {
+        let of = |x: &T| Some(x.re().abs()).filter(|x| x.is_finite()).unwrap_or(0.0);
+        let vector = |v: &Vec3<T>| of(&v.x).max(of(&v.y)).max(of(&v.z));
+        match self {
+            Value::Number(x) => of(x),
+            Value::Vector(v) => vector(v),
+            Value::Numbers(a) => a.items.iter().map(of).fold(0.0, f64::max),
+            Value::Vectors(a) => a.planes.iter().flatten().map(of).fold(0.0, f64::max),
+            Value::List(items) => items.iter().map(Value::largest).fold(0.0, f64::max),
+            Value::Point(p) => vector(&p.xyz),
+            Value::Plane(p) => vector(&p.point),
+            Value::Frame(f) => vector(&f.origin),
+            _ => 0.0,
+        }
+    }
+
     /// True when every number in it, derivatives included, is finite.
     pub fn is_finite(&self) -> bool {
         match self {

@@ -238,7 +238,7 @@ pub fn round_to(x: f64, worth: f64) -> f64 {
     if !(worth > 0.0 && worth.is_finite() && x.is_finite()) {
         return x;
     }
-    let decimals = (-worth.log10()).ceil();
+    let decimals = (-libm::log10(worth)).ceil();
     if !(-15.0..=15.0).contains(&decimals) {
         return x;
     }

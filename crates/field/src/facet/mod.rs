@@ -218,7 +218,7 @@ pub(crate) fn facet_within(
             let larger = facets.unresolved.iter().find(|u| side(&u.place) > accuracy);
             if let (false, Some(u)) = (found.all, larger) {
                 let thickness = u.volume / side(&u.place).powi(2);
-                let depth = (size / thickness.min(0.5 * step)).log2().ceil() as u32 + 1;
+                let depth = halvings(size, thickness.min(0.5 * step)) + 1;
                 let place = u.place;
                 return Err(FieldError::Thin { place, step, depth });
             }
@@ -331,7 +331,12 @@ fn shortest(over: &Box3) -> (usize, f64) {
 
 /// From which depth on the cells of a box of that size are no thicker than one.
 fn least_depth(size: f64, over: &Box3) -> u32 {
-    (size / shortest(over).1).log2().ceil().clamp(0.0, 1000.0) as u32
+    halvings(size, shortest(over).1)
+}
+
+/// How often a length is halved until it is no longer than another; at most 1000 times.
+fn halvings(length: f64, least: f64) -> u32 {
+    (0..1000).find(|&k| length <= least * 2f64.powi(k)).unwrap_or(1000) as u32
 }
 
 fn at_step(

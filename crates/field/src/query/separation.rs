@@ -107,7 +107,7 @@ fn leaf_range(gauge: &Gauge, f: &Primitive) -> [f64; 2] {
             Some(a) => {
                 let d = *c - a.point;
                 let (h, rho) = (a.direction.dot(d), from_line(*c, &a));
-                let (near, far) = ((rho - major).hypot(h), (rho + major).hypot(h));
+                let (near, far) = (libm::hypot(rho - major, h), libm::hypot(rho + major, h));
                 match within {
                     true => [(near - minor).max(0.0), far + minor],
                     false => [(minor - near).max(0.0), f64::INFINITY],
@@ -215,11 +215,11 @@ fn signed_distance(f: &Primitive, p: Vec3) -> Option<f64> {
             let a = unit(axis)?;
             let (h, rho) = (a.direction.dot(p - a.point).abs(), from_line(p, &a));
             let half = 0.5 * angle;
-            rho * half.cos() - h * half.sin()
+            rho * libm::cos(half) - h * libm::sin(half)
         }
         Form::Torus { axis, major, minor } => {
             let a = unit(axis)?;
-            (from_line(p, &a) - major).hypot(a.direction.dot(p - a.point)) - minor
+            libm::hypot(from_line(p, &a) - major, a.direction.dot(p - a.point)) - minor
         }
         _ => return None,
     };

@@ -19,6 +19,9 @@ pub const WEIGHT_SUM: &str = "WeightSum";
 
 /// A mass and its centre: a part of a ship's weight.
 ///
+/// Each weight counts as stated, also in a model that is mirrored (`Model info(symmetry = "y")`): `images = "y"` adds the
+/// other side, which doubles the mass and moves the centre into the plane.
+///
 /// The mass is given, or follows from a mass per length of a curve, per area of a surface, per volume of a solid or
 /// body. `w.mass` is the mass with its margin, `w.centre`, `w.x`, `w.y`, `w.z` are the centre: numbers of the program.
 /// `m.weights()` in Python and `moldloft hydro --weights` list all of them by group.
@@ -46,6 +49,9 @@ pub struct Weight<T: Real> {
     /// How the mass is known: "estimated", "calculated" or "weighed".
     #[field(default = "estimated")]
     status: Text<T>,
+    /// The planes in which it has mirror images that count as well: "y" for what is on both sides of y = 0, "" for what
+    /// is there once. A mass per area of one side of a symmetric model needs it.
+    images: Option<Text<T>>,
 }
 
 /// The sum of weights: their mass and common centre.
@@ -129,6 +135,10 @@ impl<T: Real> Build<T> for Weight<T> {
             }
         };
         let mass = mass * (self.margin / 100.0 + 1.0);
+        let (mass, centre) = match &self.images {
+            Some(planes) => with_images(mass, centre, planes.as_str())?,
+            None => (mass, centre),
+        };
         // Written so that NaN is refused.
         let sound = mass.re() >= 0.0 && mass.re().is_finite();
         if !sound {
@@ -139,6 +149,22 @@ impl<T: Real> Build<T> for Weight<T> {
         }
         Ok(row_of(mass, centre))
     }
+}
+
+/// The mass and the centre of a weight and its mirror images.
+fn with_images<T: Real>(mass: T, centre: Vec3<T>, planes: &str) -> Result<(T, Vec3<T>), CallError> {
+    let (mut mass, mut centre) = (mass, centre.to_array());
+    for (k, letter) in planes.char_indices() {
+        let axis = "xyz".find(letter).filter(|_| !planes[..k].contains(letter));
+        let Some(axis) = axis else {
+            return Err(CallError::new("unknown-plane", format!("unknown planes \"{planes}\""))
+                .expected("letters of x, y and z, each once")
+                .in_field(Weight::<T>::IMAGES));
+        };
+        mass = mass * 2.0;
+        centre[axis] = T::zero();
+    }
+    Ok((mass, centre.into()))
 }
 
 impl<T: Real> Build<T> for WeightSum<T> {

@@ -91,7 +91,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, places: &[f64]) -> Result<(), CallErr
         for k in [0, 2] {
             let bend = sine(jets[k].v.re(), ruling);
             if bend > FLAT {
-                let angle = bend.min(1.0).asin().to_degrees();
+                let angle = Real::asin(bend.min(1.0)).to_degrees();
                 return fault(
                     format!("the line u = {u} is not straight"),
                     format!("a turn by {angle:.4} degrees along it"),
@@ -100,7 +100,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, places: &[f64]) -> Result<(), CallErr
             let twist = sine(normals[k], normals[1]);
             // Written so that NaN is refused.
             if twist.is_nan() || twist > FLAT {
-                let angle = twist.min(1.0).asin().to_degrees();
+                let angle = Real::asin(twist.min(1.0)).to_degrees();
                 return fault(
                     format!("the tangent plane turns along the line u = {u}"),
                     format!("a turn by {angle:.4} degrees from its middle to its end"),

@@ -187,7 +187,7 @@ impl<T: Real> Fillet<T> {
             for k in 0..2 {
                 let cosine = directions[k].dot(chord) / length;
                 if cosine < -1e-9 {
-                    let angle = cosine.max(-1.0).acos().to_degrees();
+                    let angle = Real::acos(cosine.max(-1.0)).to_degrees();
                     let message = format!("the fillet turns back at snake {}, u = {u}", k + 1);
                     return Err(CallError::new("fillet-turns-back", message)
                         .expected("a tangent within 90 degrees of the direction to the other snake")

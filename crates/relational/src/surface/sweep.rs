@@ -159,7 +159,7 @@ impl<T: Real> Moving<T> {
         for v in turning {
             let (before, after) = (unit(v - 1e-7)?, unit(v + 1e-7)?);
             if before.distance(after) > CORNER {
-                let angle = before.dot(after).clamp(-1.0, 1.0).acos().to_degrees();
+                let angle = Real::acos(before.dot(after).clamp(-1.0, 1.0)).to_degrees();
                 return Err(CallError::new(
                     "corner-in-path",
                     format!("the path has a corner at v = {v}"),

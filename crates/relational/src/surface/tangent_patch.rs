@@ -153,7 +153,7 @@ impl<T: Real> Patch<T> {
             let at = ribbon(snake, T::from(end as f64));
             let out = at.normal.re().dot(d.re());
             if out.abs() > IN_PLANE * d.re().norm() {
-                let angle = (out.abs() / d.re().norm()).min(1.0).asin().to_degrees();
+                let angle = Real::asin((out.abs() / d.re().norm()).min(1.0)).to_degrees();
                 let message = format!(
                     "side {} does not leave side {} in the tangent plane of its surface",
                     other + 1,
