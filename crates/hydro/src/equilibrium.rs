@@ -66,6 +66,8 @@ pub enum FloatError {
         mass: f64,
         /// The most it displaces.
         most: f64,
+        /// Where an open rim reaches the water first: trim and heel in radians.
+        rim: Option<[f64; 2]>,
     },
 }
 
@@ -78,9 +80,16 @@ impl fmt::Display for FloatError {
             }
             Self::HalfHeels => write!(f, "one side of a body cannot heel by itself"),
             Self::NoBody => write!(f, "the panels enclose no body that could float"),
-            Self::Sinks { mass, most } => write!(
+            Self::Sinks { mass, most, rim: None } => write!(
                 f,
                 "the displacement {mass} is more than the body displaces all under water, {most}"
+            ),
+            Self::Sinks { mass, most, rim: Some([trim, heel]) } => write!(
+                f,
+                "at a trim of {:.2} and a heel of {:.2} degrees an open edge is under water before the body displaces \
+                 {mass}: {most} at most",
+                trim.to_degrees(),
+                heel.to_degrees()
             ),
         }
     }
@@ -230,7 +239,8 @@ impl<'m> Problem<'m, f64> {
         let full = turned.lowest_rim().map_or(high, |z| z.min(high));
         let most = volume(full).0.max(volume(high).0) + wanted;
         if wanted > most * (1.0 + 1e-12) {
-            return Err(FloatError::Sinks { mass: self.loading.mass, most: most * density });
+            let rim = (full < high).then_some([trim, heel]);
+            return Err(FloatError::Sinks { mass: self.loading.mass, most: most * density, rim });
         }
         if volume(full).0 >= 0.0 {
             high = full;

@@ -9,8 +9,11 @@ use std::sync::Arc;
 /// An edge within this share of its length from a coordinate plane lies in it.
 const IN_PLANE: f64 = 1e-9;
 
-/// Cones that come to less than this share of their absolute volumes do not say where outside is.
+/// Cones of open bodies that come to less than this share of their absolute volumes do not say where outside is.
 const NEARLY_FLAT: f64 = 0.05;
+
+/// The same of closed bodies, whose cones are their volume: a thin shell has little of it, but has one.
+const NO_VOLUME: f64 = 1e-9;
 
 /// A panel edge with one panel: the patch and the places of both ends in its grid.
 pub(crate) type FreeEdge = (u32, u32, u32);
@@ -61,7 +64,7 @@ impl Orientation {
     /// For each patch, whether its panels run against its natural normal.
     ///
     /// Neighbours face alike, as the first of them says; a closed body faces outward: its volume is
-    /// positive. Open ones keep their sides towards one another and face outward together: the cone
+    /// positive, however thin it is. Open ones keep their sides towards one another and face outward together: the cone
     /// from the middle of their rims (in the planes that close them) is positive. Nearly flat ones face as their surfaces
     /// say.
     pub fn turned(
@@ -85,8 +88,10 @@ impl Orientation {
             sum.1 += size;
         }
         let inward = |patch: usize| {
-            let (volume, size) = cones[self.body(patch)];
-            volume < -NEARLY_FLAT * size
+            let body = self.body(patch);
+            let flat = if body < patches.len() { NO_VOLUME } else { NEARLY_FLAT };
+            let (volume, size) = cones[body];
+            volume < -flat * size
         };
         (0..patches.len()).map(|patch| stated(patch) != inward(patch)).collect()
     }

@@ -3,7 +3,7 @@
 use moldloft_diag::{Diagnostic, FileId, Span};
 
 /// The longest text that is read: spans are 32 bits wide, and a model of this size is a mistake.
-pub const MAX_BYTES: usize = 256 << 20;
+pub const MAX_BYTES: usize = 64 << 20;
 
 /// The bytes as text.
 ///

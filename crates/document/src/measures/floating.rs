@@ -212,6 +212,9 @@ fn cannot_float(error: FloatError) -> Vec<Diagnostic> {
             diagnostic.help("give the centre of gravity, or keep trim and heel")
         }
         FloatError::HalfHeels => diagnostic.help("count both sides"),
+        FloatError::Sinks { rim: Some(_), .. } => {
+            diagnostic.help("close the hull with a deck, or look at smaller angles")
+        }
         FloatError::Sinks { .. } => {
             diagnostic.help("check the units of the displacement and of the density")
         }

@@ -194,7 +194,9 @@ fn what_cannot_float_is_explained() {
     assert!(matches!(float(-1.0, None), FloatError::Mass { .. }));
     assert!(matches!(float(f64::NAN, None), FloatError::Mass { .. }));
     assert_eq!(float(1.0, None), FloatError::NoCentre);
-    let FloatError::Sinks { mass, most } = float(200.0, Some([0.0; 3])) else { panic!() };
+    let FloatError::Sinks { mass, most, rim: None } = float(200.0, Some([0.0; 3])) else {
+        panic!()
+    };
     assert_eq!(mass, 200.0);
     close(most, L * B * H, 1e-10);
     let none = Mesh::new(TopologyBuilder::new().build().into(), vec![]).unwrap();
@@ -219,7 +221,9 @@ fn an_open_hull_knows_its_freeboard() {
     assert!(a.freeboard.unwrap() < 0.0 && a.earth.open_edges > 0, "the deck edge is under");
     let sinks = Loading { mass: 1.01 * L * B * H, ..at };
     let sinks = equilibrium(&open, Water::default(), sinks, Attitude::upright(0.0));
-    assert!(matches!(sinks, Err(FloatError::Sinks { .. })), "{sinks:?}");
+    assert!(matches!(sinks, Err(FloatError::Sinks { rim: Some(_), .. })), "{sinks:?}");
+    let message = sinks.unwrap_err().to_string();
+    assert!(message.contains("open edge is under water"), "{message}");
 }
 
 #[test]

@@ -32,7 +32,7 @@ const MOST_HINTS: usize = 100;
 const MOST_HELD: usize = 50_000_000;
 
 /// The most bytes of all printed lines.
-const MOST_PRINTED: usize = 64 << 20;
+const MOST_PRINTED: usize = 16 << 20;
 
 /// Statements, expressions and calls nest at most this deep while running.
 pub(crate) const DEEPEST: u32 = 2_500;
