@@ -12,6 +12,9 @@ from moldloft.storage.journal import state_folder
 
 __all__ = ["Draft"]
 
+#: The form of drafts; those without a version are of the first.
+VERSION = 1
+
 
 class Draft:
     """A side file ``.NAME.draft``; its owner holds the lock beside it.
@@ -52,16 +55,29 @@ class Draft:
         recover(path.parent)
 
     def left(self) -> dict[str, str] | None:
-        """What an earlier server left: ``text``, and the ``digest`` of the file it was made of."""
+        """What an earlier server left: ``text``, and the ``digest`` of the file it was made of.
+
+        Raises
+        ------
+        Error
+            When a later version of Moldloft wrote it.
+        """
         with contextlib.suppress(ValueError, FileError):
             found = json.loads(read_bytes(self.path))
             if isinstance(found, dict) and isinstance(found.get("text"), str):
+                version = found.get("version", 1)
+                if version != VERSION:
+                    raise Error(
+                        f"`{self.path}` is a draft of version {version}, written by a later "
+                        f"Moldloft; this one reads version {VERSION}"
+                    )
                 return {"text": found["text"], "digest": str(found.get("digest", ""))}
         return None
 
     def keep(self, text: str, digest: str) -> None:
         """Write the text to disk before this returns."""
-        put(self.path, json.dumps({"text": text, "digest": digest}).encode(), private=True)
+        data = {"version": VERSION, "text": text, "digest": digest}
+        put(self.path, json.dumps(data).encode(), private=True)
 
     def drop(self) -> None:
         """Nothing is unsaved."""
