@@ -1,96 +1,139 @@
-"""Writes docs/diagnostics.md: each diagnostic with the shortest program of the corpus that raises it.
+"""Writes docs/diagnostics.md anew: `python docs/diagnostics.py`.
 
-`python docs/diagnostics.py`. Programs come from `tests/corpus` and
-from EXTRA below; what is printed is what the program prints today.
+The programs stand in the page itself, the meanings in `moldloft.explanations`; what is printed is what
+each program prints today. A new diagnostic gets a section with a program by hand, and the rest by this.
 """
 
 from __future__ import annotations
 
+import contextlib
+import os
 import re
-import signal
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import moldloft
+from moldloft.explanations import EXPLANATIONS
 
-ROOT = Path(__file__).resolve().parents[1]
+PAGE = Path(__file__).with_suffix(".md")
 
 HEAD = """# Diagnostics
 
-Every message has an id, which stays the same when its wording gets better: `error[wrong-class]`. Here are the ids with a short program
-that raises each, and what is printed, with the remedy in its `help`. Made by `docs/diagnostics.py`; each program is run by
-`tests/python/test_diagnostics_page.py`.
+Every message has an id, which stays the same when its wording improves: `error[wrong-class]`. Each is listed here with its meaning and
+remedy, a short program that raises it, and what is printed. `moldloft doc wrong-class` shows the first of these in a terminal, and
+`moldloft check --json` prints the facts of a message as data.
 
-Errors stop what depends on them and nothing else; warnings and remarks do not change the result. `moldloft check --json` prints the same
-facts as data.
+Errors stop what depends on them and nothing else; warnings and notes do not change the result. The programs are run by
+`tests/python/test_diagnostics_page.py`.
 """
 
-EXTRA = [
-    "AbsPoint P(1, 2);",
-    "AbsPoint P(1, 2, 3); AbsPoint P(1, 2, 4);",
-    "AbsPoint P(1, 2, 3); BCurve c(P, degree = 2);",
-    "AbsPoint P(1, 2, 3); Line l(P, Q);",
-    "AbsPoint P(1, 2, 3, colr = 3);",
-    "Lien l(1);",
-    "param float a = 12 in [1, 9];",
-    "AbsPoint P(0/0, 0, 0);",
-    "AbsPoint P(sqrt(-1), 0, 0);",
-    "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); BCurve c({A, B}, degree = 5);",
-    'Model info(units = "furlong");',
-    "curve a[3]; curve b[4]; a = b;",
-    "farray a[3]; print a[4];",
-    'float a = 1; a = "text";',
-    "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(1, 1, 0);\n"
-    "Line a(A, B); Line b(C, D); Line c(B, A);\n"
-    'RuledSurf s(a, b); IntSnake i(s, "x=2");',
-    'load "nothing.sdl";',
-    "foreach (x in {1, 2, 3}) print x;",
-    'assert 1 > 2, "one is not more than two";',
-    "set a = set(sphere({0, 0, 0}, -1));",
-    "AbsPoint A(0, 0, 0); Line l(A, A); RevSurf r(l, l);",
-    "print nothing;",
-    "AbsPoint A(0, 0, 0); AbsBead b(A, 0.5);",
-    "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); Line l(A, B, divisions = -1);",
-]
+#: Diagnostics without a program: they need an interrupt, a fault of ours, a rare failure of an iteration, or the workbench.
+WITHOUT = {
+    "accuracy-not-reached",
+    "border-not-joined",
+    "cancelled",
+    "diverged",
+    "faces-apart",
+    "faces-tangled",
+    "internal-error",
+    "misplaced-object",
+    "no-distance",
+    "no-edge",
+    "no-goal",
+    "no-mesh",
+    "no-model",
+    "no-parameter",
+    "no-picture",
+    "no-plane",
+    "no-solution",
+    "no-spline",
+    "no-surface",
+    "no-text",
+    "no-weights",
+    "not-faired",
+    "not-fitted",
+    "open-edge",
+    "other-edge",
+    "rail-singular",
+    "redefined",
+    "rough-volume",
+    "sketch",
+    "sketch-invalid",
+    "start-failed",
+    "thin-box",
+    "undecided-cells",
+    "unknown-field",
+    "unknown-format",
+    "unknown-literal",
+    "wrong-edges",
+    "wrong-tags",
+}
 
-
-def programs() -> list[str]:
-    """All programs that may raise something."""
-    found = list(EXTRA)
-    for path in sorted((ROOT / "tests" / "corpus").rglob("*.sdl")):
-        for case in re.split(r"^#### .*\n", path.read_text(encoding="utf-8"), flags=re.M)[1:]:
-            lines = [line for line in case.splitlines() if not re.match(r"#[>=<+?] ?", line)]
-            found.append("\n".join(lines).strip())
-    return sorted(set(found), key=lambda text: (len(text), text))
+SECTION = re.compile(
+    r"^## (\S+)\n\n.*?(?:```(sdl|ms2|python)\n(.*?)\n```.*?)?(?=^## |\Z)", re.M | re.S
+)
 
 
 def examples() -> dict[str, tuple[str, str]]:
-    """For each id the shortest program, and what is printed of it."""
-    found: dict[str, tuple[str, str]] = {}
-    for text in programs():
-        if len(text) > 600 or not text or ("while" in text and "while (1)" not in text):
-            continue
-        model = moldloft.loads(text, name="model.sdl", strict=False)
-        for diagnostic in model.diagnostics:
-            if diagnostic.id not in found and "blocked" not in diagnostic.id:
-                found[diagnostic.id] = (text, str(diagnostic).rstrip())
-    return found
+    """The programs of the page: language and text of each diagnostic's."""
+    found = SECTION.findall(PAGE.read_text(encoding="utf-8"))
+    return {name: (language, text) for name, language, text in found if text}
 
 
-def page(found: dict[str, tuple[str, str]]) -> str:
+@contextlib.contextmanager
+def _elsewhere() -> Iterator[None]:
+    here = Path.cwd()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        try:
+            yield
+        finally:
+            os.chdir(here)
+
+
+def raised(language: str, text: str) -> list[tuple[str, str]]:
+    """What a program of the page raises: ids and messages, without the folder it ran in."""
+    with _elsewhere():
+        folder = str(Path.cwd()) + os.sep
+        return [(d.id, str(d).rstrip().replace(folder, "")) for d in _diagnostics(language, text)]
+
+
+def _diagnostics(language: str, text: str) -> list[Any]:
+    try:
+        if language == "python":
+            names: dict[str, Any] = {}
+            exec(compile(text, "example.py", "exec"), names)
+            return list(names.get("found", ()))
+        model = moldloft.loads(text, name="model." + language, strict=False)
+        found = list(model.diagnostics)
+        return found if model.has_errors else found + list(model.junctions())
+    except moldloft.Error as error:
+        return list(error.diagnostics)
+
+
+def section(name: str, language: str, text: str) -> str:
+    """The section of a diagnostic."""
+    printed = dict(reversed(raised(language, text))).get(name)
+    if printed is None:
+        raise SystemExit(f"the program of {name} does not raise it")
+    return f"\n## {name}\n\n{EXPLANATIONS[name]}\n\n```{language}\n{text}\n```\n\n```text\n{printed}\n```\n"
+
+
+def page() -> str:
     """The page."""
+    known = examples()
     parts = [HEAD]
-    for name in sorted(found):
-        text, printed = found[name]
-        parts.append(f"\n## {name}\n\n```sdl\n{text}\n```\n\n```text\n{printed}\n```\n")
+    for name in sorted(EXPLANATIONS):
+        if name in known:
+            parts.append(section(name, *known[name]))
+        else:
+            parts.append(f"\n## {name}\n\n{EXPLANATIONS[name]}\n")
     return "".join(parts)
 
 
-def _late(*_: object) -> None:
-    raise TimeoutError
-
-
 if __name__ == "__main__":
-    signal.signal(signal.SIGALRM, _late)
-    made = examples()
-    (ROOT / "docs" / "diagnostics.md").write_text(page(made), encoding="utf-8")
-    print(f"{len(made)} diagnostics")
+    text = page()
+    PAGE.write_text(text, encoding="utf-8")
+    print(f"{len(EXPLANATIONS)} diagnostics, {text.count('```text')} with a program")

@@ -1,23 +1,30 @@
-"""Builds what is released: ``python tools/release.py [wheel] [sdist] [smoke]``, by default all.
+"""Builds what is released: ``python tools/release.py [STEP ...]``, by default all of them in turn.
 
-``wheel``  the page (if npm is there), the language server, and the wheel with both inside
+``engine`` the engine for pages that compute by themselves (if the target for WebAssembly is there)
+``wheel``  the page (if npm is there), the language server, and the wheel with all three inside
+``editor`` the extension for Visual Studio Code of this platform, with the language server inside
 ``sdist``  the source distribution, the notices of bundled software and the bill of materials
 ``smoke``  installs the wheel into an empty environment, without Rust and Node.js on the path, and
-           uses it: command, language server, extras that can be had
+           uses it: command, workbench, language server, display in notebooks, each extra
+
+``MOLDLOFT_PROFILE=dev`` tries the steps with development builds, which take minutes less.
 """
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import json
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
 import sysconfig
 import tarfile
 import tempfile
+import urllib.request
 import venv
 import zipfile
 from pathlib import Path
@@ -27,6 +34,9 @@ ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
 WINDOWS = platform.system() == "Windows"
 EXE = ".exe" if WINDOWS else ""
+WASM = "wasm32-unknown-unknown"
+TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+PROFILE = os.environ.get("MOLDLOFT_PROFILE", "release")
 
 
 def run(*command: str | Path, **options: Any) -> None:
@@ -192,8 +202,30 @@ def maturin() -> list[str]:
     return [sys.executable, "-m", "maturin"]
 
 
+def engine() -> None:
+    """The engine inside of pages, where it can be built."""
+    libraries = Path(output("rustc", "--print", "sysroot").strip()) / "lib" / "rustlib" / WASM
+    if not libraries.is_dir():
+        print(f"{WASM} is not there: pages of `moldloft export --html` will show and not compute")
+        return
+    run(
+        "cargo", "build", "--profile", "engine", "--locked", "--target", WASM, "-p", "moldloft-wasm"
+    )
+    built = (TARGET / WASM / "engine" / "moldloft_engine.wasm").read_bytes()
+    path = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.gz"
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes(gzip.compress(built, 9, mtime=0))
+    print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
+
+
+def server() -> Path:
+    """The language server, built."""
+    run("cargo", "build", "--profile", PROFILE, "--locked", "-p", "moldloft-lsp")
+    return TARGET / ("debug" if PROFILE == "dev" else PROFILE) / f"moldloft-lsp{EXE}"
+
+
 def wheel() -> None:
-    """The wheel with the page, the language server and the notices inside."""
+    """The wheel with the page, the engine, the language server and the notices inside."""
     if shutil.which("npm"):
         web = ROOT / "web"
         npm = shutil.which("npm") or "npm"
@@ -201,20 +233,59 @@ def wheel() -> None:
         run(npm, "run", "--silent", "build", cwd=web)
     else:
         print("npm is not there: the wheel will have no workbench page")
-    run("cargo", "build", "--release", "--locked", "-p", "moldloft-lsp")
-    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     package = ROOT / "python" / "moldloft"
     inside = package / "bin"
     inside.mkdir(exist_ok=True)
     write_papers()
     try:
-        shutil.copy2(target / "release" / f"moldloft-lsp{EXE}", inside)
+        shutil.copy2(server(), inside)
         shutil.copy2(DIST / "NOTICES.txt", inside)
-        run(*maturin(), "build", "--release", "--locked", "--out", DIST)
+        run(*maturin(), "build", "--profile", PROFILE, "--locked", "--out", DIST)
     finally:
         shutil.rmtree(inside)
     for path in sorted(DIST.glob("*.whl")):
         print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
+
+
+#: Names of platforms in Visual Studio Code, by those of Python.
+_EDITORS = {
+    ("Linux", "x86_64"): "linux-x64",
+    ("Linux", "aarch64"): "linux-arm64",
+    ("Darwin", "x86_64"): "darwin-x64",
+    ("Darwin", "arm64"): "darwin-arm64",
+    ("Windows", "AMD64"): "win32-x64",
+}
+
+
+def editor() -> None:
+    """The extension for Visual Studio Code, with the language server of this platform inside."""
+    npm = shutil.which("npm")
+    if npm is None:
+        print("npm is not there: no extension for Visual Studio Code")
+        return
+    target = _EDITORS[platform.system(), platform.machine()]
+    folder = ROOT / "editors" / "vscode"
+    inside = folder / "server"
+    inside.mkdir(exist_ok=True)
+    DIST.mkdir(exist_ok=True)
+    path = DIST / f"moldloft-{version()}-{target}.vsix"
+    try:
+        shutil.copy2(server(), inside)
+        for name in ("LICENSE-MIT", "LICENSE-APACHE", "CHANGELOG.md"):
+            shutil.copy2(ROOT / name, folder)
+        run(npm, "install", "--no-audit", "--no-fund", "--loglevel=error", cwd=folder)
+        options = ["--no-install", "vsce", "package", "--skip-license", "--target", target]
+        run(shutil.which("npx") or "npx", *options, "-o", path, cwd=folder)
+    finally:
+        shutil.rmtree(inside)
+        for name in ("LICENSE-MIT", "LICENSE-APACHE", "CHANGELOG.md"):
+            (folder / name).unlink(missing_ok=True)
+    with zipfile.ZipFile(path) as archive:
+        names = archive.namelist()
+    for wanted in (f"extension/server/moldloft-lsp{EXE}", "extension/src/extension.js"):
+        if wanted not in names:
+            raise SystemExit(f"{path.name} lacks {wanted}")
+    print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
 
 
 def sdist() -> None:
@@ -238,10 +309,23 @@ import moldloft
 m = moldloft.loads(open("boat.sdl").read())
 assert m.hydrostatics().volume > 0
 assert "<table" in m._repr_html_()
+assert m._repr_png_()[:4] == b"\\x89PNG"
 import pickle
 assert pickle.loads(pickle.dumps(m)).keys() == m.keys()
 print("python:", m)
 """
+
+#: What each extra is for, tried in an environment of its own.
+_EXTRAS = {
+    "plot": "m.hydrostatic_table([0.2, 0.3, 0.4]).plot('table.png')",
+    "prompt": "import moldloft.cli.editor, prompt_toolkit",
+    "grids": "from moldloft.files import commit, produce; import pathlib; "
+    "commit(pathlib.Path(), produce(m, 'cgns', pathlib.Path('boat.cgns')))",
+    "study": "from moldloft.study import component; "
+    "component(m, ['beam'], ['hydrostatics.volume'])",
+    "hydro": "assert m.to_capytaine(tags=()) is not None",
+    "cad": "m.write('boat.3dm'); m.write('boat.dxf')",
+}
 
 
 def smoke() -> None:
@@ -275,12 +359,53 @@ def smoke() -> None:
         run(command, "lsp", "--where", cwd=home, env=clean)
         _server_answers(command, home, clean)
         run(python, "-c", _USE, cwd=home, env=clean)
+        run(python, "-m", "pip", "install", "--quiet", f"{newest}[view]")
+        _workbench_answers(command, home, clean, page)
         size = sum(
             path.stat().st_size
             for path in (home / "env").rglob("*")
             if path.is_file() and "moldloft" in path.parts
         )
         print(f"installed: {size / 1e6:.1f} MB, without NumPy")
+        for extra, use in _EXTRAS.items():
+            place = home / extra
+            venv.create(place, with_pip=True)
+            python = place / scripts.name / f"python{EXE}"
+            run(python, "-m", "pip", "install", "--quiet", f"{newest}[{extra}]")
+            code = f"import moldloft; m = moldloft.load('boat.sdl'); {use}"
+            run(python, "-W", "ignore", "-c", code, cwd=home, env=clean)
+            print(f"extra {extra}: used")
+            shutil.rmtree(place)
+
+
+def _workbench_answers(command: Path, home: Path, clean: dict[str, str], page: bool) -> None:
+    """Starts the workbench without a browser and reads its page."""
+    words = [str(command), "view", "boat.sdl", "--no-browser"]
+    process = subprocess.Popen(
+        words, cwd=home, env=clean, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    try:
+        assert process.stdout is not None
+        text = ""
+        found = None
+        while found is None:
+            line = process.stdout.readline()
+            text += line
+            found = re.search(r"http://[^\s#]+", text)
+            if not line:
+                break
+        if found is None:
+            if page:
+                raise SystemExit(f"the workbench names no address: {text}")
+            print("workbench: says that its page is not there")
+            return
+        with urllib.request.urlopen(found[0], timeout=30) as answer:
+            if b"<script" not in answer.read():
+                raise SystemExit("the workbench sends no page")
+        print("workbench: sends its page")
+    finally:
+        process.terminate()
+        process.wait(30)
 
 
 def _server_answers(command: Path, home: Path, clean: dict[str, str]) -> None:
@@ -305,7 +430,7 @@ def _server_answers(command: Path, home: Path, clean: dict[str, str]) -> None:
 
 def main() -> None:
     """Runs the steps that are named, or all."""
-    steps = {"wheel": wheel, "sdist": sdist, "smoke": smoke}
+    steps = {"engine": engine, "wheel": wheel, "editor": editor, "sdist": sdist, "smoke": smoke}
     wanted = sys.argv[1:] or list(steps)
     for name in wanted:
         if name not in steps:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from moldloft.errors import Error, FileError
+from moldloft.errors import Error
 from moldloft.formats import format_named as _row
 from moldloft.formats import formats
+from moldloft.storage import Output, commit, read_set
 
 if TYPE_CHECKING:
     from moldloft.models import Model
@@ -25,6 +23,7 @@ __all__ = [
     "file_name",
     "format_named",
     "produce",
+    "read_set",
 ]
 
 FORMATS = {row.name: row.about for row in formats().values()}
@@ -32,16 +31,6 @@ FORMATS = {row.name: row.about for row in formats().values()}
 
 SOLVERS = tuple(row.name for row in formats().values() if row.panel_code)
 """The formats of panel codes."""
-
-
-@dataclass(frozen=True)
-class Output:
-    """A file to be written."""
-
-    name: str
-    """Its name, without folder."""
-    data: bytes
-    """Its content."""
 
 
 def format_named(name: str) -> str:
@@ -115,69 +104,3 @@ def produce(
             raise Error(f"`{option}` is not for {row.name}, which takes whole surfaces")
     source = model.blocks() if row.volume else model
     return [Output(path.name, row.encode(source, path.stem, tolerance=tolerance))]
-
-
-def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
-    """Write all files or none: under temporary names first, synced, then renamed.
-
-    Parameters
-    ----------
-    folder
-        Where to; made when it is not there.
-    outputs
-        What to write.
-
-    Raises
-    ------
-    FileError
-        When the folder or the disk refuses; then nothing has changed.
-    """
-    made = _make_folder(folder)
-    pending: list[tuple[Path, Path]] = []
-    try:
-        for output in outputs:
-            target = folder / output.name
-            if target.is_dir():
-                raise FileError(f"cannot write `{target}`: it is a folder")
-            draft = folder / f".{output.name}.{os.getpid()}.part"
-            pending.append((draft, target))
-            _write_synced(draft, output.data)
-        for draft, target in pending:
-            draft.replace(target)
-    except BaseException as error:
-        for draft, _ in pending:
-            with contextlib.suppress(OSError):
-                draft.unlink(missing_ok=True)
-        for new in made:
-            with contextlib.suppress(OSError):
-                new.rmdir()
-        if isinstance(error, OSError) and not isinstance(error, FileError):
-            where = pending[-1][1] if pending else folder
-            raise FileError(f"cannot write `{where}`: {_reason(error)}") from error
-        raise
-    return [target for _, target in pending]
-
-
-def _make_folder(folder: Path) -> list[Path]:
-    """Makes a folder; the new ones, innermost first."""
-    missing = []
-    at = folder
-    while not at.exists() and at != at.parent:
-        missing.append(at)
-        at = at.parent
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"cannot make the folder `{folder}`: {_reason(error)}") from error
-    return missing
-
-
-def _write_synced(path: Path, data: bytes) -> None:
-    with path.open("xb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-
-
-def _reason(error: OSError) -> str:
-    return (error.strerror or str(error)).lower()

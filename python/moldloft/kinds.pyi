@@ -7279,6 +7279,17 @@ def FairCurve(
     spacing: _Text | None = ...,
     goal: _Text | None = ...,
     along: _Vector | None = ...,
+    shape: Sequence[_Text] | _Any | None = ...,
+    share: _Number | None = ...,
+    tolerances: _Numbers | None = ...,
+    fixed: Sequence[_Integer] | _Array | _Any | None = ...,
+    release: Sequence[_Integer] | _Array | _Any | None = ...,
+    through: _Vectors | None = ...,
+    through_at: _Numbers | None = ...,
+    tangents: _Vectors | None = ...,
+    tangents_at: _Numbers | None = ...,
+    keep: Sequence[_Text] | _Any | None = ...,
+    bends: _Integer | None = ...,
     relabel: _Relabel | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -7345,10 +7356,40 @@ def FairCurve(
     goal : text, optional
         Which of the curves within the tolerance: "near" (no fairer than noise of the
         tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
-        same, moved in any case) or "fairest". Default near.
+        same, moved in any case), "fairest", "nearest" (the nearest to the points that measures
+        little more than the fairest), "energy" (the nearest that measures at most `share`) or
+        "closest" (the nearest of the `shape`). Default near.
     along : vector, optional
         The direction in which the curve may leave its points, such as {0, 1, 0} for offsets at
         fixed stations; any direction without it.
+    shape : list of text, optional
+        The shape that the curve has to have, points from 1: "convex=4-10", "concave=1-4", "one-
+        way=1-9" (no inflection), "straight=1-9", "straight=1-9:0,1" (in a direction),
+        "arc=9-15", "pieces=2" (of monotone curvature), "within=0,1:4.6" (the largest value
+        along a direction), "side=0,-1" (the points are left only against it). A word alone is
+        about the whole curve. No derivatives.
+    share : number, optional
+        The share of the goals "budget" (0.8) and "nearest" (0.1), or the measure of "energy".
+    tolerances : list of number, optional
+        Tolerances of the points one by one, instead of `tolerance`.
+    fixed : list of integer, optional
+        Numbers of points, from 1, through which the curve passes.
+    release : list of integer, optional
+        Numbers of points, from 1, that are wrong: the curve may leave them.
+    through : list of point, optional
+        Points that the curve passes through at `through_at`. No derivatives.
+    through_at : list of number, optional
+        Parameters, from 0 to 1, of `through`.
+    tangents : list of vector, optional
+        Directions that the curve has at `tangents_at`. No derivatives.
+    tangents_at : list of number, optional
+        Parameters, from 0 to 1, of `tangents`.
+    keep : list of text, optional
+        What it keeps of the curve through the points, to first order: "area" (swept about the
+        origin in the plane of x and y) or "volume" (of revolution about x). No derivatives.
+    bends : integer, optional
+        0 to have no more inflections than the curve of least bending within the tolerances; no
+        derivatives then. 0 to 1, default 1.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v). Default: none.
     **attributes

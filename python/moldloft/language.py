@@ -16,6 +16,7 @@ __all__ = [
     "attributes",
     "entry",
     "format_text",
+    "guides",
     "meaning",
     "page",
     "reference",
@@ -237,7 +238,7 @@ def search(words: str) -> list[dict[str, Any]]:
         summary = str(row["summary"]).lower()
         score = 0
         for word in wanted:
-            stem = word.rstrip("s") if len(word) > 4 else word
+            stem = _stem(word)
             near = SYNONYMS.get(word) or SYNONYMS.get(stem) or ()
             if stem in name:
                 score += 8 - (len(name) > len(stem))
@@ -253,6 +254,67 @@ def search(words: str) -> list[dict[str, Any]]:
         if score:
             scored.append((-score, len(scored), row))
     return [row for _, _, row in sorted(scored, key=lambda item: item[:2])]
+
+
+SITE = "https://moldloft.github.io/moldloft"
+
+#: Pages of the documentation: file, what it is about, and words that ask for it besides.
+_GUIDES = (
+    (
+        "hydrostatics",
+        "hydrostatics, equilibrium, righting arms and stability criteria",
+        "hydrostatic displacement draft draught trim heel gz kg waterline lcb tpc bonjean",
+    ),
+    (
+        "relational",
+        "how objects depend on each other: beads, magnets, snakes, rings, joins",
+        "parent dependency constraint model point curve surface",
+    ),
+    (
+        "panels",
+        "divisions, spacing and joins of panels; tags and lids",
+        "divisions subdivisions mesh panel join junction open edge quality tag lid",
+    ),
+    ("sdl", "the array language", "language program array loop function variable"),
+    ("grids", "structured grids", "grid mesh elliptic hyperbolic transfinite smoothing"),
+    ("implicit", "implicit solids: sets, blends, offsets", "set boolean blend solid field csg sdf"),
+    ("fairing", "fairing of points, curves and surfaces", "fair smooth tolerance noise"),
+    ("sketch", "sketches with dimensions", "sketch dimension constraint profile"),
+    ("formats", "file formats", "file format export import write stl gdf step iges units"),
+    ("cad", "exchange with CAD: STEP, IGES, 3DM, DXF", "step iges dxf 3dm rhino cad brep"),
+    ("python", "the Python package", "python notebook pickle jupyter derivative gradient"),
+    ("command-line", "the commands", "command shell completion pipe option"),
+    (
+        "conventions",
+        "axes, units, signs and normals",
+        "unit axis normal sign degree density",
+    ),
+    ("workbench", "the workbench in the browser", "view viewer browser workbench drag"),
+    ("diagnostics", "each diagnostic with an example and its remedy", "error warning remark"),
+    (
+        "migration",
+        "coming from another program",
+        "multisurf openvsp rhino cadquery geomdl gmsh openscad",
+    ),
+)
+
+
+def guides(words: str) -> list[tuple[str, str]]:
+    """Pages of the documentation that a phrase may ask for: what each is about, and its address.
+
+    >>> guides("hydrostatics")[0][1]
+    'https://moldloft.github.io/moldloft/hydrostatics.html'
+    """
+    found = []
+    for page, about, more in _GUIDES:
+        known = f"{page} {about} {more}".lower()
+        if all(_stem(word) in known for word in words.lower().split()):
+            found.append((about, f"{SITE}/{page}.html"))
+    return found
+
+
+def _stem(word: str) -> str:
+    return word.rstrip("s") if len(word) > 4 else word
 
 
 def format_text(name: str, text: bytes) -> str:

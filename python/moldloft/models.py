@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
-from moldloft.errors import Error, ModelError, UnknownNameError
+from moldloft.errors import Error, FileError, ModelError, UnknownNameError
 from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
 from moldloft.objects import object_of
 from moldloft.units import Units
@@ -304,7 +304,7 @@ class Model:
     # -- changing --------------------------------------------------------------------------
 
     def __setitem__(self, name: str, value: float) -> None:
-        self._document.set([(name, float(value))])
+        self.set({name: value})
 
     def set(self, values: Mapping[str, float]) -> None:
         """Change several numbers at once.
@@ -318,9 +318,16 @@ class Model:
         Raises
         ------
         ModelError
-            When a value is out of its range or a name unknown; nothing is changed then.
+            When a value is not a number or out of its range, or a name unknown; nothing is
+            changed then.
         """
-        self._document.set([(name, float(value)) for name, value in values.items()])
+        numbers = []
+        for name, value in values.items():
+            try:
+                numbers.append((name, float(value)))
+            except (TypeError, ValueError):
+                raise ModelError(f"`{name}` is a number; found {value!r}") from None
+        self._document.set(numbers)
 
     # -- measuring -------------------------------------------------------------------------
 
@@ -817,7 +824,7 @@ class Model:
         Parameters
         ----------
         path
-            The file.
+            The file, in a folder that exists.
         format
             One of :data:`moldloft.files.FORMATS`, such as ``gdf``, ``nemoh``, ``stl``, ``glb``,
             ``vts``, ``svg`` or ``sdl``; by default what the file's name ends in.
@@ -842,10 +849,19 @@ class Model:
         -------
         list of pathlib.Path
             The files written; some formats take several.
+
+        Raises
+        ------
+        FileError
+            When there is no such folder, or it cannot be written to.
+        FormatError
+            When the format is unknown or cannot hold the model.
         """
         from moldloft.files import commit, ending, produce
 
         path = Path(path)
+        if not path.parent.is_dir():
+            raise FileError(f"cannot write `{path}`: there is no folder `{path.parent}`")
         wanted = format or ending(path)
         names = [tags] if isinstance(tags, str) else list(tags)
         files = produce(

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -100,6 +102,43 @@ def test_a_type_checker_finds_each_mistake_and_no_other(tmp_path: Path) -> None:
     missed = [lines[k - 1].strip() for k in sorted(wrong - found)]
     assert not missed, f"not found: {missed}"
     assert found == wrong, done.stdout
+
+
+def pyright() -> str | None:
+    """The command, where it can be had: the package needs Node.js and fetches the program once."""
+    command = shutil.which("pyright", path=str(Path(sys.executable).parent)) or shutil.which(
+        "pyright"
+    )
+    if command is None:
+        return None
+    try:
+        done = subprocess.run([command, "--version"], capture_output=True, text=True, timeout=120)
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return command if done.stdout.strip().startswith("pyright ") else None
+
+
+def test_pyright_finds_each_mistake_and_no_other(tmp_path: Path) -> None:
+    command = pyright()
+    if command is None:
+        pytest.skip("pyright is not there: it needs Node.js and a package registry")
+    path = tmp_path / "user.py"
+    path.write_text(USER, encoding="utf-8")
+    settings: dict[str, object] = {"typeCheckingMode": "strict", "include": ["user.py"]}
+    # Expressions are there for their types only; and what a model holds under a name is of every
+    # class to a checker, so that an `isinstance` seems needless in its strict mode.
+    for rule in ("UnusedExpression", "UnusedVariable", "UnnecessaryIsInstance"):
+        settings[f"report{rule}"] = False
+    (tmp_path / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
+    call = [command, "--outputjson", "--pythonpath", sys.executable, "--project", str(tmp_path)]
+    done = subprocess.run(call, capture_output=True, text=True, cwd=tmp_path, timeout=300)
+    told = json.loads(done.stdout)["generalDiagnostics"]
+    found = {row["range"]["start"]["line"] + 1 for row in told if row["severity"] == "error"}
+    lines = USER.splitlines()
+    wrong = {k for k, line in enumerate(lines, 1) if line.endswith("# wrong")}
+    missed = [lines[k - 1].strip() for k in sorted(wrong - found)]
+    assert not missed, f"not found: {missed}"
+    assert found == wrong, [row for row in told if row["range"]["start"]["line"] + 1 not in wrong]
 
 
 def test_the_stubs_are_those_of_the_registry() -> None:

@@ -15,9 +15,10 @@ import pytest
 
 from conftest import SAILBOAT
 from moldloft.errors import Error
+from moldloft.storage import put
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.hub import Hub, Tab, head_of
-from moldloft.workbench.text import applied, change_set, encoded, read, write
+from moldloft.workbench.text import applied, change_set, encoded, read
 
 LINE = "param float w = 2 in [1, 3];\nAbsPoint A(0, 0, 0);\nAbsPoint B(w, 0, 0);\nLine l(A, B);\n"
 
@@ -48,7 +49,7 @@ def test_files_keep_their_line_ends_mode_and_link(tmp_path: Path) -> None:
     link.symlink_to(path)
     stored = read(link)
     assert stored.text == "one\ntwo\n"
-    write(link, encoded("one\nzwei\n", stored))
+    put(link, encoded("one\nzwei\n", stored))
     assert path.read_bytes() == b"\xef\xbb\xbfone\r\nzwei\r\n"
     assert link.is_symlink() and path.stat().st_mode & 0o777 == 0o640
     assert not [p for p in tmp_path.iterdir() if p.name.endswith(".part")]

@@ -91,6 +91,27 @@ pub enum FairError {
         /// The largest amount by which one of them is missed.
         miss: f64,
     },
+    /// Shape conditions cannot hold within the tolerance.
+    Shape {
+        /// Which, by position in the list given.
+        shapes: Vec<usize>,
+        /// By how much they are missed, as a move of the curve.
+        miss: f64,
+    },
+    /// No curve within the tolerance has so small a measure.
+    Energy {
+        /// The measure asked for.
+        asked: f64,
+        /// The least there is.
+        least: f64,
+    },
+    /// A shape condition that these data cannot have.
+    Shapeless {
+        /// Which, by position in the list given.
+        shape: usize,
+        /// Why, and what to do.
+        why: String,
+    },
     /// A curve runs against the neighbour that it should run on from.
     TurnsBack,
     /// Two surfaces cannot be joined at an edge.
@@ -182,6 +203,19 @@ impl fmt::Display for FairError {
                     list.join(", ")
                 )
             }
+            Self::Shape { shapes, miss } => {
+                let list: Vec<_> = shapes.iter().map(|c| (c + 1).to_string()).collect();
+                write!(
+                    f,
+                    "shape {} cannot hold within the tolerance (missed by {miss:.3e})",
+                    list.join(", ")
+                )
+            }
+            Self::Energy { asked, least } => write!(
+                f,
+                "no curve within the tolerance measures {asked:.6e}: the least is {least:.6e}"
+            ),
+            Self::Shapeless { shape, why } => write!(f, "shape {}: {why}", shape + 1),
             Self::Squares => {
                 write!(f, "a sum of lengths has no steps of single points: take the optimum")
             }

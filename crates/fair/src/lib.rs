@@ -108,6 +108,8 @@ pub use curve::knot_removal::{
 pub use curve::layout::Layout;
 pub use curve::limit::{Limit, Motion};
 pub use curve::multilevel::multilevel;
+pub use curve::shape_condition::ShapeCondition;
+pub use curve::shaping::{FoundArc, Shape};
 pub use curve::space::Space;
 pub use error::FairError;
 pub use interrogate::deviation::{Deviation, certified, deviation};

@@ -346,16 +346,9 @@ impl PyDocument {
     }
 
     fn eval<'py>(&self, py: Python<'py>, expression: &str) -> PyResult<Bound<'py, PyAny>> {
-        if self.calls_python.load(Ordering::Relaxed) {
-            let expression = expression.to_owned();
-            let value = self.long_checked(py, move |d| d.eval(&expression))?;
-            return to_python(py, &value);
-        }
-        let mut document = self.lock(py);
-        match document.eval(expression) {
-            Ok(value) => to_python(py, &value),
-            Err(diagnostics) => Err(model_error(&diagnostics, document.sources())),
-        }
+        let expression = expression.to_owned();
+        let value = self.long_checked(py, move |d| d.eval(&expression))?;
+        to_python(py, &value)
     }
 
     fn derivatives<'py>(

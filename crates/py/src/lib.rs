@@ -51,7 +51,7 @@ mod _core {
     use crate::engine::{PySession, engine};
     #[pymodule_export]
     use crate::fair::{
-        Look, Net, Spline, Web, data_findings, detectable, divided_differences, eta_y,
+        Look, Net, Spline, Web, data_findings, detectable, divided_differences, eta_y, fair_shape,
         monotone_runs,
     };
     #[pymodule_export]

@@ -1,14 +1,25 @@
 // Starts the language server and connects the editor to it.
 "use strict";
 
+const fs = require("fs");
+const path = require("path");
 const vscode = require("vscode");
 const { LanguageClient } = require("vscode-languageclient/node");
 
 let client;
 
-function activate(context) {
+// The server of the settings, else the one inside of the extension, else that of the installed package.
+function chosen(context) {
   const given = vscode.workspace.getConfiguration("moldloft").get("server");
-  const server = given ? { command: given, args: [] } : { command: "moldloft", args: ["lsp"] };
+  if (given) return { command: given, args: [] };
+  const name = process.platform === "win32" ? "moldloft-lsp.exe" : "moldloft-lsp";
+  const inside = path.join(context.extensionPath, "server", name);
+  if (fs.existsSync(inside)) return { command: inside, args: [] };
+  return { command: "moldloft", args: ["lsp"] };
+}
+
+function activate(context) {
+  const server = chosen(context);
   client = new LanguageClient(
     "moldloft",
     "Moldloft",

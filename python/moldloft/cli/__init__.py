@@ -184,7 +184,9 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
         epilog="\n".join(lines) + "`moldloft COMMAND --help` describes each, with examples.",
     )
     parser.add_argument("-V", "--version", action="store_true", help="print the version")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=Parser)
+    commands = parser.add_subparsers(
+        prog="moldloft", metavar="COMMAND", required=True, parser_class=Parser
+    )
     # The epilog lists the commands in groups.
     commands.help = "see below"
     for name, line in COMMANDS.items():

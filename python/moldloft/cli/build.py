@@ -123,34 +123,26 @@ def run(options: argparse.Namespace) -> int:
         raise Error("--watch takes one model")
     if "png" not in options.to:
         options.to.append("png")
+    from moldloft.storage import Watch
+
+    watch = Watch(sources := [options.model])
     while True:
+        watch.begin()
         try:
             sources = _build_watched(options)
         except Error as error:
+            # What was read before is still what the model is made of.
             print(error.rendered, file=sys.stderr)
-            sources = [options.model]
+        watch.end(sources)
         print(f"watching {', '.join(sources)}", file=sys.stderr)
-        _wait_for_change(sources)
+        while not watch.changed():
+            time.sleep(_POLL_SECONDS)
 
 
 def _build_watched(options: argparse.Namespace) -> list[str]:
     sources: list[str] = []
     _build(options, sources)
     return sources or [options.model]
-
-
-def _wait_for_change(sources: list[str]) -> None:
-    before = [_stamp(path) for path in sources]
-    while [_stamp(path) for path in sources] == before:
-        time.sleep(_POLL_SECONDS)
-
-
-def _stamp(path: str) -> tuple[int, int]:
-    try:
-        status = Path(path).stat()
-    except OSError:
-        return (0, 0)
-    return (status.st_mtime_ns, status.st_size)
 
 
 def _build(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import difflib
+from textwrap import fill
 from typing import Any
 
 from moldloft.cli.console import print_json, table
@@ -15,7 +16,11 @@ __all__ = ["add", "markdown", "run"]
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     parser.add_argument(
-        "name", metavar="NAME", nargs="?", help="a kind or function, or words to search for"
+        "name",
+        metavar="NAME",
+        nargs="?",
+        help="a kind, a function, an argument of all kinds, the id of a diagnostic, "
+        "or words to search for",
     )
     parser.add_argument(
         "--list", action="store_true", help="list all of them, with class and fields"
@@ -29,7 +34,8 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prints the reference."""
-    from moldloft.language import reference, search
+    from moldloft.explanations import EXPLANATIONS
+    from moldloft.language import attributes, guides, reference, search
 
     rows = reference()
     if options.markdown:
@@ -51,18 +57,39 @@ def run(options: argparse.Namespace) -> int:
         else:
             print(text)
         return 0
+    if options.name in EXPLANATIONS and not options.pictures:
+        text = EXPLANATIONS[options.name]
+        if options.json:
+            print_json({"name": options.name, "diagnostic": True, "doc": text})
+        else:
+            print(f"{options.name}: a diagnostic\n\n{fill(text, 96)}\n\n{_EXAMPLE} {options.name}")
+        return 0
+    shared = next((field for field in attributes() if field["name"] == options.name), None)
+    if shared and not options.pictures:
+        if options.json:
+            print_json(shared)
+        else:
+            print(f"{shared['name']} = {shared['class']}\n\n{shared['help']}\n")
+            print("An argument of every kind, by name:\n")
+            print(f"  BCurve c({{A, B, C}}, degree = 2, {_ATTRIBUTES[shared['name']]});")
+            _print_guides(guides(options.name))
+        return 0
     row = next((row for row in rows if row["name"] == options.name), None)
     known = [*(row["name"] for row in rows), *_STATEMENTS]
     near = difflib.get_close_matches(options.name, known, n=1)
     # A misspelt name is an error; a word that names nothing is searched for.
     misspelt = bool(near) and options.name[:1].isupper()
-    found = [] if row is not None or misspelt or options.pictures else search(options.name)
-    if found:
+    other = row is not None or misspelt or bool(options.pictures)
+    found = [] if other else search(options.name)
+    pages = [] if other else guides(options.name)
+    if found or pages:
         if options.json:
             print_json(found)
         else:
-            print(f"no entry is called `{options.name}`; these may be meant:\n")
-            print(_list(found[:_MOST_FOUND], summary=True))
+            print(f"no entry is called `{options.name}`; these may be meant:")
+            if found:
+                print("\n" + _list(found[:_MOST_FOUND], summary=True))
+            _print_guides(pages)
         return 0
     if row is None:
         hint = f"; did you mean `{near[0]}`?" if near else "; see `moldloft doc --list`"
@@ -75,6 +102,29 @@ def run(options: argparse.Namespace) -> int:
         print(_page(row))
     return 0
 
+
+def _print_guides(pages: list[tuple[str, str]]) -> None:
+    if pages:
+        print("\nPages of the documentation:")
+        for about, address in pages[:4]:
+            print(f"  {address}  {about}")
+
+
+_EXAMPLE = "An example: https://moldloft.github.io/moldloft/diagnostics.html, at"
+
+#: How each argument of all kinds is written.
+_ATTRIBUTES = {
+    "colour": "colour = 14",
+    "visible": "visible = 0",
+    "layer": "layer = 2",
+    "divisions": "divisions = 20",
+    "subdivisions": "subdivisions = 4",
+    "size": "size = 0.25",
+    "spacing": 'spacing = "cosine"',
+    "tags": 'tags = {"wetted", "fine"}',
+    "orientation": "orientation = 1",
+    "attributes": 'attributes = "..."',
+}
 
 #: Statements that read like kinds.
 _STATEMENTS = {

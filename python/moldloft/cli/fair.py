@@ -166,7 +166,17 @@ def add(parser: argparse.ArgumentParser) -> None:
         default="near",
         help="which of the results within the tolerance: near (the default: no fairer than noise "
         "of that size asks for, unmoved where there is little to gain), fairest, budget=SHARE of "
-        "such noise, nearest=SHARE above the least",
+        "such noise, nearest=SHARE above the least, energy=MOST (the nearest that measures at "
+        "most this), closest (the nearest that has the shapes asked for)",
+    )
+    parser.add_argument(
+        "--shape",
+        metavar="WORD[=I-J]",
+        action="append",
+        default=[],
+        help="what shape the curve has: convex, concave, one-way (no inflection), straight, arc, "
+        "each of the whole curve or between two points (arc=9-15; straight=1-9:0,1 in a "
+        "direction); pieces=K of monotone curvature; within=X,Y:MOST; side=X,Y; may be repeated",
     )
     parser.add_argument(
         "--release",
@@ -227,9 +237,10 @@ def _spacing(text: str) -> Any:
 
 def _goal(text: str) -> Any:
     word, equals, share = text.partition("=")
-    if word not in ("near", "fairest", "budget", "nearest"):
+    if word not in ("near", "fairest", "budget", "nearest", "energy", "closest"):
         raise argparse.ArgumentTypeError(
-            f"`{word}` is not a goal; there are: near, fairest, budget=SHARE, nearest=SHARE"
+            f"`{word}` is not a goal; there are: near, fairest, budget=SHARE, nearest=SHARE, "
+            "energy=MOST, closest"
         )
     try:
         return (word, float(share)) if equals else word
@@ -453,10 +464,34 @@ def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[s
         if options.release == "auto"
         else _places(options.release, count, "--release"),
         "bends": options.bends,
+        "shape": _shapes(options.shape, count),
         "count": options.count,
         "steps": steps,
         "log": bool(options.log),
     }
+
+
+def _shapes(texts: list[str], count: int) -> list[Any]:
+    """Shapes as :func:`moldloft.fair` takes them."""
+    from moldloft import _core
+
+    out: list[Any] = []
+    for text in texts:
+        try:
+            word, first, last, way, number = _core.fair_shape(text, count)
+        except FairingError as error:
+            raise Error(f"--shape: {error}") from None
+        if word == "pieces":
+            out.append((word, first))
+        elif word == "within":
+            out.append((word, way, number))
+        elif word == "side":
+            out.append((word, way))
+        elif word == "straight":
+            out.append((word, first, last, way))
+        else:
+            out.append((word, first, last))
+    return out
 
 
 def _encode_curve(result: Fairing, path: Path, like: PointFile | None) -> bytes:

@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 
 from moldloft.cli.console import expanded
-from moldloft.errors import FileError
 
 __all__ = ["add", "run"]
 
@@ -25,17 +24,13 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Formats each file; a program that does not parse stays as it is and is reported."""
     from moldloft.errors import Error
-    from moldloft.files import Output, commit
     from moldloft.language import format_text
+    from moldloft.storage import digest, put, read_bytes, recover
 
     status = 0
     for file in expanded(options.files):
         path = Path(file)
-        try:
-            old = sys.stdin.buffer.read() if file == "-" else path.read_bytes()
-        except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise FileError(f"cannot read `{file}`: {reason}") from error
+        old = sys.stdin.buffer.read() if file == "-" else read_bytes(path)
         try:
             new = format_text(file, old).encode()
         except Error as error:
@@ -48,7 +43,9 @@ def run(options: argparse.Namespace) -> int:
                 status = 1
         elif options.write and file != "-":
             if new != old:
-                commit(path.parent, [Output(path.name, new)])
+                recover(path.resolve().parent)
+                # Who saved it meanwhile keeps what was saved.
+                put(path, new, expected=digest(old))
         else:
             sys.stdout.write(new.decode())
     return status

@@ -204,7 +204,7 @@ def _command(session: Session, entry: str) -> list[str] | None:
 
 def _editor(session: Session) -> contextlib.AbstractContextManager[Callable[[str], str]]:
     from moldloft.cli.editor import line_editor
-    from moldloft.cli.journal import state_folder
+    from moldloft.storage.journal import state_folder
 
     def keywords() -> set[str]:
         from moldloft.language import reference

@@ -14,8 +14,8 @@ from moldloft.cli.console import print_json
 from moldloft.errors import Error, FileError
 
 if TYPE_CHECKING:
-    from moldloft.cli.journal import Journal, Left
     from moldloft.sketches import Reply, Sketch
+    from moldloft.storage.journal import Journal, Left
 
 __all__ = ["add", "run"]
 
@@ -94,16 +94,21 @@ class Host:
         self.rewritten = False
         #: Length of the session's journal when everything was last saved.
         self.saved = 0
+        #: Digest of the file that is edited, as it was read or written last.
+        self.present: str | None = None
+        #: Why the file that is edited may not be written: another prompt has it.
+        self.busy = ""
 
     # -- running -----------------------------------------------------------------------------
 
     def run_file(self, path: Path) -> None:
         """Runs all lines of a file."""
+        from moldloft.storage import digest, read_bytes
+
+        data = read_bytes(path)
+        self.present = digest(data)
         try:
-            text = path.read_text(encoding="utf-8")
-        except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise FileError(f"cannot read `{path}`: {reason}") from error
+            text = data.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
         if text.lstrip().startswith(("[", "{")):
@@ -133,25 +138,38 @@ class Host:
             self._show(reply, where)
         if self.journal is not None and self.rewritten:
             # The file holds everything now: running it and then the old journal would do it twice.
-            self.journal.restart()
+            self.journal.saved(self.present or "")
         self.rewritten = False
 
     def _write(self, reply: Reply, file: tuple[str, bytes]) -> Reply:
-        from moldloft.files import Output, commit
         from moldloft.sketches import Reply
 
         path = Path(self.options.output, file[0])
         try:
-            commit(path.parent, [Output(path.name, file[1])])
+            self._write_file(path, file[1])
         except Error as error:
             text = str(error)
             return Reply("error", text, "choose another name or folder", 600)
-        whole = path.suffix.lower() == ".json" or file[1] == self.session.text(None).encode()
+        return Reply("note", f"wrote {path} ({len(file[1])} bytes)")
+
+    def _write_file(self, path: Path, data: bytes) -> None:
+        from moldloft.files import Output, commit
+        from moldloft.storage import digest, put
+
+        own = self.options.file is not None and path.resolve() == Path(self.options.file).resolve()
+        whole = path.suffix.lower() == ".json" or data == self.session.text(None).encode()
+        if not own:
+            commit(path.parent, [Output(path.name, data)])
+        elif self.busy:
+            raise FileError(f"cannot write `{path}`: {self.busy}")
+        else:
+            if self.journal is not None and whole:
+                self.journal.saving(digest(data))
+            put(path, data, expected=self.present)
+            self.present = digest(data)
+            self.rewritten = whole
         if path.suffix.lower() in (".skt", ".json") and whole:
             self.saved = self.session.journal_length()
-            own = self.options.file
-            self.rewritten = own is not None and path.resolve() == Path(own).resolve()
-        return Reply("note", f"wrote {path} ({len(file[1])} bytes)")
 
     def _show(self, reply: Reply, where: str) -> None:
         self.refused |= reply.is_error
@@ -201,14 +219,40 @@ class Host:
 
     def _begin(self, terminal: bool) -> None:
         """Opens the journal, after what an earlier session may have left."""
-        from moldloft.cli.journal import ENDING, LAST, Journal, beside, left_behind, state_folder
+        from moldloft.storage import BusyError, Lock, recover
+        from moldloft.storage.journal import (
+            ENDING,
+            LAST,
+            Journal,
+            beside,
+            left_behind,
+            lock,
+            state_folder,
+        )
 
         own = beside(Path(self.options.file)) if self.options.file else None
+        held: Lock | None = None
+        if own:
+            recover(own.resolve().parent)
+            try:
+                # First of all: what another prompt keeps is neither read nor written.
+                held = lock(own)
+            except BusyError as busy:
+                self.busy = f"it is edited by {busy.owner or 'another process'}"
+                print(f"warning: {own.name[: -len(ENDING)]}: {self.busy}; SAVE under another name",
+                      file=sys.stderr)  # fmt: skip
+                own = None
+            except OSError:
+                # The folder cannot be written: the journal is among those without a file.
+                own = None
         folder = state_folder()
         others = sorted(folder.glob(f"*{ENDING}")) if folder.is_dir() else []
-        killed = [own] if own else [path for path in others if path.name != LAST]
-        left = left_behind(killed)
-        if self.options.recover and not left and not own:
+        alone = not self.options.file
+        if own and held:
+            left = left_behind([own], self.present, held)
+        else:
+            left = left_behind([path for path in others if path.name != LAST]) if alone else []
+        if self.options.recover and not left and alone:
             left = left_behind([folder / LAST])
         taken: Left | None = None
         if self.options.discard:
@@ -223,18 +267,27 @@ class Host:
         if taken is not None:
             commands = taken.commands
             before = self.refused
+            if taken.stale:
+                print(f"warning: {self.options.file} was changed by another program since",
+                      file=sys.stderr)  # fmt: skip
+            if taken.damaged:
+                print(f"warning: {taken.damaged} lines of {taken.path} are damaged",
+                      file=sys.stderr)  # fmt: skip
             for command in commands:
                 self.run_line(command)
             # What was refused then was not recorded; now only a file that is gone can be.
             self.refused = before
             text = f"restored: {len(commands)} commands of {taken.when}"
             print(text, file=sys.stderr)
-        present = self.session.journal(self.saved) if own else self.session.journal(0)
         try:
-            if own and (taken is not None or not left):
-                self.journal = Journal(own, present)
+            if own and held and (taken is not None or not left):
+                present = self.session.journal(self.saved)
+                self.journal = Journal(own, present, base=self.present, held=held)
             else:
-                self.journal = Journal.in_state_folder(present)
+                if held:
+                    held.release()
+                # By itself it must be enough.
+                self.journal = Journal.in_state_folder(self.session.journal(0))
         except OSError as error:
             where = own or folder
             reason = (error.strerror or str(error)).lower()
@@ -260,7 +313,7 @@ def _offer(left: Left, file: str | None) -> str:
 
 def _editor(sketch: Sketch) -> contextlib.AbstractContextManager[Callable[[str], str]]:
     from moldloft.cli.editor import line_editor
-    from moldloft.cli.journal import state_folder
+    from moldloft.storage.journal import state_folder
 
     return line_editor(
         state_folder() / "history", sketch.session.complete, delimiters=" ,=;", after=" "

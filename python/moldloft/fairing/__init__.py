@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from moldloft.fairing.curve import Fairing, fair_curve
+from moldloft.fairing.curve import Arc, Fairing, fair_curve
 from moldloft.fairing.network import NetworkFairing, network
 from moldloft.fairing.page import page, write_page
 from moldloft.fairing.patches import PatchesFairing, patches
@@ -40,6 +40,7 @@ from moldloft.fairing.spline import (
 from moldloft.fairing.surface import Look, SplineSurface, SurfaceFairing, fair_surface
 
 __all__ = [
+    "Arc",
     "Fairing",
     "Finding",
     "Look",
@@ -62,15 +63,15 @@ __all__ = [
 
 
 def fair(
-    points: ArrayLike | Spline | SplineSurface, tol: ArrayLike | None, **options: Any
+    points: ArrayLike | Spline | SplineSurface | Fairing, tol: ArrayLike | None, **options: Any
 ) -> Fairing | SurfaceFairing:
     """Fair a curve or a surface within a tolerance.
 
     Parameters
     ----------
     points
-        A row of points ``(n, 2)`` or ``(n, 3)`` or a :class:`Spline`, a curve; a grid ``(m, n, 3)``
-        or a :class:`SplineSurface`, a surface.
+        A row of points ``(n, 2)`` or ``(n, 3)``, a :class:`Spline` or a :class:`Fairing` of a
+        curve; a grid ``(m, n, 3)`` or a :class:`SplineSurface`, a surface.
     tol
         How far the result may be from the original: a length, or one for each point. 0 leaves a
         point alone. ``None`` means no limit and is an error for closed curves.
@@ -98,7 +99,7 @@ def fair(
     >>> faired.after.inflections, faired.before.inflections > 10
     (0, True)
     """
-    if isinstance(points, Spline):
+    if isinstance(points, (Spline, Fairing)):
         return fair_curve(points, tol, **options)
     if isinstance(points, SplineSurface):
         return fair_surface(points, tol, **options)

@@ -14,6 +14,7 @@ import numpy as np
 from moldloft import _core
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, narrowed, points_of, radii, refuse_repeats
+from moldloft.fairing.conditions import join_conditions, linear_conditions, shape_conditions
 from moldloft.fairing.report import Finding, Numbers, lines_of
 from moldloft.fairing.spline import Spline
 
@@ -29,6 +30,29 @@ __all__ = ["Fairing", "fair_curve"]
 MODES = ("optimum", "faithful", "literal", "vertex", "sweeps", "levels")
 MEASURES = ("second", "third", "jumps", "jump-lengths", "bending", "variation")
 ROLES = ("control", "points", "fit")
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A circular arc of a faired curve."""
+
+    first: int
+    """Its first point, from 0."""
+    last: int
+    """Its last point."""
+    radius: float
+    """Its radius."""
+    centre: Floats
+    """Its centre."""
+    off: float
+    """How far the spline is from the circle, sampled."""
+
+    def __str__(self) -> str:
+        x = ", ".join(f"{c:.6g}" for c in self.centre)
+        return (
+            f"points {self.first + 1} to {self.last + 1} are on an arc of radius "
+            f"{self.radius:.6g} about ({x}), which the cubic follows to {self.off:.1e}"
+        )
 
 
 @dataclass(frozen=True)
@@ -97,6 +121,8 @@ class Fairing:
     """The mean of the squared residuals over tolerances; 1 is noise that fills these evenly."""
     parameters: Floats | None = field(default=None, repr=False)
     """Where the points that were given are on the curve, from 0 to 1."""
+    arcs: tuple[Arc, ...] = ()
+    """The circular arcs that were asked for."""
     log: tuple[NDArray[np.uint32], Floats] | None = field(default=None, repr=False)
     """Local steps in order, when asked for: which point went where. Replayed on the original they
     give the result's bits."""
@@ -190,6 +216,15 @@ class Fairing:
             "corrected": [_finding(f) for f in self.corrected],
             "notes": list(self.notes),
             "budget_used": self.used,
+            "arcs": [
+                {
+                    "points": [a.first + 1, a.last + 1],
+                    "radius": a.radius,
+                    "centre": a.centre.tolist(),
+                    "off": a.off,
+                }
+                for a in self.arcs
+            ],
             "spline": {
                 "degree": self.spline.degree,
                 "closed": self.spline.closed,
@@ -255,72 +290,8 @@ def _ends(ends: Any, closed: bool) -> tuple[str, str]:
     return ("free", "free") if closed else (words[0], words[1])
 
 
-_Condition = tuple[str, float, tuple[float, float, float], tuple[float, float, float]]
-
-TOGETHER = 1e-9
-"""Ends within this share of a curve's extent are one place."""
-
-
-def _vector(vector: ArrayLike) -> tuple[float, float, float]:
-    v, _ = points_of([np.asarray(vector, np.float64).ravel()])
-    return float(v[0, 0]), float(v[0, 1]), float(v[0, 2])
-
-
-def _conditions(
-    through: Iterable[tuple[float, ArrayLike]],
-    tangents: Iterable[tuple[float, ArrayLike]],
-    keep: Sequence[str],
-) -> tuple[list[_Condition], list[str]]:
-    """The conditions, and what they are called in refusals."""
-    out: list[_Condition] = []
-    labels = []
-    none = (0.0, 0.0, 0.0)
-    for word, rows in (("through", through), ("tangent", tangents)):
-        for t, vector in rows:
-            v = _vector(vector)
-            if not 0 <= t <= 1:
-                raise FairingError(f"expected a parameter from 0 to 1, found {t:g}")
-            if word == "tangent" and not any(v):
-                raise FairingError(f"the tangent at {t:g} has no direction")
-            out.append((word, float(t), v, none))
-            labels.append(f"{word} at {t:g}")
-    for word in keep:
-        if word not in ("area", "centroid", "volume"):
-            raise FairingError(f"`{word}` cannot be kept; what can: area, centroid, volume")
-        axis = (1.0, 0.0, 0.0) if word == "volume" else (0.0, 0.0, 1.0)
-        out.append((word, 0.0, axis, none))
-        labels.append(f"keep {word}")
-    return out, labels
-
-
-def _joins(joins: Sequence[Spline], spline: Spline) -> list[_Condition]:
-    """What the curve's ends run on from: conditions whose parameter is 0 or 1."""
-    if joins and spline.closed:
-        raise FairingError("a closed curve has no ends to join")
-    out: dict[int, _Condition] = {}
-    own = spline([0.0, 1.0])
-    extent = float(np.ptp(spline.control_points, axis=0).max())
-    for k, other in enumerate(joins):
-        if not isinstance(other, Spline) or other.closed:
-            raise FairingError(f"join {k + 1} is not an open spline")
-        ends = other.at([0.0, 1.0])
-        away = np.linalg.norm(own[:, None] - ends.points[None], axis=2)
-        a, b = (int(i) for i in np.unravel_index(int(np.argmin(away)), away.shape))
-        if not away[a, b] <= TOGETHER * extent:
-            raise FairingError(
-                f"join {k + 1} does not begin or end where the curve does: its nearest end "
-                f"is {away[a, b]:.3e} off (a fitted curve ends at its points: as `fit`)"
-            )
-        if a in out:
-            raise FairingError(f"two curves join at the {('start', 'end')[a]} of the curve")
-        # The neighbour's parameter runs into the start, or on from the end, or the other way.
-        first = ends.first[b] * (-1.0 if a == b else 1.0)
-        out[a] = ("join", float(a), _vector(first), _vector(ends.second[b]))
-    return list(out.values())
-
-
 def fair_curve(
-    points: ArrayLike | Spline,
+    points: ArrayLike | Spline | Fairing,
     tol: ArrayLike | None,
     *,
     as_: str | None = None,
@@ -342,6 +313,7 @@ def fair_curve(
     goal: Any = "near",
     release: Sequence[int] | str = (),
     bends: bool = False,
+    shape: Iterable[Any] = (),
     original: ArrayLike | None = None,
     count: int | None = None,
     knots: ArrayLike | None = None,
@@ -360,7 +332,8 @@ def fair_curve(
     Parameters
     ----------
     points
-        ``(n, 2)`` or ``(n, 3)``, or a :class:`Spline`.
+        ``(n, 2)`` or ``(n, 3)``, or a :class:`Spline`; or the :class:`Fairing` of points, which are
+        then faired again: from the points as they were read, at the same parameters.
     tol
         How far the curve, or each point, may move; ``None`` for no limit.
     as_
@@ -426,6 +399,19 @@ def fair_curve(
         own curve where there is little to gain: exact data stay. ``"fairest"``: the least of the
         measure. ``("budget", share)``: the first with a share of your own. ``("nearest", share)``:
         the nearest to the data whose measure exceeds the least by at most this share.
+        ``("energy", most)``: the nearest whose measure is at most this. ``"closest"``: the nearest
+        that has the ``shape``, whatever it measures. Data that are as fair as asked do not move.
+    shape
+        What shape an optimum of data has, all points counted from 0: ``("convex", i, j)`` or
+        ``("concave", i, j)``, a turn to the left or to the right only between two points (seen
+        from above, or in a vertical plane with z up: of a graph over x from left to right what
+        these words mean); ``("one-way", i, j)``, no inflection there; ``("straight", i, j)``, or
+        ``("straight", i, j, direction)``; ``("arc", i, j)``, a circle, tangent to straight runs
+        and arcs that begin or end at its ends or one point from these; ``("pieces", k)``, at most
+        k pieces of monotone curvature; ``("within", direction, most)``, the curve stays where
+        ``direction . x`` is at most that; ``("side", direction)``, it leaves the points only
+        against this direction. ``"convex"``, ``"concave"`` and ``"one-way"`` alone are about the
+        whole curve. Signs, lines and limits hold of the whole curve, not of samples.
     release
         Points, from 0, that are wrong and may be left; ``"auto"``: the wrong digits among
         :attr:`Fairing.findings`. Nothing is released by itself.
@@ -460,6 +446,14 @@ def fair_curve(
     FairingError
         With :attr:`~moldloft.errors.FairingError.index`, the point at fault.
     """
+    if isinstance(points, Fairing):
+        again = points
+        if again.parameters is not None and at is None:
+            at = again.parameters
+            closed = again.spline.closed
+        as_ = as_ or again.as_
+        points = again.data[:, : again.points.shape[1]]
+    shape = [shape] if isinstance(shape, str) else list(shape)
     if as_ is None:
         as_ = "fit" if mode == "optimum" and bound in (None, "data") else "control"
     if original is not None:
@@ -486,6 +480,7 @@ def fair_curve(
             at,
             (word, share),
             bends,
+            shape,
             accuracy,
         )
         through, tangents = list(through), list(tangents)
@@ -493,6 +488,10 @@ def fair_curve(
         moves = as_ == "points" and bound is None and spacing not in ("index", "uniform")
         if (as_ == "fit" or moves) and not own.given and count is None and bound in (None, "data"):
             return _fair_data(points, tol, asked, (through, tangents, keep, joins), as_, started)
+    if shape:
+        raise FairingError('shapes are for optima of data, `as_="fit"` without knots of their own')
+    if word in ("energy", "closest"):
+        raise FairingError(f'the goal `{word}` is for optima of data, `as_="fit"`')
     if bound == "data":
         raise FairingError('bound `data` is for optima of data, `as_="fit"`')
     if len(release):
@@ -517,8 +516,8 @@ def fair_curve(
         bound = "curve" if fitted else "points"
     default = {"sweeps": 10, "levels": 2}.get(mode, n)
     kept = list(_ends(ends if ends is not None else ("tangent" if fitted else 2), spline.closed))
-    conditions, labels = _conditions(through, tangents, keep)
-    for k, join in enumerate(_joins(joins, spline)):
+    conditions, labels = linear_conditions(through, tangents, keep)
+    for k, join in enumerate(join_conditions(joins, spline)):
         kept[int(join[1])] = "position"
         conditions.append(join)
         labels.append(f"join {k + 1}")
@@ -562,6 +561,7 @@ class _Asked:
     at: ArrayLike | None
     goal: tuple[str, float]
     bends: bool
+    shape: list[Any]
     accuracy: float
 
 
@@ -571,9 +571,13 @@ BUDGET = 0.8
 
 def _goal(given: Any) -> tuple[str, float]:
     word, share = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
-    known = {"near": BUDGET, "budget": BUDGET, "fairest": 0.0, "nearest": 0.1}
+    known = {"near": BUDGET, "budget": BUDGET, "fairest": 0.0, "nearest": 0.1, "closest": 0.0}
+    if word == "energy":
+        if share is None:
+            raise FairingError('the goal `energy` takes the largest measure: ("energy", 2.5)')
+        return "energy", float(share)
     if word not in known:
-        raise FairingError(f"unknown goal `{word}`; there are: near, fairest, budget, nearest")
+        raise FairingError(f"unknown goal `{word}`; there are: {', '.join(known)}, energy")
     return str(word), known[word] if share is None else float(share)
 
 
@@ -633,10 +637,10 @@ def _fair_data(
     spaced, spacing_way = spacing_of(asked.spacing)
     kept = list(_ends(asked.ends if asked.ends is not None else "free", asked.closed))
     through, tangents, keep, joins = wanted
-    conditions, labels = _conditions(through, tangents, keep)
+    conditions, labels = linear_conditions(through, tangents, keep)
     if joins:
         rough = Spline.interpolate(data, degree=asked.degree, closed=asked.closed)
-        for k, join in enumerate(_joins(joins, rough)):
+        for k, join in enumerate(join_conditions(joins, rough)):
             kept[int(join[1])] = "position"
             conditions.append(join)
             labels.append(f"join {k + 1}")
@@ -647,6 +651,7 @@ def _fair_data(
         if not rises:
             raise FairingError(f"expected {n} rising parameters in [0, 1]")
     measure = _data_measure(asked.measure, asked.degree)
+    shape, shape_labels = shape_conditions(asked.shape, n)
     core, original, told = _core.Spline.fair_data(
         data,
         {
@@ -664,6 +669,8 @@ def _fair_data(
             "goal": asked.goal,
             "conditions": conditions,
             "labels": labels,
+            "shape": shape,
+            "shape_labels": shape_labels,
             "bends": asked.bends or measure == "jump-lengths",
             "accuracy": asked.accuracy,
         },
@@ -672,6 +679,8 @@ def _fair_data(
         off = float(told["residuals"][k])
         notes.append(f"point {k + 1} was released: the curve passes {off:.3e} from it")
     faired, before = Spline._of(core), Spline._of(original)
+    arcs = tuple(Arc(a, b, r, np.asarray(c), off) for (a, b), r, c, off in told["arcs"])
+    notes += [str(arc) for arc in arcs]
     rows = faired(told["at"])
     # What the curve passes through to rounding has not moved by a bit.
     still = told["residuals"] <= 64 * np.finfo(float).eps * np.abs(data).max()
@@ -709,6 +718,7 @@ def _fair_data(
         residuals=told["residuals"],
         used=told["used"],
         parameters=told["at"],
+        arcs=arcs,
     )
 
 

@@ -377,7 +377,9 @@ class Set:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes :meth:`dumps` to a file; :func:`load` reads it."""
-        Path(path).write_text(self.dumps(), encoding="utf-8")
+        from moldloft.storage import put
+
+        put(Path(path), self.dumps().encode())
 
     def sdl(self, name: str = "part") -> str:
         """The set as a program of the language that declares it under ``name``."""

@@ -4,77 +4,88 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 from pathlib import Path
-from typing import IO
 
-from moldloft.cli.journal import _lock, state_folder
-from moldloft.errors import Error
+from moldloft.errors import Error, FileError
+from moldloft.storage import BusyError, Lock, put, read_bytes, recover, remove
+from moldloft.storage.journal import state_folder
 
 __all__ = ["Draft"]
 
+#: The form of drafts; those without a version are of the first.
+VERSION = 1
+
 
 class Draft:
-    """A side file ``.NAME.draft`` that its owner holds locked.
+    """A side file ``.NAME.draft``; its owner holds the lock beside it.
 
     Parameters
     ----------
     model
         The model's file.
+
+    Raises
+    ------
+    Error
+        When another workbench has the model.
     """
 
     def __init__(self, model: Path) -> None:
         target = model.resolve()
-        beside = target.with_name(f".{target.name}.draft")
         try:
-            self._file, self.path = self._open(beside), beside
-        except OSError:
-            # The folder cannot be written: the draft is among those of prompts.
-            name = "%".join(target.parts[1:])[-180:] + ".draft"
-            folder = state_folder().parent / "drafts"
-            folder.mkdir(parents=True, exist_ok=True)
-            self._file, self.path = self._open(folder / name), folder / name
-        if not _lock(self._file):
-            self._file.close()
-            raise Error(f"`{model}` is open in another workbench: close that one first")
+            try:
+                self._own(target.with_name(f".{target.name}.draft"))
+            except BusyError:
+                raise
+            except OSError:
+                # The folder cannot be written: the draft is among those of prompts.
+                name = "%".join(target.parts[1:])[-180:] + ".draft"
+                folder = state_folder().parent / "drafts"
+                folder.mkdir(parents=True, exist_ok=True)
+                self._own(folder / name)
+        except BusyError as busy:
+            by = f": {busy.owner}" if busy.owner else ""
+            raise Error(
+                f"`{model}` is open in another workbench{by}; close that one first"
+            ) from None
 
-    @staticmethod
-    def _open(path: Path) -> IO[str]:
-        flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
-        return os.fdopen(os.open(path, flags, 0o600), "r+", encoding="utf-8", newline="\n")
+    def _own(self, path: Path) -> None:
+        self.path = path
+        self._lock = Lock(path.with_name(path.name + ".lock"), path.name)
+        recover(path.parent)
 
     def left(self) -> dict[str, str] | None:
-        """What an earlier server left: ``text``, and the ``digest`` of the file it was made of."""
-        self._file.seek(0)
-        with contextlib.suppress(ValueError):
-            found = json.loads(self._file.read())
+        """What an earlier server left: ``text``, and the ``digest`` of the file it was made of.
+
+        Raises
+        ------
+        Error
+            When a later version of Moldloft wrote it.
+        """
+        with contextlib.suppress(ValueError, FileError):
+            found = json.loads(read_bytes(self.path))
             if isinstance(found, dict) and isinstance(found.get("text"), str):
+                version = found.get("version", 1)
+                if version != VERSION:
+                    raise Error(
+                        f"`{self.path}` is a draft of version {version}, written by a later "
+                        f"Moldloft; this one reads version {VERSION}"
+                    )
                 return {"text": found["text"], "digest": str(found.get("digest", ""))}
         return None
 
     def keep(self, text: str, digest: str) -> None:
         """Write the text to disk before this returns."""
-        # The new content goes behind the old, then replaces it: a kill leaves one of them readable.
-        data = json.dumps({"text": text, "digest": digest})
-        draft = self.path.with_name(self.path.name + ".new")
-        with os.fdopen(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        renewed = draft.open("r+", encoding="utf-8", newline="\n")
-        _lock(renewed)
-        draft.replace(self.path)
-        self._file.close()
-        self._file = renewed
+        data = {"version": VERSION, "text": text, "digest": digest}
+        put(self.path, json.dumps(data).encode(), private=True)
 
     def drop(self) -> None:
-        """Nothing is unsaved: the draft is empty."""
-        self._file.seek(0)
-        self._file.truncate()
-        self._file.flush()
+        """Nothing is unsaved."""
+        remove(self.path)
 
     def close(self, keep: bool) -> None:
         """End of the server; a draft of nothing goes."""
         if not keep:
-            self.path.unlink(missing_ok=True)
-        self._file.close()
+            with contextlib.suppress(OSError):
+                self.drop()
+        self._lock.release()

@@ -18,9 +18,10 @@ from pathlib import Path
 from typing import Any
 
 from moldloft.errors import Error, FileError
+from moldloft.storage import ChangedError, put
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.engine import Engine, EngineLostError
-from moldloft.workbench.text import applied, change_set, encoded, read, write
+from moldloft.workbench.text import Stored, applied, change_set, decoded, encoded, read
 
 __all__ = ["Hub", "Tab"]
 
@@ -246,11 +247,17 @@ class Hub:
                     tab, json.dumps({"kind": "conflict", "id": number, "theirs": now.text})
                 )
                 return
-            write(self.path, encoded(self.text, self.stored))
-            self.stored = read(self.path)
+            expected = now.digest if now else None
+            data = encoded(self.text, self.stored)
+            put(self.path, data, expected=expected)
+            self.stored = decoded(data)
             self._noted = self.stored.digest
             self.draft.drop()
-        except Error as error:
+        except ChangedError:
+            # Between looking and writing; what is there now is shown.
+            await self._save(tab, message)
+            return
+        except (Error, OSError) as error:
             await self._to(tab, json.dumps({"kind": "refused", "id": number, "error": str(error)}))
             return
         self.recovered = False
@@ -266,43 +273,46 @@ class Hub:
             await asyncio.sleep(0.5)
             try:
                 status = self.path.stat()
-                if (status.st_mtime_ns, status.st_size) == stamp:
+                new = (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
+                if new == stamp:
                     continue
-                stamp = (status.st_mtime_ns, status.st_size)
+                stamp = new
                 now = read(self.path)
             except (OSError, FileError):
                 # It is being written, or has gone: the text is here.
                 continue
             if now.digest == self._noted:
                 continue
-            self._noted = now.digest
             if self.dirty and now.text != self.text:
+                self._noted = now.digest
                 await self.tell({"kind": "conflict", "theirs": now.text})
-            else:
-                self.stored = now
-                await self._outside(now.text)
+                continue
+            try:
+                await self._outside(now)
+            except (OSError, Error):
+                # The draft cannot be written just now: the next look tries again.
+                stamp = None
 
     async def _revert(self, tab: Tab, number: int) -> None:
         """The file's text instead of what was typed; a step that the page can undo."""
         try:
-            await self._outside(read(self.path).text)
+            await self._outside(read(self.path))
             reply = {"kind": "reverted", "id": number, "version": self.version}
         except (OSError, Error) as error:
             reply = {"kind": "refused", "id": number, "error": str(error)}
         self.recovered = False
         await self._to(tab, json.dumps(reply))
 
-    async def _outside(self, text: str) -> None:
+    async def _outside(self, now: Stored) -> None:
         """The file's text takes the place of ours."""
-        with contextlib.suppress(FileError):
-            self.stored = read(self.path)
-            self._noted = self.stored.digest
-        if text != self.text:
-            update = {"changes": change_set(self.text, text), "clientID": "disk"}
-            await self._accept(text, [update])
+        self.stored = now
+        if now.text != self.text:
+            update = {"changes": change_set(self.text, now.text), "clientID": "disk"}
+            await self._accept(now.text, [update])
         else:
             self.draft.drop()
             await self.tell({"kind": "saved", "version": self.version, "dirty": self.dirty})
+        self._noted = now.digest
 
     # The engine.
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from moldloft.errors import FileError
+from moldloft.storage import digest, read_bytes
 
-__all__ = ["Stored", "applied", "change_set", "digest", "read", "write"]
+__all__ = ["Stored", "applied", "change_set", "decoded", "encoded", "read"]
 
 LARGEST = 16 << 20
 
@@ -67,11 +65,6 @@ def change_set(old: str, new: str) -> list[Any]:
     return steps
 
 
-def digest(data: bytes) -> str:
-    """The hash of a content."""
-    return hashlib.sha256(data).hexdigest()
-
-
 @dataclass(frozen=True)
 class Stored:
     """A file's text with what writing it back needs."""
@@ -94,14 +87,11 @@ def read(path: Path) -> Stored:
     FileError
         When there is none that can be read.
     """
-    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)
-    try:
-        with os.fdopen(os.open(path, flags), "rb") as file:
-            data = file.read(LARGEST + 1)
-    except OSError as error:
-        raise FileError(f"cannot read `{path}`: {(error.strerror or str(error)).lower()}") from None
-    if len(data) > LARGEST:
-        raise FileError(f"cannot read `{path}`: it is longer than 16 MiB")
+    return decoded(read_bytes(path, LARGEST))
+
+
+def decoded(data: bytes) -> Stored:
+    """The text of a file's bytes."""
     encoding = "utf-8-sig" if data.startswith(b"\xef\xbb\xbf") else "utf-8"
     try:
         text = data.decode(encoding)
@@ -119,22 +109,3 @@ def encoded(text: str, like: Stored) -> bytes:
         return text.encode(like.encoding)
     except UnicodeEncodeError:
         return text.encode("utf-8")
-
-
-def write(path: Path, data: bytes) -> None:
-    """Write a file whole or not at all; its mode stays, and a link stays a link."""
-    target = path.resolve()
-    mode = target.stat().st_mode & 0o777 if target.exists() else 0o644
-    draft = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        with os.fdopen(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        draft.chmod(mode)
-        draft.replace(target)
-    except OSError as error:
-        draft.unlink(missing_ok=True)
-        raise FileError(
-            f"cannot write `{path}`: {(error.strerror or str(error)).lower()}"
-        ) from error

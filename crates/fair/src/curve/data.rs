@@ -12,7 +12,10 @@ use crate::curve::job::End;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{Found, Goal, Moving, Path, moved, rounding};
 use crate::optimum::{Bounded, DataLimits, Parts, kept};
-use crate::{Certificate, Condition, FairError, Job, Layout, Limit, Measure, SparseRows, shape};
+use crate::{
+    Certificate, Condition, FairError, FoundArc, Job, Layout, Limit, Measure, Shape, SparseRows,
+    shape,
+};
 use moldloft_num::{Real, Vec3};
 
 /// Data with what they allow.
@@ -37,11 +40,21 @@ pub struct DataOptions {
     pub goal: Goal,
     /// Linear conditions on the control points.
     pub conditions: Vec<Condition>,
+    /// What shape it has to have, for these data: [`Data::shaped`].
+    pub shape: Shape,
     /// Whether the curve may have more inflections than the one of least bending within the same
     /// tolerances.
     pub bends: bool,
     /// The certified gap, as a share of the measure.
     pub accuracy: f64,
+}
+
+impl DataOptions {
+    /// A measure and a goal without conditions, to a relative gap of 1e-9; inflections as they come.
+    pub fn of(measure: Measure, goal: Goal) -> Self {
+        let (conditions, shape) = (Vec::new(), Shape::default());
+        Self { measure, goal, conditions, shape, bends: true, accuracy: 1e-9 }
+    }
 }
 
 /// A faired curve.
@@ -66,8 +79,11 @@ pub struct DataFit {
     pub iterations: usize,
     /// Tolerances that are reached.
     pub active: usize,
-    /// Inflections beyond those of the curve of least bending, where the goal left no other way.
+    /// Inflections that the goal would have added to those of the curve through the data: where no
+    /// way without them was found that curve is taken, if there are no conditions.
     pub bends: usize,
+    /// The arcs that were asked for.
+    pub arcs: Vec<FoundArc>,
 }
 
 /// Data of which neighbours in one place are one datum.
@@ -123,6 +139,16 @@ pub fn merged(points: &[Vec3<f64>], radii: &[f64], closed: bool) -> Result<Merge
 impl Data {
     /// The parts of the optimum that are the same for all weights of the data.
     fn parts<'a>(&self, options: &DataOptions, job: &'a Job) -> Result<Parts<'a>, FairError> {
+        self.parts_at(options, job, &job.points)
+    }
+
+    /// The same with the shape made linear at a curve.
+    fn parts_at<'a>(
+        &self,
+        options: &DataOptions,
+        job: &'a Job,
+        control: &[Vec3<f64>],
+    ) -> Result<Parts<'a>, FairError> {
         let layout = &self.layout;
         let radii = layout.radii(&self.limit.radii);
         let (mut frozen, mut conditions) = kept(job);
@@ -167,6 +193,8 @@ impl Data {
             }
         }
         conditions.extend(options.conditions.iter().cloned());
+        conditions.extend(options.shape.conditions(control).into_iter().map(|(c, _)| c));
+        let halves = options.shape.halves(self, &frozen, control);
         let mut rows = SparseRows::new();
         let mut own_radii = Vec::new();
         for k in (0..radii.len()).filter(|&k| radii[k] > 0.0) {
@@ -196,6 +224,7 @@ impl Data {
                 offsets: Vec::new(),
                 reach,
             }),
+            halves,
             pull: None,
             accuracy: options.accuracy,
         })
@@ -280,73 +309,282 @@ impl Layout {
 ///     ends: [End::Free; 2],
 ///     points,
 /// };
-/// let options = DataOptions {
-///     measure: Measure::Variation, goal: Goal::Fairest, conditions: Vec::new(), bends: true,
-///     accuracy: 1e-9,
-/// };
+/// let options = DataOptions::of(Measure::Variation, Goal::Fairest);
 /// let faired = fair_data(&data, &options).unwrap();
 /// assert!(faired.residuals.iter().all(|&r| r <= 0.02));
 /// assert!(faired.certificate.value < 1e-12);
 /// ```
 pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairError> {
     let job = data.job()?;
+    if !options.shape.is_empty() {
+        return data.in_shape(options, &job);
+    }
     let mut parts = data.parts(options, &job)?;
     let plain = data.along(options, &job, &mut parts, None)?;
     let higher = matches!(options.measure, Measure::Third | Measure::Variation);
-    if options.bends || !higher {
+    let all = shape::samples(&data.layout.space, &plain.points, None, shape::COUNTING);
+    let plane = shape::plane_normal(&all).is_some();
+    if options.bends || !higher || !plane || plain.points == job.points {
         return Ok(plain);
     }
-    // Third derivatives alone may buy smoothness with a bend; second derivatives do not. As much
-    // of them is added as keeps the count.
-    let bends = |points: &[Vec3<f64>]| shape::turns_back(&data.layout.space, points);
-    let most = {
-        let least =
-            DataOptions { measure: Measure::Bending, goal: Goal::Fairest, ..options.clone() };
-        let mut own = data.parts(&least, &job)?;
-        bends(&data.along(&least, &job, &mut own, None)?.points)
-    };
-    if bends(&plain.points) <= most {
-        return Ok(plain);
-    }
-    let stiff = Measure::Bending.rows(&data.layout.space)?;
-    let third = parts.measure.clone();
-    let (low, high) = (plain.certificate.value, stiff.sum_sq(&plain.points));
-    let mut attempt = |log: f64| -> Result<DataFit, FairError> {
-        let factor = (log.exp() * low.max(f64::MIN_POSITIVE) / high.max(f64::MIN_POSITIVE)).sqrt();
-        parts.measure = third.clone().joined(&stiff.clone().scaled(factor));
-        data.along(options, &job, &mut parts, Some(&third))
-    };
-    // From little to much, then back half-way as long as the count is kept.
-    let step = 10f64.ln();
-    let mut good: Option<(f64, DataFit)> = None;
-    for k in -3..=5 {
-        let log = f64::from(k) * step;
-        let made = attempt(log)?;
-        if bends(&made.points) <= most {
-            good = Some((log, made));
-            break;
-        }
-    }
-    let Some((mut log, mut made)) = good else {
-        return Ok(DataFit { bends: bends(&plain.points) - most, ..plain });
-    };
-    let mut low = log - step;
-    for _ in 0..3 {
-        let middle = 0.5 * (low + log);
-        let trial = attempt(middle)?;
-        if bends(&trial.points) <= most {
-            (log, made) = (middle, trial);
-        } else {
-            low = middle;
-        }
-    }
-    // What the count costs is part of the gap.
-    made.certificate.gap = made.certificate.gap.max(made.certificate.value - plain.least);
-    made.least = plain.least;
-    Ok(made)
+    data.without_bends(options, &job, parts, plain)
 }
 
+/// Times that signs and lines are made linear again at most.
+const ROUNDS: usize = 40;
+
+/// From here on half a step only.
+const WHOLE: usize = 12;
+
+/// After so many rounds without success signs are aimed at from farther inside, by what was missed,
+/// at most by this share of the mean tolerance.
+const PATIENT: usize = 5;
+const INSIDE: f64 = 1e-2;
+
+/// The change of the measure, as a share, at which the search for the least under signs ends.
+const SETTLED: f64 = 1e-8;
+
 impl Data {
+    /// The curve of a goal, or one near it that bends no more often than it has to. Third derivatives
+    /// alone may buy smoothness with a bend; second derivatives do not. As much of them is added as
+    /// keeps the turns to those of the curve of least bending, or else the inflections to those of
+    /// the curve through the data.
+    fn without_bends(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+        mut parts: Parts<'_>,
+        plain: DataFit,
+    ) -> Result<DataFit, FairError> {
+        let space = &self.layout.space;
+        let turns = |points: &[Vec3<f64>]| shape::turns_back(space, points);
+        let signs = |points: &[Vec3<f64>]| {
+            shape::inflections(&shape::samples(space, points, None, shape::COUNTING))
+        };
+        let stiffest = self.least_bending(options, job)?;
+        let (most, own) = (turns(&stiffest), signs(&job.points));
+        let good = |points: &[Vec3<f64>]| turns(points) <= most && signs(points) <= own;
+        if good(&plain.points) {
+            return Ok(plain);
+        }
+        // What is taken where the turns cannot be kept.
+        let mut second = (signs(&plain.points) <= own).then(|| plain.clone());
+        let stiff = Measure::Bending.rows(space)?;
+        let third = parts.measure.clone();
+        let (low, high) = (plain.certificate.value, stiff.sum_sq(&plain.points));
+        let mut attempt = |log: f64| -> Result<DataFit, FairError> {
+            let factor =
+                (log.exp() * low.max(f64::MIN_POSITIVE) / high.max(f64::MIN_POSITIVE)).sqrt();
+            parts.measure = third.clone().joined(&stiff.clone().scaled(factor));
+            let mut made = self.along(options, job, &mut parts, Some(&third))?;
+            // What the count costs is part of the gap.
+            made.certificate.gap = made.certificate.gap.max(made.certificate.value - plain.least);
+            made.least = plain.least;
+            Ok(made)
+        };
+        // From little to much, then back half-way as long as the count is kept.
+        let step = 2.0 * 10f64.ln();
+        for k in -1..=2 {
+            let mut log = f64::from(k) * step;
+            let mut made = attempt(log)?;
+            if good(&made.points) {
+                let mut low = log - step;
+                for _ in 0..4 {
+                    let middle = 0.5 * (low + log);
+                    let trial = attempt(middle)?;
+                    if good(&trial.points) {
+                        (log, made) = (middle, trial);
+                    } else {
+                        low = middle;
+                    }
+                }
+                return Ok(made);
+            }
+            if second.is_none() && signs(&made.points) <= own {
+                second = Some(made);
+            }
+        }
+        // The signs of the curve of least bending as conditions.
+        if let Some(shape) = Shape::pattern(space, &stiffest) {
+            let signed = DataOptions { shape: shape.clone(), ..options.clone() };
+            match self.with_signs(&signed, job, shape, &stiffest) {
+                Ok(mut made) if good(&made.points) => {
+                    let cost = made.certificate.value - plain.least;
+                    made.certificate.gap = made.certificate.gap.max(cost);
+                    made.least = plain.least;
+                    return Ok(made);
+                }
+                Ok(_) | Err(FairError::Shape { .. }) => {}
+                Err(other) => return Err(other),
+            }
+        }
+        if let Some(made) = second {
+            return Ok(made);
+        }
+        let bends = signs(&plain.points).saturating_sub(own);
+        if !options.conditions.is_empty() {
+            return Ok(DataFit { bends, ..plain });
+        }
+        // The curve through the data bends no more often than itself.
+        let value = crate::measure::value(&third, parts.norm, &job.points);
+        let mut kept = self.fit(Found::unmoved(&job.points, value, false), job);
+        kept.least = plain.least;
+        kept.bends = bends;
+        Ok(kept)
+    }
+
+    /// The control points of the curve of least bending within the tolerances.
+    fn least_bending(&self, options: &DataOptions, job: &Job) -> Result<Vec<Vec3<f64>>, FairError> {
+        let (measure, goal) = (Measure::Bending, Goal::Fairest);
+        let least = DataOptions { measure, goal, shape: Shape::default(), ..options.clone() };
+        let mut own = self.parts(&least, job)?;
+        Ok(self.along(&least, job, &mut own, None)?.points)
+    }
+
+    /// The curve of a goal that has the shape asked for.
+    fn in_shape(&self, options: &DataOptions, job: &Job) -> Result<DataFit, FairError> {
+        let space = &self.layout.space;
+        // Data whose own curve has the shape need not move for it.
+        let own = options.shape.by(space, &job.points);
+        let met = own.miss(self, &job.points, self.slack()).0 <= 0.0;
+        if met && options.shape.counted(space, &job.points).is_none() {
+            let plain = DataOptions { shape: Shape::default(), ..options.clone() };
+            let mut parts = self.parts(&plain, job)?;
+            let made = self.along(&plain, job, &mut parts, None)?;
+            if made.points == job.points {
+                return Ok(DataFit { arcs: options.shape.arcs.clone(), ..made });
+            }
+        }
+        let stiffest = self.least_bending(options, job)?;
+        let plain = options.shape.without_pieces().by(space, &stiffest);
+        let mut made = match self.with_signs(options, job, plain, &stiffest) {
+            // Signs may be too far from those of the first start.
+            Err(e @ FairError::Shape { .. }) => {
+                let start = self.fairest(options, job)?;
+                let again = options.shape.without_pieces().by(space, &start);
+                self.with_signs(options, job, again, &start).map_err(|_| e)?
+            }
+            other => other?,
+        };
+        let Some((owner, mut fewest)) = options.shape.counted(space, &made.points) else {
+            made.arcs.clone_from(&options.shape.arcs);
+            return Ok(made);
+        };
+        // Where the curvature turns is taken from fairer and fairer curves.
+        for start in [made.points.clone(), self.fairest(options, job)?, stiffest] {
+            let shape = options.shape.by(space, &start);
+            match self.with_signs(options, job, shape, &start) {
+                Ok(tried) => match options.shape.counted(space, &tried.points) {
+                    None => return Ok(DataFit { arcs: options.shape.arcs.clone(), ..tried }),
+                    Some((_, count)) => fewest = fewest.min(count),
+                },
+                Err(FairError::Shape { .. }) => {}
+                Err(other) => return Err(other),
+            }
+        }
+        let why = format!(
+            "no curve of so few monotone pieces was found within the tolerance; the fewest found: \
+             {fewest}"
+        );
+        Err(FairError::Shapeless { shape: owner, why })
+    }
+
+    /// The control points of the fairest curve by the measure, whatever its shape.
+    fn fairest(&self, options: &DataOptions, job: &Job) -> Result<Vec<Vec3<f64>>, FairError> {
+        let (goal, shape) = (Goal::Fairest, Shape::default());
+        let plain = DataOptions { goal, shape, bends: true, ..options.clone() };
+        let mut parts = self.parts(&plain, job)?;
+        Ok(self.along(&plain, job, &mut parts, None)?.points)
+    }
+
+    /// The curve with the control points of lines and arcs in their places to rounding, where that
+    /// leaves all data within their tolerances.
+    fn exact(&self, shape: &Shape, made: DataFit) -> DataFit {
+        let points = shape.projected(&made.points);
+        let residuals = self.residuals(&points);
+        let within = |(r, most): (&f64, &f64)| *r <= most * (1.0 + 1e-9);
+        if residuals.iter().zip(&self.limit.radii).all(within) {
+            DataFit { points, residuals, ..made }
+        } else {
+            made
+        }
+    }
+
+    /// How far equations may be missed before control points are put in their places: a share of
+    /// the tolerance, or rounding.
+    fn slack(&self) -> f64 {
+        let finite = || self.limit.radii.iter().filter(|r| r.is_finite());
+        let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
+        self.rounding().max(1e-8 * mean)
+    }
+
+    /// Rounding of the data.
+    fn rounding(&self) -> f64 {
+        let first = self.points.first().copied().unwrap_or_default();
+        let size =
+            self.points.iter().map(|p| p.norm().max((*p - first).norm())).fold(0.0, f64::max);
+        64.0 * f64::EPSILON * size
+    }
+
+    /// The curve of a goal under signs: these are made linear at a curve, and again at the one found,
+    /// until it has them itself and no longer changes.
+    fn with_signs(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+        shape: Shape,
+        start: &[Vec3<f64>],
+    ) -> Result<DataFit, FairError> {
+        let mut control = shape.projected(start);
+        let slack = self.slack();
+        let asked = options.conditions.len();
+        let mut options = DataOptions { shape, ..options.clone() };
+        let finite = || self.limit.radii.iter().filter(|r| r.is_finite());
+        let most = INSIDE * finite().sum::<f64>() / finite().count().max(1) as f64;
+        let mut best: Option<DataFit> = None;
+        let mut missed = (f64::INFINITY, 0);
+        for round in 0..ROUNDS {
+            let mut parts = self.parts_at(&options, job, &control)?;
+            let tried = self.along(&options, job, &mut parts, None);
+            let made = match tried {
+                Err(FairError::Contradiction { conditions, ends, miss }) => {
+                    // The shape's own equations come after the caller's.
+                    let owners = options.shape.conditions(&control);
+                    let mut shapes: Vec<usize> = conditions
+                        .iter()
+                        .filter_map(|&c| owners.get(c.checked_sub(asked)?).map(|o| o.1))
+                        .collect();
+                    shapes.dedup();
+                    if shapes.is_empty() {
+                        return Err(FairError::Contradiction { conditions, ends, miss });
+                    }
+                    return Err(FairError::Shape { shapes, miss });
+                }
+                Err(FairError::Shape { .. }) if best.is_some() => break,
+                other => other?,
+            };
+            missed = options.shape.miss(self, &made.points, slack);
+            let settled = best.as_ref().is_some_and(|b| {
+                let (was, now) = (b.certificate.value, made.certificate.value);
+                (was - now).abs() <= SETTLED * now.abs()
+            });
+            let far = if round < WHOLE { 1.0 } else { 0.5 };
+            for (c, p) in control.iter_mut().zip(&made.points) {
+                *c += (*p - *c) * far;
+            }
+            if round >= PATIENT && best.is_none() && missed.0 > 0.0 {
+                options.shape.margin = (options.shape.margin + 2.0 * missed.0).min(most);
+            }
+            if missed.0 <= 0.0 {
+                best = Some(self.exact(&options.shape, made));
+                if settled {
+                    break;
+                }
+            }
+        }
+        best.ok_or(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
+    }
+
     /// The optimum of a goal by the rows of `parts`; its value by those of `counted`, where these
     /// are others.
     fn along(
@@ -376,6 +614,7 @@ impl Data {
             points: found.optimum.points,
             original: job.points.clone(),
             bends: 0,
+            arcs: Vec::new(),
         }
     }
 
@@ -389,7 +628,8 @@ impl Data {
         let (rows, norm) = (parts.measure.clone(), parts.norm);
         let still = self.limit.radii.iter().all(|&r| r == 0.0);
         let fair = matches!(options.goal, Goal::Near(_)) && on_a_circle(&self.points);
-        if options.conditions.is_empty() && (still || fair) {
+        let conditioned = !options.conditions.is_empty() || !options.shape.is_empty();
+        if !conditioned && (still || fair) {
             let value = crate::measure::value(&rows, norm, &job.points);
             return Ok(Found::unmoved(&job.points, value, still));
         }
@@ -403,7 +643,7 @@ impl Data {
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
         };
-        path.follow(options.goal, norm, !options.conditions.is_empty(), |weight| {
+        path.follow(options.goal, norm, conditioned, |weight| {
             parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
             parts.solve()
         })
@@ -444,7 +684,7 @@ pub struct MovingFit<T> {
 /// The same for data, tolerances (one per datum) and parameters that carry derivatives, whose real
 /// parts are those of the data. Derivatives follow from
 /// the conditions of optimality by the implicit function theorem, through knots and parameters
-/// too. Inflections are not held back (`bends`), and there are no conditions but those of the ends.
+/// too, where there are no conditions but those of the ends and inflections are not held back (`bends`).
 ///
 /// # Errors
 /// As [`fair_data`]; [`FairError::Goal`] for the goal `nearest`, and for sums of lengths on knots
@@ -456,15 +696,26 @@ pub fn fair_data_with<T: Real>(
     tolerances: &[T],
     at: &[T],
 ) -> Result<(MovingFit<T>, DataFit), FairError> {
-    let options = &DataOptions { bends: true, conditions: Vec::new(), ..options.clone() };
+    let mut plain = points.iter().flat_map(|p| p.to_array()).chain(at.iter().copied());
+    let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
+    if !options.shape.is_empty() || !options.conditions.is_empty() || !options.bends {
+        if !(plain.all(|x| x.is_constant()) && fixed(tolerances)) {
+            return Err(FairError::Goal(
+                "derivatives of curves with conditions on their shape, places or inflections are \
+                 not known: take the curve without them",
+            ));
+        }
+        let made = fair_data(data, options)?;
+        let knots = data.layout.space.knots().iter().map(|&k| T::from(k)).collect();
+        let points = made.points.iter().map(|&p| Vec3::lifted(p)).collect();
+        return Ok((MovingFit { points, knots }, made));
+    }
     let job = data.job()?;
     let mut parts = data.parts(options, &job)?;
     let found = data.found(options, &job, &mut parts)?;
     let (share, weight) = (found.share, found.weight);
     let layout = &data.layout;
     let (sites, knots) = layout.moving(at);
-    let mut plain = points.iter().flat_map(|p| p.to_array()).chain(at.iter().copied());
-    let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
     if plain.all(|x| x.is_constant()) && fixed(tolerances) {
         let points = found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
         return Ok((MovingFit { points, knots }, data.fit(found, &job)));

@@ -260,6 +260,7 @@ pub fn fit(
             bounds: Bounds::none(),
             frozen: frozen.clone(),
             conditions: Vec::new(),
+            halves: Vec::new(),
             reach: vec![f64::INFINITY; n],
         };
         let step = problem::solve(&problem, 0.0, 0.0, 0.0)?;
@@ -347,6 +348,7 @@ fn squares(measure: SparseRows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Pr
         bounds,
         frozen,
         conditions,
+        halves: Vec::new(),
         reach,
     }
 }

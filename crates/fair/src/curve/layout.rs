@@ -192,6 +192,57 @@ impl Layout {
             .collect()
     }
 
+    /// The data at breaks.
+    pub(crate) fn break_data(&self) -> Vec<usize> {
+        self.marks.iter().filter_map(|&m| self.owner[m]).collect()
+    }
+
+    /// Makes the knot at a datum, or at a share of the way from it to the next one, a double knot of
+    /// a cubic: the curvature may jump there. The knots for it are taken from near by, where
+    /// `spare` says so if there are any. Without any everything stays.
+    pub(crate) fn doubled(
+        &mut self,
+        datum: usize,
+        share: Option<f64>,
+        spare: impl Fn(usize) -> bool,
+    ) -> Result<(), FairError> {
+        let site = |k: usize| self.owner.iter().position(|o| *o == Some(k));
+        let (Some(a), b) = (site(datum), site(datum + 1)) else { return Ok(()) };
+        let place: Share = match (share, b) {
+            (Some(s), Some(b)) => (a, b, s),
+            _ => (a, a, 0.0),
+        };
+        let t = shared(&self.sites, place);
+        let here = self.knot_of.iter().filter(|&&k| shared(&self.sites, k) == t).count();
+        let wanted = 2usize.saturating_sub(here);
+        // Simple knots at data, the nearest first, those that are spare sixteen times nearer.
+        let mut near: Vec<(f64, usize)> = Vec::new();
+        for (at, &k) in self.knot_of.iter().enumerate() {
+            let value = shared(&self.sites, k);
+            let alone = self.knot_of.iter().filter(|&&o| shared(&self.sites, o) == value).count();
+            let owner = self.owner[k.0].filter(|_| k.2 == 0.0);
+            if let (1, Some(owner)) = (alone, owner)
+                && value != t
+            {
+                let weight = if spare(owner) { 1.0 } else { 16.0 };
+                near.push(((value - t).abs() * weight, at));
+            }
+        }
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if near.len() < wanted {
+            return Ok(());
+        }
+        for &(_, at) in near.iter().take(wanted) {
+            self.knot_of[at] = place;
+        }
+        let value = |k: &Share| shared(&self.sites, *k);
+        self.knot_of.sort_by(|a, b| value(a).total_cmp(&value(b)));
+        let knots = self.knot_of.iter().map(value).collect();
+        self.space = Space::open(KnotVector::new(self.space.degree(), knots)?)?;
+        self.rows = values(&self.space, &self.sites);
+        Ok(())
+    }
+
     /// The data that a site hangs on.
     pub(crate) fn sources_of(&self, site: usize) -> impl Iterator<Item = usize> + '_ {
         self.sources.row(site).0.iter().map(|&c| c as usize)

@@ -1,7 +1,9 @@
 //! One curve to be faired: what its control points mean, how points become a spline, what may move
 //! how far, and the step of knot removal.
 
+pub(crate) mod bernstein;
 pub(crate) mod breaks;
+pub(crate) mod chain;
 pub(crate) mod condition;
 pub(crate) mod corners;
 pub(crate) mod data;
@@ -11,6 +13,9 @@ pub(crate) mod jumps;
 pub(crate) mod knot_removal;
 pub(crate) mod layout;
 pub(crate) mod limit;
+pub(crate) mod monotone;
 pub(crate) mod moving;
 pub(crate) mod multilevel;
+pub(crate) mod shape_condition;
+pub(crate) mod shaping;
 pub(crate) mod space;

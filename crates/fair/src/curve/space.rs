@@ -307,6 +307,11 @@ impl Space {
         }
     }
 
+    /// The Bézier points of span `k` over [`Space::columns`].
+    pub(crate) fn bezier_of(&self, k: isize) -> Vec<Vec<f64>> {
+        Bezier::default().rows(self, k).to_vec()
+    }
+
     /// For each control point, by how much it can move at most when every Bézier point of the
     /// displacement stays within 1 (the norm of the inverse of [`Space::bezier`] on one span).
     pub fn reach(&self, weights: Option<&[f64]>) -> Vec<f64> {

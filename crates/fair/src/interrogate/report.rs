@@ -194,9 +194,14 @@ pub fn data_report(data: &Data, options: &DataOptions) -> Result<(DataFit, Repor
         notes.push("the tolerance is reached at every datum: the data ask for more".to_string());
     }
     if made.bends > 0 {
+        let what = if made.points == job.points {
+            "the curve through the data is left as it is"
+        } else {
+            "with these conditions there was no other way"
+        };
         notes.push(format!(
-            "{} inflections more than the curve of least bending: no curve was found that meets the \
-             goal without them; a larger tolerance or budget, or the goal `fairest`",
+            "the goal adds {} inflections to those of the curve through the data: {what}; a larger \
+             tolerance, the goal `fairest`, or `bends` to allow them",
             made.bends
         ));
     }

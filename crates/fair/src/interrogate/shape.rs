@@ -249,7 +249,7 @@ pub fn turns_back(space: &Space, points: &[Vec3<f64>]) -> usize {
 }
 
 /// Samples on each span for counts.
-const COUNTING: usize = 16;
+pub(crate) const COUNTING: usize = 16;
 
 /// The number of monotone pieces of the curvature, reversals below a thousandth of its range
 /// ignored (Dill 1981; Farin 2002, ch. 23: few pieces are fair).

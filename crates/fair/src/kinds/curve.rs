@@ -1,8 +1,9 @@
 //! `FairCurve`: the faired spline of points.
 
+use super::demands::{Demand, Demands};
 use super::shapes::{self, Ended};
 use super::{Intent, Own, Places, end, faithful, fault, measure, role};
-use crate::FairError;
+use crate::{FairError, ShapeCondition};
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use std::sync::Arc;
@@ -73,14 +74,53 @@ pub struct FairCurve<T: Real> {
     #[field(default = "chord")]
     spacing: Arc<str>,
     /// Which of the curves within the tolerance: "near" (no fairer than noise of the tolerance's size
-    /// asks for, and unmoved where there is little to gain), "budget" (the same, moved in any case) or
-    /// "fairest".
+    /// asks for, and unmoved where there is little to gain), "budget" (the same, moved in any case),
+    /// "fairest", "nearest" (the nearest to the points that measures little more than the fairest),
+    /// "energy" (the nearest that measures at most `share`) or "closest" (the nearest of the `shape`).
     #[field(default = "near")]
     goal: Arc<str>,
     /// The direction in which the curve may leave its points, such as {0, 1, 0} for offsets at fixed
     /// stations; any direction without it.
     #[field(default)]
     along: Option<Vec3<T>>,
+    /// The shape that the curve has to have, points from 1: "convex=4-10", "concave=1-4", "one-way=1-9"
+    /// (no inflection), "straight=1-9", "straight=1-9:0,1" (in a direction), "arc=9-15", "pieces=2" (of
+    /// monotone curvature), "within=0,1:4.6" (the largest value along a direction), "side=0,-1" (the
+    /// points are left only against it). A word alone is about the whole curve. No derivatives.
+    #[field(default)]
+    shape: Option<Vec<Arc<str>>>,
+    /// The share of the goals "budget" (0.8) and "nearest" (0.1), or the measure of "energy".
+    #[field(default)]
+    share: Option<T>,
+    /// Tolerances of the points one by one, instead of `tolerance`.
+    #[field(default)]
+    tolerances: Option<Vec<T>>,
+    /// Numbers of points, from 1, through which the curve passes.
+    #[field(default)]
+    fixed: Option<Vec<usize>>,
+    /// Numbers of points, from 1, that are wrong: the curve may leave them.
+    #[field(default)]
+    release: Option<Vec<usize>>,
+    /// Points that the curve passes through at `through_at`. No derivatives.
+    #[field(default)]
+    through: Option<Vec<Point<T>>>,
+    /// Parameters, from 0 to 1, of `through`.
+    #[field(default)]
+    through_at: Option<Vec<T>>,
+    /// Directions that the curve has at `tangents_at`. No derivatives.
+    #[field(default)]
+    tangents: Option<Vec<Vec3<T>>>,
+    /// Parameters, from 0 to 1, of `tangents`.
+    #[field(default)]
+    tangents_at: Option<Vec<T>>,
+    /// What it keeps of the curve through the points, to first order: "area" (swept about the origin in
+    /// the plane of x and y) or "volume" (of revolution about x). No derivatives.
+    #[field(default)]
+    keep: Option<Vec<Arc<str>>>,
+    /// 0 to have no more inflections than the curve of least bending within the tolerances; no
+    /// derivatives then.
+    #[field(default = 1, min = 0, max = 1)]
+    bends: usize,
 }
 
 /// Ends within this share of the curve's extent are one place.
@@ -97,6 +137,122 @@ const KNOTS: FieldId = FairCurve::<f64>::KNOTS;
 const SPACING: FieldId = FairCurve::<f64>::SPACING;
 const GOAL: FieldId = FairCurve::<f64>::GOAL;
 const ALONG: FieldId = FairCurve::<f64>::ALONG;
+
+/// The fields of what only curves near their points have.
+const SHAPE: FieldId = FairCurve::<f64>::SHAPE;
+const SHARE: FieldId = FairCurve::<f64>::SHARE;
+const TOLERANCES: FieldId = FairCurve::<f64>::TOLERANCES;
+const THROUGH: FieldId = FairCurve::<f64>::THROUGH;
+const TANGENTS: FieldId = FairCurve::<f64>::TANGENTS;
+const KEEP: FieldId = FairCurve::<f64>::KEEP;
+
+impl<T: Real> FairCurve<T> {
+    /// What is asked of a curve near its points.
+    fn demands(&self) -> Result<Demands<T>, CallError> {
+        let n = self.points.len();
+        let wrong = |id: &'static str, message: String, expected: String, found: String| {
+            CallError::new(id, message).expected(expected).found(found)
+        };
+        let mut shape = Vec::new();
+        for (k, text) in self.shape.iter().flatten().enumerate() {
+            shape.push(ShapeCondition::read(text, n).map_err(|why| {
+                CallError::new("no-shape", why).found(text.to_string()).in_item(k).in_field(SHAPE)
+            })?);
+        }
+        if let Some(all) = &self.tolerances
+            && all.len() != n
+        {
+            let (expected, found) = (format!("{n}, one for each point"), all.len().to_string());
+            return Err(wrong(
+                "wrong-count",
+                "too many or too few tolerances".into(),
+                expected,
+                found,
+            )
+            .in_field(TOLERANCES));
+        }
+        let mut conditions = Vec::new();
+        let mut place = |what: &'static str,
+                         values: Vec<Vec3<T>>,
+                         at: &Option<Vec<T>>,
+                         field: FieldId,
+                         make: fn(Vec3<f64>) -> Demand|
+         -> Result<(), CallError> {
+            let at = at.as_deref().unwrap_or_default();
+            if at.len() != values.len() {
+                let (expected, found) =
+                    (format!("{} parameters", values.len()), at.len().to_string());
+                let message = format!("`{what}` has a parameter for each");
+                return Err(wrong("wrong-count", message, expected, found).in_field(field));
+            }
+            for (k, (v, t)) in values.iter().zip(at).enumerate() {
+                let constant = t.is_constant() && v.to_array().iter().all(|c| c.is_constant());
+                if !constant {
+                    let message = format!("derivatives through `{what}` are not known");
+                    let expected = "constants".to_string();
+                    return Err(wrong("no-derivative", message, expected, what.into())
+                        .in_item(k)
+                        .in_field(field));
+                }
+                if !(0.0..=1.0).contains(&t.re()) {
+                    let (expected, found) = ("0 to 1".to_string(), t.re().to_string());
+                    let message = "a parameter is out of range".to_string();
+                    return Err(wrong("out-of-range", message, expected, found)
+                        .in_item(k)
+                        .in_field(field));
+                }
+                conditions.push((t.re(), make(v.re())));
+            }
+            Ok(())
+        };
+        let through = self.through.iter().flatten().map(|p| p.xyz).collect();
+        place("through", through, &self.through_at, THROUGH, Demand::Through)?;
+        let tangents: Vec<Vec3<T>> = self.tangents.iter().flatten().copied().collect();
+        if let Some(k) = tangents.iter().position(|d| d.re().norm() == 0.0) {
+            return Err(CallError::new("zero-direction", "the direction has no length")
+                .in_item(k)
+                .in_field(TANGENTS));
+        }
+        place("tangents", tangents, &self.tangents_at, TANGENTS, Demand::Tangent)?;
+        for (k, word) in self.keep.iter().flatten().enumerate() {
+            let what = match &**word {
+                "area" => Demand::Area,
+                "volume" => Demand::Volume,
+                _ => {
+                    let message = format!("`{word}` cannot be kept");
+                    let expected = "\"area\" or \"volume\"".to_string();
+                    return Err(wrong("unknown-name", message, expected, word.to_string())
+                        .in_item(k)
+                        .in_field(KEEP));
+                }
+            };
+            conditions.push((0.0, what));
+        }
+        Ok(Demands {
+            shape,
+            conditions,
+            tolerances: self.tolerances.clone(),
+            fixed: self.fixed.clone().unwrap_or_default(),
+            release: self.release.clone().unwrap_or_default(),
+            bends: self.bends == 1,
+        })
+    }
+
+    /// The first of what only curves near their points have that is given.
+    fn near_only(&self) -> Option<(&'static str, FieldId)> {
+        let given = [
+            (self.shape.is_some(), "shape", SHAPE),
+            (self.tolerances.is_some(), "tolerances", TOLERANCES),
+            (self.fixed.is_some(), "fixed", Self::FIXED),
+            (self.release.is_some(), "release", Self::RELEASE),
+            (self.through.is_some(), "through", THROUGH),
+            (self.tangents.is_some(), "tangents", TANGENTS),
+            (self.keep.is_some(), "keep", KEEP),
+            (self.bends == 0, "bends", Self::BENDS),
+        ];
+        given.into_iter().find(|g| g.0).map(|g| (g.1, g.2))
+    }
+}
 
 impl<T: Real> FairCurve<T> {
     /// Weights and knots, where they have a meaning.
@@ -248,13 +404,15 @@ impl<T: Real> Build<T> for FairCurve<T> {
             measure: measure(&self.measure, Self::MEASURE)?,
             faithful: faithful(&self.mode, Self::MODE)?,
             end: end(&self.ends, Self::ENDS)?,
-            breaks: self.breaks.unwrap_or_default(),
+            breaks: self.breaks.clone().unwrap_or_default(),
             joins: neighbours.map(|n| n.map(|(_, derivatives)| derivatives)),
             own,
             spacing: super::spacing(&self.spacing, SPACING)?,
-            goal: super::goal(&self.goal, GOAL)?,
+            goal: super::goal_of(&self.goal, self.share.map(|s| s.re()), [GOAL, SHARE])?,
             motion,
         };
+        let demands = self.demands()?;
+        let near_only = self.near_only();
         let places = Places {
             points: Self::POINTS,
             tolerance: Self::TOLERANCE,
@@ -276,12 +434,23 @@ impl<T: Real> Build<T> for FairCurve<T> {
                 CallError::new("runs-back", e.to_string()).in_item(index).in_field(SPACING)
             }
             FairError::Goal(why) => CallError::new("no-goal", why).in_field(GOAL),
+            FairError::Energy { .. } => CallError::new("no-goal", e.to_string()).in_field(SHARE),
+            FairError::Shape { shapes, miss } => {
+                let message = format!(
+                    "no curve with this shape was found within the tolerance (missed by {miss:.3e})"
+                );
+                let fault = CallError::new("no-shape", message);
+                shapes.first().map_or(fault.clone(), |&k| fault.in_item(k)).in_field(SHAPE)
+            }
+            FairError::Shapeless { shape, why } => {
+                CallError::new("no-shape", why).in_item(shape).in_field(SHAPE)
+            }
             e => unjoined(e, joins, &places),
         };
         let index = matches!(intent.spacing, crate::Spacing::Uniform);
         let alone = intent.joins.iter().all(Option::is_none);
         if intent.role == super::Role::Fit && !intent.faithful && alone && !index {
-            let curve = intent.near(&points).map_err(about)?;
+            let curve = intent.near(&points, &demands).map_err(about)?;
             let [first, .., last] = self.points.as_slice() else {
                 return Err(
                     CallError::new("too-few-items", "a curve needs points").in_field(Self::POINTS)
@@ -291,6 +460,12 @@ impl<T: Real> Build<T> for FairCurve<T> {
             let kept = !intent.closed && (intent.end.kept() > 0 || self.tolerance.re() == 0.0);
             let ends = [first, last].map(|p| if kept { p.key } else { None });
             return Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)));
+        }
+        if let Some((what, field)) = near_only {
+            let message = format!("`{what}` is for curves near their points");
+            return Err(CallError::new("not-near", message)
+                .expected("as = \"fit\", mode = \"optimum\", without joins and spacing \"index\"")
+                .in_field(field));
         }
         let (space, control) = intent.spline(&points).map_err(about)?;
         let made = match &intent.own.weights {

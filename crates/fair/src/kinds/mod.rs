@@ -1,6 +1,7 @@
 //! Fairing in the graph: the kinds that store an intent and run again when their points change.
 
 mod curve;
+mod demands;
 mod functions;
 mod moving_surface;
 mod net;
@@ -11,14 +12,14 @@ mod surface;
 
 use crate::curve::condition::{end_jet, joined};
 use crate::{
-    Bound, Condition, Data, DataOptions, End, FairError, Goal, Job, KnotRemovalOptions, Layout,
-    Limit, Measure, Motion, OptimumOptions, Space, Spacing, fair_data_with,
-    interpolate_with_corners, knot_removal, optimum_with, parameters_across, replay_with,
+    Bound, Condition, End, FairError, Goal, Job, KnotRemovalOptions, Limit, Measure, Motion,
+    OptimumOptions, Space, Spacing, interpolate_with_corners, knot_removal, optimum_with,
+    replay_with,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{CallError, FieldId, Row};
-use moldloft_spline::{KnotVector, SplineWithKnotDerivatives};
+use moldloft_spline::KnotVector;
 
 /// All kinds and functions of this crate, in the order of the reference.
 ///
@@ -97,6 +98,31 @@ pub(crate) fn goal(name: &str, field: FieldId) -> Result<Goal, CallError> {
         "budget" => Goal::Budget(BUDGET),
         "fairest" => Goal::Fairest,
         _ => return Err(unknown("goal", name, &["near", "budget", "fairest"], field)),
+    })
+}
+
+/// The goal called `name` with its share; the fields of both.
+pub(crate) fn goal_of(
+    name: &str,
+    share: Option<f64>,
+    [field, of_share]: [FieldId; 2],
+) -> Result<Goal, CallError> {
+    let needed = || {
+        CallError::new("no-share", "the goal \"energy\" has a largest measure")
+            .expected("share = the measure")
+            .in_field(of_share)
+    };
+    Ok(match name {
+        "near" => Goal::Near(share.unwrap_or(BUDGET)),
+        "budget" => Goal::Budget(share.unwrap_or(BUDGET)),
+        "fairest" => Goal::Fairest,
+        "nearest" => Goal::Nearest(share.unwrap_or(0.1)),
+        "energy" => Goal::Energy(share.ok_or_else(needed)?),
+        "closest" => Goal::Closest,
+        _ => {
+            let all = ["near", "budget", "fairest", "nearest", "energy", "closest"];
+            return Err(unknown("goal", name, &all, field));
+        }
     })
 }
 
@@ -231,38 +257,6 @@ pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, Fai
 }
 
 impl<T: Real> Intent<T> {
-    /// The faired spline within the tolerances of the points themselves, which it passes through
-    /// before it is faired.
-    pub fn near(&self, points: &[Vec3<T>]) -> Result<SplineWithKnotDerivatives<T>, FairError> {
-        let marks = indices(&self.breaks, points.len())?;
-        let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
-        crate::error::check_finite(&plain)?;
-        let least = if self.closed { 2 * self.degree + 2 } else { self.degree + 2 };
-        if points.len() < least {
-            return Err(FairError::TooFew { expected: least, actual: points.len() });
-        }
-        let at = parameters_across(points, self.spacing, self.closed, self.motion)?;
-        let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
-        let data = Data {
-            points: plain,
-            limit: Limit::new(self.motion, vec![self.tolerance.re(); points.len()])?,
-            layout: Layout::new(self.degree, &real, &marks, self.closed)?,
-            ends: [self.end; 2],
-        };
-        let options = DataOptions {
-            measure: self.measure,
-            goal: self.goal,
-            conditions: Vec::new(),
-            bends: true,
-            accuracy: ACCURACY,
-        };
-        let tolerances = vec![self.tolerance; points.len()];
-        let (made, _) = fair_data_with(&data, &options, points, &tolerances, &at)?;
-        let (knots, control) = data.layout.space.open_form(&made.knots, &made.points);
-        SplineWithKnotDerivatives::new(self.degree, Some(knots), control, None)
-            .map_err(|_| FairError::Singular)
-    }
-
     /// The faired spline of points.
     pub fn spline(&self, points: &[Vec3<T>]) -> Result<(Space, Vec<Vec3<T>>), FairError> {
         let n = points.len();

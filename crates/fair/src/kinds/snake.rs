@@ -114,7 +114,9 @@ impl<T: Real> Build<T> for FairSnake<T> {
             self.magnets.iter().map(|m| Vec3::new(m.uv[0], m.uv[1], T::zero())).collect();
         let ends = [first.point.key, last.point.key];
         if !intent.faithful {
-            let path = intent.near(&path).map_err(|e| fault(e, &places))?;
+            let path = intent
+                .near(&path, &super::demands::Demands::none())
+                .map_err(|e| fault(e, &places))?;
             let shape = OnSurface { surface: surface.clone(), path, ends };
             return Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)));
         }

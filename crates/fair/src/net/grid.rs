@@ -366,6 +366,7 @@ impl GridData {
                 offsets: Vec::new(),
                 reach,
             }),
+            halves: Vec::new(),
             pull: None,
             accuracy,
         })

@@ -651,6 +651,7 @@ impl Network {
                     .map_or(Bounded::ControlPoints, |(rows, reach)| Bounded::Bezier(rows, reach)),
                 Bound::ControlPoints => Bounded::ControlPoints,
             },
+            halves: Vec::new(),
             pull: None,
             accuracy,
         })

@@ -24,6 +24,11 @@ pub enum Goal {
     /// The one nearest to the data (in the sum of the same squares) whose measure exceeds the least
     /// by at most this share. Data that are as fair as that do not move.
     Nearest(f64),
+    /// The one nearest to the data whose measure is at most this.
+    Energy(f64),
+    /// The one nearest to the data that has the shape and meets the conditions asked for, whatever
+    /// it measures. Data that do so do not move.
+    Closest,
 }
 
 /// Solutions at most on the way to a goal.
@@ -45,6 +50,9 @@ fn worth<T: Real>(gain: T) -> T {
         share * share * (T::from(3.0) - share * 2.0)
     }
 }
+
+/// The weight of data beside the measure of their own curve where the nearest of a shape is wanted.
+const CLOSEST: f64 = 1e6;
 
 /// How exactly budgets and shares are kept.
 const GOAL_ACCURACY: f64 = 1e-7;
@@ -109,7 +117,7 @@ where
     ) -> Result<Found, FairError> {
         let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
         let begin = (self.energy)(self.original);
-        if !conditioned && begin <= self.noise {
+        if !conditioned && (begin <= self.noise || goal == Goal::Closest) {
             // Nothing is left but rounding: not a bit moves.
             let certificate = Certificate { value: begin, gap: begin };
             let points = self.original.to_vec();
@@ -166,8 +174,33 @@ where
                 // the measure rises.
                 (((1.0 + share) * least + self.noise) / (self.energy)(&optimum.points)).ln()
             }
+            Goal::Energy(most) => (most / (self.energy)(&optimum.points)).ln(),
+            Goal::Closest => 0.0,
         };
         match goal {
+            Goal::Closest => {
+                // Beside this weight the measure is a trace that decides where data do not.
+                let weight = CLOSEST * begin.max(least).max(f64::MIN_POSITIVE) / mean;
+                return ended(solve(weight)?, weight);
+            }
+            Goal::Energy(most) => {
+                if most.is_nan() || most <= 0.0 {
+                    return Err(FairError::Goal("a bound on the measure is positive"));
+                }
+                if least > most * (1.0 + GOAL_ACCURACY) {
+                    return Err(FairError::Energy { asked: most, least });
+                }
+                if !conditioned && begin <= most {
+                    let gap = begin - least + fairest.certificate.gap;
+                    let certificate = Certificate { value: begin, gap };
+                    let points = self.original.to_vec();
+                    let optimum = Optimum { points, certificate, active: 0, ..fairest };
+                    return Ok(Found { optimum, share: 0.0, used: 0.0, least, weight: 0.0 });
+                }
+                if squares == 0.0 || least >= most {
+                    return ended(fairest, 0.0);
+                }
+            }
             Goal::Fairest => return ended(fairest, 0.0),
             Goal::Budget(share) | Goal::Near(share) => {
                 if share.is_nan() || share <= 0.0 {
@@ -211,6 +244,12 @@ where
         for _ in 0..MOST_SOLUTIONS {
             let optimum = solve(trial.exp())?;
             let value = measured(&optimum);
+            // Conditions may keep the data farther off than the budget.
+            let settled = low.0.is_finite() && low.1 - value < 1e-6;
+            if conditioned && high.is_none() && value > 0.0 && settled {
+                best = Some((trial, value, optimum));
+                break;
+            }
             let better = best.as_ref().is_none_or(|b| value.abs() < b.1.abs());
             if better {
                 best = Some((trial, value, optimum.clone()));
@@ -315,9 +354,9 @@ pub(crate) fn moved<T: Real>(
         let by_weight: Vec<Vec3<f64>> =
             answer.iter().map(|p| Vec3::of(p.x.part(1), p.y.part(1), p.z.part(1))).collect();
         let (change, rate) = match goal {
-            Goal::Nearest(_) => {
+            Goal::Nearest(_) | Goal::Energy(_) | Goal::Closest => {
                 return Err(FairError::Goal(
-                    "derivatives of `nearest` are not known: take `near`, `budget` or `fairest`",
+                    "derivatives of the nearest curve are not known: take `near`, `budget` or `fairest`",
                 ));
             }
             _ => {

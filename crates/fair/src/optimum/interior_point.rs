@@ -37,6 +37,36 @@ pub(crate) struct Linear<const D: usize> {
     pub value: f64,
 }
 
+/// How far inside a half-space the solution aims, as a share of its scale, so that rounding and the
+/// last step cannot leave it.
+const INSIDE: f64 = 1e-9;
+
+/// A half-space over unknowns, with its slack and its force.
+struct Half<const D: usize> {
+    entries: Vec<(usize, V<D>)>,
+    room: f64,
+    scale: f64,
+    slack: f64,
+    force: f64,
+}
+
+impl<const D: usize> Half<D> {
+    fn at(&self, x: &[V<D>]) -> f64 {
+        self.entries.iter().map(|(i, factor)| dot(*factor, x[*i])).sum()
+    }
+
+    /// What the slack and the displacement are short of the room.
+    fn rest(&self, x: &[V<D>]) -> f64 {
+        self.room - self.at(x) - self.slack
+    }
+
+    /// By how much it is left, as a share of its scale.
+    fn outside(&self, x: &[V<D>]) -> f64 {
+        let off = self.at(x) - self.room;
+        if off <= 0.0 { 0.0 } else { off / self.scale.max(f64::MIN_POSITIVE) }
+    }
+}
+
 pub(crate) struct State<'a, const D: usize> {
     pub p: &'a Problem,
     pub order: Order,
@@ -45,6 +75,7 @@ pub(crate) struct State<'a, const D: usize> {
     offsets: Vec<V<D>>,
     reach: Vec<f64>,
     pub conditions: Vec<Linear<D>>,
+    halves: Vec<Half<D>>,
     pub x: Vec<V<D>>,
     /// Cones of the limits, then those of the lengths.
     pub cones: Vec<Cone<D>>,
@@ -63,17 +94,20 @@ struct Direction<const D: usize> {
     /// Slack and dual of each cone.
     u: Vec<Pair<D>>,
     y: Vec<Pair<D>>,
+    /// Slack and force of each half-space.
+    halves: Vec<(f64, f64)>,
     nu: Vec<f64>,
 }
 
 impl<const D: usize> Direction<D> {
-    fn zero(unknowns: usize, cones: usize) -> Self {
+    fn zero(unknowns: usize, cones: usize, halves: usize) -> Self {
         let none = vec![(0.0, [0.0; D]); cones];
         Self {
             x: vec![[0.0; D]; unknowns],
             goals: none.clone(),
             u: none.clone(),
             y: none,
+            halves: vec![(0.0, 0.0); halves],
             nu: Vec::new(),
         }
     }
@@ -82,7 +116,8 @@ impl<const D: usize> Direction<D> {
     fn is_finite(&self) -> bool {
         let pair = |p: &Pair<D>| p.0 + p.1.iter().sum::<f64>();
         let cones: f64 = self.u.iter().chain(&self.y).map(pair).sum();
-        (cones + self.x.as_flattened().iter().sum::<f64>()).is_finite()
+        let halves: f64 = self.halves.iter().map(|(s, z)| s + z).sum();
+        (cones + halves + self.x.as_flattened().iter().sum::<f64>()).is_finite()
     }
 }
 
@@ -157,8 +192,21 @@ impl<'a, const D: usize> State<'a, D> {
                 .collect(),
             value: c.value,
         };
+        let half = |h: &crate::optimum::problem::HalfSpace| Half {
+            entries: h
+                .entries
+                .iter()
+                .filter(|(i, _)| place[*i] != NONE)
+                .map(|(i, f)| (place[*i] as usize, cut(f)))
+                .collect(),
+            room: h.room - INSIDE * h.scale,
+            scale: h.scale,
+            slack: 0.0,
+            force: 0.0,
+        };
         Self {
             p,
+            halves: p.halves.iter().map(half).collect(),
             measure: p.measure.renumbered(place),
             limit_rows: p.bounds.rows.renumbered(place),
             offsets: p.offsets.iter().map(cut).collect(),
@@ -262,6 +310,15 @@ impl<'a, const D: usize> State<'a, D> {
             let (rows, k) = self.rows_of(c);
             add_block(band, rows, k, &w);
         }
+        for half in &self.halves {
+            let stiffness = half.force / half.slack;
+            for (at, (i, a)) in half.entries.iter().enumerate() {
+                for (j, b) in &half.entries[..=at] {
+                    let w: [V<D>; D] = std::array::from_fn(|r| b.map(|x| a[r] * x));
+                    band.add_block(*i, *j, stiffness, &w);
+                }
+            }
+        }
     }
 
     /// The Newton direction towards the centre `mu`, corrected for the second-order terms of
@@ -293,6 +350,17 @@ impl<'a, const D: usize> State<'a, D> {
             let (rows, k) = self.rows_of(c);
             spread(rows, k, force, &mut out.x);
         }
+        // s z + s dz + z ds = goal with ds = rest - w dx, so z + dz = push + (z / s) w dx.
+        let goal = |k: usize, half: &Half<D>| match before {
+            Some(d) => mu - half.slack * half.force - d.halves[k].0 * d.halves[k].1,
+            None => -half.slack * half.force,
+        };
+        for (k, half) in self.halves.iter().enumerate() {
+            let push = half.force + (goal(k, half) - half.force * half.rest(&self.x)) / half.slack;
+            for (i, factor) in &half.entries {
+                axpy(&mut out.x[*i], -push, *factor);
+            }
+        }
         band.solve(out.x.as_flattened_mut());
         // Conditions by their Schur complement: x = x0 - Y nu, A x = b - A x_now.
         out.nu = dense.solve(self, &self.x, out.x.as_flattened_mut());
@@ -307,17 +375,29 @@ impl<'a, const D: usize> State<'a, D> {
             out.u[c] = du;
             out.y[c] = if length { dy } else { (dy.0, self.part(c, dy.1)) };
         }
+        for (k, half) in self.halves.iter().enumerate() {
+            let ds = half.rest(&self.x) - half.at(&out.x);
+            out.halves[k] = (ds, (goal(k, half) - half.force * ds) / half.slack);
+        }
     }
 
     /// The longest step along `d` that keeps all cones, at most 2.
     fn longest(&self, d: &Direction<D>) -> f64 {
         let each = self.cones.iter().zip(&d.u).zip(&d.y);
-        each.fold(2.0, |step, ((cone, &du), &dy)| cone.longest(du, dy, step))
+        let step = each.fold(2.0, |step, ((cone, &du), &dy)| cone.longest(du, dy, step));
+        let least = |step: f64, (now, by): (f64, f64)| {
+            if by < 0.0 { step.min(-now / by) } else { step }
+        };
+        self.halves
+            .iter()
+            .zip(&d.halves)
+            .fold(step, |step, (half, d)| least(least(step, (half.slack, d.0)), (half.force, d.1)))
     }
 
     /// The sum of complementarities.
     fn complementarity(&self) -> f64 {
-        self.cones.iter().map(|c| c.u.0 * c.y.0 + dot(c.u.1, c.y.1)).sum()
+        let cones: f64 = self.cones.iter().map(|c| c.u.0 * c.y.0 + dot(c.u.1, c.y.1)).sum();
+        cones + self.halves.iter().map(|h| h.slack * h.force).sum::<f64>()
     }
 
     fn step(&mut self, d: &Direction<D>, by: f64) {
@@ -343,13 +423,18 @@ impl<'a, const D: usize> State<'a, D> {
         for (nu, new) in self.nu.iter_mut().zip(&d.nu) {
             *nu += by * (new - *nu);
         }
+        for (half, d) in self.halves.iter_mut().zip(&d.halves) {
+            half.slack += by * d.0;
+            half.force += by * d.1;
+        }
     }
 
     /// The measure and a rigorous bound on the optimality gap.
     ///
     /// With any z (|z| <= 1 for lengths, e for squares) and g = P^T z, every allowed y has
     /// f(y) >= f(x) - sum(|e| - z . e) + g (y - x). For any forces m and nu,
-    /// g = -Q^T m - A^T nu + rest, so g (x - y) <= sum (r |m| - m . s) + |rest| (|x| + reach).
+    /// g = -Q^T m - A^T nu - C^T z + rest, z >= 0, so
+    /// g (x - y) <= sum (r |m| - m . s) + z . (d - C x) + |rest| (|x| + reach).
     fn certificate(&self) -> (f64, f64) {
         let p = self.p;
         let limits = self.limits();
@@ -375,6 +460,12 @@ impl<'a, const D: usize> State<'a, D> {
         for (condition, nu) in self.conditions.iter().zip(&self.nu) {
             for (i, factor) in &condition.entries {
                 axpy(&mut slope[*i], *nu, *factor);
+            }
+        }
+        for half in &self.halves {
+            gap += half.force * (half.room - half.at(&self.x)).max(0.0);
+            for (i, factor) in &half.entries {
+                axpy(&mut slope[*i], half.force, *factor);
             }
         }
         let norm = |v: V<D>| {
@@ -418,6 +509,12 @@ impl<'a, const D: usize> State<'a, D> {
         self.conditions.iter().map(of).collect()
     }
 
+    /// The largest miss of a condition; of a half-space what passes it in truth.
+    fn missed(&self) -> f64 {
+        let halves = self.halves.iter().map(|h| h.outside(&self.x) - 0.5 * INSIDE);
+        self.misses().into_iter().chain(halves).fold(0.0, f64::max)
+    }
+
     /// Centred starting duals of the size of the slopes.
     fn start(&mut self) {
         let mut slope = vec![[0.0; D]; self.x.len()];
@@ -448,12 +545,24 @@ impl<'a, const D: usize> State<'a, D> {
             }
         }
         self.cones.extend(lengths);
+        let size = |f: &[(usize, V<D>)]| f.iter().map(|(_, f)| dot(*f, *f).sqrt()).sum::<f64>();
+        for half in &mut self.halves {
+            // Outside it begins with a slack all the same, and comes in step by step.
+            half.slack = half.room.abs().max(0.1 * half.scale).max(1e-200);
+            half.force = force / size(&half.entries).max(f64::MIN_POSITIVE);
+        }
+    }
+
+    /// Whether the last digits are worth a try: half-spaces keep those of the interior point.
+    fn polished(&self) -> bool {
+        self.p.norm == Norm::Square && self.halves.is_empty()
     }
 
     /// By points.
     fn solution(self, iterations: usize) -> Solution {
         let (value, gap) = self.certificate();
         let misses = self.misses();
+        let outside = self.halves.iter().map(|h| (h.outside(&self.x) - INSIDE).max(0.0)).collect();
         let point = |&at: &u32| match at {
             NONE => [0.0; 3],
             at => widened(self.x[at as usize]),
@@ -465,6 +574,7 @@ impl<'a, const D: usize> State<'a, D> {
             gap,
             iterations,
             misses,
+            outside,
             cones: self.cones.iter().map(|c| (wide(c.u), wide(c.y))).collect(),
             nu: self.nu,
             active: self.active,
@@ -653,8 +763,9 @@ pub(crate) fn solve<const D: usize>(
     }
     let mut band = state.band()?;
     let mut best: Option<(f64, Vec<V<D>>, Vec<Cone<D>>, Vec<f64>)> = None;
-    let mut affine = Direction::zero(state.unknowns(), state.cones.len());
-    let mut corrected = Direction::zero(state.unknowns(), state.cones.len());
+    let (cones, halves) = (state.cones.len(), state.halves.len());
+    let mut affine = Direction::zero(state.unknowns(), cones, halves);
+    let mut corrected = Direction::zero(state.unknowns(), cones, halves);
     let mut idle = 0;
     let mut shows = SHOWS;
     while iterations < MOST_ITERATIONS {
@@ -664,12 +775,12 @@ pub(crate) fn solve<const D: usize>(
         band.factor();
         let dense = Schur::new(&state, &band);
         state.direction(&band, &dense, 0.0, None, &mut affine);
-        if state.cones.is_empty() {
+        if cones + halves == 0 {
             // Nothing is limited: one step solves a sum of squares.
             state.step(&affine, 1.0);
             break;
         }
-        let mu = state.complementarity() / state.cones.len() as f64;
+        let mu = state.complementarity() / (cones + halves) as f64;
         let reach = state.longest(&affine).min(1.0);
         let centring = (1.0 - reach).powi(3);
         state.direction(&band, &dense, centring * mu, Some(&affine), &mut corrected);
@@ -679,7 +790,7 @@ pub(crate) fn solve<const D: usize>(
             break;
         }
         state.step(&corrected, (longest * 0.99).min(1.0));
-        let missed = state.misses().into_iter().fold(0.0, f64::max);
+        let missed = state.missed();
         let (value, gap) = state.certificate();
         if !(value.is_finite() && gap.is_finite()) {
             break;
@@ -693,18 +804,20 @@ pub(crate) fn solve<const D: usize>(
             idle += 1;
         }
         let rounded = state.complementarity() <= ROUNDING * gap;
-        let most = if best.is_some() { MOST_IDLE } else { MOST_TRIALS };
+        // Half-spaces are entered step by step.
+        let trials = if halves > 0 { MOST_ITERATIONS } else { MOST_TRIALS };
+        let most = if best.is_some() { MOST_IDLE } else { trials };
         if meets && gap <= (accuracy * value).max(floor) || idle > most {
             break;
         }
-        if state.p.norm == Norm::Square && meets && gap <= shows * value {
+        if state.polished() && meets && gap <= shows * value {
             let kept = (state.x.clone(), state.cones.clone(), state.nu.clone());
             if state.polish(&mut band, margin) {
                 let (value, after) = state.certificate();
                 // The margin is part of the gap: forces times what is not used of the limits.
                 let unused: f64 =
                     state.active.iter().flat_map(|a| &a.forces).map(|f| f * margin).sum();
-                let missed = state.misses().into_iter().fold(0.0, f64::max);
+                let missed = state.missed();
                 if missed <= 1e-9 && after <= (accuracy * value).max(floor) + 4.0 * unused {
                     best = None;
                     break;
@@ -720,11 +833,11 @@ pub(crate) fn solve<const D: usize>(
     }
     if let Some((gap, x, cones, nu)) = best {
         (state.x, state.cones, state.nu) = (x, cones, nu);
-        if state.p.norm == Norm::Square && state.unknowns() <= POLISHED {
+        if state.polished() && state.unknowns() <= POLISHED {
             // Where rounding ends the search early, the limits that are reached may show all the same.
             let kept = (state.x.clone(), state.cones.clone(), state.nu.clone());
             let better = state.polish(&mut band, margin) && {
-                let missed = state.misses().into_iter().fold(0.0, f64::max);
+                let missed = state.missed();
                 missed <= 1e-9 && state.certificate().1 <= gap
             };
             if !better {

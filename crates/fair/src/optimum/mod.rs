@@ -155,6 +155,15 @@ impl Solved {
     }
 }
 
+/// A half-space that control points stay in: the sum of factor . point is at most `most`.
+#[derive(Clone, Debug)]
+pub(crate) struct HalfSpace {
+    pub entries: Vec<(usize, Vec3<f64>)>,
+    pub most: f64,
+    /// Which of the caller's shape conditions asks for it.
+    pub owner: usize,
+}
+
 /// The number of a condition, and by how much its factors change, point by point.
 pub(crate) type Bend<T> = (usize, Vec<(usize, Vec3<T>)>);
 
@@ -196,6 +205,7 @@ pub(crate) struct Parts<'a> {
     /// How many of the conditions are not the caller's.
     pub own: usize,
     pub bounded: Bounded,
+    pub halves: Vec<HalfSpace>,
     /// A pull towards the data, beside the measure: rows that measure displacements.
     pub pull: Option<SparseRows>,
     pub accuracy: f64,
@@ -234,6 +244,7 @@ impl<'a> Parts<'a> {
                     Bounded::Bezier(job.space.bezier(weights), job.space.reach(weights))
                 }
             },
+            halves: Vec::new(),
             pull: None,
             accuracy: options.accuracy,
         })
@@ -418,6 +429,22 @@ impl<'a> Parts<'a> {
             let conditions = missed.into_iter().filter_map(|k| k.checked_sub(self.own)).collect();
             return Err(FairError::Contradiction { conditions, ends, miss });
         }
+        let left: Vec<usize> = (0..self.halves.len())
+            .filter(|&k| solution.outside[k].is_nan() || solution.outside[k] > 1e-9)
+            .collect();
+        if !left.is_empty() {
+            let off = |k: &usize| {
+                let half = &self.halves[*k];
+                let sum: f64 = half.entries.iter().map(|(i, f)| f.dot(points[*i])).sum();
+                (*k, (sum - half.most) / half.entries.iter().map(|(_, f)| f.norm()).sum::<f64>())
+            };
+            let (_, miss) =
+                left.iter().map(off).fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+            let mut shapes: Vec<usize> = left.iter().map(|&k| self.halves[k].owner).collect();
+            shapes.sort_unstable();
+            shapes.dedup();
+            return Err(FairError::Shape { shapes, miss });
+        }
         // Squares are solved as halves.
         let unit = if self.norm == Norm::Square { 2.0 } else { 1.0 };
         let certificate = Certificate { value: unit * solution.value, gap: unit * solution.gap };
@@ -493,7 +520,29 @@ impl<'a> Parts<'a> {
                 }
             })
             .collect();
+        let mean = {
+            let finite = || bounds.radii.iter().filter(|r| r.is_finite());
+            let count = finite().count();
+            if count == 0 {
+                1e-3 * self.points.iter().map(|p| (*p - self.points[0]).norm()).fold(0.0, f64::max)
+            } else {
+                finite().sum::<f64>() / count as f64
+            }
+        };
+        let halves = self
+            .halves
+            .iter()
+            .map(|h| {
+                let free = h.entries.iter().filter(|(i, _)| !frozen[*i]);
+                let entries: Vec<_> = free.map(|(i, f)| (*i, frame.down(*f))).collect();
+                let sum: f64 = h.entries.iter().map(|(i, f)| f.dot(self.points[*i])).sum();
+                let size = |v: &V| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+                let scale = mean * entries.iter().map(|(_, f)| size(f)).sum::<f64>();
+                problem::HalfSpace { entries, room: h.most - sum, scale }
+            })
+            .collect();
         Problem {
+            halves,
             dimension: frame.axes.len(),
             measure,
             norm: self.norm,

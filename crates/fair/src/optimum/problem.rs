@@ -1,14 +1,15 @@
 //! An interior point method for measures of sparse rows under bounds on sparse rows.
 //!
 //! minimise   sum of psi(e_k + P_k x)        psi(e) = |e|^2 / 2 or |e|
-//! subject to |Q_k x| <= r_k,  A x = b
+//! subject to |Q_k x| <= r_k,  A x = b,  C x <= d
 //!
 //! over the displacement x of the control points, D coordinates each. Both kinds of rows couple
 //! few neighbours, so each Newton step factors one band matrix: O(n) time and memory for curves.
 //!
 //! Limits and lengths are second-order cones, (r, Q x) and (t, e), with Nesterov and Todd's
 //! scaling and Mehrotra's two-step directions (Vandenberghe 2010, "The CVXOPT linear and quadratic
-//! cone program solvers"); the lengths' own unknowns t are eliminated row by row.
+//! cone program solvers"); the lengths' own unknowns t are eliminated row by row. Half-spaces C x <= d
+//! are kept with slacks of their own, which may begin outside.
 
 use crate::optimum::interior_point::{self, State};
 use crate::optimum::second_order_cone::Pair;
@@ -50,6 +51,15 @@ pub(crate) struct Condition {
     pub value: f64,
 }
 
+/// A half-space: the sum of factor . x[point] is at most `room`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct HalfSpace {
+    pub entries: Vec<(usize, V)>,
+    pub room: f64,
+    /// What it varies by when points move by their tolerances.
+    pub scale: f64,
+}
+
 /// A problem in the coordinates of its own frame.
 pub(crate) struct Problem {
     /// Coordinates in use, 0 to 3.
@@ -63,6 +73,7 @@ pub(crate) struct Problem {
     /// Points that do not move.
     pub frozen: Vec<bool>,
     pub conditions: Vec<Condition>,
+    pub halves: Vec<HalfSpace>,
     /// By how much each point can move at most, for the certificate.
     pub reach: Vec<f64>,
 }
@@ -78,6 +89,8 @@ pub(crate) struct Solution {
     pub iterations: usize,
     /// Largest miss of a condition, relative to its own scale, and which ones are missed.
     pub misses: Vec<f64>,
+    /// By how much each half-space is left, relative to its own scale.
+    pub outside: Vec<f64>,
     /// Slacks and duals at the solution, for [`respond`].
     pub cones: Vec<(Pair<3>, Pair<3>)>,
     /// The multipliers of the conditions.
@@ -151,7 +164,15 @@ fn order(p: &Problem) -> (Vec<u32>, usize, usize) {
                 .max()
                 .unwrap_or(0)
         };
-        of(&p.measure).max(of(&p.bounds.rows))
+        let half = |h: &HalfSpace| {
+            let used = || h.entries.iter().map(|(i, _)| place[*i]).filter(|&i| i != NONE);
+            match (used().max(), used().min()) {
+                (Some(a), Some(b)) => (a - b) as usize,
+                _ => 0,
+            }
+        };
+        let halves = p.halves.iter().map(half).max().unwrap_or(0);
+        of(&p.measure).max(of(&p.bounds.rows)).max(halves)
     };
     let wide = span(&natural);
     if wide <= 32 || unknowns < 3 {

@@ -15,4 +15,5 @@ mod knot_removal;
 mod network;
 mod optimum;
 mod rational;
+mod shapes;
 mod truth;

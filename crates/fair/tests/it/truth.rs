@@ -138,7 +138,7 @@ pub fn data_of(points: &[Vec3<f64>], tolerance: f64, spacing: Spacing) -> Data {
 }
 
 pub fn options(measure: Measure, goal: Goal) -> DataOptions {
-    DataOptions { measure, goal, conditions: Vec::new(), bends: true, accuracy: 1e-9 }
+    DataOptions::of(measure, goal)
 }
 
 /// Root mean square distance of a curve from a fine polyline.

@@ -4,8 +4,8 @@ use super::arguments::{certificate, fair_error, measure, refused};
 use super::spline::{Spline, spacing, told};
 use moldloft_fair::{
     Bound as Bounded, Condition, Data, DataOptions, End, FairError, Goal, Job, KnotRemovalOptions,
-    Layout, Limit, Mode, Motion, Numbers, OptimumOptions, Report, Rule, Space, Step, Stops,
-    data_report, knot_removal, merged, parameters_across, report, shape,
+    Layout, Limit, Mode, Motion, Numbers, OptimumOptions, Report, Rule, ShapeCondition, Space,
+    Step, Stops, data_report, knot_removal, merged, parameters_across, report, shape,
 };
 use moldloft_num::{Order, Vec3};
 use numpy::ToPyArray;
@@ -186,10 +186,61 @@ pub fn goal((word, share): &(String, f64)) -> PyResult<Goal> {
         "fairest" => Goal::Fairest,
         "budget" => Goal::Budget(*share),
         "nearest" => Goal::Nearest(*share),
+        "energy" => Goal::Energy(*share),
+        "closest" => Goal::Closest,
         _ => {
-            let known = "near, fairest, budget, nearest";
+            let known = "near, fairest, budget, nearest, energy, closest";
             return Err(refused(format!("unknown goal `{word}`; expected one of: {known}")));
         }
+    })
+}
+
+/// A shape: its word, points or a count, a direction and a number, those that it has.
+pub type ShapeOption = (String, usize, usize, Option<[f64; 3]>, f64);
+
+fn condition_of_shape((word, a, b, v, x): &ShapeOption, count: usize) -> PyResult<ShapeCondition> {
+    let between = [*a, *b];
+    let direction = || {
+        v.map(Vec3::from).ok_or_else(|| refused(format!("the shape `{word}` needs a direction")))
+    };
+    if let Some(k) = between.into_iter().find(|&k| k >= count)
+        && word != "pieces"
+    {
+        return Err(fair_error(FairError::Mark { index: k, count }));
+    }
+    Ok(match word.as_str() {
+        "convex" | "concave" => ShapeCondition::Turn { between, left: word == "convex" },
+        "one-way" => ShapeCondition::OneWay { between },
+        "straight" => ShapeCondition::Straight { between, along: v.map(Vec3::from) },
+        "arc" => ShapeCondition::Arc { between },
+        "pieces" => ShapeCondition::Pieces(*a),
+        "within" => ShapeCondition::Within { direction: direction()?, most: *x },
+        "side" => ShapeCondition::OneSided { direction: direction()? },
+        _ => {
+            let known = "convex, concave, one-way, straight, arc, pieces, within, side";
+            return Err(refused(format!("unknown shape `{word}`; expected one of: {known}")));
+        }
+    })
+}
+
+/// A shape as the command writes it, for a number of points.
+#[pyfunction]
+pub fn fair_shape(text: &str, count: usize) -> PyResult<ShapeOption> {
+    use ShapeCondition as C;
+    let made = C::read(text, count).map_err(refused)?;
+    let plain = |word: &str, [a, b]: [usize; 2]| (word.to_string(), a, b, None, 0.0);
+    Ok(match made {
+        C::Turn { between, left } => plain(if left { "convex" } else { "concave" }, between),
+        C::OneWay { between } => plain("one-way", between),
+        C::Straight { between: [a, b], along } => {
+            ("straight".to_string(), a, b, along.map(|d| d.to_array()), 0.0)
+        }
+        C::Arc { between } => plain("arc", between),
+        C::Pieces(k) => plain("pieces", [k, k]),
+        C::Within { direction, most } => {
+            ("within".to_string(), 0, 0, Some(direction.to_array()), most)
+        }
+        C::OneSided { direction } => ("side".to_string(), 0, 0, Some(direction.to_array()), 0.0),
     })
 }
 
@@ -220,17 +271,41 @@ pub fn data<'py>(
         }
     };
     let breaks: Vec<usize> = breaks.iter().filter_map(|&b| one.of.get(b).copied()).collect();
+    let wanted: Vec<ShapeCondition> = get::<Vec<ShapeOption>>(options, "shape")?
+        .iter()
+        .map(|one| condition_of_shape(one, points.len()))
+        .collect::<PyResult<_>>()?;
+    let shape_labels: Vec<String> = get(options, "shape_labels")?;
+    let renumbered: Vec<ShapeCondition> =
+        wanted.iter().map(|w| w.renumbered(|k| one.of.get(k).copied().unwrap_or(k))).collect();
     let data = Data {
         limit,
         layout: Layout::new(degree, &at, &breaks, closed).map_err(fair_error)?,
         ends: [end(&ends.0)?, end(&ends.1)?],
         points: one.points.clone(),
     };
+    let unshaped = |e: FairError| match e {
+        FairError::Shape { shapes, miss } => {
+            let named: Vec<&str> =
+                shapes.iter().filter_map(|&k| shape_labels.get(k)).map(String::as_str).collect();
+            refused(format!(
+                "no curve with this shape was found within the tolerance (missed by {miss:.3e}): {}",
+                named.join("; ")
+            ))
+        }
+        FairError::Shapeless { shape, why } => {
+            let label = shape_labels.get(shape).map_or("shape", String::as_str);
+            refused(format!("{label}: {why}"))
+        }
+        other => fair_error(other),
+    };
+    let (data, shape) = data.shaped(&renumbered).map_err(&unshaped)?;
     let mut owners = Vec::new();
     let mut chosen = DataOptions {
         measure: measure(&get::<String>(options, "measure")?)?,
         goal: goal(&get(options, "goal")?)?,
         conditions: Vec::new(),
+        shape,
         bends: get(options, "bends")?,
         accuracy: get(options, "accuracy")?,
     };
@@ -252,7 +327,7 @@ pub fn data<'py>(
         Err(FairError::Contradiction { conditions, ends, miss }) => {
             return Err(contradiction(&conditions, ends, miss, &owners, &labels));
         }
-        Err(other) => return Err(fair_error(other)),
+        Err(other) => return Err(unshaped(other)),
     };
     let space = data.layout.space.clone();
     let dict = dictionary(py, &told)?;
@@ -267,6 +342,11 @@ pub fn data<'py>(
     dict.set_item("at", at.to_pyarray(py))?;
     dict.set_item("used", made.used)?;
     dict.set_item("least", made.least)?;
+    let arc = |a: &moldloft_fair::FoundArc| {
+        let user = |k: usize| one.of.iter().position(|&o| o == k).unwrap_or(k);
+        (a.between.map(user), a.radius, a.centre.to_array(), a.off)
+    };
+    dict.set_item("arcs", made.arcs.iter().map(arc).collect::<Vec<_>>())?;
     let marks: Vec<usize> = data.layout.marks.iter().map(|&m| data.layout.control_of(m)).collect();
     dict.set_item("marks", marks)?;
     let spline = |points: Vec<Vec3>| Spline { space: space.clone(), points, weights: None };

@@ -1,0 +1,111 @@
+//! What a model asks of a curve near its points besides the tolerance.
+
+use super::{ACCURACY, Intent};
+use crate::{
+    Condition, Data, DataOptions, FairError, Layout, Limit, ShapeCondition, fair_data_with,
+    parameters_across,
+};
+use moldloft_num::{Real, Vec3};
+use moldloft_spline::SplineWithKnotDerivatives;
+
+/// A condition at a parameter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Demand {
+    Through(Vec3<f64>),
+    Tangent(Vec3<f64>),
+    Area,
+    Volume,
+}
+
+/// All that is asked.
+pub(crate) struct Demands<T> {
+    pub shape: Vec<ShapeCondition>,
+    /// Conditions with their parameters in [0, 1].
+    pub conditions: Vec<(f64, Demand)>,
+    pub tolerances: Option<Vec<T>>,
+    /// Points, from 1.
+    pub fixed: Vec<usize>,
+    pub release: Vec<usize>,
+    pub bends: bool,
+}
+
+impl<T> Demands<T> {
+    /// Nothing.
+    pub fn none() -> Self {
+        Self {
+            shape: Vec::new(),
+            conditions: Vec::new(),
+            tolerances: None,
+            fixed: Vec::new(),
+            release: Vec::new(),
+            bends: true,
+        }
+    }
+}
+
+impl<T: Real> Intent<T> {
+    /// The faired spline within the tolerances of the points themselves, which it passes through
+    /// before it is faired.
+    pub fn near(
+        &self,
+        points: &[Vec3<T>],
+        demands: &Demands<T>,
+    ) -> Result<SplineWithKnotDerivatives<T>, FairError> {
+        let n = points.len();
+        let marks = super::indices(&self.breaks, n)?;
+        let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
+        crate::error::check_finite(&plain)?;
+        let least = if self.closed { 2 * self.degree + 2 } else { self.degree + 2 };
+        if n < least {
+            return Err(FairError::TooFew { expected: least, actual: n });
+        }
+        let mut tolerances = match &demands.tolerances {
+            Some(all) => all.clone(),
+            None => vec![self.tolerance; n],
+        };
+        for k in super::indices(&demands.fixed, n)? {
+            tolerances[k] = T::zero();
+        }
+        // As far as the extent of the points is no limit.
+        let size = plain.iter().map(|p| (*p - plain[0]).norm()).fold(0.0, f64::max);
+        for k in super::indices(&demands.release, n)? {
+            tolerances[k] += T::from(size);
+        }
+        let at = parameters_across(points, self.spacing, self.closed, self.motion)?;
+        let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
+        let data = Data {
+            points: plain,
+            limit: Limit::new(self.motion, tolerances.iter().map(|t| t.re()).collect())?,
+            layout: Layout::new(self.degree, &real, &marks, self.closed)?,
+            ends: [self.end; 2],
+        };
+        let (data, shape) = data.shaped(&demands.shape)?;
+        let mut options = DataOptions::of(self.measure, self.goal);
+        // Exact derivatives need to know which limits are reached; signs are not that exact.
+        options.accuracy = if shape.is_empty() { ACCURACY } else { options.accuracy };
+        options.shape = shape;
+        options.bends = demands.bends;
+        if !demands.conditions.is_empty() {
+            let space = &data.layout.space;
+            let control = data.layout.through(&data.layout.data(&data.points))?;
+            let (a, b) = space.domain();
+            for &(t, demand) in &demands.conditions {
+                let t = a + (b - a) * t;
+                options.conditions.extend(match demand {
+                    Demand::Through(p) => Condition::point(space, t, p),
+                    Demand::Tangent(d) => Condition::tangent(space, t, d),
+                    Demand::Area => {
+                        vec![Condition::area(space, &control, Vec3::of(0.0, 0.0, 1.0))]
+                    }
+                    Demand::Volume => {
+                        vec![Condition::revolution(space, &control, Vec3::of(1.0, 0.0, 0.0))]
+                    }
+                });
+            }
+        }
+        let (made, _) = fair_data_with(&data, &options, points, &tolerances, &at)?;
+        let (knots, control) = data.layout.space.open_form(&made.knots, &made.points);
+        SplineWithKnotDerivatives::new(self.degree, Some(knots), control, None)
+            .map_err(|_| FairError::Singular)
+    }
+}

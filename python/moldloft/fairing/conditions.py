@@ -1,0 +1,135 @@
+"""Conditions of fair curves: places, tangents, joins, shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.errors import FairingError
+from moldloft.fairing.arrays import points_of
+from moldloft.fairing.spline import Spline
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = ["join_conditions", "linear_conditions", "shape_conditions"]
+
+Condition = tuple[str, float, tuple[float, float, float], tuple[float, float, float]]
+
+TOGETHER = 1e-9
+"""Ends within this share of a curve's extent are one place."""
+
+
+def _vector(vector: ArrayLike) -> tuple[float, float, float]:
+    v, _ = points_of([np.asarray(vector, np.float64).ravel()])
+    return float(v[0, 0]), float(v[0, 1]), float(v[0, 2])
+
+
+def linear_conditions(
+    through: Iterable[tuple[float, ArrayLike]],
+    tangents: Iterable[tuple[float, ArrayLike]],
+    keep: Sequence[str],
+) -> tuple[list[Condition], list[str]]:
+    """The conditions, and what they are called in refusals."""
+    out: list[Condition] = []
+    labels = []
+    none = (0.0, 0.0, 0.0)
+    for word, rows in (("through", through), ("tangent", tangents)):
+        for t, vector in rows:
+            v = _vector(vector)
+            if not 0 <= t <= 1:
+                raise FairingError(f"expected a parameter from 0 to 1, found {t:g}")
+            if word == "tangent" and not any(v):
+                raise FairingError(f"the tangent at {t:g} has no direction")
+            out.append((word, float(t), v, none))
+            labels.append(f"{word} at {t:g}")
+    for word in keep:
+        if word not in ("area", "centroid", "volume"):
+            raise FairingError(f"`{word}` cannot be kept; what can: area, centroid, volume")
+        axis = (1.0, 0.0, 0.0) if word == "volume" else (0.0, 0.0, 1.0)
+        out.append((word, 0.0, axis, none))
+        labels.append(f"keep {word}")
+    return out, labels
+
+
+def join_conditions(joins: Sequence[Spline], spline: Spline) -> list[Condition]:
+    """What the curve's ends run on from: conditions whose parameter is 0 or 1."""
+    if joins and spline.closed:
+        raise FairingError("a closed curve has no ends to join")
+    out: dict[int, Condition] = {}
+    own = spline([0.0, 1.0])
+    extent = float(np.ptp(spline.control_points, axis=0).max())
+    for k, other in enumerate(joins):
+        if not isinstance(other, Spline) or other.closed:
+            raise FairingError(f"join {k + 1} is not an open spline")
+        ends = other.at([0.0, 1.0])
+        away = np.linalg.norm(own[:, None] - ends.points[None], axis=2)
+        a, b = (int(i) for i in np.unravel_index(int(np.argmin(away)), away.shape))
+        if not away[a, b] <= TOGETHER * extent:
+            raise FairingError(
+                f"join {k + 1} does not begin or end where the curve does: its nearest end "
+                f"is {away[a, b]:.3e} off (a fitted curve ends at its points: as `fit`)"
+            )
+        if a in out:
+            raise FairingError(f"two curves join at the {('start', 'end')[a]} of the curve")
+        # The neighbour's parameter runs into the start, or on from the end, or the other way.
+        first = ends.first[b] * (-1.0 if a == b else 1.0)
+        out[a] = ("join", float(a), _vector(first), _vector(ends.second[b]))
+    return list(out.values())
+
+
+RANGES = ("convex", "concave", "one-way", "straight", "arc")
+
+Shape = tuple[str, int, int, tuple[float, float, float] | None, float]
+
+
+def shape_conditions(shape: Iterable[Any], count: int) -> tuple[list[Shape], list[str]]:
+    """The shapes as the core takes them, and what they are called in refusals."""
+    out: list[Shape] = []
+    labels = []
+    for given in [(s,) if isinstance(s, str) else tuple(s) for s in shape]:
+        word, *rest = given
+        known = (*RANGES, "pieces", "within", "side")
+        if word not in known:
+            raise FairingError(f"unknown shape `{word}`; there are: {', '.join(known)}")
+        way = None
+        number = 0.0
+        first, last = 0, count - 1
+        expected = {
+            "straight": "nothing, two points, or two points and a direction",
+            "pieces": "a number of pieces",
+            "within": "a direction and a number",
+            "side": "a direction",
+        }.get(word, "nothing or two points")
+        try:
+            if word == "pieces":
+                (first,) = (int(x) for x in rest)
+                label = f"pieces {first}"
+                if first < 1:
+                    raise ValueError
+            elif word == "within":
+                way, number = _vector(rest[0]), float(rest[1])
+                label = f"within {number:g}"
+            elif word == "side":
+                (direction,) = rest
+                way, label = _vector(direction), "side"
+            else:
+                if rest:
+                    first, last = (int(x) for x in rest[:2])
+                if len(rest) > (3 if word == "straight" else 2):
+                    raise ValueError
+                if len(rest) == 3 and rest[2] is not None:
+                    way = _vector(rest[2])
+                label = f"{word} {first + 1} to {last + 1}"
+        except (TypeError, ValueError, IndexError):
+            raise FairingError(f"the shape `{word}` takes {expected}, found {rest!r}") from None
+        if word in RANGES and not 0 <= first < last < count:
+            raise FairingError(
+                f"{word}: expected a first and a later point of 0 to {count - 1}, "
+                f"found {first} and {last}"
+            )
+        out.append((word, first, last, way, number))
+        labels.append(label)
+    return out, labels

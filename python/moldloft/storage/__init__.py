@@ -1,0 +1,30 @@
+"""All writing of the package: whole or not at all, with owners, and nothing left behind.
+
+``system < reading < locks < replacing < sets``, and journals beside them.
+"""
+
+from moldloft.storage.locks import BusyError, Lock, Owner
+from moldloft.storage.reading import LARGEST, digest, digest_of, read_bytes, read_text
+from moldloft.storage.replacing import ChangedError, put
+from moldloft.storage.sets import Output, commit, read_set, recover
+from moldloft.storage.system import remove
+from moldloft.storage.watch import Watch
+
+__all__ = [
+    "LARGEST",
+    "BusyError",
+    "ChangedError",
+    "Lock",
+    "Output",
+    "Owner",
+    "Watch",
+    "commit",
+    "digest",
+    "digest_of",
+    "put",
+    "read_bytes",
+    "read_set",
+    "read_text",
+    "recover",
+    "remove",
+]

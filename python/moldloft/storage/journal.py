@@ -1,0 +1,253 @@
+"""The journal of a sketch prompt: a killed process loses nothing, every change is on disk at once.
+
+A journal is a text file of commands, one a line, after a first line that says what it is. Each line
+begins with a checksum over the journal's own number, the line's number and the command: zeros, a
+part of a line and lines of another journal, which a power cut may leave, are no lines of it. A line
+``! file DIGEST`` says that the commands before it are in the file that the journal stands beside,
+if that has this content. A lock beside the journal says who keeps it; without one it was left.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+import time
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from moldloft.errors import FileError
+from moldloft.storage import system
+from moldloft.storage.locks import BusyError, Lock
+from moldloft.storage.reading import read_bytes
+from moldloft.storage.replacing import put
+
+__all__ = ["ENDING", "LAST", "Journal", "Left", "beside", "left_behind", "lock", "state_folder"]
+
+HEAD = "! moldloft sketch journal"
+ENDING = ".skj"
+LAST = "last" + ENDING
+
+_IN_FILE = "! file "
+
+
+def state_folder() -> Path:
+    """Where journals of prompts without a file are: ``$XDG_STATE_HOME/moldloft/sketch``."""
+    given = os.environ.get("XDG_STATE_HOME") or os.environ.get("LOCALAPPDATA")
+    return Path(given or Path.home() / ".local" / "state") / "moldloft" / "sketch"
+
+
+def beside(path: Path) -> Path:
+    """The journal of a prompt that edits a file."""
+    return path.with_name(path.name + ENDING)
+
+
+def lock(journal: Path) -> Lock:
+    """The lock of whoever keeps a journal.
+
+    Raises
+    ------
+    BusyError
+        When somebody does.
+    """
+    return Lock(journal.with_name(f".{journal.name}.lock"), journal.name)
+
+
+@dataclass(frozen=True)
+class Left:
+    """A journal that was not closed, and its commands."""
+
+    path: Path
+    commands: list[str]
+    stale: bool = False
+    """True when the file that it stands beside was changed by another program since."""
+    damaged: int = 0
+    """Complete lines that are not readable."""
+    when: str = field(default="")
+    """When it was last written."""
+
+
+def _checked(seed: str, number: int, command: str) -> str:
+    sum_ = zlib.crc32(f"{seed} {number} {command}".encode("utf-8", "surrogatepass"))
+    return f"{sum_:08x} {command}"
+
+
+def read(path: Path, present: str | None = None) -> Left | None:
+    """A journal's complete commands; ``None`` when it is none.
+
+    Parameters
+    ----------
+    path
+        The journal.
+    present
+        The digest of the file that it stands beside: what that holds already is left out.
+
+    Raises
+    ------
+    FileError
+        When it is that of a later version.
+    """
+    try:
+        text = read_bytes(path).decode("utf-8", errors="replace")
+        when = time.strftime("%Y-%m-%d %H:%M", time.localtime(path.stat().st_mtime))
+    except OSError:
+        return None
+    # What follows the last line break was cut short.
+    head, *lines = text.split("\n")[:-1] or [""]
+    if not head.startswith(HEAD):
+        return None
+    version, _, seed = head.removeprefix(HEAD).strip().partition(" ")
+    if version == "1":
+        return Left(path, lines, when=when)
+    if version != "2":
+        raise FileError(f"`{path}` is a journal of a later version of moldloft: {version}")
+    commands: list[str] = []
+    stale, good = False, 0
+    for number, line in enumerate(lines):
+        command = line[9:]
+        if line != _checked(seed, number, command):
+            break
+        good += 1
+        if not command.startswith(_IN_FILE):
+            commands.append(command)
+        elif present is not None and command == _IN_FILE + present:
+            # The file holds what came before.
+            commands, stale = [], False
+        elif present is not None:
+            # So it is when no later line names the present content.
+            stale = True
+    return Left(path, commands, stale, len(lines) - good, when)
+
+
+def left_behind(
+    paths: Sequence[Path], present: str | None = None, held: Lock | None = None
+) -> list[Left]:
+    """Journals with commands that no living process keeps, the newest first.
+
+    ``present`` is as for :func:`read`; ``held`` is the lock of the only one, when that is held.
+    """
+    found: list[tuple[float, Left]] = []
+    for path in paths:
+        try:
+            with contextlib.nullcontext() if held else lock(path):
+                left = read(path, present)
+            stamp = path.stat().st_mtime
+        except BusyError:
+            continue
+        except FileError:
+            raise
+        except OSError:
+            continue
+        if left is not None and left.commands:
+            found.append((stamp, left))
+    return [left for _, left in sorted(found, key=lambda pair: pair[0], reverse=True)]
+
+
+class Journal:
+    """A journal under way.
+
+    Parameters
+    ----------
+    path
+        The file; made anew, in place of one that is there.
+    begin
+        Commands that are in it from the start.
+    base
+        The digest of the file that it stands beside.
+    held
+        Its lock, when that is held already; it is taken otherwise.
+
+    Raises
+    ------
+    BusyError
+        When somebody else keeps it.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        begin: Sequence[str] = (),
+        *,
+        base: str | None = None,
+        held: Lock | None = None,
+    ) -> None:
+        self.path = path
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._lock = held or lock(path)
+        self._file = -1
+        self._begin([*([] if base is None else [_IN_FILE + base]), *begin])
+
+    @classmethod
+    def in_state_folder(cls, begin: Sequence[str] = ()) -> Journal:
+        """A journal of its own name in the state folder."""
+        stamp = time.strftime("%Y%m%d-%H%M%S")
+        name = f"{stamp}-{os.getpid()}-{secrets.token_hex(2)}{ENDING}"
+        return cls(state_folder() / name, begin)
+
+    def _begin(self, commands: Sequence[str]) -> None:
+        self._seed = secrets.token_hex(8)
+        self._count = 0
+        head = f"{HEAD} 2 {self._seed}\n"
+        # In place of the old one at once: a kill leaves one of the two.
+        data = (head + self._lines(commands)).encode()
+        put(self.path, data, private=True)
+        self._length = len(data)
+        old, self._file = self._file, -1
+        if old >= 0:
+            with contextlib.suppress(OSError):
+                system.close(old)
+        self._open()
+
+    def _open(self) -> None:
+        flags = os.O_WRONLY | os.O_APPEND | getattr(os, "O_CLOEXEC", 0)
+        self._file = os.open(self.path, flags | getattr(os, "O_BINARY", 0))
+
+    def _lines(self, commands: Sequence[str]) -> str:
+        made = []
+        for command in commands:
+            # As it will be read back.
+            plain = command.replace("\n", " ").encode("utf-8", "replace").decode()
+            made.append(_checked(self._seed, self._count, plain) + "\n")
+            self._count += 1
+        return "".join(made)
+
+    def append(self, commands: Sequence[str]) -> None:
+        """Adds commands; they are on the disk when this returns."""
+        if commands:
+            # One write: a process killed at any moment leaves whole lines and perhaps a part.
+            if self._file < 0:
+                self._open()
+            count, data = self._count, self._lines(commands).encode()
+            try:
+                # What a write that failed has left is no part of a line.
+                os.ftruncate(self._file, self._length)
+                system.write_all(self._file, data)
+                system.synced(self._file)
+            except BaseException:
+                self._count = count
+                raise
+            self._length += len(data)
+
+    def saving(self, digest: str) -> None:
+        """The file beside it is about to be written, with everything so far in it."""
+        self.append([_IN_FILE + digest])
+
+    def saved(self, digest: str) -> None:
+        """The file beside it holds everything: the journal begins anew."""
+        self._begin([_IN_FILE + digest])
+
+    def close(self, *, keep: bool) -> None:
+        """Ends it: kept as the last session in the state folder, or removed."""
+        if self._file >= 0:
+            with contextlib.suppress(OSError):
+                system.close(self._file)
+        with contextlib.suppress(OSError):
+            if keep:
+                last = state_folder() / LAST
+                last.parent.mkdir(parents=True, exist_ok=True)
+                system.replace(self.path, last)
+            else:
+                system.remove(self.path)
+        self._lock.release()

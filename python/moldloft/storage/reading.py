@@ -1,0 +1,103 @@
+"""Reading files that a person or a model names: regular ones, of bounded size."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import os
+import stat
+
+from moldloft.errors import FileError
+from moldloft.storage.system import reason
+
+__all__ = ["LARGEST", "digest", "digest_of", "read_bytes", "read_text"]
+
+LARGEST = 256 << 20
+"""The most bytes of one file."""
+
+_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+
+
+def digest(data: bytes) -> str:
+    """The hash of a content."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def read_bytes(path: str | os.PathLike[str], largest: int = LARGEST) -> bytes:
+    """The bytes of a regular file.
+
+    Parameters
+    ----------
+    path
+        The file; links are followed.
+    largest
+        The most bytes.
+
+    Raises
+    ------
+    FileError
+        When there is none, it cannot be read, is a folder, a pipe or a device, or is too large.
+    """
+    try:
+        # Opening a pipe without a writer would wait for one.
+        file = os.open(path, _FLAGS)
+    except OSError as error:
+        raise FileError(f"cannot read `{path}`: {reason(error)}") from error
+    except ValueError as error:
+        raise FileError(f"cannot read `{path!s}`: {error}") from error
+    try:
+        status = os.fstat(file)
+        if stat.S_ISDIR(status.st_mode):
+            raise FileError(f"cannot read `{path}`: it is a folder")
+        if not stat.S_ISREG(status.st_mode):
+            raise FileError(f"cannot read `{path}`: it is not a regular file")
+        # One byte more than allowed shows a file that is too large, whatever its length claims.
+        parts, room = [], largest + 1
+        while room and (part := os.read(file, min(room, 1 << 24))):
+            parts.append(part)
+            room -= len(part)
+    except FileError:
+        raise
+    except OSError as error:
+        raise FileError(f"cannot read `{path}`: {reason(error)}") from error
+    finally:
+        os.close(file)
+    if not room:
+        raise FileError(f"cannot read `{path}`: it is larger than {_size(largest)}")
+    return b"".join(parts)
+
+
+def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
+    """The text of a regular file in UTF-8, its lines ended by line feeds.
+
+    Raises
+    ------
+    FileError
+        As for :func:`read_bytes`, and when it is not UTF-8.
+    """
+    try:
+        text = read_bytes(path, largest).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def digest_of(path: str | os.PathLike[str]) -> str | None:
+    """The hash of a file's content; ``None`` when there is no file.
+
+    Raises
+    ------
+    FileError
+        When there is one that cannot be read.
+    """
+    try:
+        return digest(read_bytes(path))
+    except FileError as error:
+        cause = error.__cause__
+        if isinstance(cause, OSError) and cause.errno in (errno.ENOENT, errno.ENOTDIR):
+            return None
+        raise
+
+
+def _size(length: int) -> str:
+    return f"{length >> 20} MiB" if length >= 1 << 20 else f"{length} bytes"
