@@ -56,6 +56,8 @@ WITHOUT = {
     "not-fitted",
     "open-edge",
     "other-edge",
+    "out-of-memory",
+    "out-of-time",
     "rail-singular",
     "redefined",
     "rough-volume",

@@ -42,6 +42,8 @@ pub struct Document {
     /// The solve sets of the last run.
     pub(crate) solved: Vec<Solved>,
     budget: Arc<Budget>,
+    /// True when the last run was cancelled: what it did not come to is missing.
+    cut_short: bool,
     /// What calls keep, of the plain run and of those with derivatives alike.
     kept: Kept,
     pub(crate) settings: Settings,
@@ -135,6 +137,7 @@ impl Document {
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },
             solved: Vec::new(),
             budget: Arc::default(),
+            cut_short: false,
             kept: Kept::default(),
             settings: Settings::default(),
         }
@@ -202,12 +205,20 @@ impl Document {
         let mut evaluation = std::mem::take(&mut self.plain);
         let seeds = HashSet::new();
         self.applied = self.evaluate(&mut evaluation, &|_, x| x, &seeds, true);
+        self.cut_short = self.run_diagnostics.iter().any(|d| d.id == "cancelled");
         self.plain = evaluation;
         self.solved.clear();
         if !self.plain.env.solves.is_empty() {
             self.solve();
         }
         self.applied
+    }
+
+    /// Runs again what a cancelled run did not come to.
+    pub(crate) fn complete(&mut self) {
+        if self.cut_short && !self.budget.is_cancelled() {
+            self.run();
+        }
     }
 
     /// Runs the source on a graph. `report` says whether what is found goes to the user: a run
@@ -634,6 +645,7 @@ impl Document {
     /// # Errors
     /// When there would be too many panels.
     pub fn panelled(&mut self) -> Result<Arc<Panelled>, Diagnostic> {
+        self.complete();
         let clock = self.plain.graph.last_change();
         if let Some((at, panelled)) = &self.panelled
             && *at == clock

@@ -54,6 +54,9 @@ pub fn spline_patches(
     if !mesh.positions().iter().all(|p| p.is_finite()) {
         return cannot("a position is not a finite number");
     }
+    if mesh.patches().is_empty() {
+        return cannot("the model shows no surface");
+    }
     let size = mesh.bounds().diagonal();
     let allowed = tolerance.unwrap_or(1e-5 * size);
     if allowed.is_nan() || allowed <= 0.0 {

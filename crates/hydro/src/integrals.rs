@@ -168,8 +168,8 @@ pub(crate) enum Wanted {
     All,
     /// Volume and its first moments: what an equilibrium needs.
     Displacement,
-    /// All of a skin that need not be closed: what is open counts as much as what is enclosed, for the volume of a
-    /// flat skin or an upright wall is no measure of it.
+    /// All of a skin that may be open: its openings count for the accuracy of the volume, which may vanish for a flat
+    /// skin or an upright wall.
     Skin,
 }
 

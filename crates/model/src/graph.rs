@@ -414,7 +414,8 @@ impl<T: Scalar> Graph<T> {
         }
         for (k, arg) in args.iter().enumerate() {
             let largest = arg.largest();
-            if largest > LARGEST {
+            // The largest double stands for a literal that was refused.
+            if largest > LARGEST && largest < f64::MAX {
                 let fault = too_large("a number", largest).in_field(object.row.id(k));
                 return State::Failed(Failure::CallError(fault));
             }
@@ -443,7 +444,7 @@ impl<T: Scalar> Graph<T> {
             return State::Failed(Failure::CallError(fault));
         }
         let largest = value.largest();
-        if largest > LARGEST {
+        if largest > LARGEST && largest < f64::MAX {
             return State::Failed(Failure::CallError(too_large("a coordinate", largest)));
         }
         if value.depth() > DEEPEST_NESTING {
@@ -599,7 +600,7 @@ impl<T: Scalar> Graph<T> {
 }
 
 fn too_large(what: &str, found: f64) -> CallError {
-    CallError::new("too-large", format!("{what} is too large to compute with"))
+    CallError::new("number-too-large", format!("{what} is too large to compute with"))
         .expected(format!("at most {LARGEST:e}"))
         .found(format!("{found:e}"))
         .help("choose a larger unit of length")

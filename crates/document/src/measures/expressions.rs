@@ -21,6 +21,7 @@ impl Document {
     /// # Errors
     /// What is wrong with it.
     pub fn eval(&mut self, text: &str) -> Result<Value<f64>, Vec<Diagnostic>> {
+        self.complete();
         if let Some((group, number)) = self.whole_name(text) {
             let found = self.whole_numbers(group).map_err(|d| vec![d])?;
             return one_of(found, group, number).map_err(|d| vec![d]);

@@ -88,8 +88,41 @@ fn a_surface_with_places_beyond_all_numbers_has_no_area() {
         "AbsPoint A(-1.7e308, 0, 0); AbsPoint B(1.7e308, 0, 0); AbsPoint C(0, 1.7e308, 0);
          AbsPoint D(0, -1.7e308, 1); Line a(A, B); Line b(C, D); RuledSurf S(a, b);",
     );
+    assert!(document.diagnostics().iter().all(|d| d.id == "number-too-large"));
+    assert_eq!(document.diagnostics().len(), 4);
     let faults = document.eval("S.area").unwrap_err();
-    assert_eq!(faults[0].id, "no-body");
+    assert_eq!(faults[0].id, "blocked");
+}
+
+#[test]
+fn numbers_up_to_the_limit_are_computed_with() {
+    let mut document = sound(
+        "AbsPoint A(-1e50, 0, 0); AbsPoint B(1e50, 0, 0); AbsPoint C(0, 1e50, 0);
+         AbsPoint D(0, 0, 1e50); Line a(A, B); Line b(C, D); RuledSurf S(a, b);",
+    );
+    let area = crate::common::number(&mut document, "S.area");
+    assert!(area.is_finite() && area > 1e100, "{area:e}");
+    let mut beyond = open("AbsPoint A(9e49, 0, 0); RelPoint B(A, 9e49, 0, 0);");
+    assert_eq!(beyond.diagnostics()[0].id, "number-too-large");
+    assert!(beyond.eval("B.x").is_err());
+}
+
+#[test]
+fn the_weight_of_one_side_says_whether_the_other_counts() {
+    let model = |images: &str| {
+        format!(
+            "Model info(symmetry = \"y\"); AbsPoint A(0, 0, 0); AbsPoint B(3, 0, 0); AbsPoint C(0, 2, 0);
+             AbsPoint D(3, 2, 0); Line a(A, B); Line b(C, D); RuledSurf deck(a, b);
+             Weight planks(deck, per = 0.5{images});"
+        )
+    };
+    let document = open(&model(""));
+    assert_eq!(document.diagnostics()[0].id, "half-weight");
+    let mut both = sound(&model(", images = \"y\""));
+    assert!((crate::common::number(&mut both, "planks.mass") - 6.0).abs() < 1e-12);
+    assert_eq!(crate::common::number(&mut both, "planks.y"), 0.0);
+    let mut once = sound(&model(", images = \"\""));
+    assert!((crate::common::number(&mut once, "planks.mass") - 3.0).abs() < 1e-12);
 }
 
 #[test]

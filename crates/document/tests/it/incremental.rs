@@ -508,7 +508,8 @@ fn direct_edits_are_written_as_they_are() {
             2 => f64::from_bits(random.below(1 << 52) as u64),
             _ => -0.0,
         };
-        if !x.is_finite() {
+        // Larger ones are refused.
+        if x.is_nan() || x.abs() > 1e50 {
             continue;
         }
         document.set(&[("A.y".into(), x), ("B.point.z".into(), -x)]).unwrap();

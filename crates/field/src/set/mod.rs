@@ -284,6 +284,11 @@ impl<T: Real> Set<T> {
         (Arc::as_ptr(&self.node) as usize, attributes)
     }
 
+    /// True when another handle may hold its node: what no other holds occurs once.
+    fn is_shared(&self) -> bool {
+        Arc::strong_count(&self.node) > 1
+    }
+
     /// True for a union.
     pub(crate) fn is_union(&self) -> bool {
         matches!(self.node.kind, Kind::Union)
@@ -438,7 +443,9 @@ impl<T: Real> Set<T> {
                 Some(a) => made.with((**a).clone()),
                 None => made,
             };
-            known.insert(set.identity(), made.clone());
+            if set.is_shared() {
+                known.insert(set.identity(), made.clone());
+            }
             out.push(made);
         }
         out.pop().unwrap_or_else(Set::nothing)
@@ -493,7 +500,7 @@ impl<T: Real> Set<T> {
                     join(matches!(kind, Kind::Union), a, b)
                 }
             };
-            if Arc::strong_count(&set.node) > 1 {
+            if set.is_shared() {
                 known.insert(Arc::as_ptr(&set.node), made.clone());
             }
             out.push(made);
@@ -636,7 +643,9 @@ impl<T: Real> Set<T> {
                     })
                 }
             };
-            known.insert(key, at);
+            if set.is_shared() {
+                known.insert(key, at);
+            }
             values.push(at);
         }
         let root = values.pop().unwrap_or(0);
