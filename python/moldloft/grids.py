@@ -143,6 +143,11 @@ def decode_plot3d(
 ) -> tuple[list[NDArray[np.float64]], Plot3DVariant, list[NDArray[np.int32]] | None]:
     """The blocks in the bytes of a Plot3D grid file; as :func:`read_plot3d`.
 
+    Parameters
+    ----------
+    data
+        The content of the file.
+
     Raises
     ------
     FormatError
@@ -195,7 +200,17 @@ def encode_plot3d(
     *,
     iblank: Sequence[ArrayLike] | None = None,
 ) -> bytes:
-    """The bytes of a Plot3D grid file; arguments and errors as for :func:`write_plot3d`."""
+    """The bytes of a Plot3D grid file; arguments and errors as for :func:`write_plot3d`.
+
+    Parameters
+    ----------
+    grids
+        Grids of points, each ``(ni, nj, 3)`` or ``(ni, nj, nk, 3)``.
+    variant
+        How; by default plain binary, double precision, several blocks, three coordinates.
+    iblank
+        A whole number for each point of each grid: 0 for those that do not count.
+    """
     variant = variant or Plot3DVariant()
     arrays = _grids(grids)
     blanks: list[list[int] | None] | None = None
@@ -335,6 +350,13 @@ def write_csv(path: str | Path, points: ArrayLike) -> Path:
     """Write points (n, 2) or (n, 3) as lines of numbers with commas, under a heading.
 
     Every digit that is needed to read the same numbers back is written.
+
+    Parameters
+    ----------
+    path
+        The file.
+    points
+        Points ``(n, 2)`` or ``(n, 3)``.
     """
     array = np.asarray(points, dtype=np.float64)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
@@ -351,6 +373,11 @@ def read_points(path: str | Path) -> NDArray[np.float64]:
     ``#`` are skipped; a missing z is 0. The two halves of an aerofoil become one run from the upper
     trailing edge round the nose.
 
+    Parameters
+    ----------
+    path
+        The file.
+
     Raises
     ------
     FileError
@@ -366,6 +393,11 @@ def read_aerofoil(path: str | Path) -> Aerofoil:
     """An aerofoil section from a coordinate file in Selig's or Lednicer's listing.
 
     The two are distinguished by the numbers of points that the latter begins with.
+
+    Parameters
+    ----------
+    path
+        The file.
 
     Raises
     ------

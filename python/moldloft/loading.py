@@ -38,7 +38,19 @@ def _absolute(folders: Sequence[str]) -> tuple[str, ...]:
 
 
 def restored(origin: Origin | None, text: str, values: Mapping[str, float], refined: int) -> Model:
-    """A model again in the state that a copy or a pickle holds."""
+    """A model again in the state that a copy or a pickle holds.
+
+    Parameters
+    ----------
+    origin
+        Where the model came from.
+    text
+        The text of the model.
+    values
+        Values by name.
+    refined
+        The refinement level.
+    """
     origin = origin or Origin("model.sdl")
     document = _core.Document.from_text(origin.name, text, origin.folder, list(origin.library))
     model = Model(document, origin)

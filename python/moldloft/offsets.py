@@ -107,6 +107,11 @@ class Offsets:
 def read(path: str | os.PathLike[str]) -> Offsets:
     """The table of a file.
 
+    Parameters
+    ----------
+    path
+        The file.
+
     Raises
     ------
     FileError
@@ -123,7 +128,15 @@ def read(path: str | os.PathLike[str]) -> Offsets:
 
 
 def parse(text: str, name: str = "offsets") -> Offsets:
-    """The table of a text; ``name`` is what messages call it."""
+    """The table of a text; ``name`` is what messages call it.
+
+    Parameters
+    ----------
+    text
+        The text.
+    name
+        What messages call the text.
+    """
 
     def fault(line: int, expected: str, found: str) -> Error:
         return Error(f"{name}, line {line}: expected {expected}, found {found}")
@@ -165,7 +178,15 @@ def parse(text: str, name: str = "offsets") -> Offsets:
 
 
 def encode(model: Model, title: str = "") -> bytes:
-    """The file of :func:`even`; it has no place for a title."""
+    """The file of :func:`even`; it has no place for a title.
+
+    Parameters
+    ----------
+    model
+        The model.
+    title
+        A title, for formats that have one.
+    """
     return even(model).csv().encode()
 
 
@@ -210,7 +231,17 @@ def measure(model: Model, stations: Iterable[float], waterlines: Iterable[float]
 
 
 def even(model: Model, *, stations: int = 21, waterlines: int = 11) -> Offsets:
-    """The half-breadths at even stations and waterlines over the whole model."""
+    """The half-breadths at even stations and waterlines over the whole model.
+
+    Parameters
+    ----------
+    model
+        The model.
+    stations
+        The number of stations.
+    waterlines
+        The number of waterlines.
+    """
     import numpy as np
 
     low, high = model.mesh().vertices.min(axis=0), model.mesh().vertices.max(axis=0)

@@ -146,6 +146,13 @@ class Sketch:
     def load(cls, path: str | os.PathLike[str], *, strict: bool = True) -> Sketch:
         """Run a file of commands, or read a JSON twin.
 
+        Parameters
+        ----------
+        path
+            The file.
+        strict
+            Raise when a command is refused, instead of going on.
+
         Raises
         ------
         FileError
@@ -200,7 +207,13 @@ class Sketch:
         return replies
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write all objects as commands, or as JSON when the name ends so; whole or not at all."""
+        """Write all objects as commands, or as JSON when the name ends so; whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file.
+        """
         from moldloft.files import Output, commit
 
         path = Path(path)
@@ -333,6 +346,15 @@ class Sketch:
         """Volume, area and centroid at each value of a dimension, ``(n, 5)``; the sketch stays.
 
         Rows are NaN where there is no body.
+
+        Parameters
+        ----------
+        by
+            The name of a dimension or variable.
+        values
+            Its values, ``(n,)``.
+        name
+            The object; by default the active one.
         """
         wanted = np.asarray(values, dtype=np.float64).ravel().tolist()
         return self._session.sweep(self._name(name), by, wanted)
@@ -346,7 +368,21 @@ class Sketch:
         azimuth: float = -60.0,
         elevation: float = 25.0,
     ) -> bytes:
-        """A PNG of the body; the angles say from where, in degrees."""
+        """A PNG of the body; the angles say from where, in degrees.
+
+        Parameters
+        ----------
+        width
+            Width of the picture, pixels.
+        height
+            Height of the picture, pixels.
+        name
+            The object; by default the active one.
+        azimuth
+            Direction of the view about z, degrees.
+        elevation
+            Height of the view, degrees.
+        """
         return self._session.picture(self._name(name), width, height, azimuth, elevation)
 
     def __getitem__(self, name: str) -> float:
