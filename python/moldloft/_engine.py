@@ -10,13 +10,19 @@ from moldloft import _core
 __all__ = ["main"]
 
 
+#: What a process takes besides models: the program itself, stacks of its threads.
+_OWN = 1 << 30
+
+
 def _limit(memory: int) -> None:
     """No more memory than that, no files written, no core left behind."""
+    _, steps, objects, seconds = _core.limits()
+    _core.set_limits(memory, steps, objects, seconds)
     try:
         import resource
     except ImportError:
         return
-    limits = [("RLIMIT_AS", memory), ("RLIMIT_CORE", 0), ("RLIMIT_FSIZE", 0)]
+    limits = [("RLIMIT_AS", memory + _OWN), ("RLIMIT_CORE", 0), ("RLIMIT_FSIZE", 0)]
     for name, value in limits:
         with contextlib.suppress(AttributeError, OSError, ValueError):
             resource.setrlimit(getattr(resource, name), (value, value))

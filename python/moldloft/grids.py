@@ -13,12 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 from moldloft import _core
 from moldloft.errors import Error, FileError, FormatError
 from moldloft.files import Output, commit
+from moldloft.storage import read_bytes
 
 __all__ = [
     "Aerofoil",
     "Plot3DVariant",
     "decode_plot3d",
     "encode_plot3d",
+    "encoded",
     "read_aerofoil",
     "read_plot3d",
     "read_points",
@@ -76,11 +78,7 @@ class Aerofoil:
 
 
 def _read(path: str | Path) -> bytes:
-    try:
-        return Path(path).read_bytes()
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise FileError(f"cannot read `{path}`: {reason}") from error
+    return read_bytes(path)
 
 
 def _named(path: str | Path, error: FormatError) -> FileError:
@@ -262,15 +260,22 @@ def write(
     list of pathlib.Path
         The files written; ``vts`` takes several for several grids.
     """
+    target = Path(path)
+    files = encoded(target.name, grids, names)
+    return commit(target.parent, [Output(name, data) for name, data in files.items()])
+
+
+def encoded(
+    name: str, grids: Sequence[ArrayLike], names: Sequence[str] | None = None
+) -> dict[str, bytes]:
+    """The files that :func:`write` writes, by name."""
     from moldloft.formats import format_named, formats
 
-    target = Path(path)
     rows = [row for row in formats().values() if row.of_grids]
-    row = format_named(target.suffix.lstrip("."), rows)
+    row = format_named(Path(name).suffix.lstrip("."), rows)
     if row.writer:
-        return [write_cgns(target, grids, names)]
-    files = _core.write_grids(_grids(grids), row.name, target.name)
-    return commit(target.parent, [Output(name, data) for name, data in files])
+        return {name: cgns_bytes(name, grids, names)}
+    return dict(_core.write_grids(_grids(grids), row.name, name))
 
 
 def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,9 +92,20 @@ class Model:
     """
 
     def __init__(self, document: _core.Document, origin: Origin | None = None) -> None:
-        self._document = document
+        self._plain_document = document
+        #: Threads that are in a Python function of this model.
+        self._inside: set[int] = set()
         self._origin = origin
         self._refined = 0
+
+    @property
+    def _document(self) -> _core.Document:
+        if self._inside and threading.get_ident() in self._inside:
+            raise ModelError(
+                "a Python function of a model cannot use the model that calls it: give it what it "
+                "needs as arguments"
+            )
+        return self._plain_document
 
     # -- copies ----------------------------------------------------------------------------
 

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
-from moldloft.errors import Error, FileError, UnknownNameError
+from moldloft.errors import Error, UnknownNameError
+from moldloft.storage import read_text
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -161,18 +162,15 @@ class Sketch:
             When a command was refused and ``strict`` is true.
         """
         path = Path(path)
-        try:
-            text = path.read_text(encoding="utf-8")
-        except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise FileError(f"cannot read `{path}`: {reason}") from error
-        except UnicodeDecodeError as error:
-            raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
+        text = read_text(path)
         sketch = cls(path.parent)
+        # Its lines are somebody else's: they read inside of the file's folder.
+        sketch.session.confine(True)
         if text.lstrip().startswith(("[", "{")):
             sketch.run(f'INPUT "{path.name}"', strict=strict)
         else:
             sketch.run(text, strict=strict)
+        sketch.session.confine(False)
         return sketch
 
     # -- commands ----------------------------------------------------------------------------

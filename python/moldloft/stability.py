@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft.errors import Error
+from moldloft.storage import read_text
 from moldloft.units import Units
 
 if TYPE_CHECKING:
@@ -703,7 +704,7 @@ def _rule(name: str) -> dict[str, Any]:
     if path.suffix != ".json":
         raise Error(f"unknown rule `{name}`; expected one of: {', '.join(known)}, or a .json file")
     try:
-        rule = json.loads(path.read_text(encoding="utf-8"))
+        rule = json.loads(read_text(path))
     except (OSError, ValueError) as error:
         raise Error(f"cannot read the rule `{name}`: {error}") from error
     if not isinstance(rule, dict) or not isinstance(rule.get("clauses"), list):

@@ -928,7 +928,9 @@ def load(path: str | os.PathLike[str]) -> Set:
     path
         The file.
     """
-    return loads(Path(path).read_text(encoding="utf-8"))
+    from moldloft.storage import read_text
+
+    return loads(read_text(path))
 
 
 def everything() -> Set:
