@@ -268,7 +268,17 @@ def write(
 def encoded(
     name: str, grids: Sequence[ArrayLike], names: Sequence[str] | None = None
 ) -> dict[str, bytes]:
-    """The files that :func:`write` writes, by name."""
+    """The files that :func:`write` writes, by name.
+
+    Parameters
+    ----------
+    name
+        The file's name; its ending is the format.
+    grids
+        Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
+    names
+        Of the zones of a CGNS file.
+    """
     from moldloft.formats import format_named, formats
 
     rows = [row for row in formats().values() if row.of_grids]
