@@ -428,16 +428,18 @@ def _server_answers(command: Path, home: Path, clean: dict[str, str]) -> None:
     print("language server: answers")
 
 
+STEPS = {"engine": engine, "wheel": wheel, "editor": editor, "sdist": sdist, "smoke": smoke}
+
+
 def main() -> None:
     """Runs the steps that are named, or all."""
-    steps = {"engine": engine, "wheel": wheel, "editor": editor, "sdist": sdist, "smoke": smoke}
-    wanted = sys.argv[1:] or list(steps)
+    wanted = sys.argv[1:] or list(STEPS)
     for name in wanted:
-        if name not in steps:
+        if name not in STEPS:
             raise SystemExit(__doc__)
     print(f"{platform.platform()}, Python {sysconfig.get_python_version()}")
     for name in wanted:
-        steps[name]()
+        STEPS[name]()
 
 
 if __name__ == "__main__":
