@@ -112,8 +112,8 @@ reference: $(VENV)/.installed ## docs/reference.md anew from the declarations
 	@$(BIN)/moldloft doc --pictures docs/kinds
 	@$(BIN)/python -m moldloft.stubs
 
-site: $(VENV)/.with-tests ## the documentation, in out/site
-	@$(BIN)/mkdocs build --quiet --strict
+site: $(VENV)/.with-tests ## the documentation with living models, in out/site
+	@MOLDLOFT_LIVING=1 NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 
 release: ## wheel with language server and page, sdist, notices, bill of materials; in dist/
 	@$(PYTHON) tools/release.py

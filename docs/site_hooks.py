@@ -6,11 +6,17 @@ when it is opened from a folder.
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
+
+#: `make site` sets it: the models of the gallery stand in the site as pages that one can turn and change.
+LIVING = bool(os.environ.get("MOLDLOFT_LIVING"))
 
 _LINK = re.compile(r"\]\(((?:\.\./)+[^)#\s]+)(#[^)]*)?\)")
 
@@ -54,4 +60,24 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
             return f"](https://github.com/moldloft/moldloft/tree/main/{target})"
         return f"]({up}source/{target}.txt)"
 
+    if here == "gallery.md" and LIVING:
+        markdown = re.sub(
+            r"^\[`(\w+)\.sdl`\]\(\S+\)$",
+            r'\g<0> · <a href="gallery/\1.html">open it: turn it, change its parameters</a>',
+            markdown,
+            flags=re.M,
+        )
     return _LINK.sub(moved, markdown)
+
+
+def on_post_build(config: Any) -> None:
+    """Writes the pages of the gallery's models beside its page."""
+    if not LIVING:
+        return
+    folder = Path(config.site_dir) / "gallery"
+    folder.mkdir(exist_ok=True)
+    for path in sorted((ROOT / "examples" / "gallery").glob("*.sdl")):
+        page = folder / f"{path.stem}.html"
+        command = [sys.executable, "-m", "moldloft", "export", "--html", str(path), "-o", str(page)]
+        engine = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.gz"
+        subprocess.run(command + ([] if engine.exists() else ["--still"]), check=True)

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic, __version__
     from moldloft.blocks import Block, Blocks
+    from moldloft.budget import limits
     from moldloft.builder import Builder, model, param
     from moldloft.errors import (
         Error,
@@ -103,6 +104,7 @@ __all__ = [
     "UnknownNameError",
     "__version__",
     "fair",
+    "limits",
     "load",
     "loads",
     "model",
@@ -110,6 +112,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "limits": "moldloft.budget",
     "Block": "moldloft.blocks",
     "Blocks": "moldloft.blocks",
     "Builder": "moldloft.builder",

@@ -54,7 +54,13 @@ class Hex:
     """Its first and last vertex, (i, j, k)."""
 
     def corner(self, k: int) -> Place:
-        """Corner 0 to 7 in OpenFOAM's order."""
+        """Corner 0 to 7 in OpenFOAM's order.
+
+        Parameters
+        ----------
+        k
+            0 to 7.
+        """
         u, v, w = (
             self.end[axis] if high else self.begin[axis] for axis, high in enumerate(_CORNERS[k])
         )
@@ -235,7 +241,15 @@ def write(blocks: Blocks, every: int = 0) -> bytes:
 
 
 def encode(blocks: Blocks, title: str = "") -> bytes:
-    """The dictionary, cut only where it must be; it has no place for a title."""
+    """The dictionary, cut only where it must be; it has no place for a title.
+
+    Parameters
+    ----------
+    blocks
+        The hexahedra.
+    title
+        A title, for formats that have one.
+    """
     return write(blocks)
 
 

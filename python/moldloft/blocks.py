@@ -236,7 +236,15 @@ class Blocks:
         return commit(path.parent, self.outputs((format or ending).lower(), path))
 
     def outputs(self, format: str, path: Path) -> list[Output]:
-        """The files of a format, with names after ``path``."""
+        """The files of a format, with names after ``path``.
+
+        Parameters
+        ----------
+        format
+            The name of a format, see :data:`moldloft.files.FORMATS`.
+        path
+            Gives the names of the files; nothing is written.
+        """
         from moldloft.files import Output
 
         row = _ROWS.get(format)

@@ -138,7 +138,19 @@ class Builder:
     def declare(
         self, kind: str, name: str, args: Sequence[object], named: Mapping[str, object]
     ) -> Handle:
-        """Declare an object; the arguments are those of the language."""
+        """Declare an object; the arguments are those of the language.
+
+        Parameters
+        ----------
+        kind
+            The name of a kind.
+        name
+            The name of the object.
+        args
+            The arguments by position.
+        named
+            The arguments by name.
+        """
         _check_name(name)
         self._lines.append(f"{kind} {name}({arguments(args, named)});")
         try:
@@ -150,6 +162,15 @@ class Builder:
     def field(self, name: str, value: Shape | Handle | float) -> FieldShape:
         """Declare a field: an implicit function under a name.
 
+        Parameters
+        ----------
+        name
+            The name of the field.
+        value
+            The field.
+
+        Examples
+        --------
         >>> from moldloft import functions as f, kinds as k
         >>> from moldloft.builder import Builder
         >>> with Builder() as b:
@@ -169,7 +190,15 @@ class Builder:
         return FieldShape(name)
 
     def set(self, name: str, value: Shape | Handle) -> SetShape:
-        """Declare a set: the solid sides of fields, combined, under a name; see :meth:`field`."""
+        """Declare a set: the solid sides of fields, combined, under a name; see :meth:`field`.
+
+        Parameters
+        ----------
+        name
+            The name of the set.
+        value
+            The set.
+        """
         self._implicit("set", name, value)
         return SetShape(name)
 
@@ -187,7 +216,23 @@ class Builder:
         whole: bool = False,
         value: float | None = None,
     ) -> Expr:
-        """Declare a design parameter; ``value`` is its value in this run."""
+        """Declare a design parameter; ``value`` is its value in this run.
+
+        Parameters
+        ----------
+        name
+            The name of the parameter.
+        default
+            Its value when none is given.
+        low
+            The least value.
+        high
+            The greatest value.
+        whole
+            Whole numbers only.
+        value
+            Its value in this run.
+        """
         _check_name(name)
         text = f"param {'int' if whole else 'float'} {name} = {literal(float(default))}"
         if low is not None and high is not None:
@@ -226,7 +271,19 @@ class Range:
 def param(
     default: float, low: float | None = None, high: float | None = None, *, whole: bool = False
 ) -> Any:
-    """A default of a model function's argument with the range that it may take."""
+    """A default of a model function's argument with the range that it may take.
+
+    Parameters
+    ----------
+    default
+        Its value when none is given.
+    low
+        The least value.
+    high
+        The greatest value.
+    whole
+        Whole numbers only.
+    """
     if (low is None) != (high is None):
         raise ValueError("give both ends of the range, or none")
     return Range(float(default), low, high, whole)
@@ -274,7 +331,13 @@ class ModelFunction(Generic[P]):
         return {name: float(value) for name, value in values.items()}
 
     def text(self, values: Mapping[str, float]) -> str:
-        """The program that the function writes for these values."""
+        """The program that the function writes for these values.
+
+        Parameters
+        ----------
+        values
+            Values of the parameters by name.
+        """
         with Builder() as builder:
             args = {
                 name: builder.param(
@@ -294,6 +357,11 @@ class ModelFunction(Generic[P]):
 
 def model(function: Callable[P, object]) -> ModelFunction[P]:
     """Make a model of a function whose arguments are design parameters.
+
+    Parameters
+    ----------
+    function
+        The function; its defaults come from :func:`param` or are numbers.
 
     Examples
     --------

@@ -44,7 +44,13 @@ class Zone:
     """Vertices, ``(nu, nv)``; patches that meet share numbers."""
 
     def edge(self, side: int) -> NDArray[np.uint32]:
-        """The vertices of edge 0 (v = 0), 1 (u = 1), 2 (v = 1) or 3 (u = 0)."""
+        """The vertices of edge 0 (v = 0), 1 (u = 1), 2 (v = 1) or 3 (u = 0).
+
+        Parameters
+        ----------
+        side
+            Edge 0 (v = 0), 1 (u = 1), 2 (v = 1) or 3 (u = 0).
+        """
         line: NDArray[np.uint32] = (
             self.vertices[:, 0],
             self.vertices[-1],
@@ -54,7 +60,15 @@ class Zone:
         return line
 
     def place(self, side: int, at: int) -> tuple[int, int]:
-        """The indices (i, j), from 1, of the vertex ``at`` of an edge."""
+        """The indices (i, j), from 1, of the vertex ``at`` of an edge.
+
+        Parameters
+        ----------
+        side
+            Edge 0 (v = 0), 1 (u = 1), 2 (v = 1) or 3 (u = 0).
+        at
+            The number of the vertex along the edge, from 0.
+        """
         nu, nv = self.vertices.shape
         return ((at + 1, 1), (nu, at + 1), (at + 1, nv), (1, at + 1))[side]
 
@@ -88,7 +102,13 @@ class Interface:
 
 
 def zones(model: Model) -> list[Zone]:
-    """The structured patches of a model."""
+    """The structured patches of a model.
+
+    Parameters
+    ----------
+    model
+        The model.
+    """
     mesh = model.mesh()
     blocks = mesh._core.blocks()
     have = {k for k, *_ in blocks}
@@ -121,6 +141,11 @@ def interfaces(zones: Sequence[Zone]) -> list[Interface]:
     """All runs of edges that zones share, each seen from both sides.
 
     Edges meet where they share vertices by identity, never because positions look alike.
+
+    Parameters
+    ----------
+    zones
+        The structured patches.
     """
     places: dict[tuple[int, int], list[tuple[int, int, int]]] = {}
     for z, zone in enumerate(zones):
@@ -177,6 +202,13 @@ def write(model: Model, title: str) -> bytes:
     Each zone belongs to the family of its surface's name. Edges that meet no other are boundaries
     named ``u0``, ``u1``, ``v0``, ``v1``: symmetry planes where they lie in one of the model's, else
     without a type. Interfaces are written from both sides.
+
+    Parameters
+    ----------
+    model
+        The model.
+    title
+        A title, for formats that have one.
     """
     try:
         import h5py  # type: ignore[import-untyped]
@@ -203,6 +235,15 @@ def weld(points: NDArray[np.float64], tolerance: float) -> NDArray[np.uint32]:
     Chains of near points become one: what is welded to a point is welded to all that it is welded
     to.
 
+    Parameters
+    ----------
+    points
+        Points ``(n, 3)``.
+    tolerance
+        A length below which two places count as one.
+
+    Examples
+    --------
     >>> weld(np.array([[0.0, 0, 0], [1, 0, 0], [1e-12, 0, 0]]), 1e-9)
     array([0, 1, 0], dtype=uint32)
     """
@@ -239,6 +280,17 @@ def write_grids(
 
     Edges meet where their points coincide, within ``tolerance`` times the size of all. What meets
     one to one becomes an interface, seen from both sides; of edges without length (poles) none.
+
+    Parameters
+    ----------
+    grids
+        Grids of points, each ``(ni, nj, 3)`` or ``(ni, nj, nk, 3)``.
+    names
+        A name for each grid.
+    title
+        A title, for formats that have one.
+    tolerance
+        A length below which two places count as one.
     """
     try:
         import h5py

@@ -43,6 +43,12 @@ class Error(Exception):
     def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
         super().__init__(message)
         self.diagnostics = tuple(diagnostics)
+        cause = _raised_by_functions(self.diagnostics)
+        if cause is not None and not isinstance(cause, Exception):
+            # Ctrl-C and sys.exit inside of a model's function are no errors of the model.
+            raise cause
+        if cause is not None:
+            self.__cause__ = cause
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -60,6 +66,28 @@ class Error(Exception):
         """The message as a terminal shows it: diagnostics as they are, others after ``error:``."""
         text = str(self).rstrip()
         return text if self.diagnostics else f"error: {text}"
+
+
+#: What functions of models raised, by the message of its diagnostic; the latest last.
+_raised: dict[str, BaseException] = {}
+_MOST_RAISED = 64
+
+
+def record_raised(function: str, error: BaseException) -> None:
+    """Keep what a model's Python function raised, for the error that the model raises then."""
+    _raised.pop(key := f"{function} raised {type(error).__name__}: {error}", None)
+    _raised[key] = error
+    while len(_raised) > _MOST_RAISED:
+        _raised.pop(next(iter(_raised)))
+
+
+def _raised_by_functions(diagnostics: Sequence[Diagnostic]) -> BaseException | None:
+    for diagnostic in diagnostics:
+        if getattr(diagnostic, "id", "") == "function-failed":
+            text = diagnostic.message
+            for key in [key for key in _raised if key in text]:
+                return _raised.pop(key)
+    return None
 
 
 class Recorded:

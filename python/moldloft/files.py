@@ -36,6 +36,13 @@ SOLVERS = tuple(row.name for row in formats().values() if row.panel_code)
 def format_named(name: str) -> str:
     """The name of the format of that name or alias.
 
+    Parameters
+    ----------
+    name
+        A name or an alias of a format.
+
+    Examples
+    --------
     >>> format_named("Plot3D")
     'p3d'
     """
@@ -45,6 +52,15 @@ def format_named(name: str) -> str:
 def file_name(stem: str, format: str) -> str:
     """The name of a model's file in a format.
 
+    Parameters
+    ----------
+    stem
+        Name of the file without its ending.
+    format
+        The name of a format, see :data:`moldloft.files.FORMATS`.
+
+    Examples
+    --------
     >>> file_name("hull", "gdf"), file_name("hull", "nemoh")
     ('hull.gdf', 'hull.mar')
     """
@@ -54,6 +70,13 @@ def file_name(stem: str, format: str) -> str:
 def ending(path: Path) -> str:
     """What the name of a file says of its format: its ending, or the format of a longer one.
 
+    Parameters
+    ----------
+    path
+        The name of a file.
+
+    Examples
+    --------
     >>> ending(Path("hull.gdf")), ending(Path("hull.high.gdf")), ending(Path("hull"))
     ('gdf', 'gdf-high', '')
     """
@@ -81,6 +104,27 @@ def produce(
     ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`; ``tags``
     names the patches to write, ``tolerance`` is how far fitted patches may be off, ``whole`` asks
     for both sides of a symmetric model, ``triangles`` for triangles only.
+
+    Parameters
+    ----------
+    model
+        The model.
+    format
+        The name of a format, see :data:`moldloft.files.FORMATS`.
+    path
+        Gives the names of the files; nothing is written.
+    lids
+        Include lids.
+    immersed
+        Cut at z = 0 and keep what is below, for panel codes.
+    tags
+        Only patches with one of these tags; by default all.
+    tolerance
+        The largest error of fitted surfaces.
+    whole
+        Both sides of a symmetric model, in files of plain panels.
+    triangles
+        Triangles only, in files of plain panels.
     """
     row = _row(format)
     if not row.writer:

@@ -56,7 +56,13 @@ class Format:
     for ``volumes`` from its :class:`moldloft.blocks.Blocks`, and the stem of its name."""
 
     def file_name(self, stem: str) -> str:
-        """The name of a model's main file."""
+        """The name of a model's main file.
+
+        Parameters
+        ----------
+        stem
+            Name of the file without its ending.
+        """
         return f"{stem}.{self.suffix or self.name}"
 
     @property
@@ -78,7 +84,17 @@ class Format:
         return self.holds == "volumes"
 
     def encode(self, source: Model | Blocks, stem: str, *, tolerance: float | None = None) -> bytes:
-        """The bytes that a row of Python makes; surfaces are fitted within the tolerance."""
+        """The bytes that a row of Python makes; surfaces are fitted within the tolerance.
+
+        Parameters
+        ----------
+        source
+            The model, or its hexahedra for formats of volumes.
+        stem
+            Name of the file without its ending.
+        tolerance
+            The largest error of fitted surfaces.
+        """
         module, _, function = self.writer.partition(":")
         options = {"accuracy": tolerance} if self.holds == "surfaces" else {}
         data: bytes = getattr(import_module(module), function)(source, stem, **options)

@@ -13,12 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 from moldloft import _core
 from moldloft.errors import Error, FileError, FormatError
 from moldloft.files import Output, commit
+from moldloft.storage import read_bytes
 
 __all__ = [
     "Aerofoil",
     "Plot3DVariant",
     "decode_plot3d",
     "encode_plot3d",
+    "encoded",
     "read_aerofoil",
     "read_plot3d",
     "read_points",
@@ -76,11 +78,7 @@ class Aerofoil:
 
 
 def _read(path: str | Path) -> bytes:
-    try:
-        return Path(path).read_bytes()
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise FileError(f"cannot read `{path}`: {reason}") from error
+    return read_bytes(path)
 
 
 def _named(path: str | Path, error: FormatError) -> FileError:
@@ -143,6 +141,11 @@ def decode_plot3d(
 ) -> tuple[list[NDArray[np.float64]], Plot3DVariant, list[NDArray[np.int32]] | None]:
     """The blocks in the bytes of a Plot3D grid file; as :func:`read_plot3d`.
 
+    Parameters
+    ----------
+    data
+        The content of the file.
+
     Raises
     ------
     FormatError
@@ -195,7 +198,17 @@ def encode_plot3d(
     *,
     iblank: Sequence[ArrayLike] | None = None,
 ) -> bytes:
-    """The bytes of a Plot3D grid file; arguments and errors as for :func:`write_plot3d`."""
+    """The bytes of a Plot3D grid file; arguments and errors as for :func:`write_plot3d`.
+
+    Parameters
+    ----------
+    grids
+        Grids of points, each ``(ni, nj, 3)`` or ``(ni, nj, nk, 3)``.
+    variant
+        How; by default plain binary, double precision, several blocks, three coordinates.
+    iblank
+        A whole number for each point of each grid: 0 for those that do not count.
+    """
     variant = variant or Plot3DVariant()
     arrays = _grids(grids)
     blanks: list[list[int] | None] | None = None
@@ -247,15 +260,32 @@ def write(
     list of pathlib.Path
         The files written; ``vts`` takes several for several grids.
     """
+    target = Path(path)
+    files = encoded(target.name, grids, names)
+    return commit(target.parent, [Output(name, data) for name, data in files.items()])
+
+
+def encoded(
+    name: str, grids: Sequence[ArrayLike], names: Sequence[str] | None = None
+) -> dict[str, bytes]:
+    """The files that :func:`write` writes, by name.
+
+    Parameters
+    ----------
+    name
+        The file's name; its ending is the format.
+    grids
+        Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
+    names
+        Of the zones of a CGNS file.
+    """
     from moldloft.formats import format_named, formats
 
-    target = Path(path)
     rows = [row for row in formats().values() if row.of_grids]
-    row = format_named(target.suffix.lstrip("."), rows)
+    row = format_named(Path(name).suffix.lstrip("."), rows)
     if row.writer:
-        return [write_cgns(target, grids, names)]
-    files = _core.write_grids(_grids(grids), row.name, target.name)
-    return commit(target.parent, [Output(name, data) for name, data in files])
+        return {name: cgns_bytes(name, grids, names)}
+    return dict(_core.write_grids(_grids(grids), row.name, name))
 
 
 def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
@@ -335,6 +365,13 @@ def write_csv(path: str | Path, points: ArrayLike) -> Path:
     """Write points (n, 2) or (n, 3) as lines of numbers with commas, under a heading.
 
     Every digit that is needed to read the same numbers back is written.
+
+    Parameters
+    ----------
+    path
+        The file.
+    points
+        Points ``(n, 2)`` or ``(n, 3)``.
     """
     array = np.asarray(points, dtype=np.float64)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
@@ -351,6 +388,11 @@ def read_points(path: str | Path) -> NDArray[np.float64]:
     ``#`` are skipped; a missing z is 0. The two halves of an aerofoil become one run from the upper
     trailing edge round the nose.
 
+    Parameters
+    ----------
+    path
+        The file.
+
     Raises
     ------
     FileError
@@ -366,6 +408,11 @@ def read_aerofoil(path: str | Path) -> Aerofoil:
     """An aerofoil section from a coordinate file in Selig's or Lednicer's listing.
 
     The two are distinguished by the numbers of points that the latter begins with.
+
+    Parameters
+    ----------
+    path
+        The file.
 
     Raises
     ------

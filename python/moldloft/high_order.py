@@ -41,7 +41,13 @@ class SplinePatch:
     """The largest distance found from the surface; rounding where the form is exact."""
 
     def knots(self, axis: int) -> Floats:
-        """The knot vector of u (0) or v (1), end knots included."""
+        """The knot vector of u (0) or v (1), end knots included.
+
+        Parameters
+        ----------
+        axis
+            0 for u, 1 for v.
+        """
         return _core.spline_patch_knots(self.degree[axis], self.spans[axis])
 
     def __call__(self, u: Floats, v: Floats) -> Floats:
@@ -79,6 +85,18 @@ def patches(
 
 
 def write(model: Model, title: str, *, tolerance: float | None = None, lids: bool = False) -> bytes:
-    """The file. Patches above the water are left to WAMIT, which trims them (ITRIMWL = 1)."""
+    """The file. Patches above the water are left to WAMIT, which trims them (ITRIMWL = 1).
+
+    Parameters
+    ----------
+    model
+        The model.
+    title
+        A title, for formats that have one.
+    tolerance
+        The largest error of fitted patches.
+    lids
+        Include lids.
+    """
     name = f"{title}.gdf"
     return model.encoded("gdf-high", name, tolerance=tolerance, lids=lids)[name]

@@ -170,11 +170,23 @@ class Hydrostatics:
         return state_html(self)
 
     def unit(self, figure: str) -> str:
-        """The unit of a figure, empty where the model states none."""
+        """The unit of a figure, empty where the model states none.
+
+        Parameters
+        ----------
+        figure
+            The name of a figure, such as ``"volume"``.
+        """
         return self.units.of(figure)
 
     def converted(self, to: Units | str) -> Hydrostatics:
-        """The same in other units, such as ``"m t kN"``; dimensions that are not named stay."""
+        """The same in other units, such as ``"m t kN"``; dimensions that are not named stay.
+
+        Parameters
+        ----------
+        to
+            Units, such as ``"m t kN"``.
+        """
         to = Units.parse(to) if isinstance(to, str) else to
         changed: dict[str, Any] = {}
         for name in DIMENSIONS:
@@ -308,6 +320,11 @@ class HydrostaticTable(_Rows):
         """Draw the hydrostatic curves: displacement, centres and metacentres over the draft.
 
         Needs matplotlib (``pip install 'moldloft[plot]'``); the file's ending gives its form.
+
+        Parameters
+        ----------
+        path
+            The file.
         """
         figure, axes = _axes(3)
         draft = self.column("draft")
@@ -362,7 +379,15 @@ class RightingCurve(_Rows):
         return None
 
     def area(self, low: float, high: float) -> float:
-        """The integral of the arm between two heels in radians: trapezoids on the rows."""
+        """The integral of the arm between two heels in radians: trapezoids on the rows.
+
+        Parameters
+        ----------
+        low
+            The lesser heel, radians.
+        high
+            The greater heel, radians.
+        """
         import numpy as np
 
         order = np.argsort(self.heels)
@@ -378,6 +403,11 @@ class RightingCurve(_Rows):
         """Draw the righting arms over the heel in degrees.
 
         Needs matplotlib (``pip install 'moldloft[plot]'``); the file's ending gives its form.
+
+        Parameters
+        ----------
+        path
+            The file.
         """
         figure, (axis,) = _axes(1)
         axis.plot([math.degrees(heel) for heel in self.heels], self.gz, label="GZ")

@@ -79,13 +79,26 @@ def _rows() -> dict[str, dict[str, Any]]:
 
 
 def entry(name: str) -> dict[str, Any]:
-    """The row of a kind or function; a ``KeyError`` where there is none."""
+    """The row of a kind or function; a ``KeyError`` where there is none.
+
+    Parameters
+    ----------
+    name
+        The name of a kind or function.
+    """
     return _rows()[name]
 
 
 def meaning(field: dict[str, Any]) -> str:
     """What an argument is, as docstrings have it: its help, unit, range and default.
 
+    Parameters
+    ----------
+    field
+        A field of a row of :func:`reference`.
+
+    Examples
+    --------
     >>> meaning(entry("RelPoint")["fields"][1])
     'Offset along x. Default 0.'
     """
@@ -108,7 +121,13 @@ def meaning(field: dict[str, Any]) -> str:
 
 
 def page(row: dict[str, Any]) -> str:
-    """The docstring of a kind or function: numpydoc, from its declaration."""
+    """The docstring of a kind or function: numpydoc, from its declaration.
+
+    Parameters
+    ----------
+    row
+        A row of :func:`reference`.
+    """
     lines = [str(row["doc"]).strip()]
     fields = row["fields"]
     if row["is_kind"] or fields:
@@ -143,7 +162,13 @@ SPREAD = frozenset({"list", "points", "join", "stack"})
 
 
 def signature(row: dict[str, Any]) -> inspect.Signature:
-    """The arguments of a kind or function, as ``help`` and editors show them."""
+    """The arguments of a kind or function, as ``help`` and editors show them.
+
+    Parameters
+    ----------
+    row
+        A row of :func:`reference`.
+    """
     parameter = inspect.Parameter
     found = []
     if row["is_kind"]:
@@ -227,6 +252,13 @@ SYNONYMS = {
 def search(words: str) -> list[dict[str, Any]]:
     """Rows that a phrase may mean, the best first: by name, summary, documentation and synonym.
 
+    Parameters
+    ----------
+    words
+        One word or several.
+
+    Examples
+    --------
     >>> "CLoftSurf" in [row["name"] for row in search("loft")]
     True
     """
@@ -302,6 +334,13 @@ _GUIDES = (
 def guides(words: str) -> list[tuple[str, str]]:
     """Pages of the documentation that a phrase may ask for: what each is about, and its address.
 
+    Parameters
+    ----------
+    words
+        One word or several.
+
+    Examples
+    --------
     >>> guides("hydrostatics")[0][1]
     'https://moldloft.github.io/moldloft/hydrostatics.html'
     """

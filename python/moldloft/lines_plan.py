@@ -94,7 +94,15 @@ class Plan:
     """Labels that found no free place."""
 
     def line(self, layer: str, *points: tuple[float, float]) -> None:
-        """A polyline."""
+        """A polyline.
+
+        Parameters
+        ----------
+        layer
+            The layer of the drawing.
+        *points
+            Points on the sheet, millimetres.
+        """
         pieces = [np.array(points[0], dtype=float)]
         for a, b in pairwise(points):
             p, q = np.array(a, dtype=float), np.array(b, dtype=float)
@@ -104,7 +112,21 @@ class Plan:
     def label(
         self, x: float, y: float, text: str, size: float = 2.5, *, anchor: str = "middle"
     ) -> bool:
-        """A text about (x, y); where it would overlap another it is left out, and listed."""
+        """A text about (x, y); where it would overlap another it is left out, and listed.
+
+        Parameters
+        ----------
+        x
+            Place on the sheet, millimetres.
+        y
+            Place on the sheet, millimetres.
+        text
+            The text.
+        size
+            Height of the letters, millimetres.
+        anchor
+            ``"start"``, ``"middle"`` or ``"end"``: what of the text is at the place.
+        """
         wide = text_width(text, size)
         shift = {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor]
         place = Text(x - shift * wide, y - 0.36 * size, size, text)
@@ -238,6 +260,8 @@ def lines_plan(
 
     Parameters
     ----------
+    model
+        The model, z up, x along the ship.
     title
         For the title block.
     sheet
@@ -484,7 +508,13 @@ def _number(x: float) -> str:
 
 
 def svg(plan: Plan) -> bytes:
-    """The sheet as SVG, in millimetres."""
+    """The sheet as SVG, in millimetres.
+
+    Parameters
+    ----------
+    plan
+        The lines plan.
+    """
     from xml.sax.saxutils import escape
 
     w, h = _number(plan.width), _number(plan.height)
@@ -515,7 +545,13 @@ def svg(plan: Plan) -> bytes:
 
 
 def pdf(plan: Plan) -> bytes:
-    """The sheet as PDF 1.7: exact millimetres, texts in Helvetica, the same bytes each time."""
+    """The sheet as PDF 1.7: exact millimetres, texts in Helvetica, the same bytes each time.
+
+    Parameters
+    ----------
+    plan
+        The lines plan.
+    """
     point = 72 / 25.4
     out = [f"{point:.8f} 0 0 {point:.8f} 0 0 cm 1 J 1 j"]
     for layer, (width, dashes) in _LAYERS.items():
@@ -565,6 +601,11 @@ def dxf(plan: Plan) -> bytes:
     Each curve is one spline of degree 3 with the control points of the plan, each straight line a
     line or polyline; layers have the widths and dashes of the drawing, dashes and texts the size
     that they have on paper at the plan's scale.
+
+    Parameters
+    ----------
+    plan
+        The lines plan.
     """
     from moldloft.cad import needed
     from moldloft.cad.dxf import UNITS, saved
@@ -626,6 +667,15 @@ def draw(model: Model, path: str | os.PathLike[str], **options: Any) -> Path:
     """Write the lines plan of a model; the file's ending, ``.svg``, ``.pdf`` or ``.dxf``, says how.
 
     Options are those of :func:`lines_plan`.
+
+    Parameters
+    ----------
+    model
+        The model.
+    path
+        The file; its ending is ``.svg``, ``.pdf`` or ``.dxf``.
+    **options
+        Options of :func:`lines_plan`.
     """
     from moldloft.files import Output, commit
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import inspect
 import os
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
-from moldloft.errors import FileError
+from moldloft.errors import FileError, record_raised
 from moldloft.models import Model
 
 if TYPE_CHECKING:
@@ -38,7 +39,19 @@ def _absolute(folders: Sequence[str]) -> tuple[str, ...]:
 
 
 def restored(origin: Origin | None, text: str, values: Mapping[str, float], refined: int) -> Model:
-    """A model again in the state that a copy or a pickle holds."""
+    """A model again in the state that a copy or a pickle holds.
+
+    Parameters
+    ----------
+    origin
+        Where the model came from.
+    text
+        The text of the model.
+    values
+        Values by name.
+    refined
+        The refinement level.
+    """
     origin = origin or Origin("model.sdl")
     document = _core.Document.from_text(origin.name, text, origin.folder, list(origin.library))
     model = Model(document, origin)
@@ -160,4 +173,22 @@ def _add_functions(
             raise TypeError(f"`{name}` is neither a function nor a field or set")
         arguments = list(inspect.signature(function).parameters)
         doc = inspect.getdoc(function) or f"The Python function {name}."
-        model._document.add_function(name, arguments, doc, function)
+        model._document.add_function(name, arguments, doc, _guarded(model, name, function))
+
+
+def _guarded(model: Model, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function as its model calls it: from inside, that cannot be used."""
+    inside = model._inside
+
+    def call(*arguments: Any) -> Any:
+        thread = threading.get_ident()
+        inside.add(thread)
+        try:
+            return function(*arguments)
+        except BaseException as error:
+            record_raised(name, error)
+            raise
+        finally:
+            inside.discard(thread)
+
+    return call

@@ -107,7 +107,13 @@ class Mesh:
         return tuple(Patch(**facts) for facts in self._core.patches())
 
     def patch(self, name: str) -> Patch:
-        """The patch of the surface called ``name``."""
+        """The patch of the surface called ``name``.
+
+        Parameters
+        ----------
+        name
+            The name of a surface.
+        """
         for patch in self.patches:
             if patch.name == name:
                 return patch

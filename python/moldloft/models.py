@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,9 +92,20 @@ class Model:
     """
 
     def __init__(self, document: _core.Document, origin: Origin | None = None) -> None:
-        self._document = document
+        self._plain_document = document
+        #: Threads that are in a Python function of this model.
+        self._inside: set[int] = set()
         self._origin = origin
         self._refined = 0
+
+    @property
+    def _document(self) -> _core.Document:
+        if self._inside and threading.get_ident() in self._inside:
+            raise ModelError(
+                "a Python function of a model cannot use the model that calls it: give it what it "
+                "needs as arguments"
+            )
+        return self._plain_document
 
     # -- copies ----------------------------------------------------------------------------
 
@@ -171,6 +183,11 @@ class Model:
     def facts(self, name: str) -> dict[str, Any]:
         """What is known of an object without asking for its shape.
 
+        Parameters
+        ----------
+        name
+            The name of an object.
+
         Returns
         -------
         dict
@@ -185,7 +202,13 @@ class Model:
         return self._document.object(name)
 
     def completions(self, line: str) -> list[str]:
-        """The words that may stand at the end of the text followed by ``line``."""
+        """The words that may stand at the end of the text followed by ``line``.
+
+        Parameters
+        ----------
+        line
+            The text up to the cursor.
+        """
         return self._document.complete(line)
 
     @property
@@ -235,6 +258,11 @@ class Model:
         """Set the refinement level: each level halves the spacing of sizes declared by ``refined``.
 
         Coarse grid points recur in fine grids, so that the grids of 0, 1, 2, ... are nested.
+
+        Parameters
+        ----------
+        times
+            The level, 0 for the sizes as written.
         """
         self._document.refine(times)
         self._refined = times
@@ -333,6 +361,11 @@ class Model:
 
     def eval(self, expression: str) -> Any:
         """Evaluate an expression of the language in the model's names.
+
+        Parameters
+        ----------
+        expression
+            An expression of the language, such as ``"hull.area / 2"``.
 
         Returns
         -------
@@ -547,7 +580,28 @@ class Model:
         by: Sequence[str] = (),
         accuracy: float = 1e-6,
     ) -> HydrostaticTable:
-        """Hydrostatics over a range of drafts; arguments as for :meth:`hydrostatics`."""
+        """Hydrostatics over a range of drafts; arguments as for :meth:`hydrostatics`.
+
+        Parameters
+        ----------
+        drafts
+            Drafts above the lowest point of the body, in model units.
+        trim
+            Trim, radians; positive sinks what has large x.
+        cg
+            Centre of gravity in the model's axes, ``(3,)``.
+        density
+            ``"salt"``, ``"fresh"``, or mass per volume in the model's units.
+        gravity
+            Acceleration, in the model's units; by default that of the earth where units are
+            known.
+        sides
+            ``"both"`` counts a mirrored model with its image, ``"one"`` alone.
+        by
+            Names of parameters.
+        accuracy
+            The relative accuracy of the figures.
+        """
         rows = [("draft", float(draft), float(trim), 0.0, False, False) for draft in drafts]
         return HydrostaticTable(self._floating(rows, cg, density, gravity, sides, by, accuracy))
 
@@ -631,7 +685,13 @@ class Model:
         return unit, Units(unit).metres
 
     def tonnes(self, mass: float) -> float | None:
-        """A mass of the model in tonnes; ``None`` where its unit is not known."""
+        """A mass of the model in tonnes; ``None`` where its unit is not known.
+
+        Parameters
+        ----------
+        mass
+            A mass in the model's unit.
+        """
         units = self.units.complete()
         return mass * units.kilograms / 1000 if units.mass else None
 
@@ -729,6 +789,15 @@ class Model:
         Bonjean curves, and at one level the sectional area curve. Both sides of a symmetric model
         count.
 
+        Parameters
+        ----------
+        stations
+            Places along x, in model units.
+        levels
+            Heights of the water, in model units.
+        accuracy
+            The relative accuracy of the areas.
+
         Examples
         --------
         >>> import moldloft
@@ -748,6 +817,11 @@ class Model:
 
         ``volume``, ``wetted_area`` and ``waterplane_area``; those of the shape are in
         :meth:`hydrostatics`.
+
+        Parameters
+        ----------
+        level
+            Height of the water, in model units.
         """
         names = ("volume", "wetted_area", "waterplane_area")
         return dict(zip(names, self._document.panel_figures(float(level)), strict=True))
@@ -802,7 +876,15 @@ class Model:
         return self._document.derivatives([expression], [by])[0][0]
 
     def derivatives(self, expressions: Sequence[str], by: Sequence[str]) -> list[list[Any]]:
-        """Exact derivatives of several expressions by several parameters, ``[expression][by]``."""
+        """Exact derivatives of several expressions by several parameters, ``[expression][by]``.
+
+        Parameters
+        ----------
+        expressions
+            Expressions of the language with a number or a vector as value.
+        by
+            Names of parameters.
+        """
         return self._document.derivatives(list(expressions), list(by))
 
     # -- writing ---------------------------------------------------------------------------
@@ -893,6 +975,25 @@ class Model:
 
         For the formats of the Rust table; :func:`moldloft.files.produce` takes all. Arguments as
         for :meth:`write`.
+
+        Parameters
+        ----------
+        format
+            The name of a format, see :data:`moldloft.files.FORMATS`.
+        name
+            The name of the main file.
+        lids
+            Include lids.
+        immersed
+            Cut at z = 0 and keep what is below, for panel codes.
+        tags
+            Only patches with one of these tags; by default all.
+        tolerance
+            The largest error of fitted surfaces.
+        whole
+            Both sides of a symmetric model, in files of plain panels.
+        triangles
+            Triangles only, in files of plain panels.
         """
         return dict(
             self._document.write(
@@ -903,37 +1004,77 @@ class Model:
     # -- for other packages ----------------------------------------------------------------
 
     def to_pyvista(self, *, tags: str | Sequence[str] = ()) -> Any:
-        """The panels as ``pyvista.PolyData``; see :func:`moldloft.adapters.to_pyvista`."""
+        """The panels as ``pyvista.PolyData``; see :func:`moldloft.adapters.to_pyvista`.
+
+        Parameters
+        ----------
+        tags
+            Only patches with one of these tags; by default all.
+        """
         from moldloft.adapters import to_pyvista
 
         return to_pyvista(self, tags=tags)
 
     def to_trimesh(self, *, tags: str | Sequence[str] = ()) -> Any:
-        """The panels as ``trimesh.Trimesh``; see :func:`moldloft.adapters.to_trimesh`."""
+        """The panels as ``trimesh.Trimesh``; see :func:`moldloft.adapters.to_trimesh`.
+
+        Parameters
+        ----------
+        tags
+            Only patches with one of these tags; by default all.
+        """
         from moldloft.adapters import to_trimesh
 
         return to_trimesh(self, tags=tags)
 
     def to_meshio(self, *, tags: str | Sequence[str] = ()) -> Any:
-        """The panels as ``meshio.Mesh``; see :func:`moldloft.adapters.to_meshio`."""
+        """The panels as ``meshio.Mesh``; see :func:`moldloft.adapters.to_meshio`.
+
+        Parameters
+        ----------
+        tags
+            Only patches with one of these tags; by default all.
+        """
         from moldloft.adapters import to_meshio
 
         return to_meshio(self, tags=tags)
 
     def to_capytaine(self, *, lids: bool = False, name: str = "model") -> Any:
-        """The wetted panels for Capytaine; see :func:`moldloft.adapters.to_capytaine`."""
+        """The wetted panels for Capytaine; see :func:`moldloft.adapters.to_capytaine`.
+
+        Parameters
+        ----------
+        lids
+            Include lids.
+        name
+            What Capytaine calls the body.
+        """
         from moldloft.adapters import to_capytaine
 
         return to_capytaine(self, lids=lids, name=name)
 
     def to_ocp(self, *, accuracy: float | None = None) -> Any:
-        """The exact surfaces as an OCCT shape; see :func:`moldloft.adapters.to_ocp`."""
+        """The exact surfaces as an OCCT shape; see :func:`moldloft.adapters.to_ocp`.
+
+        Parameters
+        ----------
+        accuracy
+            The largest error of fitted surfaces; exact ones have none.
+        """
         from moldloft.adapters import to_ocp
 
         return to_ocp(self, accuracy=accuracy)
 
     def to_gmsh(self, *, accuracy: float | None = None, name: str = "moldloft") -> list[Any]:
-        """Adds the exact surfaces to Gmsh; see :func:`moldloft.adapters.to_gmsh`."""
+        """Adds the exact surfaces to Gmsh; see :func:`moldloft.adapters.to_gmsh`.
+
+        Parameters
+        ----------
+        accuracy
+            The largest error of fitted surfaces; exact ones have none.
+        name
+            The name of Gmsh's model.
+        """
         from moldloft.adapters import to_gmsh
 
         return to_gmsh(self, accuracy=accuracy, name=name)
@@ -955,11 +1096,27 @@ class Model:
         return bytes(self._document.picture(width, height))
 
     def kind_picture(self, kind: str, width: int = 360, height: int = 240) -> bytes:
-        """A picture, as PNG, in which the objects of one kind stand out among the others."""
+        """A picture, as PNG, in which the objects of one kind stand out among the others.
+
+        Parameters
+        ----------
+        kind
+            The name of a kind.
+        width
+            Width of the picture, pixels.
+        height
+            Height of the picture, pixels.
+        """
         return bytes(self._document.portrait(kind, width, height))
 
     def convert(self, to: str) -> str:
-        """The model's text in another form: ``"sdl"`` or ``"ms2"``."""
+        """The model's text in another form: ``"sdl"`` or ``"ms2"``.
+
+        Parameters
+        ----------
+        to
+            ``"sdl"`` or ``"ms2"``.
+        """
         return self._document.convert(to)
 
     def _repr_html_(self) -> str:

@@ -106,6 +106,13 @@ class Nurbs:
 
         They are the same but along what runs evenly in an angle, where the NURBS does not.
 
+        Parameters
+        ----------
+        *parameters
+            Parameters of the NURBS, one array for each direction; they are broadcast.
+
+        Examples
+        --------
         >>> import moldloft
         >>> m = moldloft.loads('''
         ... AbsPoint A(1, 0, 0); AbsPoint O(0, 0, 0); AbsPoint B(0, 1, 0); Arc a(A, O, B, type = 2);

@@ -129,7 +129,13 @@ class Object:
         self._document.delete(self.name)
 
     def rename(self, name: str) -> None:
-        """Gives the object another name, everywhere in the text."""
+        """Gives the object another name, everywhere in the text.
+
+        Parameters
+        ----------
+        name
+            The new name.
+        """
         self._document.rename(self.name, name)
         object.__setattr__(self, "name", name)
 
@@ -527,7 +533,15 @@ _METHODS = {
 
 
 def object_of(model: Model, name: str) -> Object:
-    """The object of a name, as one of its class."""
+    """The object of a name, as one of its class.
+
+    Parameters
+    ----------
+    model
+        The model.
+    name
+        The name of an object.
+    """
     return _CLASSES.get(model._document.object(name)["class"], Object)(model, name)
 
 

@@ -14,10 +14,10 @@ import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from moldloft.errors import Error, FileError
+from moldloft.errors import Error
+from moldloft.storage import read_text
 
 if TYPE_CHECKING:
     import numpy as np
@@ -107,6 +107,11 @@ class Offsets:
 def read(path: str | os.PathLike[str]) -> Offsets:
     """The table of a file.
 
+    Parameters
+    ----------
+    path
+        The file.
+
     Raises
     ------
     FileError
@@ -114,22 +119,31 @@ def read(path: str | os.PathLike[str]) -> Offsets:
     Error
         When it is not a table of offsets; the message names the line.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise FileError(f"cannot read `{os.fspath(path)}`: {reason.lower()}") from error
-    return parse(text, os.fspath(path))
+    return parse(read_text(path), os.fspath(path))
 
 
 def parse(text: str, name: str = "offsets") -> Offsets:
-    """The table of a text; ``name`` is what messages call it."""
+    """The table of a text; ``name`` is what messages call it.
+
+    Parameters
+    ----------
+    text
+        The text.
+    name
+        What messages call the text.
+    """
 
     def fault(line: int, expected: str, found: str) -> Error:
         return Error(f"{name}, line {line}: expected {expected}, found {found}")
 
     lines = [(n, row) for n, row in enumerate(text.splitlines(), 1) if row.strip()]
-    rows = [(n, next(csv.reader([row]))) for n, row in lines if not row.lstrip().startswith("#")]
+    rows = []
+    for n, line in lines:
+        if not line.lstrip().startswith("#"):
+            try:
+                rows.append((n, next(csv.reader([line]))))
+            except csv.Error as error:
+                raise fault(n, "fields of at most 128 kB", str(error)) from error
     if not rows:
         raise fault(1, "the columns " + ", ".join(_COLUMNS), "no table")
     number, header = rows[0]
@@ -165,7 +179,15 @@ def parse(text: str, name: str = "offsets") -> Offsets:
 
 
 def encode(model: Model, title: str = "") -> bytes:
-    """The file of :func:`even`; it has no place for a title."""
+    """The file of :func:`even`; it has no place for a title.
+
+    Parameters
+    ----------
+    model
+        The model.
+    title
+        A title, for formats that have one.
+    """
     return even(model).csv().encode()
 
 
@@ -210,10 +232,23 @@ def measure(model: Model, stations: Iterable[float], waterlines: Iterable[float]
 
 
 def even(model: Model, *, stations: int = 21, waterlines: int = 11) -> Offsets:
-    """The half-breadths at even stations and waterlines over the whole model."""
+    """The half-breadths at even stations and waterlines over the whole model.
+
+    Parameters
+    ----------
+    model
+        The model.
+    stations
+        The number of stations.
+    waterlines
+        The number of waterlines.
+    """
     import numpy as np
 
-    low, high = model.mesh().vertices.min(axis=0), model.mesh().vertices.max(axis=0)
+    vertices = model.mesh().vertices
+    if not len(vertices):
+        raise Error("the model has no panels to measure offsets of")
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
     xs = np.linspace(low[0], high[0], stations)
     zs = np.linspace(low[2], high[2], waterlines)
     return measure(model, xs, zs)

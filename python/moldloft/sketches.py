@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
-from moldloft.errors import Error, FileError, UnknownNameError
+from moldloft.errors import Error, UnknownNameError
+from moldloft.storage import read_text
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -146,6 +147,13 @@ class Sketch:
     def load(cls, path: str | os.PathLike[str], *, strict: bool = True) -> Sketch:
         """Run a file of commands, or read a JSON twin.
 
+        Parameters
+        ----------
+        path
+            The file.
+        strict
+            Raise when a command is refused, instead of going on.
+
         Raises
         ------
         FileError
@@ -154,18 +162,15 @@ class Sketch:
             When a command was refused and ``strict`` is true.
         """
         path = Path(path)
-        try:
-            text = path.read_text(encoding="utf-8")
-        except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise FileError(f"cannot read `{path}`: {reason}") from error
-        except UnicodeDecodeError as error:
-            raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
+        text = read_text(path)
         sketch = cls(path.parent)
+        # Its lines are somebody else's: they read inside of the file's folder.
+        sketch.session.confine(True)
         if text.lstrip().startswith(("[", "{")):
             sketch.run(f'INPUT "{path.name}"', strict=strict)
         else:
             sketch.run(text, strict=strict)
+        sketch.session.confine(False)
         return sketch
 
     # -- commands ----------------------------------------------------------------------------
@@ -200,7 +205,13 @@ class Sketch:
         return replies
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write all objects as commands, or as JSON when the name ends so; whole or not at all."""
+        """Write all objects as commands, or as JSON when the name ends so; whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file.
+        """
         from moldloft.files import Output, commit
 
         path = Path(path)
@@ -333,6 +344,15 @@ class Sketch:
         """Volume, area and centroid at each value of a dimension, ``(n, 5)``; the sketch stays.
 
         Rows are NaN where there is no body.
+
+        Parameters
+        ----------
+        by
+            The name of a dimension or variable.
+        values
+            Its values, ``(n,)``.
+        name
+            The object; by default the active one.
         """
         wanted = np.asarray(values, dtype=np.float64).ravel().tolist()
         return self._session.sweep(self._name(name), by, wanted)
@@ -346,7 +366,21 @@ class Sketch:
         azimuth: float = -60.0,
         elevation: float = 25.0,
     ) -> bytes:
-        """A PNG of the body; the angles say from where, in degrees."""
+        """A PNG of the body; the angles say from where, in degrees.
+
+        Parameters
+        ----------
+        width
+            Width of the picture, pixels.
+        height
+            Height of the picture, pixels.
+        name
+            The object; by default the active one.
+        azimuth
+            Direction of the view about z, degrees.
+        elevation
+            Height of the view, degrees.
+        """
         return self._session.picture(self._name(name), width, height, azimuth, elevation)
 
     def __getitem__(self, name: str) -> float:

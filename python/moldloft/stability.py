@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft.errors import Error
+from moldloft.storage import read_text
 from moldloft.units import Units
 
 if TYPE_CHECKING:
@@ -53,7 +54,17 @@ class Opening:
     """Its place in the model's axes."""
 
     def height(self, heel: float, trim: float, level: float) -> float:
-        """Its height over the water."""
+        """Its height over the water.
+
+        Parameters
+        ----------
+        heel
+            Heel, radians; positive sinks what has large y.
+        trim
+            Trim, radians; positive sinks what has large x.
+        level
+            Height of the water, in model units.
+        """
         normal = _level_axes(heel, trim)[2]
         return _dot(normal, self.place) - level
 
@@ -123,7 +134,13 @@ class Stability:
         self.upright = self.at(0.0)
 
     def at(self, heel: float) -> Hydrostatics:
-        """All figures at a heel, at rest but for the heeling moment that keeps it."""
+        """All figures at a heel, at rest but for the heeling moment that keeps it.
+
+        Parameters
+        ----------
+        heel
+            Heel, radians; positive sinks what has large y.
+        """
         heel = float(heel)
         if heel not in self._rows:
             self._compute([heel])
@@ -150,7 +167,13 @@ class Stability:
         self._rows.update(zip(missing, curve.rows, strict=True))
 
     def gz(self, heel: float) -> float:
-        """The righting arm."""
+        """The righting arm.
+
+        Parameters
+        ----------
+        heel
+            Heel, radians; positive sinks what has large y.
+        """
         arm = self.at(heel).gz
         return math.nan if arm is None else arm
 
@@ -159,6 +182,11 @@ class Stability:
 
         Its change is the work of heeling over the weight: exactly the area under GZ cos(trim)
         (Moseley's dynamical stability).
+
+        Parameters
+        ----------
+        heel
+            Heel, radians; positive sinks what has large y.
         """
         row = self.at(heel)
         normal = _level_axes(heel, row.trim)[2]
@@ -166,11 +194,25 @@ class Stability:
         return _dot(normal, [g - b for g, b in zip(self.cg, centre, strict=True)])
 
     def area(self, low: float, high: float) -> float:
-        """The area under the righting arm between two heels: a difference of energies."""
+        """The area under the righting arm between two heels: a difference of energies.
+
+        Parameters
+        ----------
+        low
+            The lesser heel, radians.
+        high
+            The greater heel, radians.
+        """
         return self.energy(high) - self.energy(low)
 
     def slope(self, heel: float) -> float:
-        """The exact derivative of the righting arm by the heel."""
+        """The exact derivative of the righting arm by the heel.
+
+        Parameters
+        ----------
+        heel
+            Heel, radians; positive sinks what has large y.
+        """
         row = self.at(heel)
         if row.waterplane_it is None or row.waterplane_il is None or row.volume <= 0:
             return self.gz(heel + 1e-4) - self.gz(heel - 1e-4)
@@ -185,7 +227,17 @@ class Stability:
         return math.cos(row.trim) * stiff + math.sin(row.trim) * arm * both / along
 
     def grid(self, low: float, high: float, step: float = _STEP) -> list[float]:
-        """Heels from ``low`` to ``high``, at most ``step`` apart, all computed together."""
+        """Heels from ``low`` to ``high``, at most ``step`` apart, all computed together.
+
+        Parameters
+        ----------
+        low
+            The first heel, radians.
+        high
+            The last heel, radians.
+        step
+            The largest step between heels, radians.
+        """
         count = max(1, math.ceil((high - low) / step - 1e-9))
         heels = [low + (high - low) * k / count for k in range(count + 1)]
         self._compute(heels)
@@ -207,6 +259,11 @@ class Stability:
         """The least positive heel at which an overturning arm turns righting.
 
         ``None`` for a body that is stable upright, or finds no such heel up to ``most``.
+
+        Parameters
+        ----------
+        most
+            The largest heel that is searched, radians.
         """
         if self.gmt >= 0:
             return None
@@ -226,7 +283,13 @@ class Stability:
         return None
 
     def largest(self, most: float = math.pi / 2) -> tuple[float, float]:
-        """The heel and the value of the largest righting arm up to ``most``."""
+        """The heel and the value of the largest righting arm up to ``most``.
+
+        Parameters
+        ----------
+        most
+            The largest heel that is searched, radians.
+        """
         heels = self.grid(0.0, most)
         k = max(range(len(heels)), key=lambda k: self.gz(heels[k]))
         low, high = heels[max(k - 1, 0)], heels[min(k + 1, len(heels) - 1)]
@@ -240,6 +303,11 @@ class Stability:
         """The angle of vanishing stability: where a positive arm first falls to zero.
 
         ``None`` when it was never positive, or stays so up to ``most``.
+
+        Parameters
+        ----------
+        most
+            The largest heel that is searched, radians.
         """
         heels = self.grid(0.0, most)
         for a, b in pairwise(heels):
@@ -250,7 +318,13 @@ class Stability:
         return None
 
     def range(self, most: float = math.pi) -> float:
-        """The range of positive stability, from upright or the angle of loll on."""
+        """The range of positive stability, from upright or the angle of loll on.
+
+        Parameters
+        ----------
+        most
+            The largest heel that is searched, radians.
+        """
         start = 0.0 if self.gmt >= 0 else self.loll(most)
         end = self.vanishing(most)
         if start is None or (end is None and self.largest(most)[1] <= 0):
@@ -261,6 +335,13 @@ class Stability:
         """The least positive heel at which an opening reaches the water.
 
         ``None`` when it never does up to ``most``: one near the centre line may not.
+
+        Parameters
+        ----------
+        opening
+            The opening.
+        most
+            The largest heel that is searched, radians.
         """
 
         def height(heel: float) -> float:
@@ -279,6 +360,11 @@ class Stability:
         """The least heel at which an opening reaches the water, and its name.
 
         ``None`` when none does, or there is none.
+
+        Parameters
+        ----------
+        most
+            The largest heel that is searched, radians.
         """
         found = [(self.immersed(o, most), o.name) for o in self.openings]
         angles = [(angle, name) for angle, name in found if angle is not None]
@@ -288,6 +374,11 @@ class Stability:
         """The heel at which the lowest open edge, such as the sheer, reaches the water.
 
         ``None`` for a closed skin.
+
+        Parameters
+        ----------
+        most
+            The largest heel that is searched, radians.
         """
         if self.upright.freeboard is None:
             return None
@@ -404,7 +495,13 @@ class CrossCurves:
         return text.getvalue()
 
     def write_csv(self, path: str | os.PathLike[str]) -> Path:
-        """Write :meth:`csv` to a file, whole or not at all."""
+        """Write :meth:`csv` to a file, whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file.
+        """
         from moldloft.files import Output, commit
 
         path = Path(path)
@@ -607,7 +704,7 @@ def _rule(name: str) -> dict[str, Any]:
     if path.suffix != ".json":
         raise Error(f"unknown rule `{name}`; expected one of: {', '.join(known)}, or a .json file")
     try:
-        rule = json.loads(path.read_text(encoding="utf-8"))
+        rule = json.loads(read_text(path))
     except (OSError, ValueError) as error:
         raise Error(f"cannot read the rule `{name}`: {error}") from error
     if not isinstance(rule, dict) or not isinstance(rule.get("clauses"), list):

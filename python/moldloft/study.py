@@ -95,7 +95,13 @@ class Function:
         return np.concatenate([self._value(name) for name in self.outputs])
 
     def jacobian(self, x: ArrayLike) -> Floats:
-        """The exact derivatives of the outputs by the inputs, ``(outputs, inputs)``."""
+        """The exact derivatives of the outputs by the inputs, ``(outputs, inputs)``.
+
+        Parameters
+        ----------
+        x
+            Values of the inputs, ``(inputs,)``.
+        """
         self._set(x)
         return self._derivatives()
 
@@ -111,7 +117,13 @@ class Function:
         return found
 
     def value_and_jacobian(self, x: ArrayLike) -> tuple[Floats, Floats]:
-        """Outputs and derivatives at these inputs."""
+        """Outputs and derivatives at these inputs.
+
+        Parameters
+        ----------
+        x
+            Values of the inputs, ``(inputs,)``.
+        """
         values = self(x)
         return values, self._derivatives()
 

@@ -74,7 +74,13 @@ class Units:
 
     @classmethod
     def parse(cls, text: str) -> Units:
-        """The units of a text such as ``m t kN``, of each dimension one at most."""
+        """The units of a text such as ``m t kN``, of each dimension one at most.
+
+        Parameters
+        ----------
+        text
+            The units, with blanks between.
+        """
         found: dict[str, str] = {}
         for word in text.replace(",", " ").split():
             if word in ("s", "sec"):
@@ -123,7 +129,13 @@ class Units:
         return Units(self.length, mass, force, self.angle)
 
     def water(self, density: float | str | None) -> float | None:
-        """A density in these units: of a name in :data:`WATERS`, or the number itself."""
+        """A density in these units: of a name in :data:`WATERS`, or the number itself.
+
+        Parameters
+        ----------
+        density
+            ``"salt"``, ``"fresh"``, or mass per volume in the model's units.
+        """
         if density is None:
             return None
         if isinstance(density, str):
@@ -138,7 +150,13 @@ class Units:
         return float(density)
 
     def of(self, figure: str) -> str:
-        """The unit of a figure as text; empty where it has none or it is not stated."""
+        """The unit of a figure as text; empty where it has none or it is not stated.
+
+        Parameters
+        ----------
+        figure
+            The name of a figure, such as ``"volume"``.
+        """
         if figure in ANGLES:
             return self.angle
         length, mass, force = DIMENSIONS.get(figure, (0, 0, 0))
@@ -152,7 +170,15 @@ class Units:
         return "·".join(words) if all(words) else ""
 
     def factor(self, figure: str, to: Units) -> float:
-        """What a figure is multiplied by to be in other units."""
+        """What a figure is multiplied by to be in other units.
+
+        Parameters
+        ----------
+        figure
+            The name of a figure, such as ``"volume"``.
+        to
+            The other units.
+        """
         length, mass, force = DIMENSIONS.get(figure, (0, 0, 0))
         scale = 1.0
         for power, table, a, b, what in (

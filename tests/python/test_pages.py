@@ -54,7 +54,11 @@ def test_a_program_of_a_page_runs(page: Path, text: str) -> None:
 #: The stability of a decked hull at every heel takes minutes on a slow machine.
 LONG = set() if os.environ.get("MOLDLOFT_SOAK") else {"hydrostatics.md"}
 
-PYTHON = [page for page in PAGES if page.name not in ELSEWHERE | LONG and blocks(page, "python")]
+PYTHON = [
+    page
+    for page in [ROOT / "README.md", *PAGES]
+    if page.name not in ELSEWHERE | LONG and blocks(page, "python")
+]
 
 
 @pytest.fixture
@@ -91,8 +95,19 @@ rows = "".join(f"{a:.6f} {b:.6f}\\n" for a, b in [*upper, *lower])
 Path("naca0012.dat").write_text("NACA 0012\\n" + rows)
 """
 
+_README = f"""
+from pathlib import Path
+Path("hull.sdl").write_text({blocks(ROOT / "README.md", "sdl")[0]!r})
+"""
+
 #: What a page's Python blocks take as given.
-GIVEN = {"hydrostatics.md": _DECKED, "cad.md": _HULL, "panels.md": _HULL, "grids.md": _GRIDS}
+GIVEN = {
+    "README.md": _README,
+    "hydrostatics.md": _DECKED,
+    "cad.md": _HULL,
+    "panels.md": _HULL,
+    "grids.md": _GRIDS,
+}
 
 
 @pytest.mark.parametrize("page", PYTHON, ids=named)
@@ -135,6 +150,22 @@ def test_the_commands_of_a_page_are_commands(page: Path) -> None:
             whole_parser().parse_args(words)
         except SystemExit:
             pytest.fail(f"{page.name}: moldloft {' '.join(words)}")
+
+
+def test_the_reference_has_each_entry_once_in_a_group() -> None:
+    from moldloft.cli.reference_page import FUNCTIONS, groups
+    from moldloft.language import reference
+
+    found = groups(reference())
+    names = [row["name"] for _, _, rows in found for row in rows]
+    assert sorted(names) == sorted(row["name"] for row in reference())
+    assert "Other functions" not in [title for title, _, _ in found], found[-1][2]
+    assert {n for _, text in FUNCTIONS for n in text.split()} <= set(names)
+    text = (DOCS / "reference.md").read_text(encoding="utf-8")
+    heads = [line[4:].strip().lower() for line in text.splitlines() if line.startswith("### ")]
+    anchors = set(heads) | {f"{head}_1" for head in heads if heads.count(head) == 2}
+    assert set(re.findall(r"\]\(#([a-z0-9_]+)\)", text)) == anchors
+    assert max(len(line) for line in text.splitlines() if line.startswith("AbsPoint ")) <= 110
 
 
 def test_examples_in_help_are_commands() -> None:

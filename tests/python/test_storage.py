@@ -406,7 +406,7 @@ WRITES: dict[str, Callable[[Path], object]] = {
     "folder": lambda folder: commit(folder / "x" / "y", NEW[:2]),
     "private": lambda folder: put(folder / "d", b"new", private=True),
 }
-CODES = [errno.EIO, errno.ENOSPC, errno.EACCES, errno.EROFS, errno.EDQUOT, errno.ENOENT, 0]
+CODES = [errno.EIO, errno.ENOSPC, errno.EACCES, errno.EROFS, errno.EDQUOT, 0]
 
 
 @posix

@@ -246,3 +246,43 @@ AbsRing a_ring(a_snake, 0.5); ZPlane a_plane(1); RPYFrame a_frame(a_point); CosR
             tried += 1
     assert tried > 60
     assert entry("Line")["class"] == "curve"
+
+
+PUBLIC = (
+    "adapters blocks builder cad cgns fairing fairing.tables files formats grids high_order "
+    "hydrostatics implicit language lines_plan loading mesh models nurbs objects offsets sketches "
+    "stability study units weights"
+)
+
+
+def test_docstrings_describe_every_argument() -> None:
+    """Public functions and methods: numpydoc's ``Parameters`` names each argument."""
+    import importlib
+    import inspect
+
+    modules = [moldloft, *(importlib.import_module(f"moldloft.{n}") for n in PUBLIC.split())]
+    functions: dict[str, object] = {}
+    for module in modules:
+        for name in getattr(module, "__all__", []):
+            thing = getattr(module, name)
+            if not str(getattr(thing, "__module__", "")).startswith("moldloft"):
+                continue
+            where = f"{thing.__module__}.{name}"
+            if inspect.isclass(thing):
+                for key, value in vars(thing).items():
+                    value = getattr(value, "__func__", value)
+                    if inspect.isfunction(value) and not key.startswith("_"):
+                        functions[f"{where}.{key}"] = value
+            elif inspect.isfunction(thing):
+                functions[where] = thing
+    assert len(functions) > 250
+    missing = []
+    for where, function in functions.items():
+        doc = inspect.getdoc(function) or ""
+        names = [n for n in inspect.signature(function).parameters if n not in ("self", "cls")]
+        _, begun, rest = doc.partition("Parameters\n----------\n")
+        described = set(re.findall(r"^\**(\w+(?:, \**\w+)*)(?: :.*)?$", rest, re.M))
+        words = {word.strip("* ") for names_ in described for word in names_.split(",")}
+        if names and not (begun and set(names) <= words):
+            missing.append(f"{where}: {sorted(set(names) - words)}")
+    assert not missing, "\n".join(missing)

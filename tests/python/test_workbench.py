@@ -7,6 +7,9 @@ import json
 import os
 import random
 import signal
+import subprocess
+import sys
+import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -224,6 +227,67 @@ def test_an_engine_that_is_killed_loses_nothing(
         assert not [h for h in page.heads if h.get("internal")]
 
     workbench(model_file(LINE), play)
+
+
+@pytest.mark.parametrize(
+    "bomb",
+    [
+        "for (i = 1:10000000) AbsPoint p(i, 0, 0);",
+        "set s = set(sphere({0,0,0}, 1)); SetBody b(s, {-2,-2,-2}, {2,2,2}, depth = 12);",
+        "set s = set(sphere({0,0,0}, 1)); for (i = 1:60) s = s & (s | set(sphere({i/60.,0,0}, 1)));"
+        " SetBody b(s, {-2,-2,-2}, {2,2,2}, depth = 6);",
+    ],
+)
+def test_a_model_without_bounds_takes_nothing_with_it(
+    model_file: Callable[..., Path], bomb: str
+) -> None:
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        await page.ask("open")
+        bad = f"{page.text}{bomb}\n"
+        assert (await page.type(bad))["ok"]
+        assert hub.text == bad and json.loads(hub.draft.path.read_text())["text"] == bad
+        good = LINE + "AbsPoint P(1, 2, 3);\n"
+        assert (await page.type(good))["ok"]
+        await page.until(lambda: any(o["name"] == "P" for o in page.objects), 60)
+        assert hub.text == good
+
+    workbench(model_file(LINE), play, memory=300 << 20, budget=3.0)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_an_engine_ends_with_its_server(model_file: Callable[..., Path]) -> None:
+    path = model_file("float x = 1; while (1) x = x + 1;\n")
+    code = (
+        "import asyncio, os, sys; from pathlib import Path\n"
+        "from moldloft.workbench.engine import Engine\n"
+        "async def run():\n"
+        "    engine = Engine('model.sdl', None, budget=600)\n"
+        "    await engine.start(Path(sys.argv[1]).read_text())\n"
+        "    print(engine.pid, flush=True)\n"
+        '    await engine.ask(b\'{"kind": "open", "tab": 1, "id": 1}\')\n'
+        "asyncio.run(run())\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE, text=True
+    ) as server:
+        assert server.stdout
+        engine = int(server.stdout.readline())
+        time.sleep(0.5)
+        server.kill()
+        server.wait()
+    end = time.monotonic() + 20
+    while time.monotonic() < end:
+        try:
+            os.kill(engine, 0)
+        except ProcessLookupError:
+            return
+        state = Path(f"/proc/{engine}/stat")
+        if state.exists() and state.read_text().rpartition(")")[2].split()[0] == "Z":
+            return
+        time.sleep(0.1)
+    os.kill(engine, signal.SIGKILL)
+    raise AssertionError("the engine outlives its server")
 
 
 def test_a_model_without_end_is_stopped_and_the_text_can_be_changed(

@@ -16,6 +16,7 @@ import numpy as np
 from moldloft.cad import needed
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs
+from moldloft.storage import read_bytes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -167,11 +168,7 @@ def _look(path: Path, iges: bool, found: Imported) -> None:
     """What the text says that OCCT passes over: missing units, references to nothing."""
     import re
 
-    try:
-        text = path.read_bytes().decode("latin-1")
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise FileError(f"cannot read `{path}`: {reason}") from error
+    text = read_bytes(path).decode("latin-1")
     if not text.strip():
         raise FileError(f"cannot read `{path}`: the file is empty")
     if iges:

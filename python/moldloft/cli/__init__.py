@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -116,6 +117,12 @@ EXAMPLES = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command; exit status 0: success, 1: errors in the model, 2: usage error."""
     arguments = list(sys.argv[1:] if argv is None else argv)
+    traced = "--traceback" in arguments
+    arguments = [word for word in arguments if word != "--traceback"]
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # A terminal that has no letter for something shows its number.
+            stream.reconfigure(errors="backslashreplace")
     try:
         status = _run(arguments)
         sys.stdout.flush()
@@ -133,7 +140,28 @@ def main(argv: Sequence[str] | None = None) -> int:
     except MemoryError:
         print("error: there is not enough memory for this model", file=sys.stderr)
         return 1
+    except Exception as error:
+        if traced:
+            raise
+        print(_unexpected(error, arguments), file=sys.stderr)
+        return 1
     return status
+
+
+def _unexpected(error: Exception, arguments: Sequence[str]) -> str:
+    """A fault of ours in one line, or of an argument that is no text."""
+    wrong = [word for word in arguments if not word.isascii() and _has_surrogates(word)]
+    if isinstance(error, UnicodeEncodeError) and wrong:
+        return f"error: the argument {wrong[0]!a} is not UTF-8 text"
+    text = " ".join(str(error).split()) or "no message"
+    return (
+        f"error: internal fault: {type(error).__name__}: {text[:300]}; please report it at "
+        "https://github.com/moldloft/moldloft/issues (`--traceback` shows where it is)"
+    )
+
+
+def _has_surrogates(word: str) -> bool:
+    return any("\ud800" <= letter <= "\udfff" for letter in word)
 
 
 def _run(arguments: list[str]) -> int:
@@ -150,6 +178,10 @@ def _run(arguments: list[str]) -> int:
     except SystemExit as end:
         return int(end.code or 0)
     choose(options.color)
+    for given in options.limit:
+        from moldloft.budget import limits
+
+        limits(**given)
     try:
         status: int = options.run(options)
     except Error as error:
@@ -203,8 +235,32 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
             default="auto",
             help="colours of messages; default: on a terminal, unless NO_COLOR is set",
         )
+        command.add_argument(
+            "--limit",
+            metavar="NAME=VALUE",
+            type=_limit,
+            action="append",
+            default=[],
+            help="the most that a run may use: memory=2G, steps=N, objects=N or seconds=S; "
+            "may be repeated",
+        )
+        command.add_argument(
+            "--traceback", action="store_true", help="show where an internal fault is"
+        )
         command.set_defaults(run=module.run, parser=command)
     return parser
+
+
+def _limit(text: str) -> dict[str, str | int | float]:
+    from argparse import ArgumentTypeError
+
+    from moldloft.budget import parsed
+    from moldloft.errors import Error
+
+    try:
+        return parsed(text)
+    except Error as error:
+        raise ArgumentTypeError(str(error)) from None
 
 
 def _leave(status: int) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 from moldloft.cli.colour import painted
 from moldloft.cli.console import (
     Progress,
+    add_force,
     add_model,
     add_quiet,
     block_problems,
@@ -106,6 +107,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="write the formats that can be written when others cannot; the status is still 1",
     )
+    add_force(parser)
     add_quiet(parser)
     parser.add_argument(
         "--watch", action="store_true", help="rebuild on save, with a picture; Ctrl-C ends"
@@ -148,8 +150,9 @@ def _build_watched(options: argparse.Namespace) -> list[str]:
 def _build(
     options: argparse.Namespace, sources: list[str] | None = None
 ) -> tuple[int, dict[str, Any]]:
-    from moldloft.files import Output, commit, file_name, produce
+    from moldloft.files import Output, file_name, produce
     from moldloft.formats import formats
+    from moldloft.permissions import write_outputs
 
     with Progress() as progress:
         progress.stage(f"running {options.model}")
@@ -204,7 +207,12 @@ def _build(
                 raise Error(f"{options.to[0]} is several files: {names}; give a folder with -o")
             emit("-", outputs[0].data)
             outputs = []
-        written = commit(folder, outputs) if outputs else []
+        written = write_outputs(
+            folder,
+            {output.name: output.data for output in outputs},
+            sources=[options.model, *model.sources],
+            force=options.force,
+        )
     # Remarks of the panelling have joined those of the run.
     report(model.diagnostics)
     if mesh.patches and not mesh.closed:

@@ -8,7 +8,7 @@ import math
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Progress",
+    "add_force",
     "add_model",
     "add_quiet",
     "assignment",
@@ -89,6 +90,15 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_force(parser: argparse.ArgumentParser) -> None:
+    """The option that overwrites what is not known to be ours."""
+    parser.add_argument(
+        "--force",
+        action="store_true",
+        help="overwrite files that an earlier run did not write, and sources",
+    )
+
+
 def say(options: argparse.Namespace, text: str) -> None:
     """Prints a message about success: none when quiet, on standard error beside a file there."""
     if not getattr(options, "quiet", False):
@@ -155,9 +165,13 @@ def stem_of(options: argparse.Namespace) -> str:
     return "stdin" if options.model == "-" else Path(options.model).stem
 
 
-def emit(path: str | Path, data: bytes) -> Path | None:
-    """Writes a file whole or not at all; ``-`` is standard output, and then no path is given."""
+def emit(path: str | Path, data: bytes, sources: Sequence[str] = ()) -> Path | None:
+    """Writes a file whole or not at all; ``-`` is standard output, and then no path is given.
+
+    One of the sources is not overwritten.
+    """
     from moldloft.files import Output, commit
+    from moldloft.permissions import check_not_source
 
     if str(path) == "-":
         sys.stdout.flush()
@@ -165,6 +179,7 @@ def emit(path: str | Path, data: bytes) -> Path | None:
         sys.stdout.buffer.flush()
         return None
     path = Path(path)
+    check_not_source(path, sources)
     return commit(path.parent, [Output(path.name, data)])[0]
 
 

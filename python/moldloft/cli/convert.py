@@ -44,8 +44,11 @@ def run(options: argparse.Namespace) -> int:
     """Converts; what the other form cannot hold is an error or a remark."""
     from moldloft.files import commit, ending, format_named, produce
     from moldloft.formats import formats
+    from moldloft.permissions import check_not_source
 
     target = Path(options.output) if options.output not in (None, "-") else None
+    if target is not None:
+        check_not_source(target, [options.model])
     named = ending(target) if target else ""
     if options.model.lower().endswith((".step", ".stp", ".iges", ".igs")):
         return _from_cad(options, target, format_named(options.to or named or "sdl"))

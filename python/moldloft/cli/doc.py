@@ -8,9 +8,10 @@ from textwrap import fill
 from typing import Any
 
 from moldloft.cli.console import print_json, table
+from moldloft.cli.reference_page import example_lines, markdown, signature, synonyms
 from moldloft.errors import UnknownNameError
 
-__all__ = ["add", "markdown", "run"]
+__all__ = ["add", "run"]
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -39,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
 
     rows = reference()
     if options.markdown:
-        print(markdown(rows), end="")
+        print(markdown(rows, _pictured), end="")
         return 0
     if options.pictures and options.name is None:
         _draw(rows, options.pictures)
@@ -198,58 +199,17 @@ def _first_line(text: str) -> str:
     return line if len(line) <= 76 else line[:75].rsplit(" ", 1)[0] + " …"
 
 
-def _signature(row: dict[str, Any]) -> str:
-    name = f"{row['name']} name" if row["is_kind"] else row["name"]
-    return f"{name}({', '.join(_argument(field) for field in row['fields'])})"
-
-
-def _argument(field: dict[str, Any]) -> str:
-    text = f"{{{field['name']} …}}" if field["many"] else str(field["name"])
-    if field["required"]:
-        return text
-    return f"{text} = {field['default']}" if field["default"] is not None else f"[{text}]"
-
-
 def _page(row: dict[str, Any]) -> str:
-    lines = [_signature(row), "", str(row["doc"]), ""]
+    lines = [signature(row), "", str(row["doc"]), ""]
     rows = [
         [f"  {f['name']}", f"{f['class']}{' list' if f['many'] else ''}"] for f in row["fields"]
     ]
     width = max((len(cell) for cells in rows for cell in cells), default=0) + 2
     for cells, field in zip(rows, row["fields"], strict=True):
         lines.append("".join(cell.ljust(width) for cell in cells) + field["help"])
+    words = synonyms(row)
+    if words:
+        lines += ["", f"Also looked for as: {', '.join(words)}."]
     if row["example"]:
-        lines += ["", "Example:", *(f"  {line}" for line in row["example"].strip().splitlines())]
+        lines += ["", "Example:", *(f"  {line}" for line in example_lines(row["example"]))]
     return "\n".join(line.rstrip() for line in lines)
-
-
-def markdown(rows: list[dict[str, Any]]) -> str:
-    """The reference page, made from the declarations."""
-    lines = [
-        "# Reference of kinds and functions",
-        "",
-        "Made by `make reference` from the declarations in `crates/`; not edited by hand. Every",
-        "kind also takes the named arguments `colour`, `visible`, `layer`, `divisions`,",
-        "`subdivisions`, `size`, `spacing`, `tags` and `orientation`. Angles are in radians.",
-    ]
-    for title, is_kind in (("Kinds", True), ("Functions", False)):
-        chosen = [row for row in rows if row["is_kind"] is is_kind]
-        lines += ["", f"## {title}"]
-        for row in chosen:
-            lines += ["", f"### {row['name']}", "", f"`{_signature(row)}` → {row['class']}", ""]
-            if _pictured(row):
-                lines += [f"![{row['name']}](kinds/{row['name']}.png)", ""]
-            lines += [str(row["doc"]).strip(), ""]
-            lines += ["| argument | class | default | meaning |", "| --- | --- | --- | --- |"]
-            for field in row["fields"]:
-                many = " list" if field["many"] else ""
-                default = field["default"]
-                if default is None:
-                    default = "required" if field["required"] else "none"
-                cells = [f"`{field['name']}`", f"{field['class']}{many}", str(default)]
-                lines.append("| " + " | ".join([*cells, field["help"]]) + " |")
-            if row["columns"]:
-                lines += ["", f"Model file columns: `{row['columns']}`"]
-            if row["example"]:
-                lines += ["", "```", row["example"].strip(), "```"]
-    return "\n".join(lines) + "\n"

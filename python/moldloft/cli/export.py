@@ -43,6 +43,6 @@ def run(options: argparse.Namespace) -> int:
     if not options.still and engine_packed() is None:
         print(f"note: the page shows the model as it is: {NO_ENGINE}", file=sys.stderr)
     path = options.output or f"{source.stem}.html"
-    if emit(path, page) is not None:
+    if emit(path, page, [options.model]) is not None:
         print(path)
     return 0

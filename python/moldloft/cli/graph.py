@@ -41,6 +41,6 @@ def run(options: argparse.Namespace) -> int:
     nodes = [Node(f["name"], f["kind"], f["class"], f["parents"], f["ok"]) for f in facts]
     stem = stem_of(options)
     path = options.output or f"{stem}.graph.svg"
-    if emit(path, digraph_svg(nodes, stem).encode()) is not None:
+    if emit(path, digraph_svg(nodes, stem).encode(), [options.model]) is not None:
         print(path)
     return status

@@ -110,7 +110,7 @@ def run(options: argparse.Namespace) -> int:
             picture = model.picture(*options.size)
         else:
             picture = _traced(options, model)
-        emit(path, picture)
+        emit(path, picture, [options.model])
     if path != "-":
         say(options, path)
     return 1 if model.has_errors else 0

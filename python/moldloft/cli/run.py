@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from moldloft.cli.console import add_model, open_model, print_json, report
-from moldloft.errors import Error, FileError
+from moldloft.cli.console import add_force, add_model, open_model, print_json, report, stem_of
+from moldloft.errors import Error
 from moldloft.models import Model
+from moldloft.permissions import write_outputs
 
 __all__ = ["add", "run"]
 
@@ -34,6 +35,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="the surfaces of the program as structured grids: " + ", ".join(grids),
     )
+    add_force(parser)
     parser.add_argument("--json", action="store_true", help="one object: lines printed, files")
 
 
@@ -45,13 +47,16 @@ def run(options: argparse.Namespace) -> int:
     if not options.json:
         for line in model.printed:
             print(line)
-    written = [] if failed else _write(Path(options.output), model.written)
+    files = {} if failed else model.written
     if options.to and not failed:
-        written += _grids(model, Path(options.output) / Path(options.model).stem, options.to)
+        files |= _grids(model, stem_of(options), options.to)
+    written = write_outputs(
+        Path(options.output), files, sources=[options.model, *model.sources], force=options.force
+    )
     if options.json:
-        files = [{"path": str(path), "bytes": path.stat().st_size} for path in written]
+        sizes = [{"path": str(path), "bytes": path.stat().st_size} for path in written]
         diagnostics = [d.to_dict() for d in model.diagnostics]
-        data = {"ok": not failed, "printed": model.printed, "files": files}
+        data = {"ok": not failed, "printed": model.printed, "files": sizes}
         print_json(data | {"diagnostics": diagnostics})
     elif failed and model.written:
         print(f"{options.model}: errors; nothing was written")
@@ -61,8 +66,8 @@ def run(options: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
-def _grids(model: Model, stem: Path, formats: list[str]) -> list[Path]:
-    """Writes the surfaces among the variables, in the order of their declaration."""
+def _grids(model: Model, stem: str, formats: list[str]) -> dict[str, bytes]:
+    """The surfaces among the variables as files, in the order of their declaration."""
     from moldloft import grids
 
     surfaces = [name for name, type_ in model.types.items() if type_.startswith("surface[")]
@@ -70,26 +75,7 @@ def _grids(model: Model, stem: Path, formats: list[str]) -> list[Path]:
         raise Error("the program has no surface to write")
     values = model.variables
     found = [values[name] for name in surfaces]
-    stem.parent.mkdir(parents=True, exist_ok=True)
-    written: list[Path] = []
+    files: dict[str, bytes] = {}
     for name in dict.fromkeys(formats):
-        written += grids.write(stem.with_suffix(f".{name}"), found, names=surfaces)
-    return written
-
-
-def _write(folder: Path, files: dict[str, bytes]) -> list[Path]:
-    from moldloft.files import Output, commit
-
-    # A link inside the folder must not lead out of it.
-    root = folder.resolve()
-    for name in files:
-        if not (folder / name).resolve().is_relative_to(root):
-            raise FileError(f"cannot write `{name}`: a link leads out of `{folder}`")
-    by_folder: dict[Path, list[Output]] = {}
-    for name, data in files.items():
-        path = folder / name
-        by_folder.setdefault(path.parent, []).append(Output(path.name, data))
-    written: list[Path] = []
-    for parent, outputs in by_folder.items():
-        written += commit(parent, outputs)
-    return written
+        files |= grids.encoded(f"{stem}.{name}", found, surfaces)
+    return files

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from moldloft.cli.console import print_json
+from moldloft.cli.console import add_force, print_json
 from moldloft.errors import Error, FileError
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-q", "--quiet", action="store_true", help="only warnings and errors of the commands"
     )
+    add_force(parser)
     restore = parser.add_mutually_exclusive_group()
     restore.add_argument("--recover", action="store_true", help="resume an unsaved session")
     restore.add_argument(
@@ -98,6 +100,10 @@ class Host:
         self.present: str | None = None
         #: Why the file that is edited may not be written: another prompt has it.
         self.busy = ""
+        #: Whether the lines that run were typed here, not read from a file.
+        self.typed = True
+        #: Files that this session wrote.
+        self.own_files: set[Path] = set()
 
     # -- running -----------------------------------------------------------------------------
 
@@ -111,6 +117,8 @@ class Host:
             text = data.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
+        # Its lines are somebody else's: they read and write inside of their folders.
+        self._trust(False)
         if text.lstrip().startswith(("[", "{")):
             self.run_line(f'INPUT "{path.name}"', where=str(path))
         else:
@@ -118,11 +126,20 @@ class Host:
                 self.run_line(line, where=f"{path}:{number}")
                 if self.session.over():
                     break
+        self._trust(True)
         self.saved = self.recorded = self.session.journal_length()
+
+    def _trust(self, typed: bool) -> None:
+        self.typed = typed
+        self.session.confine(not typed)
 
     def run_line(self, line: str, where: str = "") -> None:
         """Runs a line, shows its replies and writes its files."""
         from moldloft.sketches import Reply
+
+        typed = self.typed
+        # What a file that is read in asks for is not asked for here.
+        self.typed = typed and not re.search(r"(?:^|;)\s*(?:INPUT|RUN)\b", line, re.I)
 
         answers = self.session.run_line(line)
         # On the disk before it is answered: what was answered is never lost.
@@ -140,6 +157,7 @@ class Host:
             # The file holds everything now: running it and then the old journal would do it twice.
             self.journal.saved(self.present or "")
         self.rewritten = False
+        self.typed = typed
 
     def _write(self, reply: Reply, file: tuple[str, bytes]) -> Reply:
         from moldloft.sketches import Reply
@@ -154,12 +172,21 @@ class Host:
 
     def _write_file(self, path: Path, data: bytes) -> None:
         from moldloft.files import Output, commit
+        from moldloft.permissions import write_outputs
         from moldloft.storage import digest, put
 
+        if not self.typed:
+            sources = [self.options.file] if self.options.file else []
+            output, force = Path(self.options.output), self.options.force
+            name = path.relative_to(output).as_posix() if not path.is_absolute() else str(path)
+            write_outputs(output, {name: data}, sources=sources, force=force)
+            return
         own = self.options.file is not None and path.resolve() == Path(self.options.file).resolve()
         whole = path.suffix.lower() == ".json" or data == self.session.text(None).encode()
         if not own:
+            self._ask_to_overwrite(path)
             commit(path.parent, [Output(path.name, data)])
+            self.own_files.add(path.resolve())
         elif self.busy:
             raise FileError(f"cannot write `{path}`: {self.busy}")
         else:
@@ -170,6 +197,16 @@ class Host:
             self.rewritten = whole
         if path.suffix.lower() in (".skt", ".json") and whole:
             self.saved = self.session.journal_length()
+
+    def _ask_to_overwrite(self, path: Path) -> None:
+        """On a terminal a file of somebody else is not overwritten without an answer."""
+        known = self.options.force or path.resolve() in self.own_files
+        if known or not path.exists() or not sys.stdin.isatty():
+            return
+        with contextlib.suppress(EOFError):
+            if input(f"`{path}` is there; overwrite it? [y/N] ").strip().lower() in ("y", "yes"):
+                return
+        raise FileError(f"`{path}` is left as it is")
 
     def _show(self, reply: Reply, where: str) -> None:
         self.refused |= reply.is_error

@@ -34,7 +34,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="GIB",
         type=float,
         default=8.0,
-        help="GiB of address space that the engine may have; default 8",
+        help="GiB of memory that the model may have; default 8",
     )
 
 

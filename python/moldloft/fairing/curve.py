@@ -274,6 +274,11 @@ class Fairing:
         """Draw shape, zoom, curvature, comb, jumps, metric and displacement into a file.
 
         PNG or SVG by the name's end. Needs Matplotlib: ``pip install 'moldloft[plot]'``.
+
+        Parameters
+        ----------
+        path
+            The file.
         """
         from moldloft.fairing.plot import plot_curve
 

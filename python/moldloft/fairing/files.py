@@ -18,6 +18,7 @@ from moldloft.fairing.matrix import Matrix, matrix
 from moldloft.fairing.tables import plain
 from moldloft.files import Output, commit
 from moldloft.grids import Plot3DVariant, decode_plot3d, encode_plot3d
+from moldloft.storage import read_bytes
 
 if TYPE_CHECKING:
     import os
@@ -36,9 +37,6 @@ __all__ = [
     "read_points",
     "write_vts",
 ]
-
-LARGEST = 1 << 30
-"""The most bytes of a file that is read."""
 
 
 @dataclass
@@ -82,15 +80,7 @@ class PointFile:
 
 
 def _bytes(path: Path) -> bytes:
-    try:
-        if path.stat().st_size > LARGEST:
-            raise FileError(f"`{path}` is larger than {LARGEST >> 20} MB")
-        return path.read_bytes()
-    except FileError:
-        raise
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise FileError(f"cannot read `{path}`: {reason}") from error
+    return read_bytes(path)
 
 
 def read_points(path: str | os.PathLike[str]) -> PointFile:
@@ -353,10 +343,10 @@ def is_grid(path: Path) -> bool:
     if path.suffix.lower() not in _GRID_SUFFIXES:
         return False
     try:
-        with path.open("rb") as file:
-            start = file.read(4096)
-    except OSError:
+        data = read_bytes(path)
+    except FileError:
         return False
+    start = data[:4096]
     if b"\0" in start:
         return True
     first = [line.split() for line in start.decode("latin-1").splitlines() if line.strip()][:2]
@@ -365,8 +355,8 @@ def is_grid(path: Path) -> bool:
     if whole and len(first[0]) == 2:
         # Two sizes or a point: a grid has as many numbers as its sizes ask for.
         try:
-            decode_plot3d(path.read_bytes())
-        except (FormatError, OSError):
+            decode_plot3d(data)
+        except FormatError:
             return False
         return True
     return whole and len(first[0]) in (1, 3)

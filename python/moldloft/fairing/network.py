@@ -140,7 +140,13 @@ class NetworkFairing:
         return "\n".join([lines_of(rows, tail), *said])
 
     def plot(self, path: str | PathLike[str]) -> None:
-        """Draw the curves before and after, and where points moved, into a file (PNG or SVG)."""
+        """Draw the curves before and after, and where points moved, into a file (PNG or SVG).
+
+        Parameters
+        ----------
+        path
+            The file.
+        """
         from moldloft.fairing.plot import plot_network
 
         plot_network(self, path)

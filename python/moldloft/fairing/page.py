@@ -422,7 +422,17 @@ def write_page(
     path: str | PathLike[str],
     title: str = "Fairing",
 ) -> Path:
-    """Writes :func:`page` into a file, all of it or nothing."""
+    """Writes :func:`page` into a file, all of it or nothing.
+
+    Parameters
+    ----------
+    fairing
+        What was faired.
+    path
+        The file.
+    title
+        A title, for formats that have one.
+    """
     from moldloft.files import Output, commit
 
     path = Path(path)

@@ -41,7 +41,13 @@ class Finding:
 
     @staticmethod
     def of(row: tuple[str, int, Any, str]) -> Finding:
-        """From the extension's row."""
+        """From the extension's row.
+
+        Parameters
+        ----------
+        row
+            The extension's row.
+        """
         kind, index, vector, text = row
         return Finding(kind, index, (float(vector[0]), float(vector[1]), float(vector[2])), text)
 

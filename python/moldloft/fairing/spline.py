@@ -162,7 +162,21 @@ class Spline:
         spacing: str = "chord",
         closed: bool = False,
     ) -> Spline:
-        """The spline with ``count`` control points nearest to points in the sum of squares."""
+        """The spline with ``count`` control points nearest to points in the sum of squares.
+
+        Parameters
+        ----------
+        points
+            Points ``(n, 2)`` or ``(n, 3)`` in order.
+        count
+            The number of control points.
+        degree
+            Polynomial degree.
+        spacing
+            ``"chord"``, ``"centripetal"``, ``"uniform"``, or an axis, ``"x"`` to ``"z"``.
+        closed
+            Whether the curve closes.
+        """
         rows, _ = points_of(points)
         refuse_repeats(rows, closed)
         return cls._of(_core.Spline.least_squares(rows, degree, count, spacing, closed)[0])
@@ -296,12 +310,24 @@ class Spline:
         return self._core.open_form()
 
     def at(self, t: ArrayLike) -> Samples:
-        """Position, derivatives, curvature and torsion at parameters in [0, 1]."""
+        """Position, derivatives, curvature and torsion at parameters in [0, 1].
+
+        Parameters
+        ----------
+        t
+            Parameters in [0, 1], of any shape.
+        """
         flat = np.ascontiguousarray(np.asarray(t, np.float64).ravel())
         return Samples(**self._core.at(flat))
 
     def samples(self, per_span: int = PER_SPAN) -> Samples:
-        """The same, ``per_span + 1`` times on each span; knots are looked at from both sides."""
+        """The same, ``per_span + 1`` times on each span; knots are looked at from both sides.
+
+        Parameters
+        ----------
+        per_span
+            Samples on each span of the curve.
+        """
         return Samples(**self._core.spans(per_span))
 
     def __call__(self, t: ArrayLike) -> Floats:
@@ -310,11 +336,23 @@ class Spline:
         return self.at(t).points.reshape(*shape, 3)
 
     def curvature(self, t: ArrayLike) -> Floats:
-        """Curvature at parameters in [0, 1]; see :attr:`Samples.curvature`."""
+        """Curvature at parameters in [0, 1]; see :attr:`Samples.curvature`.
+
+        Parameters
+        ----------
+        t
+            Parameters in [0, 1], of any shape.
+        """
         return self.at(t).curvature.reshape(np.shape(t))
 
     def torsion(self, t: ArrayLike) -> Floats:
-        """Torsion at parameters in [0, 1]."""
+        """Torsion at parameters in [0, 1].
+
+        Parameters
+        ----------
+        t
+            Parameters in [0, 1], of any shape.
+        """
         return self.at(t).torsion.reshape(np.shape(t))
 
     @property
@@ -355,18 +393,37 @@ class Spline:
         return self._core.jumps()
 
     def measure(self, name: str) -> float:
-        """A measure of unfairness, as in :func:`~moldloft.fairing.fair`."""
+        """A measure of unfairness, as in :func:`~moldloft.fairing.fair`.
+
+        Parameters
+        ----------
+        name
+            The name of a measure, as for :func:`~moldloft.fairing.fair`.
+        """
         return self._core.measure(name)
 
     def monotone_pieces(self, share: float = 1e-3, per_span: int = PER_SPAN) -> int:
         """In how many pieces the curvature rises or falls.
 
         Reversals below a share of its range are ignored.
+
+        Parameters
+        ----------
+        share
+            Share of the range of values below which a reversal is ignored.
+        per_span
+            Samples on each span of the curve.
         """
         return self._core.monotone_pieces(share, per_span)
 
     def inflections(self, per_span: int = PER_SPAN) -> int:
-        """How often the curvature changes its sign."""
+        """How often the curvature changes its sign.
+
+        Parameters
+        ----------
+        per_span
+            Samples on each span of the curve.
+        """
         return self._core.inflections(per_span)
 
     def logarithmic_curvature(self, per_span: int = PER_SPAN) -> Floats:
@@ -374,6 +431,11 @@ class Spline:
 
         Rows of log of the radius of curvature and log of |radius ds / d radius|: a straight line of
         slope -1 for a clothoid, 1 for a logarithmic spiral, 2 for the involute of a circle.
+
+        Parameters
+        ----------
+        per_span
+            Samples on each span of the curve.
         """
         return self._core.logarithmic(per_span)
 
@@ -381,6 +443,15 @@ class Spline:
         """The k-orthotomic for a point p, ``(m, 3)``.
 
         It has cusps exactly at inflections, when p lies on no tangent.
+
+        Parameters
+        ----------
+        p
+            The point, ``(3,)``.
+        k
+            The factor of the distance to the tangent.
+        per_span
+            Samples on each span of the curve.
         """
         point, _ = points_of([np.asarray(p, np.float64).ravel()])
         return self._core.orthotomic([float(c) for c in point[0]], k, per_span)
@@ -399,6 +470,15 @@ class Spline:
 def monotone_runs(values: ArrayLike, share: float = 1e-3) -> int:
     """In how many pieces a list rises or falls, reversals below a share of its range ignored.
 
+    Parameters
+    ----------
+    values
+        The list, ``(n,)``.
+    share
+        Share of the range of values below which a reversal is ignored.
+
+    Examples
+    --------
     >>> monotone_runs([0, 1, 2, 1.9999, 3, 1])
     2
     """
@@ -408,6 +488,15 @@ def monotone_runs(values: ArrayLike, share: float = 1e-3) -> int:
 def divided_differences(points: ArrayLike, t: ArrayLike) -> Floats:
     """Second divided differences of points at rising parameters, ``(n - 2, 3)``.
 
+    Parameters
+    ----------
+    points
+        Points ``(n, 2)`` or ``(n, 3)``.
+    t
+        Their parameters, increasing, ``(n,)``.
+
+    Examples
+    --------
     >>> divided_differences([(0, 0), (1, 1), (3, 9)], [0, 1, 3])
     array([[0., 1., 0.]])
     """

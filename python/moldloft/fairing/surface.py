@@ -83,28 +83,69 @@ class Look:
         return self._core.absolute
 
     def isophotes(self, light: ArrayLike = (0, 0, 1)) -> Floats:
-        """The cosine between normal and light, whose level lines are the isophotes."""
+        """The cosine between normal and light, whose level lines are the isophotes.
+
+        Parameters
+        ----------
+        light
+            Direction of the light, ``(3,)``.
+        """
         return self._core.isophote(_vector(light))
 
     def highlight(self, point: ArrayLike, along: ArrayLike) -> Floats:
         """Signed distance of the normal from a light line.
 
         It is 0 on the highlight line and small on the highlight band.
+
+        Parameters
+        ----------
+        point
+            A point of the line, ``(3,)``.
+        along
+            Direction of the line, ``(3,)``.
         """
         return self._core.highlight(_vector(point), _vector(along))
 
     def reflection(self, view: ArrayLike, point: ArrayLike, along: ArrayLike) -> Floats:
-        """Zero where an eye far away in direction ``view`` sees the line reflected."""
+        """Zero where an eye far away in direction ``view`` sees the line reflected.
+
+        Parameters
+        ----------
+        view
+            Direction towards the eye, ``(3,)``.
+        point
+            A point of the line, ``(3,)``.
+        along
+            Direction of the line, ``(3,)``.
+        """
         return self._core.reflection(_vector(view), _vector(point), _vector(along))
 
     def zebra(
         self, view: ArrayLike = (0, 0, 1), axis: ArrayLike = (1, 0, 0), stripes: float = 8
     ) -> Floats:
-        """Stripes, 1 and -1, by the angle of the mirrored view round an axis."""
+        """Stripes, 1 and -1, by the angle of the mirrored view round an axis.
+
+        Parameters
+        ----------
+        view
+            Direction towards the eye, ``(3,)``.
+        axis
+            The axis of the stripes, ``(3,)``.
+        stripes
+            The number of stripes in a full turn.
+        """
         return self._core.zebra(_vector(view), _vector(axis), stripes)
 
     def orthotomic(self, p: ArrayLike, k: float = 2.0) -> Floats:
-        """The k-orthotomic surface of a point: singular where the Gaussian curvature is 0."""
+        """The k-orthotomic surface of a point: singular where the Gaussian curvature is 0.
+
+        Parameters
+        ----------
+        p
+            The point, ``(3,)``.
+        k
+            The factor of the distance to the tangent.
+        """
         return self._core.orthotomic(_vector(p), k)
 
     def fields(self) -> dict[str, Floats]:
@@ -263,15 +304,37 @@ class SplineSurface:
         return self._core.knots()
 
     def look(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Look:
-        """The surface at a grid of parameters in [0, 1], or at so many even ones each way."""
+        """The surface at a grid of parameters in [0, 1], or at so many even ones each way.
+
+        Parameters
+        ----------
+        u
+            Parameters along u in [0, 1], or how many even ones.
+        v
+            Parameters along v in [0, 1], or how many even ones.
+        """
         return Look(self._core.look(_parameters(u), _parameters(v)))
 
     def grid(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Floats:
-        """Positions on a grid of parameters, ``(m, n, 3)``."""
+        """Positions on a grid of parameters, ``(m, n, 3)``.
+
+        Parameters
+        ----------
+        u
+            Parameters along u in [0, 1], or how many even ones.
+        v
+            Parameters along v in [0, 1], or how many even ones.
+        """
         return self.look(u, v).points
 
     def measure(self, name: str) -> tuple[float, float]:
-        """A measure over the curves of the net along u, and over those along v."""
+        """A measure over the curves of the net along u, and over those along v.
+
+        Parameters
+        ----------
+        name
+            The name of a measure, as for :func:`~moldloft.fairing.fair`.
+        """
         return self._core.measure(name)
 
     def __repr__(self) -> str:
@@ -508,6 +571,11 @@ class SurfaceFairing:
         """Draw the surface, its curvature, zebra, jumps and displacement into a file.
 
         PNG or SVG by the name's end. Needs Matplotlib: ``pip install 'moldloft[plot]'``.
+
+        Parameters
+        ----------
+        path
+            The file.
         """
         from moldloft.fairing.plot import plot_surface
 
@@ -518,6 +586,15 @@ class SurfaceFairing:
 
         Its arrays are the curvatures, zebra stripes and normals, those of the original with
         ``_before`` at their names, and ``displacement``.
+
+        Parameters
+        ----------
+        path
+            The file.
+        u
+            Parameters along u in [0, 1], or how many even ones.
+        v
+            Parameters along v in [0, 1], or how many even ones.
         """
         from moldloft.fairing.files import write_vts
 

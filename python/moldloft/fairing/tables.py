@@ -39,6 +39,11 @@ _AXES = {
 def eighths(text: str) -> Fraction | None:
     """Feet, inches and eighths as inches: ``4-5-1``; ``+`` or ``-`` is a sixteenth more or less.
 
+    Parameters
+    ----------
+    text
+        A length, such as ``4-5-1``.
+
     Examples
     --------
     >>> float(eighths("4-5-1")), float(eighths("0-54-0+")), eighths("4-5")
@@ -55,6 +60,11 @@ def eighths(text: str) -> Fraction | None:
 
 def length(text: str) -> float | None:
     r"""A length as people write it: a number, feet-inches-eighths or feet and inches in inches.
+
+    Parameters
+    ----------
+    text
+        A length, such as ``1.5`` or ``4-5-1``.
 
     Examples
     --------
@@ -108,7 +118,13 @@ def _numbers(cells: list[str]) -> bool:
 
 
 def plain(text: str) -> Plain:
-    """Text made plain. What it cannot make plain stays, for the reader to refuse with its line."""
+    """Text made plain. What it cannot make plain stays, for the reader to refuse with its line.
+
+    Parameters
+    ----------
+    text
+        Any text.
+    """
     out = Plain(text.lstrip("\ufeff"))
     lines = out.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     lines = _decimal_commas(lines, out)

@@ -52,6 +52,23 @@ def liming(
     ``lam l1 l2 - (1 - lam) l3 l4``. Without ``l4``, ``l3`` is a rail: the blend touches both
     bodies where the rail does, with contact G^n.
 
+    Parameters
+    ----------
+    l1
+        The first body.
+    l2
+        The second body.
+    l3
+        The rail of the first body, or of both.
+    l4
+        The rail of the second body.
+    lam
+        Shape of the blend, between 0 and 1.
+    contact
+        Order of contact: 1 for tangent planes, 2 for curvature too.
+
+    Examples
+    --------
     >>> from moldloft import implicit as im
     >>> x, y, z = im.axes()
     >>> im.liming(x, y, x + y - 1, lam=2 / 3)((1, 0, 0))
@@ -64,7 +81,23 @@ def liming(
 def zhang(
     l1: Field, l2: Field, l3: Field, l4: Field, *, lam: float = 0.5, contact: int = 1
 ) -> Field:
-    """The transition from ``l1``, touched at the rail ``l3``, to ``l2``, touched at ``l4``."""
+    """The transition from ``l1``, touched at the rail ``l3``, to ``l2``, touched at ``l4``.
+
+    Parameters
+    ----------
+    l1
+        The first body.
+    l2
+        The second body.
+    l3
+        The rail of the first body, or of both.
+    l4
+        The rail of the second body.
+    lam
+        Shape of the blend, between 0 and 1.
+    contact
+        Order of contact: 1 for tangent planes, 2 for curvature too.
+    """
     return Field(l1._core.zhang(l2._core, l3._core, l4._core, float(lam), int(contact)))
 
 
@@ -72,6 +105,17 @@ def setback(l1: Field, l2: Field, a: float, b: float | None = None) -> Field:
     """The rail of prescribed setbacks.
 
     It meets ``l1 = 0`` where ``l2 = b`` and ``l2 = 0`` where ``l1 = a``.
+
+    Parameters
+    ----------
+    l1
+        The first body.
+    l2
+        The second body.
+    a
+        Setback on the second body: where the rail meets it.
+    b
+        Setback on the first body; by default the same.
     """
     return Field(l1._core.setback(l2._core, float(a), float(a if b is None else b)))
 
@@ -80,6 +124,17 @@ def check_rail(
     l1: Field, l2: Field, rail: Field, box: tuple[Sequence[float], Sequence[float]]
 ) -> None:
     """Prove over a box that a blend on the rail touches both bodies with their own orientation.
+
+    Parameters
+    ----------
+    l1
+        The first body.
+    l2
+        The second body.
+    rail
+        The rail.
+    box
+        Low and high corner.
 
     Raises
     ------
@@ -93,6 +148,19 @@ def check_rails(
     l1: Field, l2: Field, l3: Field, l4: Field, box: tuple[Sequence[float], Sequence[float]]
 ) -> None:
     """Prove over a box that a transition touches both bodies: its rails keep apart.
+
+    Parameters
+    ----------
+    l1
+        The first body.
+    l2
+        The second body.
+    l3
+        The rail of the first body, or of both.
+    l4
+        The rail of the second body.
+    box
+        Low and high corner.
 
     Raises
     ------
@@ -132,6 +200,19 @@ def fillet(
 
     ``lam`` shapes it between 0 (a chamfer) and 1 (the corner). With true distances the widths are
     lengths. Of sets see :meth:`Set.filleted`.
+
+    Parameters
+    ----------
+    l1
+        The first body.
+    l2
+        The second body.
+    width
+        Setback on the first body, in model units.
+    other
+        Setback on the second body; by default the same.
+    lam
+        Shape of the blend, between 0 and 1.
     """
     from moldloft.implicit.sets import Set
 
@@ -144,7 +225,21 @@ def fillet(
 def rounded(
     l1: Field, l2: Field, width: float, other: float | None = None, *, lam: float = CIRCULAR
 ) -> Blend:
-    """The intersection of two bodies with its edge rounded, of setback ``width`` on both."""
+    """The intersection of two bodies with its edge rounded, of setback ``width`` on both.
+
+    Parameters
+    ----------
+    l1
+        The first body.
+    l2
+        The second body.
+    width
+        Setback on the first body, in model units.
+    other
+        Setback on the second body; by default the same.
+    lam
+        Shape of the blend, between 0 and 1.
+    """
     return _blended("round", l1, l2, width, other, lam)
 
 
@@ -154,6 +249,21 @@ def transition(
     """The body ``l1`` up to its rail ``l3``, ``l2`` up to ``l4``, and Zhang's transition.
 
     The solid sides of the rails keep the bodies.
+
+    Parameters
+    ----------
+    l1
+        The first body.
+    l2
+        The second body.
+    l3
+        The rail of the first body, or of both.
+    l4
+        The rail of the second body.
+    lam
+        Shape of the blend, between 0 and 1.
+    contact
+        Order of contact: 1 for tangent planes, 2 for curvature too.
     """
     from moldloft.implicit.sets import Set
 

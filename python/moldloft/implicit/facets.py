@@ -184,6 +184,11 @@ class Facets:
 
         Vertices that stay are on their surfaces as before. Flat and singly curved faces shrink
         most, with triangles that are long where the surface is straight.
+
+        Parameters
+        ----------
+        accuracy
+            The largest distance from the surface, in model units.
         """
         return Facets(self._core.simplified(float(accuracy)))
 
@@ -239,7 +244,15 @@ class Facets:
         return self._core.crossings()
 
     def section(self, normal: Sequence[float], point: Sequence[float] = (0, 0, 0)) -> list[Contour]:
-        """The contours in which a plane cuts the solids, on the surface and in the plane."""
+        """The contours in which a plane cuts the solids, on the surface and in the plane.
+
+        Parameters
+        ----------
+        normal
+            The normal of the plane, ``(3,)``.
+        point
+            A point of the plane, ``(3,)``.
+        """
         from moldloft.implicit.fields import triple
 
         found = self._core.section(triple(normal, "normal"), triple(point, "point"))
@@ -270,6 +283,13 @@ class Facets:
 
         ``stl``, ``obj``, ``ply``, ``glb``, ``vtp`` and ``3mf`` hold solids and sheets; wires and
         points go into ``obj`` and ``vtp``, the others refuse them.
+
+        Parameters
+        ----------
+        path
+            The file.
+        format
+            The name of a format, see :data:`moldloft.files.FORMATS`.
         """
         from moldloft.files import Output, commit
 
@@ -281,7 +301,15 @@ class Facets:
     def picture(
         self, path: str | os.PathLike[str] | None = None, *, size: tuple[int, int] = (1200, 800)
     ) -> bytes:
-        """A shaded picture, a PNG file, with wires as lines."""
+        """A shaded picture, a PNG file, with wires as lines.
+
+        Parameters
+        ----------
+        path
+            The file.
+        size
+            Width and height, pixels.
+        """
         png = self._core.picture(int(size[0]), int(size[1]))
         if path is not None:
             from moldloft.files import Output, commit

@@ -66,17 +66,37 @@ class Field:
         return values if shape else float(values)
 
     def gradient(self, points: ArrayLike) -> Floats:
-        """The exact gradients at points ``(…, 3)``, of the same shape."""
+        """The exact gradients at points ``(…, 3)``, of the same shape.
+
+        Parameters
+        ----------
+        points
+            Points ``(…, 3)``.
+        """
         flat, shape = points_of(points)
         return self._core.gradients(flat)[1].reshape(*shape, 3)
 
     def hessian(self, points: ArrayLike) -> Floats:
-        """The exact matrices of second derivatives at points ``(…, 3)``, ``(…, 3, 3)``."""
+        """The exact matrices of second derivatives at points ``(…, 3)``, ``(…, 3, 3)``.
+
+        Parameters
+        ----------
+        points
+            Points ``(…, 3)``.
+        """
         flat, shape = points_of(points)
         return self._core.hessians(flat).reshape(*shape, 3, 3)
 
     def range(self, low: Triple, high: Triple) -> tuple[float, float]:
-        """Proved bounds of the values over a box, rounded outward."""
+        """Proved bounds of the values over a box, rounded outward.
+
+        Parameters
+        ----------
+        low
+            The low corner of a box, ``(3,)``.
+        high
+            The high corner of a box, ``(3,)``.
+        """
         return self._core.range(triple(low, "low corner"), triple(high, "high corner"))
 
     @property
@@ -104,27 +124,73 @@ class Field:
         return self._core.is_sheet
 
     def same(self, other: Field) -> bool:
-        """True when both are the same expression of the same numbers."""
+        """True when both are the same expression of the same numbers.
+
+        Parameters
+        ----------
+        other
+            The other field.
+        """
         return self._core.same(other._core)
 
     def translated(self, by: Triple) -> Field:
-        """The field moved by a vector."""
+        """The field moved by a vector.
+
+        Parameters
+        ----------
+        by
+            The vector, ``(3,)``.
+        """
         return self.mapped(np.eye(3), by)
 
     def turned(self, point: Triple, direction: Triple, angle: float) -> Field:
-        """The field turned about a line, right-handed, by an angle in radians."""
+        """The field turned about a line, right-handed, by an angle in radians.
+
+        Parameters
+        ----------
+        point
+            A point of the axis, ``(3,)``.
+        direction
+            A direction of any length, ``(3,)``.
+        angle
+            Angle, radians.
+        """
         return self.mapped(*turn(point, direction, angle))
 
     def mirrored(self, normal: Triple, point: Triple = (0, 0, 0)) -> Field:
-        """The mirror image in a plane."""
+        """The mirror image in a plane.
+
+        Parameters
+        ----------
+        normal
+            A normal of any length, ``(3,)``; it points from solid to air.
+        point
+            A point, ``(3,)``.
+        """
         return self.mapped(*reflection(normal, point))
 
     def scaled(self, factor: float, centre: Triple = (0, 0, 0)) -> Field:
-        """The field scaled about a point."""
+        """The field scaled about a point.
+
+        Parameters
+        ----------
+        factor
+            The factor, not zero.
+        centre
+            The centre, ``(3,)``.
+        """
         return self.mapped(*scaling(factor, centre))
 
     def mapped(self, matrix: ArrayLike, shift: Triple = (0, 0, 0)) -> Field:
-        """The field moved by the affine map X -> matrix X + shift."""
+        """The field moved by the affine map X -> matrix X + shift.
+
+        Parameters
+        ----------
+        matrix
+            Matrix ``(3, 3)``.
+        shift
+            Translation after the matrix, ``(3,)``.
+        """
         rows = np.asarray(matrix, dtype=np.float64)
         if rows.shape != (3, 3):
             raise ValueError(f"the matrix has the shape (3, 3), found {rows.shape}")
@@ -133,6 +199,17 @@ class Field:
     def remapped(self, x: Field, y: Field, z: Field) -> Field:
         """The field with its coordinates replaced: ``f(x, y, z)`` of three fields.
 
+        Parameters
+        ----------
+        x
+            The first field.
+        y
+            The second field.
+        z
+            The third field.
+
+        Examples
+        --------
         >>> from moldloft import implicit as im
         >>> x, y, z = im.axes()
         >>> im.sphere((0, 0, 0), 1).remapped(x, y, 2 * z)((0, 0, 0.5))
@@ -257,30 +334,82 @@ def axes() -> tuple[Field, Field, Field]:
 
 
 def plane(normal: Triple, point: Triple) -> Field:
-    """The half-space behind a plane: the distance from it, positive on the side of the normal."""
+    """The half-space behind a plane: the distance from it, positive on the side of the normal.
+
+    Parameters
+    ----------
+    normal
+        A normal of any length, ``(3,)``; it points from solid to air.
+    point
+        A point of the plane, ``(3,)``.
+    """
     return Field(_core.Field.plane(triple(normal, "normal"), triple(point, "point")))
 
 
 def sphere(centre: Triple, radius: float, *, distance: bool = False) -> Field:
-    """The ball ``|X - centre|^2 - radius^2``; with ``distance`` the distance from its surface."""
+    """The ball ``|X - centre|^2 - radius^2``; with ``distance`` the distance from its surface.
+
+    Parameters
+    ----------
+    centre
+        The centre, ``(3,)``.
+    radius
+        Radius, in model units.
+    distance
+        Give the distance instead of the polynomial.
+    """
     return Field(_core.Field.sphere(triple(centre, "centre"), float(radius), distance))
 
 
 def cylinder(point: Triple, direction: Triple, radius: float, *, distance: bool = False) -> Field:
-    """The infinite cylinder about a line; with ``distance`` the distance from its surface."""
+    """The infinite cylinder about a line; with ``distance`` the distance from its surface.
+
+    Parameters
+    ----------
+    point
+        A point of the axis, ``(3,)``.
+    direction
+        A direction of any length, ``(3,)``.
+    radius
+        Radius, in model units.
+    distance
+        Give the distance instead of the polynomial.
+    """
     p, d = triple(point, "point"), triple(direction, "direction")
     return Field(_core.Field.cylinder(p, d, float(radius), distance))
 
 
 def cone(apex: Triple, direction: Triple, angle: float) -> Field:
-    """The double cone with a full angle, in radians, at its apex."""
+    """The double cone with a full angle, in radians, at its apex.
+
+    Parameters
+    ----------
+    apex
+        The apex, ``(3,)``.
+    direction
+        A direction of any length, ``(3,)``.
+    angle
+        Full angle at the apex, radians, below pi.
+    """
     return Field(
         _core.Field.cone(triple(apex, "apex"), triple(direction, "direction"), float(angle))
     )
 
 
 def torus(centre: Triple, direction: Triple, major: float, minor: float) -> Field:
-    """The torus about an axis."""
+    """The torus about an axis.
+
+    Parameters
+    ----------
+    centre
+        The centre, ``(3,)``.
+    direction
+        A direction of any length, ``(3,)``.
+    major
+        Radius from the axis to the centre of the tube.
+    minor
+        Radius of the tube.
+    """
     p, d = triple(centre, "centre"), triple(direction, "direction")
     return Field(_core.Field.torus(p, d, float(major), float(minor)))
 
@@ -291,6 +420,21 @@ def cyclide(
     """The Dupin cyclide: a ring whose tube is thinner on one side.
 
     Its radius is ``minor - change`` towards ``along`` and ``minor + change`` opposite.
+
+    Parameters
+    ----------
+    centre
+        The centre, ``(3,)``.
+    direction
+        A direction of any length, ``(3,)``.
+    along
+        Direction in which the tube gets thinner, ``(3,)``.
+    major
+        Radius from the axis to the centre of the tube.
+    minor
+        Radius of the tube.
+    change
+        Half the difference of the greatest and the least radius of the tube.
     """
     p, d, a = triple(centre, "centre"), triple(direction, "direction"), triple(along, "along")
     return Field(_core.Field.cyclide(p, d, a, float(major), float(minor), float(change)))
@@ -341,6 +485,13 @@ def _from_text(text: str) -> Field:
 def read_fidget(text: str) -> Field:
     r"""The field of a text of fidget: a line ``name operation operands`` for each value.
 
+    Parameters
+    ----------
+    text
+        The text.
+
+    Examples
+    --------
     >>> from moldloft import implicit as im
     >>> im.read_fidget("_0 var-x\n_1 square _0")((3, 0, 0))
     9.0
@@ -351,6 +502,13 @@ def read_fidget(text: str) -> Field:
 def read_libfive(text: str) -> Field:
     """The field of a text of libfive: nested lists.
 
+    Parameters
+    ----------
+    text
+        The text.
+
+    Examples
+    --------
     >>> from moldloft import implicit as im
     >>> im.read_libfive("(- (sqrt (+ (square x) (square y))) 1)")((3, 4, 0))
     4.0
@@ -363,33 +521,70 @@ def _unary(name: str, x: Field) -> Field:
 
 
 def sin(x: Field) -> Field:
-    """The sine, of radians."""
+    """The sine, of radians.
+
+    Parameters
+    ----------
+    x
+        The argument.
+    """
     return _unary("sin", x)
 
 
 def cos(x: Field) -> Field:
-    """The cosine, of radians."""
+    """The cosine, of radians.
+
+    Parameters
+    ----------
+    x
+        The argument.
+    """
     return _unary("cos", x)
 
 
 def exp(x: Field) -> Field:
-    """The exponential."""
+    """The exponential.
+
+    Parameters
+    ----------
+    x
+        The argument.
+    """
     return _unary("exp", x)
 
 
 def ln(x: Field) -> Field:
-    """The natural logarithm; it has no value where the field is not above zero."""
+    """The natural logarithm; it has no value where the field is not above zero.
+
+    Parameters
+    ----------
+    x
+        The argument.
+    """
     return _unary("ln", x)
 
 
 def tan(x: Field) -> Field:
-    """The tangent, of radians."""
+    """The tangent, of radians.
+
+    Parameters
+    ----------
+    x
+        The argument.
+    """
     return _unary("tan", x)
 
 
 def twist(rate: float) -> tuple[Field, Field, Field]:
     """The coordinates of a twist about the z axis, by ``rate`` radians for each unit of z.
 
+    Parameters
+    ----------
+    rate
+        Turn per length along z, radians.
+
+    Examples
+    --------
     >>> from moldloft import implicit as im
     >>> drill = im.cuboid((-1, -0.3, 0), (1, 0.3, 4)).remapped(*im.twist(0.8))
     """
@@ -399,30 +594,72 @@ def twist(rate: float) -> tuple[Field, Field, Field]:
 
 
 def sqrt(x: Field) -> Field:
-    """The square root; zero where the field is negative."""
+    """The square root; zero where the field is negative.
+
+    Parameters
+    ----------
+    x
+        The argument.
+    """
     return _unary("sqrt", x)
 
 
 def s_sqrt(x: Field) -> Field:
-    """sgn(f) sqrt|f|. This is not a distance: its slope on the surface has no bound."""
+    """sgn(f) sqrt|f|. This is not a distance: its slope on the surface has no bound.
+
+    Parameters
+    ----------
+    x
+        The argument.
+    """
     return _unary("s_sqrt", x)
 
 
 def sign(x: Field) -> Field:
-    """1 where the field is positive, else -1."""
+    """1 where the field is positive, else -1.
+
+    Parameters
+    ----------
+    x
+        The argument.
+    """
     return _unary("sign", x)
 
 
 def minimum(a: Field | float, b: Field | float) -> Field:
-    """The smaller of two."""
+    """The smaller of two.
+
+    Parameters
+    ----------
+    a
+        The first field.
+    b
+        The second field.
+    """
     return Field(_required(a)._core.binary("min", _required(b)._core))
 
 
 def maximum(a: Field | float, b: Field | float) -> Field:
-    """The larger of two."""
+    """The larger of two.
+
+    Parameters
+    ----------
+    a
+        The first field.
+    b
+        The second field.
+    """
     return Field(_required(a)._core.binary("max", _required(b)._core))
 
 
 def atan2(y: Field | float, x: Field | float) -> Field:
-    """The angle of the point (x, y), in (-pi, pi]."""
+    """The angle of the point (x, y), in (-pi, pi].
+
+    Parameters
+    ----------
+    y
+        The second argument.
+    x
+        The argument.
+    """
     return Field(_required(y)._core.binary("atan2", _required(x)._core))

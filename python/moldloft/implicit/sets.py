@@ -232,7 +232,21 @@ class Set:
         tolerance: float | None = None,
         tags: Mapping[str, str] | None = None,
     ) -> Set:
-        """The same set with these attributes; what its parts say of themselves stays."""
+        """The same set with these attributes; what its parts say of themselves stays.
+
+        Parameters
+        ----------
+        name
+            A name.
+        colour
+            Colour index, 0 to 255.
+        material
+            Name of a material.
+        tolerance
+            How near to the surface a point counts as on it.
+        tags
+            Texts by name.
+        """
         return Set(self._with(name, colour, material, tolerance, tags))
 
     # -- combination -----------------------------------------------------------------------
@@ -271,39 +285,104 @@ class Set:
         return Set(self._core.regularized())
 
     def pruned(self, low: Triple, high: Triple) -> Set:
-        """The set as it is inside a box: what is all solid or all air there is left out."""
+        """The set as it is inside a box: what is all solid or all air there is left out.
+
+        Parameters
+        ----------
+        low
+            The low corner of a box, ``(3,)``.
+        high
+            The high corner of a box, ``(3,)``.
+        """
         return Set(self._core.pruned(triple(low, "low corner"), triple(high, "high corner")))
 
     def translated(self, by: Triple) -> Set:
-        """The set moved by a vector."""
+        """The set moved by a vector.
+
+        Parameters
+        ----------
+        by
+            The vector, ``(3,)``.
+        """
         return self.mapped(np.eye(3), by)
 
     def turned(self, point: Triple, direction: Triple, angle: float) -> Set:
-        """The set turned about a line, right-handed, by an angle in radians."""
+        """The set turned about a line, right-handed, by an angle in radians.
+
+        Parameters
+        ----------
+        point
+            A point of the axis, ``(3,)``.
+        direction
+            A direction of any length, ``(3,)``.
+        angle
+            Angle, radians.
+        """
         return self.mapped(*turn(point, direction, angle))
 
     def mirrored(self, normal: Triple, point: Triple = (0, 0, 0)) -> Set:
-        """The mirror image in a plane."""
+        """The mirror image in a plane.
+
+        Parameters
+        ----------
+        normal
+            A normal of any length, ``(3,)``; it points from solid to air.
+        point
+            A point, ``(3,)``.
+        """
         return self.mapped(*reflection(normal, point))
 
     def scaled(self, factor: float, centre: Triple = (0, 0, 0)) -> Set:
-        """The set scaled about a point."""
+        """The set scaled about a point.
+
+        Parameters
+        ----------
+        factor
+            The factor, not zero.
+        centre
+            The centre, ``(3,)``.
+        """
         return self.mapped(*scaling(factor, centre))
 
     def mapped(self, matrix: ArrayLike, shift: Triple = (0, 0, 0)) -> Set:
-        """The set moved by the affine map X -> matrix X + shift."""
+        """The set moved by the affine map X -> matrix X + shift.
+
+        Parameters
+        ----------
+        matrix
+            Matrix ``(3, 3)``.
+        shift
+            Translation after the matrix, ``(3,)``.
+        """
         rows = np.asarray(matrix, dtype=np.float64)
         if rows.shape != (3, 3):
             raise ValueError(f"the matrix has the shape (3, 3), found {rows.shape}")
         return Set(self._core.mapped(rows.tolist(), triple(shift, "shift")))
 
     def remapped(self, x: Field, y: Field, z: Field) -> Set:
-        """The set with its coordinates replaced by three fields; see :meth:`Field.remapped`."""
+        """The set with its coordinates replaced by three fields; see :meth:`Field.remapped`.
+
+        Parameters
+        ----------
+        x
+            The first field.
+        y
+            The second field.
+        z
+            The third field.
+        """
         return Set(self._core.remapped(x._core, y._core, z._core))
 
     def offset(self, distance: float) -> Set:
         """The set grown by a distance, or shrunk by a negative one; edges stay sharp.
 
+        Parameters
+        ----------
+        distance
+            By how much it grows; negative: shrinks.
+
+        Examples
+        --------
         >>> from moldloft import implicit as im
         >>> round(im.cuboid((0, 0, 0), (1, 1, 1)).offset(0.1).mass().volume, 9)
         1.728
@@ -311,7 +390,13 @@ class Set:
         return Set(self._core.offset(float(distance)))
 
     def shell(self, thickness: float) -> Set:
-        """The wall of that thickness inside of the surface."""
+        """The wall of that thickness inside of the surface.
+
+        Parameters
+        ----------
+        thickness
+            Thickness of the wall, in model units.
+        """
         return Set(self._core.shell(float(thickness)))
 
     def rounded(
@@ -321,6 +406,15 @@ class Set:
 
         ``edges`` are pairs of the names of faces, by default all; ``lam`` shapes the round between
         0 (a chamfer) and 1 (the edge), 2/3 is an arc between perpendicular planes.
+
+        Parameters
+        ----------
+        width
+            Setback on both faces, in model units.
+        lam
+            Shape of the blend, between 0 and 1.
+        edges
+            Pairs of names of faces; by default all edges.
         """
         return Set(self._core.rounded(float(width), float(lam), _pairs(edges)))
 
@@ -338,6 +432,21 @@ class Set:
         ``edges`` are pairs of the names of a face of this set and one of the other, by default all.
         The faces are planes, balls, cylinders, cones and tori.
 
+        Parameters
+        ----------
+        other
+            The set that is joined.
+        width
+            Setback on this set, in model units.
+        other_width
+            Setback on the other set; by default the same.
+        lam
+            Shape of the blend, between 0 and 1.
+        edges
+            Pairs of a face of this set and one of the other; by default all.
+
+        Examples
+        --------
         >>> from moldloft import implicit as im
         >>> plate, post = im.cuboid((-2, -2, -1), (2, 2, 0)), im.cuboid((-1, -1, -1), (1, 1, 2))
         >>> round(plate.filleted(post, 0.5).mass().volume - 24, 2) > 0
@@ -350,6 +459,15 @@ class Set:
     def chamfered(self, width: float, *, edges: Sequence[Sequence[str]] | None = None) -> Set:
         """The set with its convex edges chamfered, of setback ``width`` on both faces.
 
+        Parameters
+        ----------
+        width
+            Setback on both faces, in model units.
+        edges
+            Pairs of names of faces; by default all edges.
+
+        Examples
+        --------
         >>> from moldloft import implicit as im
         >>> round(im.cuboid((0, 0, 0), (10, 6, 4)).chamfered(1).mass().volume, 6)
         206.0
@@ -376,13 +494,25 @@ class Set:
         return self._core.to_text()
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes :meth:`dumps` to a file; :func:`load` reads it."""
+        """Writes :meth:`dumps` to a file; :func:`load` reads it.
+
+        Parameters
+        ----------
+        path
+            The file.
+        """
         from moldloft.storage import put
 
         put(Path(path), self.dumps().encode())
 
     def sdl(self, name: str = "part") -> str:
-        """The set as a program of the language that declares it under ``name``."""
+        """The set as a program of the language that declares it under ``name``.
+
+        Parameters
+        ----------
+        name
+            The name that the program declares it under.
+        """
         if not name.isidentifier():
             raise ValueError(f"a set is declared under a name, found {name!r}")
         return self._core.to_sdl(name)
@@ -425,7 +555,13 @@ class Set:
         return self._core.is_nothing
 
     def same(self, other: Set) -> bool:
-        """True when both are the same combination with the same attributes."""
+        """True when both are the same combination with the same attributes.
+
+        Parameters
+        ----------
+        other
+            The other set.
+        """
         return self._core.same(other._core)
 
     def __call__(self, points: ArrayLike) -> Any:
@@ -441,6 +577,15 @@ class Set:
 
         A primitive counts as zero where it is at most ``tolerance`` from its surface. The fields
         ``known`` do everywhere: on their surfaces the points are known to lie.
+
+        Parameters
+        ----------
+        points
+            Points ``(…, 3)``.
+        tolerance
+            The distance from the surface within which a point is on it.
+        known
+            Fields whose leaves are taken to be zero.
         """
         flat, shape = points_of(points)
         cores = [field._core for field in known]
@@ -448,17 +593,36 @@ class Set:
         return members if shape else int(members)
 
     def winner(self, points: ArrayLike) -> Any:
-        """The number in :attr:`leaves` of the primitive that decides at each point; -1 for none."""
+        """The number in :attr:`leaves` of the primitive that decides at each point; -1 for none.
+
+        Parameters
+        ----------
+        points
+            Points ``(…, 3)``.
+        """
         flat, shape = points_of(points)
         winners = self._core.winners(flat).reshape(shape)
         return winners if shape else int(winners)
 
     def range(self, low: Triple, high: Triple) -> tuple[float, float]:
-        """Proved bounds of the values over a box."""
+        """Proved bounds of the values over a box.
+
+        Parameters
+        ----------
+        low
+            The low corner of a box, ``(3,)``.
+        high
+            The high corner of a box, ``(3,)``.
+        """
         return self._core.range(triple(low, "low corner"), triple(high, "high corner"))
 
     def bounds(self, accuracy: float = 1e-3) -> tuple[Floats, Floats] | None:
         """A box that is proved to contain the set, ``low, high``; None for an empty set.
+
+        Parameters
+        ----------
+        accuracy
+            The largest error, in the unit of the result.
 
         Raises
         ------
@@ -530,6 +694,17 @@ class Set:
         """The point of the surface, in a box, that is nearest to ``point``; None without a surface.
 
         ``accuracy`` is how much nearer another point may be, by default 1e-6 of the box.
+
+        Parameters
+        ----------
+        point
+            A point, ``(3,)``.
+        low
+            The low corner of a box, ``(3,)``.
+        high
+            The high corner of a box, ``(3,)``.
+        accuracy
+            How much nearer another point may be.
         """
         found = self._core.nearest(triple(point, "point"), _corners(low, high), accuracy)
         if found is None:
@@ -549,6 +724,19 @@ class Set:
 
         ``accuracy`` is how much nearer they may be, by default 1e-5 of the box.
 
+        Parameters
+        ----------
+        other
+            The other set.
+        low
+            The low corner of a box, ``(3,)``.
+        high
+            The high corner of a box, ``(3,)``.
+        accuracy
+            The largest error of the distance.
+
+        Examples
+        --------
         >>> from moldloft import implicit as im
         >>> a, b = im.Set(im.sphere((0, 0, 0), 1)), im.Set(im.sphere((3, 4, 0), 1))
         >>> round(a.distance(b).distance, 6)
@@ -562,7 +750,17 @@ class Set:
         return Distance(distance, at_least, np.array(first), np.array(second))
 
     def hits(self, start: Triple, direction: Triple, length: float = 1e3) -> list[Hit]:
-        """Where a ray crosses the surface, in order; ``length`` is how far it goes."""
+        """Where a ray crosses the surface, in order; ``length`` is how far it goes.
+
+        Parameters
+        ----------
+        start
+            Where it begins, ``(3,)``.
+        direction
+            A direction of any length, ``(3,)``.
+        length
+            How far the ray goes, in model units.
+        """
         rays = self._core.hits(
             triple(start, "start"), triple(direction, "direction"), float(length)
         )
@@ -712,13 +910,27 @@ def _pairs(edges: Sequence[Sequence[str]] | None) -> list[list[str]] | None:
 
 
 def loads(text: str) -> Set:
-    """The set of a text that :meth:`Set.dumps` made."""
+    """The set of a text that :meth:`Set.dumps` made.
+
+    Parameters
+    ----------
+    text
+        A text that :meth:`Set.dumps` made.
+    """
     return Set(_core.Set.from_text(text))
 
 
 def load(path: str | os.PathLike[str]) -> Set:
-    """The set of a file that :meth:`Set.save` wrote."""
-    return loads(Path(path).read_text(encoding="utf-8"))
+    """The set of a file that :meth:`Set.save` wrote.
+
+    Parameters
+    ----------
+    path
+        The file.
+    """
+    from moldloft.storage import read_text
+
+    return loads(read_text(path))
 
 
 def everything() -> Set:
@@ -732,7 +944,15 @@ def nothing() -> Set:
 
 
 def cuboid(low: Triple, high: Triple) -> Set:
-    """The box between two corners."""
+    """The box between two corners.
+
+    Parameters
+    ----------
+    low
+        The corner with the least coordinates, ``(3,)``.
+    high
+        The corner with the greatest coordinates, ``(3,)``.
+    """
     return Set(_core.Set.cuboid(triple(low, "low corner"), triple(high, "high corner")))
 
 
@@ -760,6 +980,13 @@ def _reach(
 def segment(start: Triple, end: Triple) -> Set:
     """The straight line between two points, as a wire.
 
+    Parameters
+    ----------
+    start
+        Where it begins, ``(3,)``.
+    end
+        Where it ends, ``(3,)``.
+
     Examples
     --------
     >>> from moldloft import implicit as im
@@ -773,6 +1000,11 @@ def segment(start: Triple, end: Triple) -> Set:
 def point(at: Triple) -> Set:
     """One point.
 
+    Parameters
+    ----------
+    at
+        The place, ``(3,)``.
+
     Examples
     --------
     >>> from moldloft import implicit as im
@@ -783,7 +1015,13 @@ def point(at: Triple) -> Set:
 
 
 def tetrahedron(corners: Sequence[Triple]) -> Set:
-    """The tetrahedron of four points, in any order."""
+    """The tetrahedron of four points, in any order.
+
+    Parameters
+    ----------
+    corners
+        Four points, ``(4, 3)``.
+    """
     points = [triple(p, "corner") for p in corners]
     if len(points) != 4:
         raise ValueError(f"a tetrahedron has four corners, found {len(points)}")

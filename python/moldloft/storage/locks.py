@@ -137,7 +137,7 @@ class Lock:
             return False
 
     def release(self) -> None:
-        """Let go; a second time is no fault."""
+        """Let go; doing so twice is allowed."""
         file, self._file = self._file, -1
         if file < 0:
             return

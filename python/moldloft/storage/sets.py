@@ -154,7 +154,7 @@ class _Set:
                     draft.place()
                 for folder in folders:
                     system.folder_synced(folder)
-                system.remove(self._folder / RECORD)
+                system.remove(self._folder / RECORD, there=True)
             except BaseException:
                 _undo(self._folder, self._token, self._entries)
                 for draft in drafts:

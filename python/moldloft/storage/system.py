@@ -105,10 +105,13 @@ def link(old: Path, new: Path) -> None:
     os.link(old, new, follow_symlinks=False)
 
 
-def remove(path: Path) -> None:
-    """Remove a name; one that is not there is no fault."""
-    with contextlib.suppress(FileNotFoundError):
+def remove(path: Path, *, there: bool = False) -> None:
+    """Remove a name; one that is not there is no fault, unless it must be ``there``."""
+    try:
         os.unlink(path)
+    except FileNotFoundError:
+        if there:
+            raise
 
 
 def make_folder(path: Path) -> None:

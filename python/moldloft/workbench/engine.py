@@ -31,7 +31,7 @@ class Engine:
     library
         Further folders.
     memory
-        The most bytes of address space.
+        The most bytes of the model.
     budget
         Seconds for one request; then the work is stopped, and a little later the process ended.
     """

@@ -1,0 +1,147 @@
+"""What a run may use: memory, steps, objects, seconds."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import NamedTuple
+
+from moldloft import _core
+from moldloft.errors import ModelError
+
+__all__ = ["Limits", "limits", "parsed"]
+
+_UNITS = {"": 1, "k": 1 << 10, "m": 1 << 20, "g": 1 << 30, "t": 1 << 40}
+
+#: Without so much nothing can be run at all.
+_LEAST_MEMORY = 16 << 20
+_MOST_COUNT = (1 << 63) - 1
+
+
+class Limits(NamedTuple):
+    """What a run may use before it ends with an error.
+
+    Attributes
+    ----------
+    memory
+        Bytes that models hold, all of the process together.
+    steps
+        Statements and calls of one run.
+    objects
+        Objects of one model.
+    seconds
+        Time of one run, one mesh, one measure; ``inf`` for no limit.
+    """
+
+    memory: int
+    steps: int
+    objects: int
+    seconds: float
+
+
+def limits(
+    *,
+    memory: int | str | None = None,
+    steps: int | None = None,
+    objects: int | None = None,
+    seconds: float | None = None,
+) -> Limits:
+    """The limits of everything that this process runs; what is given is set.
+
+    Parameters
+    ----------
+    memory
+        Bytes, or a text such as ``"2G"`` or ``"500M"``; at least 16 MiB.
+    steps, objects
+        At least 1.
+    seconds
+        Above 0; ``math.inf`` for no limit.
+
+    Returns
+    -------
+    Limits
+        All four, as they are now.
+
+    Raises
+    ------
+    ModelError
+        When a value is none that can be kept.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> before = moldloft.limits()
+    >>> moldloft.limits(memory="2G", seconds=10).memory
+    2147483648
+    >>> moldloft.limits(steps=0)
+    Traceback (most recent call last):
+      ...
+    moldloft.errors.ModelError: `steps` is a whole number of at least 1, found 0
+    >>> moldloft.limits(**before._asdict()) == before
+    True
+    """
+    old = Limits(*_core.limits())
+    new = Limits(
+        old.memory if memory is None else _bytes(memory),
+        old.steps if steps is None else _count("steps", steps),
+        old.objects if objects is None else _count("objects", objects),
+        old.seconds if seconds is None else _seconds(seconds),
+    )
+    if new != old:
+        _core.set_limits(*new)
+    return new
+
+
+def parsed(text: str) -> dict[str, str | int | float]:
+    """The arguments of :func:`limits` that ``NAME=VALUE`` says.
+
+    >>> parsed("memory=500M")
+    {'memory': '500M'}
+    """
+    name, equals, value = text.partition("=")
+    if not equals or name not in Limits._fields:
+        raise ModelError(
+            f"`{text}` is not NAME=VALUE with one of the names {', '.join(Limits._fields)}"
+        )
+    if name == "memory":
+        _bytes(value)
+        return {name: value}
+    try:
+        number = float(value)
+    except ValueError:
+        raise ModelError(f"`{name}` is a number, found `{value}`") from None
+    if name == "seconds":
+        return {name: _seconds(number)}
+    return {name: _count(name, int(number) if number.is_integer() else number)}
+
+
+def _bytes(memory: int | str) -> int:
+    found: float = -1
+    if isinstance(memory, str):
+        match = re.fullmatch(r"\s*(\d{1,18}(?:\.\d{1,9})?)\s*([kmgt]?)(?:i?b)?\s*", memory, re.I)
+        if match:
+            found = float(match[1]) * _UNITS[match[2].lower()]
+    elif isinstance(memory, int) and not isinstance(memory, bool):
+        found = memory
+    if not _LEAST_MEMORY <= found <= _MOST_COUNT:
+        raise ModelError(
+            f'`memory` is a number of bytes of at least 16 MiB, such as "2G", found {memory!r}'
+        )
+    return int(found)
+
+
+def _count(name: str, value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= _MOST_COUNT:
+        raise ModelError(f"`{name}` is a whole number of at least 1, found {value!r}")
+    return value
+
+
+def _seconds(value: float) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise ModelError(f"`seconds` is a number above 0, found {value!r}")
+    # Whole numbers may be longer than any float.
+    if isinstance(value, int) and value > 1 << 60:
+        return math.inf
+    if math.isnan(value) or value <= 0:
+        raise ModelError(f"`seconds` is a number above 0, found {value!r}")
+    return float(value)
