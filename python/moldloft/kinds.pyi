@@ -8314,6 +8314,7 @@ def Weight(
     group: _Text | None = ...,
     margin: _Number | None = ...,
     status: _Text | None = ...,
+    images: _Text | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -8327,6 +8328,9 @@ def Weight(
     attributes: _Text | None = ...,
 ) -> AnyHandle:
     """A mass and its centre: a part of a ship's weight.
+
+    Each weight counts as stated, also in a model that is mirrored (`Model info(symmetry = "y")`): `images = "y"` adds the
+    other side, which doubles the mass and moves the centre into the plane.
 
     The mass is given, or follows from a mass per length of a curve, per area of a surface, per volume of a solid or
     body. `w.mass` is the mass with its margin, `w.centre`, `w.x`, `w.y`, `w.z` are the centre: numbers of the program.
@@ -8350,6 +8354,10 @@ def Weight(
         A margin that is added to the mass, in percent. Default 0.
     status : text, optional
         How the mass is known: "estimated", "calculated" or "weighed". Default estimated.
+    images : text, optional
+        The planes in which it has mirror images that count as well: "y" for what is on both
+        sides of y = 0, "" for what is there once. A mass per area of one side of a symmetric
+        model needs it.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.

@@ -127,7 +127,7 @@ def test_time_is_limited() -> None:
 
 def test_steps_and_objects_are_raised_by_who_may() -> None:
     before = _core.limits()
-    text = "for (i = 1:40) AbsPoint p[i](i, 0, 0);"
+    text = "for (i = 1:40) AbsPoint p(i, 0, 0);"
     try:
         _core.set_limits(before[0], before[1], 30, before[3])
         with pytest.raises(moldloft.ModelError, match="too many objects") as error:
