@@ -9,8 +9,10 @@ fn counted(places: &[Vec3], facets: &Facets) -> String {
     let (n, p) = (places.len(), places[0]);
     let Facets { cells, step, .. } = facets;
     let first = if n == 1 { "about" } else { "the first about" };
+    // Cells without surface are not among those that are counted.
+    let of = if n <= *cells { format!("of {cells} ") } else { String::new() };
     format!(
-        "in {n} of {cells} cells of side {step:.3e}, {first} ({:.6}, {:.6}, {:.6})",
+        "in {n} {of}cells of side {step:.3e}, {first} ({:.6}, {:.6}, {:.6})",
         p.x, p.y, p.z
     )
 }
