@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import functools
 import inspect
+import linecache
 import operator
 import re
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, get_args
 
 from moldloft.errors import Error
@@ -59,9 +61,8 @@ def explain(module: dict[str, Any]) -> None:
     module
         The module's ``globals()``, at its end.
     """
-    for name in module["__all__"]:
-        thing = module[name]
-        if getattr(thing, "__module__", None) != module["__name__"]:
+    for name, thing in list(module.items()):
+        if name.startswith("_") or getattr(thing, "__module__", "") != module["__name__"]:
             continue
         if inspect.isfunction(thing):
             module[name] = _explained(thing)
@@ -90,7 +91,7 @@ def _explained(function: Callable[..., Any]) -> Callable[..., Any]:
         except Error:
             raise
         except _RAW as error:
-            found = _fault(function, arguments, options)
+            found = _fault(function, arguments, options) or _said(error)
             if found is None:
                 raise
             name, text = found
@@ -122,6 +123,19 @@ def _fault(
                 expected = " or ".join(dict.fromkeys(kinds))
                 return name, f"`{name}` of `{where}`: expected {expected}, found {_shown(one)}"
     return None
+
+
+def _said(error: Exception) -> tuple[str, str] | None:
+    """What a function of ours says of its argument by itself, in a ``raise`` of its own."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    if trace is None or not isinstance(error, (TypeError, ValueError)):
+        return None
+    place = trace.tb_frame.f_code.co_filename
+    line = linecache.getline(place, trace.tb_lineno).lstrip()
+    ours = Path(place).is_relative_to(Path(__file__).parent) and line.startswith("raise ")
+    return ("", str(error)) if ours else None
 
 
 def _alternatives(written: str) -> list[str]:

@@ -181,6 +181,8 @@ def test_wrong_arguments_are_named(tmp_path: Path) -> None:
         with pytest.raises(Error, match=f"`{name}`") as raised:
             call()
         assert isinstance(raised.value, (TypeError, ValueError, KeyError)), name
+    with pytest.raises(Error, match="three coordinates, found 2"):
+        implicit.plane((0, 0), (1, 0, 0))
     # What Python says of itself stays.
     with pytest.raises(TypeError, match="positional"):
         m.eval()
