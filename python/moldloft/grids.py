@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import Error, FileError, FormatError
 from moldloft.files import Output, commit
 from moldloft.storage import read_bytes
@@ -425,3 +426,6 @@ def read_aerofoil(path: str | Path) -> Aerofoil:
         raise _named(path, error) from error
     name, points, nose, listing = found
     return Aerofoil(name, np.array(points, dtype=np.float64)[:, :2], nose, listing)
+
+
+explain(globals())

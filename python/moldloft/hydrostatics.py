@@ -12,6 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.units import ANGLES, DIMENSIONS, Units
 
@@ -445,3 +446,6 @@ def _save(figure: Any, path: str | os.PathLike[str]) -> Path:
     metadata = {"Date": None} if kind == "svg" else None
     figure.savefig(drawn, format=kind, metadata=metadata)
     return commit(path.parent, [Output(path.name, drawn.getvalue())])[0]
+
+
+explain(globals())

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 
 if TYPE_CHECKING:
@@ -686,3 +687,6 @@ def draw(model: Model, path: str | os.PathLike[str], **options: Any) -> Path:
     plan = lines_plan(model, **options)
     data = writers[path.suffix.lower()](plan)
     return commit(path.parent, [Output(path.name, data)])[0]
+
+
+explain(globals())

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from moldloft.arguments import explain
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -236,3 +238,6 @@ def _frozen(mesh: Mesh) -> _Frozen:
 
 def _thawed(frozen: _Frozen, symmetry: str) -> Mesh:
     return Mesh(frozen, symmetry)
+
+
+explain(globals())

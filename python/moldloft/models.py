@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import Error, FileError, ModelError, UnknownNameError
 from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
 from moldloft.objects import object_of
@@ -1130,3 +1131,6 @@ class Model:
             f"<Model: {objects} object{'s' * (objects != 1)}, "
             f"{params} parameter{'s' * (params != 1)}>"
         )
+
+
+explain(globals())

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 
 if TYPE_CHECKING:
@@ -217,3 +218,6 @@ def _basis(knots: Floats, degree: int, at: Floats) -> Floats:
     for r, value in enumerate(values):
         out[np.arange(len(at)), span - degree + r] = value
     return out
+
+
+explain(globals())

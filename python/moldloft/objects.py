@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error, ModelError
 
 if TYPE_CHECKING:
@@ -560,3 +561,6 @@ if TYPE_CHECKING:
         centroid: Floats
 
         def __call__(self, *parameters: ArrayLike) -> Floats: ...
+
+
+explain(globals())

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.storage import read_text
 
@@ -286,3 +287,6 @@ def _breadth(cut: NDArray[np.float64], z: float) -> float | None:
             if here > -1e-12 and (best is None or here > best):
                 best = max(float(here), 0.0)
     return best
+
+
+explain(globals())

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import ModelError
 
 if TYPE_CHECKING:
@@ -171,3 +172,6 @@ def intersect(target: Object, other: object) -> Intersection:
         complete=found["complete"],
         smallest=found["smallest"],
     )
+
+
+explain(globals())

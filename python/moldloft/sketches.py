@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import Error, UnknownNameError
 from moldloft.storage import read_text
 
@@ -415,3 +416,6 @@ class Sketch:
 
     def _data(self) -> dict[str, Any]:
         return self.objects[self._name(None)]
+
+
+explain(globals())

@@ -21,6 +21,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.storage import read_text
 from moldloft.units import Units
@@ -923,3 +924,6 @@ _KINDS: dict[str, Callable[[_Context, Mapping[str, Any]], Check]] = {
     "range": _range_clause,
     "weather": _weather_clause,
 }
+
+
+explain(globals())

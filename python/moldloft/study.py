@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error, UnknownNameError
 
 if TYPE_CHECKING:
@@ -221,3 +222,6 @@ def component(
                 at += size
 
     return ModelComponent()
+
+
+explain(globals())

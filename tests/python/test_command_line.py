@@ -67,7 +67,8 @@ def test_several_models_and_patterns(cli, tmp_path) -> None:
         ("c.sdl", False),
     ]
     cli("build", "[ab].sdl", "--to", "stl", "-q", "-o", "out")
-    assert {p.name for p in (tmp_path / "out").iterdir()} == {"a.stl", "b.stl"}
+    names = {p.name for p in (tmp_path / "out").iterdir()}
+    assert names == {".moldloft-written", "a.stl", "b.stl"}
     assert "no file matches" in cli("check", "*.ms2", status=1).stderr
     assert cli("fmt", "--check", "[ab].sdl").stdout == ""
 

@@ -156,3 +156,48 @@ def test_wrong_numbers_for_limits(value: object) -> None:
         with pytest.raises(Error, match=f"`{name}`"):
             moldloft.limits(**{name: value})  # type: ignore[arg-type]
     assert moldloft.limits() == before
+
+
+def test_wrong_arguments_are_named(tmp_path: Path) -> None:
+    import numpy as np
+
+    from moldloft import fairing, grids, implicit
+
+    m = moldloft.load(HULL)
+    s = implicit.Set(implicit.sphere((0, 0, 0), 1))
+    calls = [
+        ("level", lambda: m.hydrostatics(level=len)),
+        ("level", lambda: m.hydrostatics(level=10**400)),
+        ("path", lambda: m.write(np.zeros(3))),
+        ("expression", lambda: m.eval(3)),
+        ("name", lambda: m.__getitem__(np.zeros(3))),
+        ("path", lambda: grids.read_aerofoil([5, 5])),
+        ("folder", lambda: moldloft.Sketch(3)),
+        ("tol", lambda: fairing.fair(np.zeros((9, 2)), "x")),
+        ("name", lambda: s.sdl(len)),
+        ("path", lambda: s.save(None)),
+    ]
+    for name, call in calls:
+        with pytest.raises(Error, match=f"`{name}`") as raised:
+            call()
+        assert isinstance(raised.value, (TypeError, ValueError, KeyError)), name
+    with pytest.raises(Error, match="three coordinates, found 2"):
+        implicit.plane((0, 0), (1, 0, 0))
+    # What Python says of itself stays.
+    with pytest.raises(TypeError, match="positional"):
+        m.eval()
+
+
+def test_errors_that_are_no_fault_of_arguments_stay() -> None:
+    from moldloft import arguments
+
+    def public(number: float, names: list[str] | None = None) -> None:
+        """A function."""
+        raise KeyError("other")
+
+    module = {"__name__": public.__module__, "__all__": ["public"], "public": public}
+    arguments.explain(module)
+    with pytest.raises(KeyError, match="other"):
+        module["public"](1.0)
+    with pytest.raises(arguments.ArgumentError, match=r"`number` of .*: expected a number, found"):
+        module["public"]([])

@@ -469,7 +469,7 @@ def test_the_command(tmp_path):
     assert shape["class"] == "set" and mesh["triangles"] > 1000
     done = command("build", model, "--to", "stl", "--to", "3mf", "-o", tmp_path)
     assert done.returncode == 0, done.stderr
-    assert {p.name for p in tmp_path.iterdir()} == {"tee.stl", "tee.3mf"}
+    assert {p.name for p in tmp_path.iterdir()} == {".moldloft-written", "tee.stl", "tee.3mf"}
     wires = command("build", EXAMPLES / "wires.sdl", "--to", "stl", "-o", tmp_path)
     assert wires.returncode == 1 and "stl cannot hold the wires of `crossing`" in wires.stderr
     done = command("build", EXAMPLES / "wires.sdl", "--to", "obj", "-o", tmp_path)

@@ -28,8 +28,10 @@ ELSEWHERE = {"reference.md", "implicit.md", "tutorial.md", "diagnostics.md"}
 
 
 def blocks(page: Path, language: str) -> list[str]:
+    """The fenced blocks of a language; the end of one is not the beginning of another."""
     text = page.read_text(encoding="utf-8")
-    return re.findall(rf"^```{language}\n(.*?)^```", text, re.M | re.S)
+    fenced = re.findall(r"^```([^\n`]*)\n(.*?)^```$", text, re.M | re.S)
+    return [body for name, body in fenced if re.fullmatch(language, name)]
 
 
 def named(page: Path) -> str:
@@ -180,6 +182,22 @@ def test_examples_in_help_are_commands() -> None:
             words = shlex.split(re.split(r" [<>]", line)[0])
             assert words[0] == "moldloft" and words[1] == name
             whole_parser().parse_args(words[1:])
+
+
+def test_the_readme_prints_what_it_shows(cli, workplace: Path) -> None:
+    page = ROOT / "README.md"
+    Path("hull.sdl").write_text(blocks(page, "sdl")[0])
+    printed = ""
+    for words in commands(page):
+        if words[0] in ("build", "eval"):
+            done = cli(*words)
+            printed += done.stdout + done.stderr
+    for line in blocks(page, "text")[0].splitlines():
+        assert line == "..." or line in printed.splitlines(), line
+    m = moldloft.load("hull.sdl")
+    m["beam"] = 4.4
+    shown = (m.hydrostatics().volume, m.derivative("hydrostatics.volume", "beam"))
+    assert "{:.4f}, {:.4f}".format(*shown) in page.read_text(encoding="utf-8")
 
 
 def test_the_naval_architects_commands_run(cli, workplace: Path) -> None:

@@ -455,6 +455,88 @@ def test_a_failure_anywhere_leaves_the_old_or_the_new(tmp_path: Path, kind: str)
 
 
 @posix
+def test_failures_in_sets_of_all_sizes(tmp_path: Path) -> None:
+    """Random sets: files that are there, that are not, that are links; each operation fails."""
+    chance = random.Random(11)
+    points = 0
+    while points < (10_000 if SOAK else 150):
+        size = chance.randrange(2, 9)
+        kinds = [chance.choice(["old", "new", "link"]) for _ in range(size)]
+        new = [Output(f"f{k}", b"new %d" % k * chance.randrange(1, 2000)) for k in range(size)]
+
+        def begin(folder: Path, kinds: list[str] = kinds) -> None:
+            (folder / "there").mkdir(parents=True)
+            for k, kind in enumerate(kinds):
+                if kind == "old":
+                    (folder / f"f{k}").write_bytes(b"old %d" % k)
+                    (folder / f"f{k}").chmod(0o600 + k)
+                elif kind == "link":
+                    (folder / "there" / f"t{k}").write_bytes(b"old %d" % k)
+                    (folder / f"f{k}").symlink_to(f"there/t{k}")
+
+        base = tmp_path / f"at {points}"
+        begin(base / "old")
+        begin(base / "new")
+        commit(base / "new", new)
+        before, after = contents(base / "old"), contents(base / "new")
+        code, lasting = chance.choice(CODES), chance.random() < 0.5
+        number = 0
+        while True:
+            number += 1 if SOAK else chance.randrange(1, 6)
+            folder = base / str(number)
+            begin(folder)
+            sets._swept.clear()
+            failure = Failing(number, code, lasting)
+            with failing(failure):
+                try:
+                    commit(folder, new)
+                    refused = False
+                except FileError:
+                    refused = True
+            points += 1
+            sets._swept.clear()
+            recover(folder)
+            sets._swept.clear()
+            recover(folder / "there")
+            where = f"{kinds}, operation {number}, {errno.errorcode.get(code)}, {lasting=}"
+            assert contents(folder) == (before if refused else after), where
+            assert left_over(folder) == [], where
+            if not failure.reached:
+                break
+    print(f"{points} points")
+
+
+JOURNAL = """
+import sys
+from pathlib import Path
+from moldloft.storage import journal
+kept = journal.Journal(Path(sys.argv[1]), ["begin"], base="0")
+print("begin", flush=True)
+for k in range(1 << 40):
+    kept.append([f"POINT {k} {k * k}"])
+    print(k, flush=True)
+"""
+
+
+@posix
+def test_killed_journals_keep_every_answered_line(tmp_path: Path) -> None:
+    chance = random.Random(4)
+    for turn in range(300 if SOAK else 5):
+        path = tmp_path / f"{turn}.skj"
+        command = [sys.executable, "-c", JOURNAL, str(path)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as child:
+            assert child.stdout and child.stdout.readline() == "begin\n"
+            time.sleep(chance.uniform(0, 0.02))
+            child.kill()
+            answered = len(child.stdout.read().split("\n")) - 1
+        (left,) = journal.left_behind([path])
+        commands = left.commands
+        assert commands == ["begin", *(f"POINT {k} {k * k}" for k in range(len(commands) - 1))]
+        assert answered <= len(commands) - 1 <= answered + 1
+        assert left.damaged == 0
+
+
+@posix
 def test_a_journal_that_cannot_be_written_keeps_what_it_had(tmp_path: Path) -> None:
     for number in range(1, 40):
         path = tmp_path / f"{number}.skj"

@@ -34,8 +34,14 @@ BANNED = {
 }
 
 
+#: Finds every text that may have one of them, at once.
+ANY = re.compile("|".join(p.replace("(?<!here )", "").replace(" ", r"\s+") for p in BANNED))
+
+
 def wrong(text: str) -> list[str]:
     """The banned wordings of a text, with what to say instead."""
+    if not ANY.search(text):
+        return []
     flat = re.sub(r"\s+", " ", re.sub(r"`[^`\n]*`|\[[^\]]*\]\([^)]*\)", "`…`", text))
     return [
         f"{flat[max(0, m.start() - 40) : m.end() + 40]!r}: say {better}"

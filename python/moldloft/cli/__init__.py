@@ -149,7 +149,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _unexpected(error: Exception, arguments: Sequence[str]) -> str:
-    """A fault of ours in one line, or of an argument that is no text."""
+    """A fault of ours in one line, or of an argument that is not text."""
     wrong = [word for word in arguments if not word.isascii() and _has_surrogates(word)]
     if isinstance(error, UnicodeEncodeError) and wrong:
         return f"error: the argument {wrong[0]!a} is not UTF-8 text"

@@ -164,13 +164,13 @@ class Host:
 
         path = Path(self.options.output, file[0])
         try:
-            self._write_file(path, file[1])
+            self._write_file(file[0], path, file[1])
         except Error as error:
             text = str(error)
             return Reply("error", text, "choose another name or folder", 600)
         return Reply("note", f"wrote {path} ({len(file[1])} bytes)")
 
-    def _write_file(self, path: Path, data: bytes) -> None:
+    def _write_file(self, name: str, path: Path, data: bytes) -> None:
         from moldloft.files import Output, commit
         from moldloft.permissions import write_outputs
         from moldloft.storage import digest, put
@@ -178,7 +178,6 @@ class Host:
         if not self.typed:
             sources = [self.options.file] if self.options.file else []
             output, force = Path(self.options.output), self.options.force
-            name = path.relative_to(output).as_posix() if not path.is_absolute() else str(path)
             write_outputs(output, {name: data}, sources=sources, force=force)
             return
         own = self.options.file is not None and path.resolve() == Path(self.options.file).resolve()

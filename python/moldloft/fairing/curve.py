@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, narrowed, points_of, radii, refuse_repeats
 from moldloft.fairing.conditions import join_conditions, linear_conditions, shape_conditions
@@ -1001,3 +1002,6 @@ def _counted(numbers: Numbers, spline: Spline) -> Numbers:
         spline.inflections(),
         float(np.abs(curvature).max()),
     )
+
+
+explain(globals())

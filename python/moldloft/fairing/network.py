@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, narrowed, points_of, radii
 from moldloft.fairing.curve import _goal, laid, spacing_of
@@ -337,3 +338,6 @@ def _number(given: Any, count: int) -> int:
     if not 0 <= k < count:
         raise FairingError(f"expected points from 0 to {count - 1}, found {k}", index=max(k, 0))
     return k
+
+
+explain(globals())

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, points_of, radii
 from moldloft.fairing.report import lines_of
@@ -918,3 +919,6 @@ def fair_surface(
         passes=passes if mode == "faithful" else None,
         seconds=seconds,
     )
+
+
+explain(globals())

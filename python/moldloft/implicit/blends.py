@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, overload
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.implicit.fields import Field, triple
 
 if TYPE_CHECKING:
@@ -270,3 +271,6 @@ def transition(
     cores = (l1._core, l2._core, l3._core, l4._core)
     core, field = _core.Set.transition(*cores, float(lam), int(contact))
     return Blend(Set(core), Field(field))
+
+
+explain(globals())

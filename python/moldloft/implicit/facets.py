@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.arguments import explain
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -372,3 +374,6 @@ def _drawn(
         + "\n".join(parts)
         + "\n</svg>\n"
     )
+
+
+explain(globals())

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -663,3 +664,6 @@ def atan2(y: Field | float, x: Field | float) -> Field:
         The argument.
     """
     return Field(_required(y)._core.binary("atan2", _required(x)._core))
+
+
+explain(globals())

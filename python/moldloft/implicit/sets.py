@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.implicit.facets import Facets
 from moldloft.implicit.fields import (
     Field,
@@ -1026,3 +1027,6 @@ def tetrahedron(corners: Sequence[Triple]) -> Set:
     if len(points) != 4:
         raise ValueError(f"a tetrahedron has four corners, found {len(points)}")
     return Set(_core.Set.tetrahedron(points))
+
+
+explain(globals())

@@ -221,7 +221,7 @@ class Journal:
                 self._open()
             count, data = self._count, self._lines(commands).encode()
             try:
-                # What a write that failed has left is no part of a line.
+                # What a failed write has left would spoil the next line.
                 os.ftruncate(self._file, self._length)
                 system.write_all(self._file, data)
                 system.synced(self._file)

@@ -8,6 +8,7 @@
 //! what is kept is a proof about the data. The least energy sits at the edge of what is allowed,
 //! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
 
+use crate::curve::exact::exact;
 use crate::curve::job::End;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{Found, Goal, Moving, Path, moved, rounding};
@@ -627,7 +628,7 @@ impl Data {
         let pull = self.pull(parts);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
         let still = self.limit.radii.iter().all(|&r| r == 0.0);
-        let fair = matches!(options.goal, Goal::Near(_)) && on_a_circle(&self.points);
+        let fair = matches!(options.goal, Goal::Near(_)) && exact(&self.points);
         let conditioned = !options.conditions.is_empty() || !options.shape.is_empty();
         if !conditioned && (still || fair) {
             let value = crate::measure::value(&rows, norm, &job.points);
@@ -648,28 +649,6 @@ impl Data {
             parts.solve()
         })
     }
-}
-
-/// Whether points lie on a circle to rounding: as fair as a curve can be, at any spacing.
-fn on_a_circle(points: &[Vec3<f64>]) -> bool {
-    let n = points.len();
-    let (a, b, c) = (points[0], points[n / 3], points[2 * n / 3]);
-    let (u, v) = (b - a, c - a);
-    let axis = u.cross(v);
-    let square = axis.norm_sq();
-    let size = u.norm().max(v.norm());
-    if square <= 1e-12 * size.powi(4) {
-        return false;
-    }
-    let half = 0.5 / square;
-    let away = (axis.cross(u) * v.norm_sq() + v.cross(axis) * u.norm_sq()) * half;
-    let (middle, radius) = (a + away, away.norm());
-    let axis = axis * (1.0 / square.sqrt());
-    let close = 1e-12 * (radius + middle.norm());
-    points.iter().all(|p| {
-        let q = *p - middle;
-        (q.norm() - radius).abs() <= close && q.dot(axis).abs() <= close
-    })
 }
 
 /// A faired curve whose control points and knots carry derivatives.

@@ -84,7 +84,7 @@ pub fn numbers(job: &Job, measure: Measure, points: &[Vec3<f64>]) -> Result<Numb
         measure: job.value(measure, points)?,
         jumps: rows.sum_sq(&relative),
         largest_jump: jumps.fold(0.0, f64::max),
-        pieces: shape::monotone_runs(&curvatures, 1e-3),
+        pieces: shape::monotone_pieces(&samples, 1e-3),
         inflections: shape::inflections(&samples),
         largest_curvature: curvatures.iter().fold(0.0, |m: f64, k| m.max(k.abs())),
     })

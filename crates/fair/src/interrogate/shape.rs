@@ -146,6 +146,25 @@ pub fn curvatures(samples: &[Sample]) -> Vec<f64> {
     }
 }
 
+/// The monotone pieces of a curve's curvature, one at least: reversals below `share` of its range are
+/// not counted, nor those of a straight line's or a circle's curvature.
+pub fn monotone_pieces(samples: &[Sample], share: f64) -> usize {
+    let values = curvatures(samples);
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let most = low.abs().max(high.abs());
+    let far = |s: &Sample| (s.point - samples[0].point).norm();
+    let extent = samples.iter().map(far).fold(0.0, f64::max);
+    if high - low <= SAME * most || most * extent <= 1e-9 {
+        return 1;
+    }
+    monotone_runs(&values, share).max(1)
+}
+
+/// A range of curvatures, as a share of the largest, that is a circle's: the ripple of a cubic with
+/// some forty spans round it.
+const SAME: f64 = 4e-3;
+
 /// The number of monotone runs in a list of numbers when reversals smaller than `share` of the
 /// range are ignored; 0 for a constant list.
 ///
@@ -254,7 +273,7 @@ pub(crate) const COUNTING: usize = 16;
 /// The number of monotone pieces of the curvature, reversals below a thousandth of its range
 /// ignored (Dill 1981; Farin 2002, ch. 23: few pieces are fair).
 pub fn pieces(space: &Space, points: &[Vec3<f64>]) -> usize {
-    monotone_runs(&curvatures(&samples(space, points, None, COUNTING)), 1e-3)
+    monotone_pieces(&samples(space, points, None, COUNTING), 1e-3)
 }
 
 /// The length of the curve, by the 8-point Gauss-Legendre rule on each span.

@@ -338,7 +338,7 @@ impl Spline {
     }
 
     fn monotone_pieces(&self, share: f64, per_span: usize) -> usize {
-        shape::monotone_runs(&shape::curvatures(&self.samples(per_span)), share)
+        shape::monotone_pieces(&self.samples(per_span), share)
     }
 
     fn inflections(&self, per_span: usize) -> usize {

@@ -1,0 +1,226 @@
+"""Wrong arguments of the API: an error of ours that names the argument, whatever noticed it first.
+
+Nothing is checked before a call, so that right calls cost nothing. When one fails with an error of
+Python or NumPy, its arguments are compared with their annotations; the first that does not fit is
+named. When all fit, the error goes on as it is.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import linecache
+import operator
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, get_args
+
+from moldloft.errors import Error
+
+__all__ = ["ArgumentError", "explain"]
+
+
+class ArgumentError(Error, TypeError, ValueError):
+    """An argument is not of the kind that the function takes.
+
+    Attributes
+    ----------
+    argument : str
+        Its name.
+    """
+
+    argument: str
+
+    def __init__(self, message: str, argument: str = "") -> None:
+        super().__init__(message)
+        self.argument = argument
+
+
+#: What Python and NumPy raise about values of wrong kinds.
+_RAW = (TypeError, ValueError, OverflowError, AttributeError, IndexError, KeyError)
+
+#: Methods of these names are called by people, too.
+_SPECIAL = {"__init__", "__call__", "__getitem__", "__setitem__"}
+
+_WORDS = {
+    "float": "a number",
+    "int": "a whole number",
+    "str": "a text",
+    "bool": "True or False",
+    "None": "None",
+    "ArrayLike": "an array of numbers",
+}
+
+
+def explain(module: dict[str, Any]) -> None:
+    """Has the public functions and classes of a module name the argument that is wrong.
+
+    Parameters
+    ----------
+    module
+        The module's ``globals()``, at its end.
+    """
+    for name, thing in list(module.items()):
+        if name.startswith("_") or getattr(thing, "__module__", "") != module["__name__"]:
+            continue
+        if inspect.isfunction(thing):
+            module[name] = _explained(thing)
+        elif inspect.isclass(thing) and not issubclass(thing, BaseException):
+            _explain_class(thing)
+
+
+def _explain_class(thing: type) -> None:
+    for name, member in list(vars(thing).items()):
+        if name.startswith("_") and name not in _SPECIAL:
+            continue
+        if inspect.isfunction(member):
+            setattr(thing, name, _explained(member))
+        elif isinstance(member, (classmethod, staticmethod)):
+            setattr(thing, name, type(member)(_explained(member.__func__)))
+
+
+def _explained(function: Callable[..., Any]) -> Callable[..., Any]:
+    if inspect.isgeneratorfunction(function) or hasattr(function, "__wrapped__"):
+        return function
+
+    @functools.wraps(function)
+    def call(*arguments: Any, **options: Any) -> Any:
+        try:
+            return function(*arguments, **options)
+        except Error:
+            raise
+        except _RAW as error:
+            found = _fault(function, arguments, options) or _said(error)
+            if found is None:
+                raise
+            name, text = found
+            raise ArgumentError(text, name) from error
+
+    return call
+
+
+def _fault(
+    function: Callable[..., Any], arguments: tuple[Any, ...], options: dict[str, Any]
+) -> tuple[str, str] | None:
+    """The argument that does not fit, and what to say about it."""
+    try:
+        bound = inspect.signature(function).bind(*arguments, **options)
+    except (TypeError, ValueError):
+        # Too few or too many arguments: Python says so.
+        return None
+    where = function.__qualname__.removesuffix(".__init__")
+    for name, value in bound.arguments.items():
+        parameter = bound.signature.parameters[name]
+        written = parameter.annotation
+        if not isinstance(written, str):
+            continue
+        many = parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
+        values = value.values() if parameter.kind is parameter.VAR_KEYWORD else value
+        for one in values if many else [value]:
+            if not _fits(one, written, function.__globals__):
+                kinds = [_WORDS.get(kind, kind) for kind in _alternatives(written)]
+                expected = " or ".join(dict.fromkeys(kinds))
+                return name, f"`{name}` of `{where}`: expected {expected}, found {_shown(one)}"
+    return None
+
+
+def _said(error: Exception) -> tuple[str, str] | None:
+    """What a function of ours says of its argument by itself, in a ``raise`` of its own."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    if trace is None or not isinstance(error, (TypeError, ValueError)):
+        return None
+    place = trace.tb_frame.f_code.co_filename
+    line = linecache.getline(place, trace.tb_lineno).lstrip()
+    ours = Path(place).is_relative_to(Path(__file__).parent) and line.startswith("raise ")
+    return ("", str(error)) if ours else None
+
+
+def _alternatives(written: str) -> list[str]:
+    """The kinds of an annotation: ``Sequence[int | str] | None`` has two."""
+    kinds, depth, kind = [], 0, ""
+    for letter in written:
+        depth += {"[": 1, "]": -1}.get(letter, 0)
+        if letter == "|" and depth == 0:
+            kinds.append(kind.strip())
+            kind = ""
+        else:
+            kind += letter
+    return [*kinds, kind.strip()]
+
+
+def _fits(value: Any, written: str, names: Mapping[str, Any]) -> bool:
+    return any(_is_of(value, kind, names) for kind in _alternatives(written))
+
+
+def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
+    """Whether a value may be of a kind; true for kinds that are not known here."""
+    head, _, inner = kind.partition("[")
+    if kind == "None":
+        return value is None
+    if kind == "float":
+        return not isinstance(value, (str, bytes)) and _passes(float, value)
+    if kind == "int":
+        return _passes(operator.index, value) and -(1 << 63) <= operator.index(value) < 1 << 63
+    if kind == "bool":
+        return _passes(bool, value)
+    if kind == "str":
+        return isinstance(value, str) and _passes(str.encode, value)
+    if head in ("ArrayLike", "NDArray"):
+        return _passes(_as_array, value)
+    if head in ("Sequence", "Iterable", "Collection"):
+        plain = not isinstance(value, (bytes, Mapping)) and _passes(iter, value)
+        return plain and _items_fit(value, inner.removesuffix("]"), names)
+    if head in ("Mapping", "dict"):
+        return isinstance(value, Mapping)
+    if head == "Callable":
+        return callable(value)
+    if head in ("os.PathLike", "Path"):
+        return hasattr(value, "__fspath__")
+    thing = names.get(head) if re.fullmatch(r"\w+", head) else None
+    parts = get_args(thing)
+    if parts and all(inspect.isclass(part) for part in parts):
+        return any(_is_of(value, p.__name__, {p.__name__: p}) for p in parts)
+    return not inspect.isclass(thing) or isinstance(value, thing)
+
+
+def _items_fit(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
+    # An iterator is used up already.
+    if kind not in ("str", "int", "float") or iter(value) is value:
+        return True
+    if isinstance(value, str):
+        return kind == "str"
+    return all(_fits(item, kind, names) for item in value)
+
+
+def _passes(call: Callable[[Any], Any], value: Any) -> bool:
+    try:
+        call(value)
+    except Exception:
+        return False
+    return True
+
+
+def _as_array(value: Any) -> None:
+    import numpy as np
+
+    if isinstance(value, (str, bytes)) or np.iscomplexobj(value):
+        raise TypeError
+    np.asarray(value, dtype=np.float64)
+
+
+def _shown(value: Any) -> str:
+    """What was found, short."""
+    kind = type(value).__name__
+    shape = getattr(value, "shape", None)
+    if isinstance(shape, tuple):
+        return f"{kind} of shape {shape}"
+    try:
+        text = repr(value)
+    except Exception:
+        return kind
+    if isinstance(value, (int, float, str)) and len(text) <= 40:
+        return f"{kind} {text}"
+    return f"{kind} {text[:40]}…" if len(text) > 40 else f"{kind} {text}"
