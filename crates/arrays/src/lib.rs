@@ -11,6 +11,7 @@
 //!
 //! Invariant: this crate knows no graph, no language and no file.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 // `!(a > b)` refuses NaN, `a <= b` lets it pass.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 

@@ -8,6 +8,8 @@
 //!
 //! Invariant: this crate knows no entity, no file and no format.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod check;
 mod image;
 

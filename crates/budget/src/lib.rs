@@ -6,6 +6,8 @@
 //!
 //! Invariant: a budget never changes a result; work ends as if there were none, or with [`Spent`].
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod machine;
 mod memory;
 

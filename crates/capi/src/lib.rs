@@ -12,6 +12,7 @@
 //! Invariant: nothing is computed here: `document` answers. It is the one crate besides the extension with unsafe
 //! code, all of which is about pointers of the caller.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 // The functions are for C, which has no `unsafe`: what callers owe is said in the header.
 #![allow(unsafe_code, clippy::not_unsafe_ptr_arg_deref)]
 

@@ -20,6 +20,8 @@
 //!
 //! Invariant: this crate opens no file; what it reads comes from the host's [`World`].
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod convert;
 mod document;
 mod editor;

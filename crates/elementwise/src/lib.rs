@@ -9,6 +9,8 @@
 //! Invariant: knows no interpreter, syntax or file; each operation is rounded by itself, so that the bits
 //! depend neither on the processor nor on the order of the passes.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod codegen;
 mod tape;
 mod vm;

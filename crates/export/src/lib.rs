@@ -21,6 +21,8 @@
 //!
 //! Invariant: no file is opened here; the caller writes the bytes, all of them or none.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod brep;
 mod export;
 mod formats;

@@ -79,6 +79,8 @@
 //! Sapidis and Farin, CAD 22 (1990); Eck and Hadenfeld, Computing Suppl. 10 (1995); NASA CR-188796
 //! (1991).
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod curve;
 mod error;
 mod indexed_heap;

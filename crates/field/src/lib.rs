@@ -8,6 +8,8 @@
 //! Invariant: this crate knows no graph, no language and no file. Ranges are rounded outward; sums and
 //! maps run in fixed order, so their bits do not depend on threads.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod design;
 mod error;
 mod expr;

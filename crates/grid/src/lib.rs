@@ -8,6 +8,7 @@
 //!
 //! Invariant: this crate knows no entity, no file and no language, and depends on `num` only.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 // `!(a > b)` refuses NaN, `a <= b` lets it pass.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 

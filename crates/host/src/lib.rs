@@ -4,6 +4,8 @@
 //! Invariant: nothing outside the given folders is read for a model, links resolved; nothing whose name begins with a
 //! dot; regular files only.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 use moldloft_lang::{ReadError, ReadText, World};
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read};

@@ -8,6 +8,8 @@
 //!
 //! Invariant: this crate knows surfaces and panels only, no names, no files; no result depends on threads.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod bernstein;
 mod body;
 mod breaks;

@@ -31,6 +31,7 @@
 //!
 //! Invariant: this crate performs no input or output.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 // `!(a > b)` refuses NaN, `a <= b` lets it pass.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 

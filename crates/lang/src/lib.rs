@@ -9,6 +9,8 @@
 //!
 //! Invariant: this crate opens no file; what it reads comes from the host's [`World`]. It knows no document.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod array;
 pub mod functions;
 pub mod model_file;

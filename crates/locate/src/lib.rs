@@ -13,6 +13,7 @@
 //!
 //! Invariant: this crate knows no entity, no registry and no file.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 // A report is what a failed search is asked for; it is made once a search.
 #![allow(clippy::result_large_err)]
 

@@ -6,6 +6,8 @@
 //! file, on a thread of its own; all answers come from there. A change stops the run under way, and one
 //! that does not come to an end soon is stopped and reported.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod frames;
 mod position;
 mod server;

@@ -27,6 +27,8 @@
 //! Invariant: this crate knows vertices by number only, never by the entity they came from; it opens
 //! no files. Sums run over fixed chunks in fixed order, so their bits do not depend on threads.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod clip;
 mod closure;
 mod error;

@@ -8,6 +8,8 @@
 //!
 //! Invariant: this crate knows no particular kind, no mesh, no syntax and no file.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod graph;
 mod memo;
 mod object;

@@ -26,6 +26,8 @@
 //!
 //! Invariant: re-exports only. Files are opened by [`FileWorld`] alone, and by the caller.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub use moldloft_diag as diag;
 pub use moldloft_document as document;
 pub use moldloft_export as export;

@@ -11,6 +11,8 @@
 //! Invariant: this crate knows no entity, no file and no language; it performs no input or output.
 //! Transcendental functions come from `libm`, so results are the same bits on every platform.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod boxes;
 mod dual;
 mod frame;

@@ -8,6 +8,8 @@
 //! Invariant: this crate knows no particular kind, no syntax and no file. Vertices are one by identity (the
 //! same division of the same interval of a root curve, the same point object), never because they look close.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod blocks;
 mod border_curves;
 mod contour;

@@ -23,6 +23,8 @@
 //! Invariant: this crate performs no input or output and asks for no window; the same input gives the
 //! same bytes.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod camera;
 mod palette;
 mod raster;

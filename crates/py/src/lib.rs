@@ -6,6 +6,8 @@
 //! Invariant: this crate is the only one that knows Python. It opens no files: models are read
 //! through `moldloft-host`, and Python reads and writes all others.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod arrays;
 mod blocks;
 mod diagnostics;

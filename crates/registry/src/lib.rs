@@ -9,6 +9,8 @@
 //!
 //! Invariant: this crate knows no particular kind, no graph and no file; it builds without them.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod args;
 mod attributes;
 mod call_error;

@@ -12,6 +12,8 @@
 //!
 //! Invariant: this crate knows no graph, no language and no file.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod affine;
 mod arguments;
 mod chebyshev;

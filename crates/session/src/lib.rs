@@ -21,6 +21,8 @@
 //!
 //! Invariant: knows no transport and opens no file; the page's state is never needed to answer.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod drag;
 mod facts;
 mod fields;

@@ -59,6 +59,8 @@
 //!
 //! Invariant: this crate reads no file and no clock, and no line given to it makes it panic.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod command;
 mod dimension;
 mod drawing;

@@ -18,6 +18,8 @@
 //!
 //! Invariant: this crate knows no entity, no file and no language, and depends on `num` only.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod arc;
 mod arclen;
 mod basis;

@@ -8,6 +8,8 @@
 //! - [`number`]: the shortest spelling of a double.
 //! - [`decode`]: bytes into text, telling binary files apart.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod decode;
 pub mod model_file;
 pub mod number;

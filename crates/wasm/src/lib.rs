@@ -11,6 +11,7 @@
 //!
 //! Invariant: computes nothing: `session` answers. The unsafe code is what the linker's names need.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![cfg(target_arch = "wasm32")]
 #![allow(unsafe_code)]
 

@@ -31,15 +31,15 @@ impl Piece {
     pub fn at(&self, s: f64) -> (P<f64>, P<f64>) {
         let half = 0.5 * self.curvature * s;
         // The chord of an arc is s sin(half) / half long.
-        let chord = if half.abs() < 1e-8 { s } else { s * half.sin() / half };
-        let (dy, dx) = (self.angle + half).sin_cos();
-        let (ty, tx) = (self.angle + 2.0 * half).sin_cos();
+        let chord = if half.abs() < 1e-8 { s } else { s * libm::sin(half) / half };
+        let (dy, dx) = libm::sincos(self.angle + half);
+        let (ty, tx) = libm::sincos(self.angle + 2.0 * half);
         ([self.start[0] + chord * dx, self.start[1] + chord * dy], [tx, ty])
     }
 
     /// The arc length of the foot of a point, and its distance, positive to the left.
     pub fn foot(&self, p: P<f64>) -> (f64, f64) {
-        let (sin, cos) = self.angle.sin_cos();
+        let (sin, cos) = libm::sincos(self.angle);
         let away = [p[0] - self.start[0], p[1] - self.start[1]];
         let (along, left) = (away[0] * cos + away[1] * sin, away[1] * cos - away[0] * sin);
         if self.curvature == 0.0 {
@@ -47,7 +47,7 @@ impl Piece {
         }
         let k = self.curvature;
         // From the centre, at (0, 1 / k) in the own frame.
-        let turned = (along * k).atan2(1.0 - left * k);
+        let turned = libm::atan2(along * k, 1.0 - left * k);
         let far = ((along * k).powi(2) + (1.0 - left * k).powi(2)).sqrt();
         (turned / k, (1.0 - far) / k)
     }
@@ -128,7 +128,8 @@ impl Fit<'_> {
         let offset = next();
         let mut angle = self.parts[0].angle.unwrap_or_else(&mut next);
         let first = self.first();
-        let mut start = [first[0] - offset * angle.sin(), first[1] + offset * angle.cos()];
+        let mut start =
+            [first[0] - offset * libm::sin(angle), first[1] + offset * libm::cos(angle)];
         let last = self.parts.len() - 1;
         let mut out = Vec::new();
         for (k, part) in self.parts.iter().enumerate() {
@@ -168,14 +169,14 @@ impl Fit<'_> {
                 xy += x * y;
                 yy += y * y;
             }
-            let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
-            let (sin, cos) = angle.sin_cos();
+            let angle = 0.5 * libm::atan2(2.0 * xy, xx - yy);
+            let (sin, cos) = libm::sincos(angle);
             let (from, to) = (all[0], all[all.len() - 1]);
             let back = (to[0] - from[0]) * cos + (to[1] - from[1]) * sin < 0.0;
             if back { angle + std::f64::consts::PI } else { angle }
         };
         let polyline = |a: usize, b: usize| -> f64 {
-            let step = |w: &[P<f64>]| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]);
+            let step = |w: &[P<f64>]| libm::hypot(w[1][0] - w[0][0], w[1][1] - w[0][1]);
             self.points[a..=b].windows(2).map(step).sum()
         };
         // Curvature and the direction at the first point of the circle of least squares (Kasa 1976).
@@ -204,7 +205,7 @@ impl Fit<'_> {
             }
             let end = all[all.len() - 1];
             let left = (end[0] - o[0]) * c[1] - (end[1] - o[1]) * c[0] > 0.0;
-            let out = (-c[1]).atan2(-c[0]);
+            let out = libm::atan2(-c[1], -c[0]);
             let quarter = std::f64::consts::FRAC_PI_2;
             if left { (1.0 / radius, out + quarter) } else { (-1.0 / radius, out - quarter) }
         };
@@ -294,7 +295,7 @@ pub(crate) fn chain(
     let (from, to) = (parts[0].between[0], parts[parts.len() - 1].between[1]);
     let size = points[from..=to]
         .iter()
-        .map(|p| (p[0] - points[from][0]).hypot(p[1] - points[from][1]))
+        .map(|p| libm::hypot(p[0] - points[from][0], p[1] - points[from][1]))
         .fold(0.0, f64::max);
     let scaled: Vec<P<f64>> = points.iter().map(|p| p.map(|c| c / size)).collect();
     let mut rows = Vec::new();

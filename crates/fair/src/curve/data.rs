@@ -375,7 +375,7 @@ impl Data {
         let (low, high) = (plain.certificate.value, stiff.sum_sq(&plain.points));
         let mut attempt = |log: f64| -> Result<DataFit, FairError> {
             let factor =
-                (log.exp() * low.max(f64::MIN_POSITIVE) / high.max(f64::MIN_POSITIVE)).sqrt();
+                (libm::exp(log) * low.max(f64::MIN_POSITIVE) / high.max(f64::MIN_POSITIVE)).sqrt();
             parts.measure = third.clone().joined(&stiff.clone().scaled(factor));
             let mut made = self.along(options, job, &mut parts, Some(&third))?;
             // What the count costs is part of the gap.
@@ -384,7 +384,7 @@ impl Data {
             Ok(made)
         };
         // From little to much, then back half-way as long as the count is kept.
-        let step = 2.0 * 10f64.ln();
+        let step = 2.0 * libm::log(10.0);
         for k in -1..=2 {
             let mut log = f64::from(k) * step;
             let mut made = attempt(log)?;

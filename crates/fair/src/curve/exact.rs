@@ -122,10 +122,10 @@ fn in_order(points: &[[f64; 2]], powers: &[(usize, usize)], curve: &[f64]) -> bo
     let mut breaks = 0;
     for w in points.windows(2) {
         let chord = [w[1][0] - w[0][0], w[1][1] - w[0][1]];
-        let length = chord[0].hypot(chord[1]);
+        let length = libm::hypot(chord[0], chord[1]);
         let turn = |p: [f64; 2]| {
             let g = slope(p);
-            let size = g[0].hypot(g[1]) * length;
+            let size = libm::hypot(g[0], g[1]) * length;
             // The sine of the angle from the tangent to the chord.
             let tangent = [-g[1], g[0]];
             let (sin, cos) = (
@@ -195,7 +195,7 @@ fn helix(points: &[Vec3<f64>], close: f64) -> bool {
             return false;
         }
         let (s, t) = ((yy * xr - xy * yr) / determinant, (xx * yr - xy * xr) / determinant);
-        let far = s.hypot(t);
+        let far = libm::hypot(s, t);
         let most = if far > 0.3 { 0.3 / far } else { 1.0 };
         let Some(next) = (axis - (a * s + b * t) * most).normalized() else { return false };
         axis = next;
@@ -235,7 +235,7 @@ fn off_helix(points: &[Vec3<f64>], axis: Vec3<f64>) -> Option<Vec<f64>> {
     let mut angles: Vec<f64> = Vec::with_capacity(flat.len());
     for p in &flat {
         let (x, y) = (p[0] - centre[0], p[1] - centre[1]);
-        let angle = y.atan2(x);
+        let angle = libm::atan2(y, x);
         let before = angles.last().copied().unwrap_or(angle);
         let full = std::f64::consts::TAU;
         angles.push(angle - full * ((angle - before) / full).round());
@@ -251,7 +251,7 @@ fn off_helix(points: &[Vec3<f64>], axis: Vec3<f64>) -> Option<Vec<f64>> {
     }
     let rate = ht / hh;
     let mut out: Vec<f64> =
-        flat.iter().map(|p| (p[0] - centre[0]).hypot(p[1] - centre[1]) - radius).collect();
+        flat.iter().map(|p| libm::hypot(p[0] - centre[0], p[1] - centre[1]) - radius).collect();
     out.extend(heights.iter().zip(&angles).map(|(x, y)| radius * ((y - t) - rate * (x - h))));
     out.iter().all(|r| r.is_finite()).then_some(out)
 }

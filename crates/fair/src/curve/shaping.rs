@@ -577,7 +577,7 @@ impl Shape {
         let space = &data.layout.space;
         let piece = chain.pieces[part];
         let radius = 1.0 / piece.curvature.abs();
-        let left = [-piece.angle.sin(), piece.angle.cos()].map(|c| c / piece.curvature);
+        let left = [-libm::sin(piece.angle), libm::cos(piece.angle)].map(|c| c / piece.curvature);
         let centre = [piece.start[0] + left[0], piece.start[1] + left[1]];
         let mut all = vec![Vec3::zero(); data.layout.space.count()];
         for (&c, &p) in points.iter().zip(control) {
@@ -590,7 +590,7 @@ impl Shape {
                 let t = space.knot(k) * (1.0 - share) + space.knot(k + 1) * share;
                 let sample = shape::sample_in(space, &all, None, k, t);
                 let p = sample.point;
-                off = off.max(((p.x - centre[0]).hypot(p.y - centre[1]) - radius).abs());
+                off = off.max((libm::hypot(p.x - centre[0], p.y - centre[1]) - radius).abs());
                 bend = bend.max((sample.curvature() * radius - 1.0).abs());
             }
         }
@@ -617,7 +617,7 @@ fn placed(data: &Data, plane: Plane, group: &[Run]) -> Result<(Chain, Vec<f64>),
             let [x, y] = plane.axes.map(|a| a.dot(d));
             let (p, q) = (points[between[0]], points[between[1]]);
             let back = (q[0] - p[0]) * x + (q[1] - p[1]) * y < 0.0;
-            if back { (-y).atan2(-x) } else { y.atan2(x) }
+            if back { libm::atan2(-y, -x) } else { libm::atan2(y, x) }
         });
         Part { arc, between, angle }
     };
@@ -878,8 +878,10 @@ impl Shape {
                 // The curvature's slope by the parameter of the span is its numerator over the
                 // fifth power of the length.
                 let bezier = self.bezier(space, span, control);
-                let length: f64 =
-                    bezier.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum();
+                let length: f64 = bezier
+                    .windows(2)
+                    .map(|w| libm::hypot(w[1][0] - w[0][0], w[1][1] - w[0][1]))
+                    .sum();
                 let slack = UNCOUNTED * range * length.powi(5) / (p.powi(4) * (p - 1.0));
                 out.signs.push(Signed { span, what: Sign::Slope, positive, slack, owner });
             }

@@ -171,7 +171,7 @@ fn unit(measure: Measure, layout: &Layout) -> f64 {
         // Jumps are lengths already.
         Measure::Jumps | Measure::JumpLengths => return 1.0,
     };
-    layout.space.mean_span().powf(0.5 - order)
+    libm::pow(layout.space.mean_span(), 0.5 - order)
 }
 
 impl GridData {

@@ -167,14 +167,14 @@ where
         let measured = |optimum: &Optimum| match goal {
             Goal::Fairest => -1.0,
             Goal::Budget(share) | Goal::Near(share) => {
-                ((self.squares)(&optimum.points) / (share * mean)).ln()
+                libm::log((self.squares)(&optimum.points) / (share * mean))
             }
             Goal::Nearest(share) => {
                 // Of curves near enough to the least the one nearest to the data: towards the data
                 // the measure rises.
-                (((1.0 + share) * least + self.noise) / (self.energy)(&optimum.points)).ln()
+                libm::log(((1.0 + share) * least + self.noise) / (self.energy)(&optimum.points))
             }
-            Goal::Energy(most) => (most / (self.energy)(&optimum.points)).ln(),
+            Goal::Energy(most) => libm::log(most / (self.energy)(&optimum.points)),
             Goal::Closest => 0.0,
         };
         match goal {
@@ -238,11 +238,11 @@ where
         // Between two weights by regula falsi on logarithms, the stale end halved (Illinois).
         let mut low = (f64::NEG_INFINITY, measured(&fairest));
         let mut high: Option<(f64, f64, Optimum)> = None;
-        let mut trial = (least.max(1e-6 * begin) / squares).ln();
+        let mut trial = libm::log(least.max(1e-6 * begin) / squares);
         let mut side = 0;
         let mut best: Option<(f64, f64, Optimum)> = None;
         for _ in 0..MOST_SOLUTIONS {
-            let optimum = solve(trial.exp())?;
+            let optimum = solve(libm::exp(trial))?;
             let value = measured(&optimum);
             // Conditions may keep the data farther off than the budget.
             let settled = low.0.is_finite() && low.1 - value < 1e-6;
@@ -285,7 +285,7 @@ where
             };
         }
         let (weight, _, optimum) = best.expect("one solution at least");
-        settle(optimum, weight.exp())
+        settle(optimum, libm::exp(weight))
     }
 }
 

@@ -11,10 +11,7 @@ fn counted(places: &[Vec3], facets: &Facets) -> String {
     let first = if n == 1 { "about" } else { "the first about" };
     // Cells without surface are not among those that are counted.
     let of = if n <= *cells { format!("of {cells} ") } else { String::new() };
-    format!(
-        "in {n} {of}cells of side {step:.3e}, {first} ({:.6}, {:.6}, {:.6})",
-        p.x, p.y, p.z
-    )
+    format!("in {n} {of}cells of side {step:.3e}, {first} ({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
 }
 
 /// The places where facets are not the set's surface, or may not be; none of the four is usual.
