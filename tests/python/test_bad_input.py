@@ -187,7 +187,7 @@ def test_a_file_is_loaded_from_beside_the_model(cli, tmp_path):
 def test_an_output_folder_that_cannot_be(cli, tmp_path):
     (tmp_path / "file").write_text("not a folder")
     done = cli("build", HULL, "--to", "gdf", "-o", "file/below", status=1)
-    assert "cannot make the folder" in done.stderr
+    assert "file/below`: not a directory" in done.stderr
     done = cli("build", HULL, "--to", "gdf", "-o", "file", status=1)
     assert "cannot" in done.stderr
     assert (tmp_path / "file").read_text() == "not a folder"

@@ -1,4 +1,4 @@
-"""What a run may use: texts that ask for too much are refused by name, quickly, and take little memory."""
+"""What a run may use: texts that ask for too much are refused by name and take little memory."""
 
 import json
 import os
@@ -13,8 +13,8 @@ from moldloft import _core
 
 resource = pytest.importorskip("resource", reason="limits of a process")
 
-# Runs a text in a child and prints the ids of what is wrong, the peak of its memory in MB, and whether the process can
-# still build a model afterwards.
+# Runs a text in a child and prints the ids of what is wrong, the peak of its memory in MB, and
+# whether the process can still build a model afterwards.
 CHILD = """
 import json, resource, sys
 import moldloft
@@ -22,8 +22,10 @@ from moldloft import _core
 text = open(sys.argv[1]).read()
 memory, steps, objects, seconds = _core.limits()
 given = json.loads(sys.argv[2])
-_core.set_limits(given.get("memory", memory), given.get("steps", steps), given.get("objects", objects),
-                 given.get("seconds", seconds))
+_core.set_limits(
+    given.get("memory", memory), given.get("steps", steps),
+    given.get("objects", objects), given.get("seconds", seconds),
+)
 try:
     m = moldloft.loads(text)
     if given.get("mesh"):
@@ -42,7 +44,7 @@ BALL = "set s = set(sphere({0, 0, 0}, 1)); "
 
 
 def run(tmp_path: Path, text: str, **limits: float) -> tuple[list[str], int]:
-    """Ids of what is wrong, and the peak of memory in MB; CPU time is limited against endless work only."""
+    """Ids of what is wrong, and the peak of memory in MB; CPU time ends endless work only."""
     path = tmp_path / "bomb.sdl"
     path.write_text(text)
     child = subprocess.run(
@@ -118,7 +120,7 @@ def test_time_is_limited() -> None:
     before = _core.limits()
     try:
         _core.set_limits(*before[:3], 0.05)
-        with pytest.raises(moldloft.Error, match="longer than the 0.05 s"):
+        with pytest.raises(moldloft.Error, match=r"longer than the 0\.05 s"):
             moldloft.loads("float s = 0; for (i = 1:10000000) s = s + 1;")
     finally:
         _core.set_limits(*before)

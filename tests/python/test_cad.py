@@ -43,6 +43,7 @@ def test_bodies_come_out_of_step_as_they_are(case: Case, tmp_path: Path) -> None
         assert found.volume == pytest.approx(case.volume, rel=1e-9)
     sense(path.read_text())
     # The same model gives the same bytes.
+    (tmp_path / "again").mkdir()
     assert model.write(tmp_path / "again" / "model.step")[0].read_bytes() == path.read_bytes()
 
 

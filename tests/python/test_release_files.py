@@ -36,7 +36,9 @@ def test_versions_agree() -> None:
 #: What steps of workflows may call: commands of the Makefile and of the release script.
 STEPS = re.compile(
     r"make (\w+)$|python tools/release\.py (\w+)$|mkdocs build --strict$|rm -f dist/|"
-    r"python -m pip install '[a-z-]+[><=.,0-9]*'$"
+    r"python -m pip install '[a-z-]+[><=.,0-9]*'$|"
+    # What needs another toolchain than the house.
+    r"cargo (?:miri|llvm-cov|fuzz) |cargo test -Zbuild-std |for target in "
 )
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import moldloft
 
-# One quarter of a box of panels of length a, breadth b and height h, from the planes of symmetry outwards.
+# A plate of length a and breadth b on one side of the planes of symmetry.
 BOX = """
 Model info(symmetry = "{planes}");
 AbsPoint A({x}, {y}, {z}); AbsPoint B({x} + {a}, {y}, {z}); AbsPoint C({x} + {a}, {y} + {b}, {z});

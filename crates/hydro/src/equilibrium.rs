@@ -86,8 +86,8 @@ impl fmt::Display for FloatError {
             ),
             Self::Sinks { mass, most, rim: Some([trim, heel]) } => write!(
                 f,
-                "at a trim of {:.2} and a heel of {:.2} degrees an open edge is under water before the body displaces \
-                 {mass}: {most} at most",
+                "the displacement {mass} is more than the body displaces before its open edge is under water, {most}, at a \
+                 trim of {:.2} and a heel of {:.2} degrees",
                 trim.to_degrees(),
                 heel.to_degrees()
             ),

@@ -220,20 +220,20 @@ impl<T: Real> FromValue<T> for Frame<T> {
     }
 }
 
-/// The coordinate plane of a text such as "y=0" (model files write `*Y=0`).
+/// The plane of a text such as "y=0" (model files write `*Y=0`) or "x = 2.5".
 fn system_plane<T: Real>(text: &str) -> Result<Plane<T>, CallError> {
     let spelled = text.trim_start_matches('*').replace(' ', "").to_ascii_lowercase();
-    let normal = match spelled.as_str() {
-        "x=0" => Vec3::of(1.0, 0.0, 0.0),
-        "y=0" => Vec3::of(0.0, 1.0, 0.0),
-        "z=0" => Vec3::of(0.0, 0.0, 1.0),
-        _ => {
-            return Err(CallError::new("unknown-plane", format!("unknown plane \"{text}\""))
-                .expected("\"x=0\", \"y=0\" or \"z=0\", or a plane object")
-                .found(format!("\"{text}\"")));
-        }
+    let stated = spelled.split_once('=').and_then(|(axis, at)| {
+        let axis = "xyz".find(axis).filter(|_| axis.len() == 1)?;
+        Some((axis, at.parse::<f64>().ok().filter(|x| x.is_finite())?))
+    });
+    let Some((axis, at)) = stated else {
+        return Err(CallError::new("unknown-plane", format!("unknown plane \"{text}\""))
+            .expected("a coordinate plane such as \"x=0\" or \"z=1.5\", or a plane object")
+            .found(format!("\"{text}\"")));
     };
-    Ok(Plane { point: Vec3::zero(), normal })
+    let unit = |value: f64| std::array::from_fn(|k| T::from(if k == axis { value } else { 0.0 }));
+    Ok(Plane { point: Vec3::from(unit(at)), normal: Vec3::from(unit(1.0)) })
 }
 
 /// What things are mirrored in, or projected to.

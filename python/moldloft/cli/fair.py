@@ -473,25 +473,12 @@ def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[s
 
 def _shapes(texts: list[str], count: int) -> list[Any]:
     """Shapes as :func:`moldloft.fair` takes them."""
-    from moldloft import _core
+    from moldloft.fairing.shapes import read_shape
 
-    out: list[Any] = []
-    for text in texts:
-        try:
-            word, first, last, way, number = _core.fair_shape(text, count)
-        except FairingError as error:
-            raise Error(f"--shape: {error}") from None
-        if word == "pieces":
-            out.append((word, first))
-        elif word == "within":
-            out.append((word, way, number))
-        elif word == "side":
-            out.append((word, way))
-        elif word == "straight":
-            out.append((word, first, last, way))
-        else:
-            out.append((word, first, last))
-    return out
+    try:
+        return [read_shape(text, count) for text in texts]
+    except FairingError as error:
+        raise Error(f"--shape: {error}") from None
 
 
 def _encode_curve(result: Fairing, path: Path, like: PointFile | None) -> bytes:
