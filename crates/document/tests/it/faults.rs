@@ -95,6 +95,18 @@ fn a_surface_with_places_beyond_all_numbers_has_no_area() {
 }
 
 #[test]
+fn a_surface_with_places_that_are_not_finite_has_no_area_and_no_panels() {
+    let mut document = open(
+        "AbsPoint A(0, 0, 0); AbsPoint B(2, -1.28, 0); AbsPoint C(100, 0.25, 0.25);
+         Line apex(B, B); BCurve c({B, A, C}, degree = 2); RuledSurf cone(apex, c);
+         ExpandedSurf flat(cone);",
+    );
+    assert_eq!(document.eval("flat.area").unwrap_err()[0].id, "no-body");
+    let refused = document.panelled().err().expect("no panels");
+    assert_eq!(refused.id, "not-finite");
+}
+
+#[test]
 fn numbers_up_to_the_limit_are_computed_with() {
     let mut document = sound(
         "AbsPoint A(-1e50, 0, 0); AbsPoint B(1e50, 0, 0); AbsPoint C(0, 1e50, 0);
