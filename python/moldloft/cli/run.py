@@ -45,8 +45,8 @@ def run(options: argparse.Namespace) -> int:
     failed = model.has_errors
     report(model.diagnostics)
     if not options.json:
-        for line in model.printed:
-            print(line)
+        # In one piece: a line at a time takes as long as the run where nothing is buffered.
+        print("".join(f"{line}\n" for line in model.printed), end="")
     files = {} if failed else model.written
     if options.to and not failed:
         files |= _grids(model, stem_of(options), options.to)
