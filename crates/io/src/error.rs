@@ -194,9 +194,13 @@ pub(crate) fn check_positions(mesh: &Mesh, limit: f64) -> Result<(), WriteError>
 /// The share of a patch's area that single precision may turn or change.
 const LOST: f64 = 0.01;
 
-/// Refuses a mesh with a patch that loses its shape in single precision.
-pub(crate) fn check_single(mesh: &Mesh, format: &'static str) -> Result<(), WriteError> {
-    let at = |v: u32| mesh.positions()[v as usize];
+/// Refuses a mesh with a patch that loses its shape in single precision, its places taken from `origin`.
+pub(crate) fn check_single(
+    mesh: &Mesh,
+    origin: Vec3,
+    format: &'static str,
+) -> Result<(), WriteError> {
+    let at = |v: u32| mesh.positions()[v as usize] - origin;
     let rounded = |p: Vec3| p.map(|x| f64::from(x as f32));
     let largest =
         mesh.positions().iter().flat_map(|p| p.to_array()).fold(0.0f64, |m, x| m.max(x.abs()));

@@ -5,7 +5,7 @@
 //! the positions themselves are the model's, in single precision.
 
 use crate::WriteError;
-use crate::error::check_positions;
+use crate::error::{check_positions, check_single};
 use crate::text::{json, put};
 use moldloft_mesh::{Mesh, Patch};
 use moldloft_num::Vec3;
@@ -25,6 +25,7 @@ pub fn write(
     check_positions(mesh, f64::from(f32::MAX))?;
     let triangles = mesh.triangulated();
     let origin = origin(mesh);
+    check_single(mesh, origin, "glTF")?;
     let mut data: Vec<u8> = Vec::new();
     let (mut nodes, mut meshes, mut materials) = (String::new(), String::new(), String::new());
     let (mut accessors, mut views, mut children) = (String::new(), String::new(), String::new());
@@ -130,9 +131,9 @@ fn origin(mesh: &Mesh) -> Vec3 {
     if !(far > FAR * bounds.diagonal()) || !far.is_finite() {
         return Vec3::zero();
     }
-    // A multiple of a power of two with at most 20 digits, so that it is a number of single precision.
+    // A multiple of a power of two with at most 24 digits, so that it is a number of single precision.
     let exponent = ((far.to_bits() >> 52) & 0x7ff) as i32 - 1023;
-    let step = 2f64.powi(exponent - 19);
+    let step = 2f64.powi(exponent - 23);
     bounds.centre().map(|x| (x / step).round() * step)
 }
 
@@ -172,4 +173,38 @@ fn linear(channel: u8) -> f64 {
     let c = f64::from(channel) / 255.0;
     let light = if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) };
     libm::round(light * 1000.0) / 1000.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moldloft_mesh::{PatchInfo, TopologyBuilder};
+
+    /// A twisted square of that side, far from the origin.
+    fn square(side: f64) -> Mesh {
+        let at = |x: f64, y: f64, z: f64| {
+            Vec3::of(6e6 + 0.23 + x * side, 5e6 + 0.11 + y * side, z * side)
+        };
+        let mut builder = TopologyBuilder::new();
+        builder.add_vertices(4).unwrap();
+        builder.add_faces(PatchInfo::new("s"), vec![[0, 1, 2, 3]]).unwrap();
+        let corners = [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(1.0, 1.0, 0.5), at(0.0, 1.0, 0.0)];
+        Mesh::new(builder.build().into(), corners.to_vec()).unwrap()
+    }
+
+    #[test]
+    fn a_model_far_away_keeps_its_shape() {
+        let mesh = square(0.1);
+        let origin = origin(&mesh);
+        assert!(origin.to_array().iter().all(|x| f64::from(*x as f32) == *x), "{origin:?}");
+        let near = |p: Vec3| (p - origin).map(|x| f64::from(x as f32));
+        let p = mesh.positions();
+        for (a, b) in [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)] {
+            let (exact, kept) = (p[a].distance(p[b]), near(p[a]).distance(near(p[b])));
+            assert!((kept / exact - 1.0).abs() < 1e-6, "{exact} {kept}");
+        }
+        assert!(write(&mesh, "far", 1.0, |_, _| [0; 3]).is_ok());
+        let small = write(&square(1e-7), "far", 1.0, |_, _| [0; 3]);
+        assert!(matches!(small, Err(WriteError::Single { .. })));
+    }
 }

@@ -23,7 +23,7 @@ const TRIANGLE: usize = 50;
 /// Positions that are not finite in single precision, or so far from the origin that shapes are lost in it; more than 2^32 - 1 triangles.
 pub fn write(mesh: &Mesh, name: &str) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::from(f32::MAX))?;
-    check_single(mesh, FORMAT)?;
+    check_single(mesh, Vec3::zero(), FORMAT)?;
     let triangles = mesh.triangulated();
     // The header must not begin with `solid`, the mark of the text form.
     let mut out = format!("binary STL: {name}").into_bytes();
