@@ -71,6 +71,7 @@ WITHOUT = {
     "unknown-field",
     "unknown-format",
     "unknown-literal",
+    "volume-uncertain",
     "wrong-edges",
     "wrong-tags",
 }

@@ -4055,6 +4055,7 @@ def CLoftSurf(
     ends: _Text | None = ...,
     start: _Vector | None = ...,
     end: _Vector | None = ...,
+    about: _Curve | None = ...,
     relabel: _Relabel | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -4089,6 +4090,9 @@ def CLoftSurf(
         Slope dX/dv at the first master, the same all along it, for clamped ends.
     end : vector, optional
         Slope dX/dv at the last master, the same all along it, for clamped ends.
+    about : curve, optional
+        A line about which the loft is made in cylinder coordinates, r, theta (within half a
+        turn from master to master) and the length along it, as for blades.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v). Default: none.
     **attributes
@@ -4103,7 +4107,7 @@ def CLoftSurf(
     -----
     In the language::
 
-        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8});
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8}); AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0.5); Line shaft(O, X); CLoftSurf blade({a, b, c}, about = shaft);
     """
     ...
 def XLoftSurf(
@@ -4111,6 +4115,7 @@ def XLoftSurf(
     /,
     axis: _Integer | None = ...,
     ends: _Text | None = ...,
+    about: _Curve | None = ...,
     relabel: _Relabel | None = ...,
     *,
     curves: Sequence[_Curve] | _Any,
@@ -4136,11 +4141,15 @@ def XLoftSurf(
     name : str
         The name of the object.
     axis : integer, optional
-        The independent coordinate: 1 for x, 2 for y, 3 for z. 1 to 3, default 1.
+        The independent coordinate: 1 for x, 2 for y, 3 for z; with `about` 1 for r, 2 for
+        theta, 3 for the length along the line. 1 to 3, default 1.
     curves : list of curve
         Master curves, two or more, in order of v.
     ends : text, optional
         End conditions: "notaknot", "natural", "bessel" or "quadratic". Default notaknot.
+    about : curve, optional
+        A line about which the loft is made in cylinder coordinates, r, theta (within half a
+        turn from master to master) and the length along it, as for blades.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v). Default: none.
     **attributes
@@ -4155,7 +4164,7 @@ def XLoftSurf(
     -----
     In the language::
 
-        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); XLoftSurf hull(1, {a, b, c, d}); XLoftSurf N(1, {d, c, a}, ends = "natural");
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); XLoftSurf hull(1, {a, b, c, d}); XLoftSurf N(1, {d, c, a}, ends = "natural"); AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0); Line shaft(O, X); XLoftSurf R(3, {a, b, c, d}, about = shaft);
     """
     ...
 def ArcLoftSurf(

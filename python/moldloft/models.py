@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -374,13 +375,22 @@ class Model:
             A vector as an array ``(3,)``; rows and grids as arrays; fields and sets as
             :class:`moldloft.implicit.Field` and :class:`moldloft.implicit.Set`.
 
+        Warns
+        -----
+        UserWarning
+            When the value is not known as well as asked, such as the volume of a set with
+            walls thinner than any cell.
+
         Examples
         --------
         >>> import moldloft
         >>> moldloft.loads("AbsPoint P(1, 2, 2);").eval("P.x + 2")
         3.0
         """
-        return _wrapped(self._document.eval(expression))
+        value = _wrapped(self._document.eval(expression))
+        for remark in self._document.expression_remarks():
+            warnings.warn(str(remark), stacklevel=2)
+        return value
 
     def mesh(self, *, tags: str | Sequence[str] = ()) -> Mesh:
         """Panels of all shown surfaces, for the current model; remembered until it changes.

@@ -159,6 +159,40 @@ def test_propeller_sections_are_those_of_the_data_sheet() -> None:
         assert abs(abs(across @ mean)[1] - camber * diameter) < limit
 
 
+@pytest.mark.parametrize("corner", range(4))
+def test_propeller_is_within_its_diameter_between_its_sections_too(corner: int) -> None:
+    """All of a blade is on cylinders about the shaft, at the corners of its ranges."""
+    model = moldloft.load(EXAMPLES / "propeller/propeller.sdl")
+    if corner:
+        ranges = {name: (p.low, p.high) for name, p in model.params.items()}
+        random = np.random.default_rng(corner)
+        model.set({name: float(random.choice(ranges[name])) for name in ranges})
+    radius = model["diameter"] / 2
+    v = np.linspace(0, 1, 201)
+    points = np.asarray(model["one.skin"](np.linspace(0, 1, 41)[:, None], v[None]))
+    away = np.hypot(points[..., 1], points[..., 2])
+    assert away.max() <= radius * (1 + 1e-14)
+    assert np.abs(away - radius * (0.2 + 0.8 * v)).max() <= 1e-12 * radius
+
+
+def test_propeller_skin_has_the_areas_of_the_data_sheet() -> None:
+    """Expanded area of the whole skin, and its projected area beside that of the sheet's columns."""
+    model = moldloft.load(EXAMPLES / "propeller/propeller.sdl")
+    diameter, blades = model["diameter"], float(model.eval("blades"))
+    # Even in the square root of the distance from the tip, where the chord falls to zero.
+    v = 1 - np.linspace(1, 0, 401) ** 2
+    points = np.asarray(model["one.skin"](np.array([0.0, 0.5])[:, None], v[None]))
+    x, y, radius = _unrolled(points)
+    y = np.unwrap(y / radius, axis=0) * radius
+    chord = np.hypot(x[0] - x[1], y[0] - y[1])
+    disc = math.pi * diameter**2 / 4
+    expanded = blades * np.trapezoid(chord, radius[0]) / disc
+    projected = blades * np.trapezoid(np.abs(y[0] - y[1]), radius[0]) / disc
+    assert expanded == pytest.approx(0.7253, rel=1e-3)
+    # The sheet's own columns of chord and pitch give 0.5714; it states 0.5701.
+    assert projected == pytest.approx(0.5714, rel=1e-3)
+
+
 def test_propeller_areas_are_those_of_the_data_sheet() -> None:
     """Expanded area ratio and mean width ratio, as the sheet defines them."""
     model = moldloft.load(EXAMPLES / "propeller/propeller.sdl")

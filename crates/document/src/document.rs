@@ -1,3 +1,4 @@
+use crate::degenerate;
 use crate::solve::Solved;
 use indexmap::IndexMap;
 use moldloft_budget::Budget;
@@ -26,6 +27,7 @@ pub struct Document {
     pub(crate) sources: Sources,
     pub(crate) text_diagnostics: Vec<Diagnostic>,
     pub(crate) run_diagnostics: Vec<Diagnostic>,
+    pub(crate) expression_remarks: Vec<Diagnostic>,
     pub(crate) source: Source,
     pub(crate) modules: Modules,
     /// Values of parameters, and of literals of objects, that differ from the text's.
@@ -124,6 +126,7 @@ impl Document {
             sources: Sources::new(),
             text_diagnostics: Vec::new(),
             run_diagnostics: Vec::new(),
+            expression_remarks: Vec::new(),
             source: Source::None,
             modules: Modules::default(),
             overrides: IndexMap::new(),
@@ -260,6 +263,7 @@ impl Document {
         if report {
             found.extend(self.failures(evaluation));
             found.extend(self.remarks(evaluation));
+            found.extend(self.degeneracies(evaluation));
             found.extend(self.doubled(evaluation));
             found.extend(self.half_weights(evaluation));
             self.run_diagnostics = found;
@@ -427,6 +431,20 @@ impl Document {
             }
         }
         diagnostics
+    }
+
+    /// The warnings of curves without length and surfaces without area.
+    pub(crate) fn degeneracies<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
+        let warned = |object| {
+            let (id, message, advice) = degenerate::remark(object)?;
+            let message = format!("`{}`: {message}", object.name);
+            let warning = Diagnostic::warning(id, message).help(advice).object(&*object.name);
+            Some(match self.declared_at(evaluation, object) {
+                Some(span) => warning.at(span),
+                None => warning,
+            })
+        };
+        evaluation.graph.objects().filter_map(warned).collect()
     }
 
     pub(crate) fn declared_at<T: Scalar>(

@@ -23,6 +23,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod convert;
+mod degenerate;
 mod document;
 mod editor;
 mod measures;

@@ -1,5 +1,6 @@
 //! Direct edits: parameters and literals of objects set to numbers, as the text itself would say them.
 
+use crate::degenerate;
 use crate::document::{Document, Source};
 use moldloft_diag::Diagnostic;
 use moldloft_lang::run::program;
@@ -238,6 +239,11 @@ impl Document {
             self.run_diagnostics.extend(remarks);
             self.plain = evaluation;
         }
+        let evaluation = std::mem::take(&mut self.plain);
+        self.run_diagnostics.retain(|d| !degenerate::IDS.contains(&&*d.id));
+        let degeneracies = self.degeneracies(&evaluation);
+        self.run_diagnostics.extend(degeneracies);
+        self.plain = evaluation;
     }
 }
 

@@ -4,7 +4,7 @@
 //! coefficients are not negligible is halved. What is left of them bounds the distance to the surface.
 
 use crate::bernstein::{MOST_DEGREE, basis, halves};
-use crate::breaks::break_rate;
+use moldloft_num::period::crease_rate;
 use moldloft_num::{Order, Real, Surface, Vec3};
 use std::sync::OnceLock;
 
@@ -227,7 +227,11 @@ fn moving<T: Real>(surface: &dyn Surface<T>, along: usize, ends: &[f64]) -> Vec<
     let end = |(k, &t): (usize, &f64)| {
         let inner = T::PARTS > 1 && 0 < k && k < last;
         let aside = |k: usize| BESIDE * (ends[k + 1] - ends[k]);
-        if inner { break_rate(surface, along, t, [aside(k - 1), aside(k)]) + t } else { T::from(t) }
+        if inner {
+            crease_rate(surface, along, t, [aside(k - 1), aside(k)]) + t
+        } else {
+            T::from(t)
+        }
     };
     ends.iter().enumerate().map(end).collect()
 }

@@ -12,7 +12,6 @@
 
 mod bernstein;
 mod body;
-mod breaks;
 mod cell;
 mod equilibrium;
 mod figures;
@@ -24,7 +23,6 @@ mod section;
 mod strip;
 
 pub use body::{Body, Measures, Side, USUAL_ACCURACY, surface_measures};
-pub use breaks::break_rate;
 pub use cell::Cell;
 pub use equilibrium::{FloatError, Loading, Solved, Status, equilibrium};
 pub use figures::hydrostatics;

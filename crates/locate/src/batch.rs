@@ -3,7 +3,7 @@
 
 use crate::cells::{Cells, Flat, LEAF, Piece};
 use crate::nearest::{
-    Sought, apart, nearest_in_curve, nearest_in_surface, on_crease, surface_foot,
+    Sought, apart, nearest_in_curve, nearest_in_surface, on_crease, on_whole_surface,
 };
 use crate::report::{LocateStatus, Solution};
 use crate::tree::CurveTree;
@@ -217,7 +217,7 @@ impl NearestSurface {
         for foot in search.feet.iter().filter(|f| f.distance - f.slack <= limit) {
             let mut foot = *foot;
             if !exact {
-                let exact = surface_foot(surface, from, foot.uv, [[0.0, 1.0]; 2], tree.size);
+                let exact = on_whole_surface(surface, from, foot.uv, tree.size);
                 settled &= exact.converged;
                 foot.uv = exact.at;
                 foot.edge = exact.held.iter().any(|h| *h);
@@ -259,7 +259,7 @@ impl NearestSurface {
                 return Nearest::lost();
             }
             // No descent in a cell settled, as at a crease of which nothing is known.
-            let Solution { at, report } = nearest_in_surface(surface, tree, p, None);
+            let Solution { at, report, .. } = nearest_in_surface(surface, tree, p, None);
             let xyz = surface.jet(at[0], at[1], Order::Zero).p;
             return Nearest { at, xyz, distance: xyz.distance(p), status: report.status };
         };

@@ -24,6 +24,12 @@ impl<const N: usize> Three<'_, N> {
         })
     }
 
+    /// Which unknowns run round.
+    fn closed(&self) -> [bool; N] {
+        let mut all = self.surfaces().flat_map(|surface| surface.closed());
+        std::array::from_fn(|_| all.next().unwrap_or(false))
+    }
+
     /// What is left of the equations, and its derivatives by the unknowns.
     fn residual(&self, q: [f64; N]) -> ([f64; N], [[f64; N]; N]) {
         let (mut r, mut m) = ([0.0; N], [[0.0; N]; N]);
@@ -85,7 +91,7 @@ impl<const N: usize> Three<'_, N> {
     }
 
     fn walk(&self, start: [f64; N], size: f64) -> NewtonResult<N> {
-        newton(start, &[Range::PARAMETER; N], size, |q| self.residual(q))
+        newton(start, &self.closed().map(Range::parameter), size, |q| self.residual(q))
     }
 
     /// The common point that Newton's method leads to from a start; without one, or when that fails,
@@ -102,7 +108,7 @@ impl<const N: usize> Three<'_, N> {
         let trees: SmallVec<[SurfaceTree; 3]> = self.surfaces().map(SurfaceTree::new).collect();
         let size = trees.iter().map(|t| t.size).fold(f64::INFINITY, f64::min);
         if let Some(q) = start {
-            let walk = self.walk(q, size);
+            let walk = self.walk(q, size).within(&self.closed());
             if let Some(found) = taken(&walk, &q, self.volume(walk.at)) {
                 return Ok(found);
             }
@@ -120,7 +126,7 @@ impl<const N: usize> Three<'_, N> {
     }
 
     fn all(&self, trees: &[SurfaceTree], size: f64) -> Roots<N> {
-        let mut search = Search::<N>::new(size, &[0.5; N]);
+        let mut search = Search::<N>::new(size, &[0.5; N], self.closed());
         let mut stack: Vec<SmallVec<[Patch; 3]>> =
             trees[0].patches.iter().map(|p| SmallVec::from_slice(&[*p])).collect();
         while let Some(cell) = stack.pop() {

@@ -14,6 +14,7 @@ use crate::implicit::solve;
 use crate::newton::{OUTSIDE, Range, newton};
 use crate::pieces::size_of;
 use crate::predictor::predict;
+use moldloft_num::period::closed_sides;
 use moldloft_num::{Box3, Field, Order, Plane, SurfJet, Surface, Vec3, slope_scale};
 
 /// Unknowns of a point of an intersection: (u, v, p, r), the last two 0 for a plane.
@@ -158,7 +159,7 @@ impl<'a> Crossing<'a> {
     /// A surface and a plane.
     pub fn with_plane(first: &'a dyn Surface<f64>, plane: Plane<f64>) -> Self {
         let size = size_by_samples(first);
-        let [u, v] = closed_sides(first, size);
+        let [u, v] = closed_sides(first);
         Self {
             first,
             other: Other::Plane(plane),
@@ -171,14 +172,14 @@ impl<'a> Crossing<'a> {
     /// Two surfaces.
     pub fn with_surface(first: &'a dyn Surface<f64>, second: &'a dyn Surface<f64>) -> Self {
         let size = size_by_samples(first).min(size_by_samples(second));
-        let ([u, v], [p, r]) = (closed_sides(first, size), closed_sides(second, size));
+        let ([u, v], [p, r]) = (closed_sides(first), closed_sides(second));
         Self { first, other: Other::Surface(second), size, closed: [u, v, p, r], quick: [None; 2] }
     }
 
     /// A surface and the zero set of an implicit function.
     pub fn with_level(first: &'a dyn Surface<f64>, field: &'a dyn Field<f64>) -> Self {
         let size = size_by_samples(first);
-        let [u, v] = closed_sides(first, size);
+        let [u, v] = closed_sides(first);
         Self {
             first,
             other: Other::Level(field),
@@ -832,24 +833,4 @@ fn size_by_samples(surface: &dyn Surface<f64>) -> f64 {
     let mut x = [Vec3::zero(); 25];
     surface.grid(&ts, &ts, &mut x, None);
     size_of(&Box3::around(x))
-}
-
-/// Whether the sides v = const at 0 and 1 of a surface are one line, and those u = const: whether u
-/// and v run round. A side that is one point all along, a pole, does not count.
-fn closed_sides(surface: &dyn Surface<f64>, size: f64) -> [bool; 2] {
-    const N: usize = 9;
-    let ts: [f64; N] = std::array::from_fn(|k| k as f64 / (N - 1) as f64);
-    let ends = [0.0, 1.0];
-    let (mut by_u, mut by_v) = ([Vec3::zero(); 2 * N], [Vec3::zero(); 2 * N]);
-    surface.grid(&ends, &ts, &mut by_u, None);
-    surface.grid(&ts, &ends, &mut by_v, None);
-    let near = |a: Vec3, b: Vec3| a.distance(b) <= 1e-9 * size;
-    let joined = |pair: &dyn Fn(usize) -> [Vec3; 2]| {
-        let [first, _] = pair(0);
-        (0..N).all(|k| {
-            let [a, b] = pair(k);
-            near(a, b)
-        }) && (0..N).any(|k| !near(pair(k)[0], first))
-    };
-    [joined(&|k| [by_u[k], by_u[N + k]]), joined(&|k| [by_v[2 * k], by_v[2 * k + 1]])]
 }

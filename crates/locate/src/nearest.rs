@@ -4,6 +4,7 @@ use crate::newton::{ACCURACY, LONGEST_STEP, MOST_STEPS};
 use crate::pieces::{Feet, Patch, distance_sq, size_of};
 use crate::report::{Alternative, LocateReport, LocateStatus, Solution};
 use crate::tree::{CurveTree, SurfaceTree};
+use moldloft_num::period::{breaks_between, principal};
 use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
 use smallvec::SmallVec;
 
@@ -77,6 +78,8 @@ pub(crate) struct Foot<const N: usize> {
     /// True when the distance has no definite second derivative there.
     pub flat: bool,
     pub converged: bool,
+    /// True when the unknown is that of a joint at which the shape is bent.
+    pub joint: [bool; N],
 }
 
 /// The slope of the distance along the free unknowns, as a length.
@@ -109,6 +112,7 @@ fn descend<const N: usize>(
         held: [false; N],
         flat: false,
         converged: false,
+        joint: [false; N],
     };
     for _ in 0..MOST_STEPS {
         let r = x - p;
@@ -231,6 +235,170 @@ pub(crate) fn surface_foot(
     })
 }
 
+/// The range of a descent over a whole shape from `at`: round and round a closed one.
+fn whole_range(at: f64, closed: bool) -> [f64; 2] {
+    if closed { [at - 1.0, at + 1.0] } else { [0.0, 1.0] }
+}
+
+/// The foot on a whole curve that descent from `start` leads to, over the seam of a closed one; corners count.
+fn on_whole_curve(curve: &dyn Curve<f64>, p: Vec3, start: f64, size: f64) -> Foot<1> {
+    let closed = curve.closed();
+    let range = whole_range(start, closed);
+    let mut foot = curve_foot(curve, p, start, range, size);
+    if !foot.converged
+        && let Some(corner) = at_corner(curve, p, &foot, range, size)
+    {
+        foot = corner;
+    }
+    if closed {
+        foot.at = foot.at.map(principal);
+    }
+    foot
+}
+
+/// How far on both sides of a joint its slopes are looked at.
+const BESIDE: f64 = 1e-8;
+
+/// The joint nearest to a parameter.
+fn joint_near(breaks: &[f64], closed: bool, [low, high]: [f64; 2], at: f64) -> Option<f64> {
+    let inside = breaks_between(breaks, closed, low, high);
+    inside.into_iter().min_by(|a, b| (a - at).abs().total_cmp(&(b - at).abs()))
+}
+
+/// True when the distance rises on both sides of a joint: its slopes there, as lengths.
+fn rises([before, after]: [f64; 2], goal: f64) -> bool {
+    before <= goal && after >= -goal
+}
+
+/// The corner near a place at which a descent came to no end, if that is where the distance is least.
+fn at_corner(
+    curve: &dyn Curve<f64>,
+    p: Vec3,
+    stuck: &Foot<1>,
+    range: [f64; 2],
+    size: f64,
+) -> Option<Foot<1>> {
+    let t = joint_near(&curve.breaks(), curve.closed(), range, stuck.at[0])?;
+    let xyz = curve.jet(t, Order::Zero)[0];
+    if xyz.distance(p) > stuck.xyz.distance(p) + 1e-12 * size {
+        return None;
+    }
+    let slopes = [-BESIDE, BESIDE].map(|h| {
+        let [x, d, _] = curve.jet(t + h, Order::First);
+        d.dot(x - p) / d.norm().max(f64::MIN_POSITIVE)
+    });
+    let goal = 1e-7 * size.max(xyz.distance(p));
+    rises(slopes, goal).then_some(Foot {
+        at: [t],
+        xyz,
+        residual: 0.0,
+        held: [false],
+        converged: true,
+        joint: [true],
+        ..*stuck
+    })
+}
+
+/// The foot on a whole surface that descent from `start` leads to, over the seams of a closed one; knuckles
+/// along its joints count.
+pub(crate) fn on_whole_surface(
+    surface: &dyn Surface<f64>,
+    p: Vec3,
+    start: [f64; 2],
+    size: f64,
+) -> Foot<2> {
+    let closed = surface.closed();
+    let ranges = [0, 1].map(|k| whole_range(start[k], closed[k]));
+    let mut foot = surface_foot(surface, p, start, ranges, size);
+    if !foot.converged
+        && let Some(knuckle) = at_knuckle(surface, p, &foot, ranges, size)
+    {
+        foot = knuckle;
+    }
+    for k in (0..2).filter(|k| closed[*k]) {
+        foot.at[k] = principal(foot.at[k]);
+    }
+    foot
+}
+
+/// The foot along a joint, or where two meet, near a place at which a descent came to no end, if that is where
+/// the distance is least.
+fn at_knuckle(
+    surface: &dyn Surface<f64>,
+    p: Vec3,
+    stuck: &Foot<2>,
+    ranges: [[f64; 2]; 2],
+    size: f64,
+) -> Option<Foot<2>> {
+    let (breaks, closed) = (surface.breaks(), surface.closed());
+    let near = [0, 1].map(|k| joint_near(&breaks[k], closed[k], ranges[k], stuck.at[k]));
+    let along = |fixed: [bool; 2]| -> Option<Foot<2>> {
+        let (mut start, mut within) = (stuck.at, ranges);
+        for k in (0..2).filter(|k| fixed[*k]) {
+            start[k] = near[k]?;
+            within[k] = [start[k]; 2];
+        }
+        let mut foot = surface_foot(surface, p, start, within, size);
+        if !foot.converged || foot.xyz.distance(p) > stuck.xyz.distance(p) + 1e-12 * size {
+            return None;
+        }
+        let goal = 1e-7 * size.max(foot.xyz.distance(p));
+        for k in (0..2).filter(|k| fixed[*k]) {
+            let slopes = [-BESIDE, BESIDE].map(|h| {
+                let mut q = foot.at;
+                q[k] += h;
+                let j = surface.jet(q[0], q[1], Order::First);
+                let d = [j.u, j.v][k];
+                d.dot(j.p - p) / d.norm().max(f64::MIN_POSITIVE)
+            });
+            if !rises(slopes, goal) {
+                return None;
+            }
+            foot.held[k] = false;
+        }
+        Some(Foot { joint: fixed, ..foot })
+    };
+    let found = [[true, false], [false, true], [true, true]].into_iter().filter_map(along);
+    found.min_by(|a, b| a.xyz.distance(p).total_cmp(&b.xyz.distance(p)))
+}
+
+/// Directions in which a descent may leave a pole.
+const AROUND: usize = 24;
+
+/// A descent that ends at a pole goes on from there on the side where the distance falls most steeply.
+fn across_poles(surface: &dyn Surface<f64>, p: Vec3, mut foot: Foot<2>, size: f64) -> Foot<2> {
+    for _ in 0..3 {
+        let Some(k) = (0..2).find(|k| foot.held[*k]) else { break };
+        let end = foot.at[k];
+        let inward = if end < 0.5 { 1.0 } else { -1.0 };
+        let along = |w: f64| {
+            let [u, v] = if k == 0 { [end, w] } else { [w, end] };
+            surface.jet(u, v, Order::First)
+        };
+        let here = along(foot.at[1 - k]);
+        if [here.v, here.u][k].norm() > 1e-9 * size {
+            break;
+        }
+        let fall = |w: f64| {
+            let j = along(w);
+            let d = [j.u, j.v][k] * inward;
+            d.dot(j.p - p) / d.norm().max(f64::MIN_POSITIVE)
+        };
+        let sides = (0..AROUND).map(|i| (i as f64 + 0.5) / AROUND as f64);
+        let Some(w) = sides.min_by(|a, b| fall(*a).total_cmp(&fall(*b))) else { break };
+        if fall(w) >= -1e-9 * size {
+            break;
+        }
+        let (a, b) = (end + 1e-3 * inward, w);
+        let next = on_whole_surface(surface, p, if k == 0 { [a, b] } else { [b, a] }, size);
+        if !(next.xyz.distance(p) < foot.xyz.distance(p)) {
+            break;
+        }
+        foot = next;
+    }
+    foot
+}
+
 /// A surface whose normals on both sides of a place this near it are at an angle of at least this
 /// cosine is creased between.
 const CREASE_WITHIN: f64 = 1e-4;
@@ -309,6 +477,7 @@ pub(crate) fn on_crease(
                 held: [false; 2],
                 flat: false,
                 converged: true,
+                joint: [false; 2],
             });
         }
         let run = next.0[other] - before.0[other];
@@ -371,7 +540,7 @@ fn solution<const N: usize>(start: &[f64], feet: Vec<Foot<N>>) -> Solution<N> {
         last: foot.at.iter().copied().collect(),
         alternatives,
     };
-    Solution { at: foot.at, report }
+    Solution { at: foot.at, joint: foot.joint, report }
 }
 
 /// Keeps the nearest feet: those within `TIE` of the nearest, in the order of the parameters.
@@ -416,7 +585,7 @@ pub fn nearest_on_curve(curve: &dyn Curve<f64>, p: Vec3, start: Option<f64>) -> 
         let around = Box3::around([ends[0], ends[1], curve.jet(1.0, Order::Zero)[0]]);
         let size = size_of(&around);
         let sought = Sought::new(p, &around, size);
-        let foot = curve_foot(curve, sought.p, t, [0.0, 1.0], size);
+        let foot = on_whole_curve(curve, sought.p, t, size);
         if foot.converged {
             return solution(&[t], vec![foot]);
         }
@@ -472,7 +641,7 @@ pub fn nearest_in_curve(
         }
     }
     // From the border of a piece on into the neighbours, and to full accuracy.
-    let whole = |foot: Foot<1>| curve_foot(curve, p, foot.at[0], [0.0, 1.0], tree.size);
+    let whole = |foot: Foot<1>| on_whole_curve(curve, p, foot.at[0], tree.size);
     let feet = nearest_of(feet, near, tree.size).into_iter().map(whole).collect();
     let mut feet = nearest_of(feet, near, tree.size);
     if feet.is_empty() {
@@ -497,7 +666,8 @@ pub fn nearest_on_surface(
         let around = Box3::around(corners);
         let size = size_of(&around);
         let sought = Sought::new(p, &around, size);
-        let foot = surface_foot(surface, sought.p, uv, [[0.0, 1.0]; 2], size);
+        let foot = on_whole_surface(surface, sought.p, uv, size);
+        let foot = across_poles(surface, sought.p, foot, size);
         if foot.converged {
             return solution(&uv, vec![foot]);
         }
@@ -571,7 +741,7 @@ pub fn nearest_in_surface(
     }
     feet.push(foot);
     // From the border of a piece on into the neighbours, and to full accuracy.
-    let whole = |foot: Foot<2>| surface_foot(surface, p, foot.at, [[0.0, 1.0]; 2], tree.size);
+    let whole = |foot: Foot<2>| on_whole_surface(surface, p, foot.at, tree.size);
     let feet = nearest_of(feet, near, tree.size).into_iter().map(whole).collect();
     let mut feet = nearest_of(feet, near, tree.size);
     if !tree.exact && (feet.len() > 1 || !feet[0].converged) {

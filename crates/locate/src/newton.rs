@@ -1,6 +1,7 @@
 //! Damped Newton iteration in a box of parameters.
 
 use crate::implicit::solve;
+use moldloft_num::period::principal;
 
 /// Steps are cut to this length in any parameter.
 pub const LONGEST_STEP: f64 = 0.2;
@@ -40,9 +41,27 @@ pub struct Range {
     pub step: f64,
 }
 
+impl<const N: usize> NewtonResult<N> {
+    /// The same with the parameters of closed shapes in their first turn.
+    pub fn within(mut self, closed: &[bool; N]) -> Self {
+        for (x, _) in self.at.iter_mut().zip(closed).filter(|(_, closed)| **closed) {
+            *x = principal(*x);
+        }
+        self
+    }
+}
+
 impl Range {
     /// A shape's parameter: [0, 1] and a hair.
     pub const PARAMETER: Range = Range { low: -OUTSIDE, high: 1.0 + OUTSIDE, step: LONGEST_STEP };
+
+    /// The parameter of a closed shape: a turn to both sides of the first.
+    pub const ROUND: Range = Range { low: -1.0, high: 2.0, step: LONGEST_STEP };
+
+    /// The range of a shape's parameter.
+    pub const fn parameter(closed: bool) -> Range {
+        if closed { Range::ROUND } else { Range::PARAMETER }
+    }
 
     /// An unknown without bounds.
     pub const FREE: Range =

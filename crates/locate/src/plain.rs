@@ -27,6 +27,10 @@ impl<T: Real> Curve<f64> for PlainCurve<'_, T> {
     fn joints(&self) -> Vec<f64> {
         self.0.joints()
     }
+
+    fn closed(&self) -> bool {
+        self.0.closed()
+    }
 }
 
 /// A surface of any scalar seen through its real parts; see [`PlainCurve`].
@@ -68,5 +72,9 @@ impl<T: Real> Surface<f64> for PlainSurface<'_, T> {
 
     fn joints(&self) -> [Vec<f64>; 2] {
         self.0.joints()
+    }
+
+    fn closed(&self) -> [bool; 2] {
+        self.0.closed()
     }
 }

@@ -1,6 +1,7 @@
 //! Solutions of searches and reports about how they were found, or why there is none.
 
 use moldloft_num::Vec3;
+use moldloft_num::period::parameter_distance;
 use smallvec::SmallVec;
 use std::fmt;
 
@@ -96,6 +97,9 @@ pub struct LocateReport {
 pub struct Solution<const N: usize> {
     /// The parameters.
     pub at: [f64; N],
+    /// Which of them are those of a joint at which the shape is bent: the least distance to a corner or a
+    /// knuckle is there, and stays there.
+    pub joint: [bool; N],
     /// How they were found.
     pub report: LocateReport,
 }
@@ -125,13 +129,17 @@ pub struct Roots<const N: usize> {
     pub complete: bool,
     /// The parameters of the least residual that was met, for messages.
     pub closest: Option<([f64; N], f64)>,
+    /// Which parameters run round, so that 0 and 1 are one.
+    pub closed: [bool; N],
 }
 
 impl<const N: usize> Roots<N> {
-    /// The root nearest to `start` in parameter space; among equally near ones the first.
+    /// The root nearest to `start` in parameter space, over seams where that is shorter; among equally near
+    /// ones the first.
     pub fn nearest_to(&self, start: &[f64]) -> Option<usize> {
         let away = |root: &Root<N>| -> f64 {
-            root.at.iter().zip(start).map(|(a, b)| (a - b) * (a - b)).sum()
+            let apart = |k: usize| parameter_distance(root.at[k], start[k], self.closed[k]);
+            (0..N.min(start.len())).map(|k| apart(k) * apart(k)).sum()
         };
         let distances: Vec<f64> = self.roots.iter().map(away).collect();
         (0..distances.len()).min_by(|&a, &b| distances[a].total_cmp(&distances[b]).then(a.cmp(&b)))
@@ -161,7 +169,7 @@ impl<const N: usize> Roots<N> {
             last: root.at.iter().copied().collect(),
             alternatives,
         };
-        Solution { at: root.at, report }
+        Solution { at: root.at, joint: [false; N], report }
     }
 
     /// The report that there is no root.

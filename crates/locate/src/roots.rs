@@ -10,6 +10,7 @@ use crate::newton::{NewtonResult, OUTSIDE, Range, newton};
 use crate::pieces::{CurvePiece, Patch, meet, size_of};
 use crate::report::{LocateReport, LocateStatus, Root, Roots, Solution};
 use crate::tree::{CurveTree, SurfaceTree};
+use moldloft_num::period::parameter_distance;
 use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Surface, Vec3};
 
 /// Pairs of pieces that a search looks at before it gives up.
@@ -86,6 +87,9 @@ impl Curve<f64> for Along<'_> {
     fn joints(&self) -> Vec<f64> {
         self.curve.joints()
     }
+    fn closed(&self) -> bool {
+        self.curve.closed()
+    }
 }
 
 fn size_of_curve(curve: &dyn Curve<f64>) -> f64 {
@@ -120,7 +124,7 @@ pub(crate) fn taken<const N: usize>(
         last: walk.at.iter().copied().collect(),
         alternatives: Vec::new(),
     };
-    Some(Solution { at: walk.at, report })
+    Some(Solution { at: walk.at, joint: [false; N], report })
 }
 
 /// What to do when there is no start or it led nowhere: all roots, the one nearest to the start.
@@ -148,10 +152,12 @@ pub fn curve_level(
 ) -> Result<Solution<1>, LocateReport> {
     if let Some(t) = start {
         let size = size_of_curve(curve);
-        let walk = newton([t], &[Range::PARAMETER], size, |[t]| {
+        let closed = curve.closed();
+        let walk = newton([t], &[Range::parameter(closed)], size, |[t]| {
             let [g, d, _] = level.along(curve.jet(t, Order::First));
             ([g], [[d]])
-        });
+        })
+        .within(&[closed]);
         let sine = sine_to_level(curve, level, walk.at[0]);
         if let Some(found) = taken(&walk, &[t], sine) {
             return Ok(found);
@@ -173,7 +179,8 @@ pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level<'_>) -> Roots<1> {
     let along = Along { curve, level };
     let tree = CurveTree::new(&along);
     let value = |t: f64| level.along(curve.jet(t, Order::Second));
-    let mut search = Search::<1>::new(size, &[1.0]);
+    let closed = curve.closed();
+    let mut search = Search::<1>::new(size, &[1.0], [closed]);
     for piece in &tree.pieces {
         let mut stack = vec![*piece];
         while let Some(piece) = stack.pop() {
@@ -189,7 +196,7 @@ pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level<'_>) -> Roots<1> {
             let [t0, t1] = piece.t;
             let middle = 0.5 * (t0 + t1);
             if steady {
-                let walk = newton([middle], &[Range::PARAMETER], size, |[t]| {
+                let walk = newton([middle], &[Range::parameter(closed)], size, |[t]| {
                     let [g, d, _] = value(t);
                     ([g], [[d]])
                 });
@@ -223,11 +230,13 @@ pub(crate) struct Search<const N: usize> {
     roots: Vec<Root<N>>,
     closest: Option<([f64; N], f64)>,
     slack: [f64; N],
+    closed: [bool; N],
 }
 
 impl<const N: usize> Search<N> {
-    pub fn new(size: f64, slack: &[f64; N]) -> Self {
-        Self { size, pairs: 0, roots: Vec::new(), closest: None, slack: *slack }
+    /// `closed` states which unknowns run round.
+    pub fn new(size: f64, slack: &[f64; N], closed: [bool; N]) -> Self {
+        Self { size, pairs: 0, roots: Vec::new(), closest: None, slack: *slack, closed }
     }
 
     /// Counts a pair; true when there were too many.
@@ -256,6 +265,7 @@ impl<const N: usize> Search<N> {
             walk.at[k] >= a - reach && walk.at[k] <= b + reach
         });
         if walk.found && near {
+            let walk = walk.within(&self.closed);
             let (xyz, tangent) = facts(walk.at);
             self.insert(Root {
                 at: walk.at,
@@ -275,8 +285,10 @@ impl<const N: usize> Search<N> {
     }
 
     fn insert(&mut self, root: Root<N>) {
-        let near =
-            |a: &Root<N>, reach: f64| a.at.iter().zip(root.at).all(|(x, y)| (x - y).abs() <= reach);
+        let closed = self.closed;
+        let near = |a: &Root<N>, reach: f64| {
+            (0..N).all(|k| parameter_distance(a.at[k], root.at[k], closed[k]) <= reach)
+        };
         // Touching points are found only to the root of the accuracy.
         let reach = |a: &Root<N>| if a.tangent || root.tangent { 1e-4 } else { 1e-9 };
         match self.roots.iter_mut().find(|a| near(a, reach(a))) {
@@ -292,7 +304,7 @@ impl<const N: usize> Search<N> {
             let pairs = a.at.iter().zip(&b.at);
             pairs.fold(std::cmp::Ordering::Equal, |o, (x, y)| o.then(x.total_cmp(y)))
         });
-        Roots { roots: self.roots, complete, closest: self.closest }
+        Roots { roots: self.roots, complete, closest: self.closest, closed: self.closed }
     }
 }
 
@@ -316,6 +328,12 @@ fn sine_to_surface(curve: &dyn Curve<f64>, surface: &dyn Surface<f64>, [t, u, v]
     n.dot(d).abs() / d.norm().max(f64::MIN_POSITIVE)
 }
 
+/// Which of (t, u, v) run round.
+fn round_of(curve: &dyn Curve<f64>, surface: &dyn Surface<f64>) -> [bool; 3] {
+    let [u, v] = surface.closed();
+    [curve.closed(), u, v]
+}
+
 /// Where a curve meets a surface, as (t, u, v); see [`curve_level`].
 ///
 /// # Errors
@@ -328,7 +346,8 @@ pub fn curve_surface(
     if let Some(q) = start {
         let size = size_of_curve(curve).max(size_of_surface(surface));
         let f = |q| curve_on_surface(curve, surface, q);
-        let walk = newton(q, &[Range::PARAMETER; 3], size, f);
+        let closed = round_of(curve, surface);
+        let walk = newton(q, &closed.map(Range::parameter), size, f).within(&closed);
         if let Some(found) = taken(&walk, &q, sine_to_surface(curve, surface, walk.at)) {
             return Ok(found);
         }
@@ -352,7 +371,9 @@ pub fn meetings(
     surface_tree: &SurfaceTree,
 ) -> Roots<3> {
     let size = curve_tree.size.min(surface_tree.size);
-    let mut search = Search::<3>::new(size, &[0.5; 3]);
+    let closed = round_of(curve, surface);
+    let ranges = closed.map(Range::parameter);
+    let mut search = Search::<3>::new(size, &[0.5; 3], closed);
     let mut stack: Vec<(CurvePiece, Patch)> = Vec::new();
     for piece in &curve_tree.pieces {
         for k in surface_tree.meeting(&piece.bounds()) {
@@ -374,7 +395,7 @@ pub fn meetings(
                 if flat || tiny {
                     let middle = cell.map(|[a, b]| 0.5 * (a + b));
                     let f = |q| curve_on_surface(curve, surface, q);
-                    let walk = newton(middle, &[Range::PARAMETER; 3], size, f);
+                    let walk = newton(middle, &ranges, size, f);
                     let facts = |q: [f64; 3]| {
                         let sine = sine_to_surface(curve, surface, q);
                         (curve.jet(q[0], Order::Zero)[0], sine < TANGENT)
@@ -447,7 +468,9 @@ pub fn curve_curve(
     let gap = |[t, s]: [f64; 2]| a.jet(t, Order::Zero)[0].distance(b.jet(s, Order::Zero)[0]);
     if let Some(q) = start {
         let size = size_of_curve(a).max(size_of_curve(b));
-        let mut walk = newton(q, &[Range::PARAMETER; 2], size, |q| between_curves(a, b, q));
+        let closed = [a.closed(), b.closed()];
+        let ranges = closed.map(Range::parameter);
+        let mut walk = newton(q, &ranges, size, |q| between_curves(a, b, q)).within(&closed);
         let sine = sine_between(a, b, walk.at);
         walk.residual = gap(walk.at);
         if let Some(found) = taken(&walk, &q, sine) {
@@ -467,7 +490,9 @@ pub fn all_curve_curve(a: &dyn Curve<f64>, b: &dyn Curve<f64>) -> Roots<2> {
     // What counts as a meeting: curves in space that are made to meet do so to rounding only.
     let joined = 1e-9 * size;
     let gap = |[t, s]: [f64; 2]| a.jet(t, Order::Zero)[0].distance(b.jet(s, Order::Zero)[0]);
-    let mut search = Search::<2>::new(size, &[0.5; 2]);
+    let closed = [a.closed(), b.closed()];
+    let ranges = closed.map(Range::parameter);
+    let mut search = Search::<2>::new(size, &[0.5; 2], closed);
     let mut best: Option<Root<2>> = None;
     let mut bound = f64::INFINITY;
     let mut stack: Vec<(CurvePiece, CurvePiece)> = Vec::new();
@@ -507,14 +532,14 @@ pub fn all_curve_curve(a: &dyn Curve<f64>, b: &dyn Curve<f64>) -> Roots<2> {
             if flat || tiny {
                 let middle = cell.map(|[a, b]| 0.5 * (a + b));
                 bound = bound.min(gap(middle));
-                let mut walk =
-                    newton(middle, &[Range::PARAMETER; 2], size, |x| between_curves(a, b, x));
+                let mut walk = newton(middle, &ranges, size, |x| between_curves(a, b, x));
                 walk.residual = gap(walk.at);
                 let inside = (0..2).all(|k| {
                     let [a, b] = cell[k];
                     walk.at[k] >= a - 0.5 * (b - a) && walk.at[k] <= b + 0.5 * (b - a)
                 });
                 if walk.found && inside {
+                    let walk = walk.within(&closed);
                     bound = bound.min(walk.residual);
                     let root = Root {
                         at: walk.at,
@@ -573,11 +598,13 @@ pub fn line_surface(
     let sine = |[u, v, _]: [f64; 3]| {
         surface.jet(u, v, Order::First).normal().dot(d).abs() / speed.max(f64::MIN_POSITIVE)
     };
-    let ranges = [Range::PARAMETER, Range::PARAMETER, Range::FREE];
+    let [round_u, round_v] = surface.closed();
+    let closed = [round_u, round_v, false];
+    let ranges = [Range::parameter(round_u), Range::parameter(round_v), Range::FREE];
     if let Some([u, v]) = start {
         let s = (surface.jet(u, v, Order::Zero).p - p).dot(d) / (speed * speed);
         let size = size_of_surface(surface);
-        let walk = newton([u, v, s], &ranges, size, residual);
+        let walk = newton([u, v, s], &ranges, size, residual).within(&closed);
         if let Some(found) = taken(&walk, &[u, v, s], sine(walk.at)) {
             return Ok(found);
         }
@@ -594,10 +621,10 @@ pub fn line_surface(
         Root { at: [u, v, s - reach + 2.0 * reach * t], ..*root }
     });
     let closest = found.closest.map(|([t, u, v], r)| ([u, v, s - reach + 2.0 * reach * t], r));
-    let mut all = Roots { roots: roots.collect(), complete: found.complete, closest };
+    let mut all = Roots { roots: roots.collect(), complete: found.complete, closest, closed };
     for root in &mut all.roots {
         // To full accuracy in the measure of the line itself.
-        let walk = newton(root.at, &ranges, tree.size, residual);
+        let walk = newton(root.at, &ranges, tree.size, residual).within(&closed);
         if walk.found {
             root.at = walk.at;
             root.residual = walk.residual;

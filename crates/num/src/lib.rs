@@ -18,6 +18,7 @@ mod dual;
 mod frame;
 mod jet;
 mod linear;
+pub mod period;
 mod quadrature;
 mod rational;
 mod real;

@@ -68,6 +68,12 @@ pub trait Curve<T: Real>: Send + Sync {
         self.breaks()
     }
 
+    /// True when the curve ends where it begins: it is periodic then, and `jet` beyond 0 .. 1 gives what it
+    /// gives whole turns before. Objects of a model find that out by themselves; see [`crate::period`].
+    fn closed(&self) -> bool {
+        false
+    }
+
     /// What the curve runs along, for joins: itself, or a part of other curves.
     fn trace(&self) -> Trace<T> {
         Trace::own()
@@ -139,6 +145,11 @@ pub trait Surface<T: Real>: Send + Sync {
     /// [`Curve::joints`].
     fn joints(&self) -> [Vec<f64>; 2] {
         self.breaks()
+    }
+
+    /// Which of u and v run round, since the two sides of the surface are one line; see [`Curve::closed`].
+    fn closed(&self) -> [bool; 2] {
+        [false; 2]
     }
 
     /// The parameters in (0, 1), in any order, at which a path (u, v) in the parameter plane meets a

@@ -7,9 +7,9 @@ use crate::edges::{EdgePlan, PatchLookup, along_edge, evaluated};
 use crate::knuckles::ASIDE;
 use crate::roots::{MarkSource, Stop};
 use crate::topology::{PanelTopology, PatchTopology};
-use moldloft_hydro::break_rate;
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
+use moldloft_num::period::crease_rate;
 use moldloft_num::trace::{Edges, Key};
 use moldloft_registry::{Point, Scalar, SurfaceRef, Value};
 use rayon::prelude::*;
@@ -131,6 +131,6 @@ impl<T: Scalar> PatchLookup<T> for PatchValues<'_, T> {
 
     fn knuckle_rate(&self, draft: u32, along: usize, at: f64) -> Option<T> {
         let surface = self.surfaces[draft as usize].as_ref()?;
-        Some(break_rate(&**surface, along, at, [ASIDE; 2]))
+        Some(crease_rate(&**surface, along, at, [ASIDE; 2]))
     }
 }

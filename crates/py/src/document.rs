@@ -173,6 +173,13 @@ impl PyDocument {
         document.diagnostics().iter().map(|d| d.to_data(sources).into()).collect()
     }
 
+    /// What is remarkable about the value that `eval` gave last.
+    fn expression_remarks(&self, py: Python<'_>) -> Vec<Diagnostic> {
+        let document = self.lock(py);
+        let sources = document.sources();
+        document.expression_remarks().iter().map(|d| d.to_data(sources).into()).collect()
+    }
+
     fn has_errors(&self, py: Python<'_>) -> bool {
         self.lock(py).has_errors()
     }

@@ -2,6 +2,7 @@
 
 use crate::arrays;
 use crate::error::{format_error, model_error, plain_error};
+use crate::work::unlocked;
 use moldloft_diag::Sources;
 use moldloft_export::format_named;
 use moldloft_io::plot3d::{self, Laid, Variant};
@@ -52,7 +53,8 @@ pub fn read_plot3d<'py>(
     py: Python<'py>,
     data: &[u8],
 ) -> PyResult<(Vec<Bound<'py, PyArray4<f64>>>, Bound<'py, PyDict>)> {
-    let (blocks, variant) = py.detach(|| plot3d::read(data)).map_err(format_error)?;
+    let data = data.to_vec();
+    let (blocks, variant) = unlocked(py, move || plot3d::read(&data))?.map_err(format_error)?;
     let dict = PyDict::new(py);
     let layout = match variant.laid {
         Laid::Formatted => "text",
@@ -105,7 +107,7 @@ pub fn write_plot3d<'py>(
         block.iblank = blank;
     }
     let variant = Variant { laid, double, multi, three, iblank: given, big_endian, mark, planes };
-    let bytes = plot3d::write(&blocks, variant).map_err(plain_error)?;
+    let bytes = unlocked(py, move || plot3d::write(&blocks, variant))?.map_err(plain_error)?;
     Ok(PyBytes::new(py, &bytes))
 }
 
@@ -118,7 +120,8 @@ pub fn write_grids<'py>(
     main: &str,
 ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
     let format = format_named(format).map_err(|d| plain_error(&d.message))?;
-    let files = moldloft_export::write_grids(&grids(&blocks)?, format, main);
+    let (blocks, main) = (grids(&blocks)?, main.to_string());
+    let files = unlocked(py, move || moldloft_export::write_grids(&blocks, format, &main))?;
     let files = files.map_err(|d| model_error(&d, &Sources::new()))?;
     Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
 }
@@ -137,7 +140,9 @@ pub fn grid_with_fields<'py>(
         vtk::Field { name: name.clone(), components: planes.len(), values }
     };
     let fields: Vec<vtk::Field> = fields.iter().map(field).collect();
-    let bytes = vtk::grid_with_fields(&grid(&points)?, &fields).map_err(plain_error)?;
+    let points = grid(&points)?;
+    let bytes = unlocked(py, move || vtk::grid_with_fields(&points, &fields))?;
+    let bytes = bytes.map_err(plain_error)?;
     Ok(PyBytes::new(py, &bytes))
 }
 
@@ -149,7 +154,9 @@ pub fn grids_as_stl<'py>(
     name: &str,
     flip: bool,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let bytes = stl::write_grids(&grids(&blocks)?, name, flip).map_err(plain_error)?;
+    let (blocks, name) = (grids(&blocks)?, name.to_string());
+    let bytes = unlocked(py, move || stl::write_grids(&blocks, &name, flip))?;
+    let bytes = bytes.map_err(plain_error)?;
     Ok(PyBytes::new(py, &bytes))
 }
 
@@ -159,7 +166,8 @@ pub fn read_points<'py>(
     py: Python<'py>,
     data: &[u8],
 ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>)> {
-    let table = points::read(data).map_err(format_error)?;
+    let data = data.to_vec();
+    let table = unlocked(py, move || points::read(&data))?.map_err(format_error)?;
     let dict = PyDict::new(py);
     dict.set_item("columns", table.columns)?;
     dict.set_item("lines", table.lines)?;
@@ -175,6 +183,7 @@ pub fn read_points<'py>(
 /// The text of points (n, 2) or (n, 3).
 #[pyfunction]
 pub fn points_text(
+    py: Python<'_>,
     rows: PyReadonlyArray2<'_, f64>,
     separator: String,
     head: Vec<String>,
@@ -184,14 +193,14 @@ pub fn points_text(
     let (rows, columns) = point_rows(&rows)?;
     let blocks = blocks.into_iter().map(|(first, end)| first..end).collect();
     let layout = PointLayout { head, separator, blocks, halves };
-    Ok(points::write(&rows, columns, &layout))
+    unlocked(py, move || points::write(&rows, columns, &layout))
 }
 
 /// Points (n, 2) or (n, 3) as a table under the names of its columns.
 #[pyfunction]
-pub fn points_csv(rows: PyReadonlyArray2<'_, f64>) -> PyResult<String> {
+pub fn points_csv(py: Python<'_>, rows: PyReadonlyArray2<'_, f64>) -> PyResult<String> {
     let (rows, columns) = point_rows(&rows)?;
-    Ok(points::write_csv(&rows, columns))
+    unlocked(py, move || points::write_csv(&rows, columns))
 }
 
 fn point_rows(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<(Vec<Vec3>, usize)> {
@@ -209,8 +218,12 @@ fn point_rows(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<(Vec<Vec3>, usize)> 
 
 /// An aerofoil section: its name, points, index of the nose and listing.
 #[pyfunction]
-pub fn read_aerofoil(data: &[u8]) -> PyResult<(String, Vec<[f64; 3]>, usize, &'static str)> {
-    let found = section::read_aerofoil(data).map_err(format_error)?;
+pub fn read_aerofoil(
+    py: Python<'_>,
+    data: &[u8],
+) -> PyResult<(String, Vec<[f64; 3]>, usize, &'static str)> {
+    let data = data.to_vec();
+    let found = unlocked(py, move || section::read_aerofoil(&data))?.map_err(format_error)?;
     let listing = match found.listing {
         Listing::Selig => "selig",
         Listing::Lednicer => "lednicer",

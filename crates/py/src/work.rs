@@ -61,7 +61,8 @@ fn unseen(
     };
     loop {
         match receive(SIGNALS_EVERY) {
-            Ok(Ok(())) => return Ok(()),
+            // A signal of the last moment is answered here, and not in the middle of what turns the result into arrays.
+            Ok(Ok(())) => return py.check_signals(),
             Ok(Err(panic)) => resume_unwind(panic),
             Err(_) => {
                 if let Err(interrupt) = py.check_signals() {
@@ -72,6 +73,14 @@ fn unseen(
             }
         }
     }
+}
+
+/// [`interruptible`] for work that has no budget: after Ctrl-C it goes on unseen until it ends.
+pub fn unlocked<R: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> R + Send + 'static,
+) -> PyResult<R> {
+    interruptible(py, &Budget::default(), work)
 }
 
 /// [`interruptible`] for a budget that later work shares: it is resumed after an interrupt.

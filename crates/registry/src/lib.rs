@@ -16,6 +16,7 @@ mod attributes;
 mod call_error;
 mod class;
 mod kept;
+mod periodic;
 mod read;
 mod refs;
 mod relabelled;
@@ -33,7 +34,8 @@ pub use kept::Kept;
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, MirrorArgument, many};
 pub use refs::{
-    CurveRef, FieldRef, Implicit, Point, ReparametrizationRef, SetRef, SolidRef, SurfaceRef,
+    CurveRef, FieldRef, Figures, Implicit, Point, ReparametrizationRef, SetRef, SolidRef,
+    SurfaceRef,
 };
 pub use relabelled::relabelled;
 pub use row::{

@@ -4,13 +4,13 @@
 use crate::SearchReport;
 use moldloft_num::trace::{Key, Piece, Root, Trace};
 use moldloft_num::{
-    Curve, CurveJet, Field, Jet, Order, Real, Reparametrization, ReparametrizationJet, Solid,
-    Surface, Vec3, lift_curve, lift_reparametrization, lift_surface,
+    Curve, Field, Jet, Order, Real, Reparametrization, ReparametrizationJet, Solid, Surface, Vec3,
+    lift_curve, lift_reparametrization, lift_surface,
 };
 use smallvec::SmallVec;
 use std::any::Any;
 use std::ops::Deref;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A point in space that may also know its place on a curve and on a surface: so a bead, a magnet
 /// or a ring is a point with more data.
@@ -107,10 +107,16 @@ impl<T: Real> Point<T> {
     }
 }
 
+/// Figures by which a construction judges its own result, such as the greatest deviation of a faired curve:
+/// members of the object.
+pub type Figures = Arc<[(&'static str, f64)]>;
+
 /// A curve with the identity of its object.
 #[derive(Clone)]
 pub struct CurveRef<T: Real> {
-    shape: Arc<dyn Curve<T>>,
+    pub(crate) shape: Arc<dyn Curve<T>>,
+    /// Whether it is closed, once that was asked.
+    pub(crate) closed: OnceLock<bool>,
     /// The object, once it has a name.
     pub key: Option<Key>,
     /// The surface it lies on, for snakes.
@@ -122,6 +128,8 @@ pub struct CurveRef<T: Real> {
     pub joins: Option<Arc<([CurveRef<T>; 2], f64)>>,
     /// How it was found, when that took a search.
     pub found: Option<Arc<SearchReport>>,
+    /// What it says of itself.
+    pub figures: Option<Figures>,
     /// How deep shapes are nested in it, itself included.
     pub depth: u32,
 }
@@ -129,11 +137,15 @@ pub struct CurveRef<T: Real> {
 /// A surface with the identity of its object.
 #[derive(Clone)]
 pub struct SurfaceRef<T: Real> {
-    shape: Arc<dyn Surface<T>>,
+    pub(crate) shape: Arc<dyn Surface<T>>,
+    /// Whether its parameters run round, once that was asked.
+    pub(crate) closed: OnceLock<[bool; 2]>,
     /// The object, once it has a name.
     pub key: Option<Key>,
     /// How it was found, when that took a search or a fit.
     pub found: Option<Arc<SearchReport>>,
+    /// What it says of itself.
+    pub figures: Option<Figures>,
     /// For a fillet: the snakes on both surfaces along which it touches them, at v = 0 and v = 1.
     pub contacts: Option<Arc<[CurveRef<T>; 2]>>,
     /// How deep shapes are nested in it, itself included.
@@ -198,11 +210,13 @@ pub struct SolidRef<T: Real> {
 }
 
 macro_rules! shape_ref {
-    ($name:ident, $shape:ident) => {
+    // As itself, where it knows more than the shape that it holds; else as that shape.
+    ($name:ident, $shape:ident, $as:ident => $of:expr) => {
         impl<T: Real> Deref for $name<T> {
             type Target = dyn $shape<T>;
             fn deref(&self) -> &Self::Target {
-                &*self.shape
+                let $as = self;
+                $of
             }
         }
 
@@ -220,17 +234,27 @@ macro_rules! shape_ref {
         }
     };
 }
-shape_ref!(CurveRef, Curve);
-shape_ref!(SurfaceRef, Surface);
-shape_ref!(ReparametrizationRef, Reparametrization);
-shape_ref!(SolidRef, Solid);
+shape_ref!(CurveRef, Curve, itself => itself);
+shape_ref!(SurfaceRef, Surface, itself => itself);
+shape_ref!(ReparametrizationRef, Reparametrization, own => &*own.shape);
+shape_ref!(SolidRef, Solid, own => &*own.shape);
 
 impl<T: Real> CurveRef<T> {
     /// A curve that holds on to shapes nested `nesting` deep (0 when it holds on to none).
     pub fn new(shape: impl Curve<T> + 'static, nesting: u32) -> Self {
         let shape: Arc<dyn Curve<T>> = Arc::new(shape);
         let depth = nesting + 1;
-        Self { shape, key: None, surface: None, part_of: None, joins: None, found: None, depth }
+        Self {
+            shape,
+            closed: OnceLock::new(),
+            key: None,
+            surface: None,
+            part_of: None,
+            joins: None,
+            found: None,
+            figures: None,
+            depth,
+        }
     }
 
     /// A snake on `surface`.
@@ -245,16 +269,16 @@ impl<T: Real> CurveRef<T> {
         self
     }
 
+    /// The same curve with figures of its own.
+    pub fn with_figures(mut self, figures: &[(&'static str, f64)]) -> Self {
+        self.figures = Some(figures.into());
+        self
+    }
+
     /// The position at a parameter that is a jet.
     #[inline(always)]
     pub fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
-        lift_curve(&self.shape.jet(t.value(), J::ORDER), t)
-    }
-
-    /// Position and derivatives at `t`.
-    #[inline(always)]
-    pub fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        self.shape.jet(t, order)
+        lift_curve(&self.jet(t.value(), J::ORDER), t)
     }
 
     /// The position at the end `t` = 0 or 1.
@@ -301,8 +325,9 @@ impl<T: Real> CurveRef<T> {
 impl<T: Real> SurfaceRef<T> {
     /// A surface that holds on to shapes nested `nesting` deep (0 when it holds on to none).
     pub fn new(shape: impl Surface<T> + 'static, nesting: u32) -> Self {
-        let shape = Arc::new(shape);
-        Self { shape, key: None, found: None, contacts: None, depth: nesting + 1 }
+        let (shape, closed) = (Arc::new(shape), OnceLock::new());
+        let depth = nesting + 1;
+        Self { shape, closed, key: None, found: None, figures: None, contacts: None, depth }
     }
 
     /// The same surface as a fillet between two snakes.
@@ -317,10 +342,16 @@ impl<T: Real> SurfaceRef<T> {
         self
     }
 
+    /// The same surface with figures of its own.
+    pub fn with_figures(mut self, figures: &[(&'static str, f64)]) -> Self {
+        self.figures = Some(figures.into());
+        self
+    }
+
     /// The position at parameters that are jets.
     #[inline(always)]
     pub fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
-        lift_surface(&self.shape.jet(u.value(), v.value(), J::ORDER), u, v)
+        lift_surface(&self.jet(u.value(), v.value(), J::ORDER), u, v)
     }
 }
 

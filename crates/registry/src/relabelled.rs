@@ -48,21 +48,23 @@ pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, 
     Ok(match value {
         Value::Curve(curve) => {
             let (nesting, surface) = (curve.depth.max(law.depth), curve.surface.clone());
-            let found = curve.found.clone();
+            let (found, figures) = (curve.found.clone(), curve.figures.clone());
             let shape = RelabelledCurve { curve, law };
             let mut relabelled = match surface {
                 Some(surface) => CurveRef::snake(shape, *surface, nesting),
                 None => CurveRef::new(shape, nesting),
             };
             relabelled.found = found;
+            relabelled.figures = figures;
             Value::Curve(relabelled)
         }
         Value::Surface(surface) => {
             let nesting = surface.depth.max(law.depth);
-            let found = surface.found.clone();
+            let (found, figures) = (surface.found.clone(), surface.figures.clone());
             let shape = RelabelledSurface { surface, law };
             let mut relabelled = SurfaceRef::new(shape, nesting);
             relabelled.found = found;
+            relabelled.figures = figures;
             Value::Surface(relabelled)
         }
         other => other,

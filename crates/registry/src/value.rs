@@ -394,6 +394,16 @@ impl<T: Real> Value<T> {
         }
     }
 
+    /// What it says of itself: figures of its construction, by name.
+    pub fn figures(&self) -> &[(&'static str, f64)] {
+        let all = match self {
+            Value::Curve(c) => c.figures.as_deref(),
+            Value::Surface(s) => s.figures.as_deref(),
+            _ => None,
+        };
+        all.unwrap_or_default()
+    }
+
     /// True when there is something to warn of.
     pub fn warns(&self) -> bool {
         match self {

@@ -1,5 +1,6 @@
 //! Arc length of curves, integrals along them and the inverse of the length, with derivatives.
 
+use moldloft_num::period::{breaks_between, corner_rate};
 use moldloft_num::{Curve, Order, Real, integrate};
 use std::fmt;
 
@@ -25,39 +26,19 @@ impl std::error::Error for BeyondEnd {}
 /// derivatives of its place.
 fn pieces<T: Real>(curve: &dyn Curve<T>, a: T, b: T) -> Vec<T> {
     let (low, high) = (a.re().min(b.re()), a.re().max(b.re()));
-    let breaks = curve.breaks();
+    let breaks = breaks_between(&curve.breaks(), curve.closed(), low, high);
     let mut all = vec![a];
-    for (k, &t) in breaks.iter().enumerate().filter(|&(_, &t)| low < t && t < high) {
-        let before = if k == 0 { 0.0 } else { breaks[k - 1] };
-        let after = breaks.get(k + 1).copied().unwrap_or(1.0);
+    for (k, &t) in breaks.iter().enumerate() {
+        let before = if k == 0 { low } else { breaks[k - 1] };
+        let after = breaks.get(k + 1).copied().unwrap_or(high);
         let near = (0.25 * (t - before).min(after - t)).min(1e-9);
-        all.push(T::from(t) + way(curve, t, near));
+        all.push(T::from(t) + corner_rate(curve, t, near).unwrap_or_else(T::zero));
     }
     if b.re() < a.re() {
         all[1..].reverse();
     }
     all.push(b);
     all
-}
-
-/// The derivatives of the place `t` of a corner, as a number whose real part is 0.
-///
-/// Both sides of a corner meet there whatever becomes of it: with C- and C+ the sides,
-/// dt = (dC+ - dC-) / (C-' - C+'). Where there is no corner it does not matter.
-fn way<T: Real>(curve: &dyn Curve<T>, t: f64, near: f64) -> T {
-    let side = |h: f64| {
-        let [p, d, _] = curve.jet(T::from(t + h), Order::First);
-        (p - d * T::from(h), d.re())
-    };
-    let ((low, before), (high, after)) = (side(-near), side(near));
-    let turn = before - after;
-    let square = turn.norm_sq();
-    if square <= 1e-16 * before.norm_sq().max(after.norm_sq()) {
-        return T::zero();
-    }
-    let gap = high - low;
-    let along = (gap.x * turn.x + gap.y * turn.y + gap.z * turn.z) / square;
-    along - along.re()
 }
 
 /// The length of the curve from `a` to `b`, negative when `b < a`, to about `accuracy` (a hope,
@@ -78,7 +59,7 @@ pub fn arclen<T: Real>(curve: &dyn Curve<T>, a: T, b: T, accuracy: f64) -> T {
 }
 
 /// The integral of `f` over the parameters from `a` to `b` of a curve, piece by piece between its
-/// breaks, whose way counts; as [`arclen`].
+/// breaks, which may move; as [`arclen`].
 pub fn curve_integral<T: Real>(
     curve: &dyn Curve<T>,
     a: T,
@@ -99,8 +80,11 @@ fn speed<T: Real>(curve: &dyn Curve<T>, t: T) -> T {
     curve.jet(t, Order::First)[1].norm()
 }
 
-/// The parameter in [0, 1] at the signed length `s` along the curve from `a`, to `accuracy` of
-/// length.
+/// How often a length may lead round a closed curve.
+const MOST_TURNS: f64 = 1e3;
+
+/// The parameter at the signed length `s` along the curve from `a`, to `accuracy` of length: in [0, 1] unless
+/// the curve is closed, which is followed over its seam.
 ///
 /// The root is found in plain numbers, by Newton's method between brackets; one more step in `T`
 /// gives its derivatives (implicit function theorem).
@@ -116,7 +100,18 @@ pub fn inv_arclen<T: Real>(
     if s.re() == 0.0 && s.is_constant() {
         return Ok(a);
     }
-    let far = if s.re() < 0.0 { 0.0 } else { 1.0 };
+    let far = match (curve.closed(), s.re() < 0.0) {
+        (false, true) => 0.0,
+        (false, false) => 1.0,
+        (true, backwards) => {
+            let total = integrate(T::zero(), T::from(1.0), accuracy, |t| speed(curve, t)).re();
+            let turns = (s.re().abs() / total).ceil() + 1.0;
+            if !(turns <= MOST_TURNS) {
+                return Err(BeyondEnd { asked: s.re(), available: MOST_TURNS * total });
+            }
+            a.re() + if backwards { -turns } else { turns }
+        }
+    };
     let ends = pieces(curve, T::from(a.re()), T::from(far));
     let share = 0.1 * accuracy / ends.len() as f64;
     let length =

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import sys
+import warnings
 from typing import Any
 
+from moldloft.cli.colour import painted
 from moldloft.cli.console import add_model, open_model, print_json, report
 from moldloft.cli.parser import Parser
 
@@ -25,7 +28,13 @@ def run(options: argparse.Namespace) -> int:
     model = open_model(options)
     if model.has_errors:
         report(model.diagnostics)
-    values = [model.eval(expression) for expression in options.expressions]
+    values = []
+    for expression in options.expressions:
+        with warnings.catch_warnings(record=True) as remarks:
+            warnings.simplefilter("always")
+            values.append(model.eval(expression))
+        for remark in remarks:
+            print(painted(str(remark.message), sys.stderr), file=sys.stderr)
     if options.json:
         print_json([as_data(value) for value in values])
     else:

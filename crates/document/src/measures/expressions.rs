@@ -22,6 +22,7 @@ impl Document {
     /// What is wrong with it.
     pub fn eval(&mut self, text: &str) -> Result<Value<f64>, Vec<Diagnostic>> {
         self.complete();
+        self.expression_remarks.clear();
         if let Some((group, number)) = self.whole_name(text) {
             let found = self.whole_numbers(group).map_err(|d| vec![d])?;
             return one_of(found, group, number).map_err(|d| vec![d]);
@@ -30,6 +31,12 @@ impl Document {
         let value = self.eval_in(&mut evaluation, text);
         self.plain = evaluation;
         value
+    }
+
+    /// What is remarkable about the value that [`Document::eval`] gave last, such as a volume that is not known as well
+    /// as asked.
+    pub fn expression_remarks(&self) -> &[Diagnostic] {
+        &self.expression_remarks
     }
 
     /// The numbers of `mesh` or `hydrostatics`, found once and remembered until something changes: who watches one
@@ -75,7 +82,9 @@ impl Document {
             sketch: None,
             converted: moldloft_lang::model_file::converted,
         };
-        program.eval(evaluation, inputs, text)
+        let (value, remarks) = program.eval(evaluation, inputs, text)?;
+        self.expression_remarks = remarks;
+        Ok(value)
     }
 
     /// The parts of `mesh.area`, a number of the joined panels, or of `hydrostatics.volume`, one of the surfaces;

@@ -39,7 +39,19 @@ fn moments<T: Real>(
         budget: context.budget.clone(),
         ..Measure::default()
     };
-    Ok(mass_of(set, &region.over, region.corners, &measure, &context.kept.of())?.best)
+    let found = mass_of(set, &region.over, region.corners, &measure, &context.kept.of())?;
+    // Without an accuracy, six digits are taken for enough.
+    let enough = accuracy.map_or(1e-6 * found.best.volume().re().abs(), T::re);
+    if found.uncertain > enough {
+        let off = format!("the volume is known to {:.1e} only", found.uncertain);
+        context.remark(
+            "volume-uncertain",
+            off,
+            "edges thinner than its cells are in the way; `volume_bracket` with a greater depth is narrower, \
+             and a greater `accuracy` takes what there is",
+        );
+    }
+    Ok(found.best)
 }
 
 macro_rules! measure {

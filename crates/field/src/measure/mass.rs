@@ -1,7 +1,9 @@
 //! Volume, centroid and inertia: certified brackets, and best values within them.
 //!
 //! Best values are those of curved facets, which have the most digits where they show the whole set. Where a part is
-//! thinner than their cells, or their volume leaves the bracket, the certified cells have the better ones.
+//! thinner than their cells, or their volume leaves the bracket, the certified cells have the better ones. Where edges
+//! are blunt, as in the cusp between a cylinder and a plane that it touches, facets may agree with each other on a
+//! wrong value: there a narrower bracket decides, and what stays uncertain is said.
 
 use super::certified::{Certified, Effort, certified};
 use super::curved::Curved;
@@ -95,6 +97,8 @@ pub struct Mass<T: Real = f64> {
     pub bracket: Moments<Interval>,
     /// Within the bracket.
     pub best: Moments<T>,
+    /// How far the best volume may be off when it is not known to the agreement that was asked for; else 0.
+    pub uncertain: f64,
 }
 
 /// The moments of a set within a box: a proved bracket, and a best value inside it.
@@ -151,18 +155,30 @@ pub fn mass_of<T: Real>(
     let size = (0..3).map(|k| over.high[k] - over.low[k]).product::<f64>();
     let exact = width <= 1e-3 * measure.agreement.unwrap_or(USUAL * size);
     if exact && corners.is_none() {
-        return Ok(Mass { bracket, best: from_cells(&checked, &bracket) });
+        return Ok(Mass { bracket, best: from_cells(&checked, &bracket), uncertain: 0.0 });
     }
-    if let Some(best) = by_facets(&solid, over, &lifter, measure, memo, &bracket)? {
-        return Ok(Mass { bracket, best: within(best, &bracket) });
+    let faceted = by_facets(&solid, over, &lifter, measure, memo, &bracket)?;
+    if let Some(Faceted { moments, settled: true, .. }) = faceted {
+        return Ok(Mass { bracket, best: within(moments, &bracket), uncertain: 0.0 });
     }
-    // What facets do not show.
+    // What facets do not show, or not as well as was asked.
     let thin = match checked.cells >= THIN {
         true => checked,
         false => certified(&solid, over, &Effort::of_cells(THIN), budget)?,
     };
     let bracket = narrower(bracket, &thin);
-    Ok(Mass { bracket, best: from_cells(&thin, &bracket) })
+    let (range, agreement) = (bracket.volume(), measure.agreement.unwrap_or(USUAL * size));
+    let half = 0.5 * range.width();
+    // Values that agree are taken where the narrower bracket holds them, too.
+    if let Some(Faceted { moments, change, .. }) = faceted
+        && range.contains(moments.volume().re())
+        && change < half
+    {
+        let uncertain = if change <= agreement { 0.0 } else { 2.0 * change };
+        return Ok(Mass { bracket, best: within(moments, &bracket), uncertain });
+    }
+    let uncertain = if half <= agreement { 0.0 } else { half };
+    Ok(Mass { bracket, best: from_cells(&thin, &bracket), uncertain })
 }
 
 /// The numbers of both brackets.
@@ -183,6 +199,18 @@ fn within<T: Real>(mut best: Moments<T>, bracket: &Moments<Interval>) -> Moments
     best
 }
 
+/// Moments by facets.
+struct Faceted<T: Real> {
+    moments: Moments<T>,
+    /// How far the volumes of the last two levels are apart.
+    change: f64,
+    /// True when these agree as well as was asked, and no edge is blunt.
+    settled: bool,
+}
+
+/// With blunt edges, finer facets than these are no nearer to the truth for their cost.
+const BLUNT: u32 = 7;
+
 /// Moments from facets that are made finer until two agree; `None` when these do not show the whole set.
 fn by_facets<T: Real>(
     solid: &Set,
@@ -191,13 +219,14 @@ fn by_facets<T: Real>(
     measure: &Measure,
     memo: &FacetMemo,
     bracket: &Moments<Interval>,
-) -> Result<Option<Moments<T>>, FieldError> {
+) -> Result<Option<Faceted<T>>, FieldError> {
     let size = (0..3).map(|k| over.high[k] - over.low[k]).product::<f64>();
     let agreement = match measure.agreement {
         Some(a) => crate::error::positive("accuracy", a)?,
         None => USUAL * size,
     };
     let mut before: Option<(Arc<Facets>, f64)> = None;
+    let mut change = f64::INFINITY;
     for level in LEVELS[0]..=FINEST {
         let options = Options {
             sharp: true,
@@ -211,9 +240,10 @@ fn by_facets<T: Real>(
             return Ok(None);
         }
         let volume = facets.moments().volume();
-        let close = before.as_ref().is_some_and(|(_, v)| (volume - v).abs() <= agreement);
+        change = before.as_ref().map_or(f64::INFINITY, |(_, v)| (volume - v).abs());
+        let enough = change <= agreement || !facets.blunt.is_empty() && level >= BLUNT;
         before = Some((facets, volume));
-        if missed == 0 && (close || level >= LEVELS[1] || next > MOST_FACET_CELLS) {
+        if missed == 0 && (enough || level >= LEVELS[1] || next > MOST_FACET_CELLS) {
             break;
         }
     }
@@ -226,9 +256,11 @@ fn by_facets<T: Real>(
     }
     if facets.mesh.faces().is_empty() {
         let zero = Moments { about: facets.about, terms: [T::zero(); 10] };
-        return Ok((v.high <= agreement || v.low <= 0.0).then_some(zero));
+        let nothing = Faceted { moments: zero, change: 0.0, settled: true };
+        return Ok((v.high <= agreement || v.low <= 0.0).then_some(nothing));
     }
-    Ok(Some(facets.lifted_by(lifter)?.moments))
+    let settled = change <= agreement && facets.blunt.is_empty();
+    Ok(Some(Faceted { moments: facets.lifted_by(lifter)?.moments, change, settled }))
 }
 
 impl Facets {

@@ -103,13 +103,13 @@ impl Program<'_> {
             .1
     }
 
-    /// The value of an expression in the names that the last run left behind.
+    /// The value of an expression in the names that the last run left behind, with what is remarkable about it.
     pub fn eval<T: Scalar>(
         self,
         evaluation: &mut Evaluation<T>,
         inputs: Inputs<'_, T>,
         text: &str,
-    ) -> Result<Value<T>, Vec<Diagnostic>> {
+    ) -> Result<(Value<T>, Vec<Diagnostic>), Vec<Diagnostic>> {
         // One place for all expressions: a long session asks for many.
         const NAME: &str = "expression";
         let known = self.sources.find(NAME).filter(|&file| self.sources.ids().next() != Some(file));
@@ -148,7 +148,7 @@ impl Program<'_> {
         self.modules.remove_expression(at);
         evaluation.env.stopped = stopped;
         match value {
-            Ok(value) if found.is_empty() => Ok(value),
+            Ok(value) if !found.iter().any(Diagnostic::is_error) => Ok((value, found)),
             Ok(_) => Err(found),
             Err(diagnostic) => {
                 if diagnostic.id != crate::run::interpreter::SILENT {

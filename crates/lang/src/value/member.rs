@@ -14,6 +14,9 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
     if let Some(member) = of_found(value, name) {
         return Some(Ok(member));
     }
+    if let Some((_, figure)) = value.figures().iter().find(|(own, _)| *own == name) {
+        return Some(Ok(Value::Number(T::from(*figure))));
+    }
     let axis = ["x", "y", "z"].iter().position(|c| *c == name);
     let number = |x: T| Some(Ok(Value::Number(x)));
     match (value, axis) {
@@ -110,6 +113,7 @@ const FOUND: [&str; 5] = ["status", "residual", "iterations", "start", "alternat
 pub fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
     let mut names = own_names(value);
     names.extend(value.found().iter().flat_map(|_| FOUND));
+    names.extend(value.figures().iter().map(|(name, _)| *name));
     names
 }
 

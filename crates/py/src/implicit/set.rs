@@ -405,7 +405,7 @@ impl PySet {
             let measure = Measure { depth, accuracy, cells, budget, ..Measure::default() };
             moldloft_field::mass(set, &over, &measure).map(Some)
         })?;
-        let Some(Mass { bracket, best }) = found else {
+        let Some(Mass { bracket, best, .. }) = found else {
             let dict = PyDict::new(py);
             dict.set_item("volume", 0.0)?;
             dict.set_item("volume_bracket", (0.0, 0.0))?;

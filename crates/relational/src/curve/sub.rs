@@ -1,6 +1,7 @@
 //! Parts of curves and snakes between beads and rings; divisions of a part are those of the whole.
 
 use crate::arguments::{Bead, Ring, common_curve};
+use moldloft_num::period::breaks_between;
 use moldloft_num::trace::{Mark, Root, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, find_root};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Value};
@@ -222,11 +223,12 @@ impl<T: Real> Curve<T> for Run<T> {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        let of_curve = self.curve.breaks();
+        let (own, closed) = (self.curve.breaks(), self.curve.closed());
         let mut breaks = match &self.law {
             SubParameter::Straight([from, to]) => {
                 let (from, to) = (from.re(), to.re());
-                of_curve.into_iter().map(|b| (b - from) / (to - from)).collect()
+                let passed = breaks_between(&own, closed, from, to);
+                passed.into_iter().map(|b| (b - from) / (to - from)).collect()
             }
             SubParameter::Spline(law) => {
                 let mut breaks = law.breaks();
@@ -234,6 +236,11 @@ impl<T: Real> Curve<T> for Run<T> {
                 ends.extend(&breaks);
                 ends.push(1.0);
                 let at = |t: f64| self.law.at(T::from(t), Order::Zero)[0].re();
+                // A spline stays between its coefficients.
+                let reach = ends.iter().map(|t| at(*t));
+                let low = reach.clone().fold(f64::INFINITY, f64::min);
+                let high = reach.fold(f64::NEG_INFINITY, f64::max);
+                let of_curve = breaks_between(&own, closed, low - 1.0, high + 1.0);
                 for span in ends.windows(2) {
                     let step = (span[1] - span[0]) / STEPS as f64;
                     for k in 0..STEPS {

@@ -1,6 +1,7 @@
 //! Beads and rings at a length along curves, and copies of beads and magnets.
 
 use crate::arguments::{Bead, Magnet, Ring, Snake, Start};
+use moldloft_num::period::principal;
 use moldloft_num::{Order, Real};
 use moldloft_registry::{
     Build, CallError, Context, CurveRef, FieldId, Kind, Point, SurfaceRef, Value,
@@ -34,7 +35,8 @@ fn at_length<T: Real>(
             .related(curve.key, "is too short")
             .in_field(fields[1])
     })?;
-    on(curve, found)
+    let place = if curve.closed() { principal(found) } else { found };
+    on(curve, place)
 }
 
 /// The bead at a given length along a curve from another bead, or from its start; negative lengths

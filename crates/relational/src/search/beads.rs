@@ -2,12 +2,14 @@
 
 use super::arguments::{Along, AlongSnake, Target};
 use super::equations::{Between, FootOnCurve, LevelOf, OnLevel, Pierced};
+use super::magnets::BESIDE;
 use super::outcome::{diverged, found, no_intersection, tangent};
 use moldloft_locate::implicit::refined;
 use moldloft_locate::roots::{curve_curve, curve_level, curve_surface};
 use moldloft_locate::{
     LocateStatus, PlainCurve, PlainSurface, nearest_on_curve, nearest_on_surface,
 };
+use moldloft_num::period::corner_rate;
 use moldloft_num::{Order, Plane, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Point, SearchReport, Value};
 use std::sync::Arc;
@@ -137,9 +139,13 @@ fn foot<T: Real>(
     if ends && clamped {
         solution.report.status = LocateStatus::Ok;
     }
-    let at_end = solution.at[0] == 0.0 || solution.at[0] == 1.0;
-    let t = if clamped || at_end && solution.report.residual > 0.0 {
-        T::from(solution.at[0])
+    let place = solution.at[0];
+    let at_end = !along.curve.closed() && (place == 0.0 || place == 1.0);
+    let t = if solution.joint[0] {
+        let rate = corner_rate::<T>(&*along.curve, place, BESIDE).unwrap_or_else(T::zero);
+        T::from(place) + rate
+    } else if clamped || at_end && solution.report.residual > 0.0 {
+        T::from(place)
     } else {
         let system = FootOnCurve { curve: &along.curve, point };
         refined(&system, solution.at, T::zero()).ok_or_else(tangent)?[0]

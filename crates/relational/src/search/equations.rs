@@ -189,11 +189,11 @@ impl<T: Real> Implicit<T, 1> for FootOnCurve<'_, T> {
     }
 }
 
-/// S_u . (S - P) = 0 and S_v . (S - P) = 0; an unknown that is held at an edge stays.
+/// S_u . (S - P) = 0 and S_v . (S - P) = 0; an unknown that is held at an edge or a joint stays there.
 pub struct FootOnSurface<'a, T: Real> {
     pub surface: &'a SurfaceRef<T>,
     pub point: &'a Moving<T>,
-    pub held: [bool; 2],
+    pub held: [Option<T>; 2],
 }
 
 /// Step of the differences that give third derivatives of a surface, which no jet has: with the
@@ -230,9 +230,8 @@ impl<T: Real> Implicit<T, 2> for FootOnSurface<'_, T> {
             (along[1].uu, along[1].uv, along[1].vv) = (uuv, uvv, vvv);
         }
         let value = |k: usize, q: J| {
-            if self.held[k] {
-                // It keeps its plain value.
-                return q - J::from(q.re());
+            if let Some(place) = self.held[k] {
+                return q - J::fixed(place);
             }
             lift_surface(&along[k], u, v).dot(away)
         };
@@ -244,7 +243,7 @@ impl<T: Real> Implicit<T, 2> for FootOnSurface<'_, T> {
         let cross = s.u.dot(s.v) + s.uv.dot(r);
         let mut rows = [[s.u.norm_sq() + s.uu.dot(r), cross], [cross, s.v.norm_sq() + s.vv.dot(r)]];
         for k in 0..2 {
-            if self.held[k] {
+            if self.held[k].is_some() {
                 rows[k] = [T::zero(); 2];
                 rows[k][k] = T::one();
             }

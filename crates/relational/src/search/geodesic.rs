@@ -7,8 +7,8 @@
 //! method, and so for the exact derivatives of its solution.
 
 use crate::arguments::{Magnet, common_surface};
-use crate::seam;
 use crate::snake::OnSurface;
+use moldloft_num::period::within;
 use moldloft_num::trace::Trace;
 use moldloft_num::{CurveFormula, Jet, Order, Real, SurfJet, Vec3, solve_dense};
 use moldloft_registry::{
@@ -70,7 +70,7 @@ impl<T: Real> Build<T> for GeoSnake<T> {
         let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
         let fields = [Self::M1, Self::M2];
         let surface = common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
-        let sheet = Sheet { round: seam::round(&surface), surface: &surface };
+        let sheet = Sheet { round: surface.closed(), surface: &surface };
         let plain = [m1.uv, m2.uv].map(|w| w.map(|x| x.re()));
         let ways = ways(&sheet, plain, [turns_u, turns_v])?;
         let (turns, (gap, iterations, nodes)) = shortest(&sheet, plain, &ways)?;
@@ -98,7 +98,7 @@ struct Sheet<'s, T: Real> {
 
 impl<T: Real> Sheet<'_, T> {
     fn jet(&self, w: [T; 2], order: Order) -> SurfJet<T> {
-        seam::jet(self.surface, self.round, w, order)
+        self.surface.jet(w[0], w[1], order)
     }
 }
 
@@ -501,7 +501,7 @@ impl<T: Real> CurveFormula for Path<T> {
             let [from, to] = [self.ends[0][a], self.ends[1][a]];
             s.scaled(from) + t.scaled(to) + bump * b1
         });
-        let [mut u, mut v] = seam::wrapped(self.round, place);
+        let [mut u, mut v] = within(self.round, place);
         if t.re() == 1.0 {
             // To the bit, whatever turns were taken off.
             (u, v) = (u + (self.last[0].re() - u.re()), v + (self.last[1].re() - v.re()));

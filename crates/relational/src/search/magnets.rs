@@ -6,7 +6,8 @@ use super::equations::{FootOnSurface, Moving, OnRay, Rays};
 use super::outcome::{diverged, found, no_intersection, tangent};
 use moldloft_locate::implicit::refined;
 use moldloft_locate::roots::line_surface;
-use moldloft_locate::{LocateStatus, PlainSurface, nearest_on_surface};
+use moldloft_locate::{LocateStatus, PlainSurface, Solution, nearest_on_surface};
+use moldloft_num::period::crease_rate;
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
     Build, CallError, Context, Kind, MirrorArgument, Point, SearchReport, Value,
@@ -45,25 +46,36 @@ pub(super) fn foot<T: Real>(
     if solution.report.status == LocateStatus::Diverged {
         return Err(diverged(&solution.report));
     }
-    let uv = foot_refined(onto, point, solution.at)?;
+    let uv = foot_refined(onto, point, &solution)?;
     if edges && solution.report.status == LocateStatus::EdgeClamped {
         solution.report.status = LocateStatus::Ok;
     }
     Ok((uv, found(&solution.report, ANOTHER)))
 }
 
+/// How far on both sides of a knuckle its place is looked at.
+pub(super) const BESIDE: f64 = 1e-9;
+
 fn foot_refined<T: Real>(
     onto: &Onto<T>,
     point: Vec3<T>,
-    at: [f64; 2],
+    solution: &Solution<2>,
 ) -> Result<[T; 2], CallError> {
+    let at = solution.at;
     let j = onto.surface.jet(T::from(at[0]), T::from(at[1]), Order::First);
     let away = (j.p - point).re();
-    // Held where the distance still falls beyond the edge.
-    let held = [(at[0], j.u), (at[1], j.v)].map(|(q, d)| {
+    let closed = onto.surface.closed();
+    // Held where the distance still falls beyond the edge, and at a knuckle.
+    let held = [0, 1].map(|k| {
+        let (q, d) = (at[k], [j.u, j.v][k]);
+        if solution.joint[k] {
+            let sides = [BESIDE; 2];
+            return Some(T::from(q) + crease_rate::<T>(&*onto.surface, k, q, sides));
+        }
         let slope = d.re().dot(away);
         let counts = slope.abs() > 1e-9 * d.re().norm() * (away.norm() + 1e-300);
-        counts && (q <= 0.0 && slope > 0.0 || q >= 1.0 && slope < 0.0)
+        let beyond = q <= 0.0 && slope > 0.0 || q >= 1.0 && slope < 0.0;
+        (counts && beyond && !closed[k]).then_some(T::from(q))
     });
     let point = Moving::Fixed(point);
     let system = FootOnSurface { surface: &onto.surface, point: &point, held };

@@ -8,6 +8,7 @@ use super::table::Table;
 use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, jets, solve};
 use moldloft_locate::{OUTSIDE, PlainSurface, Range, newton};
+use moldloft_num::period::within;
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
@@ -248,6 +249,7 @@ fn projected<T: Real>(
         nodes: Vec::new(),
         table: OnceLock::new(),
     };
+    let closed = path.surface.closed();
     let uv = uv.map(|x| x.re());
     let s = path.ray_length(uv);
     let node = path.solved(0.0, [uv[0], uv[1], s]).ok_or_else(|| grazes(0.0, on))?;
@@ -257,7 +259,8 @@ fn projected<T: Real>(
         let t = if last.t + 1.5 * step >= 1.0 { 1.0 } else { last.t + step };
         let dt = t - last.t;
         let guess = std::array::from_fn(|k| last.q[k] + last.rate[k] * dt);
-        let inside = |q: [f64; 3]| q[..2].iter().all(|x| *x >= -OUTSIDE && *x <= 1.0 + OUTSIDE);
+        let inside =
+            |q: [f64; 3]| (0..2).all(|k| closed[k] || q[k] >= -OUTSIDE && q[k] <= 1.0 + OUTSIDE);
         let next = path.solved(t, guess).filter(|node| {
             inside(node.q)
                 && (0..2).all(|k| {
@@ -272,7 +275,8 @@ fn projected<T: Real>(
             }
             None if step > LEAST_STEP => step *= 0.5,
             None => {
-                let at_edge = last.q[..2].iter().any(|x| *x < 1e-4 || *x > 1.0 - 1e-4);
+                let near_end = |x: f64| !(1e-4..=1.0 - 1e-4).contains(&x);
+                let at_edge = (0..2).any(|k| !closed[k] && near_end(last.q[k]));
                 return Err(if at_edge { leaves(last.t, of) } else { grazes(last.t, on) });
             }
         }
@@ -318,7 +322,11 @@ impl<T: Real> Path<T> {
     /// enough; else the iteration is damped.
     fn root(&self, t: f64, guess: [f64; 3]) -> Option<[f64; 3]> {
         let plain = PlainSurface(&*self.surface);
-        let wide = Range { low: -0.5, high: 1.5, step: 0.2 };
+        // A closed surface may be gone round many times.
+        let wide = self.surface.closed().map(|round| {
+            let beyond = if round { 1e4 } else { 0.5 };
+            Range { low: -beyond, high: 1.0 + beyond, step: 0.2 }
+        });
         let close = CLOSE * self.size;
         match self.rays {
             None => {
@@ -343,7 +351,7 @@ impl<T: Real> Path<T> {
                 {
                     return Some([guess[0] - u, guess[1] - v, 0.0]);
                 }
-                let walk = newton([guess[0], guess[1]], &[wide; 2], self.size, |[u, v]| {
+                let walk = newton([guess[0], guess[1]], &wide, self.size, |[u, v]| {
                     equations(&plain.jet(u, v, Order::Second))
                 });
                 walk.found.then_some([walk.at[0], walk.at[1], 0.0])
@@ -366,7 +374,7 @@ impl<T: Real> Path<T> {
                 {
                     return Some(std::array::from_fn(|k| guess[k] - step[k]));
                 }
-                let ranges = [wide, wide, Range::FREE];
+                let ranges = [wide[0], wide[1], Range::FREE];
                 let walk = newton(guess, &ranges, self.size, |[u, v, s]| {
                     equations(&plain.jet(u, v, Order::First), s)
                 });
@@ -381,7 +389,7 @@ impl<T: Real> Path<T> {
         match self.rays {
             None => {
                 let system =
-                    FootOnSurface { surface: &self.surface, point: &self.point, held: [false; 2] };
+                    FootOnSurface { surface: &self.surface, point: &self.point, held: [None; 2] };
                 let all = two(&system, [q[0], q[1]], t, order)?;
                 Some(all.map(|[u, v]| [u, v, T::zero()]))
             }
@@ -439,8 +447,16 @@ impl<T: Real> Path<T> {
         table.at(t).unwrap_or_else(|| self.sought(t).0)
     }
 
-    /// (u, v, 0) at `t` with derivatives.
+    /// (u, v, 0) at `t` with derivatives; over a seam it goes from 1 to 0.
     fn place(&self, t: T, order: Order) -> CurveJet<T> {
+        let mut jet = self.run_on(t, order);
+        let [u, v] = within(self.surface.closed(), [jet[0].x, jet[0].y]);
+        jet[0] = Vec3::new(u, v, T::zero());
+        jet
+    }
+
+    /// The same without the step at a seam.
+    fn run_on(&self, t: T, order: Order) -> CurveJet<T> {
         let q = self.unknowns(t.re());
         let plain = || Vec3::new(T::from(q[0]), T::from(q[1]), T::zero());
         if T::PARTS == 1 && order == Order::Zero {
@@ -485,7 +501,7 @@ impl<T: Real> Curve<T> for Projected<T> {
         let nodes: Vec<(f64, [f64; 2])> =
             self.path.nodes.iter().map(|n| (n.t, [n.q[0], n.q[1]])).collect();
         let at = |t: f64| {
-            let w = self.path.place(T::from(t), Order::Zero)[0].re();
+            let w = self.path.run_on(T::from(t), Order::Zero)[0].re();
             [w.x, w.y]
         };
         super::on_surface::crossings(&self.path.surface.breaks(), own, &nodes, at)

@@ -1,11 +1,12 @@
 //! Interpolating lofts: through their master curves. A grid of points builds the loft of each column once.
 
+use super::about::{About, step};
 use super::chunk::{Chunk, LANES, Part, Plane, widest};
 use super::masters::{Masters, Points};
 use crate::arguments::EndRule;
 use crate::faults;
 use moldloft_num::trace::Edges;
-use moldloft_num::{Curve, CurveJet, Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3};
+use moldloft_num::{Axis, Curve, CurveJet, Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline, InterpolationError, PiecewiseCubic};
 
@@ -21,7 +22,8 @@ use moldloft_spline::{End, Ends, InterpolatingSpline, InterpolationError, Piecew
     columns = "degree curves",
     example = "AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); \
                AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); \
-               BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8});"
+               BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8}); \
+               AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0.5); Line shaft(O, X); CLoftSurf blade({a, b, c}, about = shaft);"
 )]
 pub struct CLoftSurf<T: Real> {
     /// Master curves, two or more, in order of v.
@@ -37,6 +39,9 @@ pub struct CLoftSurf<T: Real> {
     start: Option<Vec3<T>>,
     /// Slope dX/dv at the last master, the same all along it, for clamped ends.
     end: Option<Vec3<T>>,
+    /// A line about which the loft is made in cylinder coordinates, r, theta (within half a turn from master
+    /// to master) and the length along it, as for blades.
+    about: Option<Axis<T>>,
 }
 
 /// A surface that passes through its master curves, as an explicit spline at each u: one coordinate
@@ -51,10 +56,12 @@ pub struct CLoftSurf<T: Real> {
     example = "AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); \
                AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); \
                AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); \
-               XLoftSurf hull(1, {a, b, c, d}); XLoftSurf N(1, {d, c, a}, ends = \"natural\");"
+               XLoftSurf hull(1, {a, b, c, d}); XLoftSurf N(1, {d, c, a}, ends = \"natural\"); \
+               AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0); Line shaft(O, X); XLoftSurf R(3, {a, b, c, d}, about = shaft);"
 )]
 pub struct XLoftSurf<T: Real> {
-    /// The independent coordinate: 1 for x, 2 for y, 3 for z.
+    /// The independent coordinate: 1 for x, 2 for y, 3 for z; with `about` 1 for r, 2 for theta, 3 for the
+    /// length along the line.
     #[field(default = 1, min = 1, max = 3)]
     axis: usize,
     /// Master curves, two or more, in order of v.
@@ -63,6 +70,9 @@ pub struct XLoftSurf<T: Real> {
     /// End conditions: "notaknot", "natural", "bessel" or "quadratic".
     #[field(default = "notaknot")]
     ends: EndRule,
+    /// A line about which the loft is made in cylinder coordinates, r, theta (within half a turn from master
+    /// to master) and the length along it, as for blades.
+    about: Option<Axis<T>>,
 }
 
 /// The parameters u at which a new loft is tried.
@@ -70,7 +80,7 @@ const TRIALS: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0]
 
 impl<T: Real> Build<T> for CLoftSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let Self { curves, degree, ends, start, end } = self;
+        let Self { curves, degree, ends, start, end, about } = self;
         let count = curves.len();
         if degree == 2 && count > 3 {
             let error = InterpolationError::Type { actual: degree };
@@ -82,9 +92,11 @@ impl<T: Real> Build<T> for CLoftSurf<T> {
         }
         let slopes = slopes(ends, start, end, [Self::START, Self::END])?;
         let knots = if degree == 1 { Knots::Polyline } else { Knots::Chords };
-        let loft = Loft { masters: Masters::new(curves, Self::CURVES)?, knots, ends, slopes };
+        let masters = Masters::new(curves, Self::CURVES)?;
+        let loft = Loft { masters, knots, ends, slopes, about: about.as_ref().map(About::new) };
+        loft.check_off_axis(Self::ABOUT)?;
         for u in TRIALS {
-            let points: Points<T> = loft.masters.at(T::from(u));
+            let points: Points<T> = loft.points(T::from(u));
             if let Err(error) = loft.spline(&points)
                 && !is_one_point(&points)
             {
@@ -124,7 +136,7 @@ fn slopes<T: Real>(
 
 impl<T: Real> Build<T> for XLoftSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let Self { axis, curves, ends } = self;
+        let Self { axis, curves, ends, about } = self;
         if matches!(ends, EndRule::Clamped | EndRule::Periodic) {
             let found = if ends == EndRule::Clamped { "\"clamped\"" } else { "\"periodic\"" };
             let message = format!("an explicit loft has no {found} ends");
@@ -134,11 +146,14 @@ impl<T: Real> Build<T> for XLoftSurf<T> {
                 .in_field(Self::ENDS));
         }
         let masters = Masters::new(curves, Self::CURVES)?;
-        let loft = Loft { masters, knots: Knots::Axis(axis - 1), ends, slopes: None };
+        let about = about.as_ref().map(About::new);
+        let names = if about.is_some() { ["r", "theta", "s"] } else { ["x", "y", "z"] };
+        let loft = Loft { masters, knots: Knots::Axis(axis - 1), ends, slopes: None, about };
+        loft.check_off_axis(Self::ABOUT)?;
         for u in TRIALS {
-            let points: Points<T> = loft.masters.at(T::from(u));
+            let points: Points<T> = loft.points(T::from(u));
             let Err(error) = loft.spline(&points) else { continue };
-            let name = ["x", "y", "z"][axis - 1];
+            let name = names[axis - 1];
             let InterpolationError::Coincident { second, .. } = error else {
                 return Err(faults::of_interpolation(
                     error,
@@ -185,9 +200,35 @@ struct Loft<T: Real> {
     ends: EndRule,
     /// Of clamped ends.
     slopes: Option<[Vec3<T>; 2]>,
+    about: Option<About<T>>,
 }
 
 impl<T: Real> Loft<T> {
+    /// The points of a column, in the coordinates in which it is interpolated.
+    fn points<J: Jet<T>>(&self, u: J) -> Points<J> {
+        let mut points = self.masters.at(u);
+        if let Some(about) = &self.about {
+            about.coordinates(&mut points);
+        }
+        points
+    }
+
+    /// On the line itself there is no angle about it.
+    fn check_off_axis(&self, field: FieldId) -> Result<(), CallError> {
+        let Some(_) = &self.about else { return Ok(()) };
+        for u in TRIALS {
+            let points: Points<T> = self.points(T::from(u));
+            let size = points.iter().map(|p| p.x.re().max(p.z.re().abs())).fold(0.0, f64::max);
+            let Some(k) = points.iter().position(|p| p.x.re() <= 1e-9 * size) else { continue };
+            return Err(CallError::new("on-axis", "a master meets the line of `about`")
+                .expected("masters that keep away from the line")
+                .found(format!("curve {} on the line at u = {u}", k + 1))
+                .help("end the loft at a small radius, or leave out `about`")
+                .in_field(field));
+        }
+        Ok(())
+    }
+
     fn spline<S: Jet<T>>(
         &self,
         points: &[Vec3<S>],
@@ -201,6 +242,17 @@ impl<T: Real> Loft<T> {
         };
         match self.knots {
             Knots::Polyline => InterpolatingSpline::polyline(points),
+            Knots::Chords if self.about.is_some() => {
+                let mut knots = vec![S::zero()];
+                for pair in points.windows(2) {
+                    knots.push(knots[knots.len() - 1] + step(pair[0], pair[1]));
+                }
+                let total = knots[knots.len() - 1];
+                if total.re() > 0.0 {
+                    knots.iter_mut().for_each(|knot| *knot = *knot / total);
+                }
+                InterpolatingSpline::with_knots(&knots, points, ends)
+            }
             Knots::Chords => InterpolatingSpline::with_ends(points, ends),
             Knots::Axis(axis) => {
                 let (first, last) = (points[0][axis], points[points.len() - 1][axis]);
@@ -228,9 +280,11 @@ impl<T: Real> Loft<T> {
 
     /// Position and derivatives by v, carrying their derivatives by u.
     fn across<J: Jet<T>>(&self, u: J, v: T, order: Order) -> CurveJet<J> {
-        match self.column(&self.masters.at(u)) {
-            Some(spline) => spline.jet(J::fixed(v), order),
-            None => [nowhere(); 3],
+        let column = self.column(&self.points(u));
+        match (column.map(|spline| spline.jet(J::fixed(v), order)), &self.about) {
+            (Some(jet), Some(about)) => about.places(jet),
+            (Some(jet), None) => jet,
+            (None, _) => [nowhere(); 3],
         }
     }
 
@@ -267,6 +321,27 @@ impl<T: Real> Loft<T> {
     }
 }
 
+impl<T: Real> Loft<T> {
+    fn point_by_point(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        mut normals: Option<&mut [Vec3<T>]>,
+    ) {
+        let order = if normals.is_some() { Order::First } else { Order::Zero };
+        for (i, &u) in us.iter().enumerate() {
+            for (j, &v) in vs.iter().enumerate() {
+                let jet = Surface::jet(self, T::from(u), T::from(v), order);
+                points[i * vs.len() + j] = jet.p;
+                if let Some(normals) = normals.as_deref_mut() {
+                    normals[i * vs.len() + j] = jet.normal();
+                }
+            }
+        }
+    }
+}
+
 fn nowhere<S: Real>() -> Vec3<S> {
     Vec3::of(f64::NAN, f64::NAN, f64::NAN)
 }
@@ -296,6 +371,9 @@ impl<T: Real> Surface<T> for Loft<T> {
         points: &mut [Vec3<T>],
         normals: Option<&mut [Vec3<T>]>,
     ) {
+        if self.about.is_some() {
+            return self.point_by_point(us, vs, points, normals);
+        }
         widest(
             #[inline(always)]
             || self.columns(us, vs, points, normals),

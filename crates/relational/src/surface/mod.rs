@@ -1,6 +1,7 @@
 //! Surfaces: lofts, revolutions, sweeps, patches between curves, fillets, and those made from other
 //! surfaces.
 
+mod about;
 mod arcloft;
 mod bloft;
 mod bsurf;

@@ -3,12 +3,12 @@
 use super::column::{Column, Columns};
 use super::law::law;
 use super::offset::{beside, curvatures, parallel};
-use crate::seam;
 use crate::search::{IntSnake, Onto};
 use crate::snake::OnSurface;
 use crate::third_derivatives::tangent;
 use moldloft_locate::implicit::{Implicit, jets, solve};
 use moldloft_locate::{PlainSurface, nearest_on_surface};
+use moldloft_num::period::within;
 use moldloft_num::trace::{Edge, Edges, Trace};
 use moldloft_num::{
     Bi1, CurveFormula, Jet, Order, Real, Surface, SurfaceFormula, Vec3, lift_reparametrization,
@@ -96,7 +96,7 @@ impl<T: Scalar> Build<T> for RollFillet<T> {
         let found = spine.found.clone();
         let nesting = context.nesting.max(spine.depth);
         let surfaces = [surface1.surface, surface2.surface];
-        let round = [seam::round(&surfaces[0]), seam::round(&surfaces[1])];
+        let round = [surfaces[0].closed(), surfaces[1].closed()];
         let ball = Ball { surfaces, round, sides, spine, radius, radii };
         let mut fillet = Rolled { stations: ball.stations(), ball, closed: false };
         fillet.check()?;
@@ -184,7 +184,7 @@ impl<T: Real> Ball<T> {
 
     /// The centre from the place on surface `k`, which may lie beyond its seams.
     fn centre<J: Jet<T>>(&self, k: usize, radius: J, w: [J; 2]) -> Vec3<J> {
-        let [u, v] = seam::wrapped(self.round[k], w);
+        let [u, v] = within(self.round[k], w);
         beside(&*self.surfaces[k], radius * self.sides[k], u, v)
     }
 
@@ -342,7 +342,7 @@ impl<T: Real> Rolled<T> {
             }
             for k in 0..2 {
                 let surface = &self.ball.surfaces[k];
-                let [u, v] = seam::wrapped(self.ball.round[k], [q[2 * k], q[2 * k + 1]]);
+                let [u, v] = within(self.ball.round[k], [q[2 * k], q[2 * k + 1]]);
                 let bends = curvatures(surface, u, v);
                 let share = |bend: f64| 1.0 - self.ball.sides[k] * radius * bend;
                 let least = bends.into_iter().flatten().map(share).fold(f64::INFINITY, f64::min);
@@ -385,7 +385,7 @@ impl<T: Real> Rolled<T> {
         let jet = jets(&self.ball, plain, u.value(), J::ORDER)?;
         let [a, b, c, d] = std::array::from_fn(|k| lift_reparametrization(&jet.map(|q| q[k]), u));
         let round = self.ball.round;
-        Some([seam::wrapped(round[0], [a, b]), seam::wrapped(round[1], [c, d])])
+        Some([within(round[0], [a, b]), within(round[1], [c, d])])
     }
 
     fn across<J: Jet<T>>(&self, u: J) -> Option<Arc<J>> {

@@ -183,7 +183,7 @@ impl<T: Real> Patch<T> {
     /// surface that both run round.
     fn is_closed(&self) -> bool {
         let Layout::Between(sides) = &self.layout else { return false };
-        let round = seam::round(&self.surface);
+        let round = seam::joined_sides(&self.surface);
         let spans = sides.each_ref().map(|side| [0.0, 1.0].map(|t| end(side, t).re().to_array()));
         let way = |k: usize, a: usize| spans[k][1][a] - spans[k][0][a];
         let meets = |a: usize| {

@@ -1,0 +1,57 @@
+//! Curves without length and surfaces without area: nothing is wrong with them for the kernel, and hardly ever are
+//! they meant.
+
+use moldloft_model::Object;
+use moldloft_num::{Order, Real, Vec3};
+use moldloft_registry::{CurveRef, Scalar, SurfaceRef, Value};
+
+/// The ids of these remarks.
+pub const IDS: [&str; 2] = ["zero-length", "zero-area"];
+
+/// A share of the coordinates below which places are one.
+const ONE_PLACE: f64 = 1e-12;
+
+/// The sine of an angle between the tangents of a surface below which they are one line.
+const ONE_LINE: f64 = 1e-9;
+
+/// Parameters at which shapes are looked at, those first that tell at once.
+const PLACES: [f64; 5] = [0.37, 0.81, 0.5, 0.07, 0.96];
+
+/// What is remarkable about the size of an object: id, message, advice.
+pub fn remark<T: Scalar>(object: &Object<T>) -> Option<(&'static str, &'static str, &'static str)> {
+    match object.value()? {
+        // A curve that is made of one point alone is meant to be one.
+        Value::Curve(curve) if object.parents.len() > 1 && is_point(curve) => Some((
+            "zero-length",
+            "the curve has no length: all of it is one point",
+            "the points that it is made of lie in one place; a point is taken wherever a curve of no length is",
+        )),
+        Value::Surface(surface) if is_line(surface) => Some((
+            "zero-area",
+            "the surface has no area: all of it is one line or point",
+            "the curves that it is made of lie on each other, or on its axis",
+        )),
+        _ => None,
+    }
+}
+
+fn is_point<T: Real>(curve: &CurveRef<T>) -> bool {
+    let at = |t: f64| curve.jet(T::from(t), Order::Zero)[0].re();
+    let first = at(0.0);
+    let size = largest(first);
+    PLACES.iter().chain(&[1.0]).all(|t| first.distance(at(*t)) <= ONE_PLACE * size)
+}
+
+fn is_line<T: Real>(surface: &SurfaceRef<T>) -> bool {
+    let flat = |u: f64, v: f64| {
+        let j = surface.jet(T::from(u), T::from(v), Order::First);
+        let (a, b) = (j.u.re(), j.v.re());
+        let (long, small) = (a.norm() * b.norm(), ONE_PLACE * largest(j.p.re()));
+        a.cross(b).norm() <= ONE_LINE * long || a.norm().min(b.norm()) <= small
+    };
+    PLACES.iter().all(|u| PLACES.iter().all(|v| flat(*u, *v)))
+}
+
+fn largest(p: Vec3) -> f64 {
+    p.x.abs().max(p.y.abs()).max(p.z.abs())
+}
