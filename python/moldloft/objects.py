@@ -162,7 +162,12 @@ class Object:
             try:
                 return self._document.eval(f"{self.name}.{member}")
             except Error as error:
-                raise AttributeError(str(error)) from error
+                from moldloft.spelling import nearest
+
+                near = nearest(member, (n for n in dir(self) if n[0] != "_"))
+                known = str(error).rstrip()
+                hint = f"\nhelp: did you mean `{near}`?" if near and "help:" not in known else ""
+                raise AttributeError(known + hint) from error
 
     def __setattr__(self, member: str, value: float) -> None:
         if member in _OWN or isinstance(getattr(type(self), member, None), property):

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.units import Units
 
@@ -117,3 +118,6 @@ def _centre(rows: Sequence[Weight]) -> tuple[float, float, float]:
         raise Error("the weights have no mass, so no centre of gravity")
     x, y, z = (sum(row.mass * row.centre[k] for row in rows) / mass for k in range(3))
     return x, y, z
+
+
+explain(globals())

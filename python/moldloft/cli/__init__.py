@@ -191,11 +191,11 @@ def _run(arguments: list[str]) -> int:
 
 
 def _parsed(arguments: list[str]) -> Namespace:
-    from moldloft.cli.parser import nearest, usage_error
+    from moldloft.cli.parser import meant, usage_error
 
     word = next((a for a in arguments if not a.startswith("-")), None)
     if word is not None and word not in COMMANDS:
-        usage_error(f"unknown command `{word}`{nearest(word, COMMANDS)}", "moldloft")
+        usage_error(f"unknown command `{word}`{meant(word, COMMANDS)}", "moldloft")
     if word is None and not {"-h", "--help"} & set(arguments):
         usage_error("no command was given", "moldloft")
     found: Namespace = whole_parser([] if word is None else [word]).parse_args(arguments)

@@ -50,23 +50,36 @@ def assignment(text: str) -> tuple[str, float]:
     return name.strip(), number
 
 
-def add_model(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
-    """Arguments of every command that runs a model, or ``several``."""
+def add_model(
+    parser: argparse.ArgumentParser,
+    *,
+    several: bool = False,
+    piped: bool = True,
+    values: bool = True,
+    refined: bool = True,
+) -> None:
+    """Arguments of every command that runs a model, or ``several``.
+
+    Without ``piped`` it takes files only, without ``values`` no ``--set``, without ``refined`` no
+    ``--refine``.
+    """
     parser.add_argument(
         "models" if several else "model",
         metavar="MODEL",
         nargs="+" if several else None,
-        help="an .sdl program, an .ms2 model file or a .skt sketch; - reads standard input"
+        help="an .sdl program, an .ms2 model file or a .skt sketch"
+        + ("; - reads standard input" if piped else "")
         + ("; several, and quoted patterns such as 'hulls/*.sdl'" if several else ""),
     )
-    parser.add_argument(
-        "--set",
-        metavar="NAME=NUMBER",
-        type=assignment,
-        action="append",
-        default=[],
-        help="a parameter, or a literal of an object such as P21.y; may be repeated",
-    )
+    if values:
+        parser.add_argument(
+            "--set",
+            metavar="NAME=NUMBER",
+            type=assignment,
+            action="append",
+            default=[],
+            help="a parameter, or a literal of an object such as P21.y; may be repeated",
+        )
     parser.add_argument(
         "--library",
         metavar="DIR",
@@ -74,13 +87,14 @@ def add_model(parser: argparse.ArgumentParser, *, several: bool = False) -> None
         default=[],
         help="a further folder for `load`; may be repeated",
     )
-    parser.add_argument(
-        "--refine",
-        metavar="TIMES",
-        type=int,
-        default=0,
-        help="refinement level: each level halves the spacing of refined() sizes; default 0",
-    )
+    if refined:
+        parser.add_argument(
+            "--refine",
+            metavar="LEVEL",
+            type=int,
+            default=0,
+            help="refinement level: each level halves the spacing of refined() sizes; default 0",
+        )
 
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:
@@ -214,10 +228,11 @@ def open_model(options: argparse.Namespace) -> Model:
         model = _from_standard_input(options)
     else:
         model = load(options.model, library=options.library, strict=False)
-    if options.refine:
-        if options.refine < 0:
+    refine = getattr(options, "refine", 0)
+    if refine:
+        if refine < 0:
             raise Error("--refine takes a whole number of at least 0")
-        model.refine(options.refine)
+        model.refine(refine)
     if options.set and not model.has_errors:
         model.set(dict(options.set))
     return model

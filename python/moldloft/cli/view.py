@@ -15,7 +15,7 @@ __all__ = ["add", "run"]
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    add_model(parser)
+    add_model(parser, piped=False, values=False, refined=False)
     parser.add_argument(
         "--port", metavar="N", type=int, default=0, help="port on this machine; default: a free one"
     )
