@@ -199,7 +199,8 @@ def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
     if head in ("ArrayLike", "NDArray"):
         return _passes(_as_array, value) and not (head == "NDArray" and _is_scalar(value))
     if head == "Triple":
-        return _passes(_as_array, value) and not isinstance(value, Mapping) and _count(value) == 3
+        # How many there are the function says itself.
+        return _passes(_as_array, value) and not (isinstance(value, Mapping) or _is_scalar(value))
     if head in ("Sequence", "Iterable", "Collection"):
         plain = not isinstance(value, (bytes, Mapping)) and _passes(iter, value)
         return plain and _items_fit(value, inner.removesuffix("]"), names)
@@ -245,13 +246,6 @@ def _is_scalar(value: Any) -> bool:
     import numpy as np
 
     return np.ndim(value) == 0
-
-
-def _count(value: Any) -> int:
-    """How many numbers a row of them has; 0 for what is none."""
-    import numpy as np
-
-    return len(value) if np.ndim(value) == 1 else 0
 
 
 def _shown(value: Any) -> str:

@@ -6,6 +6,7 @@ import argparse
 import asyncio
 import contextlib
 import signal
+from importlib import import_module
 from pathlib import Path
 
 from moldloft.cli.console import add_model
@@ -43,6 +44,8 @@ def run(options: argparse.Namespace) -> int:
     from moldloft.errors import Error
 
     try:
+        # The server imports this one itself, and without it no page could connect.
+        import_module("websockets")
         from moldloft.workbench.hub import Hub
         from moldloft.workbench.server import Server
     except ImportError as error:
