@@ -250,7 +250,8 @@ def test_every_picture_is_drawn_by_a_script_and_used() -> None:
     names |= {f"gallery/{path.stem}.png" for path in (ROOT / "examples" / "gallery").glob("*.sdl")}
     there = {path.relative_to(images).as_posix() for path in images.rglob("*.*")}
     assert there == names
-    text = "".join(page.read_text(encoding="utf-8") for page in [ROOT / "README.md", *PAGES])
+    used = [ROOT / "README.md", *PAGES, *(ROOT / "examples").glob("*/README.md")]
+    text = "".join(page.read_text(encoding="utf-8") for page in used)
     assert not [name for name in there if f"images/{name}" not in text]
     large = {n: (images / n).stat().st_size for n in there}
     assert max(large.values()) < 250_000, max(large, key=large.__getitem__)
