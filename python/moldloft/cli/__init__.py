@@ -25,7 +25,7 @@ GROUPS = {
     },
     "Models": {
         "build": "run, mesh and measure a model, and write files",
-        "check": "report what is wrong with a model",
+        "check": "report errors and warnings of a model",
         "eval": "print values of expressions in a model's names",
         "hydro": "hydrostatics, equilibrium, tables over drafts, righting arms",
         "render": "render a picture without a display",
@@ -213,7 +213,7 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
         prog="moldloft",
         usage="moldloft COMMAND [arguments]",
         description="Describe a shape, relate its parts, panel it, measure it.",
-        epilog="\n".join(lines) + "`moldloft COMMAND --help` describes each, with examples.",
+        epilog="\n".join(lines) + "\n`moldloft COMMAND --help` describes each, with examples.",
     )
     parser.add_argument("-V", "--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(
@@ -241,11 +241,10 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
             type=_limit,
             action="append",
             default=[],
-            help="the most that a run may use: memory=2G, steps=N, objects=N or seconds=S; "
-            "may be repeated",
+            help="limit of a run: memory=2G, steps=N, objects=N or seconds=S; may be repeated",
         )
         command.add_argument(
-            "--traceback", action="store_true", help="show where an internal fault is"
+            "--traceback", action="store_true", help="show the traceback of an internal fault"
         )
         command.set_defaults(run=module.run, parser=command)
     return parser

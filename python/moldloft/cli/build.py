@@ -63,10 +63,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--density",
         metavar="WATER",
         type=water,
-        help="salt, fresh, or mass per volume: the water that the model displaces",
+        help="of the water: salt, fresh, or mass per volume in the model's units",
     )
     parser.add_argument(
-        "-v", "--verbose", action="store_true", help="all that was measured, not a few lines"
+        "-v", "--verbose", action="store_true", help="all measured figures, not the main ones only"
     )
     parser.add_argument(
         "--sides",

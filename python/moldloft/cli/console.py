@@ -224,6 +224,13 @@ def open_model(options: argparse.Namespace) -> Model:
             f"{options.model} is not a model but what models are written to: {written[0].about};"
             " expected a program (.sdl), a model file (.ms2) or a sketch (.skt)"
         )
+    place = Path(options.model)
+    if place.suffix.lower() not in ("", ".sdl", ".ms2", ".skt") and place.is_file():
+        raise Error(
+            f"{options.model} is not a model by its name: expected a program (.sdl), a model file "
+            "(.ms2) or a sketch (.skt)\nhelp: a program of another name can be given on standard "
+            "input, as `-`"
+        )
     if options.model == "-":
         model = _from_standard_input(options)
     else:
