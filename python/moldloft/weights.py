@@ -94,7 +94,7 @@ class WeightTable:
         return weights_html(self)
 
     def __str__(self) -> str:
-        from moldloft.cli.console import table
+        from moldloft.text_table import table
 
         names = ("mass", "x", "y", "z")
         header = ["group", "weight"]

@@ -22,13 +22,13 @@ from moldloft.cli.console import (
     report,
     say,
     stem_of,
-    table,
     water,
 )
 from moldloft.errors import Error
 from moldloft.hydrostatics import Hydrostatics
 from moldloft.mesh import Mesh, Patch
 from moldloft.models import Model
+from moldloft.text_table import table
 
 __all__ = ["add", "facts", "run", "summary", "worst_panels"]
 

@@ -33,7 +33,6 @@ __all__ = [
     "report",
     "say",
     "stem_of",
-    "table",
     "water",
 ]
 
@@ -279,22 +278,6 @@ def _finite(data: Any) -> Any:
     if isinstance(data, (list, tuple)):
         return [_finite(value) for value in data]
     return data
-
-
-def table(header: list[str], rows: list[list[str]], *, left: int = 1) -> str:
-    """A table; the first ``left`` columns to the left, the others to the right.
-
-    >>> print(table(["patch", "panels"], [["hull", "200"]]))
-    patch  panels
-    hull      200
-    """
-    widths = [max(len(row[k]) for row in [header, *rows]) for k in range(len(header))]
-    lines = []
-    for row in [header, *rows]:
-        padded = zip(row, widths, strict=True)
-        cells = [c.ljust(w) if k < left else c.rjust(w) for k, (c, w) in enumerate(padded)]
-        lines.append("  ".join(cells).rstrip())
-    return "\n".join(lines)
 
 
 class Progress:

@@ -6,10 +6,11 @@ import argparse
 from textwrap import fill
 from typing import Any
 
-from moldloft.cli.console import print_json, table
+from moldloft.cli.console import print_json
 from moldloft.cli.reference_page import example_lines, markdown, signature, synonyms
 from moldloft.errors import UnknownNameError
 from moldloft.spelling import nearest
+from moldloft.text_table import table
 
 __all__ = ["add", "run"]
 

@@ -15,7 +15,6 @@ from moldloft.cli.console import (
     open_model,
     print_json,
     report,
-    table,
     water,
 )
 from moldloft.errors import Error
@@ -26,6 +25,7 @@ from moldloft.hydrostatics import (
     header,
     shown,
 )
+from moldloft.text_table import table
 
 __all__ = ["add", "run"]
 
