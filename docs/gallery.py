@@ -49,12 +49,25 @@ def page() -> str:
     return "".join(parts)
 
 
+def whole(path: Path) -> moldloft.Model:
+    """The model; with its image in x = 0 where it has one, which pictures do not add themselves."""
+    model = moldloft.load(path)
+    if "x" not in model.symmetry:
+        return model
+    facts = [model.facts(name) for name in model.objects]
+    surfaces = [f["name"] for f in facts if f["class"] == "surface" and f["shown"]]
+    text = "".join(f'MirrSurf {n.replace(".", "_")}_image({n}, "x=0");\n' for n in surfaces)
+    other = model.symmetry.replace("x", "")
+    stated = f'symmetry = "{model.symmetry}"'
+    return moldloft.loads(model.text.replace(stated, f'symmetry = "{other}"') + text)
+
+
 def main() -> None:
     """Draws the models that are named, or all, and writes the page."""
     PICTURES.mkdir(exist_ok=True)
     for path in MODELS:
         if len(sys.argv) == 1 or path.stem in sys.argv[1:]:
-            model = moldloft.load(path)
+            model = whole(path)
             (PICTURES / f"{path.stem}.png").write_bytes(model.picture(560, 360))
     (ROOT / "docs" / "gallery.md").write_text(page(), encoding="utf-8")
 

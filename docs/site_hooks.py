@@ -56,6 +56,8 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
         target = _target(here, found[1])
         if target is None:
             return found[0]
+        if target == "CHANGELOG.md":
+            return f"]({up}changes.md)"
         if not (ROOT / target).is_file():
             return f"](https://github.com/moldloft/moldloft/tree/main/{target})"
         return f"]({up}source/{target}.txt)"

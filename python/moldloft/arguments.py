@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from moldloft.errors import Error
+from moldloft.spelling import nearest
 
 __all__ = ["ArgumentError", "explain"]
 
@@ -50,6 +51,8 @@ _WORDS = {
     "bool": "True or False",
     "None": "None",
     "ArrayLike": "an array of numbers",
+    "NDArray[np.float64]": "an array of numbers",
+    "Triple": "three numbers",
 }
 
 
@@ -62,7 +65,9 @@ def explain(module: dict[str, Any]) -> None:
         The module's ``globals()``, at its end.
     """
     for name, thing in list(module.items()):
-        if name.startswith("_") or getattr(thing, "__module__", "") != module["__name__"]:
+        if getattr(thing, "__module__", "") != module["__name__"]:
+            continue
+        if name.startswith("_") and not inspect.isclass(thing):
             continue
         if inspect.isfunction(thing):
             module[name] = _explained(thing)
@@ -88,7 +93,10 @@ def _explained(function: Callable[..., Any]) -> Callable[..., Any]:
     def call(*arguments: Any, **options: Any) -> Any:
         try:
             return function(*arguments, **options)
-        except Error:
+        except Error as error:
+            # What a function passes on is named as its caller knows it.
+            if isinstance(error, ArgumentError) and (found := _fault(function, arguments, options)):
+                raise ArgumentError(found[1], found[0]) from error
             raise
         except _RAW as error:
             found = _fault(function, arguments, options) or _said(error)
@@ -104,12 +112,14 @@ def _fault(
     function: Callable[..., Any], arguments: tuple[Any, ...], options: dict[str, Any]
 ) -> tuple[str, str] | None:
     """The argument that does not fit, and what to say about it."""
+    signature = inspect.signature(function)
+    # Methods that several classes have from a private one are named without it.
+    where = re.sub(r"^_\w+\.", "", function.__qualname__.removesuffix(".__init__"))
     try:
-        bound = inspect.signature(function).bind(*arguments, **options)
+        bound = signature.bind(*arguments, **options)
     except (TypeError, ValueError):
         # Too few or too many arguments: Python says so.
-        return None
-    where = function.__qualname__.removesuffix(".__init__")
+        return _misspelt(where, signature, options)
     for name, value in bound.arguments.items():
         parameter = bound.signature.parameters[name]
         written = parameter.annotation
@@ -122,6 +132,24 @@ def _fault(
                 kinds = [_WORDS.get(kind, kind) for kind in _alternatives(written)]
                 expected = " or ".join(dict.fromkeys(kinds))
                 return name, f"`{name}` of `{where}`: expected {expected}, found {_shown(one)}"
+    return None
+
+
+def _misspelt(
+    where: str, signature: inspect.Signature, options: Mapping[str, Any]
+) -> tuple[str, str] | None:
+    """The named argument that a function does not have, with the nearest that it has."""
+    parameters = signature.parameters.values()
+    known = [p.name for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
+    takes_others = any(p.kind is p.VAR_KEYWORD for p in parameters)
+    for name in options:
+        if name in known:
+            continue
+        near = nearest(name, (k for k in known if k not in ("self", *options)))
+        if near:
+            return name, f"`{where}` has no argument `{name}`; did you mean `{near}`?"
+        if not takes_others:
+            return name, f"`{where}` has no argument `{name}`"
     return None
 
 
@@ -169,7 +197,10 @@ def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
     if kind == "str":
         return isinstance(value, str) and _passes(str.encode, value)
     if head in ("ArrayLike", "NDArray"):
-        return _passes(_as_array, value)
+        return _passes(_as_array, value) and not (head == "NDArray" and _is_scalar(value))
+    if head == "Triple":
+        # How many there are the function says itself.
+        return _passes(_as_array, value) and not (isinstance(value, Mapping) or _is_scalar(value))
     if head in ("Sequence", "Iterable", "Collection"):
         plain = not isinstance(value, (bytes, Mapping)) and _passes(iter, value)
         return plain and _items_fit(value, inner.removesuffix("]"), names)
@@ -188,7 +219,7 @@ def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
 
 def _items_fit(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
     # An iterator is used up already.
-    if kind not in ("str", "int", "float") or iter(value) is value:
+    if kind not in ("str", "int", "float", "ArrayLike") or iter(value) is value:
         return True
     if isinstance(value, str):
         return kind == "str"
@@ -209,6 +240,12 @@ def _as_array(value: Any) -> None:
     if isinstance(value, (str, bytes)) or np.iscomplexobj(value):
         raise TypeError
     np.asarray(value, dtype=np.float64)
+
+
+def _is_scalar(value: Any) -> bool:
+    import numpy as np
+
+    return np.ndim(value) == 0
 
 
 def _shown(value: Any) -> str:

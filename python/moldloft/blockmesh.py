@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 
 if TYPE_CHECKING:
@@ -296,3 +297,6 @@ def _patches(
             kind = {"symmetry": "symmetryPlane", "wall": "wall"}.get(free.kind, "patch")
             faces[_word(free.name), kind].append(tuple(corners))
     return faces
+
+
+explain(globals())

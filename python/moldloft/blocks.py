@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.formats import formats
 
@@ -263,3 +264,6 @@ def _side(
 ) -> tuple[int, int, tuple[int, int, int], tuple[int, int, int]]:
     block, face, begin, end = part
     return block, face, (begin[0], begin[1], begin[2]), (end[0], end[1], end[2])
+
+
+explain(globals())

@@ -7,6 +7,7 @@ import re
 from typing import NamedTuple
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import ModelError
 
 __all__ = ["Limits", "limits", "parsed"]
@@ -145,3 +146,6 @@ def _seconds(value: float) -> float:
     if math.isnan(value) or value <= 0:
         raise ModelError(f"`seconds` is a number above 0, found {value!r}")
     return float(value)
+
+
+explain(globals())

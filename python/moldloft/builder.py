@@ -17,6 +17,7 @@ from functools import update_wrapper
 from typing import Any, Generic, ParamSpec
 
 from moldloft import _core
+from moldloft.arguments import ArgumentError
 from moldloft.expressions import (
     Expr,
     FieldShape,
@@ -32,6 +33,7 @@ from moldloft.expressions import (
 from moldloft.language import entry, page, signature
 from moldloft.loading import Origin
 from moldloft.models import Model
+from moldloft.spelling import nearest
 
 __all__ = [
     "Builder",
@@ -61,6 +63,7 @@ class Function:
 
     def __call__(self, *args: object, **named: object) -> Any:
         """The call; the arguments are those of the language."""
+        _check_names(self, named)
         return result(entry(self.name)["class"], f"{self.name}({arguments(args, named)})")
 
     def __repr__(self) -> str:
@@ -80,10 +83,25 @@ class Kind:
 
     def __call__(self, name: str, /, *args: object, **named: object) -> Any:
         """Declare an object of this kind; the arguments are those of the language."""
+        _check_names(self, named)
         return Builder.current().declare(self.name, name, args, named)
 
     def __repr__(self) -> str:
         return f"<Kind: {self.name}>"
+
+
+def _check_names(thing: Function | Kind, named: Mapping[str, object]) -> None:
+    """Refuses arguments that a kind or function does not have, at the line that gives them."""
+    known = thing.__signature__.parameters
+    for name in named:
+        # The language takes the words of Python without the underscore.
+        if name in known or f"{name}_" in known or name.removesuffix("_") in known:
+            continue
+        if any(p.kind is p.VAR_KEYWORD for p in known.values()):
+            continue
+        near = nearest(name, known)
+        hint = f"; did you mean `{near}`?" if near else f"; expected {', '.join(known)}"
+        raise ArgumentError(f"{thing.name} has no argument `{name}`{hint}", name)
 
 
 class Builder:
@@ -326,8 +344,10 @@ class ModelFunction(Generic[P]):
     def _checked(self, values: Mapping[str, float]) -> dict[str, float]:
         for name in values:
             if name not in self._params:
+                near = nearest(name, self._params)
                 known = ", ".join(self._params)
-                raise TypeError(f"unknown parameter `{name}`; expected one of: {known}")
+                hint = f"did you mean `{near}`?" if near else f"expected one of: {known}"
+                raise TypeError(f"unknown parameter `{name}`; {hint}")
         return {name: float(value) for name, value in values.items()}
 
     def text(self, values: Mapping[str, float]) -> str:

@@ -6,11 +6,12 @@ function writes keeps the parameters and what was computed from them.
 
 from __future__ import annotations
 
-import difflib
 import keyword
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
+
+from moldloft.spelling import nearest
 
 __all__ = [
     "AnyHandle",
@@ -300,8 +301,8 @@ class Handle:
                 made = own[member]
                 return Expr(text) if made is None else made(text)
             if own and member not in _FOUND:
-                near = difflib.get_close_matches(member, own, 1)
-                hint = f"did you mean `{near[0]}`?" if near else f"it has: {', '.join(own)}"
+                near = nearest(member, own)
+                hint = f"did you mean `{near}`?" if near else f"it has: {', '.join(own)}"
                 raise AttributeError(f"`{self.name}` has no member `{member}`; {hint}")
             return Expr(text)
 

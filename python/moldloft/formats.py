@@ -7,13 +7,13 @@ The rows are those of the Rust crate ``export``, and those of the formats that P
 from __future__ import annotations
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 from moldloft import _core
 from moldloft.errors import Error
+from moldloft.spelling import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -213,9 +213,9 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
         files = f"files that end in `.{wanted}` may be of several formats"
         raise Error(f"{files}; say which format: {' or '.join(ends)}")
     known = [word for row in rows for word in (row.name, *row.aliases)]
-    near = get_close_matches(wanted, known, 1, 0.7)
+    near = nearest(wanted, known)
     if near:
-        raise Error(f"unknown format `{name}`; did you mean `{near[0]}`?")
+        raise Error(f"unknown format `{name}`; did you mean `{near}`?")
     names = ", ".join(row.name for row in rows)
     raise Error(f"unknown format `{name}`; expected one of: {names}")
 

@@ -20,9 +20,9 @@ def __getattr__(name: str) -> Function:
 
     rows = {row["name"] for row in _core.reference() if not row["is_kind"]}
     if name not in rows:
-        from difflib import get_close_matches
+        from moldloft.spelling import nearest
 
-        near = get_close_matches(name, rows, 1)
-        hint = f"; did you mean `{near[0]}`?" if near else ""
+        near = nearest(name, sorted(rows))
+        hint = f"; did you mean `{near}`?" if near else ""
         raise AttributeError(f"the language has no function `{name}`{hint}")
     return Function(name)

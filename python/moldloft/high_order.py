@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -100,3 +101,6 @@ def write(model: Model, title: str, *, tolerance: float | None = None, lids: boo
     """
     name = f"{title}.gdf"
     return model.encoded("gdf-high", name, tolerance=tolerance, lids=lids)[name]
+
+
+explain(globals())

@@ -25,10 +25,10 @@ def __getattr__(name: str) -> Kind:
     if name.startswith("_"):
         raise AttributeError(name)
     if name not in _names():
-        from difflib import get_close_matches
+        from moldloft.spelling import nearest
 
-        near = get_close_matches(name, _names(), 1)
-        hint = f"; did you mean {near[0]}?" if near else ""
+        near = nearest(name, _names())
+        hint = f"; did you mean {near}?" if near else ""
         raise AttributeError(f"unknown kind {name}{hint}")
     return Kind(name)
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from moldloft import _core
 from moldloft._core import Shape
+from moldloft.versions import check_language
 
 __all__ = [
     "Shape",
@@ -370,10 +371,13 @@ def format_text(name: str, text: bytes) -> str:
     ------
     ModelError
         When it is not a program.
+    FileError
+        When it states a later version of the language.
 
     Examples
     --------
     >>> format_text("a.sdl", b"AbsPoint   P ( 1,2,3 );")
     'AbsPoint P(1, 2, 3);\n'
     """
+    check_language(text[:1000].decode("utf-8", "replace"), name)
     return _core.format_text(name, text)

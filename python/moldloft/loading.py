@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import FileError, record_raised
 from moldloft.models import Model
+from moldloft.versions import check_language
 
 if TYPE_CHECKING:
     from moldloft.implicit import Field, Set
@@ -93,7 +95,7 @@ def load(
     ModelError
         When the model has an error.
     FileError
-        When the file cannot be read.
+        When the file cannot be read, or states a later version of the language.
     """
     folders = [os.fspath(folder) for folder in library]
     place = Path(path)
@@ -101,6 +103,7 @@ def load(
         place.name, os.fspath(place.parent.absolute()), _absolute(folders), dict(functions or {})
     )
     model = Model(_core.Document.open(os.fspath(path), folders), origin)
+    check_language(model.text, os.fspath(path))
     _add_functions(model, functions)
     if strict:
         unread = [d for d in model.diagnostics if d.id == "cannot-read"]
@@ -137,6 +140,8 @@ def loads(
     ------
     ModelError
         When the model has an error.
+    FileError
+        When the text states a later version of the language: ``# moldloft 2`` in its first line.
 
     Examples
     --------
@@ -148,6 +153,7 @@ def loads(
     >>> m["P"].z, m.derivative("P.z", "a")
     (3.0, 0.25)
     """
+    check_language(text, name)
     folders = [os.fspath(folder) for folder in library]
     origin = Origin(name, None, _absolute(folders), dict(functions or {}))
     model = Model(_core.Document.from_text(name, text, None, folders), origin)
@@ -192,3 +198,6 @@ def _guarded(model: Model, name: str, function: Callable[..., Any]) -> Callable[
             inside.discard(thread)
 
     return call
+
+
+explain(globals())

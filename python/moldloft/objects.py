@@ -162,7 +162,12 @@ class Object:
             try:
                 return self._document.eval(f"{self.name}.{member}")
             except Error as error:
-                raise AttributeError(str(error)) from error
+                from moldloft.spelling import nearest
+
+                near = nearest(member, (n for n in dir(self) if n[0] != "_"))
+                known = str(error).rstrip()
+                hint = f"\nhelp: did you mean `{near}`?" if near and "help:" not in known else ""
+                raise AttributeError(known + hint) from error
 
     def __setattr__(self, member: str, value: float) -> None:
         if member in _OWN or isinstance(getattr(type(self), member, None), property):
@@ -386,7 +391,13 @@ class Surface(_Located):
             if len(parameters) != 2:
                 count = f"{len(parameters)} parameter{'s' * (len(parameters) != 1)}"
                 raise ModelError(f"a surface takes u, v, and a curve t; {count} given")
-            u, v = np.broadcast_arrays(*(np.asarray(p, np.float64) for p in parameters))
+            u, v = (np.asarray(p, dtype=np.float64) for p in parameters)
+            try:
+                u, v = np.broadcast_arrays(u, v)
+            except ValueError:
+                raise ModelError(
+                    f"u of shape {u.shape} and v of shape {v.shape} do not broadcast to one shape"
+                ) from None
             flat = self._document.surface(
                 self.name, np.ascontiguousarray(u.ravel()), np.ascontiguousarray(v.ravel())
             )

@@ -143,8 +143,8 @@ def _plane(plane: object) -> tuple[list[float], list[float]]:
         pair = np.empty(0)
     if pair.shape != (2, 3):
         raise ModelError(
-            "an intersection takes a curve, surface or plane of a model, a plane as a point and a "
-            f'normal, or as text like "z=0.5", not {plane!r}'
+            "`other` of an intersection: expected a curve, surface or plane of a model, a plane as "
+            f'a point and a normal, or as text like "z=0.5", not {plane!r}'
         )
     return pair[0].tolist(), pair[1].tolist()
 

@@ -509,7 +509,7 @@ class CrossCurves:
         return commit(path.parent, [Output(path.name, self.csv().encode())])[0]
 
     def __str__(self) -> str:
-        from moldloft.cli.console import table
+        from moldloft.text_table import table
 
         head, rows = self._table()
         trim = "free" if self.free_trim else "kept"
@@ -662,7 +662,7 @@ class Assessment:
         return text.getvalue()
 
     def __str__(self) -> str:
-        from moldloft.cli.console import table
+        from moldloft.text_table import table
 
         header = ["clause", "what", "required", "attained", "margin", "", "unit", "result"]
         rows = []

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 
 __all__ = ["DIMENSIONS", "WATERS", "Units"]
@@ -192,3 +193,6 @@ class Units:
                 raise Error(f"the model states no unit of {what}, so {figure} cannot be converted")
             scale *= (table[a] / table[b]) ** power
         return scale
+
+
+explain(globals())

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.units import Units
 
@@ -93,7 +94,7 @@ class WeightTable:
         return weights_html(self)
 
     def __str__(self) -> str:
-        from moldloft.cli.console import table
+        from moldloft.text_table import table
 
         names = ("mass", "x", "y", "z")
         header = ["group", "weight"]
@@ -117,3 +118,6 @@ def _centre(rows: Sequence[Weight]) -> tuple[float, float, float]:
         raise Error("the weights have no mass, so no centre of gravity")
     x, y, z = (sum(row.mass * row.centre[k] for row in rows) / mass for k in range(3))
     return x, y, z
+
+
+explain(globals())

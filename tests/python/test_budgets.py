@@ -18,17 +18,13 @@ resource = pytest.importorskip("resource", reason="limits of a process")
 CHILD = """
 import json, resource, sys
 import moldloft
-from moldloft import _core
 text = open(sys.argv[1]).read()
-memory, steps, objects, seconds = _core.limits()
 given = json.loads(sys.argv[2])
-_core.set_limits(
-    given.get("memory", memory), given.get("steps", steps),
-    given.get("objects", objects), given.get("seconds", seconds),
-)
+mesh = given.pop("mesh", False)
+moldloft.limits(**given)
 try:
     m = moldloft.loads(text)
-    if given.get("mesh"):
+    if mesh:
         m.mesh()
     ids = [d.id for d in m.diagnostics]
 except moldloft.Error as error:
@@ -103,18 +99,19 @@ def test_a_loop_makes_a_set_of_many(tmp_path: Path) -> None:
 
 
 def test_a_model_lives_on_after_a_refusal() -> None:
-    before = _core.limits()
+    before = moldloft.limits()
     text = POINTS + "param float r = 1 in [0.1, 2]; " + BALL.replace("1)", "r)")
     m = moldloft.loads(text + "SetBody b(s, {-3, -3, -3}, {3, 3, 3}, depth = 6);")
     volume = m.mesh().volume
     try:
+        # Below the least that users may set, so that a small model suffices.
         _core.set_limits(_core.held_memory() + (1 << 20), *before[1:])
         with pytest.raises(moldloft.Error, match="GiB of memory"):
             m["r"] = 1.5
             m.check()
             m.mesh()
     finally:
-        _core.set_limits(*before)
+        moldloft.limits(**before._asdict())
     m["r"] = 1.0
     assert m.mesh().volume == volume
     m["r"] = 1.5
@@ -122,28 +119,28 @@ def test_a_model_lives_on_after_a_refusal() -> None:
 
 
 def test_time_is_limited() -> None:
-    before = _core.limits()
+    before = moldloft.limits()
     try:
-        _core.set_limits(*before[:3], 0.05)
+        moldloft.limits(seconds=0.05)
         with pytest.raises(moldloft.Error, match=r"longer than the 0\.05 s"):
             moldloft.loads("float s = 0; for (i = 1:10000000) s = s + 1;")
     finally:
-        _core.set_limits(*before)
+        moldloft.limits(**before._asdict())
     assert moldloft.loads("AbsPoint A(1, 0, 0);").eval("A.x") == 1
 
 
 def test_steps_and_objects_are_raised_by_who_may() -> None:
-    before = _core.limits()
+    before = moldloft.limits()
     text = "for (i = 1:40) AbsPoint p(i, 0, 0);"
     try:
-        _core.set_limits(before[0], before[1], 30, before[3])
+        moldloft.limits(objects=30)
         with pytest.raises(moldloft.ModelError, match="too many objects") as error:
             moldloft.loads(text)
         assert [d.id for d in error.value.diagnostics] == ["too-many-objects"]
-        _core.set_limits(before[0], before[1], 50, before[3])
+        moldloft.limits(objects=50)
         assert moldloft.loads(text).eval("p[40].x") == 40
     finally:
-        _core.set_limits(*before)
+        moldloft.limits(**before._asdict())
 
 
 def test_held_memory_comes_back() -> None:

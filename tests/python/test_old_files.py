@@ -148,8 +148,53 @@ def test_a_newer_draft_is_refused_by_name(tmp_path: Path) -> None:
     assert path.read_text().startswith('{"version": 2')
 
 
+@pytest.mark.parametrize("first", ["# moldloft 2", "\ufeff# moldloft 2", "#moldloft  17\r"])
+def test_a_program_of_a_newer_language_is_refused_by_its_first_line(
+    first: str, tmp_path: Path, cli
+) -> None:
+    text = f"{first}\nAbsPoint P(1, 2, 3);\n"
+    path = tmp_path / "new.sdl"
+    path.write_bytes(text.encode())
+    refused = r"new\.sdl` is written in version \d+ of the language; moldloft .* reads version 1"
+    for strict in (True, False):
+        with pytest.raises(FileError, match=refused):
+            moldloft.load(path, strict=strict)
+        with pytest.raises(FileError, match=refused):
+            moldloft.loads(text, name="new.sdl", strict=strict)
+    commands = (["check"], ["build", "--to", "stl"], ["eval"], ["fmt", "-w"], ["render"], ["run"])
+    for command in (*commands, ["export", "--html"], ["convert", "--to", "ms2"]):
+        words = ["P.x"] if command == ["eval"] else []
+        message = cli(*command[:1], "new.sdl", *command[1:], *words, status=1).stderr
+        assert "reads version 1" in message and "help: install a newer moldloft" in message
+    assert path.read_bytes() == text.encode() and [p.name for p in tmp_path.iterdir()] == [
+        "new.sdl"
+    ]
+
+
+@pytest.mark.parametrize(
+    "first", ["# moldloft 1", "# Moldloft 2 of my hulls", "# moldloft 1.5", ""]
+)
+def test_other_first_lines_are_comments(first: str) -> None:
+    text = f"{first}\nAbsPoint P(1, 2, 3);\n"
+    m = moldloft.loads(text)
+    assert m["P"].x == 1 and m.text == text
+    # A later line is a comment like others.
+    assert moldloft.loads("AbsPoint P(1, 2, 3);\n# moldloft 2\n")["P"].x == 1
+
+
+def test_the_version_survives_edits_and_the_formatter() -> None:
+    from moldloft.language import format_text
+
+    m = moldloft.loads("# moldloft 1\nAbsPoint  P(1, 2, 3);\n")
+    m["P"].x = 5
+    assert m.text.startswith("# moldloft 1\n")
+    assert format_text("a.sdl", m.text.encode()).startswith("# moldloft 1\n")
+    assert m.copy().text.startswith("# moldloft 1\n")
+    assert moldloft.loads(m.convert("sdl")).text.startswith("# moldloft 1\n")
+
+
 def test_words_of_a_newer_language_are_refused_by_name() -> None:
-    """A program states no version: what this one does not know is named, and nothing is guessed."""
+    """Of a program that states no version, what this one does not know is named."""
     for text, word in (
         ("HoverSurf s(1, 2);", "HoverSurf"),
         ("AbsPoint P(1, 2, 3, glow = 1);", "glow"),

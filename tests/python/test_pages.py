@@ -231,3 +231,27 @@ def test_the_site_is_whole(tmp_path: Path) -> None:
     nav = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
     for page in PAGES:
         assert named(page) in nav, f"{named(page)} is on no menu"
+
+
+def test_every_picture_is_drawn_by_a_script_and_used() -> None:
+    import runpy
+
+    images = DOCS / "images"
+    drawn = runpy.run_path(str(DOCS / "pictures.py"))
+    names = {f"{name}.png" for name in (*drawn["MODELS"], *drawn["PLOTS"])}
+    for folder in ("implicit", "sketch"):
+        script = (ROOT / "examples" / folder / "pictures.py").read_text(encoding="utf-8")
+        stems = {path.stem for path in (ROOT / "examples" / folder).glob("*.s*")}
+        names |= {
+            path.name
+            for path in images.glob(f"{folder}-*")
+            if path.stem.removeprefix(f"{folder}-") in stems and f"{folder}-" in script
+        }
+    names |= {f"gallery/{path.stem}.png" for path in (ROOT / "examples" / "gallery").glob("*.sdl")}
+    there = {path.relative_to(images).as_posix() for path in images.rglob("*.*")}
+    assert there == names
+    used = [ROOT / "README.md", *PAGES, *(ROOT / "examples").glob("*/README.md")]
+    text = "".join(page.read_text(encoding="utf-8") for page in used)
+    assert not [name for name in there if f"images/{name}" not in text]
+    large = {n: (images / n).stat().st_size for n in there}
+    assert max(large.values()) < 250_000, max(large, key=large.__getitem__)

@@ -25,7 +25,7 @@ GROUPS = {
     },
     "Models": {
         "build": "run, mesh and measure a model, and write files",
-        "check": "report what is wrong with a model",
+        "check": "report errors and warnings of a model",
         "eval": "print values of expressions in a model's names",
         "hydro": "hydrostatics, equilibrium, tables over drafts, righting arms",
         "render": "render a picture without a display",
@@ -191,11 +191,11 @@ def _run(arguments: list[str]) -> int:
 
 
 def _parsed(arguments: list[str]) -> Namespace:
-    from moldloft.cli.parser import nearest, usage_error
+    from moldloft.cli.parser import meant, usage_error
 
     word = next((a for a in arguments if not a.startswith("-")), None)
     if word is not None and word not in COMMANDS:
-        usage_error(f"unknown command `{word}`{nearest(word, COMMANDS)}", "moldloft")
+        usage_error(f"unknown command `{word}`{meant(word, COMMANDS)}", "moldloft")
     if word is None and not {"-h", "--help"} & set(arguments):
         usage_error("no command was given", "moldloft")
     found: Namespace = whole_parser([] if word is None else [word]).parse_args(arguments)
@@ -213,7 +213,7 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
         prog="moldloft",
         usage="moldloft COMMAND [arguments]",
         description="Describe a shape, relate its parts, panel it, measure it.",
-        epilog="\n".join(lines) + "`moldloft COMMAND --help` describes each, with examples.",
+        epilog="\n".join(lines) + "\n`moldloft COMMAND --help` describes each, with examples.",
     )
     parser.add_argument("-V", "--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(
@@ -241,11 +241,10 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
             type=_limit,
             action="append",
             default=[],
-            help="the most that a run may use: memory=2G, steps=N, objects=N or seconds=S; "
-            "may be repeated",
+            help="limit of a run: memory=2G, steps=N, objects=N or seconds=S; may be repeated",
         )
         command.add_argument(
-            "--traceback", action="store_true", help="show where an internal fault is"
+            "--traceback", action="store_true", help="show the traceback of an internal fault"
         )
         command.set_defaults(run=module.run, parser=command)
     return parser

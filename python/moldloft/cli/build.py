@@ -22,13 +22,13 @@ from moldloft.cli.console import (
     report,
     say,
     stem_of,
-    table,
     water,
 )
 from moldloft.errors import Error
 from moldloft.hydrostatics import Hydrostatics
 from moldloft.mesh import Mesh, Patch
 from moldloft.models import Model
+from moldloft.text_table import table
 
 __all__ = ["add", "facts", "run", "summary", "worst_panels"]
 
@@ -63,10 +63,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--density",
         metavar="WATER",
         type=water,
-        help="salt, fresh, or mass per volume: the water that the model displaces",
+        help="of the water: salt, fresh, or mass per volume in the model's units",
     )
     parser.add_argument(
-        "-v", "--verbose", action="store_true", help="all that was measured, not a few lines"
+        "-v", "--verbose", action="store_true", help="all measured figures, not the main ones only"
     )
     parser.add_argument(
         "--sides",

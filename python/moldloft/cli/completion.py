@@ -10,7 +10,12 @@ __all__ = ["add", "run"]
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    parser.add_argument("shell", metavar="SHELL", choices=["bash", "zsh", "fish", "powershell"])
+    parser.add_argument(
+        "shell",
+        metavar="SHELL",
+        choices=["bash", "zsh", "fish", "powershell"],
+        help="bash, zsh, fish or powershell",
+    )
 
 
 def run(options: argparse.Namespace) -> int:

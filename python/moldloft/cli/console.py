@@ -33,7 +33,6 @@ __all__ = [
     "report",
     "say",
     "stem_of",
-    "table",
     "water",
 ]
 
@@ -50,23 +49,36 @@ def assignment(text: str) -> tuple[str, float]:
     return name.strip(), number
 
 
-def add_model(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
-    """Arguments of every command that runs a model, or ``several``."""
+def add_model(
+    parser: argparse.ArgumentParser,
+    *,
+    several: bool = False,
+    piped: bool = True,
+    values: bool = True,
+    refined: bool = True,
+) -> None:
+    """Arguments of every command that runs a model, or ``several``.
+
+    Without ``piped`` it takes files only, without ``values`` no ``--set``, without ``refined`` no
+    ``--refine``.
+    """
     parser.add_argument(
         "models" if several else "model",
         metavar="MODEL",
         nargs="+" if several else None,
-        help="an .sdl program, an .ms2 model file or a .skt sketch; - reads standard input"
+        help="an .sdl program, an .ms2 model file or a .skt sketch"
+        + ("; - reads standard input" if piped else "")
         + ("; several, and quoted patterns such as 'hulls/*.sdl'" if several else ""),
     )
-    parser.add_argument(
-        "--set",
-        metavar="NAME=NUMBER",
-        type=assignment,
-        action="append",
-        default=[],
-        help="a parameter, or a literal of an object such as P21.y; may be repeated",
-    )
+    if values:
+        parser.add_argument(
+            "--set",
+            metavar="NAME=NUMBER",
+            type=assignment,
+            action="append",
+            default=[],
+            help="a parameter, or a literal of an object such as P21.y; may be repeated",
+        )
     parser.add_argument(
         "--library",
         metavar="DIR",
@@ -74,13 +86,14 @@ def add_model(parser: argparse.ArgumentParser, *, several: bool = False) -> None
         default=[],
         help="a further folder for `load`; may be repeated",
     )
-    parser.add_argument(
-        "--refine",
-        metavar="TIMES",
-        type=int,
-        default=0,
-        help="refinement level: each level halves the spacing of refined() sizes; default 0",
-    )
+    if refined:
+        parser.add_argument(
+            "--refine",
+            metavar="LEVEL",
+            type=int,
+            default=0,
+            help="refinement level: each level halves the spacing of refined() sizes; default 0",
+        )
 
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:
@@ -210,14 +223,22 @@ def open_model(options: argparse.Namespace) -> Model:
             f"{options.model} is not a model but what models are written to: {written[0].about};"
             " expected a program (.sdl), a model file (.ms2) or a sketch (.skt)"
         )
+    place = Path(options.model)
+    if place.suffix.lower() not in ("", ".sdl", ".ms2", ".skt") and place.is_file():
+        raise Error(
+            f"{options.model} is not a model by its name: expected a program (.sdl), a model file "
+            "(.ms2) or a sketch (.skt)\nhelp: a program of another name can be given on standard "
+            "input, as `-`"
+        )
     if options.model == "-":
         model = _from_standard_input(options)
     else:
         model = load(options.model, library=options.library, strict=False)
-    if options.refine:
-        if options.refine < 0:
+    refine = getattr(options, "refine", 0)
+    if refine:
+        if refine < 0:
             raise Error("--refine takes a whole number of at least 0")
-        model.refine(options.refine)
+        model.refine(refine)
     if options.set and not model.has_errors:
         model.set(dict(options.set))
     return model
@@ -257,22 +278,6 @@ def _finite(data: Any) -> Any:
     if isinstance(data, (list, tuple)):
         return [_finite(value) for value in data]
     return data
-
-
-def table(header: list[str], rows: list[list[str]], *, left: int = 1) -> str:
-    """A table; the first ``left`` columns to the left, the others to the right.
-
-    >>> print(table(["patch", "panels"], [["hull", "200"]]))
-    patch  panels
-    hull      200
-    """
-    widths = [max(len(row[k]) for row in [header, *rows]) for k in range(len(header))]
-    lines = []
-    for row in [header, *rows]:
-        padded = zip(row, widths, strict=True)
-        cells = [c.ljust(w) if k < left else c.rjust(w) for k, (c, w) in enumerate(padded)]
-        lines.append("  ".join(cells).rstrip())
-    return "\n".join(lines)
 
 
 class Progress:

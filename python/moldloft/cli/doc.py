@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 from textwrap import fill
 from typing import Any
 
-from moldloft.cli.console import print_json, table
+from moldloft.cli.console import print_json
 from moldloft.cli.reference_page import example_lines, markdown, signature, synonyms
 from moldloft.errors import UnknownNameError
+from moldloft.spelling import nearest
+from moldloft.text_table import table
 
 __all__ = ["add", "run"]
 
@@ -77,9 +78,9 @@ def run(options: argparse.Namespace) -> int:
         return 0
     row = next((row for row in rows if row["name"] == options.name), None)
     known = [*(row["name"] for row in rows), *_STATEMENTS]
-    near = difflib.get_close_matches(options.name, known, n=1)
+    near = nearest(options.name, known)
     # A misspelt name is an error; a word that names nothing is searched for.
-    misspelt = bool(near) and options.name[:1].isupper()
+    misspelt = near is not None and options.name[:1].isupper()
     other = row is not None or misspelt or bool(options.pictures)
     found = [] if other else search(options.name)
     pages = [] if other else guides(options.name)
@@ -93,7 +94,7 @@ def run(options: argparse.Namespace) -> int:
             _print_guides(pages)
         return 0
     if row is None:
-        hint = f"; did you mean `{near[0]}`?" if near else "; see `moldloft doc --list`"
+        hint = f"; did you mean `{near}`?" if near else "; see `moldloft doc --list`"
         raise UnknownNameError(f"unknown kind or function `{options.name}`{hint}")
     if options.pictures:
         _draw([row], options.pictures)

@@ -6,14 +6,14 @@ import argparse
 import sys
 from pathlib import Path
 
-from moldloft.cli.console import add_model, emit
+from moldloft.cli.console import add_model, emit, open_model, report
 
 __all__ = ["add", "run"]
 
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    add_model(parser)
+    add_model(parser, piped=False, refined=False)
     parser.add_argument(
         "--html",
         action="store_true",
@@ -32,10 +32,17 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Writes the page."""
+    """Writes the page of a model without errors."""
+    from moldloft.errors import Error
     from moldloft.workbench.export import exported_page
     from moldloft.workbench.page import NO_ENGINE, engine_packed
 
+    if options.model == "-":
+        raise Error("a page is made of a model's file, not of standard input")
+    model = open_model(options)
+    report(model.diagnostics)
+    if model.has_errors:
+        return 1
     source = Path(options.model)
     page = exported_page(
         source, values=dict(options.set), library=options.library, living=not options.still

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from dataclasses import asdict
 
-from moldloft.cli.console import print_json, table
+from moldloft.cli.console import print_json
+from moldloft.text_table import table
 
 __all__ = ["add", "run"]
 

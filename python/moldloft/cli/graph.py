@@ -26,7 +26,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draws all objects, the failed ones too."""
+    """Draws all objects, the failed ones too; of a text that has none, nothing."""
     from moldloft.digraph import Node, digraph_svg
 
     model = open_model(options)
@@ -39,6 +39,8 @@ def run(options: argparse.Namespace) -> int:
         print_json({"nodes": [{key: f[key] for key in keys} for f in facts], "edges": edges})
         return status
     nodes = [Node(f["name"], f["kind"], f["class"], f["parents"], f["ok"]) for f in facts]
+    if status and not nodes:
+        return status
     stem = stem_of(options)
     path = options.output or f"{stem}.graph.svg"
     if emit(path, digraph_svg(nodes, stem).encode(), [options.model]) is not None:

@@ -15,7 +15,6 @@ from moldloft.cli.console import (
     open_model,
     print_json,
     report,
-    table,
     water,
 )
 from moldloft.errors import Error
@@ -26,6 +25,7 @@ from moldloft.hydrostatics import (
     header,
     shown,
 )
+from moldloft.text_table import table
 
 __all__ = ["add", "run"]
 
@@ -48,8 +48,12 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--cg", metavar="X,Y,Z", type=_numbers(3), help="centre of gravity; frees trim and heel"
     )
-    parser.add_argument("--trim", metavar="DEGREES", type=float, default=0.0)
-    parser.add_argument("--heel", metavar="DEGREES", type=float, default=0.0)
+    parser.add_argument(
+        "--trim", metavar="DEGREES", type=float, default=0.0, help="positive sinks what has large x"
+    )
+    parser.add_argument(
+        "--heel", metavar="DEGREES", type=float, default=0.0, help="positive sinks what has large y"
+    )
     parser.add_argument(
         "--fixed",
         choices=["trim", "heel", "both"],
@@ -70,7 +74,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--weights",
         action="store_true",
-        help="list the model's weights; they float unless --displacement is given",
+        help="list the model's weights, and float it with them unless --displacement is given",
     )
     parser.add_argument(
         "--criteria",
@@ -91,7 +95,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=_opening,
         action="append",
         default=[],
-        help="a point through which water enters; may be repeated",
+        help="a downflooding point; may be repeated",
     )
     parser.add_argument(
         "--booklet", metavar="FILE", help="a stability booklet of the loading (.html)"
@@ -109,7 +113,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="immersed areas of N sections from x = LOW to HIGH, below the levels of --table",
     )
     parser.add_argument("--gravity", type=float, help="default: 9.80665 m/s² in the model's unit")
-    parser.add_argument("--sides", choices=["both", "one"], default="both")
+    parser.add_argument(
+        "--sides",
+        choices=["both", "one"],
+        default="both",
+        help="count a mirrored model with its image (the default), or one side alone",
+    )
     parser.add_argument(
         "--table", metavar="LOW,HIGH,N", type=_range, help="a table over N drafts from LOW to HIGH"
     )

@@ -7,28 +7,28 @@ one line for a usage error instead of the whole usage, and colours on a terminal
 from __future__ import annotations
 
 import argparse
-import difflib
 import re
 import sys
 from collections.abc import Iterable
 from typing import Any, NoReturn
 
 from moldloft.cli.colour import painted
+from moldloft.spelling import nearest
 
-__all__ = ["Parser", "nearest", "usage_error"]
+__all__ = ["Parser", "meant", "usage_error"]
 
 #: Numbers, and numbers with commas, after a minus: values and no options.
 _NEGATIVE = re.compile(r"-(\d|\.\d)[\d.,eE+:-]*$")
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def meant(word: str, known: Iterable[str]) -> str:
     """The hint about a word that is unknown.
 
-    >>> nearest("bulid", ["build", "check"])
+    >>> meant("bulid", ["build", "check"])
     '; did you mean `build`?'
     """
-    near = difflib.get_close_matches(word, list(known), 1, 0.6)
-    return f"; did you mean `{near[0]}`?" if near else ""
+    near = nearest(word, known)
+    return f"; did you mean `{near}`?" if near else ""
 
 
 def usage_error(message: str, prog: str) -> NoReturn:
@@ -57,6 +57,7 @@ class Parser(argparse.ArgumentParser):
         options.setdefault("allow_abbrev", False)
         super().__init__(**options)
         self._negative_number_matcher = _NEGATIVE
+        self._words: list[str] = []
 
     def minus_is_a_value(self) -> None:
         """Words with one minus are values: the parser has no options of one letter but ``-h``."""
@@ -69,17 +70,28 @@ class Parser(argparse.ArgumentParser):
             own = getattr(found, "parser", self)
             word = left[0].partition("=")[0]
             if word.startswith("-"):
-                own.error(f"unknown option `{word}`{nearest(word, own._option_string_actions)}")
+                own.error(f"unknown option `{word}`{meant(word, own._option_string_actions)}")
             own.error(f"unexpected argument `{left[0]}`")
         return found
 
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse does it; the words are kept for what is said about them."""
+        self._words = list(sys.argv[1:] if args is None else args)
+        return super().parse_known_args(args, namespace)
+
     def error(self, message: str) -> NoReturn:
         """Says what is wrong in a line."""
+        if message.startswith("the following arguments are required"):
+            # What is missing may be there under a misspelt name.
+            for word in (word.partition("=")[0] for word in self._words):
+                if word.startswith("--") and word not in {*self._option_string_actions, "--"}:
+                    hint = meant(word, self._option_string_actions)
+                    usage_error(f"unknown option `{word}`{hint}", self.prog)
         message = re.sub(r"^argument (\S+): ", r"\1: ", message)
         found = re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)", message)
         if found:
             known = [word.strip(" '") for word in found[2].split(",")]
-            hint = nearest(found[1], known)
+            hint = meant(found[1], known)
             expected = hint or f"; expected one of: {', '.join(known)}"
             message = message[: found.start()] + f"`{found[1]}` is unknown{expected}"
         usage_error(message, self.prog)

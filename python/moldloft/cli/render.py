@@ -94,7 +94,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draws what has a value; errors are reported besides."""
+    """Draws what has a value; errors are reported besides. Without any value there is no file."""
     from moldloft.errors import Error
 
     if options.output not in (None, "-") and Path(options.output).suffix.lower() != ".png":
@@ -104,6 +104,8 @@ def run(options: argparse.Namespace) -> int:
         progress.stage(f"running {options.model}")
         model = open_model(options)
         report(model.diagnostics)
+        if model.has_errors and not any(model.facts(name)["ok"] for name in model.objects):
+            return 1
         progress.stage("drawing")
         path = options.output or f"{stem_of(options)}.png"
         if options.traced is None:

@@ -117,6 +117,8 @@ class Host:
             text = data.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
+        if "\0" in text:
+            raise FileError(f"cannot read `{path}`: it is not a text file")
         # Its lines are somebody else's: they read and write inside of their folders.
         self._trust(False)
         if text.lstrip().startswith(("[", "{")):

@@ -6,6 +6,7 @@ import argparse
 import asyncio
 import contextlib
 import signal
+from importlib import import_module
 from pathlib import Path
 
 from moldloft.cli.console import add_model
@@ -15,7 +16,7 @@ __all__ = ["add", "run"]
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    add_model(parser)
+    add_model(parser, piped=False, values=False, refined=False)
     parser.add_argument(
         "--port", metavar="N", type=int, default=0, help="port on this machine; default: a free one"
     )
@@ -43,6 +44,8 @@ def run(options: argparse.Namespace) -> int:
     from moldloft.errors import Error
 
     try:
+        # The server imports this one itself, and without it no page could connect.
+        import_module("websockets")
         from moldloft.workbench.hub import Hub
         from moldloft.workbench.server import Server
     except ImportError as error:

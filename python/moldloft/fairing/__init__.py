@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from moldloft.arguments import explain
 from moldloft.fairing.curve import Arc, Fairing, fair_curve
 from moldloft.fairing.network import NetworkFairing, network
 from moldloft.fairing.page import page, write_page
@@ -106,3 +107,6 @@ def fair(
     if np.ndim(points) == 3:
         return fair_surface(points, tol, **options)
     return fair_curve(points, tol, **options)
+
+
+explain(globals())

@@ -17,6 +17,7 @@ True
 (True, ['ball', 'hole'])
 """
 
+from moldloft.implicit.answers import Attributes, Distance, Hit, Lamp, Leaf, Mass, Nearest, Sun
 from moldloft.implicit.blends import (
     Blend,
     check_rail,
@@ -54,25 +55,8 @@ from moldloft.implicit.fields import (
     torus,
     twist,
 )
-from moldloft.implicit.sets import (
-    Attributes,
-    Distance,
-    Hit,
-    Lamp,
-    Leaf,
-    Mass,
-    Nearest,
-    Set,
-    Sun,
-    cuboid,
-    everything,
-    load,
-    loads,
-    nothing,
-    point,
-    segment,
-    tetrahedron,
-)
+from moldloft.implicit.primitives import cuboid, everything, nothing, point, segment, tetrahedron
+from moldloft.implicit.sets import Set, load, loads
 
 __all__ = [
     "Attributes",

@@ -297,6 +297,7 @@ def _required(x: object) -> Field:
 
 def turn(point: Triple, direction: Triple, angle: float) -> tuple[Floats, list[float]]:
     """The map of a turn (Rodrigues' formula)."""
+    angle = float(angle)
     d = np.array(triple(direction, "direction"))
     size = float(np.linalg.norm(d))
     if not size > 0 or not np.isfinite(size):

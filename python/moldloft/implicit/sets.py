@@ -6,8 +6,6 @@ import itertools
 import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from dataclasses import field as dataclass_field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +13,16 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.arguments import explain
+from moldloft.implicit.answers import (
+    Attributes,
+    Distance,
+    Hit,
+    Lamp,
+    Leaf,
+    Mass,
+    Nearest,
+    Sun,
+)
 from moldloft.implicit.facets import Facets
 from moldloft.implicit.fields import (
     Field,
@@ -31,124 +39,10 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Triple = Sequence[float]
 
-__all__ = ["Attributes", "Distance", "Hit", "Lamp", "Leaf", "Mass", "Nearest", "Set", "Sun"]
+__all__ = ["Set", "load", "loads"]
 
 USUAL_LIMIT = 2e7
 """Cells that the surface may pass through, unless asked otherwise."""
-
-
-@dataclass(frozen=True)
-class Attributes:
-    """What a handle says of a set."""
-
-    name: str | None = None
-    """Name of its faces."""
-    colour: int | None = None
-    """Index of a palette colour, 0 to 15."""
-    material: str | None = None
-    """Material."""
-    tolerance: float | None = None
-    """Distance below which two points count as one."""
-    tags: Mapping[str, str] = dataclass_field(default_factory=dict)
-    """What else is said, by tag."""
-
-
-@dataclass(frozen=True)
-class Leaf:
-    """A primitive of a set with the attributes that reach it."""
-
-    field: Field
-    """The primitive, negated where a complement reached it."""
-    kind: str
-    """What it was made as."""
-    attributes: Attributes
-    """Its own attributes, completed by those of the sets around it."""
-
-    @property
-    def name(self) -> str:
-        """Its name, or its kind."""
-        return self.attributes.name or self.kind
-
-
-@dataclass(frozen=True)
-class Mass:
-    """Mass properties for density 1: best values, and brackets that are proved."""
-
-    volume: float
-    """Volume."""
-    volume_bracket: tuple[float, float]
-    """Its bounds."""
-    centroid: Floats | None
-    """Centre of mass ``(3,)``; None where there is no volume."""
-    centroid_bracket: Floats
-    """Its bounds, ``(3, 2)``."""
-    inertia: Floats | None
-    """Matrix of inertia about the centroid ``(3, 3)``."""
-    inertia_bracket: Floats
-    """Its bounds, ``(3, 3, 2)``."""
-
-
-@dataclass(frozen=True)
-class Nearest:
-    """The nearest point of a surface."""
-
-    point: Floats
-    """Where it is."""
-    distance: float
-    """How far."""
-    at_least: float
-    """No point of the surface is nearer than this; proved."""
-
-
-@dataclass(frozen=True)
-class Distance:
-    """The distance of two sets."""
-
-    distance: float
-    """Distance of the two points; 0 where the sets overlap or touch."""
-    at_least: float
-    """No two points of the sets are nearer than this; proved."""
-    first: Floats
-    """A point of the first set."""
-    second: Floats
-    """A point of the second."""
-
-
-@dataclass(frozen=True)
-class Hit:
-    """Where a ray crosses the surface of a set."""
-
-    t: float
-    """How far along, in lengths of the direction."""
-    point: Floats
-    """Where."""
-    leaf: int
-    """The number of the primitive in :attr:`Set.leaves`."""
-    normal: Floats
-    """Unit normal, from solid to air."""
-    enters: bool
-    """True where the ray enters the solid."""
-
-
-@dataclass(frozen=True)
-class Sun:
-    """Light from afar."""
-
-    direction: Triple
-    """Where it shines to."""
-    colour: Triple = (0.8, 0.8, 0.8)
-    """Linear red, green, blue."""
-
-
-@dataclass(frozen=True)
-class Lamp:
-    """Light from a point."""
-
-    place: Triple
-    """Where it stands."""
-    colour: Triple = (0.8, 0.8, 0.8)
-    """Linear red, green, blue."""
-
 
 Corners = "tuple[list[float], list[float]] | None"
 
@@ -934,29 +828,6 @@ def load(path: str | os.PathLike[str]) -> Set:
     return loads(read_text(path))
 
 
-def everything() -> Set:
-    """All of space."""
-    return Set(_core.Set.everything())
-
-
-def nothing() -> Set:
-    """The empty set."""
-    return Set(_core.Set.nothing())
-
-
-def cuboid(low: Triple, high: Triple) -> Set:
-    """The box between two corners.
-
-    Parameters
-    ----------
-    low
-        The corner with the least coordinates, ``(3,)``.
-    high
-        The corner with the greatest coordinates, ``(3,)``.
-    """
-    return Set(_core.Set.cuboid(triple(low, "low corner"), triple(high, "high corner")))
-
-
 def _reach(
     box: Floats,
     target: Floats,
@@ -976,57 +847,6 @@ def _reach(
     slope = 0.92 * math.tan(angle / 2)
     wide = slope * size[0] / size[1]
     return float(max((upward / slope + along).max(), (across / wide + along).max()))
-
-
-def segment(start: Triple, end: Triple) -> Set:
-    """The straight line between two points, as a wire.
-
-    Parameters
-    ----------
-    start
-        Where it begins, ``(3,)``.
-    end
-        Where it ends, ``(3,)``.
-
-    Examples
-    --------
-    >>> from moldloft import implicit as im
-    >>> facets = im.segment((0, 0, 0), (3, 4, 0)).facets(depth=4)
-    >>> len(facets.wires), len(facets.triangles)
-    (1, 0)
-    """
-    return Set(_core.Set.segment(triple(start, "start"), triple(end, "end")))
-
-
-def point(at: Triple) -> Set:
-    """One point.
-
-    Parameters
-    ----------
-    at
-        The place, ``(3,)``.
-
-    Examples
-    --------
-    >>> from moldloft import implicit as im
-    >>> im.point((1, 2, 3)).facets((0, 0, 0), (4, 4, 4), depth=4).points.round(12).tolist()
-    [[1.0, 2.0, 3.0]]
-    """
-    return Set(_core.Set.point(triple(at, "point")))
-
-
-def tetrahedron(corners: Sequence[Triple]) -> Set:
-    """The tetrahedron of four points, in any order.
-
-    Parameters
-    ----------
-    corners
-        Four points, ``(4, 3)``.
-    """
-    points = [triple(p, "corner") for p in corners]
-    if len(points) != 4:
-        raise ValueError(f"a tetrahedron has four corners, found {len(points)}")
-    return Set(_core.Set.tetrahedron(points))
 
 
 explain(globals())

@@ -6,6 +6,7 @@ import errno
 import hashlib
 import os
 import stat
+from pathlib import Path
 
 from moldloft.errors import FileError
 from moldloft.storage.system import reason
@@ -42,7 +43,8 @@ def read_bytes(path: str | os.PathLike[str], largest: int = LARGEST) -> bytes:
         # Opening a pipe without a writer would wait for one.
         file = os.open(path, _FLAGS)
     except OSError as error:
-        raise FileError(f"cannot read `{path}`: {reason(error)}") from error
+        hint = _similar(path) if error.errno == errno.ENOENT else ""
+        raise FileError(f"cannot read `{path}`: {reason(error)}{hint}") from error
     except ValueError as error:
         raise FileError(f"cannot read `{path!s}`: {error}") from error
     try:
@@ -97,6 +99,19 @@ def digest_of(path: str | os.PathLike[str]) -> str | None:
         if isinstance(cause, OSError) and cause.errno in (errno.ENOENT, errno.ENOTDIR):
             return None
         raise
+
+
+def _similar(path: str | os.PathLike[str]) -> str:
+    """The hint about a file that is not there: the one beside it with nearly the same name."""
+    from moldloft.spelling import nearest
+
+    place = Path(os.fsdecode(path))
+    try:
+        names = [entry.name for entry in os.scandir(place.parent)]
+    except OSError:
+        return ""
+    near = nearest(place.name, sorted(names))
+    return f"\nhelp: a similar name exists: `{place.with_name(near)}`" if near else ""
 
 
 def _size(length: int) -> str:

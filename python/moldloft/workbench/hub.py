@@ -19,6 +19,7 @@ from typing import Any
 
 from moldloft.errors import Error, FileError
 from moldloft.storage import ChangedError, put
+from moldloft.versions import check_language
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.engine import Engine, EngineLostError
 from moldloft.workbench.text import Stored, applied, change_set, decoded, encoded, read
@@ -85,6 +86,7 @@ class Hub:
 
     def __post_init__(self) -> None:
         self.stored = read(self.path)
+        check_language(self.stored.text, str(self.path))
         self.draft = Draft(self.path)
         self.text = self.stored.text
         self.recovered = False

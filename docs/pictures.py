@@ -1,0 +1,78 @@
+"""Draws the pictures of the example models and of fairing: `python docs/pictures.py [NAME ...]`.
+
+Those of the gallery are drawn by `docs/gallery.py`, of sketches by `examples/sketch/pictures.py`, of
+implicit solids by `examples/implicit/pictures.py`, of the kinds by `moldloft doc --pictures`.
+"""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from PIL import Image
+
+import moldloft
+
+ROOT = Path(__file__).resolve().parents[1]
+EXAMPLES = ROOT / "examples"
+IMAGES = ROOT / "docs" / "images"
+
+#: Model and size of each picture.
+MODELS = {
+    "sailboat": ("sailboat/hull.sdl", (1200, 640)),
+    "wing": ("wing/wing.sdl", (900, 560)),
+    "wingbody": ("wingbody/wingbody.sdl", (900, 560)),
+    "platform": ("platform/platform.sdl", (900, 560)),
+    "yacht": ("sailboat/yacht.sdl", (900, 560)),
+    "submarine": ("submarine/submarine.sdl", (900, 560)),
+    "propeller": ("propeller/propeller.sdl", (900, 560)),
+    "missile_half": ("missile/half.sdl", (1000, 640)),
+    "missile_finned": ("missile/finned.sdl", (1000, 640)),
+}
+
+#: Arguments of `moldloft fair` for each plot, and its width in picture points.
+PLOTS = {
+    "fairing-naca0012": ("naca0012-3.csv --tol 1e-3", 1000),
+    "fairing-section": ("section.csv --tol 0.006 --breaks auto --release auto --as fit", 1000),
+    "fairing-wigley": ("wigley.p3d --tol 1e-4 --measure jumps", 1000),
+    "fairing-lines": ("lines.csv --tol 0.006", 1000),
+}
+
+
+def plotted(arguments: str, width: int) -> bytes:
+    """The plot of a fairing, in 256 colours and no wider than a page shows it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "plot.png"
+        command = [sys.executable, "-m", "moldloft", "fair", *arguments.split()]
+        # The status is 1 where the data have a fault that is reported.
+        subprocess.run(
+            [*command, "--plot", str(path)], cwd=EXAMPLES / "fairing", capture_output=True
+        )
+        with Image.open(path) as drawn:
+            height = round(drawn.height * width / drawn.width)
+            small = drawn.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
+    out = io.BytesIO()
+    # No colour is off by more than a fifteenth of its range, so that maps still match their scales.
+    few = small.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=10, dither=Image.Dither.NONE)
+    few.save(out, "PNG", optimize=True)
+    return out.getvalue()
+
+
+def main() -> None:
+    """Draws the pictures that are named, or all."""
+    named = sys.argv[1:] or [*MODELS, *PLOTS]
+    for name in named:
+        if name in MODELS:
+            place, size = MODELS[name]
+            data = moldloft.load(EXAMPLES / place).picture(*size)
+        else:
+            data = plotted(*PLOTS[name])
+        (IMAGES / f"{name}.png").write_bytes(data)
+        print(f"{name}.png: {len(data) / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()

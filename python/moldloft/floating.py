@@ -1,0 +1,442 @@
+"""Hydrostatics, equilibrium, weights and stability of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, cast
+
+from moldloft.arguments import explain
+from moldloft.errors import Error
+from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
+from moldloft.units import Units
+from moldloft.weights import Weight, WeightTable
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from moldloft import _core
+    from moldloft.models import Model
+    from moldloft.stability import Stability
+
+__all__ = ["Floating"]
+
+
+class Floating:
+    """Hydrostatics, weights and stability: the methods of a model that concern floating."""
+
+    @property
+    def _document(self) -> _core.Document:
+        raise NotImplementedError
+
+    def hydrostatics(
+        self,
+        *,
+        level: float | None = None,
+        draft: float | None = None,
+        trim: float = 0.0,
+        heel: float = 0.0,
+        cg: Sequence[float] | None = None,
+        density: float | str | None = None,
+        gravity: float | None = None,
+        sides: str = "both",
+        by: Sequence[str] = (),
+        accuracy: float = 1e-6,
+    ) -> Hydrostatics:
+        """What the model displaces at a given draft, trim and heel, and how stiffly it floats.
+
+        The figures are integrals over the surfaces; their bounds are in ``bounds``. What the panels
+        displace is in :meth:`panel_figures`.
+
+        Parameters
+        ----------
+        level
+            Height of the water over the model's origin, by default 0.
+        draft
+            Instead of the level: the depth of the upright body's lowest point below the water, on
+            the centre line in the middle of its length.
+        trim, heel
+            In radians, about the origin; positive sinks what has large x, or large y.
+        cg
+            The centre of gravity in the model's axes, for metacentric heights and arms.
+        density
+            The water: ``"salt"``, ``"fresh"``, or mass per volume in the model's units. Without it
+            there are volumes, and no masses.
+        gravity
+            In the model's unit of length per second squared, by default 9.80665 m/s².
+        sides
+            For a model that is mirrored in y = 0: ``"both"`` counts its image too, ``"one"``
+            does not (and cannot heel). A model without symmetry is always counted as it is.
+        by
+            Parameters or literals to differentiate the figures by.
+        accuracy
+            The relative error asked for, 1e-12 to 0.1. What was reached is in
+            ``bounds``.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float beam = 2 in [1, 3];
+        ... AbsPoint a(0, -beam/2, 0); AbsPoint b(6, -beam/2, 0);
+        ... AbsPoint c(0, beam/2, 0); AbsPoint d(6, beam/2, 0);
+        ... AbsPoint e(0, -beam/2, 1); AbsPoint f(0, beam/2, 1);
+        ... AbsPoint g(6, -beam/2, 1); AbsPoint h(6, beam/2, 1);
+        ... Line ab(a, b); Line cd(c, d); Line eg(e, g); Line fh(f, h);
+        ... Line ac(a, c); Line ef(e, f); Line bd(b, d); Line gh(g, h);
+        ... RuledSurf bottom(ab, cd, orientation = 1);
+        ... RuledSurf port(ab, eg); RuledSurf starboard(cd, fh, orientation = 1);
+        ... RuledSurf bow(ac, ef, orientation = 1); RuledSurf stern(bd, gh);
+        ... ''')
+        >>> hydro = m.hydrostatics(draft=0.5, by=["beam"])
+        >>> round(hydro.volume, 12), round(hydro.derivatives["volume"]["beam"], 12)
+        (6.0, 3.0)
+        """
+        if level is not None and draft is not None:
+            raise Error("give the level or the draft, not both")
+        given, number = ("level", 0.0 if level is None else float(level))
+        if draft is not None:
+            given, number = "draft", float(draft)
+        row = (given, number, float(trim), float(heel), False, False)
+        return self._floating([row], cg, density, gravity, sides, by, accuracy)[0]
+
+    def equilibrium(
+        self,
+        displacement: float | None = None,
+        *,
+        cg: Sequence[float] | None = None,
+        free: Sequence[str] | None = None,
+        trim: float = 0.0,
+        heel: float = 0.0,
+        density: float | str | None = None,
+        gravity: float | None = None,
+        sides: str = "both",
+        by: Sequence[str] = (),
+        accuracy: float = 1e-6,
+    ) -> Hydrostatics:
+        """The attitude at rest of a body of given mass.
+
+        Parameters
+        ----------
+        displacement
+            The mass; by default that of the model's weights, with their centre of gravity.
+        cg
+            The centre of gravity in the model's axes.
+        free
+            What is sought besides the draft: ``"trim"``, ``"heel"``, or both, which is the default
+            where ``cg`` is given. A model mirrored in y = 0 with its centre of gravity there stays
+            upright by default; where that is unstable, the attitude is that of loll, and ``lolls``
+            is true.
+        trim, heel
+            Kept where they are not free; else where the search begins, in radians.
+        density, gravity, sides, by, accuracy
+            As for :meth:`hydrostatics`. Derivatives are those of the whole solution.
+
+        Returns
+        -------
+        Hydrostatics
+            Its ``status`` says whether the attitude is one of rest, its ``stable`` whether small
+            turns in heel and trim are righted.
+
+        Raises
+        ------
+        ModelError
+            When the body cannot carry the mass.
+        """
+        of_weights = displacement is None
+        if displacement is None:
+            total = self.weights()
+            if not total.rows:
+                raise Error(
+                    "no mass floats\nhelp: give the displacement, or declare weights: "
+                    "Weight engine({2, 0, 0.5}, mass = 3);"
+                )
+            if cg is not None:
+                raise Error("give both the displacement and cg, or none: those of the weights")
+            displacement, cg = total.mass, total.centre
+        held = free is None and cg is not None
+        if free is None:
+            upright = (
+                "y" in self._document.symmetry() and cg is not None and cg[1] == 0 and heel == 0
+            )
+            free = () if cg is None else ("trim",) if upright else ("trim", "heel")
+        unknown = set(free) - {"trim", "heel"}
+        if unknown:
+            raise Error(f"free are `trim` and `heel`, not `{unknown.pop()}`")
+        trims, heels = "trim" in free, "heel" in free
+        row = ("displacement", float(displacement), float(trim), float(heel), trims, heels)
+        given = None if of_weights else cg
+        found = self._floating([row], given, density, gravity, sides, by, accuracy, of_weights)[0]
+        if held and found.stable is False and sides == "both":
+            # Upright it capsizes: on to the attitude that it finds, if there is one.
+            row = ("displacement", float(displacement), float(trim), float(heel), True, True)
+            found = self._floating([row], given, density, gravity, sides, by, accuracy, of_weights)[
+                0
+            ]
+        return found
+
+    def hydrostatic_table(
+        self,
+        drafts: Sequence[float] | NDArray[np.float64],
+        *,
+        trim: float = 0.0,
+        cg: Sequence[float] | None = None,
+        density: float | str | None = None,
+        gravity: float | None = None,
+        sides: str = "both",
+        by: Sequence[str] = (),
+        accuracy: float = 1e-6,
+    ) -> HydrostaticTable:
+        """Hydrostatics over a range of drafts; arguments as for :meth:`hydrostatics`.
+
+        Parameters
+        ----------
+        drafts
+            Drafts above the lowest point of the body, in model units.
+        trim
+            Trim, radians; positive sinks what has large x.
+        cg
+            Centre of gravity in the model's axes, ``(3,)``.
+        density
+            ``"salt"``, ``"fresh"``, or mass per volume in the model's units.
+        gravity
+            Acceleration, in the model's units; by default that of the earth where units are
+            known.
+        sides
+            ``"both"`` counts a mirrored model with its image, ``"one"`` alone.
+        by
+            Names of parameters.
+        accuracy
+            The relative accuracy of the figures.
+        """
+        rows = [("draft", float(draft), float(trim), 0.0, False, False) for draft in drafts]
+        return HydrostaticTable(self._floating(rows, cg, density, gravity, sides, by, accuracy))
+
+    def righting_curve(
+        self,
+        heels: Sequence[float] | NDArray[np.float64],
+        displacement: float,
+        *,
+        cg: Sequence[float],
+        trim: float = 0.0,
+        free_trim: bool = True,
+        density: float | str | None = None,
+        gravity: float | None = None,
+        by: Sequence[str] = (),
+        accuracy: float = 1e-6,
+    ) -> RightingCurve:
+        """Righting arms over heel, at one displacement.
+
+        Parameters
+        ----------
+        heels
+            In radians.
+        displacement
+            The mass.
+        cg
+            The centre of gravity in the model's axes.
+        trim, free_trim
+            Whether the body trims freely at each heel, else the trim it keeps.
+        density, gravity, by, accuracy
+            As for :meth:`hydrostatics`.
+        """
+        rows = [
+            ("displacement", float(displacement), float(trim), float(heel), free_trim, False)
+            for heel in heels
+        ]
+        return RightingCurve(self._floating(rows, cg, density, gravity, "both", by, accuracy))
+
+    def _floating(
+        self,
+        rows: Sequence[tuple[str, float, float, float, bool, bool]],
+        cg: Sequence[float] | None,
+        density: float | str | None,
+        gravity: float | None,
+        sides: str,
+        by: Sequence[str],
+        accuracy: float,
+        of_weights: bool = False,
+    ) -> list[Hydrostatics]:
+        centre = None if cg is None else [float(x) for x in cg]
+        if centre is not None and len(centre) != 3:
+            raise Error(f"a centre of gravity is x, y, z, not {len(centre)} numbers")
+        units = self.units
+        water = units.water(density)
+        if water is None and any(row[0] == "displacement" for row in rows):
+            raise Error(
+                "a mass floats in water of a density\n"
+                'help: give density="salt", "fresh", or mass per volume in the model\'s units'
+            )
+        answers = self._document.floating(
+            rows, water or 1.0, gravity, centre, sides, list(by), accuracy, of_weights
+        )
+        massive = ("displacement", "weight", "tpc", "mtc", "righting_moment")
+        for answer in answers:
+            if water is None:
+                for name in massive:
+                    answer.pop(name, None)
+                    answer["derivatives"].pop(name, None)
+                    answer["bounds"].pop(name, None)
+            answer["units"] = units if density is None else units.complete()
+        return [Hydrostatics(**answer) for answer in answers]
+
+    @property
+    def units(self) -> Units:
+        """The units that the model states: ``Model info(units = "m t");``."""
+        return Units.parse(" ".join(word for word, _ in self._document.units()))
+
+    @property
+    def length_unit(self) -> tuple[str, float]:
+        """The unit of length and its size in metres; metres where the model states none."""
+        unit = self.units.length or "m"
+        return unit, Units(unit).metres
+
+    def tonnes(self, mass: float) -> float | None:
+        """A mass of the model in tonnes; ``None`` where its unit is not known.
+
+        Parameters
+        ----------
+        mass
+            A mass in the model's unit.
+        """
+        units = self.units.complete()
+        return mass * units.kilograms / 1000 if units.mass else None
+
+    def weights(self) -> WeightTable:
+        """The weights that the model declares, by group, with their sum.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("Weight a({2, 0, 0.5}, mass = 3); Weight b({4, 0, 0}, mass = 1);")
+        >>> m.weights().mass, m.weights().centre
+        (4.0, (2.5, 0.0, 0.375))
+        """
+        return WeightTable([Weight(*row) for row in self._document.weights()], self.units)
+
+    def stability(
+        self,
+        displacement: float | None = None,
+        *,
+        cg: Sequence[float] | None = None,
+        density: float | str | None = None,
+        trim: float = 0.0,
+        free_trim: bool = True,
+        openings: Mapping[str, Sequence[float]] | None = None,
+        gravity: float | None = None,
+        accuracy: float = 1e-6,
+    ) -> Stability:
+        """The stability of a loading: righting arms, their areas, angles, criteria.
+
+        Parameters
+        ----------
+        displacement, cg
+            The mass and the centre of gravity; by default those of the model's weights.
+        density
+            The water, as for :meth:`hydrostatics`.
+        trim, free_trim
+            Whether the body trims freely at each heel, else the trim it keeps.
+        openings
+            Points by name through which water enters: the angle of flooding.
+        gravity, accuracy
+            As for :meth:`hydrostatics`.
+
+        Examples
+        --------
+        >>> import math, moldloft
+        >>> from moldloft.starter import BOX
+        >>> box = moldloft.loads(BOX)
+        >>> s = box.stability(40, cg=(0, 0, 0.4), density=1)
+        >>> round(math.degrees(s.vanishing()), 2), s.stable
+        (80.21, True)
+        """
+        from moldloft.stability import Opening, Stability
+
+        if displacement is None or cg is None:
+            total = self.weights()
+            if not total.rows:
+                raise Error(
+                    "no mass and centre of gravity\n"
+                    "help: give displacement and cg, or declare weights: "
+                    "Weight engine({2, 0, 0.5}, mass = 3);"
+                )
+            displacement = total.mass if displacement is None else displacement
+            cg = total.centre if cg is None else cg
+        water = self.units.water(density)
+        if water is None:
+            raise Error(
+                "a mass floats in water of a density\n"
+                'help: give density="salt", "fresh", or mass per volume in the model\'s units'
+            )
+        points = [
+            Opening(name, (float(x), float(y), float(z)))
+            for name, (x, y, z) in (openings or {}).items()
+        ]
+        return Stability(
+            cast("Model", self),
+            displacement,
+            cg,
+            density=water,
+            gravity=gravity,
+            trim=trim,
+            free_trim=free_trim,
+            openings=points,
+            accuracy=accuracy,
+        )
+
+    def section_areas(
+        self,
+        stations: Sequence[float] | NDArray[np.float64],
+        levels: Sequence[float] | NDArray[np.float64] = (0.0,),
+        *,
+        accuracy: float = 1e-6,
+    ) -> NDArray[np.float64]:
+        """Immersed areas of sections below upright levels, ``[station, level]``.
+
+        Bonjean curves, and at one level the sectional area curve. Both sides of a symmetric model
+        count.
+
+        Parameters
+        ----------
+        stations
+            Places along x, in model units.
+        levels
+            Heights of the water, in model units.
+        accuracy
+            The relative accuracy of the areas.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> from moldloft.starter import BOX
+        >>> moldloft.loads(BOX).section_areas([0.0], [-0.25, 0.0]).round(12)
+        array([[3., 4.]])
+        """
+        import numpy as np
+
+        areas = self._document.section_areas(
+            [float(x) for x in stations], [float(z) for z in levels], accuracy
+        )
+        return np.array(areas, dtype=np.float64)[..., 0]
+
+    def panel_figures(self, level: float = 0.0) -> dict[str, float]:
+        """What the panels displace below an upright level: what a panel code computes with.
+
+        ``volume``, ``wetted_area`` and ``waterplane_area``; those of the shape are in
+        :meth:`hydrostatics`.
+
+        Parameters
+        ----------
+        level
+            Height of the water, in model units.
+        """
+        names = ("volume", "wetted_area", "waterplane_area")
+        return dict(zip(names, self._document.panel_figures(float(level)), strict=True))
+
+
+for _name, _method in list(vars(Floating).items()):
+    if callable(_method):
+        # Messages and help name the class that users know.
+        _method.__qualname__ = f"Model.{_name}"
+
+explain(globals())

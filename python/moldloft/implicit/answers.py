@@ -1,0 +1,132 @@
+"""What sets are made of, and what they answer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from dataclasses import field as dataclass_field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from moldloft.implicit.fields import Field
+
+    Floats = NDArray[np.float64]
+    Triple = Sequence[float]
+
+__all__ = ["Attributes", "Distance", "Hit", "Lamp", "Leaf", "Mass", "Nearest", "Sun"]
+
+
+@dataclass(frozen=True)
+class Attributes:
+    """What a handle says of a set."""
+
+    name: str | None = None
+    """Name of its faces."""
+    colour: int | None = None
+    """Index of a palette colour, 0 to 15."""
+    material: str | None = None
+    """Material."""
+    tolerance: float | None = None
+    """Distance below which two points count as one."""
+    tags: Mapping[str, str] = dataclass_field(default_factory=dict)
+    """What else is said, by tag."""
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A primitive of a set with the attributes that reach it."""
+
+    field: Field
+    """The primitive, negated where a complement reached it."""
+    kind: str
+    """What it was made as."""
+    attributes: Attributes
+    """Its own attributes, completed by those of the sets around it."""
+
+    @property
+    def name(self) -> str:
+        """Its name, or its kind."""
+        return self.attributes.name or self.kind
+
+
+@dataclass(frozen=True)
+class Mass:
+    """Mass properties for density 1: best values, and brackets that are proved."""
+
+    volume: float
+    """Volume."""
+    volume_bracket: tuple[float, float]
+    """Its bounds."""
+    centroid: Floats | None
+    """Centre of mass ``(3,)``; None where there is no volume."""
+    centroid_bracket: Floats
+    """Its bounds, ``(3, 2)``."""
+    inertia: Floats | None
+    """Matrix of inertia about the centroid ``(3, 3)``."""
+    inertia_bracket: Floats
+    """Its bounds, ``(3, 3, 2)``."""
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The nearest point of a surface."""
+
+    point: Floats
+    """Where it is."""
+    distance: float
+    """How far."""
+    at_least: float
+    """No point of the surface is nearer than this; proved."""
+
+
+@dataclass(frozen=True)
+class Distance:
+    """The distance of two sets."""
+
+    distance: float
+    """Distance of the two points; 0 where the sets overlap or touch."""
+    at_least: float
+    """No two points of the sets are nearer than this; proved."""
+    first: Floats
+    """A point of the first set."""
+    second: Floats
+    """A point of the second."""
+
+
+@dataclass(frozen=True)
+class Hit:
+    """Where a ray crosses the surface of a set."""
+
+    t: float
+    """How far along, in lengths of the direction."""
+    point: Floats
+    """Where."""
+    leaf: int
+    """The number of the primitive in :attr:`Set.leaves`."""
+    normal: Floats
+    """Unit normal, from solid to air."""
+    enters: bool
+    """True where the ray enters the solid."""
+
+
+@dataclass(frozen=True)
+class Sun:
+    """Light from afar."""
+
+    direction: Triple
+    """Where it shines to."""
+    colour: Triple = (0.8, 0.8, 0.8)
+    """Linear red, green, blue."""
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """Light from a point."""
+
+    place: Triple
+    """Where it stands."""
+    colour: Triple = (0.8, 0.8, 0.8)
+    """Linear red, green, blue."""

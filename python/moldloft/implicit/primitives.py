@@ -1,0 +1,93 @@
+"""Sets that are no field's solid side: everything, nothing, boxes, tetrahedra, wires, points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from moldloft import _core
+from moldloft.arguments import explain
+from moldloft.implicit.fields import triple
+from moldloft.implicit.sets import Set
+
+if TYPE_CHECKING:
+    Triple = Sequence[float]
+
+__all__ = ["cuboid", "everything", "nothing", "point", "segment", "tetrahedron"]
+
+
+def everything() -> Set:
+    """All of space."""
+    return Set(_core.Set.everything())
+
+
+def nothing() -> Set:
+    """The empty set."""
+    return Set(_core.Set.nothing())
+
+
+def cuboid(low: Triple, high: Triple) -> Set:
+    """The box between two corners.
+
+    Parameters
+    ----------
+    low
+        The corner with the least coordinates, ``(3,)``.
+    high
+        The corner with the greatest coordinates, ``(3,)``.
+    """
+    return Set(_core.Set.cuboid(triple(low, "low corner"), triple(high, "high corner")))
+
+
+def segment(start: Triple, end: Triple) -> Set:
+    """The straight line between two points, as a wire.
+
+    Parameters
+    ----------
+    start
+        Where it begins, ``(3,)``.
+    end
+        Where it ends, ``(3,)``.
+
+    Examples
+    --------
+    >>> from moldloft import implicit as im
+    >>> facets = im.segment((0, 0, 0), (3, 4, 0)).facets(depth=4)
+    >>> len(facets.wires), len(facets.triangles)
+    (1, 0)
+    """
+    return Set(_core.Set.segment(triple(start, "start"), triple(end, "end")))
+
+
+def point(at: Triple) -> Set:
+    """One point.
+
+    Parameters
+    ----------
+    at
+        The place, ``(3,)``.
+
+    Examples
+    --------
+    >>> from moldloft import implicit as im
+    >>> im.point((1, 2, 3)).facets((0, 0, 0), (4, 4, 4), depth=4).points.round(12).tolist()
+    [[1.0, 2.0, 3.0]]
+    """
+    return Set(_core.Set.point(triple(at, "point")))
+
+
+def tetrahedron(corners: Sequence[Triple]) -> Set:
+    """The tetrahedron of four points, in any order.
+
+    Parameters
+    ----------
+    corners
+        Four points, ``(4, 3)``.
+    """
+    points = [triple(p, "corner") for p in corners]
+    if len(points) != 4:
+        raise ValueError(f"a tetrahedron has four corners, found {len(points)}")
+    return Set(_core.Set.tetrahedron(points))
+
+
+explain(globals())

@@ -1,0 +1,59 @@
+"""The name that was probably meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+__all__ = ["distance", "nearest"]
+
+
+def distance(a: str, b: str) -> int:
+    """How many letters differ: put in, left out, exchanged, or swapped with the next.
+
+    The restricted Damerau-Levenshtein distance (Boytsov 2011, section 2.1.1).
+
+    Parameters
+    ----------
+    a, b
+        Two words.
+
+    Examples
+    --------
+    >>> distance("bulid", "build"), distance("degre", "degree"), distance("hull", "keel")
+    (1, 1, 3)
+    """
+    before: list[int] = []
+    row = list(range(len(b) + 1))
+    for i, letter in enumerate(a, 1):
+        older, before, row = before, row, [i] + [0] * len(b)
+        for j, other in enumerate(b, 1):
+            row[j] = min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (letter != other))
+            if i > 1 and j > 1 and letter == b[j - 2] and other == a[i - 2]:
+                row[j] = min(row[j], older[j - 2] + 1)
+    return row[-1]
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """The known name that differs least, if it differs in a third of its letters at most.
+
+    Parameters
+    ----------
+    word
+        What was written.
+    known
+        The names that there are; of two that are as near the first is taken.
+
+    Examples
+    --------
+    >>> nearest("CBurve", ["XCurve", "BCurve"]), nearest("Line", ["RuledSurf"])
+    ('BCurve', None)
+    """
+
+    def away(name: str) -> float:
+        # Letters in the wrong case are half a mistake.
+        return (distance(word, name) + distance(word.lower(), name.lower())) / 2
+
+    found = min(known, key=away, default=None)
+    if found is None or away(found) > max(1, max(len(word), len(found)) / 3):
+        return None
+    return found
