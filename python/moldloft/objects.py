@@ -232,6 +232,11 @@ class Ring(Bead, Magnet):
     """A point on a snake."""
 
 
+def _check_finite(name: str, values: Floats) -> None:
+    if not np.isfinite(values).all():
+        raise ModelError(f"{name} is not finite: found {values[~np.isfinite(values)].flat[0]}")
+
+
 class _Located(Object):
     """What searches go to: curves and surfaces."""
 
@@ -364,6 +369,7 @@ class Curve(_Located):
                     f"a curve takes t, and a surface u, v; {len(parameters)} parameters given"
                 )
             t = np.asarray(parameters[0], dtype=np.float64)
+            _check_finite("t", t)
             flat = self._document.curve(self.name, np.ascontiguousarray(t.ravel()))
             return flat.reshape(*t.shape, 3)
 
@@ -398,6 +404,8 @@ class Surface(_Located):
                 raise ModelError(
                     f"u of shape {u.shape} and v of shape {v.shape} do not broadcast to one shape"
                 ) from None
+            _check_finite("u", u)
+            _check_finite("v", v)
             flat = self._document.surface(
                 self.name, np.ascontiguousarray(u.ravel()), np.ascontiguousarray(v.ravel())
             )

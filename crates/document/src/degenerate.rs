@@ -1,7 +1,7 @@
 //! Curves without length and surfaces without area: nothing is wrong with them for the kernel, and hardly ever are
 //! they meant.
 
-use moldloft_model::Object;
+use moldloft_model::{Graph, Object};
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{CurveRef, Scalar, SurfaceRef, Value};
 
@@ -18,14 +18,21 @@ const ONE_LINE: f64 = 1e-9;
 const PLACES: [f64; 5] = [0.37, 0.81, 0.5, 0.07, 0.96];
 
 /// What is remarkable about the size of an object: id, message, advice.
-pub fn remark<T: Scalar>(object: &Object<T>) -> Option<(&'static str, &'static str, &'static str)> {
+pub fn remark<T: Scalar>(
+    object: &Object<T>,
+    graph: &Graph<T>,
+) -> Option<(&'static str, &'static str, &'static str)> {
     match object.value()? {
-        // A curve that is made of one point alone is meant to be one.
-        Value::Curve(curve) if object.parents.len() > 1 && is_point(curve) => Some((
-            "zero-length",
-            "the curve has no length: all of it is one point",
-            "the points that it is made of lie in one place; a point is taken wherever a curve of no length is",
-        )),
+        // A curve that is made of one point alone is meant to be one, and so are its parts.
+        Value::Curve(curve)
+            if object.parents.len() > 1 && is_point(curve) && !is_part(object, graph) =>
+        {
+            Some((
+                "zero-length",
+                "the curve has no length: all of it is one point",
+                "the points that it is made of lie in one place; a point is taken wherever a curve of no length is",
+            ))
+        }
         Value::Surface(surface) if is_line(surface) => Some((
             "zero-area",
             "the surface has no area: all of it is one line or point",
@@ -33,6 +40,16 @@ pub fn remark<T: Scalar>(object: &Object<T>) -> Option<(&'static str, &'static s
         )),
         _ => None,
     }
+}
+
+/// True when a parent, or the curve that one is on, is a point itself: that is what there is to warn of, if it is.
+fn is_part<T: Scalar>(object: &Object<T>, graph: &Graph<T>) -> bool {
+    let values = object.parents.iter().filter_map(|parent| graph.get(*parent)?.value());
+    values.into_iter().any(|value| match value {
+        Value::Curve(curve) => is_point(curve),
+        Value::Point(point) => point.on_curve.as_ref().is_some_and(|place| is_point(&place.0)),
+        _ => false,
+    })
 }
 
 fn is_point<T: Real>(curve: &CurveRef<T>) -> bool {

@@ -436,7 +436,7 @@ impl Document {
     /// The warnings of curves without length and surfaces without area.
     pub(crate) fn degeneracies<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         let warned = |object| {
-            let (id, message, advice) = degenerate::remark(object)?;
+            let (id, message, advice) = degenerate::remark(object, &evaluation.graph)?;
             let message = format!("`{}`: {message}", object.name);
             let warning = Diagnostic::warning(id, message).help(advice).object(&*object.name);
             Some(match self.declared_at(evaluation, object) {

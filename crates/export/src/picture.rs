@@ -16,7 +16,7 @@ const CONTOUR_WIDTH: f32 = 1.5;
 const WIRE_COLOUR: [u8; 3] = [0x1b, 0x25, 0x33];
 const WIRE_WIDTH: f32 = 3.0;
 
-/// A picture of the model's panels, its contours as lines, and its mirror image.
+/// A picture of the model's panels, its contours as lines, and its mirror images.
 ///
 /// # Errors
 /// An impossible size.
@@ -28,9 +28,10 @@ pub fn picture(
     let mut lines: Vec<Line> = document.sections().iter().flat_map(drawn).collect();
     let wires = lines_and_points(document).wires.into_iter();
     lines.extend(wires.map(|(_, points)| Line { points, colour: WIRE_COLOUR, width: WIRE_WIDTH }));
-    let mirror = document.symmetry().contains('y');
+    let symmetry = document.symmetry();
+    let mirrors = ['x', 'y', 'z'].map(|axis| symmetry.contains(axis));
     let panelled = document.panelled().map_err(|d| vec![d])?;
-    let options = Options { width, height, mirror, ..Options::default() };
+    let options = Options { width, height, mirrors, ..Options::default() };
     render(&panelled.mesh, &lines, &options)
         .map_err(|error| vec![Diagnostic::error("no-picture", error.to_string())])
 }

@@ -42,8 +42,8 @@ pub struct Options {
     pub edges: bool,
     /// Shade across panels as if the surface were smooth, but for creases above 40 degrees.
     pub smooth: bool,
-    /// Show the mirror image in y = 0 too.
-    pub mirror: bool,
+    /// Show the mirror images in these of the planes x = 0, y = 0, z = 0, too, and those of the images.
+    pub mirrors: [bool; 3],
     /// Draw the directions of the axes in the corner.
     pub axes: bool,
     /// Colours of the background, top and bottom.
@@ -62,7 +62,7 @@ impl Default for Options {
             borders: true,
             edges: true,
             smooth: true,
-            mirror: false,
+            mirrors: [false; 3],
             axes: true,
             background: [[0xfc, 0xfd, 0xfe], [0xe2, 0xe8, 0xee]],
             looks: None,
@@ -133,8 +133,7 @@ pub fn render(mesh: &Mesh, lines: &[Line], options: &Options) -> Result<Vec<u8>,
             return Err(PictureError::NotFinite { patch: patch.info.name.clone(), vertex });
         }
     }
-    let sides: &[f64] = if options.mirror { &[1.0, -1.0] } else { &[1.0] };
-    let image = |p: Vec3, side: f64| Vec3 { y: p.y * side, ..p };
+    let sides = images(options.mirrors);
     let corners = mesh.faces().iter().flatten().map(|&v| mesh.positions()[v as usize]);
     let ends = lines.iter().flat_map(|l| l.points.iter().copied().filter(|p| p.is_finite()));
     let all: Vec<Vec3> =
@@ -146,11 +145,11 @@ pub fn render(mesh: &Mesh, lines: &[Line], options: &Options) -> Result<Vec<u8>,
     let mut raster = Raster::new(2 * width, 2 * height, top, bottom, Gamma::new());
     let diagonal = Box3::around(all.iter().copied()).diagonal();
     let painter = Painter { mesh, aimed: &aimed, gamma: &gamma, options, lift: 1e-3 * diagonal };
-    for &side in sides {
+    for &side in &sides {
         painter.panels(&mut raster, side);
     }
     let rims = if options.borders { mesh.topology().borders() } else { Vec::new() };
-    for &side in sides {
+    for &side in &sides {
         let mut stroke = |p: Vec3, q: Vec3, half_width: f32, slack: f64, colour: [u8; 3]| {
             let (p, q) = (image(p, side), image(q, side));
             let middle = (p + q) * 0.5;
@@ -161,7 +160,8 @@ pub fn render(mesh: &Mesh, lines: &[Line], options: &Options) -> Result<Vec<u8>,
         for ends in &rims {
             let [p, q] = ends.map(|v| mesh.positions()[v as usize]);
             // Where a half meets its image the surface goes on.
-            if !(options.mirror && p.y == 0.0 && q.y == 0.0) {
+            let within = |k: usize| options.mirrors[k] && p[k] == 0.0 && q[k] == 0.0;
+            if !(0..3).any(within) {
                 stroke(p, q, 0.75, 4e-4, RIM);
             }
         }
@@ -178,6 +178,23 @@ pub fn render(mesh: &Mesh, lines: &[Line], options: &Options) -> Result<Vec<u8>,
     encoded(&raster.halved(), width, height)
 }
 
+/// The signs of the coordinates in a model and its mirror images.
+fn images(mirrors: [bool; 3]) -> Vec<[f64; 3]> {
+    let mut all = vec![[1.0; 3]];
+    for k in (0..3).filter(|k| mirrors[*k]) {
+        for at in 0..all.len() {
+            let mut other = all[at];
+            other[k] = -1.0;
+            all.push(other);
+        }
+    }
+    all
+}
+
+fn image(p: Vec3, signs: [f64; 3]) -> Vec3 {
+    Vec3::of(p.x * signs[0], p.y * signs[1], p.z * signs[2])
+}
+
 struct Painter<'a> {
     mesh: &'a Mesh,
     aimed: &'a Aimed,
@@ -188,14 +205,14 @@ struct Painter<'a> {
 }
 
 impl Painter<'_> {
-    /// Draws all panels, mirrored in y = 0 for `side` -1.
-    fn panels(&self, raster: &mut Raster, side: f64) {
-        let positions: Vec<Vec3> =
-            self.mesh.positions().iter().map(|&p| Vec3 { y: p.y * side, ..p }).collect();
+    /// Draws all panels of an image.
+    fn panels(&self, raster: &mut Raster, signs: [f64; 3]) {
+        let side: f64 = signs.iter().product();
+        let positions: Vec<Vec3> = self.mesh.positions().iter().map(|&p| image(p, signs)).collect();
         let seen: Vec<Seen> = positions.iter().map(|&p| self.aimed.see(p)).collect();
         let mut normals = vec![Vec3::zero(); positions.len()];
         for (index, patch) in self.mesh.patches().iter().enumerate() {
-            if side < 0.0 && patch.info.tag == Tag::Symmetry {
+            if signs != [1.0; 3] && patch.info.tag == Tag::Symmetry {
                 continue;
             }
             let faces = &self.mesh.faces()[patch.faces.clone()];

@@ -84,6 +84,16 @@ impl Document {
         };
         let (value, remarks) = program.eval(evaluation, inputs, text)?;
         self.expression_remarks = remarks;
+        // Infinity goes on inside array statements, as in programs of 1992; as an answer it is none.
+        let finite = match &value {
+            Value::Number(x) => x.is_finite(),
+            Value::Vector(v) => v.is_finite(),
+            _ => true,
+        };
+        if !finite {
+            let message = format!("`{}` is not a finite number", text.trim());
+            return Err(vec![Diagnostic::error("not-finite", message).expected("a finite number")]);
+        }
         Ok(value)
     }
 

@@ -442,7 +442,8 @@ fn failures_block_their_children_only() {
     let blocked: Vec<&str> =
         document.graph().objects().filter(|o| o.blocked_by().is_some()).map(|o| &*o.name).collect();
     assert_eq!(blocked, ["b", "r", "S"]);
-    assert_eq!(document.diagnostics().len(), 1, "{:?}", told(&document));
+    // The failure, and the line of no length.
+    assert_eq!(document.diagnostics().len(), 2, "{:?}", told(&document));
     assert_eq!(number(&mut document, "l.length"), 0.0);
     assert!(document.eval("r.x").is_err());
     // What stays blocked is not evaluated on and on.

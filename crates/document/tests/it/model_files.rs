@@ -281,7 +281,7 @@ fn programs_become_model_files() {
 #[test]
 fn bad_files_are_told_apart() {
     let head = "MultiSurf 0.35\nAbsPoint A 14 1 0 0 0;\nAbsPoint B 14 1 1 0 0;\nLine l 11 1 4 * A B;\n\
-                Line k 11 1 4 * B A;\nRuledSurf hull 10 1 4 1 4 1 0 * l k;\n";
+                AbsPoint D 14 1 0 1 0;\nLine k 11 1 4 * B D;\nRuledSurf hull 10 1 4 1 4 1 0 * l k;\n";
     for (line, id, place, says) in [
         ("AbsPoint C 14 1 0 0", "missing-semicolon", "", "insert `;`"),
         ("AbsPiont C 14 1 0 0 0;", "unknown-entity", "AbsPiont", "AbsPoint"),

@@ -71,7 +71,13 @@ fn the_nearer_surface_wins_from_both_sides() {
 fn same_input_same_bytes() {
     let line =
         Line { points: vec![Vec3::zero(), Vec3::of(1.0, 1.0, 0.2)], colour: [0; 3], width: 1.5 };
-    let options = Options { mirror: true, edges: true, borders: true, axes: true, ..small() };
+    let options = Options {
+        mirrors: [false, true, false],
+        edges: true,
+        borders: true,
+        axes: true,
+        ..small()
+    };
     let first = render(&sheet(20), std::slice::from_ref(&line), &options).unwrap();
     assert_eq!(first, render(&sheet(20), &[line], &options).unwrap());
 }

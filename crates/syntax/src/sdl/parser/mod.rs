@@ -4,6 +4,7 @@ mod expr;
 mod recover;
 mod routine;
 mod stmt;
+mod version;
 
 use super::ast::*;
 use super::interner::Symbol;
@@ -26,7 +27,11 @@ pub fn parse(text: impl Into<Arc<str>>, file: FileId) -> (Program, Vec<Diagnosti
     let mut parser = Parser::new(text.into(), file, false);
     parser.program();
     let (program, diagnostics, _) = parser.finish();
-    (program, diagnostics)
+    match version::refused(&program.text, file) {
+        // What else a newer text has cannot be judged.
+        Some(newer) => (program, vec![newer]),
+        None => (program, diagnostics),
+    }
 }
 
 /// Parses a text that is one expression. The expression is an `Error` node if the text is none.
