@@ -324,7 +324,7 @@ _EXTRAS = {
     "study": "from moldloft.study import component; "
     "component(m, ['beam'], ['hydrostatics.volume'])",
     "hydro": "assert m.to_capytaine().mesh.nb_faces > 0",
-    "cad": "m.write('boat.3dm'); m.write('boat.dxf')",
+    "cad": "m.write('boat.3dm'); m.write('boat.dxf'); assert not m.to_ocp().IsNull()",
 }
 
 

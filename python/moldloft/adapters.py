@@ -1,4 +1,4 @@
-"""Models for other Python packages: each in one line, each package imported when it is asked for.
+"""Models for other Python packages: each in one line, each package imported on first use.
 
 Panels go to PyVista, trimesh, meshio and Capytaine; exact surfaces to OCCT (``OCP``, CadQuery,
 build123d) and Gmsh; tables to pandas and xarray. ``Model.to_pyvista()`` and the like call these

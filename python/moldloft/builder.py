@@ -421,7 +421,7 @@ class _PythonModel(Model):
         return self._origin, self.text, changed, self._refined
 
     def copy(self) -> Model:
-        """A model of its own with the same parameters, still written by its function."""
+        """An independent model with the same parameters, still written by its function."""
         return _PythonModel(self._source, dict(self._values))
 
     def __setitem__(self, name: str, value: float) -> None:

@@ -70,7 +70,7 @@ class Floating:
         by
             Parameters or literals to differentiate the figures by.
         accuracy
-            The relative error asked for, 1e-12 to 0.1. What was reached is in
+            The requested relative error, 1e-12 to 0.1. The bound that was reached is in
             ``bounds``.
 
         Examples

@@ -109,7 +109,7 @@ class Model(Floating):
     # -- copies ----------------------------------------------------------------------------
 
     def copy(self) -> Model:
-        """A model of its own in the same state: text, parameters, Python functions.
+        """An independent model in the same state: text, parameters, Python functions.
 
         Examples
         --------

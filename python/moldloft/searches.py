@@ -113,7 +113,7 @@ def _points(points: ArrayLike) -> Floats:
 
 
 def nearest(target: Object, points: ArrayLike) -> NearestPoints:
-    """Stands behind :meth:`moldloft.Object.nearest`."""
+    """Implements :meth:`moldloft.Object.nearest`."""
     array = _points(points)
     shape = array.shape[:-1]
     flat = np.ascontiguousarray(array.reshape(-1, 3))
@@ -150,7 +150,7 @@ def _plane(plane: object) -> tuple[list[float], list[float]]:
 
 
 def intersect(target: Object, other: object) -> Intersection:
-    """Stands behind :meth:`moldloft.Object.intersect`."""
+    """Implements :meth:`moldloft.Object.intersect`."""
     from moldloft.objects import Object
 
     found: dict[str, Any]

@@ -140,7 +140,7 @@ def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert packed.stat().st_size < 15e6
     with tarfile.open(packed) as archive:
         names = archive.getnames()
-        archive.extractall(folder)
+        archive.extractall(folder, filter="data")
     assert all(name.startswith(f"moldloft-{moldloft.__version__}/") for name in names)
     return folder / f"moldloft-{moldloft.__version__}"
 

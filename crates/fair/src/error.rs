@@ -12,6 +12,12 @@ pub enum FairError {
         /// The number given.
         actual: usize,
     },
+    /// Coordinates are so large or so small that the squares of the measures leave the range of double
+    /// precision.
+    Range {
+        /// The largest coordinate.
+        size: f64,
+    },
     /// A coordinate is NaN or infinite.
     NotFinite {
         /// Index of the point, from 0.
@@ -151,6 +157,10 @@ impl fmt::Display for FairError {
             Self::TooFew { expected, actual } => {
                 write!(f, "expected at least {expected} points, found {actual}")
             }
+            Self::Range { size } => write!(
+                f,
+                "coordinates of {size:.1e} are out of range: expected 1e-60 to 1e60, or take another unit"
+            ),
             Self::NotFinite { index } => write!(f, "point {} is not finite", index + 1),
             Self::Coincident { first } => {
                 write!(f, "points {} and {} coincide", first + 1, first + 2)
@@ -232,10 +242,16 @@ impl fmt::Display for FairError {
 
 impl std::error::Error for FairError {}
 
-/// Refuses points that are not finite.
+/// Refuses points that are not finite, or too large or small for sixth differences to be squared.
 pub(crate) fn check_finite(points: &[moldloft_num::Vec3<f64>]) -> Result<(), FairError> {
-    match points.iter().position(|p| !p.is_finite()) {
-        Some(index) => Err(FairError::NotFinite { index }),
-        None => Ok(()),
+    if let Some(index) = points.iter().position(|p| !p.is_finite()) {
+        return Err(FairError::NotFinite { index });
+    }
+    let all = points.iter().flat_map(|p| p.to_array());
+    let size = all.fold(0.0f64, |size, x| size.max(x.abs()));
+    if size == 0.0 || (1e-60..=1e60).contains(&size) {
+        Ok(())
+    } else {
+        Err(FairError::Range { size })
     }
 }

@@ -115,7 +115,7 @@ pub use curve::shaping::{FoundArc, Shape};
 pub use curve::space::Space;
 pub use error::FairError;
 pub use interrogate::deviation::{Deviation, certified, deviation};
-pub use interrogate::outliers::{DataFinding, data_findings, detectable};
+pub use interrogate::outliers::{DataFinding, data_findings, detectable, predicted};
 pub use interrogate::report::{Mode, Numbers, Report, data_report, numbers, report};
 pub use interrogate::{shape, surface};
 pub use kinds::rows;

@@ -26,7 +26,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from moldloft.arguments import explain
-from moldloft.fairing.curve import Arc, Fairing, fair_curve
+from moldloft.fairing.curve import fair_curve
+from moldloft.fairing.faired import Arc, Fairing
 from moldloft.fairing.network import NetworkFairing, network
 from moldloft.fairing.page import page, write_page
 from moldloft.fairing.patches import PatchesFairing, patches
@@ -64,7 +65,9 @@ __all__ = [
 
 
 def fair(
-    points: ArrayLike | Spline | SplineSurface | Fairing, tol: ArrayLike | None, **options: Any
+    points: ArrayLike | Spline | SplineSurface | Fairing | SurfaceFairing,
+    tol: ArrayLike | None,
+    **options: Any,
 ) -> Fairing | SurfaceFairing:
     """Fair a curve or a surface within a tolerance.
 
@@ -72,7 +75,8 @@ def fair(
     ----------
     points
         A row of points ``(n, 2)`` or ``(n, 3)``, a :class:`Spline` or a :class:`Fairing` of a
-        curve; a grid ``(m, n, 3)`` or a :class:`SplineSurface`, a surface.
+        curve; a grid ``(m, n, 3)``, a :class:`SplineSurface` or a :class:`SurfaceFairing`, a
+        surface.
     tol
         How far the result may be from the original: a length, or one for each point. 0 leaves a
         point alone. ``None`` means no limit and is an error for closed curves.
@@ -102,7 +106,7 @@ def fair(
     """
     if isinstance(points, (Spline, Fairing)):
         return fair_curve(points, tol, **options)
-    if isinstance(points, SplineSurface):
+    if isinstance(points, (SplineSurface, SurfaceFairing)):
         return fair_surface(points, tol, **options)
     if np.ndim(points) == 3:
         return fair_surface(points, tol, **options)

@@ -82,6 +82,20 @@ def direction(motion: Any) -> tuple[str, tuple[float, float, float]]:
     return word, (float(vector[0]), float(vector[1]), float(vector[2]))
 
 
+def too_large(tol: ArrayLike | None, points: Floats) -> tuple[str, ...]:
+    """A remark about a tolerance of more than a twentieth of the extent, as for curves."""
+    if tol is None or not len(points):
+        return ()
+    most = float(np.max(np.asarray(tol, np.float64)))
+    extent = float(np.linalg.norm(np.ptp(points.reshape(-1, points.shape[-1]), axis=0)))
+    if not 0 < extent < 20 * most < np.inf:
+        return ()
+    return (
+        f"the tolerance, {most:.3e}, is {100 * most / extent:.0f} % of the extent of the data: "
+        "is its unit theirs?",
+    )
+
+
 def narrowed(points: Floats, width: int) -> Floats:
     """Points with the columns that the user's had."""
     return np.ascontiguousarray(points[..., :width])

@@ -12,8 +12,10 @@ import numpy as np
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FairingError
-from moldloft.fairing.arrays import direction, narrowed, points_of, radii
-from moldloft.fairing.curve import _goal, laid, spacing_of
+from moldloft.fairing.arrays import direction, narrowed, points_of, radii, too_large
+from moldloft.fairing.asked import goal_of, only_data, spacing_of
+from moldloft.fairing.control import laid
+from moldloft.fairing.findings import along_lines
 from moldloft.fairing.report import Finding, lines_of
 from moldloft.fairing.spline import Spline
 
@@ -25,6 +27,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = ["NetworkFairing", "network"]
+
+NETWORK_BUDGET = 0.3
+"""The share of the goal ``near`` in networks whose fairest takes more than noise has."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +83,8 @@ class NetworkFairing:
     findings: tuple[tuple[int, Finding], ...] = ()
     """Wrong digits and knuckles that stand out along curves: the curve, from 0, and the finding,
     whose index is the point's."""
+    notes: tuple[str, ...] = ()
+    """What the user should know."""
 
     @property
     def deviation_sampled(self) -> float:
@@ -110,6 +117,7 @@ class NetworkFairing:
                 {"curve": k + 1, "kind": f.kind, "point": f.index + 1, "text": f.text}
                 for k, f in self.findings
             ],
+            "notes": list(self.notes),
             "measure_before": self.measure_before,
             "measure_after": self.measure_after,
             "jumps_before": self.jumps_before,
@@ -138,6 +146,7 @@ class NetworkFairing:
             ("time", f"{1e3 * self.seconds:.3g} ms"),
         ]
         said = [f"note: curve {k + 1}, {f.text}" for k, f in self.findings]
+        said += [f"note: {note}" for note in self.notes]
         return "\n".join([lines_of(rows, tail), *said])
 
     def plot(self, path: str | PathLike[str]) -> None:
@@ -154,7 +163,7 @@ class NetworkFairing:
 
 
 def network(
-    points: ArrayLike,
+    points: ArrayLike | NetworkFairing,
     curves: Sequence[Sequence[int]],
     tol: ArrayLike | None,
     *,
@@ -168,13 +177,15 @@ def network(
     motion: Any = "ball",
     passes: int = 1,
     steps: int | None = None,
+    original: ArrayLike | None = None,
 ) -> NetworkFairing:
     """Fair curves that share points, all at once: the stations, waterlines and buttocks of a hull.
 
     Parameters
     ----------
     points
-        ``(n, 3)`` or ``(n, 2)``.
+        ``(n, 3)`` or ``(n, 2)``; or the :class:`NetworkFairing` of points, which are then faired
+        again from the points as they were read.
     curves
         Of each curve its points, from 0; a closed curve ends with its first. A number that stands
         in several lists is one point of all these curves.
@@ -191,7 +202,12 @@ def network(
         (``"x"``) or a direction where it rises or falls along a curve (chords elsewhere), or
         ``"index"``, the rule of the report of 1991, which the modes other than the optimum keep.
     goal
-        Which of the networks within the tolerance; see :func:`~moldloft.fairing.fair`.
+        Which of the networks within the tolerance; see :func:`~moldloft.fairing.fair`. ``"near"``,
+        or ``("near", share)``, is the fairest where its squared residuals are no more than those of
+        noise that fills the tolerances evenly, give or take one and a half of their standard
+        deviations: the data do not speak against it. Where they are a quarter more the measure is
+        not that of the hull, and the squares are at most ``share`` (0.3) of noise's; between the
+        two the budget is continuous. Fewer than 40 moving points do not tell: theirs is ``share``.
     breaks
         Points that are intended breaks of all their curves.
     fixed
@@ -201,6 +217,9 @@ def network(
         As for curves: ``(0, 1, 0)`` lets half-breadths of stations and waterlines move alone.
     passes, steps
         Of the faithful mode; sweeps.
+    original
+        The points as they were read, when ``points`` were faired already: tolerances are counted
+        from these, so that fairing a result again is fairing the original.
 
     Examples
     --------
@@ -216,9 +235,20 @@ def network(
     >>> faired.jumps_after < 0.01 * faired.jumps_before
     True
     """
+    if isinstance(points, NetworkFairing):
+        points = points.data[:, : points.points.shape[1]]
     data, width = points_of(points)
+    if original is not None:
+        count = len(data)
+        data, width = points_of(original)
+        if len(data) != count:
+            raise FairingError("the original has as many points as there are points")
     started = time.perf_counter()
-    wanted = _goal(goal)
+    wanted = goal_of(goal)
+    if mode != "optimum":
+        only_data(goal)
+    if goal == "near":
+        wanted = ("near", NETWORK_BUDGET)
     word_spaced, spaced_way = spacing_of(spacing)
     index = mode != "optimum" or word_spaced in ("index", "uniform")
     count = len(data)
@@ -277,19 +307,13 @@ def network(
         }
     )
     pairs = []
-    found = []
-    for k, ((own, closed), own_marks) in enumerate(zip(lists, marks, strict=True)):
+    for (own, closed), own_marks in zip(lists, marks, strict=True):
         spaced = "index" if index else spacing
         try:
             pairs.append(laid(data[own], faired[own], degree, spaced, closed, own_marks))
         except FairingError:
             # The coordinate does not rise along this curve.
             pairs.append(laid(data[own], faired[own], degree, "chord", closed, own_marks))
-        for row in _core.data_findings(np.ascontiguousarray(data[own]), closed):
-            one = Finding.of(row)
-            if own[one.index] not in marked:
-                text = one.text.replace(f"point {one.index + 1}", f"point {own[one.index] + 1}", 1)
-                found.append((k, Finding(one.kind, own[one.index], one.vector, text)))
     seconds = time.perf_counter() - started
     return NetworkFairing(
         points=narrowed(faired, width),
@@ -310,27 +334,12 @@ def network(
         deviation_curves_certified=max(p[2] for p in pairs),
         goal=wanted[0],
         used=told["used"],
-        findings=tuple(_agreed(found, uses)),
+        findings=along_lines(data, lists, marked),
+        notes=too_large(tol, data),
         value=told["certificate"]["value"],
         gap=told["certificate"]["gap"],
         seconds=seconds,
     )
-
-
-def _agreed(found: list[tuple[int, Finding]], uses: NDArray[np.int_]) -> list[tuple[int, Finding]]:
-    """What stands out: a wrong digit shows in all curves of its point, a knuckle in one."""
-    seen: dict[int, int] = {}
-    for _, f in found:
-        if f.kind == "outlier":
-            seen[f.index] = seen.get(f.index, 0) + 1
-    out, told = [], set()
-    for k, f in found:
-        if f.kind == "outlier":
-            if f.index in told or seen[f.index] < min(2, int(uses[f.index])):
-                continue
-            told.add(f.index)
-        out.append((k, f))
-    return out
 
 
 def _number(given: Any, count: int) -> int:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from moldloft.fairing.curve import Fairing
+    from moldloft.fairing.faired import Fairing
     from moldloft.fairing.network import NetworkFairing
     from moldloft.fairing.patches import PatchesFairing
     from moldloft.fairing.spline import Samples, Spline
@@ -397,7 +397,7 @@ def page(
     Error
         For several blocks at once.
     """
-    from moldloft.fairing.curve import Fairing
+    from moldloft.fairing.faired import Fairing
     from moldloft.fairing.network import NetworkFairing
     from moldloft.fairing.surface import SurfaceFairing
 

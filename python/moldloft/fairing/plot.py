@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from moldloft.fairing.curve import Fairing
+    from moldloft.fairing.faired import Fairing
     from moldloft.fairing.network import NetworkFairing
     from moldloft.fairing.surface import SurfaceFairing
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,8 +13,10 @@ import numpy as np
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FairingError
-from moldloft.fairing.arrays import direction, points_of, radii
-from moldloft.fairing.report import lines_of
+from moldloft.fairing.arrays import direction, points_of, radii, too_large
+from moldloft.fairing.asked import only_data
+from moldloft.fairing.findings import along_lines
+from moldloft.fairing.report import Finding, lines_of
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -499,6 +502,31 @@ class SurfaceFairing:
             return float(self.residuals.max())
         return float(np.linalg.norm(self.points - self.data, axis=2).max())
 
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """Wrong digits and knuckles that stand out along the lines of a grid of data.
+
+        Their index is that of the point, row by row, from 0; nothing moves for them.
+        """
+        if self.as_ != "fit":
+            return ()
+        m, n = self.data.shape[:2]
+        places = np.arange(m * n).reshape(m, n)
+        lines = [(row.tolist(), self.surface.closed[1]) for row in places]
+        lines += [(column.tolist(), self.surface.closed[0]) for column in places.T]
+        found = along_lines(self.data.reshape(-1, 3), lines)
+        out = []
+        for _, f in found:
+            i, j = divmod(f.index, n)
+            text = f.text.replace(f"point {f.index + 1}", f"point ({i + 1}, {j + 1})", 1)
+            out.append(replace(f, text=text))
+        return tuple(out)
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """What the user should know."""
+        return too_large(self.tol, self.data)
+
     @property
     def gap_relative(self) -> float:
         """The gap as a share of the measure (at least a trillionth of the one before)."""
@@ -540,6 +568,10 @@ class SurfaceFairing:
             "value": self.value,
             "gap": self.gap,
             "gap_relative": self.gap_relative,
+            "findings": [
+                {"kind": f.kind, "point": f.index + 1, "text": f.text} for f in self.findings
+            ],
+            "notes": list(self.notes),
             "seconds": self.seconds,
         }
 
@@ -566,7 +598,8 @@ class SurfaceFairing:
         ]
         if self.passes is not None:
             tail.insert(2, ("passes", str(self.passes)))
-        return lines_of(rows, tail)
+        said = [f"note: {f.text}" for f in self.findings] + [f"note: {n}" for n in self.notes]
+        return "\n".join([lines_of(rows, tail), *said])
 
     def plot(self, path: str | PathLike[str]) -> None:
         """Draw the surface, its curvature, zebra, jumps and displacement into a file.
@@ -657,7 +690,7 @@ def _fair_data(
     conditions: tuple[list[_Condition], list[str]],
 ) -> SurfaceFairing:
     """A grid of data under tolerances."""
-    from moldloft.fairing.curve import _goal, spacing_of
+    from moldloft.fairing.asked import goal_of, spacing_of
 
     started = time.perf_counter()
     data, _ = points_of(points, 3)
@@ -678,7 +711,7 @@ def _fair_data(
         limits[int(i) * n + int(j)] = 0.0
     word, way = direction(options["motion"])
     spaced, spaced_way = spacing_of(options["spacing"])
-    wanted = _goal(options["goal"])
+    wanted = goal_of(options["goal"])
     measure = options["measure"] or ("variation" if min(degree) >= 3 else "bending")
     core, before, at, told = _core.Net.fair_data(
         data.reshape(-1, 3),
@@ -734,7 +767,7 @@ def _fair_data(
 
 
 def fair_surface(
-    points: ArrayLike | SplineSurface,
+    points: ArrayLike | SplineSurface | SurfaceFairing,
     tol: ArrayLike | None,
     *,
     as_: str = "control",
@@ -758,13 +791,15 @@ def fair_surface(
     passes: int = 1,
     steps: int | None = None,
     order: str = "vu",
+    original: ArrayLike | None = None,
 ) -> SurfaceFairing:
     """Fair a surface within a tolerance.
 
     Parameters
     ----------
     points
-        A grid ``(m, n, 3)`` or a :class:`SplineSurface`.
+        A grid ``(m, n, 3)`` or a :class:`SplineSurface`; or the :class:`SurfaceFairing` of a grid,
+        which is then faired again from the points as they were read.
     tol
         How far each point of the net may move; ``None`` for no limit.
     as_
@@ -814,12 +849,21 @@ def fair_surface(
         Local steps per point of each curve (3), or sweeps (50).
     order
         Which curves come first in a pass: ``"vu"``, those of constant v, or ``"uv"``.
+    original
+        The grid as it was read, when ``points`` were faired already: tolerances are counted from
+        it, so that fairing a result again is fairing the original.
 
     Raises
     ------
     FairingError
         When there is too little to fair or something is wrong.
     """
+    if isinstance(points, SurfaceFairing):
+        as_, points = points.as_, points.data
+    if original is not None:
+        if isinstance(points, SplineSurface) or np.shape(original) != np.shape(points):
+            raise FairingError("the original is a grid of as many points")
+        points = original
     if as_ not in ("control", "fit"):
         raise FairingError(f"points of a surface are `control` or `fit`, not `{as_}`")
     if mode not in ("optimum", "faithful", "sweeps"):
@@ -843,6 +887,7 @@ def fair_surface(
             "motion": motion,
         }
         return _fair_data(points, tol, options, _conditions(through, normals, keep))
+    only_data(goal)
     measure = measure or "second"
     bound = bound or "points"
     conditions, labels = _conditions(through, normals, keep)

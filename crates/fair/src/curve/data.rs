@@ -11,7 +11,7 @@
 use crate::curve::exact::exact;
 use crate::curve::job::End;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
-use crate::optimum::goal::{Found, Goal, Moving, Path, moved, rounding};
+use crate::optimum::goal::{Found, Goal, Moving, Path, check_single, moved, rounding};
 use crate::optimum::{Bounded, DataLimits, Parts, kept};
 use crate::{
     Certificate, Condition, FairError, FoundArc, Job, Layout, Limit, Measure, Shape, SparseRows,
@@ -643,6 +643,7 @@ impl Data {
             count: pull.len(),
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
+            adapts: false,
         };
         path.follow(options.goal, norm, conditioned, |weight| {
             parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
@@ -719,6 +720,9 @@ pub fn fair_data_with<T: Real>(
     if share == 0.0 {
         return Ok((MovingFit { points: start, knots }, data.fit(found, &job)));
     }
+    if !fixed(&knots) {
+        check_single(&found, crate::measure::value(&parts.measure, parts.norm, &job.points))?;
+    }
     if parts.norm != crate::Norm::Square {
         return Err(FairError::Goal(
             "derivatives of a sum of lengths through moving knots are not known: take another \
@@ -767,6 +771,7 @@ pub fn fair_data_with<T: Real>(
         targets: &targets,
         forces,
         rows: &rows,
+        budget: T::zero(),
         start: &start,
     };
     let points = moved(&parts, &solved, options.goal, &found, &pull, moving)?;

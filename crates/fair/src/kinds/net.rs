@@ -175,7 +175,10 @@ impl<T: Real> Build<T> for FairNet<T> {
             breaks: Self::BREAKS,
         };
         let spaced = super::spacing(&self.spacing, Self::SPACING)?;
-        let goal = super::goal(&self.goal, Self::GOAL)?;
+        let goal = match super::goal(&self.goal, Self::GOAL)? {
+            crate::Goal::Near(_) => crate::Goal::Near(super::NETWORK_BUDGET),
+            other => other,
+        };
         let index = matches!(spaced, Spacing::Uniform) || super::faithful(&self.mode, Self::MODE)?;
         let motion = match &self.along {
             None => Motion::Ball,

@@ -10,7 +10,7 @@
 //! from 0 to 1, hence by the measure of a curve of unit length.
 
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
-use crate::optimum::goal::{Found, Goal, Moving, Path, moved, rounding};
+use crate::optimum::goal::{Found, Goal, Moving, Path, check_single, moved, rounding};
 use crate::optimum::{Bounded, DataLimits, Parts};
 use crate::{
     Certificate, Condition, End, FairError, Layout, Limit, Measure, Motion, Network, Norm, Spacing,
@@ -419,6 +419,7 @@ impl GridData {
             count: pull.len(),
             noise: rounding(&rows, norm, original),
             original,
+            adapts: false,
         };
         path.follow(goal, norm, conditioned, |weight| {
             parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
@@ -602,6 +603,9 @@ pub fn fair_grid_with<T: Real>(
         let grid = MovingGrid { points: start, knots: [ku, kv] };
         return Ok((grid, data.fit(found, original, before)));
     }
+    if !ku.iter().chain(&kv).all(|k| k.is_constant()) {
+        check_single(&found, before)?;
+    }
     if parts.norm != Norm::Square {
         return Err(FairError::Goal(
             "derivatives of a sum of lengths through moving knots are not known: take another \
@@ -658,6 +662,7 @@ pub fn fair_grid_with<T: Real>(
         targets: &[],
         forces,
         rows: &rows,
+        budget: T::zero(),
         start: &start,
     };
     let points = moved(&parts, &solved, goal, &found, &pull, moving)?;

@@ -400,6 +400,7 @@ impl Network {
             count: pull.len(),
             noise: rounding(&rows, norm, &self.points),
             original: &self.points,
+            adapts: !conditioned,
         };
         let found = path.follow(goal, norm, conditioned, |weight| {
             parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
@@ -448,6 +449,14 @@ impl Network {
         if found.share == 0.0 {
             return Ok(points.to_vec());
         }
+        if found.weight == 0.0 && matches!(goal, Goal::Near(share) if found.used > share) {
+            // Limits at one line leave the others' parabolas free, and which of them the solver takes
+            // says nothing about how they move.
+            return Err(FairError::Goal(
+                "`near` took the fairest network, which may be one of many as fair, so that its \
+                 derivatives are not known: take the goal \"budget\"",
+            ));
+        }
         if parts.norm != crate::Norm::Square
             && (found.share < 1.0 || ats.iter().any(Option::is_some))
         {
@@ -484,15 +493,35 @@ impl Network {
         } else {
             Vec::new()
         };
-        let moving = Moving {
+        let moving = |forces, budget| Moving {
             originals: points.to_vec(),
             tolerances,
             pulled: owners.iter().map(|&i| tolerances[i]).collect(),
             targets: &[],
             forces,
             rows: &rows,
+            budget,
             start: points,
         };
+        let mut budget = T::zero();
+        if let (Goal::Near(share), true) = (goal, found.between) {
+            // What the fairest takes moves, too.
+            let parts = self.parts(measure, Bound::ControlPoints, Vec::new(), accuracy)?;
+            let fairest = parts.whole()?;
+            let slope = rows.slope(&fairest.optimum.points);
+            let forces = slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
+            let whole = Found { share: 1.0, weight: 0.0, ..found.clone() };
+            let own = moving(forces, T::zero());
+            let at = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, own)?;
+            let mean = owners.len() as f64 / 3.0;
+            let used = owners.iter().fold(T::zero(), |sum, &i| {
+                let off = at[i] - points[i];
+                sum + off.dot(off) / (tolerances[i] * tolerances[i])
+            }) / mean;
+            budget =
+                crate::optimum::goal::allowed(share, used, owners.len()).unwrap_or(used) * mean;
+        }
+        let moving = moving(forces, budget);
         moved(&parts, &solved, goal, &found, &pull, moving)
     }
 

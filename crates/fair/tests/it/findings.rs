@@ -24,32 +24,74 @@ fn spacing_is_no_finding() {
     }
 }
 
+/// Gaussian noise, from the sum of twelve even numbers.
+fn gaussian(g: &mut Lcg) -> f64 {
+    (0..12).map(|_| g.unit()).sum()
+}
+
 #[test]
 fn wrong_digits_are_found_at_their_place() {
-    let seeds = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 1..30 } else { 1..5 };
-    let (mut planted, mut found, mut clean, mut cases) = (0, 0, 0, 0);
+    let seeds = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 1..60 } else { 1..6 };
+    let (mut planted, mut clean, mut found) = (0, 0, [0; 2]);
     for seed in seeds {
+        let mut g = Lcg::new(100 + seed);
         for shape in ["clothoid", "hollow", "ellipse", "sac", "helix"] {
-            for kind in ["even", "half", "jitter"] {
-                let (_, mut points, _) = case(shape, kind, seed);
-                cases += 1;
+            for (kind, even) in [("even", true), ("half", true), ("jitter", true), ("even", false)]
+            {
+                let (_, mut points, radius) = case(shape, kind, seed);
+                if !even {
+                    let size = radius / 3.0;
+                    let mut slip = || size * gaussian(&mut g);
+                    let exact = (0..49).map(|k| shape_at(shape, f64::from(k) / 48.0));
+                    points = exact.map(|p| p + Vec3::of(slip(), slip(), 0.0)).collect();
+                }
                 clean += usize::from(data_findings(&points, false).is_empty());
-                let least = detectable(&points, false);
+                let deviations = predicted(&points, false);
                 let at = 6 + (seed as usize * 7) % 36;
-                // Ten predicted deviations, across the curve; SCORE of them are proposed.
                 let along = points[at + 1] - points[at - 1];
                 let normal = Vec3::of(-along.y, along.x, 0.0).normalized().unwrap();
-                points[at] += normal * (least[at] * 10.0 / 6.0);
                 planted += 1;
-                let first = data_findings(&points, false);
-                found += usize::from(first.first().is_some_and(
-                    |f| matches!(f, DataFinding::WrongDigit { index, .. } if *index == at),
-                ));
+                for (found, times) in found.iter_mut().zip([5.0, 10.0]) {
+                    let mut points = points.clone();
+                    points[at] += normal * (deviations[at] * times);
+                    let first = data_findings(&points, false);
+                    *found += usize::from(first.first().is_some_and(
+                        |f| matches!(f, DataFinding::WrongDigit { index, .. } if *index == at),
+                    ));
+                }
             }
         }
     }
-    assert!(100 * found >= 95 * planted, "{found} of {planted}");
-    assert!(100 * clean >= 97 * cases, "{clean} of {cases} without a false finding");
+    // Of five deviations a detector that knows the deviation finds four of five: the score from which
+    // a point is proposed is 4.1 for so many points, and the noise of the point itself adds one.
+    assert!(100 * found[0] >= 55 * planted, "{found:?} of {planted}");
+    assert!(100 * found[1] >= 98 * planted, "{found:?} of {planted}");
+    assert!(100 * clean >= 98 * planted, "{clean} of {planted} without a false finding");
+}
+
+/// What was found at aerofoils of few points: a nose that these do not resolve is no knuckle and no
+/// wrong digit, and neither is the straight end of a trailing edge.
+#[test]
+fn unresolved_noses_are_no_findings() {
+    for thickness in [0.02, 0.06, 0.12, 0.2] {
+        for half in 8..40 {
+            for power in [1.0, 1.5, 2.0] {
+                let side = |k: i32| {
+                    let u = f64::from(k.abs()) / f64::from(half);
+                    let x = u.powf(power);
+                    let y = 5.0
+                        * thickness
+                        * (0.2969 * x.sqrt() - 0.126 * x - 0.3516 * x * x + 0.2843 * x.powi(3)
+                            - 0.1036 * x.powi(4));
+                    Vec3::of(x, (1e5 * y * f64::from(-k.signum())).round() / 1e5, 0.0)
+                };
+                let points: Vec<_> = (-half..=half).map(side).collect();
+                let found = data_findings(&points, false);
+                let nose = |f: &&DataFinding| matches!(f, DataFinding::Knuckle { .. });
+                assert_eq!(found.iter().find(nose), None, "{thickness} {half} {power}");
+            }
+        }
+    }
 }
 
 #[test]

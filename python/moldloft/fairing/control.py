@@ -1,0 +1,295 @@
+"""Fairing of splines and their control points, and of fits of data: what goes in and comes out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import _core
+from moldloft.errors import FairingError
+from moldloft.fairing.arrays import narrowed, points_of, radii, refuse_repeats
+from moldloft.fairing.asked import index_of, spacing_of
+from moldloft.fairing.faired import Fairing
+from moldloft.fairing.report import Finding, Numbers
+from moldloft.fairing.spline import Spline
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def laid(
+    before: Floats, after: Floats, degree: int, spacing: Any, closed: bool, breaks: Sequence[int]
+) -> tuple[Spline, Spline, float, float]:
+    """The splines through points before and after on the same knots.
+
+    Also how far these are apart: certified by their control points, and sampled.
+    """
+    word, way = spacing_of(spacing)
+    core, at, _ = _core.Spline.interpolate(before, degree, word, closed, list(breaks), way)
+    first = Spline._of(core)
+    low, high = first.domain
+    own = np.asarray(first.knots)
+    if len(first.control_points) == len(before) and first.closed == closed:
+        period = high - low if closed else None
+        second, _ = Spline._fit(
+            after, degree, own, None, None, closed, period, "chord", np.asarray(at)
+        )
+        moved = second.control_points - first.control_points
+        certified = float(np.linalg.norm(moved, axis=1).max())
+    else:
+        core, _, _ = _core.Spline.interpolate(after, degree, word, closed, list(breaks), way)
+        second = Spline._of(core)
+        certified = float("nan")
+    a, b = first.samples(16).points, second.samples(16).points
+    return first, second, certified, float(np.linalg.norm(a - b, axis=1).max())
+
+
+@dataclass
+class Own:
+    """Knots and weights of the user's."""
+
+    knots: ArrayLike | None
+    weights: ArrayLike | None
+    period: float | None
+
+    @property
+    def given(self) -> bool:
+        """Whether there are any."""
+        return self.knots is not None or self.weights is not None
+
+    def control(self, data: Floats, degree: int, closed: bool) -> Spline:
+        """The spline with these control points."""
+        return Spline(
+            data,
+            degree=degree,
+            knots=self.knots,
+            weights=self.weights,
+            closed=closed,
+            clamped=False,
+            period=self.period,
+        )
+
+
+@dataclass
+class Prepared:
+    """The spline to fair and where it comes from."""
+
+    spline: Spline
+    data: Floats
+    width: int
+    role: str
+    breaks: tuple[int, ...]
+    marks: list[int]
+    parameters: Floats | None
+    findings: tuple[Finding, ...]
+    corrected: tuple[Finding, ...]
+
+
+def prepared(
+    points: ArrayLike | Spline,
+    role: str,
+    closed: bool,
+    degree: int,
+    spacing: str,
+    count: int | None,
+    breaks: Sequence[int] | str,
+    own: Own,
+) -> Prepared:
+    """The spline to fair, and what the data give away."""
+    if own.given and (isinstance(points, Spline) or role == "points"):
+        raise FairingError("knots and weights are for control points and fits")
+    if isinstance(points, Spline):
+        data, width = points.control_points, 3
+        spline: Spline = points
+        plain, role, parameters = points, "spline", None
+    else:
+        data, width = points_of(points)
+        refuse_repeats(data, closed)
+        least = 2 * degree + 2 if closed else degree + 2
+        if len(data) < least:
+            raise FairingError(
+                f"expected at least {least} points for degree {degree}, found {len(data)}"
+            )
+        plain = Spline(data, degree=degree, closed=closed, clamped=False)
+        spline = own.control(data, degree, closed) if own.given and role == "control" else plain
+        parameters = None
+    # A fit's own jumps tell less than those of its points.
+    found = (plain if role == "fit" else spline).findings()
+    corrected: list[Finding] = []
+    if isinstance(breaks, str):
+        if breaks != "auto":
+            raise FairingError(f"breaks are numbers of points or `auto`, not `{breaks}`")
+        corrected, found = found, []
+        chosen = sorted({f.index for f in corrected if f.kind == "corner"})
+    else:
+        chosen = sorted({index_of(b, len(data)) for b in breaks})
+        found = [f for f in found if f.index not in chosen]
+    marks = list(chosen)
+    moved = data
+    if role == "fit":
+        # A wrong digit is put right before the curve is laid through it.
+        moved = data.copy()
+        for f in corrected:
+            if f.kind == "outlier":
+                moved[f.index] -= f.vector
+        if own.given:
+            if marks:
+                raise FairingError("a fit with knots or weights has its breaks in the knots")
+            spline, parameters = Spline._fit(
+                moved, degree, own.knots, count, own.weights, closed, own.period, spacing, None
+            )
+        elif count is not None:
+            core, parameters, _, _ = _least_squares(moved, degree, count, spacing, closed)
+            spline = core
+            if marks:
+                raise FairingError("a least-squares fit has no breaks: fit all points")
+        else:
+            spline, parameters, marks = Spline._interpolated(moved, degree, spacing, closed, chosen)
+    return Prepared(
+        spline,
+        data,
+        width,
+        role,
+        tuple(chosen),
+        marks,
+        parameters,
+        tuple(found),
+        tuple(corrected),
+    )
+
+
+def _least_squares(
+    points: Floats, degree: int, count: int, spacing: str, closed: bool
+) -> tuple[Spline, Floats, float, float]:
+    core, at, largest, rms = _core.Spline.least_squares(points, degree, count, spacing, closed)
+    return Spline._of(core), at, largest, rms
+
+
+def left(tol: ArrayLike | None, made: Prepared) -> ArrayLike | None:
+    """What a fit that misses its data leaves of their tolerances."""
+    if tol is None or made.role != "fit" or made.parameters is None:
+        return tol
+    each = np.asarray(radii(tol, len(made.data)))
+    off = np.linalg.norm(made.spline(made.parameters) - made.data, axis=1)
+    noise = 1e-9 * float(np.ptp(made.data, axis=0).max())
+    if off.max() <= noise:
+        return tol
+    short = off - each
+    if short.max() > 0:
+        k = int(short.argmax())
+        raise FairingError(
+            f"a spline of {len(made.spline.control_points)} control points is "
+            f"{off[k]:.3e} off point {k + 1}: more control points, or a larger tolerance",
+            index=k,
+        )
+    limits: NDArray[np.float64] = each - off
+    return limits
+
+
+def spread(tol: ArrayLike | None, made: Prepared, n: int) -> list[float]:
+    """The tolerance of data points as that of control points: the least near each."""
+    if tol is None or np.ndim(tol) == 0:
+        return radii(tol, n)
+    each = np.asarray(radii(tol, len(made.data)))
+    assert made.parameters is not None
+    p = made.spline.degree
+    knots = made.spline.knots
+    start, end = made.spline.domain
+    at = start + (end - start) * made.parameters
+    out = []
+    for j in range(n):
+        if made.spline.closed:
+            away = np.abs(
+                (at - knots[j] + 0.5 * (end - start)) % (end - start) - 0.5 * (end - start)
+            )
+            near = away <= (p + 1) * (end - start) / n
+        else:
+            near = (at >= knots[j]) & (at <= knots[j + p + 1])
+        out.append(float(each[near].min() if near.any() else each.min()))
+    return out
+
+
+def result(
+    made: Prepared,
+    faired: Spline,
+    told: dict[str, Any],
+    tol: ArrayLike | None,
+    mode: str,
+    width: int,
+    seconds: float,
+    data: Floats,
+) -> Fairing:
+    """The report of a faired spline."""
+    original, spline = made.spline, faired
+    before, after = Numbers(**told["before"]), Numbers(**told["after"])
+    far, certificate = told["deviation"], told["certificate"]
+    certified, sampled = far["certified"], far["sampled"]
+    notes = list(told["notes"])
+    if made.role == "points":
+        rows = faired.control_points
+        certified = sampled = far["control"]
+        closed = original.closed
+        laid = [
+            Spline._interpolated(p, original.degree, "uniform", closed, made.breaks)[0]
+            for p in (data, rows)
+        ]
+        original, spline = laid
+        before, after = (_counted(n, s) for n, s in ((before, laid[0]), (after, laid[1])))
+    elif made.parameters is not None:
+        rows = faired(made.parameters)
+    else:
+        rows = faired.control_points
+    log = (told["log_index"], told["log_to"]) if "log_index" in told else None
+    largest = None if tol is None else float(np.max(np.asarray(tol, np.float64)))
+    residuals = None
+    if made.parameters is not None:
+        residuals = np.linalg.norm(faired(made.parameters) - made.data, axis=1)
+    return Fairing(
+        residuals=residuals,
+        parameters=made.parameters,
+        points=narrowed(rows, width),
+        spline=spline,
+        original=original,
+        data=data,
+        tol=largest,
+        as_="control" if made.role == "spline" else made.role,
+        mode=mode,
+        measure=told["measure"],
+        breaks=made.breaks,
+        before=before,
+        after=after,
+        deviation_certified=certified,
+        deviation_sampled=sampled,
+        deviation_control=far["control"],
+        length=original.length if made.role == "points" else far["length"],
+        value=certificate["value"],
+        gap=certificate["gap"],
+        steps=told["steps"],
+        stopped=told["stopped"],
+        active=told["active"],
+        findings=made.findings,
+        corrected=made.corrected,
+        jump_lengths_before=told["jumps_before"],
+        jump_lengths_after=told["jumps_after"],
+        notes=tuple(notes),
+        seconds=seconds,
+        log=log,
+    )
+
+
+def _counted(numbers: Numbers, spline: Spline) -> Numbers:
+    """The same sums with the counts of the curve that is laid through the points."""
+    curvature = spline.samples().curvature
+    return Numbers(
+        numbers.measure,
+        numbers.jumps,
+        numbers.largest_jump,
+        spline.monotone_pieces(),
+        spline.inflections(),
+        float(np.abs(curvature).max()),
+    )

@@ -1,0 +1,157 @@
+"""Fairing of curves through data, under tolerances at these."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import _core
+from moldloft.errors import FairingError
+from moldloft.fairing.arrays import direction, narrowed, points_of, radii
+from moldloft.fairing.asked import Asked, ends_of, index_of, spacing_of
+from moldloft.fairing.conditions import join_conditions, linear_conditions, shape_conditions
+from moldloft.fairing.faired import Arc, Fairing
+from moldloft.fairing.report import Finding, Numbers
+from moldloft.fairing.spline import Spline
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: int) -> list[int]:
+    """Points by number, or those that findings of a kind propose."""
+    if isinstance(given, str):
+        if given != "auto":
+            raise FairingError(f"expected numbers of points or `auto`, found `{given}`")
+        return sorted({f.index for f in found if f.kind == kind})
+    return sorted({index_of(k, count) for k in given})
+
+
+def _released(
+    limits: list[float], release: list[int], found: list[Finding], data: Floats
+) -> list[float]:
+    """Tolerances with room for wrong points to go to their place."""
+    out = list(limits)
+    for k in release:
+        error = next((float(np.linalg.norm(f.vector)) for f in found if f.index == k), None)
+        size = float(np.ptp(data, axis=0).max())
+        out[k] = out[k] + 2.0 * error if error is not None else size
+    return out
+
+
+def _data_measure(measure: str | None, degree: int) -> str:
+    return measure or ("variation" if degree >= 3 else "bending")
+
+
+def fair_data(
+    points: ArrayLike, tol: ArrayLike | None, asked: Asked, wanted: Any, as_: str, started: float
+) -> Fairing:
+    """Data under tolerances."""
+    data, width = points_of(points)
+    n = len(data)
+    least = 2 * asked.degree + 2 if asked.closed else asked.degree + 2
+    if n < least:
+        raise FairingError(f"expected at least {least} points for degree {asked.degree}, found {n}")
+    found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
+    breaks = chosen(asked.breaks, found, "corner", n)
+    release = chosen(asked.release, found, "outlier", n)
+    limits = radii(tol, n)
+    notes = []
+    for k in asked.fixed:
+        limits[index_of(k, n)] = 0.0
+    limits = _released(limits, release, found, data)
+    if asked.closed and tol is None:
+        raise FairingError("a closed curve without a tolerance shrinks to a point")
+    word, way = direction(asked.motion)
+    spaced, spacing_way = spacing_of(asked.spacing)
+    kept = list(ends_of(asked.ends if asked.ends is not None else "free", asked.closed))
+    through, tangents, keep, joins = wanted
+    conditions, labels = linear_conditions(through, tangents, keep)
+    if joins:
+        rough = Spline.interpolate(data, degree=asked.degree, closed=asked.closed)
+        for k, join in enumerate(join_conditions(joins, rough)):
+            kept[int(join[1])] = "position"
+            conditions.append(join)
+            labels.append(f"join {k + 1}")
+    at = None
+    if asked.at is not None:
+        at = [float(t) for t in np.asarray(asked.at, np.float64).ravel()]
+        rises = len(at) == n and all(a < b for a, b in pairwise(at)) and at[0] >= 0 and at[-1] <= 1
+        if not rises:
+            raise FairingError(f"expected {n} rising parameters in [0, 1]")
+    measure = _data_measure(asked.measure, asked.degree)
+    shape, shape_labels = shape_conditions(asked.shape, n)
+    core, original, told = _core.Spline.fair_data(
+        data,
+        {
+            "tolerance": limits,
+            "motion": word,
+            "direction": way,
+            "ends": tuple(kept),
+            "closed": asked.closed,
+            "degree": asked.degree,
+            "breaks": breaks,
+            "spacing": spaced,
+            "spacing_direction": spacing_way,
+            "at": at,
+            "measure": measure,
+            "goal": asked.goal,
+            "conditions": conditions,
+            "labels": labels,
+            "shape": shape,
+            "shape_labels": shape_labels,
+            "bends": asked.bends or measure == "jump-lengths",
+            "accuracy": asked.accuracy,
+        },
+    )
+    for k in release:
+        off = float(told["residuals"][k])
+        notes.append(f"point {k + 1} was released: the curve passes {off:.3e} from it")
+    faired, before = Spline._of(core), Spline._of(original)
+    arcs = tuple(Arc(a, b, r, np.asarray(c), off) for (a, b), r, c, off in told["arcs"])
+    notes += [str(arc) for arc in arcs]
+    rows = faired(told["at"])
+    # What the curve passes through to rounding has not moved by a bit.
+    still = told["residuals"] <= 64 * np.finfo(float).eps * np.abs(data).max()
+    rows[still] = data[still]
+    far, certificate = told["deviation"], told["certificate"]
+    taken = {*breaks, *release}
+    return Fairing(
+        points=narrowed(rows, width),
+        spline=faired,
+        original=before,
+        data=data,
+        tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
+        as_=as_,
+        mode="optimum",
+        measure=measure,
+        breaks=tuple(breaks),
+        before=Numbers(**told["before"]),
+        after=Numbers(**told["after"]),
+        deviation_certified=far["certified"],
+        deviation_sampled=far["sampled"],
+        deviation_control=far["control"],
+        length=far["length"],
+        value=certificate["value"],
+        gap=certificate["gap"],
+        steps=told["steps"],
+        stopped=None,
+        active=told["active"],
+        findings=tuple(f for f in found if f.index not in taken),
+        corrected=tuple(f for f in found if f.index in taken),
+        jump_lengths_before=told["jumps_before"],
+        jump_lengths_after=told["jumps_after"],
+        notes=(*told["notes"], *notes),
+        seconds=time.perf_counter() - started,
+        goal=asked.goal[0],
+        residuals=told["residuals"],
+        used=told["used"],
+        parameters=told["at"],
+        arcs=arcs,
+    )
