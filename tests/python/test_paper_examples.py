@@ -176,7 +176,7 @@ def test_propeller_is_within_its_diameter_between_its_sections_too(corner: int) 
 
 
 def test_propeller_skin_has_the_areas_of_the_data_sheet() -> None:
-    """Expanded area of the whole skin, and its projected area beside that of the sheet's columns."""
+    """Expanded area of the whole skin, and its projected area beside that of the columns."""
     model = moldloft.load(EXAMPLES / "propeller/propeller.sdl")
     diameter, blades = model["diameter"], float(model.eval("blades"))
     # Even in the square root of the distance from the tip, where the chord falls to zero.

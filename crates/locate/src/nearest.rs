@@ -391,7 +391,7 @@ fn across_poles(surface: &dyn Surface<f64>, p: Vec3, mut foot: Foot<2>, size: f6
         }
         let (a, b) = (end + 1e-3 * inward, w);
         let next = on_whole_surface(surface, p, if k == 0 { [a, b] } else { [b, a] }, size);
-        if !(next.xyz.distance(p) < foot.xyz.distance(p)) {
+        if next.xyz.distance(p).total_cmp(&foot.xyz.distance(p)).is_ge() {
             break;
         }
         foot = next;

@@ -38,7 +38,7 @@ pub fn parameter_distance(a: f64, b: f64, closed: bool) -> f64 {
 /// back with each turn, and so does its seam, over which it may bend.
 pub fn breaks_between(breaks: &[f64], closed: bool, low: f64, high: f64) -> Vec<f64> {
     let (low, high) = (low.min(high), low.max(high));
-    if !closed || !(low < 0.0 || high > 1.0) || high - low > 1e4 {
+    if !closed || low >= 0.0 && high <= 1.0 || high - low > 1e4 {
         return breaks.iter().copied().filter(|b| *b > low && *b < high).collect();
     }
     let turns = low.floor() as i64..=high.floor() as i64;
@@ -75,7 +75,7 @@ pub fn closed_sides<T: Real>(surface: &dyn Surface<T>) -> [bool; 2] {
         // Half a turn of a shape may pass near its beginning: a quarter does not then.
         let size = size.max(at(axis, 0.25, PLACES[0]).distance(first[0]));
         let near = |[a, b]: [Vec3; 2]| a.distance(b) <= GAP * size;
-        if !(size > 0.0 && near(first)) {
+        if size <= 0.0 || !near(first) {
             return false;
         }
         let pairs = PLACES[1..].iter().map(|w| [at(axis, 0.0, *w), at(axis, 1.0, *w)]);

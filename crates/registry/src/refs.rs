@@ -109,7 +109,7 @@ impl<T: Real> Point<T> {
 
 /// Figures by which a construction judges its own result, such as the greatest deviation of a faired curve:
 /// members of the object.
-pub type Figures = Arc<[(&'static str, f64)]>;
+pub type Figures = Arc<Vec<(&'static str, f64)>>;
 
 /// A curve with the identity of its object.
 #[derive(Clone)]
@@ -271,7 +271,7 @@ impl<T: Real> CurveRef<T> {
 
     /// The same curve with figures of its own.
     pub fn with_figures(mut self, figures: &[(&'static str, f64)]) -> Self {
-        self.figures = Some(figures.into());
+        self.figures = Some(Arc::new(figures.to_vec()));
         self
     }
 
@@ -344,7 +344,7 @@ impl<T: Real> SurfaceRef<T> {
 
     /// The same surface with figures of its own.
     pub fn with_figures(mut self, figures: &[(&'static str, f64)]) -> Self {
-        self.figures = Some(figures.into());
+        self.figures = Some(Arc::new(figures.to_vec()));
         self
     }
 

@@ -397,11 +397,11 @@ impl<T: Real> Value<T> {
     /// What it says of itself: figures of its construction, by name.
     pub fn figures(&self) -> &[(&'static str, f64)] {
         let all = match self {
-            Value::Curve(c) => c.figures.as_deref(),
-            Value::Surface(s) => s.figures.as_deref(),
+            Value::Curve(c) => c.figures.as_ref(),
+            Value::Surface(s) => s.figures.as_ref(),
             _ => None,
         };
-        all.unwrap_or_default()
+        all.map_or(&[], |all| all.as_slice())
     }
 
     /// True when there is something to warn of.

@@ -106,7 +106,7 @@ pub fn inv_arclen<T: Real>(
         (true, backwards) => {
             let total = integrate(T::zero(), T::from(1.0), accuracy, |t| speed(curve, t)).re();
             let turns = (s.re().abs() / total).ceil() + 1.0;
-            if !(turns <= MOST_TURNS) {
+            if turns.is_nan() || turns > MOST_TURNS {
                 return Err(BeyondEnd { asked: s.re(), available: MOST_TURNS * total });
             }
             a.re() + if backwards { -turns } else { turns }

@@ -82,6 +82,8 @@ impl<T: Real> Build<T> for SubSurf<T> {
 }
 
 /// The sides of a patch and where they lie.
+// A patch has one of them: a box would save nothing.
+#[allow(clippy::large_enum_variant)]
 enum Layout<T: Real> {
     /// Edges v = 0 and v = 1.
     Between([Side<T>; 2]),
