@@ -39,6 +39,7 @@ WITHOUT = {
     "faces-tangled",
     "internal-error",
     "misplaced-object",
+    "newer-language",
     "no-distance",
     "no-edge",
     "no-goal",
