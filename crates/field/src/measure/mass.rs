@@ -208,9 +208,6 @@ struct Faceted<T: Real> {
     settled: bool,
 }
 
-/// With blunt edges, finer facets than these are no nearer to the truth for their cost.
-const BLUNT: u32 = 7;
-
 /// Moments from facets that are made finer until two agree; `None` when these do not show the whole set.
 fn by_facets<T: Real>(
     solid: &Set,
@@ -241,7 +238,7 @@ fn by_facets<T: Real>(
         }
         let volume = facets.moments().volume();
         change = before.as_ref().map_or(f64::INFINITY, |(_, v)| (volume - v).abs());
-        let enough = change <= agreement || !facets.blunt.is_empty() && level >= BLUNT;
+        let enough = change <= agreement;
         before = Some((facets, volume));
         if missed == 0 && (enough || level >= LEVELS[1] || next > MOST_FACET_CELLS) {
             break;
