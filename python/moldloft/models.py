@@ -386,7 +386,8 @@ class Model(Floating):
         """
         value = _wrapped(self._document.eval(expression))
         for remark in self._document.expression_remarks():
-            warnings.warn(str(remark), stacklevel=2)
+            # Past the check of arguments, to the line of the caller.
+            warnings.warn(str(remark), stacklevel=3)
         return value
 
     def mesh(self, *, tags: str | Sequence[str] = ()) -> Mesh:
