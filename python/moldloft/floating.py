@@ -25,9 +25,10 @@ __all__ = ["Floating"]
 class Floating:
     """Hydrostatics, weights and stability: the methods of a model that concern floating."""
 
-    @property
-    def _document(self) -> _core.Document:
-        raise NotImplementedError
+    if TYPE_CHECKING:
+        # The class of models has it.
+        @property
+        def _document(self) -> _core.Document: ...
 
     def hydrostatics(
         self,
