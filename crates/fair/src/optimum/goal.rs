@@ -144,6 +144,15 @@ where
     E: Fn(&[Vec3<f64>]) -> f64,
     S: Fn(&[Vec3<f64>]) -> f64,
 {
+    /// The original, which measures `begin` where the fairest measures `least`.
+    fn left_as_it_is(&self, fairest: Optimum, begin: f64, least: f64) -> Found {
+        let gap = begin - least + fairest.certificate.gap;
+        let certificate = Certificate { value: begin, gap };
+        let points = self.original.to_vec();
+        let optimum = Optimum { points, certificate, active: 0, ..fairest };
+        Found { optimum, share: 0.0, used: 0.0, least, weight: 0.0, between: false }
+    }
+
     /// The optimum of a goal. The sum of squares falls and the measure rises with the weight, both
     /// continuously, so the goal is found between two weights.
     pub fn follow(
@@ -247,18 +256,7 @@ where
                     return Err(FairError::Energy { asked: most, least });
                 }
                 if !conditioned && begin <= most {
-                    let gap = begin - least + fairest.certificate.gap;
-                    let certificate = Certificate { value: begin, gap };
-                    let points = self.original.to_vec();
-                    let optimum = Optimum { points, certificate, active: 0, ..fairest };
-                    return Ok(Found {
-                        optimum,
-                        share: 0.0,
-                        used: 0.0,
-                        least,
-                        weight: 0.0,
-                        between: false,
-                    });
+                    return Ok(self.left_as_it_is(fairest, begin, least));
                 }
                 if squares == 0.0 || least >= most {
                     return ended(fairest, 0.0);
@@ -281,22 +279,7 @@ where
                     return ended(fairest, 0.0);
                 }
                 if !conditioned && begin <= (1.0 + share) * least + self.noise {
-                    let certificate =
-                        Certificate { value: begin, gap: begin - least + fairest.certificate.gap };
-                    let optimum = Optimum {
-                        points: self.original.to_vec(),
-                        certificate,
-                        active: 0,
-                        ..fairest
-                    };
-                    return Ok(Found {
-                        optimum,
-                        share: 0.0,
-                        used: 0.0,
-                        least,
-                        weight: 0.0,
-                        between: false,
-                    });
+                    return Ok(self.left_as_it_is(fairest, begin, least));
                 }
             }
         }
