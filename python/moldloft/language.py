@@ -36,6 +36,24 @@ def reference() -> list[dict[str, Any]]:
     return _core.reference()
 
 
+def statements() -> list[dict[str, Any]]:
+    """The statements that read like declarations of an object and insert the contents of a file.
+
+    >>> [row["name"] for row in statements()]
+    ['Component', 'Sketch']
+    """
+    return _core.statements()
+
+
+def keywords() -> list[str]:
+    """The words of the language: types, and words that statements are made of.
+
+    >>> "foreach" in keywords()
+    True
+    """
+    return _core.keywords()
+
+
 def attributes() -> list[dict[str, Any]]:
     """The named arguments that every kind takes besides its own.
 

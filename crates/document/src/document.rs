@@ -6,7 +6,7 @@ use moldloft_diag::{Diagnostic, Sources};
 use moldloft_lang::World;
 use moldloft_lang::run::interpreter::{Inputs, Settings};
 use moldloft_lang::run::program::{self, Program};
-use moldloft_lang::run::weight::{WEIGHT, mass_and_centre};
+use moldloft_lang::run::weight::mass_and_centre;
 use moldloft_lang::source::env::{Evaluation, Param, Seed};
 use moldloft_lang::source::module::Modules;
 use moldloft_lang::source::scope::Binding;
@@ -15,7 +15,7 @@ use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph};
 use moldloft_num::Dual4;
 use moldloft_panel::{Nominal, Panelling};
-use moldloft_registry::{Kept, Registry, Row, Scalar, Value};
+use moldloft_registry::{Kept, Registry, Role, Row, Scalar, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -379,7 +379,7 @@ impl Document {
             _ => moldloft_lang::model_file::header::text(&evaluation.graph, "symmetry"),
         };
         let mut found = Vec::new();
-        for object in evaluation.graph.objects().filter(|o| o.row.name == WEIGHT) {
+        for object in evaluation.graph.objects().filter(|o| o.row.role == Role::Weight) {
             let stated = |name: &str| {
                 let argument = object.row.field(name).and_then(|k| object.args.get(k));
                 argument.is_some_and(|a| !matches!(a, Value::Unset))

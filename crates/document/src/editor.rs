@@ -4,6 +4,7 @@
 use crate::document::Document;
 use moldloft_diag::{FileId, Span};
 use moldloft_lang::functions::context::BUILTINS;
+use moldloft_lang::run::inserted::INSERTED_FILES;
 use moldloft_lang::source::module::{Module, RoutineAt};
 use moldloft_lang::source::scope::Binding;
 use moldloft_lang::value::variables::shape_text;
@@ -52,40 +53,6 @@ pub enum CompletionKind {
     /// A member of what stands before the dot.
     Member,
 }
-
-/// The words that statements begin with, and types.
-const KEYWORDS: [&str; 30] = [
-    "assert",
-    "break",
-    "continue",
-    "curve",
-    "else",
-    "farray",
-    "field",
-    "file",
-    "float",
-    "for",
-    "foreach",
-    "function",
-    "global",
-    "if",
-    "int",
-    "load",
-    "not",
-    "or",
-    "and",
-    "param",
-    "pcurve",
-    "print",
-    "psurface",
-    "return",
-    "returned",
-    "string",
-    "subroutine",
-    "surface",
-    "vector",
-    "while",
-];
 
 /// Collects the names of a file.
 struct Walk<'m> {
@@ -354,7 +321,10 @@ impl Document {
                 o.symbol == symbol && meets
             })
         });
-        if taken || self.registry().get(new).is_some() || BUILTINS.iter().any(|b| b.name == new) {
+        let reserved = self.registry().get(new).is_some()
+            || BUILTINS.iter().any(|b| b.name == new)
+            || INSERTED_FILES.iter().any(|row| row.name == new);
+        if taken || reserved {
             return Err(format!("`{new}` is already in use"));
         }
         Ok(self.references(offset))
@@ -416,6 +386,10 @@ impl Document {
         }
         if let Some(row) = self.registry().get(&word) {
             let text = format!("```sdl\n{}\n```\n{}", row_signature(row), row.doc);
+            return Some((text, mention.span));
+        }
+        if let Some(row) = INSERTED_FILES.iter().find(|row| row.name == word) {
+            let text = format!("```sdl\n{}\n```\n{}", row.signature, row.doc);
             return Some((text, mention.span));
         }
         let builtin = BUILTINS.iter().find(|b| b.name == word)?;
@@ -503,10 +477,13 @@ impl Document {
             let kind = if row.kind { CompletionKind::Kind } else { CompletionKind::Function };
             add(&row.name, kind, row_signature(row));
         }
+        for row in &INSERTED_FILES {
+            add(row.name, CompletionKind::Kind, row.signature.into());
+        }
         for builtin in &BUILTINS {
             add(builtin.name, CompletionKind::Function, builtin.signature.into());
         }
-        for keyword in KEYWORDS {
+        for keyword in moldloft_syntax::sdl::keywords() {
             add(keyword, CompletionKind::Keyword, String::new());
         }
         found

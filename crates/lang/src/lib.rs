@@ -19,6 +19,7 @@ pub mod source;
 pub mod value;
 
 pub use functions::context::{BUILTINS, Builtin, MOST_REFINED};
+pub use run::inserted::{INSERTED_FILES, InsertedFile};
 pub use source::env::{Evaluation, Param, SolveStatus};
 pub use source::{LIBRARIES, NoFiles, ReadError, ReadText, World};
 pub use value::display;

@@ -12,23 +12,23 @@ mod frames;
 mod position;
 mod server;
 
-use moldloft_budget::Limits;
+use moldloft::budget::Limits;
 use server::{Event, Next, Server};
 use std::io::{BufReader, BufWriter, Write};
 use std::process::ExitCode;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Instant;
 
-/// Counts the bytes that are held, for [`moldloft_budget::Budget`].
+/// Counts the bytes that are held, for [`moldloft::budget::Budget`].
 #[global_allocator]
-static ALLOCATOR: moldloft_budget::Counting = moldloft_budget::Counting;
+static ALLOCATOR: moldloft::budget::Counting = moldloft::budget::Counting;
 
 /// The most memory that the server takes for the texts that are open.
 const MEMORY: u64 = 2 << 30;
 
 fn main() -> ExitCode {
-    let memory = moldloft_budget::usual_memory().min(MEMORY);
-    moldloft_budget::set_limits(Limits { memory, ..Limits::USUAL });
+    let memory = moldloft::budget::usual_memory().min(MEMORY);
+    moldloft::budget::set_limits(Limits { memory, ..Limits::USUAL });
     if let Some(word) = std::env::args().nth(1) {
         if word == "--version" || word == "-V" {
             println!("moldloft-lsp {}", env!("CARGO_PKG_VERSION"));

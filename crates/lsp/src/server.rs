@@ -1,11 +1,11 @@
 //! What the server answers.
 
 use crate::position::{offset, position, range};
+use moldloft::budget::Budget;
 use moldloft::diag::{DiagnosticData, LabelData, Severity};
 use moldloft::document::{CompletionKind, Document, NoFiles, World};
 use moldloft::host::FileWorld;
 use moldloft::lang::LIBRARIES;
-use moldloft_budget::Budget;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
@@ -231,7 +231,7 @@ impl Server {
                 None => Box::new(opened(&uri, &text, budget)),
             });
             let document = catch_unwind(run).ok();
-            moldloft_budget::settle();
+            moldloft::budget::settle();
             // After the end of the server nobody listens; that is not a fault.
             let _ = events.send(Event::Ran(Ran { uri, serial, document }));
         });

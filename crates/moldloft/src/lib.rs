@@ -22,12 +22,15 @@
 //! `cargo run -p moldloft --example derivative`.
 //!
 //! Each room of the house is a module here: [`document`] opens, runs, measures and derives; [`export`] writes; the
-//! kinds and algorithms are in [`fair`], [`field`], [`sketch`], [`spline`], [`locate`]; [`mesh`] and [`panel`] hold panels.
+//! kinds and algorithms are in [`fair`], [`field`], [`sketch`], [`spline`], [`locate`]; [`mesh`] and [`panel`] hold panels; [`session`] keeps a document
+//! under a person's hands, as the workbench does.
 //!
 //! Invariant: re-exports only. Files are opened by [`FileWorld`] alone, and by the caller.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub use moldloft_brep as brep;
+pub use moldloft_budget as budget;
 pub use moldloft_diag as diag;
 pub use moldloft_document as document;
 pub use moldloft_export as export;
@@ -43,6 +46,7 @@ pub use moldloft_num as num;
 pub use moldloft_panel as panel;
 pub use moldloft_picture as picture;
 pub use moldloft_registry as rows;
+pub use moldloft_session as session;
 pub use moldloft_sketch as sketch;
 pub use moldloft_spline as spline;
 pub use moldloft_syntax as syntax;

@@ -1,6 +1,6 @@
 //! Vectors and NumPy arrays.
 
-use moldloft_num::Vec3;
+use moldloft::num::Vec3;
 use numpy::ndarray::Dimension;
 use numpy::{PyArray, PyArrayMethods};
 use pyo3::prelude::*;

@@ -3,9 +3,9 @@
 use crate::arrays;
 use crate::diagnostics::Diagnostic;
 use crate::error::{model_error, plain_error};
-use moldloft_diag::Sources;
-use moldloft_document::Blocked;
-use moldloft_export::{format_named, write_blocks};
+use moldloft::diag::Sources;
+use moldloft::document::Blocked;
+use moldloft::export::{format_named, write_blocks};
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};

@@ -1,6 +1,6 @@
 //! Diagnostics as Python objects.
 
-use moldloft_diag::{DiagnosticData, LabelData};
+use moldloft::diag::{DiagnosticData, LabelData};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -82,7 +82,7 @@ impl Diagnostic {
 impl Diagnostic {
     #[getter]
     fn is_error(&self) -> bool {
-        self.severity == moldloft_diag::Severity::Error.word()
+        self.severity == moldloft::diag::Severity::Error.word()
     }
 
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

@@ -8,15 +8,17 @@ use crate::fair::Look;
 use crate::mesh::PyMesh;
 use crate::value::to_python;
 use crate::work::{interruptible, interruptible_shared};
-use moldloft_budget::Budget;
-use moldloft_diag::Sources;
-use moldloft_document::searches::Searches;
-use moldloft_document::{Document, FloatAnswer, FloatRequest, FlotationOptions, Format, Immersion};
-use moldloft_export::{SplinePatch, WriteOptions, format_named, spline_patches};
-use moldloft_host::FileWorld;
-use moldloft_model::Object;
-use moldloft_num::{Order, Vec3};
-use moldloft_registry::{CurveRef, SurfaceRef, Value};
+use moldloft::budget::Budget;
+use moldloft::diag::Sources;
+use moldloft::document::searches::Searches;
+use moldloft::document::{
+    Document, FloatAnswer, FloatRequest, FlotationOptions, Format, Immersion,
+};
+use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches};
+use moldloft::host::FileWorld;
+use moldloft::model::Object;
+use moldloft::num::{Order, Vec3};
+use moldloft::rows::{CurveRef, SurfaceRef, Value};
 use numpy::{PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
@@ -49,7 +51,7 @@ pub struct PyDocument {
 /// A B-spline patch: name, degrees, spans, control points, deviation.
 type PatchFacts<'py> = (String, [usize; 2], [usize; 2], Bound<'py, PyArray3<f64>>, f64);
 
-type Outcome<R> = Result<R, Vec<moldloft_diag::Diagnostic>>;
+type Outcome<R> = Result<R, Vec<moldloft::diag::Diagnostic>>;
 
 impl PyDocument {
     fn new(document: Document) -> Self {
@@ -113,15 +115,15 @@ impl PyDocument {
         py: Python<'_>,
         accuracy: Option<f64>,
         stem: String,
-    ) -> PyResult<moldloft_brep::Brep> {
+    ) -> PyResult<moldloft::brep::Brep> {
         self.long_checked(py, move |d| {
-            moldloft_export::brep(d, accuracy, &stem).map_err(|e| e.diagnostics("nurbs"))
+            moldloft::export::brep(d, accuracy, &stem).map_err(|e| e.diagnostics("nurbs"))
         })
     }
 
     /// The name of the unit of length, and its millimetres.
     pub(crate) fn unit(&self, py: Python<'_>) -> (String, f64) {
-        moldloft_export::length_unit(&self.lock(py))
+        moldloft::export::length_unit(&self.lock(py))
     }
 
     fn surface_of(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceRef<f64>> {
@@ -146,7 +148,7 @@ impl PyDocument {
         let world = Box::new(FileWorld::around(&path, &library));
         let budget = Arc::<Budget>::default();
         let own = budget.clone();
-        let open = move || Document::open_within(moldloft_document::registry(), world, &path, own);
+        let open = move || Document::open_within(moldloft::document::registry(), world, &path, own);
         interruptible(py, &budget, open).map(Self::new)
     }
 
@@ -162,7 +164,7 @@ impl PyDocument {
         let budget = Arc::<Budget>::default();
         let own = budget.clone();
         let open = move || {
-            Document::from_text_within(moldloft_document::registry(), world, (&name, &text), own)
+            Document::from_text_within(moldloft::document::registry(), world, (&name, &text), own)
         };
         interruptible(py, &budget, open).map(Self::new)
     }
@@ -206,7 +208,7 @@ impl PyDocument {
     /// Rows of name, value, default, low, high, whole.
     fn params(&self, py: Python<'_>) -> Vec<(String, f64, f64, Option<f64>, Option<f64>, bool)> {
         let document = self.lock(py);
-        let row = |p: &moldloft_document::Param| {
+        let row = |p: &moldloft::document::Param| {
             let (low, high) = p.range.unzip();
             (p.name.clone(), p.value, p.default, low, high, p.is_int)
         };
@@ -262,7 +264,7 @@ impl PyDocument {
         let document = self.lock(py);
         let object = object_named(&document, name)?;
         let graph = document.graph();
-        let names = |keys: &mut dyn Iterator<Item = moldloft_num::trace::Key>| -> Vec<String> {
+        let names = |keys: &mut dyn Iterator<Item = moldloft::num::trace::Key>| -> Vec<String> {
             keys.filter_map(|key| Some(graph.get(key)?.name.to_string())).collect()
         };
         let class = object.value().map_or(object.row.class, Value::class);
@@ -469,7 +471,7 @@ impl PyDocument {
     fn mesh(&self, py: Python<'_>, tags: Vec<String>) -> PyResult<PyMesh> {
         let (panelled, part) = self.long_checked(py, move |d| {
             let panelled = d.panelled().map_err(|e| vec![e])?;
-            let part = moldloft_export::tagged(&panelled.mesh, &tags)?;
+            let part = moldloft::export::tagged(&panelled.mesh, &tags)?;
             Ok((panelled, part))
         })?;
         Ok(PyMesh::new(panelled, part))
@@ -539,8 +541,8 @@ impl PyDocument {
             "one" => true,
             _ => return Err(plain_error(format!("sides are `both` or `one`, not `{sides}`"))),
         };
-        let centimetre = 10.0 / moldloft_export::length_unit(&self.lock(py)).1;
-        let gravity = gravity.unwrap_or(moldloft_export::GRAVITY * 100.0 * centimetre);
+        let centimetre = 10.0 / moldloft::export::length_unit(&self.lock(py)).1;
+        let gravity = gravity.unwrap_or(moldloft::export::GRAVITY * 100.0 * centimetre);
         if !(density > 0.0 && density.is_finite() && gravity > 0.0 && gravity.is_finite()) {
             return Err(plain_error("density and gravity must be positive numbers"));
         }
@@ -576,7 +578,7 @@ impl PyDocument {
     /// Name, group, mass, margin in percent, centre and status of each weight.
     fn weights(&self, py: Python<'_>) -> Vec<(String, String, f64, f64, [f64; 3], String)> {
         let weights = self.lock(py).weights();
-        let row = |w: moldloft_document::WeightItem| {
+        let row = |w: moldloft::document::WeightItem| {
             (w.name, w.group, w.mass, w.margin, w.centre, w.status)
         };
         weights.into_iter().map(row).collect()
@@ -602,7 +604,7 @@ impl PyDocument {
     /// kilograms, newtons or radians.
     fn units(&self, py: Python<'_>) -> Vec<(&'static str, f64)> {
         let text = self.lock(py).units();
-        let known = moldloft_lang::model_file::units::parsed(&text).unwrap_or_default();
+        let known = moldloft::lang::model_file::units::parsed(&text).unwrap_or_default();
         known.into_iter().map(|(word, _, size)| (word, size)).collect()
     }
 
@@ -623,7 +625,7 @@ impl PyDocument {
         let format = format_named(format).map_err(|d| plain_error(&d.message))?;
         let options = WriteOptions { lids, immersed, tags, whole, triangles, tolerance };
         let files =
-            self.long_checked(py, move |d| moldloft_export::write(d, format, &main, &options))?;
+            self.long_checked(py, move |d| moldloft::export::write(d, format, &main, &options))?;
         Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
     }
 
@@ -652,7 +654,8 @@ impl PyDocument {
         width: usize,
         height: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let picture = self.long_checked(py, move |d| moldloft_export::picture(d, width, height))?;
+        let picture =
+            self.long_checked(py, move |d| moldloft::export::picture(d, width, height))?;
         Ok(PyBytes::new(py, &picture))
     }
 
@@ -664,8 +667,8 @@ impl PyDocument {
         width: usize,
         height: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let picture =
-            self.long_checked(py, move |d| moldloft_export::kind_picture(d, &kind, width, height))?;
+        let picture = self
+            .long_checked(py, move |d| moldloft::export::kind_picture(d, &kind, width, height))?;
         Ok(PyBytes::new(py, &picture))
     }
 }
@@ -712,12 +715,12 @@ fn float_facts<'py>(
 #[pyfunction]
 pub fn format_text(name: &str, text: &[u8]) -> PyResult<String> {
     let mut sources = Sources::new();
-    let text = match moldloft_syntax::decode(text, name) {
+    let text = match moldloft::syntax::decode(text, name) {
         Ok(text) => text,
         Err(diagnostic) => return Err(model_error(&[diagnostic], &sources)),
     };
     sources.add(name, text);
-    moldloft_syntax::sdl::format(text).map_err(|diagnostics| model_error(&diagnostics, &sources))
+    moldloft::syntax::sdl::format(text).map_err(|diagnostics| model_error(&diagnostics, &sources))
 }
 
 fn object_named<'d>(document: &'d Document, name: &str) -> PyResult<&'d Object<f64>> {
@@ -731,7 +734,7 @@ fn object_named<'d>(document: &'d Document, name: &str) -> PyResult<&'d Object<f
 fn similar(document: &Document, name: &str) -> Option<String> {
     let params = document.params().iter().map(|p| p.name.as_str());
     let objects = document.graph().objects().map(|o| o.name.as_ref());
-    moldloft_diag::nearest(name, params.chain(objects)).map(str::to_owned)
+    moldloft::diag::nearest(name, params.chain(objects)).map(str::to_owned)
 }
 
 pub(crate) fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr {

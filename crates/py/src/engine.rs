@@ -5,9 +5,9 @@
 //! The parent has the text and may end this process at any time. A request `cancel` stops the one that is
 //! under way; everything else is answered in order.
 
-use moldloft_budget::Budget;
-use moldloft_host::{FileWorld, Noted, ReadAs};
-use moldloft_session::Session;
+use moldloft::budget::Budget;
+use moldloft::host::{FileWorld, Noted, ReadAs};
+use moldloft::session::Session;
 use pyo3::prelude::*;
 use std::io::{Read, Write};
 use std::path::Path;

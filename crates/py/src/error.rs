@@ -1,8 +1,8 @@
 //! The one place where faults of Rust become Python's exceptions.
 
 use crate::diagnostics::Diagnostic;
-use moldloft_diag::Sources;
-use moldloft_io::{Place, ReadError};
+use moldloft::diag::Sources;
+use moldloft::io::{Place, ReadError};
 use pyo3::prelude::*;
 
 mod raised {
@@ -16,7 +16,7 @@ mod raised {
 const UNKNOWN: [&str; 3] = ["unknown-name", "unknown-object", "unknown-parameter"];
 
 /// An exception that carries diagnostics and prints as they do.
-pub fn model_error(diagnostics: &[moldloft_diag::Diagnostic], sources: &Sources) -> PyErr {
+pub fn model_error(diagnostics: &[moldloft::diag::Diagnostic], sources: &Sources) -> PyErr {
     let data: Vec<Diagnostic> = diagnostics.iter().map(|d| d.to_data(sources).into()).collect();
     let text: Vec<&str> = data.iter().map(Diagnostic::rendered).collect();
     let text = text.join("\n");

@@ -1,8 +1,8 @@
 //! A user's Python function as a row of the registry.
 
 use crate::work::visit_python;
-use moldloft_num::{Dual, Dual4, Real, Vec3};
-use moldloft_registry::{
+use moldloft::num::{Dual, Dual4, Real, Vec3};
+use moldloft::rows::{
     Array, Body, CallError, Class, Context, Field, Foreign, Row, Unit, Value, Vectors,
 };
 use pyo3::prelude::*;
@@ -42,15 +42,15 @@ pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny
 
 /// A field or set made in Python, as a function without arguments.
 enum Shape {
-    Field(moldloft_field::Primitive),
-    Set(moldloft_field::Set),
+    Field(moldloft::field::Primitive),
+    Set(moldloft::field::Set),
 }
 
 impl Shape {
     fn value<T: Real>(&self) -> Value<T> {
         match self {
-            Shape::Field(f) => moldloft_field::field_value(f.constant()),
-            Shape::Set(s) => moldloft_field::set_value(s.constant()),
+            Shape::Field(f) => moldloft::field::field_value(f.constant()),
+            Shape::Set(s) => moldloft::field::set_value(s.constant()),
         }
     }
 }
@@ -86,7 +86,7 @@ impl PythonFunction {
                 )
                 .expected("numbers, vectors, rows and grids of them, or texts")
                 .found(arg.class().with_article())
-                .in_field(moldloft_registry::export::field_id(k))
+                .in_field(moldloft::rows::export::field_id(k))
             })?);
         }
         let called = visit_python(|py| {
@@ -168,9 +168,9 @@ impl Number for Dual4 {
 
 fn encode<T: Number>(value: &Value<T>) -> Option<Encoded> {
     let vector = |v: &Vec3<T>| v.to_array().map(Number::parts);
-    let extents = |shape: moldloft_registry::ArrayShape| match shape {
-        moldloft_registry::ArrayShape::Row(n) => vec![n],
-        moldloft_registry::ArrayShape::Grid(m, n) => vec![m, n],
+    let extents = |shape: moldloft::rows::ArrayShape| match shape {
+        moldloft::rows::ArrayShape::Row(n) => vec![n],
+        moldloft::rows::ArrayShape::Grid(m, n) => vec![m, n],
     };
     Some(match value {
         Value::Text(text) => (Some(text.to_string()), Vec::new(), Vec::new()),

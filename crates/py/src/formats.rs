@@ -2,8 +2,8 @@
 
 use crate::arrays;
 use crate::error::plain_error;
-use moldloft_export::{FORMATS, Format, SplinePatch, Symmetry};
-use moldloft_num::Vec3;
+use moldloft::export::{FORMATS, Format, SplinePatch, Symmetry};
+use moldloft::num::Vec3;
 use numpy::{PyArray1, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

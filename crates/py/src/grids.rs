@@ -3,13 +3,13 @@
 use crate::arrays;
 use crate::error::{format_error, model_error, plain_error};
 use crate::work::unlocked;
-use moldloft_diag::Sources;
-use moldloft_export::format_named;
-use moldloft_io::plot3d::{self, Laid, Variant};
-use moldloft_io::points::{self, PointLayout};
-use moldloft_io::section::{self, Listing};
-use moldloft_io::{StructuredGrid, stl, vtk};
-use moldloft_num::Vec3;
+use moldloft::diag::Sources;
+use moldloft::export::format_named;
+use moldloft::io::plot3d::{self, Laid, Variant};
+use moldloft::io::points::{self, PointLayout};
+use moldloft::io::section::{self, Listing};
+use moldloft::io::{StructuredGrid, stl, vtk};
+use moldloft::num::Vec3;
 use numpy::ndarray::{Array4, ArrayView4};
 use numpy::{PyArray2, PyArray4, PyReadonlyArray2, PyReadonlyArray4, ToPyArray};
 use pyo3::prelude::*;
@@ -121,7 +121,7 @@ pub fn write_grids<'py>(
 ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
     let format = format_named(format).map_err(|d| plain_error(&d.message))?;
     let (blocks, main) = (grids(&blocks)?, main.to_string());
-    let files = unlocked(py, move || moldloft_export::write_grids(&blocks, format, &main))?;
+    let files = unlocked(py, move || moldloft::export::write_grids(&blocks, format, &main))?;
     let files = files.map_err(|d| model_error(&d, &Sources::new()))?;
     Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
 }

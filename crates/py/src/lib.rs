@@ -30,9 +30,9 @@ mod work;
 
 use pyo3::pymodule;
 
-/// Counts the bytes that the extension holds, for [`moldloft_budget::Budget`].
+/// Counts the bytes that the extension holds, for [`moldloft::budget::Budget`].
 #[global_allocator]
-static ALLOCATOR: moldloft_budget::Counting = moldloft_budget::Counting;
+static ALLOCATOR: moldloft::budget::Counting = moldloft::budget::Counting;
 
 /// The compiled part of Moldloft.
 #[pymodule]
@@ -72,7 +72,7 @@ mod _core {
     #[pymodule_export]
     use crate::nurbs::{brep, length_unit, nurbs};
     #[pymodule_export]
-    use crate::reference::reference;
+    use crate::reference::{keywords, reference, statements};
     #[pymodule_export]
     use crate::search::{intersect, intersect_plane, nearest};
     #[pymodule_export]

@@ -1,8 +1,8 @@
 //! Meshes: arrays and their report.
 
 use crate::arrays;
-use moldloft_document::Panelled;
-use moldloft_mesh::{
+use moldloft::document::Panelled;
+use moldloft::mesh::{
     Block, Closes, Mesh, PatchInfo, PatchQuality, Statistics, TopologyBuilder, WorstPanel, closure,
     measure, measure_patch, qualities,
 };

@@ -4,10 +4,10 @@ use crate::arrays;
 use crate::document::{PyDocument, wrong_class};
 use crate::error::plain_error;
 use crate::work::interruptible_shared;
-use moldloft_brep::{Brep, SurfaceShape};
-use moldloft_num::Vec3;
-use moldloft_registry::Value;
-use moldloft_spline::nurbs::{FitOptions, NotFitted, Nurbs, of_curve, of_solid, of_surface};
+use moldloft::brep::{Brep, SurfaceShape};
+use moldloft::num::Vec3;
+use moldloft::rows::Value;
+use moldloft::spline::nurbs::{FitOptions, NotFitted, Nurbs, of_curve, of_solid, of_surface};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -25,9 +25,9 @@ fn data<'py, const D: usize>(py: Python<'py>, nurbs: &Nurbs<D>) -> PyResult<Boun
     dict.set_item("weights", weights)?;
     dict.set_item("error", nurbs.error)?;
     dict.set_item("exact", nurbs.exact)?;
-    let angle = |pace: &moldloft_num::Pace| match pace {
-        moldloft_num::Pace::Even => 0.0,
-        moldloft_num::Pace::Angle(angle) => *angle,
+    let angle = |pace: &moldloft::num::Pace| match pace {
+        moldloft::num::Pace::Even => 0.0,
+        moldloft::num::Pace::Angle(angle) => *angle,
     };
     dict.set_item("angles", nurbs.paces.iter().map(angle).collect::<Vec<_>>())?;
     Ok(dict)
@@ -35,7 +35,7 @@ fn data<'py, const D: usize>(py: Python<'py>, nurbs: &Nurbs<D>) -> PyResult<Boun
 
 /// The largest coordinate of a shape, roughly, for the usual accuracy.
 fn size(points: &[Vec3]) -> f64 {
-    let bounds = moldloft_num::Box3::around(points.iter().copied());
+    let bounds = moldloft::num::Box3::around(points.iter().copied());
     let size = bounds.diagonal();
     if size > 0.0 && size.is_finite() { size } else { 1.0 }
 }
@@ -124,7 +124,7 @@ pub fn brep<'py>(
     Ok(dict)
 }
 
-fn face<'py>(py: Python<'py>, face: &moldloft_brep::Face) -> PyResult<Bound<'py, PyDict>> {
+fn face<'py>(py: Python<'py>, face: &moldloft::brep::Face) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("name", &face.name)?;
     dict.set_item("colour", face.colour)?;
@@ -157,7 +157,7 @@ fn face<'py>(py: Python<'py>, face: &moldloft_brep::Face) -> PyResult<Bound<'py,
 }
 
 fn parts<'py>(py: Python<'py>, brep: &Brep) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    let part = |part: &moldloft_brep::Part| {
+    let part = |part: &moldloft::brep::Part| {
         let dict = PyDict::new(py);
         dict.set_item("name", &part.name)?;
         let shells: Vec<_> = part.shells.iter().map(|s| (s.faces.clone(), s.closed)).collect();

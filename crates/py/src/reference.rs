@@ -1,21 +1,42 @@
 //! The registry as data.
 
-use moldloft_registry::{DefaultValue, Field, Row};
+use moldloft::rows::{DefaultValue, Field, Row};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// All kinds and functions with their classes and arguments, in the order of the reference.
 #[pyfunction]
 pub fn reference(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let registry = moldloft_document::registry();
+    let registry = moldloft::document::registry();
     let rows = registry.rows().map(|row| describe(py, row));
-    rows.chain(moldloft_lang::BUILTINS.iter().map(|b| describe_builtin(py, b))).collect()
+    rows.chain(moldloft::lang::BUILTINS.iter().map(|b| describe_builtin(py, b))).collect()
+}
+
+/// The words of the language.
+#[pyfunction]
+pub fn keywords() -> Vec<&'static str> {
+    moldloft::syntax::sdl::keywords().collect()
+}
+
+/// The statements that insert files, as data.
+#[pyfunction]
+pub fn statements(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let describe = |row: &moldloft::lang::InsertedFile| {
+        let dict = PyDict::new(py);
+        dict.set_item("name", row.name)?;
+        dict.set_item("signature", row.signature)?;
+        dict.set_item("doc", row.doc)?;
+        dict.set_item("arguments", row.arguments.to_vec())?;
+        dict.set_item("example", row.example)?;
+        Ok(dict)
+    };
+    moldloft::lang::INSERTED_FILES.iter().map(describe).collect()
 }
 
 /// A function that is part of the language itself; its signature says what it takes.
 fn describe_builtin<'py>(
     py: Python<'py>,
-    builtin: &moldloft_lang::Builtin,
+    builtin: &moldloft::lang::Builtin,
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("name", builtin.name)?;

@@ -3,14 +3,14 @@
 use crate::arrays;
 use crate::error::{plain_error, unknown_name};
 use crate::work::interruptible;
-use moldloft_budget::Budget;
-use moldloft_diag::Severity;
-use moldloft_host::{FileWorld, read_regular};
-use moldloft_lang::World;
-use moldloft_mesh::Mesh;
-use moldloft_num::Vec3;
-use moldloft_picture::{Camera, Line, Options, render};
-use moldloft_sketch::{Files, Reply, Session, Solid, script};
+use moldloft::budget::Budget;
+use moldloft::diag::Severity;
+use moldloft::host::{FileWorld, read_regular};
+use moldloft::lang::World;
+use moldloft::mesh::Mesh;
+use moldloft::num::Vec3;
+use moldloft::picture::{Camera, Line, Options, render};
+use moldloft::sketch::{Files, Reply, Session, Solid, script};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
@@ -330,5 +330,5 @@ impl PySketch {
 /// The command reference as Markdown.
 #[pyfunction]
 pub fn sketch_reference() -> String {
-    moldloft_sketch::command::verbs::reference()
+    moldloft::sketch::command::verbs::reference()
 }

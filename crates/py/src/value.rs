@@ -2,8 +2,8 @@
 
 use crate::arrays;
 use crate::implicit::{PyField, PySet};
-use moldloft_num::Vec3;
-use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
+use moldloft::num::Vec3;
+use moldloft::rows::{Array, ArrayShape, Class, Value, Vectors};
 use numpy::{PyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyList, PyString};
@@ -54,11 +54,11 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
             dict.set_item("groups", groups?)?;
             dict.into_any()
         }
-        Value::Field(_) => match moldloft_field::primitive_of(value) {
+        Value::Field(_) => match moldloft::field::primitive_of(value) {
             Some(field) => Bound::new(py, PyField::of(field))?.into_any(),
             None => py.None().into_bound(py),
         },
-        Value::Set(_) => match moldloft_field::set_of(value) {
+        Value::Set(_) => match moldloft::field::set_of(value) {
             Some(set) => Bound::new(py, PySet::of(set))?.into_any(),
             None => py.None().into_bound(py),
         },
@@ -69,7 +69,7 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
 /// A piece of a body: what it is called, and its triangles.
 fn group<'py>(
     py: Python<'py>,
-    group: &moldloft_registry::Group,
+    group: &moldloft::rows::Group,
 ) -> PyResult<Bound<'py, pyo3::types::PyDict>> {
     let dict = pyo3::types::PyDict::new(py);
     dict.set_item("name", &group.name)?;

@@ -1,6 +1,6 @@
 //! Long work without Python's lock, Ctrl-C, and calls into Python from such work.
 
-use moldloft_budget::{Budget, settle};
+use moldloft::budget::{Budget, settle};
 use pyo3::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -19,7 +19,8 @@
 //! (a surface whose v-law can be redistributed). Kinds of curves and snakes, and surfaces with
 //! `relabel` or with columns that begin with it, take a last argument `relabel`, which acts on what
 //! they build; see `moldloft_registry::relabelled`. `sweep = [bead, point]`: the fields of a bead and of a
-//! point that the model is to move; see `moldloft_registry::Row::sweep`.
+//! point that the model is to move; see `moldloft_registry::Row::sweep`. `role`: what the kind is to the
+//! interpreter besides its value, a `moldloft_registry::Role`.
 //! Each field has a constant that names it in faults, `Self::C1` for `c1`: `fault.in_field(Self::C1)`.
 //! Field: `default` (absent) or `default = 3`, `min`, `max`, `min_items`, `angle`, `variadic`.
 
@@ -50,6 +51,7 @@ struct KindOptions {
     shape: bool,
     relabel: bool,
     sweep: Option<Vec<syn::Ident>>,
+    role: Option<Expr>,
 }
 
 #[derive(Default)]
@@ -95,6 +97,10 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
     let sweep = match &options.sweep {
         Some(fields) => quote!(Some([#(Self::#fields),*])),
         None => quote!(None),
+    };
+    let role = match &options.role {
+        Some(role) => quote!(::moldloft_registry::Role::#role),
+        None => quote!(::moldloft_registry::Role::Plain),
     };
     let is_kind = !options.function;
     let cheap = options.cheap;
@@ -250,6 +256,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                     example: #example.into(),
                     sweep: #sweep,
                     cheap: #cheap,
+                    role: #role,
                     body: ::moldloft_registry::Body::Native {
                         plain: #ident::<f64>::call,
                         dual: #ident::<::moldloft_registry::export::Dual4>::call,
@@ -314,6 +321,9 @@ fn kind_options(input: &DeriveInput) -> syn::Result<KindOptions> {
                 }
                 Meta::NameValue(nv) if nv.path.is_ident("sweep") => {
                     options.sweep = Some(field_names(&nv.value)?);
+                }
+                Meta::NameValue(nv) if nv.path.is_ident("role") => {
+                    options.role = Some(nv.value.clone());
                 }
                 Meta::NameValue(nv) if nv.path.is_ident("name") => {
                     options.name = Some(nv.value.clone());

@@ -39,7 +39,8 @@ pub use refs::{
 };
 pub use relabelled::relabelled;
 pub use row::{
-    Body, Build, CallRemark, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit,
+    Body, Build, CallRemark, Context, DefaultValue, Field, Foreign, Registry, Role, Row, Scalar,
+    Unit,
 };
 pub use search_report::{Remark, SearchReport, SearchStatus};
 pub use sweep::{LocusRef, MovingCurve, MovingPoint, Sweep};

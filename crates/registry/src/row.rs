@@ -192,6 +192,24 @@ pub enum Body {
     Foreign(Arc<dyn Foreign>),
 }
 
+/// What a kind is to the interpreter besides its value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Role {
+    /// Nothing else.
+    #[default]
+    Plain,
+    /// What a model says of itself: units, symmetry, title.
+    Header,
+    /// A list of objects under a name, read as its items.
+    List,
+    /// Unknowns and conditions that are solved before what is built on them.
+    SolveSet,
+    /// A mass and its centre.
+    Weight,
+    /// The sum of several.
+    WeightSum,
+}
+
 /// A callable of the registry.
 #[derive(Clone)]
 pub struct Row {
@@ -215,6 +233,8 @@ pub struct Row {
     pub sweep: Option<[FieldId; 2]>,
     /// True for a function that takes no longer than finding its remembered value: it is called anew.
     pub cheap: bool,
+    /// What a kind is besides its value.
+    pub role: Role,
     /// How it is computed.
     pub body: Body,
 }
@@ -232,6 +252,7 @@ impl Row {
             example: Cow::Borrowed(""),
             sweep: None,
             cheap: false,
+            role: Role::Plain,
             body,
         }
     }

@@ -57,6 +57,7 @@ impl<T: Real> Build<T> for KnotList<T> {
 #[derive(Kind)]
 #[kind(
     class = List,
+    role = List,
     columns = "objects",
     example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(2, 2, 1); \
                EntityList ends({A, B}); EntityList all({ends, C}); BCurve c(all, degree = 2);"

@@ -37,7 +37,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Prints the reference."""
     from moldloft.explanations import EXPLANATIONS
-    from moldloft.language import attributes, guides, reference, search
+    from moldloft.language import attributes, guides, reference, search, statements
 
     rows = reference()
     if options.markdown:
@@ -52,12 +52,12 @@ def run(options: argparse.Namespace) -> int:
         else:
             print(_list(rows))
         return 0
-    if options.name in _STATEMENTS and not options.pictures:
-        text = _STATEMENTS[options.name]
+    statement = next((row for row in statements() if row["name"] == options.name), None)
+    if statement and not options.pictures:
         if options.json:
-            print_json({"name": options.name, "statement": True, "doc": text})
+            print_json({**statement, "statement": True})
         else:
-            print(text)
+            print(_statement_page(statement))
         return 0
     if options.name in EXPLANATIONS and not options.pictures:
         text = EXPLANATIONS[options.name]
@@ -77,7 +77,7 @@ def run(options: argparse.Namespace) -> int:
             _print_guides(guides(options.name))
         return 0
     row = next((row for row in rows if row["name"] == options.name), None)
-    known = [*(row["name"] for row in rows), *_STATEMENTS]
+    known = [*(row["name"] for row in rows), *(row["name"] for row in statements())]
     near = nearest(options.name, known)
     # A misspelt name is an error; a word that names nothing is searched for.
     misspelt = near is not None and options.name[:1].isupper()
@@ -128,30 +128,12 @@ _ATTRIBUTES = {
     "attributes": 'attributes = "..."',
 }
 
-#: Statements that read like kinds.
-_STATEMENTS = {
-    "Component": """\
-Component name("file", parent = object, parameter = value, ...)
+def _statement_page(row: dict[str, Any]) -> str:
+    width = max(len(name) for name, _ in row["arguments"]) + 2
+    arguments = [f"  {name:<{width}}{text}" for name, text in row["arguments"]]
+    example = [f"  {line}" for line in row["example"].splitlines()]
+    return "\n".join([row["signature"], "", row["doc"], "", *arguments, "", "Example:", *example])
 
-A file of objects inserted under a name, on parents of the model's own. The arguments replace the
-file's own declarations of these names: its points and curves, its `param`s. What only they were
-built on is not made. The file sees no other name of the model, and runs by itself as well, on its
-own parents. Its objects are `name.tip`, its parameters `name.span`: design parameters of the model.
-
-  file       the file, relative to the one that inserts it
-  parent     an object of the model in place of one of the file's
-  parameter  a value in place of one of the file's parameters or variables
-
-Example:
-  # keel.sdl
-  param float span = 2 in [0.5, 4];
-  AbsPoint K1(0, 0, 0); AbsPoint K2(1, 0, 0); Line root(K1, K2, visible = 0);
-  AbsBead fore(root, 0.25); RelPoint tip(fore, 0, 0, -span);
-  # boat.sdl
-  AbsPoint A(0, 0, 1); AbsPoint B(8, 0, 1); Line hull(A, B);
-  Component keel("keel.sdl", root = hull, span = 3);
-  RelPoint bulb(keel.tip, 0, 0, -0.5);""",
-}
 
 #: What shows in a picture. Laws, numbers and the model itself have no shape.
 _SHAPES = {

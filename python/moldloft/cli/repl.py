@@ -207,9 +207,10 @@ def _editor(session: Session) -> contextlib.AbstractContextManager[Callable[[str
     from moldloft.storage.journal import state_folder
 
     def keywords() -> set[str]:
-        from moldloft.language import reference
+        from moldloft.language import keywords as words
+        from moldloft.language import reference, statements
 
-        return {row["name"] for row in reference()} | _WORDS
+        return {row["name"] for row in [*reference(), *statements()]} | set(words())
 
     return line_editor(
         state_folder().with_name("repl-history"),
@@ -217,14 +218,6 @@ def _editor(session: Session) -> contextlib.AbstractContextManager[Callable[[str
         keywords=keywords,
         delimiters=' \t\n()[]{},;=+-*/^|&<>!.:"',
     )
-
-
-#: Words of the language that are no kinds and functions, for highlighting.
-_WORDS = {
-    *("param", "float", "int", "string", "vector", "curve", "surface", "farray", "field", "set"),
-    *("for", "in", "if", "then", "else", "while", "foreach", "return", "subroutine", "function"),
-    *("load", "break", "continue", "assert", "print", "file", "returned", "global"),
-}
 
 
 def _read(ask: Callable[[str], str] | None) -> str:

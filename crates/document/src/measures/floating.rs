@@ -6,12 +6,12 @@ use moldloft_hydro::{
     Attitude, Body, FloatError, Flotation, Loading, Solved, Status, Water, bottom, bounds,
     equilibrium, flotation, section_area,
 };
-use moldloft_lang::run::weight::{WEIGHT, mass_and_centre};
+use moldloft_lang::run::weight::mass_and_centre;
 use moldloft_lang::run::whole::not_finite;
 use moldloft_mesh::{FloatOptions, Symmetry};
 use moldloft_model::Graph;
 use moldloft_num::{Dual4, Real, Vec3};
-use moldloft_registry::Scalar;
+use moldloft_registry::{Role, Scalar};
 use rayon::prelude::*;
 
 /// A hydrostatics request; heel and trim in radians.
@@ -156,7 +156,7 @@ pub struct WeightItem {
 impl Document {
     /// The weights of the model, in the order of declaration.
     pub fn weights(&self) -> Vec<WeightItem> {
-        let objects = self.graph().objects().filter(|o| o.row.name == WEIGHT);
+        let objects = self.graph().objects().filter(|o| o.row.role == Role::Weight);
         let item = |o: &moldloft_model::Object<f64>| {
             let (mass, centre) = mass_and_centre(o.value()?)?;
             let argument = |name: &str| o.args.get(o.row.field(name)?);
@@ -188,7 +188,7 @@ impl Document {
             return Ok(None);
         }
         let (mut mass, mut moment) = (T::zero(), Vec3::zero());
-        for object in graph.objects().filter(|o| o.row.name == WEIGHT) {
+        for object in graph.objects().filter(|o| o.row.role == Role::Weight) {
             if let Some((m, centre)) = object.value().and_then(mass_and_centre) {
                 mass += m;
                 moment += centre * m;

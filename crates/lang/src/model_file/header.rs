@@ -5,10 +5,7 @@ use crate::model_file::units;
 use moldloft_model::Graph;
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Build, CallError, Context, Kind, Row, Scalar, Value};
-
-/// The name of the kind below.
-pub const KIND: &str = "Model";
+use moldloft_registry::{Build, CallError, Context, Kind, Role, Row, Scalar, Value};
 
 /// The model's properties: the planes it is mirrored in, its unit, and the header of the
 /// model file that it came from.
@@ -16,7 +13,7 @@ pub const KIND: &str = "Model";
 /// A model has one at most. With `symmetry = "y"` the objects are the half on one side of y = 0,
 /// and hydrostatics count both.
 #[derive(Kind)]
-#[kind(class = List, example = "Model info(symmetry = \"y\", units = \"m kg\");")]
+#[kind(class = List, role = Header, example = "Model info(symmetry = \"y\", units = \"m kg\");")]
 pub struct Model<T: Real> {
     /// The mirror planes, as letters: "y" for y = 0, "xy" for x = 0 and y = 0.
     #[field(default = "")]
@@ -68,7 +65,9 @@ pub fn row() -> Row {
 
 /// The header's text of that field in the first object of kind `Model`; empty without one.
 pub fn text<T: Scalar>(graph: &Graph<T>, field: &str) -> String {
-    let Some(object) = graph.objects().find(|o| o.row.name == KIND) else { return String::new() };
+    let Some(object) = graph.objects().find(|o| o.row.role == Role::Header) else {
+        return String::new();
+    };
     match object.row.field(field).and_then(|at| object.args.get(at)) {
         Some(Value::Text(text)) => text.to_string(),
         _ => String::new(),

@@ -95,7 +95,7 @@ pub(crate) fn identifier(name: &str) -> String {
 
 fn stands_as_name(word: &str) -> bool {
     use moldloft_syntax::sdl;
-    if matches!(word, "param" | "assert" | "field" | "set" | "in") {
+    if sdl::is_contextual(word) {
         return false;
     }
     let (program, expr, found) = sdl::parse_expr(word.to_string(), FileId(0));

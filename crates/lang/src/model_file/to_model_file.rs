@@ -7,7 +7,7 @@ use crate::source::env::Evaluation;
 use crate::source::module::Module;
 use moldloft_diag::Diagnostic;
 use moldloft_model::Object;
-use moldloft_registry::{Attributes, Class, Field, Value};
+use moldloft_registry::{Attributes, Class, Field, Role, Value};
 use std::fmt::Write;
 
 /// The version of model files made from programs that do not come from one.
@@ -90,7 +90,7 @@ impl<'a> ToModelFile<'a> {
                     next += 1;
                 }
             }
-            if object.row.name == header::KIND {
+            if object.row.role == Role::Header {
                 headers += 1;
                 if headers > 1 {
                     self.refuse(object, "a second header", "a model file has one header");
@@ -113,7 +113,7 @@ impl<'a> ToModelFile<'a> {
         let graph = &self.evaluation.graph;
         let symmetry = header::text(graph, "symmetry");
         let units = header::text(graph, "units");
-        let object = graph.objects().find(|o| o.row.name == header::KIND);
+        let object = graph.objects().find(|o| o.row.role == Role::Header);
         let lines = object.and_then(|o| o.args.get(o.row.field("lines")?));
         let lines: Vec<String> = match lines {
             Some(Value::List(items)) => items.iter().filter_map(text_of).collect(),

@@ -2,7 +2,7 @@
 //! the language has no words for travels in comments that begin with `#ms2 `.
 
 use crate::model_file::names::{bare, identifier, is_real, system_name};
-use crate::model_file::{ModelFileSource, Sorted, header};
+use crate::model_file::{ModelFileSource, Sorted};
 use crate::source::env::Evaluation;
 use moldloft_diag::Diagnostic;
 use moldloft_registry::{Attributes, Class, Field, PanelAttributes, Registry, Spacing, Unit};
@@ -207,7 +207,7 @@ impl ToProgram<'_> {
         while self.source.has(&name) {
             name.push('_');
         }
-        format!("{} {name}({});\n", header::KIND, named.join(", "))
+        format!("Model {name}({});\n", named.join(", "))
     }
 
     /// The text of an object, in lines that are comments.

@@ -19,9 +19,6 @@ use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, Ident, List, StmtKind};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// The word that inserts a component.
-pub(crate) const WORD: &str = "Component";
-
 impl<T: Scalar> Interpreter<'_, '_, T> {
     pub fn component(
         &mut self,

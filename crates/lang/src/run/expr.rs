@@ -12,7 +12,7 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{
-    Array, Class, CurveRef, Given, Scalar, SurfaceRef, Value, Vectors, bind_arguments, many,
+    Array, Class, CurveRef, Given, Role, Scalar, SurfaceRef, Value, Vectors, bind_arguments, many,
 };
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, List, Subscript, Symbol, UnaryOp};
@@ -425,7 +425,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The objects of an entity list, unread; any other value as it is.
     pub fn opened(&self, value: Value<T>) -> Value<T> {
         let Value::Object(key) = value else { return value };
-        let list = self.run.graph().get(key).filter(|o| o.row.name == "EntityList");
+        let list = self.run.graph().get(key).filter(|o| o.row.role == Role::List);
         match list.and_then(|o| o.args.first()) {
             Some(Value::List(items)) => {
                 let mut all = Vec::with_capacity(items.len());
@@ -657,7 +657,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if let Some(member) = crate::run::weight::member(object, word) {
             return Some(Ok(member));
         }
-        if object.row.name == crate::run::solve_set::KIND
+        if object.row.role == Role::SolveSet
             && let Some(value) = self.member_of_solve(&object.name, word)
         {
             return Some(value);

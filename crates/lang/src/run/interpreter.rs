@@ -582,12 +582,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     }
 
     fn unknown_type(&self, word: &str) -> Diagnostic {
-        const TYPES: [&str; 12] = [
-            "int", "float", "string", "vector", "farray", "curve", "surface", "pcurve", "psurface",
-            "field", "set", "param",
-        ];
         Diagnostic::error("unknown-type", format!("unknown type `{word}`"))
-            .suggest(word, TYPES)
+            .suggest(word, moldloft_syntax::sdl::declaring_words())
             .help("an object is declared with its data in parentheses: AbsPoint P(0, 0, 1);")
     }
 

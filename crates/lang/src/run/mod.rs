@@ -4,6 +4,7 @@ mod component;
 pub(crate) mod expr;
 pub(crate) mod forward_reference;
 mod implicit_objects;
+pub mod inserted;
 pub mod interpreter;
 mod loops;
 mod objects;

@@ -1,5 +1,6 @@
 //! Runs a program: declarations of objects, and the names they get.
 
+use crate::run::inserted::{Content, inserted_file};
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::env::Origin;
 use crate::source::module::{Module, RoutineAt};
@@ -7,7 +8,7 @@ use crate::source::scope::{Binding, Bound};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::trace::Key;
-use moldloft_registry::{Given, Scalar, bind_arguments};
+use moldloft_registry::{Given, Role, Scalar, bind_arguments};
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
 use std::sync::Arc;
@@ -45,25 +46,19 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let word = m.program.name(kind.symbol);
         let row = match &m.rows[kind.symbol.0 as usize] {
             // A file says of itself what does not concern whoever inserts it.
-            Some(row)
-                if row.name == crate::model_file::header::KIND && !self.components.is_empty() =>
-            {
-                return Ok(());
-            }
+            Some(row) if row.role == Role::Header && !self.components.is_empty() => return Ok(()),
             Some(row) if row.kind => row,
-            None if word == "Sketch"
-                && !self.env.scope.routines.contains_key(&m.names[kind.symbol.0 as usize]) =>
-            {
-                return self.sketch_object(m, id, name, args, span);
-            }
             other => {
                 if let Some(&routine) =
                     self.env.scope.routines.get(&m.names[kind.symbol.0 as usize])
                 {
                     return self.instance(m, routine, name, args, span);
                 }
-                if word == crate::run::component::WORD {
-                    return self.component(m, name, args, span);
+                if let Some(row) = inserted_file(word) {
+                    return match row.content {
+                        Content::Component => self.component(m, name, args, span),
+                        Content::Sketch => self.sketch_object(m, id, name, args, span),
+                    };
                 }
                 if other.is_some() {
                     return Err(Diagnostic::error(
@@ -117,7 +112,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let seed = self.inputs.seed;
             crate::value::number_path::seed(row, &mut filled, full, seed);
         }
-        if row.name == crate::run::solve_set::KIND {
+        if row.role == Role::SolveSet {
             self.solve_set(m, args, row, positional, &mut filled, full, name.span)?;
         }
         let origin = self.env.origins.len() as u32;

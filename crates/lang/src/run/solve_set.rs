@@ -12,9 +12,6 @@ use moldloft_registry::{Array, Build, CallError, Context, Kind, Row, Scalar, Val
 use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, List};
 use std::sync::Arc;
 
-/// The name of the kind below.
-pub(crate) const KIND: &str = "SolveSet";
-
 /// Parameters that are found so that as many numbers become zero, by damped Newton steps from the
 /// values that they are given.
 ///
@@ -25,6 +22,7 @@ pub(crate) const KIND: &str = "SolveSet";
 #[derive(Kind)]
 #[kind(
     class = Numbers,
+    role = SolveSet,
     example = "param float x = 1 in [0, 5]; param float y = 1; AbsPoint A(x, y, 0); \
                AbsPoint B(0, 0, 0); Line l(A, B); SolveSet s({x, y}, {l.length - 5, A.x - 0.75*A.y});"
 )]

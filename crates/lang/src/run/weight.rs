@@ -6,16 +6,11 @@ use moldloft_hydro::{USUAL_ACCURACY, curve_measures, solid_measures, surface_mea
 use moldloft_model::Object;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Array, Build, CallError, Context, Kind, Row, Scalar, Value};
+use moldloft_registry::{Array, Build, CallError, Context, Kind, Role, Row, Scalar, Value};
 use std::sync::Arc;
 
 /// An error of a volume that is refused, relative to it.
 const ROUGH: f64 = 1e-6;
-
-/// The name of the kind of weights.
-pub const WEIGHT: &str = "Weight";
-/// The name of the kind of their sums.
-pub const WEIGHT_SUM: &str = "WeightSum";
 
 /// A mass and its centre: a part of a ship's weight.
 ///
@@ -28,6 +23,7 @@ pub const WEIGHT_SUM: &str = "WeightSum";
 #[derive(Kind)]
 #[kind(
     class = Numbers,
+    role = Weight,
     example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); \
                Line l(A, B); Line m(C, D); RuledSurf S(l, m); Weight plating(S, per = 0.05, group = \"hull\"); \
                Weight engine({2, 0, 0.5}, mass = 3, group = \"machinery\", margin = 5); \
@@ -58,6 +54,7 @@ pub struct Weight<T: Real> {
 #[derive(Kind)]
 #[kind(
     class = Numbers,
+    role = WeightSum,
     example = "Weight engine({2, 0, 0.5}, mass = 3); Weight ballast({1, 0, -1}, mass = 2); \
                WeightSum all({engine, ballast});"
 )]
@@ -204,7 +201,7 @@ pub fn mass_and_centre<T: Real>(value: &Value<T>) -> Option<(T, Vec3<T>)> {
 
 /// `.mass`, `.centre`, `.x`, `.y`, `.z` of a weight.
 pub fn member<T: Scalar>(object: &Object<T>, word: &str) -> Option<Value<T>> {
-    if !matches!(&*object.row.name, WEIGHT | WEIGHT_SUM) {
+    if !matches!(object.row.role, Role::Weight | Role::WeightSum) {
         return None;
     }
     let (mass, centre) = mass_and_centre(object.value()?)?;

@@ -1,9 +1,9 @@
 //! Arguments, errors and results that curves, nets and networks share.
 
-use moldloft_budget::Budget;
-use moldloft_fair::{Certificate, FairError, Measure, Space};
-use moldloft_num::Vec3;
-use moldloft_spline::KnotVector;
+use moldloft::budget::Budget;
+use moldloft::fair::{Certificate, FairError, Measure, Space};
+use moldloft::num::Vec3;
+use moldloft::spline::KnotVector;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

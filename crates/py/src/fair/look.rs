@@ -2,8 +2,8 @@
 
 use super::arguments::refused;
 use crate::arrays;
-use moldloft_fair::surface::{self, SurfaceAnalysis as One};
-use moldloft_num::{Surface, Vec3};
+use moldloft::fair::surface::{self, SurfaceAnalysis as One};
+use moldloft::num::{Surface, Vec3};
 use numpy::ndarray::Array2;
 use numpy::{PyArray2, PyArray3, ToPyArray};
 use pyo3::prelude::*;

@@ -5,12 +5,12 @@ use super::look::Look;
 use super::solve::{bound, contradiction, end, get, goal, motion};
 use super::spline::spacing;
 use crate::arrays;
-use moldloft_fair::{
+use moldloft::fair::{
     Condition, End, FairError, GridData, Layout, Limit, Measure, Network, NetworkCurve,
     NetworkMode, NetworkReport, PatchNet, Seam, Space, Spacing, fair_grid, grid_parameters,
     grid_spacing, parameters_across,
 };
-use moldloft_num::Vec3;
+use moldloft::num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -27,7 +27,7 @@ type Option1<'py> = Option<PyReadonlyArray1<'py, f64>>;
 
 impl Net {
     fn network(&self, radii: Vec<f64>) -> PyResult<Network> {
-        let limit = Limit::new(moldloft_fair::Motion::Ball, radii).map_err(fair_error)?;
+        let limit = Limit::new(moldloft::fair::Motion::Ball, radii).map_err(fair_error)?;
         let (spaces, points) = (self.spaces.clone(), self.points.clone());
         Network::net(spaces, points, self.weights.clone(), limit).map_err(fair_error)
     }

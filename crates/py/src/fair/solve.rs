@@ -2,12 +2,12 @@
 
 use super::arguments::{certificate, fair_error, measure, refused};
 use super::spline::{Spline, spacing, told};
-use moldloft_fair::{
+use moldloft::fair::{
     Bound as Bounded, Condition, Data, DataOptions, End, FairError, Goal, Job, KnotRemovalOptions,
     Layout, Limit, Mode, Motion, Numbers, OptimumOptions, Report, Rule, ShapeCondition, Space,
     Step, Stops, data_report, knot_removal, merged, parameters_across, report, shape,
 };
-use moldloft_num::{Order, Vec3};
+use moldloft::num::{Order, Vec3};
 use numpy::ToPyArray;
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
@@ -342,7 +342,7 @@ pub fn data<'py>(
     dict.set_item("at", at.to_pyarray(py))?;
     dict.set_item("used", made.used)?;
     dict.set_item("least", made.least)?;
-    let arc = |a: &moldloft_fair::FoundArc| {
+    let arc = |a: &moldloft::fair::FoundArc| {
         let user = |k: usize| one.of.iter().position(|&o| o == k).unwrap_or(k);
         (a.between.map(user), a.radius, a.centre.to_array(), a.off)
     };

@@ -3,12 +3,12 @@
 use super::arguments::{fair_error, floats, long, measure, refused, space, vectors};
 use super::solve;
 use crate::arrays;
-use moldloft_fair::shape::{self, Sample};
-use moldloft_fair::{
+use moldloft::fair::shape::{self, Sample};
+use moldloft::fair::{
     Finding, Job, Jumps, Space, Spacing, fit, fit_rational, interpolate_with_corners,
     least_squares, parameters, surface,
 };
-use moldloft_num::Vec3;
+use moldloft::num::Vec3;
 use numpy::ndarray::Array1;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::prelude::*;
@@ -347,7 +347,7 @@ impl Spline {
 
     /// Rows of word, control point, vector, sentence.
     fn findings(&self) -> PyResult<Vec<Told>> {
-        Ok(moldloft_fair::findings(&self.job()?).into_iter().map(told).collect())
+        Ok(moldloft::fair::findings(&self.job()?).into_iter().map(told).collect())
     }
 
     /// Fairs: the faired spline and the report.
@@ -376,18 +376,18 @@ pub fn told(finding: Finding) -> Told {
 #[pyfunction]
 pub fn data_findings(points: PyReadonlyArray2<'_, f64>, closed: bool) -> PyResult<Vec<Told>> {
     let points = vectors(&points)?;
-    let one = |f: moldloft_fair::DataFinding| {
+    let one = |f: moldloft::fair::DataFinding| {
         let text = f.to_string();
         match f {
-            moldloft_fair::DataFinding::WrongDigit { index, expected, .. } => {
+            moldloft::fair::DataFinding::WrongDigit { index, expected, .. } => {
                 ("outlier", index, (points[index] - expected).to_array(), text)
             }
-            moldloft_fair::DataFinding::Knuckle { index, angle, .. } => {
+            moldloft::fair::DataFinding::Knuckle { index, angle, .. } => {
                 ("corner", index, [angle, 0.0, 0.0], text)
             }
         }
     };
-    Ok(moldloft_fair::data_findings(&points, closed).into_iter().map(one).collect())
+    Ok(moldloft::fair::data_findings(&points, closed).into_iter().map(one).collect())
 }
 
 /// How large an error of each point would be found.
@@ -397,10 +397,10 @@ pub fn detectable<'py>(
     points: PyReadonlyArray2<'py, f64>,
     closed: bool,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    Ok(moldloft_fair::detectable(&vectors(&points)?, closed).to_pyarray(py))
+    Ok(moldloft::fair::detectable(&vectors(&points)?, closed).to_pyarray(py))
 }
 
-/// The number of monotone runs of a list of numbers; see `moldloft_fair::shape::monotone_runs`.
+/// The number of monotone runs of a list of numbers; see `moldloft::fair::shape::monotone_runs`.
 #[pyfunction]
 pub fn monotone_runs(values: PyReadonlyArray1<'_, f64>, share: f64) -> PyResult<usize> {
     let values = values.as_array().to_vec();

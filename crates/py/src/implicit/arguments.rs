@@ -3,8 +3,8 @@
 use super::oracle::Slots;
 use crate::arrays;
 use crate::error::plain_error;
-use moldloft_field::{Attributes, FieldError};
-use moldloft_num::{Box3, Vec3};
+use moldloft::field::{Attributes, FieldError};
+use moldloft::num::{Box3, Vec3};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

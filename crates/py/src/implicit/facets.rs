@@ -2,11 +2,11 @@
 
 use super::arguments::{array, attributes};
 use crate::error::plain_error;
-use moldloft_field::{Facets, Pieces, crossing_faces};
-use moldloft_io::{LinesAndPoints, obj, ply, stl, threemf, vtk};
-use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
-use moldloft_num::{Box3, Plane, Vec3};
-use moldloft_picture::{Line, Options, patch_colour, render};
+use moldloft::field::{Facets, Pieces, crossing_faces};
+use moldloft::io::{LinesAndPoints, obj, ply, stl, threemf, vtk};
+use moldloft::mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
+use moldloft::num::{Box3, Plane, Vec3};
+use moldloft::picture::{Line, Options, patch_colour, render};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -84,7 +84,7 @@ impl PyFacets {
     /// The patches: name, kind, colour, first triangle and one past the last, whether it is a sheet.
     fn patches(&self) -> Vec<(String, String, Option<u8>, usize, usize, bool)> {
         let solids = solid_of(&self.pieces).mesh.patches().len();
-        let one = |(k, p): (usize, &moldloft_mesh::Patch)| {
+        let one = |(k, p): (usize, &moldloft::mesh::Patch)| {
             let PatchInfo { name, kind, colour, .. } = &p.info;
             (name.clone(), kind.clone(), *colour, p.faces.start, p.faces.end, k >= solids)
         };
@@ -164,7 +164,7 @@ impl PyFacets {
     #[allow(clippy::type_complexity)]
     fn unresolved(&self) -> Vec<(([f64; 3], [f64; 3]), f64, bool)> {
         let solid = solid_of(&self.pieces);
-        let row = |u: &moldloft_field::Unresolved| {
+        let row = |u: &moldloft::field::Unresolved| {
             ((u.place.low.to_array(), u.place.high.to_array()), u.volume, u.missed)
         };
         solid.unresolved.iter().map(row).collect()
@@ -220,7 +220,7 @@ impl PyFacets {
             }
             "glb" => {
                 refused("glb")?;
-                moldloft_io::gltf::write(mesh, stem, 1.0, patch_colour)
+                moldloft::io::gltf::write(mesh, stem, 1.0, patch_colour)
             }
             "3mf" => {
                 refused("3mf")?;

@@ -5,8 +5,8 @@ use super::oracle::{PythonOracle, Slots};
 
 use crate::arrays;
 use crate::error::plain_error;
-use moldloft_field::{Affine, FieldError, Form, Primitive, check_rail, check_rails};
-use moldloft_num::{Axis, Vec3};
+use moldloft::field::{Affine, FieldError, Form, Primitive, check_rail, check_rails};
+use moldloft::num::{Axis, Vec3};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -176,8 +176,8 @@ impl PyField {
     ) -> PyResult<Self> {
         let bodies = [&self.inner, &o.inner];
         let made = match l4 {
-            Some(l4) => moldloft_field::liming(bodies, [&l3.inner, &l4.inner], lambda),
-            None => moldloft_field::liming_on_rail(bodies, &l3.inner, lambda, contact),
+            Some(l4) => moldloft::field::liming(bodies, [&l3.inner, &l4.inner], lambda),
+            None => moldloft::field::liming_on_rail(bodies, &l3.inner, lambda, contact),
         };
         let mut slots = self.slots.with(&o.slots).with(&l3.slots);
         if let Some(l4) = l4 {
@@ -187,14 +187,18 @@ impl PyField {
     }
 
     fn zhang(&self, o: &Self, l3: &Self, l4: &Self, lambda: f64, contact: u32) -> PyResult<Self> {
-        let made =
-            moldloft_field::zhang([&self.inner, &o.inner], [&l3.inner, &l4.inner], lambda, contact);
+        let made = moldloft::field::zhang(
+            [&self.inner, &o.inner],
+            [&l3.inner, &l4.inner],
+            lambda,
+            contact,
+        );
         let slots = self.slots.with(&o.slots).with(&l3.slots).with(&l4.slots);
         Ok(Self { inner: made.map_err(plain_error)?, slots })
     }
 
     fn setback(&self, o: &Self, a: f64, b: f64) -> PyResult<Self> {
-        let made = moldloft_field::setback_rail([&self.inner, &o.inner], [a, b]);
+        let made = moldloft::field::setback_rail([&self.inner, &o.inner], [a, b]);
         made.map(|p| self.both(o, p)).map_err(plain_error)
     }
 
@@ -297,8 +301,8 @@ impl PyField {
     #[staticmethod]
     fn from_text(text: &str, format: &str) -> PyResult<Self> {
         let made = match format {
-            "fidget" => moldloft_field::read_fidget(text),
-            "libfive" => moldloft_field::read_libfive(text),
+            "fidget" => moldloft::field::read_fidget(text),
+            "libfive" => moldloft::field::read_libfive(text),
             _ => Primitive::from_text(text),
         };
         made.map(Self::of).map_err(plain_error)

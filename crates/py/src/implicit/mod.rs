@@ -1,4 +1,4 @@
-//! Implicit fields and sets: classes over `moldloft_field`, no logic.
+//! Implicit fields and sets: classes over `moldloft::field`, no logic.
 
 mod arguments;
 mod facets;

@@ -1,8 +1,8 @@
 //! Primitives that are Python functions.
 
 use crate::work::visit_python;
-use moldloft_field::{Interval, Oracle};
-use moldloft_num::{Box3, Field, Vec3};
+use moldloft::field::{Interval, Oracle};
+use moldloft::num::{Box3, Field, Vec3};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;

@@ -6,12 +6,12 @@ use super::field::{PyField, values};
 use super::oracle::Slots;
 use crate::error::plain_error;
 use crate::work::interruptible;
-use moldloft_budget::Budget;
-use moldloft_field::{
+use moldloft::budget::Budget;
+use moldloft::field::{
     Affine, Attributes, Caster, FieldError, Light, Mass, Measure, Membership, Options, Pieces, Ray,
     RayTrace, Resolution, Set, facet_mixed,
 };
-use moldloft_num::{Box3, Vec3};
+use moldloft::num::{Box3, Vec3};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -51,7 +51,7 @@ impl PySet {
 fn region(set: &Set, given: Option<Box3>) -> Result<Box3, FieldError> {
     match given {
         Some(over) => Ok(over),
-        None => match moldloft_field::around(set)? {
+        None => match moldloft::field::around(set)? {
             Some(over) => Ok(over),
             None => Err(FieldError::Degenerate { what: "set: it is empty and has no box; it" }),
         },
@@ -174,7 +174,7 @@ impl PySet {
     ) -> PyResult<Self> {
         let (a, b) = (&self.inner, &o.inner);
         let made =
-            py.detach(|| moldloft_field::fillet_sets([a, b], widths, lambda, edges.as_deref()));
+            py.detach(|| moldloft::field::fillet_sets([a, b], widths, lambda, edges.as_deref()));
         let inner = made.map_err(plain_error)?;
         Ok(Self { inner, slots: self.slots.with(&o.slots) })
     }
@@ -189,8 +189,8 @@ impl PySet {
     ) -> PyResult<Self> {
         let set = &self.inner;
         let made = py.detach(|| match lambda {
-            Some(lambda) => moldloft_field::round_edges(set, width, lambda, edges.as_deref()),
-            None => moldloft_field::chamfer_edges(set, width, edges.as_deref()),
+            Some(lambda) => moldloft::field::round_edges(set, width, lambda, edges.as_deref()),
+            None => moldloft::field::chamfer_edges(set, width, edges.as_deref()),
         });
         made.map(|s| self.from(s)).map_err(plain_error)
     }
@@ -205,8 +205,8 @@ impl PySet {
     ) -> PyResult<(Self, PyField)> {
         let bodies = [&l1.inner, &l2.inner];
         let blend = match kind {
-            "fillet" => moldloft_field::fillet(bodies, setbacks, lambda),
-            _ => moldloft_field::round(bodies, setbacks, lambda),
+            "fillet" => moldloft::field::fillet(bodies, setbacks, lambda),
+            _ => moldloft::field::round(bodies, setbacks, lambda),
         };
         let blend = blend.map_err(plain_error)?;
         let slots = l1.slots.with(&l2.slots);
@@ -223,7 +223,7 @@ impl PySet {
         lambda: f64,
         contact: u32,
     ) -> PyResult<(Self, PyField)> {
-        let blend = moldloft_field::transition(
+        let blend = moldloft::field::transition(
             [&l1.inner, &l2.inner],
             [&l3.inner, &l4.inner],
             lambda,
@@ -349,7 +349,7 @@ impl PySet {
     }
 
     fn bounds(&self, py: Python<'_>, accuracy: f64) -> PyResult<Option<([f64; 3], [f64; 3])>> {
-        let found = self.long(py, move |set, _| moldloft_field::bounds(set, accuracy))?;
+        let found = self.long(py, move |set, _| moldloft::field::bounds(set, accuracy))?;
         Ok(found.map(|b| (b.low.to_array(), b.high.to_array())))
     }
 
@@ -375,7 +375,7 @@ impl PySet {
             let plain = set.leaves().iter().all(|l| !l.primitive.is_sheet());
             // Only what is given is taken over: what a caller times or counts is what was done.
             let pieces = if plain {
-                let facets = moldloft_field::refacet(set, &over, &options, before.as_deref())?;
+                let facets = moldloft::field::refacet(set, &over, &options, before.as_deref())?;
                 Pieces::Solid(Arc::new(facets))
             } else {
                 Pieces::Mixed(Arc::new(facet_mixed(set, &over, &options)?))
@@ -397,13 +397,13 @@ impl PySet {
         let found = self.long(py, move |set, budget| {
             let over = match given(corners) {
                 Some(over) => over,
-                None => match moldloft_field::around(set)? {
+                None => match moldloft::field::around(set)? {
                     Some(over) => over,
                     None => return Ok(None),
                 },
             };
             let measure = Measure { depth, accuracy, cells, budget, ..Measure::default() };
-            moldloft_field::mass(set, &over, &measure).map(Some)
+            moldloft::field::mass(set, &over, &measure).map(Some)
         })?;
         let Some(Mass { bracket, best, .. }) = found else {
             let dict = PyDict::new(py);
@@ -442,7 +442,7 @@ impl PySet {
         let found = self.long(py, move |set, _| {
             let over = region(set, given(corners))?;
             let accuracy = accuracy.unwrap_or(1e-6 * over.diagonal());
-            moldloft_field::nearest(set, Vec3::from(point), &over, accuracy)
+            moldloft::field::nearest(set, Vec3::from(point), &over, accuracy)
         })?;
         Ok(found.map(|n| (n.point.to_array(), n.distance, n.at_least)))
     }
@@ -460,9 +460,9 @@ impl PySet {
         let found = self.long(py, move |set, _| {
             let over = region(&(set | &other), given(corners))?;
             let accuracy = accuracy.unwrap_or(1e-5 * over.diagonal());
-            moldloft_field::distance(set, &other, &over, accuracy)
+            moldloft::field::distance(set, &other, &over, accuracy)
         })?;
-        let row = |g: moldloft_field::Distance| {
+        let row = |g: moldloft::field::Distance| {
             (g.distance, g.at_least, g.first.to_array(), g.second.to_array())
         };
         Ok(found.map(row))
@@ -484,7 +484,7 @@ impl PySet {
         let ray = Ray { start, direction, length };
         let hits = py.detach(|| Caster::new(&self.inner).hits(&ray));
         finished(py, &self.slots, Ok(()))?;
-        let one = |h: moldloft_field::Hit| {
+        let one = |h: moldloft::field::Hit| {
             (h.t, h.point.to_array(), h.leaf, h.normal.to_array(), h.enters)
         };
         Ok(hits.into_iter().map(one).collect())
@@ -520,7 +520,7 @@ impl PySet {
             .map(|(k, leaf)| {
                 let turn = [9usize, 14, 10, 12, 11, 13, 6, 7][k % 8];
                 let index = leaf.attributes.colour.map_or(turn, usize::from);
-                moldloft_picture::PALETTE[index % 16]
+                moldloft::picture::PALETTE[index % 16]
             })
             .collect();
         let view = RayTrace {
@@ -540,9 +540,9 @@ impl PySet {
         let rgb = self.long(py, move |set, budget| {
             let over = region(set, given(corners))?;
             let options = Options { budget, ..Options::new(Resolution::Depth(1)) };
-            moldloft_field::ray_trace(set, &over, &view, &options)
+            moldloft::field::ray_trace(set, &over, &view, &options)
         })?;
-        let png = moldloft_picture::encoded(&rgb, size[0], size[1]).map_err(plain_error)?;
+        let png = moldloft::picture::encoded(&rgb, size[0], size[1]).map_err(plain_error)?;
         Ok(PyBytes::new(py, &png))
     }
 

@@ -32,3 +32,4 @@ pub use grouping::{Grouping, Step};
 pub use interner::Symbol;
 pub use parser::{MAX_DIAGNOSTICS, MAX_HEIGHT, MAX_NESTING, parse, parse_expr};
 pub use program::Program;
+pub use token::{declaring_words, is_contextual, keywords};

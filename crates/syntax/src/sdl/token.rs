@@ -106,6 +106,23 @@ pub(crate) const RESERVED: [(&str, Kind); 28] = [
 /// Words that are reserved only where they can stand; their symbols follow those of [`RESERVED`].
 const CONTEXTUAL: [&str; 10] = ["param", "in", "assert", "field", "set", "x", "y", "z", "d1", "d2"];
 
+/// The words of the language: reserved ones, and those that begin statements or stand between their parts.
+pub fn keywords() -> impl Iterator<Item = &'static str> {
+    let components = CONTEXTUAL.len() - 5;
+    RESERVED.iter().map(|(word, _)| *word).chain(CONTEXTUAL[..components].iter().copied())
+}
+
+/// The words that a declaration may begin with.
+pub fn declaring_words() -> impl Iterator<Item = &'static str> {
+    let types = RESERVED.iter().filter(|(_, kind)| *kind == TypeWord).map(|(word, _)| *word);
+    types.chain(["param", "field", "set"])
+}
+
+/// Whether the word has a meaning of its own at some places only.
+pub fn is_contextual(word: &str) -> bool {
+    CONTEXTUAL[..CONTEXTUAL.len() - 5].contains(&word)
+}
+
 pub(crate) const PARAM: Symbol = Symbol(28);
 pub(crate) const IN: Symbol = Symbol(29);
 pub(crate) const ASSERT: Symbol = Symbol(30);
