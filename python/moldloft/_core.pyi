@@ -352,6 +352,9 @@ class Document:
     def weights(
         self,
     ) -> list[tuple[str, str, float, float, tuple[float, float, float], str]]: ...
+    def sections_of(
+        self, name: str
+    ) -> list[tuple[float, list[tuple[str, NDArray[np.float64], bool]]]]: ...
     def section_areas(
         self, stations: Sequence[float], levels: Sequence[float], accuracy: float
     ) -> list[list[tuple[float, float]]]: ...

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
 import numpy as np
 
@@ -499,8 +499,53 @@ class Frame(Object):
     """A frame of three axes."""
 
 
+class ContourLine(NamedTuple):
+    """A line of a section."""
+
+    #: The surface or body that it is on.
+    shape: str
+    #: Its points, ``(n, 3)``, exact ones of the surface; the first is not repeated when it closes.
+    points: Floats
+    #: True when it closes.
+    closed: bool
+
+
 class Contours(Object):
-    """A family of plane sections."""
+    """A family of sections: stations, waterlines, buttocks, and those by cylinders and half-planes.
+
+    ``positions``, ``lengths`` and ``areas`` are arrays with a number for each section; in expressions they have
+    derivatives: ``m.derivative("stations.areas", "beam")``. A section is all that its surfaces and bodies leave on it,
+    with the images in planes of symmetry that fall on the same section. An open section is closed by a straight chord
+    for its area, which is warned of.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> m = moldloft.loads('''
+    ... param float r = 2;
+    ... AbsPoint S(0, 0, -r); AbsPoint E(0, 0, r); AbsPoint Q(r, 0, 0); Arc profile(S, Q, E);
+    ... Line axis(S, E); RevSurf ball(profile, axis);
+    ... ZContours rings(-1, 1, 0, 1);''')
+    >>> m["rings"].positions
+    array([-1.,  0.,  1.])
+    >>> (m["rings"].areas / np.pi).round(9)
+    array([3., 4., 3.])
+    >>> [(line.shape, line.points.shape[1]) for line in m["rings"].sections[0]]
+    [('ball', 3)]
+    """
+
+    #: Where the sections are: coordinates, distances, radii, or angles in radians, ``(n,)``.
+    positions: Floats
+    #: The length of the lines of each section, ``(n,)``.
+    lengths: Floats
+    #: The area within each section, holes left out, ``(n,)``.
+    areas: Floats
+
+    @property
+    def sections(self) -> list[list[ContourLine]]:
+        """The lines of each section, on one side of planes of symmetry as the model has them."""
+        cut = self._model._document.sections_of(self.name)
+        return [[ContourLine(*line) for line in lines] for _, lines in cut]
 
 
 class Relabel(Object):

@@ -1,7 +1,7 @@
 //! Sections of the exact surfaces, and of bodies of triangles: stations, waterlines, buttocks, and those by cylinders and angles.
 
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, section_where};
-use moldloft_num::{Vec3, find_root};
+use moldloft_num::{Order, Real, Vec3, find_root};
 use moldloft_registry::{Attributes, Family, SurfaceRef, TriangleBody};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,8 +18,8 @@ pub struct Contour {
 
 /// The grid on which a surface is searched for sections: a line that stays inside one cell is not
 /// seen.
-pub struct ContourCutter<'s> {
-    surface: &'s SurfaceRef<f64>,
+pub struct ContourCutter<'s, T: Real> {
+    surface: &'s SurfaceRef<T>,
     us: Vec<f64>,
     vs: Vec<f64>,
     points: Vec<Vec3>,
@@ -28,31 +28,39 @@ pub struct ContourCutter<'s> {
 /// An edge of the search grid: from (i, j) along u or along v.
 type GridEdge = (usize, usize, bool);
 
-impl<'s> ContourCutter<'s> {
+impl<'s, T: Real> ContourCutter<'s, T> {
     /// Tabulates `surface` at least four times as fine as its panels, 32 steps at least.
-    pub fn new(surface: &'s SurfaceRef<f64>, head: &Attributes) -> Self {
+    pub fn new(surface: &'s SurfaceRef<T>, head: &Attributes) -> Self {
+        let breaks = surface.breaks();
         let steps = |k: usize| {
             let n = head.own_divisions()[k].saturating_mul(head.subdivisions[k]).saturating_mul(4);
             let n = n.clamp(32, 512);
-            (0..=n).map(|i| f64::from(i) / f64::from(n)).collect::<Vec<f64>>()
+            let even = (0..=n).map(|i| f64::from(i) / f64::from(n));
+            // A line turns where it crosses a knuckle: there it has a point.
+            let mut all: Vec<f64> = even.chain(breaks[k].iter().copied()).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all
         };
         let (us, vs) = (steps(0), steps(1));
-        let mut points = vec![Vec3::zero(); us.len() * vs.len()];
+        let mut points = vec![Vec3::<T>::zero(); us.len() * vs.len()];
         surface.grid(&us, &vs, &mut points, None);
+        let points = points.into_iter().map(|p| p.re()).collect();
         Self { surface, us, vs, points }
     }
 
     /// The lines in which the member `value` of a family cuts the surface, those that begin at an
     /// edge first, each from the edge point of lowest grid index.
-    pub fn section(&self, family: &Family<f64>, value: f64) -> Vec<Contour> {
+    pub fn section(&self, family: &Family<T>, value: T) -> Vec<Contour> {
         let nv = self.vs.len();
-        let heights: Vec<f64> = self.points.iter().map(|&p| family.height(value, p)).collect();
+        let over = |p: Vec3| family.height(value, Vec3::lifted(p)).re();
+        let heights: Vec<f64> = self.points.iter().map(|&p| over(p)).collect();
         // At a pole on the section all heights are rounding: they must have one sign.
         let size = self.points.iter().fold(0.0f64, |m, p| m.max(p.norm()));
         let epsilon = 64.0 * f64::EPSILON * size;
         let above = |i: usize, j: usize| heights[i * nv + j] >= -epsilon;
-        let point = |u: f64, v: f64| self.surface.jet(u, v, moldloft_num::Order::Zero).p;
-        let height = |u: f64, v: f64| family.height(value, point(u, v));
+        let point = |u: f64, v: f64| self.point([u, v]);
+        let height = |u: f64, v: f64| over(point(u, v));
         let mut crossings: BTreeMap<GridEdge, [f64; 2]> = BTreeMap::new();
         for i in 0..self.us.len() {
             for j in 0..nv {
@@ -68,7 +76,7 @@ impl<'s> ContourCutter<'s> {
                 }
             }
         }
-        crossings.retain(|_, [u, v]| family.holds(value, point(*u, *v)));
+        crossings.retain(|_, [u, v]| family.holds(value, Vec3::lifted(point(*u, *v))));
         let mut links: BTreeMap<GridEdge, Vec<GridEdge>> = BTreeMap::new();
         let cells: BTreeSet<(usize, usize)> =
             crossings.keys().flat_map(|&e| self.cells(e)).collect();
@@ -93,6 +101,10 @@ impl<'s> ContourCutter<'s> {
             }
         }
         self.chains(&crossings, links, epsilon)
+    }
+
+    fn point(&self, [u, v]: [f64; 2]) -> Vec3 {
+        self.surface.jet(T::from(u), T::from(v), Order::Zero).p.re()
     }
 
     fn cells(&self, (i, j, along_u): GridEdge) -> Vec<(usize, usize)> {
@@ -133,8 +145,7 @@ impl<'s> ContourCutter<'s> {
                 at = next;
             }
             let mut uv: Vec<[f64; 2]> = chain.iter().map(|e| crossings[e]).collect();
-            let point = |&[u, v]: &[f64; 2]| self.surface.jet(u, v, moldloft_num::Order::Zero).p;
-            let mut points: Vec<Vec3> = uv.iter().map(point).collect();
+            let mut points: Vec<Vec3> = uv.iter().map(|&at| self.point(at)).collect();
             let closed = chain.len() > 2 && links[&start].len() == 2 && links[&at].contains(&start);
             // A line may run along a pole: one point of it is enough.
             let mut kept = vec![true; points.len()];
@@ -153,15 +164,21 @@ impl<'s> ContourCutter<'s> {
 }
 
 /// The lines in which the member `value` of a family cuts the triangles of a body.
-pub fn body_section(body: &TriangleBody<f64>, family: &Family<f64>, value: f64) -> Vec<Contour> {
+pub fn body_section<T: Real>(body: &TriangleBody<T>, family: &Family<T>, value: T) -> Vec<Contour> {
     let mut builder = TopologyBuilder::new();
     let faces = body.triangles.iter().map(|&[a, b, c]| [a, b, c, c]);
     let built = builder
         .add_vertices(body.points.len())
         .and_then(|_| builder.add_faces(PatchInfo::new(""), faces));
-    let mesh = built.and_then(|_| Mesh::new(builder.build().into(), body.points.clone()));
+    let mesh = built.and_then(|_| {
+        Mesh::new(builder.build().into(), body.points.iter().map(|p| p.re()).collect())
+    });
     let Ok(mesh) = mesh else { return Vec::new() };
-    let lines = section_where(&mesh, |p| family.height(value, p), |p| family.holds(value, p));
+    let lines = section_where(
+        &mesh,
+        |p| family.height(value, Vec3::lifted(p)).re(),
+        |p| family.holds(value, Vec3::lifted(p)),
+    );
     let line =
         |l: moldloft_mesh::Polyline| Contour { points: l.points, uv: Vec::new(), closed: l.closed };
     lines.into_iter().map(line).collect()

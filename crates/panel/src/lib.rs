@@ -13,6 +13,7 @@
 mod blocks;
 mod border_curves;
 mod contour;
+mod contour_integrals;
 mod counts;
 mod draft;
 mod edges;
@@ -34,6 +35,7 @@ mod triangle_bodies;
 
 pub use blocks::{BlockNote, Blocking, MOST_CELLS, grid as solid_grid};
 pub use contour::{Contour, ContourCutter, body_section};
+pub use contour_integrals::{ContourPiece, body_integrals, contour_piece};
 pub use draft::divisions;
 pub use notes::{ChainStep, PanelNote};
 pub use outlines::{FaceOutline, OutlineCurve, OutlineSide};

@@ -584,6 +584,26 @@ impl PyDocument {
         weights.into_iter().map(row).collect()
     }
 
+    /// The sections of a contours object: position, and lines `(name, (n, 3) points, closed)`.
+    fn sections_of<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+    ) -> PyResult<Vec<(f64, Vec<(String, Bound<'py, PyArray2<f64>>, bool)>)>> {
+        let sections = self.lock(py).sections_of(name);
+        let line = |name: &str, line: &moldloft::panel::Contour| {
+            let fill = |out: &mut [Vec3]| out.copy_from_slice(&line.points);
+            let points = arrays::filled(py, [line.points.len(), 3], fill).0;
+            (name.to_owned(), points, line.closed)
+        };
+        let section = |section: moldloft::document::Section| {
+            let all = section.lines.iter();
+            let lines = all.flat_map(|(name, lines)| lines.iter().map(|l| line(name, l)));
+            (section.value, lines.collect())
+        };
+        Ok(sections.into_iter().map(section).collect())
+    }
+
     /// Immersed area of sections and its moment about z = 0, `[station][level]`.
     fn section_areas(
         &self,

@@ -155,6 +155,9 @@ pub enum Family<T> {
     },
 }
 
+/// Components of unit vectors below this are zero when mirror images are looked for.
+const SYMMETRIC: f64 = 1e-12;
+
 /// The axis of contours that are not sections by planes of constant x, y or z.
 pub const OBLIQUE: usize = 3;
 
@@ -167,8 +170,6 @@ pub struct Contours<T> {
     pub family: Family<T>,
     /// The values: coordinates, distances, radii, or angles in radians.
     pub values: Vec<T>,
-    /// The surfaces that are cut; all that are shown, when there is no list.
-    pub surfaces: Option<Vec<Key>>,
 }
 
 impl<T: Real> Family<T> {
@@ -197,6 +198,44 @@ impl<T: Real> Family<T> {
                 let d = p - axis.point;
                 d.dot(across) * value.cos() - d.dot(*zero) * value.sin()
             }
+        }
+    }
+
+    /// The slope of [`Self::height`] at a point; zero on the axis of cylinders.
+    pub fn gradient(&self, value: T, p: Vec3<T>) -> Vec3<T> {
+        match self {
+            Family::Planes(plane) => plane.normal,
+            Family::Cylinders(axis) => {
+                let away = p - axis.foot(p);
+                if away.re().norm_sq() > 0.0 { away / away.norm() } else { Vec3::zero() }
+            }
+            Family::Angles { axis, zero } => {
+                axis.direction.cross(*zero) * value.cos() - *zero * value.sin()
+            }
+        }
+    }
+
+    /// The unit normal of the section `value`, where all of it has one.
+    pub fn normal(&self, value: T) -> Option<Vec3<T>> {
+        match self {
+            Family::Cylinders(_) => None,
+            _ => Some(self.gradient(value, Vec3::zero())),
+        }
+    }
+
+    /// True when the mirror image in the coordinate plane `axis` = 0 of each section's points is on the same section,
+    /// which is not in that plane itself.
+    pub fn is_symmetric(&self, axis: usize) -> bool {
+        let across = |v: Vec3<T>| v.re()[axis].abs() <= SYMMETRIC;
+        let along = |v: Vec3<T>| v.re()[axis].abs() >= 1.0 - SYMMETRIC;
+        match self {
+            Family::Planes(plane) => across(plane.normal),
+            Family::Cylinders(line) => {
+                let size = line.point.re().norm().max(1.0);
+                along(line.direction)
+                    || across(line.direction) && line.point.re()[axis].abs() <= SYMMETRIC * size
+            }
+            Family::Angles { axis: line, .. } => along(line.direction),
         }
     }
 
@@ -336,7 +375,7 @@ impl<T: Real> Value<T> {
                 let pairs = a.family.parts().into_iter().zip(b.family.parts());
                 std::mem::discriminant(&a.family) == std::mem::discriminant(&b.family)
                     && pairs.into_iter().all(|(x, y)| x.bits_eq(y))
-                    && (a.axis, &a.surfaces) == (b.axis, &b.surfaces)
+                    && a.axis == b.axis
                     && a.values.len() == b.values.len()
                     && a.values.iter().zip(&b.values).all(|(x, y)| x.bits_eq(*y))
             }

@@ -2,7 +2,7 @@
 
 use moldloft_num::{Axis, Plane, Real, Vec3};
 use moldloft_registry::{
-    Build, CallError, Context, Contours, Family, FieldId, Kind, OBLIQUE, Point, SurfaceRef, Value,
+    Build, CallError, Context, Contours, Family, FieldId, Kind, OBLIQUE, Point, Value,
 };
 use std::sync::Arc;
 
@@ -36,21 +36,26 @@ fn contours<T: Real>(
     axis: usize,
     family: Family<T>,
     values: Vec<T>,
-    surfaces: Option<Vec<SurfaceRef<T>>>,
+    shapes: Option<Vec<Value<T>>>,
     field: FieldId,
 ) -> Result<Value<T>, CallError> {
-    let key = |(k, surface): (usize, SurfaceRef<T>)| {
-        surface.key.ok_or_else(|| {
-            CallError::new("wrong-class", "contours are drawn on surfaces that have a name")
-                .expected("names of surfaces")
-                .found("a surface without a name")
-                .in_item(k)
-                .in_field(field)
-        })
-    };
-    let surfaces = surfaces.map(|list| list.into_iter().enumerate().map(key).collect());
-    let contours = Contours { axis, family, values, surfaces: surfaces.transpose()? };
-    Ok(Value::Contours(Arc::new(contours)))
+    for (k, shape) in shapes.iter().flatten().enumerate() {
+        if let Value::Surface(_) | Value::Body(_) = shape {
+            continue;
+        }
+        let error = CallError::new("wrong-class", "contours are drawn on surfaces and bodies")
+            .expected("names of surfaces and bodies")
+            .found(shape.class().with_article())
+            .in_item(k)
+            .in_field(field);
+        let is_set = matches!(shape, Value::Set(_));
+        return Err(if is_set {
+            error.help("make a body of the set: SetBody b(set, ...);")
+        } else {
+            error
+        });
+    }
+    Ok(Value::Contours(Arc::new(Contours { axis, family, values })))
 }
 
 macro_rules! contour_kind {
@@ -67,8 +72,8 @@ macro_rules! contour_kind {
             start: T,
             /// Distance of neighbouring sections.
             step: T,
-            /// The surfaces to cut; all that are shown, and all shown bodies, when none are given.
-            surfaces: Option<Vec<SurfaceRef<T>>>,
+            /// The surfaces and bodies to cut; all that are shown when none are given.
+            surfaces: Option<Vec<Value<T>>>,
         }
 
         impl<T: Real> Build<T> for $name<T> {
@@ -124,8 +129,8 @@ pub struct PlaneContours<T: Real> {
     start: T,
     /// Distance of neighbouring sections.
     step: T,
-    /// The surfaces to cut; all that are shown, and all shown bodies, when none are given.
-    surfaces: Option<Vec<SurfaceRef<T>>>,
+    /// The surfaces and bodies to cut; all that are shown when none are given.
+    surfaces: Option<Vec<Value<T>>>,
 }
 
 impl<T: Real> Build<T> for PlaneContours<T> {
@@ -157,8 +162,8 @@ pub struct CylinderContours<T: Real> {
     start: T,
     /// Difference of neighbouring radii.
     step: T,
-    /// The surfaces to cut; all that are shown, and all shown bodies, when none are given.
-    surfaces: Option<Vec<SurfaceRef<T>>>,
+    /// The surfaces and bodies to cut; all that are shown when none are given.
+    surfaces: Option<Vec<Value<T>>>,
 }
 
 impl<T: Real> Build<T> for CylinderContours<T> {
@@ -206,8 +211,8 @@ pub struct AngleContours<T: Real> {
     step: T,
     /// A point in the half-plane of angle 0.
     zero: Option<Point<T>>,
-    /// The surfaces to cut; all that are shown, and all shown bodies, when none are given.
-    surfaces: Option<Vec<SurfaceRef<T>>>,
+    /// The surfaces and bodies to cut; all that are shown when none are given.
+    surfaces: Option<Vec<Value<T>>>,
 }
 
 /// A line nearer to the z-axis than this (the cosine of a degree) has its zero toward x.

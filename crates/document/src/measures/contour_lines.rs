@@ -1,6 +1,8 @@
 //! The sections that a model asks for: stations, waterlines, buttocks, cylinders, meridians.
 
 use crate::Document;
+use moldloft_lang::value::contours::listed_shapes;
+use moldloft_model::Object;
 use moldloft_num::trace::Key;
 use moldloft_panel::{Contour, ContourCutter, body_section};
 use moldloft_registry::Value;
@@ -19,51 +21,56 @@ pub struct Section {
     pub lines: Vec<(String, Vec<Contour>)>,
 }
 
+/// Search grids of surfaces, made once for all sections of them.
+type Cutters<'g> = HashMap<Key, ContourCutter<'g, f64>>;
+
 impl Document {
-    /// The sections by all shown contours of the surfaces that they name, or of all shown ones and all shown
-    /// bodies; sections without lines left out.
+    /// The sections by all shown contours of the surfaces and bodies that they name, or of all that are shown; sections
+    /// without lines left out.
     pub fn sections(&self) -> Vec<Section> {
+        let mut cutters = Cutters::new();
+        let shown = self.graph().objects().filter(|o| o.head.shown());
+        let mut sections: Vec<Section> =
+            shown.flat_map(|object| self.cut(object, &mut cutters)).collect();
+        sections.retain(|section| !section.lines.is_empty());
+        sections
+    }
+
+    /// All sections of one contours object, in the order of its values; empty when it is none.
+    pub fn sections_of(&self, name: &str) -> Vec<Section> {
+        let object = self.graph().objects().find(|o| &*o.name == name);
+        object.map_or_else(Vec::new, |object| self.cut(object, &mut Cutters::new()))
+    }
+
+    fn cut<'g>(&'g self, object: &Object<f64>, cutters: &mut Cutters<'g>) -> Vec<Section> {
+        let Some(Value::Contours(contours)) = object.value() else { return Vec::new() };
         let graph = self.graph();
-        let shown = || graph.objects().filter(|o| o.head.shown());
-        let is_surface = |key: Key| match graph.get(key)?.value()? {
-            Value::Surface(surface) => Some(surface),
-            _ => None,
-        };
-        let body = |key: Key| match graph.get(key)?.value()? {
-            Value::Body(body) => Some(body),
-            _ => None,
-        };
-        let drawn = |k: &Key| is_surface(*k).is_some() || body(*k).is_some();
-        let all: Vec<Key> = shown().map(|o| o.key).filter(drawn).collect();
-        let mut tables: HashMap<Key, ContourCutter<'_>> = HashMap::new();
-        let mut sections = Vec::new();
-        for object in shown() {
-            let Some(Value::Contours(contours)) = object.value() else { continue };
-            let keys = contours.surfaces.as_ref().unwrap_or(&all);
-            for &key in keys {
-                if let (Some(surface), Some(object)) = (is_surface(key), graph.get(key)) {
-                    tables.entry(key).or_insert_with(|| ContourCutter::new(surface, &object.head));
-                }
-            }
-            for &value in &contours.values {
-                let cut = |key: &Key| {
-                    let lines = match tables.get(key) {
-                        Some(table) => table.section(&contours.family, value),
-                        None => body_section(body(*key)?, &contours.family, value),
-                    };
-                    (!lines.is_empty()).then_some((graph.get(*key)?.name.to_string(), lines))
-                };
-                let lines: Vec<_> = keys.iter().filter_map(cut).collect();
-                if !lines.is_empty() {
-                    sections.push(Section {
-                        contours: object.name.to_string(),
-                        axis: contours.axis,
-                        value,
-                        lines,
-                    });
-                }
+        let keys = listed_shapes(graph, object)
+            .unwrap_or_else(|| graph.objects().filter(|o| o.head.shown()).map(|o| o.key).collect());
+        for &key in &keys {
+            if let Some(object) = graph.get(key)
+                && let Some(Value::Surface(surface)) = object.value()
+            {
+                cutters.entry(key).or_insert_with(|| ContourCutter::new(surface, &object.head));
             }
         }
-        sections
+        let section = |value: f64| {
+            let lines = |key: &Key| {
+                let object = graph.get(*key)?;
+                let lines = match (cutters.get(key), object.value()?) {
+                    (Some(cutter), _) => cutter.section(&contours.family, value),
+                    (None, Value::Body(body)) => body_section(body, &contours.family, value),
+                    _ => return None,
+                };
+                (!lines.is_empty()).then(|| (object.name.to_string(), lines))
+            };
+            Section {
+                contours: object.name.to_string(),
+                axis: contours.axis,
+                value,
+                lines: keys.iter().filter_map(lines).collect(),
+            }
+        };
+        contours.values.iter().map(|&value| section(value)).collect()
     }
 }

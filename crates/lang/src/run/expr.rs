@@ -638,6 +638,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let right = self.read(right, span)?;
             return ops::binary(BinaryOp::Dot, &value, &right);
         }
+        if let (Value::Contours(contours), Some(key)) = (&value, object)
+            && let Some(member) =
+                self.contours_member(key, contours, &word, m.program.member_span(id))
+        {
+            return member;
+        }
         let known = crate::value::member::names(&value);
         Err(Diagnostic::error("unknown-member", format!("{} has no `{word}`", value.called()))
             .at(m.program.member_span(id))

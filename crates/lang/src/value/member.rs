@@ -140,6 +140,7 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         }
         Value::Body(_) => [&["volume", "area", "centroid"][..], &FLAWS].concat(),
         Value::Solid(_) => vec!["volume"],
+        Value::Contours(_) => super::contours::MEMBERS.to_vec(),
         _ => Vec::new(),
     }
 }

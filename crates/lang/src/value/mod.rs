@@ -1,5 +1,6 @@
 //! Values of the language: what variables hold, parts of arrays, members, operators, and their display.
 
+pub mod contours;
 pub mod display;
 pub(crate) mod implicit;
 pub(crate) mod initialised;

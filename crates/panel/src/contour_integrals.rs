@@ -1,0 +1,202 @@
+//! Length of sections and the area that they enclose: integrals along the lines on the exact surface, with
+//! derivatives.
+//!
+//! A line is known by points on lines u or v = constant of a grid. Between two of them the section is followed by
+//! Newton steps across the chord in the parameter plane, at the places of a Gauss rule; the chord's ends keep to their
+//! grid lines, so that the whole moves with the surface as the section does.
+
+use crate::contour::{Contour, body_section};
+use moldloft_num::period::crease_rate;
+use moldloft_num::{Order, Real, Surface, Vec3};
+use moldloft_registry::{Family, SurfaceRef, TriangleBody};
+
+/// One line of a section, with its integrals.
+#[derive(Clone, Debug)]
+pub struct ContourPiece<T> {
+    /// Its points; for nesting and for ends that meet.
+    pub points: Vec<Vec3>,
+    /// Its first point.
+    pub from: Vec3<T>,
+    /// Its last point; the first one again when the line closes.
+    pub to: Vec3<T>,
+    /// Its length.
+    pub length: T,
+    /// Half the integral of r x dr about the origin of coordinates given: for a closed line the vector of its area.
+    pub swept: Vec3<T>,
+}
+
+/// The Gauss rule of three points on 0 .. 1.
+const RULE: [(f64, f64); 3] = [
+    (0.112_701_665_379_258_31, 5.0 / 18.0),
+    (0.5, 8.0 / 18.0),
+    (0.887_298_334_620_741_7, 5.0 / 18.0),
+];
+
+/// Newton steps to the section from the chord of two neighbouring points.
+const MOST_STEPS: usize = 12;
+
+/// How far from a knuckle its two sides are looked at.
+const ASIDE: f64 = 1e-4;
+
+/// A place of the line: its parameters, and the grid line that holds it when the model changes.
+#[derive(Clone, Copy)]
+struct Node<T> {
+    uv: [T; 2],
+    /// The parameter that is free along the grid line.
+    free: usize,
+}
+
+/// The integrals of a line of the section `value` of a surface; `None` where they are not finite or the line cannot be
+/// followed.
+pub fn contour_piece<T: Real>(
+    line: &Contour,
+    surface: &SurfaceRef<T>,
+    family: &Family<T>,
+    value: T,
+    origin: Vec3,
+) -> Option<ContourPiece<T>> {
+    let breaks = surface.breaks();
+    let follow = Follower { surface, breaks, family, value, origin: Vec3::lifted(origin) };
+    let mut nodes: Vec<Node<T>> = line.uv.iter().map(|&uv| follow.node(uv)).collect();
+    if line.closed {
+        nodes.push(*nodes.first()?);
+    }
+    let (mut length, mut swept) = (T::zero(), Vec3::zero());
+    for pair in nodes.windows(2) {
+        let (part, area) = follow.between(pair[0], pair[1])?;
+        length += part;
+        swept += area;
+    }
+    let [from, to] = [nodes.first()?, nodes.last()?].map(|n| follow.place(n.uv));
+    let sound = length.is_finite() && swept.is_finite() && from.is_finite() && to.is_finite();
+    sound.then(|| ContourPiece { points: line.points.clone(), from, to, length, swept })
+}
+
+struct Follower<'s, T: Real> {
+    surface: &'s SurfaceRef<T>,
+    breaks: [Vec<f64>; 2],
+    family: &'s Family<T>,
+    value: T,
+    origin: Vec3<T>,
+}
+
+impl<T: Real> Follower<'_, T> {
+    fn place(&self, [u, v]: [T; 2]) -> Vec3<T> {
+        self.surface.jet(u, v, Order::Zero).p
+    }
+
+    /// The height over the section and its slopes by u and v.
+    fn height(&self, [u, v]: [T; 2]) -> (T, [T; 2]) {
+        let jet = self.surface.jet(u, v, Order::First);
+        let slope = self.family.gradient(self.value, jet.p);
+        (self.family.height(self.value, jet.p), [slope.dot(jet.u), slope.dot(jet.v)])
+    }
+
+    /// A point of the line on its grid line, moving along it with the model.
+    fn node(&self, uv: [f64; 2]) -> Node<T> {
+        let mut at = uv.map(T::from);
+        let slopes = self.height(at).1;
+        let creased = [0, 1].map(|k| self.breaks[k].iter().any(|x| x.to_bits() == uv[k].to_bits()));
+        let on_border = [0, 1].map(|k| creased[k] || uv[k] == 0.0 || uv[k] == 1.0);
+        // Ends of the line and its corners keep to the border or crease; others to the line that the section crosses.
+        let held = match on_border {
+            [true, false] => 0,
+            [false, true] => 1,
+            _ => usize::from(slopes[0].re().abs() > slopes[1].re().abs()),
+        };
+        let free = 1 - held;
+        if creased[held] {
+            at[held] += crease_rate(&**self.surface, held, uv[held], [ASIDE; 2]);
+        }
+        let (height, slopes) = self.height(at);
+        if slopes[free].re() != 0.0 {
+            at[free] -= height / slopes[free];
+        }
+        Node { uv: at, free }
+    }
+
+    /// Length and swept area between two neighbouring points.
+    fn between(&self, a: Node<T>, b: Node<T>) -> Option<(T, Vec3<T>)> {
+        let along = [b.uv[0] - a.uv[0], b.uv[1] - a.uv[1]];
+        // Across the line both ends move up the slope.
+        let across = |node: Node<T>| {
+            let slope = self.height(node.uv).1[node.free].re();
+            let mut direction = [0.0; 2];
+            direction[node.free] = slope.signum();
+            direction
+        };
+        let (up, end) = (across(a), across(b));
+        let turn = [end[0] - up[0], end[1] - up[1]];
+        let (mut length, mut swept) = (T::zero(), Vec3::zero());
+        let mut offset = T::zero();
+        for (s, weight) in RULE {
+            let normal = [up[0] + turn[0] * s, up[1] + turn[1] * s];
+            let at = |offset: T| [0, 1].map(|k| a.uv[k] + along[k] * s + offset * normal[k]);
+            let rise = |slopes: [T; 2]| slopes[0] * normal[0] + slopes[1] * normal[1];
+            let mut left = f64::INFINITY;
+            for _ in 0..MOST_STEPS {
+                let (height, slopes) = self.height(at(offset));
+                let step = height / rise(slopes);
+                if !step.is_finite() {
+                    return None;
+                }
+                offset -= step;
+                // One more step after the last that counts: derivatives follow a step behind.
+                if left < 1e-9 || step.re().abs() >= left && left < 1e-6 {
+                    break;
+                }
+                left = step.re().abs();
+            }
+            let [u, v] = at(offset);
+            let jet = self.surface.jet(u, v, Order::First);
+            let slope = self.family.gradient(self.value, jet.p);
+            let slopes = [slope.dot(jet.u), slope.dot(jet.v)];
+            let moved = [0, 1].map(|k| along[k] + offset * turn[k]);
+            let rate = -(slopes[0] * moved[0] + slopes[1] * moved[1]) / rise(slopes);
+            let velocity =
+                jet.u * (moved[0] + rate * normal[0]) + jet.v * (moved[1] + rate * normal[1]);
+            length += velocity.norm() * weight;
+            swept += (jet.p - self.origin).cross(velocity) * T::from(0.5 * weight);
+        }
+        Some((length, swept))
+    }
+}
+
+/// The integrals of the section of a body by a plane or half-plane: its length, and the vector of its area, outer
+/// lines positive along the plane's normal. `None` where the section is not plane.
+pub fn body_integrals<T: Real>(
+    body: &TriangleBody<T>,
+    family: &Family<T>,
+    value: T,
+    origin: Vec3,
+) -> Option<(T, Vec3<T>, Vec<Contour>)> {
+    if matches!(family, Family::Cylinders(_)) {
+        return None;
+    }
+    let origin = Vec3::lifted(origin);
+    let heights: Vec<T> = body.points.iter().map(|&p| family.height(value, p)).collect();
+    let (mut length, mut swept) = (T::zero(), Vec3::zero());
+    for triangle in &body.triangles {
+        let corners = triangle.map(|k| (body.points[k as usize], heights[k as usize]));
+        let below = corners.map(|(_, h)| h.re() < 0.0);
+        let mut ends = [Vec3::zero(); 2];
+        let mut found = 0;
+        for k in 0..3 {
+            let ((p, g), (q, h)) = (corners[k], corners[(k + 1) % 3]);
+            if below[k] != below[(k + 1) % 3] {
+                // Counter-clockwise from outside, the section leaves where the border comes up through it.
+                ends[usize::from(!below[k])] = p + (q - p) * (g / (g - h));
+                found += 1;
+            }
+        }
+        let middle = (ends[0] + ends[1]) * T::from(0.5);
+        if found == 2 && family.holds(value, middle) {
+            let step = ends[1] - ends[0];
+            if step.re().norm_sq() > 0.0 {
+                length += step.norm();
+            }
+            swept += (ends[0] - origin).cross(ends[1] - origin) * T::from(0.5);
+        }
+    }
+    Some((length, swept, body_section(body, family, value)))
+}
