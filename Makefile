@@ -97,7 +97,7 @@ optimised: ## the package in .venv anew, as users get it: for benchmarks
 	@$(MAKE) --no-print-directory PROFILE=release $(VENV)/.installed
 
 test: setup check ## every check and test
-	@$(BIN)/python -m pytest
+	@$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 check: setup ## formatting, lints, types and the Rust tests
 	@cargo fmt --all --check

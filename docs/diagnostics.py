@@ -40,6 +40,7 @@ WITHOUT = {
     "internal-error",
     "misplaced-object",
     "newer-language",
+    "no-contour",
     "no-distance",
     "no-edge",
     "no-goal",

@@ -2,9 +2,9 @@
 
 use crate::value::{GridArg, Points, surface};
 use moldloft_grid::{
-    Blend, Edge, Elliptic, Faces, FailureCause, GridError, Hyperbolic, Method, Metric, Side,
-    Smoothed, Stop, Support, SurfaceGrid, Wall, elliptic_until, folded_cells, framed,
-    hyperbolic_curve_until, hyperbolic_until, quality, transfinite, transfinite_block,
+    Blend, Edge, Elliptic, Faces, FailureCause, GridError, Hyperbolic, MarchBoundary, Method,
+    QualityMetric, Smoothed, Stop, Support, SurfaceGrid, Wall, elliptic_until, folded_cells,
+    framed, hyperbolic_curve_until, hyperbolic_until, quality, transfinite, transfinite_block,
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
@@ -453,7 +453,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
             let support: Box<dyn Support<T>> = match &self.on {
                 Some(surface) => {
                     let side = self.normal.map(|normal| normal.re());
-                    Box::new(OnSurface { surface: surface.clone(), side })
+                    Box::new(OrientedSurface { surface: surface.clone(), side })
                 }
                 None => {
                     let normal = self.normal.unwrap_or_else(|| Vec3::of(0.0, 0.0, 1.0));
@@ -509,12 +509,12 @@ impl<T: Real> Support<T> for InPlane<T> {
 }
 
 /// A surface of the language, seen from the side of a vector.
-struct OnSurface<T: Scalar> {
+struct OrientedSurface<T: Scalar> {
     surface: SurfaceRef<T>,
     side: Option<Vec3>,
 }
 
-impl<T: Scalar> Support<T> for OnSurface<T> {
+impl<T: Scalar> Support<T> for OrientedSurface<T> {
     fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)> {
         let (uv, _) = crate::locate::nearest_parameters(&self.surface, points);
         let foot = |[u, v]: [T; 2]| {
@@ -548,8 +548,8 @@ fn stop(text: &str, field: FieldId) -> Result<Stop, CallError> {
     Ok(stop)
 }
 
-fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], CallError> {
-    let mut sides = [Side::Free; 4];
+fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[MarchBoundary; 4], CallError> {
+    let mut sides = [MarchBoundary::Free; 4];
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         let words: Vec<&str> = part.split_whitespace().collect();
         let bad = || {
@@ -561,27 +561,28 @@ fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], CallEr
         let at = at.filter(|at| !is_curve || *at < 2).ok_or_else(bad)?;
         let axis = |word: &str| ["x", "y", "z"].iter().position(|axis| *axis == word);
         sides[at] = match words[1..] {
-            ["free"] => Side::Free,
-            ["pole"] if !is_curve => Side::Pole,
-            ["periodic"] => Side::Periodic,
-            ["symmetry", word] => Side::Symmetry(axis(word).ok_or_else(bad)?),
-            ["constant", word] => Side::Constant(axis(word).ok_or_else(bad)?),
+            ["free"] => MarchBoundary::Free,
+            ["pole"] if !is_curve => MarchBoundary::Pole,
+            ["periodic"] => MarchBoundary::Periodic,
+            ["symmetry", word] => MarchBoundary::Symmetry(axis(word).ok_or_else(bad)?),
+            ["constant", word] => MarchBoundary::Constant(axis(word).ok_or_else(bad)?),
             _ => return Err(bad()),
         };
     }
     for pair in [[0, 1], [2, 3]] {
         // Two edges are one line, or neither is the other.
-        if pair.iter().any(|k| sides[*k] == Side::Periodic) {
-            pair.iter().for_each(|k| sides[*k] = Side::Periodic);
+        if pair.iter().any(|k| sides[*k] == MarchBoundary::Periodic) {
+            pair.iter().for_each(|k| sides[*k] = MarchBoundary::Periodic);
         }
     }
     Ok(sides)
 }
 
-fn metric(word: &str, field: FieldId) -> Result<Metric, CallError> {
-    let known = Metric::ALL.iter().find(|metric| metric.word() == word);
+fn metric(word: &str, field: FieldId) -> Result<QualityMetric, CallError> {
+    let known = QualityMetric::ALL.iter().find(|metric| metric.word() == word);
     known.copied().ok_or_else(|| {
-        let words: Vec<String> = Metric::ALL.iter().map(|m| format!("\"{}\"", m.word())).collect();
+        let words: Vec<String> =
+            QualityMetric::ALL.iter().map(|m| format!("\"{}\"", m.word())).collect();
         unknown(word, "metric", words.join(", "), field)
     })
 }
@@ -687,9 +688,10 @@ impl<T: Scalar> Build<T> for Report<T> {
         let mut text = format!("grid [{},{}], {folded} folded cells\n", grid.m, grid.n);
         let _ =
             writeln!(text, "{:<11}{:>13}{:>13}{:>13}  worst cell", "metric", "min", "mean", "max");
-        for metric in Metric::ALL {
+        for metric in QualityMetric::ALL {
             let values = quality(&grid, metric);
-            let low_is_worse = matches!(metric, Metric::ScaledJacobian | Metric::Area);
+            let low_is_worse =
+                matches!(metric, QualityMetric::ScaledJacobian | QualityMetric::Area);
             let worse = |x: f64, y: f64| if low_is_worse { x < y } else { x > y };
             let worst =
                 (0..values.len()).fold(0, |w, k| if worse(values[k], values[w]) { k } else { w });

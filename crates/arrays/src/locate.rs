@@ -1,6 +1,6 @@
 //! Where arrays and shapes come together: nearest points, projections, intersections.
 
-use crate::value::{Shaped, Vectors, numbers, vectors};
+use crate::value::{Shaped, VectorArray, numbers, vectors};
 use moldloft_locate::march::{Branch, Crossing};
 use moldloft_locate::{
     NearestCurve, NearestSurface, PlainCurve, PlainSurface, Roots, implicit, roots,
@@ -108,7 +108,7 @@ impl<T: Scalar> Build<T> for Closest<T> {
         let foot = |p: Vec3<T>| curve_foot(&curve, p, search.nearest(&plain, p.re()).at[0]);
         Ok(match p {
             Shaped::One(p) => Value::Number(foot(p)),
-            Shaped::Many(Vectors { shape, items }) => {
+            Shaped::Many(VectorArray { shape, items }) => {
                 numbers(shape, items.into_iter().map(foot).collect())
             }
         })

@@ -1,6 +1,6 @@
 //! What an array is as a whole: products, lengths, boxes, centroids.
 
-use crate::value::{Farray, Items, Points, Shaped, Vectors, farray};
+use crate::value::{Farray, Items, Points, Shaped, VectorArray, farray};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Scalar, Value};
 
@@ -193,12 +193,12 @@ impl<T: Scalar> Build<T> for Cumlen<T> {
 )]
 pub struct Centroid<T: Scalar> {
     /// The points.
-    o: Vectors<T>,
+    o: VectorArray<T>,
 }
 
 impl<T: Scalar> Build<T> for Centroid<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let Vectors { shape, items } = self.o;
+        let VectorArray { shape, items } = self.o;
         if items.is_empty() {
             return Err(empty(Self::O));
         }

@@ -1,7 +1,7 @@
 //! The inverse questions of distributions: how many points, which spacing.
 
 use crate::distribution::{Arguments, MOST_NUMBERS, fault};
-use crate::value::{Numbers, Vectors};
+use crate::value::{Numbers, VectorArray};
 use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Scalar, Value};
 use moldloft_spline::distribution::{count_for, first_for, growth};
@@ -91,7 +91,7 @@ impl<T: Scalar> FromValue<T> for Steps<T> {
                 Numbers::One(_) => Vec::new(),
             },
             Value::Vectors(_) => {
-                let Vectors { shape, items } = Vectors::from_value(value)?;
+                let VectorArray { shape, items } = VectorArray::from_value(value)?;
                 if !matches!(shape, moldloft_registry::ArrayShape::Row(_)) {
                     let message = format!("expected one row, found a surface {shape}");
                     return Err(CallError::new("wrong-shape", message)

@@ -1,6 +1,6 @@
 //! Splines through arrays of points: `pcurve` and `psurface`.
 
-use crate::value::{Net, Points};
+use crate::value::{Points, VectorGrid};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     Build, CallError, Context, CurveRef, FieldId, Kind, Scalar, SurfaceRef, Value,
@@ -51,7 +51,7 @@ const ENDS: &str = "\"natural\", \"quadratic\", \"specified\", \"notaknot\", \"b
 
 /// What holds at one end, before its slope is known.
 #[derive(Clone, Copy, PartialEq)]
-enum Name {
+enum EndCondition {
     Natural,
     Quadratic,
     Specified,
@@ -67,27 +67,27 @@ fn unknown(word: &str, field: FieldId, what: &str, expected: &str) -> CallError 
         .in_field(field)
 }
 
-fn name(word: &str, field: FieldId) -> Result<Name, CallError> {
+fn name(word: &str, field: FieldId) -> Result<EndCondition, CallError> {
     Ok(match word {
-        "natural" => Name::Natural,
-        "quadratic" => Name::Quadratic,
-        "specified" | "clamped" => Name::Specified,
-        "notaknot" | "not-a-knot" => Name::NotAKnot,
-        "bessel" => Name::Bessel,
-        "periodic" | "closed" => Name::Periodic,
+        "natural" => EndCondition::Natural,
+        "quadratic" => EndCondition::Quadratic,
+        "specified" | "clamped" => EndCondition::Specified,
+        "notaknot" | "not-a-knot" => EndCondition::NotAKnot,
+        "bessel" => EndCondition::Bessel,
+        "periodic" | "closed" => EndCondition::Periodic,
         _ => return Err(unknown(word, field, "end condition", ENDS)),
     })
 }
 
 /// The conditions at both ends.
-fn names(text: &str, field: FieldId) -> Result<[Name; 2], CallError> {
+fn names(text: &str, field: FieldId) -> Result<[EndCondition; 2], CallError> {
     let words: Vec<&str> = text.split(',').map(str::trim).collect();
     let pair = match words[..] {
         [one] => [name(one, field)?; 2],
         [start, end] => [name(start, field)?, name(end, field)?],
         _ => return Err(unknown(text, field, "pair of end conditions", ENDS)),
     };
-    if (pair[0] == Name::Periodic) != (pair[1] == Name::Periodic) {
+    if (pair[0] == EndCondition::Periodic) != (pair[1] == EndCondition::Periodic) {
         return Err(CallError::new("unknown-word", "a spline is periodic at both ends or at none")
             .expected("\"periodic\" alone")
             .found(format!("\"{text}\""))
@@ -96,14 +96,14 @@ fn names(text: &str, field: FieldId) -> Result<[Name; 2], CallError> {
     Ok(pair)
 }
 
-fn condition<T>(name: Name, slope: Vec3<T>) -> End<T> {
+fn condition<T>(name: EndCondition, slope: Vec3<T>) -> End<T> {
     match name {
-        Name::Natural => End::Natural,
-        Name::Specified => End::Clamped(slope),
-        Name::NotAKnot => End::NotAKnot,
-        Name::Bessel => End::Bessel,
+        EndCondition::Natural => End::Natural,
+        EndCondition::Specified => End::Clamped(slope),
+        EndCondition::NotAKnot => End::NotAKnot,
+        EndCondition::Bessel => End::Bessel,
         // Periodic splines are distinguished before.
-        Name::Quadratic | Name::Periodic => End::Quadratic,
+        EndCondition::Quadratic | EndCondition::Periodic => End::Quadratic,
     }
 }
 
@@ -178,7 +178,7 @@ impl<T: Scalar> Build<T> for Makecc<T> {
         let tangents = [self.t1, self.t2];
         for (k, (end, tangent)) in ends.iter().zip(&tangents).enumerate() {
             let (which, field) = (["start", "end"][k], [Self::T1, Self::T2][k]);
-            match (*end == Name::Specified, tangent) {
+            match (*end == EndCondition::Specified, tangent) {
                 (true, None) => {
                     return Err(CallError::new(
                         "missing-argument",
@@ -201,7 +201,7 @@ impl<T: Scalar> Build<T> for Makecc<T> {
                 _ => {}
             }
         }
-        let splits = splits(&points, basis, ends[0] == Name::Periodic, self.breaks)?;
+        let splits = splits(&points, basis, ends[0] == EndCondition::Periodic, self.breaks)?;
         let mut parts: Vec<PiecewiseCubic<T>> = Vec::with_capacity(splits.len() - 1);
         for (k, w) in splits.windows(2).enumerate() {
             let piece = &points[w[0]..=w[1]];
@@ -214,7 +214,7 @@ impl<T: Scalar> Build<T> for Makecc<T> {
                 condition(name, slope(basis.law, piece, &knots, at, tangents[at]))
             };
             let ends = match ends[0] {
-                Name::Periodic => Ends::Periodic,
+                EndCondition::Periodic => Ends::Periodic,
                 _ => Ends::Open(end(0, k == 0), end(1, k + 2 == splits.len())),
             };
             let spline = InterpolatingSpline::with_knots(&knots, piece, ends);
@@ -238,8 +238,8 @@ impl<T: Scalar> Build<T> for Makecc<T> {
 }
 
 /// The condition at a break, whose sides know nothing of each other.
-fn inner(outer: Name) -> Name {
-    if outer == Name::NotAKnot { Name::NotAKnot } else { Name::Quadratic }
+fn inner(outer: EndCondition) -> EndCondition {
+    if outer == EndCondition::NotAKnot { EndCondition::NotAKnot } else { EndCondition::Quadratic }
 }
 
 /// dC/dt at an end from the asked tangent.
@@ -383,7 +383,7 @@ impl<T: Scalar> Build<T> for Makelc<T> {
 }
 
 fn knots_of<T: Scalar>(
-    net: &Net<T>,
+    net: &VectorGrid<T>,
     word: &str,
     [points, field]: [FieldId; 2],
 ) -> Result<[Vec<T>; 2], CallError> {
@@ -428,7 +428,7 @@ fn surface_fault(error: InterpolationError, axis: usize, points: FieldId) -> Cal
 )]
 pub struct Makecs<T: Scalar> {
     /// The points.
-    surface: Net<T>,
+    surface: VectorGrid<T>,
     /// End conditions of the lines along the first index.
     #[field(default = "quadratic")]
     ends: Arc<str>,
@@ -444,12 +444,12 @@ impl<T: Scalar> Build<T> for Makecs<T> {
         let [u, v] = knots_of(&self.surface, &self.basis, [Self::SURFACE, Self::BASIS])?;
         let ends = |word: &str, field: FieldId| -> Result<Ends<T>, CallError> {
             let pair = names(word, field)?;
-            if pair.contains(&Name::Specified) {
+            if pair.contains(&EndCondition::Specified) {
                 let fault = unknown(word, field, "end condition of a surface", ENDS);
                 return Err(fault.help("tangents can be specified for curves, with makecc"));
             }
             Ok(match pair[0] {
-                Name::Periodic => Ends::Periodic,
+                EndCondition::Periodic => Ends::Periodic,
                 _ => {
                     let [start, end] = pair.map(|name| condition(name, Vec3::zero()));
                     Ends::Open(start, end)
@@ -478,7 +478,7 @@ impl<T: Scalar> Build<T> for Makecs<T> {
 )]
 pub struct Makels<T: Scalar> {
     /// The points.
-    surface: Net<T>,
+    surface: VectorGrid<T>,
     /// The parameters: "arc", "index" or "centripetal".
     #[field(default = "arc")]
     basis: Arc<str>,

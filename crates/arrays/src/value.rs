@@ -17,14 +17,14 @@ pub struct Farray<T> {
 pub struct Points<T>(pub Vec<Vec3<T>>);
 
 /// A grid of vectors: the language's `surface`; (i, j) at `i * n + j`.
-pub struct Net<T> {
+pub struct VectorGrid<T> {
     pub m: usize,
     pub n: usize,
     pub points: Vec<Vec3<T>>,
 }
 
 /// A row or grid of vectors.
-pub struct Vectors<T> {
+pub struct VectorArray<T> {
     pub shape: ArrayShape,
     pub items: Vec<Vec3<T>>,
 }
@@ -101,7 +101,7 @@ impl<T> Farray<T> {
     }
 }
 
-impl<T: Scalar> FromValue<T> for Vectors<T> {
+impl<T: Scalar> FromValue<T> for VectorArray<T> {
     const CLASS: Class = Class::Vectors;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let (shape, items) = match value {
@@ -128,7 +128,7 @@ impl<T: Scalar> FromValue<T> for Points<T> {
         if !matches!(value, Value::Vectors(_) | Value::List(_)) {
             return wrong("a curve", value);
         }
-        let Vectors { shape, items } = Vectors::from_value(value)?;
+        let VectorArray { shape, items } = VectorArray::from_value(value)?;
         match shape {
             ArrayShape::Row(_) => Ok(Self(items)),
             _ => Err(CallError::new("wrong-shape", format!("expected a curve [n], found {shape}"))
@@ -139,13 +139,13 @@ impl<T: Scalar> FromValue<T> for Points<T> {
     }
 }
 
-impl<T: Scalar> FromValue<T> for Net<T> {
+impl<T: Scalar> FromValue<T> for VectorGrid<T> {
     const CLASS: Class = Class::Vectors;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         if !matches!(value, Value::Vectors(_) | Value::List(_)) {
             return wrong("a surface", value);
         }
-        let Vectors { shape, items } = Vectors::from_value(value)?;
+        let VectorArray { shape, items } = VectorArray::from_value(value)?;
         match shape {
             ArrayShape::Grid(m, n) => Ok(Self { m, n, points: items }),
             _ => Err(CallError::new(
@@ -221,7 +221,7 @@ pub fn farray<T: Real>(items: Vec<T>) -> Value<T> {
 /// A vector, a curve or a surface: what is moved keeps its shape.
 pub enum Shaped<T> {
     One(Vec3<T>),
-    Many(Vectors<T>),
+    Many(VectorArray<T>),
 }
 
 impl<T: Scalar> FromValue<T> for Shaped<T> {
@@ -252,7 +252,7 @@ impl<T: Real> Shaped<T> {
     pub fn mapped(self, f: impl Fn(Vec3<T>) -> Vec3<T>) -> Value<T> {
         match self {
             Self::One(p) => Value::Vector(f(p)),
-            Self::Many(Vectors { shape, items }) => {
+            Self::Many(VectorArray { shape, items }) => {
                 vectors(shape, items.into_iter().map(f).collect())
             }
         }
@@ -262,7 +262,7 @@ impl<T: Real> Shaped<T> {
 /// An array of numbers or of vectors.
 pub enum Items<T> {
     Numbers(Farray<T>),
-    Vectors(Vectors<T>),
+    Vectors(VectorArray<T>),
 }
 
 impl<T: Scalar> FromValue<T> for Items<T> {

@@ -3,8 +3,8 @@
 use crate::grids::fault;
 use crate::value::{Farray, GridArg, Points, surface};
 use moldloft_grid::{
-    EllipticVolume, Face, FaceWall, GridError, HexMesh, Hyperbolic, Side, SurfaceGrid, VolumeGrid,
-    elliptic_volume_until, hyperbolic_curve_until,
+    EllipticVolume, Face, FaceWall, GridError, HexMesh, Hyperbolic, MarchBoundary, SurfaceGrid,
+    VolumeGrid, elliptic_volume_until, hyperbolic_curve_until,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value};
@@ -239,7 +239,7 @@ impl<T: Real> moldloft_grid::Support<T> for Flat {
 fn marched<T: Scalar>(
     curve: &[Vec3<T>],
     heights: Farray<T>,
-    ends: Side,
+    ends: MarchBoundary,
     [s, field]: [FieldId; 2],
     context: &Context,
 ) -> Result<Value<T>, CallError> {
@@ -282,7 +282,13 @@ pub struct OGrid<T: Scalar> {
 impl<T: Scalar> Build<T> for OGrid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let curve = closed_section(self.section.0, self.base, Self::SECTION)?;
-        marched(&curve, self.heights, Side::Periodic, [Self::SECTION, Self::HEIGHTS], context)
+        marched(
+            &curve,
+            self.heights,
+            MarchBoundary::Periodic,
+            [Self::SECTION, Self::HEIGHTS],
+            context,
+        )
     }
 }
 
@@ -348,6 +354,12 @@ impl<T: Scalar> Build<T> for CGrid<T> {
         let wake = steps[1..].iter().map(|s| tail + Vec3::new(*s, T::zero(), T::zero()));
         let wake: Vec<Vec3<T>> = wake.collect();
         let curve: Vec<Vec3<T>> = wake.iter().rev().chain(&section).chain(&wake).copied().collect();
-        marched(&curve, self.heights, Side::Symmetry(0), [Self::SECTION, Self::HEIGHTS], context)
+        marched(
+            &curve,
+            self.heights,
+            MarchBoundary::Symmetry(0),
+            [Self::SECTION, Self::HEIGHTS],
+            context,
+        )
     }
 }

@@ -56,7 +56,7 @@ pub struct Face {
     /// True when its normal is opposite to that of the surface.
     pub reversed: bool,
     /// Its loops, the outer one first.
-    pub loops: Vec<Vec<Side>>,
+    pub loops: Vec<Vec<Coedge>>,
     /// A bound of the distance between this surface and that of the model.
     pub error: f64,
     /// True when the surface is that of the model but for rounding.
@@ -65,7 +65,7 @@ pub struct Face {
 
 /// A side of a loop.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Side {
+pub struct Coedge {
     /// The edge that it runs along.
     pub edge: usize,
     /// True when the loop runs from the edge's first vertex to its second.

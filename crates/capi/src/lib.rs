@@ -42,9 +42,9 @@ pub struct mlf_model(Document);
 
 /// A curve or surface of a model as it was when it was asked for.
 #[allow(non_camel_case_types)]
-pub struct mlf_shape(Shape);
+pub struct mlf_shape(ShapeHandle);
 
-enum Shape {
+enum ShapeHandle {
     Curve(CurveRef<f64>),
     Surface(SurfaceRef<f64>),
 }
@@ -218,8 +218,8 @@ pub extern "C" fn mlf_v1_shape(
         let object = graph.find(name).and_then(|key| graph.get(key));
         let found = match object.map(|o| o.value()) {
             None => return Err(Fault::argument(&format!("unknown object `{name}`"))),
-            Some(Some(Value::Curve(curve))) => Shape::Curve(curve.clone()),
-            Some(Some(Value::Surface(surface))) => Shape::Surface(surface.clone()),
+            Some(Some(Value::Curve(curve))) => ShapeHandle::Curve(curve.clone()),
+            Some(Some(Value::Surface(surface))) => ShapeHandle::Surface(surface.clone()),
             Some(_) => {
                 return Err(Fault::argument(&format!("`{name}` is neither a curve nor a surface")));
             }
@@ -239,7 +239,7 @@ pub extern "C" fn mlf_v1_shape_free(shape: *mut mlf_shape) {
     }
 }
 
-fn shape_of<'s>(shape: *const mlf_shape) -> Result<&'s Shape, Fault> {
+fn shape_of<'s>(shape: *const mlf_shape) -> Result<&'s ShapeHandle, Fault> {
     // SAFETY: a handle of `mlf_v1_shape`, not yet freed, by the contract of the header.
     let shape = unsafe { shape.as_ref() };
     shape.map(|s| &s.0).ok_or_else(|| Fault::argument("the shape is null"))
@@ -250,8 +250,8 @@ fn shape_of<'s>(shape: *const mlf_shape) -> Result<&'s Shape, Fault> {
 pub extern "C" fn mlf_v1_shape_parameters(shape: *const mlf_shape, count: *mut usize) -> i32 {
     called(|| {
         let found = match shape_of(shape)? {
-            Shape::Curve(_) => 1,
-            Shape::Surface(_) => 2,
+            ShapeHandle::Curve(_) => 1,
+            ShapeHandle::Surface(_) => 2,
         };
         array_mut(count, 1)?[0] = found;
         Ok(())
@@ -277,13 +277,13 @@ pub extern "C" fn mlf_v1_points(
             out.iter_mut().zip(some).for_each(|(out, p)| *out = p.to_array());
         };
         match shape {
-            Shape::Curve(curve) => {
+            ShapeHandle::Curve(curve) => {
                 let ts: &[f64] = array(parameters, n)?;
                 for (out, ts) in out.chunks_mut(CHUNK).zip(ts.chunks(CHUNK)) {
                     put(out, &|points| curve.grid(ts, points));
                 }
             }
-            Shape::Surface(surface) => {
+            ShapeHandle::Surface(surface) => {
                 let uv: &[[f64; 2]] = array(parameters.cast(), n)?;
                 for (out, uv) in out.chunks_mut(CHUNK).zip(uv.chunks(CHUNK)) {
                     put(out, &|points| surface.scattered(uv, points));
@@ -308,14 +308,14 @@ pub extern "C" fn mlf_v1_slopes(
 ) -> i32 {
     called(|| {
         match shape_of(shape)? {
-            Shape::Curve(curve) => {
+            ShapeHandle::Curve(curve) => {
                 let ts: &[f64] = array(parameters, n)?;
                 let out: &mut [[f64; 3]] = array_mut(slopes.cast(), n)?;
                 for (out, &t) in out.iter_mut().zip(ts) {
                     *out = curve.jet(t, Order::First)[1].to_array();
                 }
             }
-            Shape::Surface(surface) => {
+            ShapeHandle::Surface(surface) => {
                 let uv: &[[f64; 2]] = array(parameters.cast(), n)?;
                 let out: &mut [[[f64; 3]; 2]] = array_mut(slopes.cast(), n)?;
                 for (out, &[u, v]) in out.iter_mut().zip(uv) {

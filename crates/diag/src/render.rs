@@ -26,15 +26,15 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
     });
     let said = primary.as_ref().is_some_and(|label| Some(&label.text) == expectation.as_ref());
 
-    let places: Vec<Place> = primary
+    let places: Vec<LabelPlace> = primary
         .iter()
         .map(|label| (label, '^'))
         .chain(diagnostic.secondary.iter().map(|label| (label, '-')))
-        .filter_map(|(label, mark)| Place::find(label, mark, sources))
+        .filter_map(|(label, mark)| LabelPlace::find(label, mark, sources))
         .collect();
     let gutter = places.iter().map(|place| digits(place.start.line)).max().unwrap_or(1);
 
-    let mut shown: Option<&Place> = None;
+    let mut shown: Option<&LabelPlace> = None;
     for place in &places {
         let same_file = shown.is_some_and(|last| last.label.span.file == place.label.span.file);
         if !same_file {
@@ -78,7 +78,7 @@ fn digits(line: u32) -> usize {
     line.checked_ilog10().unwrap_or(0) as usize + 1
 }
 
-struct Place<'a> {
+struct LabelPlace<'a> {
     label: &'a Label,
     mark: char,
     name: &'a str,
@@ -88,14 +88,14 @@ struct Place<'a> {
     clipped: bool,
 }
 
-impl<'a> Place<'a> {
-    fn find(label: &'a Label, mark: char, sources: &'a Sources) -> Option<Place<'a>> {
+impl<'a> LabelPlace<'a> {
+    fn find(label: &'a Label, mark: char, sources: &'a Sources) -> Option<LabelPlace<'a>> {
         let span = label.span;
         let start = sources.locate(span.file, span.start)?;
         let end = sources.locate(span.file, span.end.max(span.start))?;
         let line = sources.line(span.file, start.line)?;
         let clipped = line.chars().count() > LINE_LIMIT;
-        Some(Place { label, mark, name: sources.name(span.file)?, line, start, end, clipped })
+        Some(LabelPlace { label, mark, name: sources.name(span.file)?, line, start, end, clipped })
     }
 
     fn print(&self, out: &mut String, gutter: usize, line_is_shown: bool) {

@@ -5,7 +5,7 @@
 //! travels in comments that begin with `#ms2 `. A program becomes a model file of the objects that
 //! it makes: computed numbers as numbers.
 
-use crate::document::{Document, Source};
+use crate::document::{Document, ObjectSource};
 use moldloft_diag::Diagnostic;
 use moldloft_lang::model_file::{prevents_conversion, quoted, to_model_file, to_program};
 use moldloft_syntax::sdl;
@@ -42,22 +42,22 @@ impl Document {
             return Err(errors);
         }
         match (&self.source, to) {
-            (Source::ModelFile(source), Format::Sdl) => {
+            (ObjectSource::ModelFile(source), Format::Sdl) => {
                 Ok(to_program(source, self.registry(), &self.plain))
             }
-            (Source::ModelFile(source), Format::ModelFile) => {
+            (ObjectSource::ModelFile(source), Format::ModelFile) => {
                 let model = source.model();
                 Ok(model.to_canonical(|line| objects.find(model.slice(line.name)).is_none()))
             }
-            (Source::Program, Format::Sdl) => sdl::format(&self.text()),
-            (Source::Sketch(sketch), Format::Sdl) => {
+            (ObjectSource::Program, Format::Sdl) => sdl::format(&self.text()),
+            (ObjectSource::Sketch(sketch), Format::Sdl) => {
                 let base = sketch.path.rsplit(['/', '\\']).next().unwrap_or(&sketch.path);
                 Ok(format!("load {};\n", quoted(base)))
             }
-            (Source::Program | Source::Sketch(_), Format::ModelFile) => {
+            (ObjectSource::Program | ObjectSource::Sketch(_), Format::ModelFile) => {
                 to_model_file(self.modules.get(0), &self.plain)
             }
-            (Source::None, _) => Ok(String::new()),
+            (ObjectSource::None, _) => Ok(String::new()),
         }
     }
 }

@@ -1,11 +1,11 @@
 use crate::degenerate;
-use crate::solve::Solved;
+use crate::solve::SolveReport;
 use indexmap::IndexMap;
 use moldloft_budget::Budget;
 use moldloft_diag::{Diagnostic, Sources};
 use moldloft_lang::World;
 use moldloft_lang::run::interpreter::{Inputs, Settings};
-use moldloft_lang::run::program::{self, Program};
+use moldloft_lang::run::program::{self, RunContext};
 use moldloft_lang::run::weight::mass_and_centre;
 use moldloft_lang::source::env::{Evaluation, Param, Seed};
 use moldloft_lang::source::module::Modules;
@@ -28,7 +28,7 @@ pub struct Document {
     pub(crate) text_diagnostics: Vec<Diagnostic>,
     pub(crate) run_diagnostics: Vec<Diagnostic>,
     pub(crate) expression_remarks: Vec<Diagnostic>,
-    pub(crate) source: Source,
+    pub(crate) source: ObjectSource,
     pub(crate) modules: Modules,
     /// Values of parameters, and of literals of objects, that differ from the text's.
     pub(crate) overrides: IndexMap<String, f64>,
@@ -42,7 +42,7 @@ pub struct Document {
     nominal: Option<(u64, Nominal)>,
     pub(crate) applied: Applied,
     /// The solve sets of the last run.
-    pub(crate) solved: Vec<Solved>,
+    pub(crate) solved: Vec<SolveReport>,
     budget: Arc<Budget>,
     /// True when the last run was cancelled: what it did not come to is missing.
     cut_short: bool,
@@ -52,7 +52,7 @@ pub struct Document {
 }
 
 /// Where the objects come from.
-pub(crate) enum Source {
+pub(crate) enum ObjectSource {
     /// A program; its text is module 0.
     Program,
     /// A model file.
@@ -127,7 +127,7 @@ impl Document {
             text_diagnostics: Vec::new(),
             run_diagnostics: Vec::new(),
             expression_remarks: Vec::new(),
-            source: Source::None,
+            source: ObjectSource::None,
             modules: Modules::default(),
             overrides: IndexMap::new(),
             plain: Evaluation::default(),
@@ -168,17 +168,17 @@ impl Document {
             self.modules.add(name, program, &self.registry, at);
             self.text_diagnostics = Vec::new();
             let sketch = SketchFile::open(name, &text, file, &*self.world);
-            self.source = Source::Sketch(Arc::new(sketch));
+            self.source = ObjectSource::Sketch(Arc::new(sketch));
         } else if model_file {
             let (source, diagnostics) =
                 moldloft_lang::model_file::ModelFileSource::parse(text, file);
             self.text_diagnostics = diagnostics;
-            self.source = Source::ModelFile(Box::new(source));
+            self.source = ObjectSource::ModelFile(Box::new(source));
         } else {
             let (program, diagnostics) = moldloft_syntax::sdl::parse(text, file);
             self.text_diagnostics = diagnostics;
             self.modules.add(name, program, &self.registry, at);
-            self.source = Source::Program;
+            self.source = ObjectSource::Program;
         }
     }
 
@@ -244,10 +244,10 @@ impl Document {
             settings: self.settings,
         };
         let sketch = match &self.source {
-            Source::Sketch(sketch) => Some(sketch.clone()),
+            ObjectSource::Sketch(sketch) => Some(sketch.clone()),
             _ => None,
         };
-        let program = Program {
+        let program = RunContext {
             modules: &mut self.modules,
             world: &*self.world,
             registry: &self.registry,
@@ -256,9 +256,11 @@ impl Document {
             converted: moldloft_lang::model_file::converted,
         };
         let applied = match &self.source {
-            Source::Program | Source::Sketch(_) => program.run(evaluation, inputs, &mut found),
-            Source::ModelFile(source) => source.run(program, evaluation, inputs, &mut found),
-            Source::None => evaluation.graph.apply(Extent::Whole, |_| ()).1,
+            ObjectSource::Program | ObjectSource::Sketch(_) => {
+                program.run(evaluation, inputs, &mut found)
+            }
+            ObjectSource::ModelFile(source) => source.run(program, evaluation, inputs, &mut found),
+            ObjectSource::None => evaluation.graph.apply(Extent::Whole, |_| ()).1,
         };
         if report {
             found.extend(self.failures(evaluation));
@@ -288,11 +290,11 @@ impl Document {
             let mut diagnostic = moldloft_lang::source::fault_location::unplaced(fault);
             diagnostic.message = format!("`{}`: {}", object.name, diagnostic.message);
             let span = match &self.source {
-                Source::Program | Source::Sketch(_) => {
+                ObjectSource::Program | ObjectSource::Sketch(_) => {
                     program::fault_span(&self.modules, &evaluation.env, object, fault)
                 }
-                Source::ModelFile(source) => source.fault_span(object, fault),
-                Source::None => None,
+                ObjectSource::ModelFile(source) => source.fault_span(object, fault),
+                ObjectSource::None => None,
             };
             diagnostic = diagnostic.object(&*object.name);
             if let Some(span) = span {
@@ -320,7 +322,7 @@ impl Document {
     /// Surfaces that are shown together with their mirror image in a plane in which the model is mirrored anyway.
     fn doubled<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         let letters = match &self.source {
-            Source::ModelFile(source) => source.symmetry(),
+            ObjectSource::ModelFile(source) => source.symmetry(),
             _ => moldloft_lang::model_file::header::text(&evaluation.graph, "symmetry"),
         };
         let mut found = Vec::new();
@@ -375,7 +377,7 @@ impl Document {
     /// Weights of one side's shapes in a mirrored model that do not say whether the other side counts.
     fn half_weights<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         let letters = match &self.source {
-            Source::ModelFile(source) => source.symmetry(),
+            ObjectSource::ModelFile(source) => source.symmetry(),
             _ => moldloft_lang::model_file::header::text(&evaluation.graph, "symmetry"),
         };
         let mut found = Vec::new();
@@ -453,11 +455,11 @@ impl Document {
         object: &moldloft_model::Object<T>,
     ) -> Option<moldloft_diag::Span> {
         match &self.source {
-            Source::Program | Source::Sketch(_) => {
+            ObjectSource::Program | ObjectSource::Sketch(_) => {
                 program::declared_at(&self.modules, &evaluation.env, object)
             }
-            Source::ModelFile(source) => source.declared_at(object),
-            Source::None => None,
+            ObjectSource::ModelFile(source) => source.declared_at(object),
+            ObjectSource::None => None,
         }
     }
 
@@ -633,19 +635,19 @@ impl Document {
     /// The text, with direct edits written into it.
     pub fn text(&self) -> String {
         match &self.source {
-            Source::Program => self.modules.get(0).program.text_with_edits(),
-            Source::Sketch(sketch) => {
+            ObjectSource::Program => self.modules.get(0).program.text_with_edits(),
+            ObjectSource::Sketch(sketch) => {
                 self.sources.text(sketch.file).map_or(String::new(), |text| text.to_string())
             }
-            Source::ModelFile(source) => source.text(),
-            Source::None => String::new(),
+            ObjectSource::ModelFile(source) => source.text(),
+            ObjectSource::None => String::new(),
         }
     }
 
     /// The planes in which the model is mirrored, as "y" or "xy"; empty for none.
     pub fn symmetry(&self) -> String {
         match &self.source {
-            Source::ModelFile(source) => source.symmetry(),
+            ObjectSource::ModelFile(source) => source.symmetry(),
             _ => moldloft_lang::model_file::header::symmetry(&self.plain.graph),
         }
     }
@@ -653,7 +655,7 @@ impl Document {
     /// The units that the model states, such as "m t".
     pub fn units(&self) -> String {
         match &self.source {
-            Source::ModelFile(source) => source.units(),
+            ObjectSource::ModelFile(source) => source.units(),
             _ => moldloft_lang::model_file::header::text(&self.plain.graph, "units"),
         }
     }

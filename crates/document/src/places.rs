@@ -1,6 +1,6 @@
 //! Where objects and numbers are in the text, for those who change a model by hand.
 
-use crate::document::{Document, Source};
+use crate::document::{Document, ObjectSource};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_syntax::sdl::StmtKind;
 
@@ -49,7 +49,7 @@ impl Document {
     }
 
     fn param_literal(&self, name: &str) -> Option<moldloft_syntax::sdl::LiteralId> {
-        if !matches!(self.source, Source::Program) {
+        if !matches!(self.source, ObjectSource::Program) {
             return None;
         }
         let param = self.params().iter().find(|p| p.name == name)?;

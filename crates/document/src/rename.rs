@@ -1,6 +1,6 @@
 //! Deleting and renaming objects, in the text and in the model.
 
-use crate::document::{Document, Source};
+use crate::document::{Document, ObjectSource};
 use moldloft_diag::{Diagnostic, FileId, Span};
 use moldloft_lang::source::module::Module;
 use moldloft_model::Applied;
@@ -13,7 +13,7 @@ impl Document {
     /// When there is no such object, something is built on it or reads it, or its statement makes
     /// others too.
     pub fn delete(&mut self, name: &str) -> Result<Applied, Diagnostic> {
-        if matches!(self.source, Source::ModelFile(_)) {
+        if matches!(self.source, ObjectSource::ModelFile(_)) {
             return self.delete_line(name);
         }
         let (stmt, span) = self.sole_statement(name)?;
@@ -61,7 +61,7 @@ impl Document {
     /// When there is no such object, the new name is taken or no name, or the old one means
     /// something else as well.
     pub fn rename(&mut self, old: &str, new: &str) -> Result<Applied, Diagnostic> {
-        if matches!(self.source, Source::ModelFile(_)) {
+        if matches!(self.source, ObjectSource::ModelFile(_)) {
             return self.rename_line(old, new);
         }
         let (_, span) = self.sole_statement(old)?;
@@ -107,7 +107,7 @@ impl Document {
 
     /// Takes edited numbers into the text of a model file, so that places are those of the text.
     fn settle_model_file(&mut self) {
-        if let Source::ModelFile(source) = &self.source
+        if let ObjectSource::ModelFile(source) = &self.source
             && source.model().is_edited()
         {
             let text = source.text();
@@ -117,7 +117,7 @@ impl Document {
 
     fn delete_line(&mut self, name: &str) -> Result<Applied, Diagnostic> {
         self.settle_model_file();
-        let Source::ModelFile(source) = &self.source else { return Ok(self.applied()) };
+        let ObjectSource::ModelFile(source) = &self.source else { return Ok(self.applied()) };
         let Some(line) = source.line(name) else { return Err(self.no_object(name)) };
         let mentions = source.mentions(&self.registry, name);
         if !mentions.is_empty() {
@@ -150,7 +150,7 @@ impl Document {
 
     fn rename_line(&mut self, old: &str, new: &str) -> Result<Applied, Diagnostic> {
         self.settle_model_file();
-        let Source::ModelFile(source) = &self.source else { return Ok(self.applied()) };
+        let ObjectSource::ModelFile(source) = &self.source else { return Ok(self.applied()) };
         let Some(line) = source.line(old) else { return Err(self.no_object(old)) };
         let word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
         let reserved = ["rem", "beginmodel", "endmodel"].contains(&&*new.to_ascii_lowercase());
@@ -182,7 +182,7 @@ impl Document {
 
     fn no_object(&self, name: &str) -> Diagnostic {
         let near = match &self.source {
-            Source::ModelFile(source) => {
+            ObjectSource::ModelFile(source) => {
                 let names = source.lines().iter().map(|l| source.model().slice(l.name));
                 moldloft_diag::nearest(name, names).map(str::to_string)
             }
@@ -194,7 +194,7 @@ impl Document {
 
     /// The statement of a component or of a named call of a subroutine, in the main file.
     fn instance_statement(&self, name: &str) -> Option<(StmtId, Span)> {
-        if !matches!(self.source, Source::Program) {
+        if !matches!(self.source, ObjectSource::Program) {
             return None;
         }
         let program = &self.modules.get(0).program;
@@ -228,7 +228,7 @@ impl Document {
                 .found(why.to_string())
                 .help("edit the text"))
         };
-        if !matches!(self.source, Source::Program) {
+        if !matches!(self.source, ObjectSource::Program) {
             return elsewhere("the model comes from a sketch");
         }
         let Some(origin) = self.plain.env.origins.get(object.origin as usize) else {

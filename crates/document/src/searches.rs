@@ -7,7 +7,7 @@ use moldloft_budget::Budget;
 use moldloft_locate::branches::{Branches, CutSurface};
 use moldloft_locate::march::Crossing;
 use moldloft_locate::roots::{all_curve_curve, all_curve_surface, all_on_level};
-use moldloft_locate::{Level, Nearest, NearestCurve, NearestSurface, Root, Roots, by_place};
+use moldloft_locate::{FoundRoot, Level, Nearest, NearestCurve, NearestSurface, Roots, by_place};
 use moldloft_num::{Plane, Vec3};
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
 use rayon::prelude::*;
@@ -82,7 +82,7 @@ pub struct CommonPoints {
 impl CommonPoints {
     fn of<const N: usize>(roots: &Roots<N>, ours: &[usize], theirs: &[usize]) -> Meeting {
         let part = |which: &[usize]| -> Vec<Vec<f64>> {
-            let row = |r: &Root<N>| which.iter().map(|&k| r.at[k]).collect();
+            let row = |r: &FoundRoot<N>| which.iter().map(|&k| r.at[k]).collect();
             roots.roots.iter().map(row).collect()
         };
         Meeting::Points(Self {
@@ -156,7 +156,7 @@ impl Searches {
                 let roots = all_curve_curve(&**curve, &**other);
                 let size = roots.roots.iter().map(|r| r.xyz.norm()).fold(1.0, f64::max);
                 // Where curves do not meet, the search gives the place where they come nearest.
-                let met = |r: &Root<2>| r.residual <= MEETING * size;
+                let met = |r: &FoundRoot<2>| r.residual <= MEETING * size;
                 let kept = roots.roots.iter().copied().filter(met).collect();
                 CommonPoints::of(&Roots { roots: kept, ..roots }, &[0], &[1])
             }

@@ -1,7 +1,7 @@
 //! Direct edits: parameters and literals of objects set to numbers, as the text itself would say them.
 
 use crate::degenerate;
-use crate::document::{Document, Source};
+use crate::document::{Document, ObjectSource};
 use moldloft_diag::Diagnostic;
 use moldloft_lang::run::program;
 use moldloft_lang::value::number_path::NumberPath;
@@ -127,12 +127,14 @@ impl Document {
             .help(format!("set a dimension: {}", params.join(", "))));
         }
         let place = match &self.source {
-            Source::Program | Source::Sketch(_) => {
+            ObjectSource::Program | ObjectSource::Sketch(_) => {
                 program::literal(&self.modules, &self.plain.env, object, &path)
                     .map(LiteralPlace::Program)
             }
-            Source::ModelFile(source) => source.literal(object, &path).map(LiteralPlace::ModelFile),
-            Source::None => unreachable!("there are objects"),
+            ObjectSource::ModelFile(source) => {
+                source.literal(object, &path).map(LiteralPlace::ModelFile)
+            }
+            ObjectSource::None => unreachable!("there are objects"),
         };
         let place = place.map_err(|why| self.not_literal(name, why))?;
         Ok(LiteralEdit { key, path, place, value })
@@ -208,7 +210,7 @@ impl Document {
             (LiteralPlace::Program((module, literal)), _) => {
                 self.modules.get_mut(*module).program.set_literal(*literal, edit.value)
             }
-            (LiteralPlace::ModelFile(number), Source::ModelFile(source)) => {
+            (LiteralPlace::ModelFile(number), ObjectSource::ModelFile(source)) => {
                 source.set(*number, edit.value)
             }
             _ => Ok(()),

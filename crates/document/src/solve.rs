@@ -23,7 +23,7 @@ use std::collections::HashSet;
 
 /// The report on a solve set.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solved {
+pub struct SolveReport {
     /// The name of the set.
     pub name: String,
     /// The unknowns.
@@ -56,7 +56,7 @@ const HALVINGS: usize = 24;
 
 impl Document {
     /// The reports on the solve sets of the last run, in order.
-    pub fn solved(&self) -> &[Solved] {
+    pub fn solved(&self) -> &[SolveReport] {
         &self.solved
     }
 
@@ -64,14 +64,15 @@ impl Document {
     pub(crate) fn solve(&mut self) {
         let count = self.plain.env.solves.len();
         let mut values: IndexMap<String, f64> = IndexMap::new();
-        let mut reports: Vec<Solved> = Vec::new();
+        let mut reports: Vec<SolveReport> = Vec::new();
         for at in 0..count {
             // What failed before leaves its unknowns where they were.
             let report = self.solve_one(at, &mut values);
             reports.push(report);
         }
         self.trial(&values, true);
-        let mut found: Vec<Diagnostic> = reports.iter().filter_map(Solved::diagnostic).collect();
+        let mut found: Vec<Diagnostic> =
+            reports.iter().filter_map(SolveReport::diagnostic).collect();
         found.extend(self.out_of_order(&reports, &values));
         for report in &mut reports {
             let param = |name: &String| self.plain.env.params.iter().find(|p| p.name == *name);
@@ -137,14 +138,14 @@ impl Document {
         (complete && finite).then_some(rows)
     }
 
-    fn solve_one(&mut self, at: usize, values: &mut IndexMap<String, f64>) -> Solved {
+    fn solve_one(&mut self, at: usize, values: &mut IndexMap<String, f64>) -> SolveReport {
         let solve = &self.plain.env.solves[at];
         let params: Vec<_> =
             solve.unknowns.iter().map(|&n| self.plain.env.params[n].clone()).collect();
         let names: Vec<String> = params.iter().map(|p| p.name.clone()).collect();
         let starts: Vec<f64> = params.iter().map(|p| p.value).collect();
         let steps = solve.steps;
-        let mut report = Solved {
+        let mut report = SolveReport {
             name: solve.name.to_string(),
             unknowns: names.clone(),
             starts: starts.clone(),
@@ -257,7 +258,7 @@ impl Document {
     /// Conditions that depend on unknowns of later sets.
     fn out_of_order(
         &mut self,
-        reports: &[Solved],
+        reports: &[SolveReport],
         values: &IndexMap<String, f64>,
     ) -> Vec<Diagnostic> {
         let mut found = Vec::new();
@@ -321,7 +322,7 @@ impl Document {
     }
 }
 
-impl Solved {
+impl SolveReport {
     fn diagnostic(&self) -> Option<Diagnostic> {
         let list = |xs: &[f64]| xs.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
         let names = self.unknowns.join(", ");

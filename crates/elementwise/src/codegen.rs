@@ -5,26 +5,26 @@
 //! into that one's. Everything else is kept in a slot, as few as possible.
 
 use crate::tape::{Code, Instr, Src};
-use crate::vm::{Operand, Order, Program, Row, Sign, Term};
+use crate::vm::{Operand, RowLocation, Sign, Term, VmInstruction, VmProgram};
 
 /// What is known of an instruction.
 #[derive(Clone, Copy, Debug)]
-struct Node {
+struct InstrInfo {
     uses: u16,
     /// True for roots and checked instructions: their results are kept.
     own: bool,
     /// True when the order of another instruction computes it, too.
     absorbed: bool,
     /// Where its result is kept.
-    home: Option<Row>,
+    home: Option<RowLocation>,
     /// The instruction whose order reads the result last.
     last: u16,
-    step: Step,
+    step: EmittedOp,
 }
 
 /// What is multiplied or added, before it is known where that is.
 #[derive(Clone, Copy, Debug)]
-enum Part {
+enum PendingTerm {
     Own(Src),
     Scaled(Src, u16),
     Product(Src, Src),
@@ -33,20 +33,20 @@ enum Part {
 
 /// How an instruction that is not absorbed is carried out.
 #[derive(Clone, Copy, Debug)]
-enum Step {
+enum EmittedOp {
     /// As it stands.
     Plain,
-    Term(Part),
-    Sum(Part, Sign, Part),
-    Sums(Src, [(Sign, Part); 2]),
-    Shifted(Part, Sign, u16),
-    From(u16, Part),
+    Term(PendingTerm),
+    Sum(PendingTerm, Sign, PendingTerm),
+    Sums(Src, [(Sign, PendingTerm); 2]),
+    Shifted(PendingTerm, Sign, u16),
+    From(u16, PendingTerm),
 }
 
 /// Memory for planning.
 #[derive(Debug, Default)]
 pub struct Planner {
-    nodes: Vec<Node>,
+    nodes: Vec<InstrInfo>,
     /// Slots that are not in use.
     free: Vec<u16>,
     /// The slots of the sources, and the last instruction that reads each.
@@ -65,16 +65,16 @@ impl Planner {
         code: &[Instr],
         roots: &[Src],
         check: impl Fn(usize) -> Option<u16>,
-        program: &mut Program<T>,
+        program: &mut VmProgram<T>,
     ) {
         let n = code.len();
-        let none = Node {
+        let none = InstrInfo {
             uses: 0,
             own: false,
             absorbed: false,
             home: None,
             last: u16::MAX,
-            step: Step::Plain,
+            step: EmittedOp::Plain,
         };
         self.nodes.clear();
         self.nodes.resize(n, none);
@@ -133,13 +133,13 @@ impl Planner {
             self.let_go(k);
             let root = roots.iter().position(|r| *r == Src::Reg(k as u16));
             let home = match root {
-                Some(out) => Row::Out(out as u16),
-                None => Row::Slot(self.slot(program)),
+                Some(out) => RowLocation::Out(out as u16),
+                None => RowLocation::Slot(self.slot(program)),
             };
             self.nodes[k].home = Some(home);
             program.orders.push((order, home));
             if self.nodes[k].uses == 0
-                && let Row::Slot(slot) = home
+                && let RowLocation::Slot(slot) = home
             {
                 self.free.push(slot);
             }
@@ -159,7 +159,7 @@ impl Planner {
 
     /// The factors of a product that can be made on the way; an instruction of its own when it takes one
     /// in.
-    fn product(&self, code: &[Instr], k: usize) -> Option<(Part, Option<usize>)> {
+    fn product(&self, code: &[Instr], k: usize) -> Option<(PendingTerm, Option<usize>)> {
         let Instr { code: Code::Mul, of: [a, b] } = code[k] else { return None };
         let scaled = |src: Src| {
             let p = self.alone(src)?;
@@ -172,17 +172,17 @@ impl Planner {
         };
         Some(match (a, b) {
             (Src::Const(_), Src::Const(_)) => return None,
-            (Src::Const(c), x) | (x, Src::Const(c)) => (Part::Scaled(x, c), None),
+            (Src::Const(c), x) | (x, Src::Const(c)) => (PendingTerm::Scaled(x, c), None),
             _ => match (scaled(a), scaled(b)) {
-                (Some((p, x, c)), _) => (Part::ScaledProduct(x, c, b), Some(p)),
-                (None, Some((p, x, c))) => (Part::ScaledProduct(x, c, a), Some(p)),
-                (None, None) => (Part::Product(a, b), None),
+                (Some((p, x, c)), _) => (PendingTerm::ScaledProduct(x, c, b), Some(p)),
+                (None, Some((p, x, c))) => (PendingTerm::ScaledProduct(x, c, a), Some(p)),
+                (None, None) => (PendingTerm::Product(a, b), None),
             },
         })
     }
 
     /// What an operand of a sum is, products that it alone uses made on the way.
-    fn part(&mut self, code: &[Instr], src: Src) -> Part {
+    fn part(&mut self, code: &[Instr], src: Src) -> PendingTerm {
         let product = self.alone(src).and_then(|p| Some((p, self.product(code, p)?)));
         match product {
             Some((p, (part, inner))) => {
@@ -192,12 +192,12 @@ impl Planner {
                 }
                 part
             }
-            None => Part::Own(src),
+            None => PendingTerm::Own(src),
         }
     }
 
     /// How an instruction is carried out, and what it takes in.
-    fn step(&mut self, code: &[Instr], k: usize) -> Step {
+    fn step(&mut self, code: &[Instr], k: usize) -> EmittedOp {
         let Instr { code: what, of: [a, b] } = code[k];
         let sign = match what {
             Code::Add => Sign::Plus,
@@ -208,19 +208,19 @@ impl Planner {
                         if let Some(q) = inner {
                             self.nodes[q].absorbed = true;
                         }
-                        Step::Term(part)
+                        EmittedOp::Term(part)
                     }
-                    None => Step::Plain,
+                    None => EmittedOp::Plain,
                 };
             }
-            _ => return Step::Plain,
+            _ => return EmittedOp::Plain,
         };
         match (a, b, sign) {
-            (Src::Const(_), Src::Const(_), _) => return Step::Plain,
+            (Src::Const(_), Src::Const(_), _) => return EmittedOp::Plain,
             (x, Src::Const(c), _) | (Src::Const(c), x, Sign::Plus) => {
-                return Step::Shifted(self.part(code, x), sign, c);
+                return EmittedOp::Shifted(self.part(code, x), sign, c);
             }
-            (Src::Const(c), x, Sign::Minus) => return Step::From(c, self.part(code, x)),
+            (Src::Const(c), x, Sign::Minus) => return EmittedOp::From(c, self.part(code, x)),
             _ => {}
         }
         // (x + y) + z, where x is a row.
@@ -252,44 +252,44 @@ impl Planner {
             Some(((p, x, first, y), z)) => {
                 self.nodes[p].absorbed = true;
                 let (y, z) = (self.part(code, y), self.part(code, z));
-                Step::Sums(x, [(first, y), (sign, z)])
+                EmittedOp::Sums(x, [(first, y), (sign, z)])
             }
             None => {
                 let (a, b) = (self.part(code, a), self.part(code, b));
-                Step::Sum(a, sign, b)
+                EmittedOp::Sum(a, sign, b)
             }
         }
     }
 
     /// Calls for each source and result that an instruction's order reads.
     fn for_each_read(&mut self, code: &[Instr], k: usize, mut f: impl FnMut(&mut Self, Src)) {
-        let mut part = |this: &mut Self, part: Part| match part {
-            Part::Own(x) | Part::Scaled(x, _) => f(this, x),
-            Part::Product(x, y) | Part::ScaledProduct(x, _, y) => {
+        let mut part = |this: &mut Self, part: PendingTerm| match part {
+            PendingTerm::Own(x) | PendingTerm::Scaled(x, _) => f(this, x),
+            PendingTerm::Product(x, y) | PendingTerm::ScaledProduct(x, _, y) => {
                 f(this, x);
                 f(this, y);
             }
         };
         match self.nodes[k].step {
-            Step::Plain => {
+            EmittedOp::Plain => {
                 for src in code[k].operands() {
-                    part(self, Part::Own(*src));
+                    part(self, PendingTerm::Own(*src));
                 }
             }
-            Step::Term(x) | Step::Shifted(x, ..) | Step::From(_, x) => part(self, x),
-            Step::Sum(x, _, y) => {
+            EmittedOp::Term(x) | EmittedOp::Shifted(x, ..) | EmittedOp::From(_, x) => part(self, x),
+            EmittedOp::Sum(x, _, y) => {
                 part(self, x);
                 part(self, y);
             }
-            Step::Sums(x, [(_, y), (_, z)]) => {
-                part(self, Part::Own(x));
+            EmittedOp::Sums(x, [(_, y), (_, z)]) => {
+                part(self, PendingTerm::Own(x));
                 part(self, y);
                 part(self, z);
             }
         }
     }
 
-    fn slot<T>(&mut self, program: &mut Program<T>) -> u16 {
+    fn slot<T>(&mut self, program: &mut VmProgram<T>) -> u16 {
         self.free.pop().unwrap_or_else(|| {
             program.slots += 1;
             (program.slots - 1) as u16
@@ -303,7 +303,7 @@ impl Planner {
                 Src::Reg(p) => {
                     let node = &mut self.nodes[p as usize];
                     if node.last == k as u16
-                        && let Some(Row::Slot(slot)) = node.home
+                        && let Some(RowLocation::Slot(slot)) = node.home
                     {
                         self.free.push(slot);
                         // Read twice, freed once.
@@ -326,7 +326,7 @@ impl Planner {
     }
 
     /// The row of a source, constant or kept result; a source is brought there when it is read first.
-    fn row<T>(&mut self, src: Src, program: &mut Program<T>) -> Row {
+    fn row<T>(&mut self, src: Src, program: &mut VmProgram<T>) -> RowLocation {
         self.read.push(src);
         match src {
             Src::Reg(p) => {
@@ -335,34 +335,34 @@ impl Planner {
             }
             Src::Plane(p) => {
                 if let Some(slot) = self.sources[p as usize].0 {
-                    return Row::Slot(slot);
+                    return RowLocation::Slot(slot);
                 }
                 let slot = self.slot(program);
                 self.sources[p as usize].0 = Some(slot);
-                program.orders.push((Order::Source(p), Row::Slot(slot)));
-                Row::Slot(slot)
+                program.orders.push((VmInstruction::Source(p), RowLocation::Slot(slot)));
+                RowLocation::Slot(slot)
             }
             Src::Const(c) => {
                 let slot = self.slot(program);
                 self.filled.push(slot);
-                program.orders.push((Order::Fill(c), Row::Slot(slot)));
-                Row::Slot(slot)
+                program.orders.push((VmInstruction::Fill(c), RowLocation::Slot(slot)));
+                RowLocation::Slot(slot)
             }
         }
     }
 
-    fn term<T>(&mut self, part: Part, program: &mut Program<T>) -> Term {
+    fn term<T>(&mut self, part: PendingTerm, program: &mut VmProgram<T>) -> Term {
         match part {
-            Part::Own(x) => Term::Row(self.row(x, program)),
-            Part::Scaled(x, c) => Term::Scaled(self.row(x, program), c),
-            Part::Product(x, y) => Term::Product(self.row(x, program), self.row(y, program)),
-            Part::ScaledProduct(x, c, y) => {
+            PendingTerm::Own(x) => Term::Row(self.row(x, program)),
+            PendingTerm::Scaled(x, c) => Term::Scaled(self.row(x, program), c),
+            PendingTerm::Product(x, y) => Term::Product(self.row(x, program), self.row(y, program)),
+            PendingTerm::ScaledProduct(x, c, y) => {
                 Term::ScaledProduct(self.row(x, program), c, self.row(y, program))
             }
         }
     }
 
-    fn operand<T>(&mut self, src: Src, program: &mut Program<T>) -> Operand {
+    fn operand<T>(&mut self, src: Src, program: &mut VmProgram<T>) -> Operand {
         match src {
             Src::Const(c) => Operand::Const(c),
             _ => Operand::Row(self.row(src, program)),
@@ -373,45 +373,49 @@ impl Planner {
     fn order<T>(
         &mut self,
         Instr { code, of: [a, b] }: Instr,
-        step: Step,
+        step: EmittedOp,
         check: Option<u16>,
-        program: &mut Program<T>,
-    ) -> Order {
+        program: &mut VmProgram<T>,
+    ) -> VmInstruction {
         match step {
-            Step::Term(x) => Order::Term(self.term(x, program)),
-            Step::Sum(x, sign, y) => Order::Sum(self.term(x, program), sign, self.term(y, program)),
-            Step::Sums(x, [(first, y), (second, z)]) => {
+            EmittedOp::Term(x) => VmInstruction::Term(self.term(x, program)),
+            EmittedOp::Sum(x, sign, y) => {
+                VmInstruction::Sum(self.term(x, program), sign, self.term(y, program))
+            }
+            EmittedOp::Sums(x, [(first, y), (second, z)]) => {
                 let x = self.row(x, program);
                 let (y, z) = (self.term(y, program), self.term(z, program));
-                Order::Sums(x, [(first, y), (second, z)])
+                VmInstruction::Sums(x, [(first, y), (second, z)])
             }
-            Step::Shifted(x, sign, c) => Order::Shifted(self.term(x, program), sign, c),
-            Step::From(c, x) => Order::From(c, self.term(x, program)),
-            Step::Plain => match code {
-                Code::Unary(f) => Order::Unary(f, self.operand(a, program), check),
+            EmittedOp::Shifted(x, sign, c) => {
+                VmInstruction::Shifted(self.term(x, program), sign, c)
+            }
+            EmittedOp::From(c, x) => VmInstruction::From(c, self.term(x, program)),
+            EmittedOp::Plain => match code {
+                Code::Unary(f) => VmInstruction::Unary(f, self.operand(a, program), check),
                 Code::Binary(f) => {
                     let of = [a, b].map(|src| self.operand(src, program));
-                    Order::Binary(f, of, check)
+                    VmInstruction::Binary(f, of, check)
                 }
-                Code::Neg => Order::Neg(self.row(a, program)),
-                Code::Abs => Order::Abs(self.row(a, program)),
-                Code::Sqrt => Order::Sqrt(self.row(a, program)),
+                Code::Neg => VmInstruction::Neg(self.row(a, program)),
+                Code::Abs => VmInstruction::Abs(self.row(a, program)),
+                Code::Sqrt => VmInstruction::Sqrt(self.row(a, program)),
                 // Of two constants.
                 Code::Add | Code::Sub => {
                     let sign = if code == Code::Add { Sign::Plus } else { Sign::Minus };
                     let [x, y] = [a, b].map(|src| Term::Row(self.row(src, program)));
-                    Order::Sum(x, sign, y)
+                    VmInstruction::Sum(x, sign, y)
                 }
                 Code::Mul => {
                     let [x, y] = [a, b].map(|src| self.row(src, program));
-                    Order::Term(Term::Product(x, y))
+                    VmInstruction::Term(Term::Product(x, y))
                 }
                 Code::Div => match (a, b) {
-                    (x, Src::Const(c)) => Order::Part(self.row(x, program), c),
-                    (Src::Const(c), x) => Order::Over(c, self.row(x, program)),
+                    (x, Src::Const(c)) => VmInstruction::Part(self.row(x, program), c),
+                    (Src::Const(c), x) => VmInstruction::Over(c, self.row(x, program)),
                     _ => {
                         let [x, y] = [a, b].map(|src| self.row(src, program));
-                        Order::Ratio(x, y)
+                        VmInstruction::Ratio(x, y)
                     }
                 },
             },

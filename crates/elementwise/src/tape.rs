@@ -11,7 +11,7 @@
 //! order and are rounded each by itself.
 
 use crate::codegen::Planner;
-use crate::vm::Program;
+use crate::vm::VmProgram;
 use moldloft_num::Real;
 use moldloft_registry::{Array, ArrayShape, Vectors};
 use smallvec::SmallVec;
@@ -72,16 +72,16 @@ impl Instr {
 
 /// A source of numbers.
 #[derive(Clone, Debug)]
-enum Plane<T: Real> {
+enum NumberSource<T: Real> {
     Numbers(Arc<Array<T>>),
     Component(Arc<Vectors<T>>, usize),
 }
 
-impl<T: Real> Plane<T> {
+impl<T: Real> NumberSource<T> {
     fn numbers(&self) -> &Vec<T> {
         match self {
-            Plane::Numbers(a) => &a.items,
-            Plane::Component(a, c) => &a.planes[*c],
+            NumberSource::Numbers(a) => &a.items,
+            NumberSource::Component(a, c) => &a.planes[*c],
         }
     }
 }
@@ -118,7 +118,7 @@ impl Origin {
 /// See the head of this file.
 #[derive(Debug)]
 pub struct Tape<T: Real> {
-    planes: Vec<Plane<T>>,
+    planes: Vec<NumberSource<T>>,
     /// Where the sources and the constants come from.
     pub plane_origins: Vec<Origin>,
     /// The origin of each constant.
@@ -129,7 +129,7 @@ pub struct Tape<T: Real> {
     /// Instructions whose results must be finite, in order, and their shapes.
     checked: Vec<(u16, ArrayShape)>,
     planner: Planner,
-    program: Program<T>,
+    program: VmProgram<T>,
 }
 
 /// The most instructions, sources and constants of a tape; a longer expression goes in parts.
@@ -145,7 +145,7 @@ impl<T: Real> Default for Tape<T> {
             code: Vec::new(),
             checked: Vec::new(),
             planner: Planner::default(),
-            program: Program::default(),
+            program: VmProgram::default(),
         }
     }
 }
@@ -193,26 +193,27 @@ impl<T: Real> Tape<T> {
 
     /// A source of numbers; the same array is one source.
     pub fn numbers(&mut self, array: &Arc<Array<T>>, cell: Cell) -> Src {
-        let same = |p: &Plane<T>| matches!(p, Plane::Numbers(a) if Arc::ptr_eq(a, array));
+        let same =
+            |p: &NumberSource<T>| matches!(p, NumberSource::Numbers(a) if Arc::ptr_eq(a, array));
         if let Some(at) = self.planes.iter().position(same) {
             self.alias(at, cell);
             return Src::Plane(at as u16);
         }
-        self.planes.push(Plane::Numbers(array.clone()));
+        self.planes.push(NumberSource::Numbers(array.clone()));
         self.plane_origins.push(Origin::of(cell, 0));
         Src::Plane((self.planes.len() - 1) as u16)
     }
 
     /// The sources of the three components of a row or grid of vectors.
     pub fn vectors(&mut self, array: &Arc<Vectors<T>>, cell: Cell) -> [Src; 3] {
-        let same = |p: &Plane<T>| matches!(p, Plane::Component(a, 0) if Arc::ptr_eq(a, array));
+        let same = |p: &NumberSource<T>| matches!(p, NumberSource::Component(a, 0) if Arc::ptr_eq(a, array));
         let at = match self.planes.iter().position(same) {
             Some(at) => {
                 self.alias(at, cell);
                 at
             }
             None => {
-                self.planes.extend((0..3).map(|c| Plane::Component(array.clone(), c)));
+                self.planes.extend((0..3).map(|c| NumberSource::Component(array.clone(), c)));
                 self.plane_origins.extend((0..3).map(|c| Origin::of(cell, c)));
                 self.planes.len() - 3
             }
@@ -322,7 +323,7 @@ impl<T: Real> Tape<T> {
             (checked[at].1 == shape).then_some(at as u16)
         };
         planner.plan(code, roots, check, program);
-        let rows: SmallVec<[&Vec<T>; 16]> = self.planes.iter().map(Plane::numbers).collect();
+        let rows: SmallVec<[&Vec<T>; 16]> = self.planes.iter().map(NumberSource::numbers).collect();
         self.execute(&rows, roots, shape.count(), outs)
     }
 

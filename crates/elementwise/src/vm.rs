@@ -18,7 +18,7 @@ use std::sync::LazyLock;
 
 /// Where the elements of a stretch are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Row {
+pub enum RowLocation {
     /// In a row of the results.
     Out(u16),
     /// In memory of the machine.
@@ -28,7 +28,7 @@ pub enum Row {
 /// An operand of a function: elements, or the same number for all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operand {
-    Row(Row),
+    Row(RowLocation),
     Const(u16),
 }
 
@@ -36,13 +36,13 @@ pub enum Operand {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Term {
     /// x
-    Row(Row),
+    Row(RowLocation),
     /// x c
-    Scaled(Row, u16),
+    Scaled(RowLocation, u16),
     /// x y
-    Product(Row, Row),
+    Product(RowLocation, RowLocation),
     /// (x c) y
-    ScaledProduct(Row, u16, Row),
+    ScaledProduct(RowLocation, u16, RowLocation),
 }
 
 /// Whether a term is added or taken away.
@@ -55,7 +55,7 @@ pub enum Sign {
 /// What becomes of the elements of a stretch; each is what a row of them is set to. Products and sums are
 /// rounded each by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Order {
+pub enum VmInstruction {
     /// The elements of a source.
     Source(u16),
     /// c
@@ -65,20 +65,20 @@ pub enum Order {
     /// x + y, or x - y
     Sum(Term, Sign, Term),
     /// (x + y) + z, or with other signs
-    Sums(Row, [(Sign, Term); 2]),
+    Sums(RowLocation, [(Sign, Term); 2]),
     /// x + c, or x - c
     Shifted(Term, Sign, u16),
     /// c - x
     From(u16, Term),
     /// x / y
-    Ratio(Row, Row),
+    Ratio(RowLocation, RowLocation),
     /// x / c
-    Part(Row, u16),
+    Part(RowLocation, u16),
     /// c / x
-    Over(u16, Row),
-    Neg(Row),
-    Abs(Row),
-    Sqrt(Row),
+    Over(u16, RowLocation),
+    Neg(RowLocation),
+    Abs(RowLocation),
+    Sqrt(RowLocation),
     /// A function of each element. The last number is that of a check: results must be finite.
     Unary(u16, Operand, Option<u16>),
     /// A function of two.
@@ -87,9 +87,9 @@ pub enum Order {
 
 /// Orders with what they refer to.
 #[derive(Debug)]
-pub struct Program<T> {
+pub struct VmProgram<T> {
     /// What to do, and the row that it is done for.
-    pub orders: Vec<(Order, Row)>,
+    pub orders: Vec<(VmInstruction, RowLocation)>,
     pub consts: Vec<T>,
     pub unary: Vec<fn(T) -> T>,
     pub binary: Vec<fn(T, T) -> T>,
@@ -97,7 +97,7 @@ pub struct Program<T> {
     pub slots: usize,
 }
 
-impl<T> Default for Program<T> {
+impl<T> Default for VmProgram<T> {
     fn default() -> Self {
         Self {
             orders: Vec::new(),
@@ -109,7 +109,7 @@ impl<T> Default for Program<T> {
     }
 }
 
-impl<T: Real> Program<T> {
+impl<T: Real> VmProgram<T> {
     /// Carries the orders out for the first `count` elements of the planes and results; planes that are
     /// shorter are not used by the orders. The number of the first check that failed.
     pub fn run(&self, planes: &[&Vec<T>], outs: &mut [Vec<T>], count: usize) -> Option<u16> {
@@ -122,7 +122,7 @@ impl<T: Real> Program<T> {
         if count == 0 {
             return None;
         }
-        if let Some(program) = (self as &dyn Any).downcast_ref::<Program<f64>>() {
+        if let Some(program) = (self as &dyn Any).downcast_ref::<VmProgram<f64>>() {
             // Numbers without derivatives, so all rows are of those.
             let planes = planes.iter().map(|row| {
                 let row: &dyn Any = *row;
@@ -156,7 +156,7 @@ struct Rows<'a, T> {
 
 /// A run on packs of plain numbers, compiled for each width of them.
 struct Wide<'a> {
-    program: &'a Program<f64>,
+    program: &'a VmProgram<f64>,
     rows: Rows<'a, f64>,
     memory: &'a mut Vec<f64>,
 }
@@ -322,7 +322,7 @@ const FAR: usize = 16 << 20;
 #[inline(always)]
 fn go<P: Packs>(
     p: P,
-    program: &Program<P::Number>,
+    program: &VmProgram<P::Number>,
     rows: Rows<'_, P::Number>,
     memory: &mut Vec<P::Number>,
 ) -> Option<u16> {
@@ -404,10 +404,10 @@ struct Machine<'a, P: Packs> {
 
 impl<'a, P: Packs> Machine<'a, P> {
     #[inline(always)]
-    fn row(&self, row: Row) -> &'a [Block<P>] {
+    fn row(&self, row: RowLocation) -> &'a [Block<P>] {
         let (all, from) = match row {
-            Row::Out(k) => (self.outs[k as usize], self.from),
-            Row::Slot(k) => (self.slots, k as usize * self.stride),
+            RowLocation::Out(k) => (self.outs[k as usize], self.from),
+            RowLocation::Slot(k) => (self.slots, k as usize * self.stride),
         };
         &all[from..][..self.blocks]
     }
@@ -418,9 +418,9 @@ trait At<P: Packs> {
     fn at(&self, p: P, k: usize) -> [P::Pack; BLOCK];
 }
 
-struct Own<'a, P: Packs>(&'a [Block<P>]);
-struct Scaled<'a, P: Packs>(&'a [Block<P>], P::Pack);
-struct Product<'a, P: Packs>(&'a [Block<P>], &'a [Block<P>]);
+struct PlainTerm<'a, P: Packs>(&'a [Block<P>]);
+struct ScaledTerm<'a, P: Packs>(&'a [Block<P>], P::Pack);
+struct ProductTerm<'a, P: Packs>(&'a [Block<P>], &'a [Block<P>]);
 struct ScaledProduct<'a, P: Packs>(&'a [Block<P>], P::Pack, &'a [Block<P>]);
 
 /// r[j] = x for the packs of a block, where x is an expression of j. Written out instead of closures, which
@@ -435,14 +435,14 @@ macro_rules! packs {
     }};
 }
 
-impl<P: Packs> At<P> for Own<'_, P> {
+impl<P: Packs> At<P> for PlainTerm<'_, P> {
     #[inline(always)]
     fn at(&self, _: P, k: usize) -> [P::Pack; BLOCK] {
         self.0[k].get()
     }
 }
 
-impl<P: Packs> At<P> for Scaled<'_, P> {
+impl<P: Packs> At<P> for ScaledTerm<'_, P> {
     #[inline(always)]
     fn at(&self, p: P, k: usize) -> [P::Pack; BLOCK] {
         let x = self.0[k].get();
@@ -450,7 +450,7 @@ impl<P: Packs> At<P> for Scaled<'_, P> {
     }
 }
 
-impl<P: Packs> At<P> for Product<'_, P> {
+impl<P: Packs> At<P> for ProductTerm<'_, P> {
     #[inline(always)]
     fn at(&self, p: P, k: usize) -> [P::Pack; BLOCK] {
         let (x, y) = (self.0[k].get(), self.1[k].get());
@@ -470,7 +470,7 @@ impl<P: Packs> At<P> for ScaledProduct<'_, P> {
 #[inline(always)]
 fn carry_out<P: Packs>(
     p: P,
-    program: &Program<P::Number>,
+    program: &VmProgram<P::Number>,
     m: &Machine<'_, P>,
     failed: &mut Option<u16>,
 ) {
@@ -489,15 +489,15 @@ fn carry_out<P: Packs>(
             ($term:expr, |$x:ident| $work:expr) => {
                 match $term {
                     Term::Row(x) => {
-                        let $x = Own::<P>(&m.row(x)[..to.len()]);
+                        let $x = PlainTerm::<P>(&m.row(x)[..to.len()]);
                         $work
                     }
                     Term::Scaled(x, c) => {
-                        let $x = Scaled::<P>(&m.row(x)[..to.len()], m.consts[c as usize]);
+                        let $x = ScaledTerm::<P>(&m.row(x)[..to.len()], m.consts[c as usize]);
                         $work
                     }
                     Term::Product(x, y) => {
-                        let $x = Product::<P>(&m.row(x)[..to.len()], &m.row(y)[..to.len()]);
+                        let $x = ProductTerm::<P>(&m.row(x)[..to.len()], &m.row(y)[..to.len()]);
                         $work
                     }
                     Term::ScaledProduct(x, c, y) => {
@@ -519,7 +519,7 @@ fn carry_out<P: Packs>(
             }};
         }
         match order {
-            Order::Source(plane) => {
+            VmInstruction::Source(plane) => {
                 let [from, end] = m.range;
                 let plane = &m.planes[plane as usize][from..end];
                 let (packs, _) = P::packs(plane).as_chunks::<BLOCK>();
@@ -535,12 +535,12 @@ fn carry_out<P: Packs>(
                     to.set(packs);
                 }
             }
-            Order::Fill(c) => {
+            VmInstruction::Fill(c) => {
                 let c = m.consts[c as usize];
                 set!(|_k| [c; BLOCK]);
             }
-            Order::Term(x) => term!(x, |x| set!(|k| x.at(p, k))),
-            Order::Sum(x, sign, y) => term!(x, |x| term!(y, |y| match sign {
+            VmInstruction::Term(x) => term!(x, |x| set!(|k| x.at(p, k))),
+            VmInstruction::Sum(x, sign, y) => term!(x, |x| term!(y, |y| match sign {
                 Sign::Plus => set!(|k| {
                     let (x, y) = (x.at(p, k), y.at(p, k));
                     packs!(x[j] = p.add(x[j], y[j]))
@@ -550,7 +550,7 @@ fn carry_out<P: Packs>(
                     packs!(x[j] = p.sub(x[j], y[j]))
                 }),
             })),
-            Order::Sums(x, [(first, y), (second, z)]) => {
+            VmInstruction::Sums(x, [(first, y), (second, z)]) => {
                 let x = &m.row(x)[..to.len()];
                 macro_rules! sums {
                     ($add:ident, $then:ident) => {
@@ -567,7 +567,7 @@ fn carry_out<P: Packs>(
                     (Sign::Minus, Sign::Minus) => sums!(sub, sub),
                 }
             }
-            Order::Shifted(x, sign, c) => {
+            VmInstruction::Shifted(x, sign, c) => {
                 let c = m.consts[c as usize];
                 term!(x, |x| match sign {
                     Sign::Plus => set!(|k| {
@@ -580,14 +580,14 @@ fn carry_out<P: Packs>(
                     }),
                 });
             }
-            Order::From(c, x) => {
+            VmInstruction::From(c, x) => {
                 let c = m.consts[c as usize];
                 term!(x, |x| set!(|k| {
                     let x = x.at(p, k);
                     packs!(x[j] = p.sub(c, x[j]))
                 }));
             }
-            Order::Ratio(x, y) => {
+            VmInstruction::Ratio(x, y) => {
                 let y = &m.row(y)[..to.len()];
                 let x = &m.row(x)[..to.len()];
                 set!(|k| {
@@ -595,18 +595,18 @@ fn carry_out<P: Packs>(
                     packs!(x[j] = p.div(x[j], y[j]))
                 });
             }
-            Order::Part(x, c) => {
+            VmInstruction::Part(x, c) => {
                 let c = m.consts[c as usize];
                 row!(x, |x| packs!(x[j] = p.div(x[j], c)));
             }
-            Order::Over(c, x) => {
+            VmInstruction::Over(c, x) => {
                 let c = m.consts[c as usize];
                 row!(x, |x| packs!(x[j] = p.div(c, x[j])));
             }
-            Order::Neg(x) => row!(x, |x| packs!(x[j] = p.neg(x[j]))),
-            Order::Abs(x) => row!(x, |x| packs!(x[j] = p.abs(x[j]))),
-            Order::Sqrt(x) => row!(x, |x| packs!(x[j] = p.sqrt(x[j]))),
-            Order::Unary(f, x, check) => {
+            VmInstruction::Neg(x) => row!(x, |x| packs!(x[j] = p.neg(x[j]))),
+            VmInstruction::Abs(x) => row!(x, |x| packs!(x[j] = p.abs(x[j]))),
+            VmInstruction::Sqrt(x) => row!(x, |x| packs!(x[j] = p.sqrt(x[j]))),
+            VmInstruction::Unary(f, x, check) => {
                 let f = program.unary[f as usize];
                 for k in 0..to.len() {
                     let mut x = operand(m, x, k);
@@ -618,7 +618,7 @@ fn carry_out<P: Packs>(
                     to[k].set(x);
                 }
             }
-            Order::Binary(f, of, check) => {
+            VmInstruction::Binary(f, of, check) => {
                 let f = program.binary[f as usize];
                 for k in 0..to.len() {
                     let [mut x, mut y] = [operand(m, of[0], k), operand(m, of[1], k)];

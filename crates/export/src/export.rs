@@ -2,9 +2,9 @@
 //! table ask of it.
 
 use crate::formats::Encoder;
-use crate::{Format, Holds, Symmetry, length_unit};
+use crate::{Format, Holds, SymmetryPlanes, length_unit};
 use moldloft_diag::Diagnostic;
-use moldloft_document::{Document, Panelled, PatchFields};
+use moldloft_document::{Document, Panelled, PatchAnalysis};
 use moldloft_io::vtk::{self, NamedFile};
 use moldloft_io::{LinesAndPoints, StructuredGrid, WriteError};
 use moldloft_mesh::{Blocks, Mesh};
@@ -98,10 +98,13 @@ fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnos
         return error(format!("a tolerance is for fitted patches, {takers}"));
     }
     let of_panels = matches!(format.holds, Holds::Panels | Holds::PanelsAndLines);
-    if (options.whole || options.triangles) && !(of_panels && format.symmetry == Symmetry::None) {
+    if (options.whole || options.triangles)
+        && !(of_panels && format.symmetry == SymmetryPlanes::None)
+    {
         let option = if options.whole { "whole" } else { "triangles" };
         let meshes = names(|f| {
-            matches!(f.holds, Holds::Panels | Holds::PanelsAndLines) && f.symmetry == Symmetry::None
+            matches!(f.holds, Holds::Panels | Holds::PanelsAndLines)
+                && f.symmetry == SymmetryPlanes::None
         });
         return error(format!("`{option}` is for files of plain panels, {meshes}"));
     }
@@ -277,7 +280,7 @@ impl Export<'_> {
             components: f.components,
             values: f.values,
         };
-        let patch = |p: PatchFields| vtk::PatchFields {
+        let patch = |p: PatchAnalysis| vtk::PatchFields {
             patch: p.patch,
             fields: p.fields.into_iter().map(field).collect(),
         };

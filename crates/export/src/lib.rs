@@ -37,7 +37,7 @@ pub use brep::brep;
 pub use export::{
     Export, Failure, FileName, WriteOptions, tagged, write, write_blocks, write_grids,
 };
-pub use formats::{Encoder, FORMATS, Format, Holds, Lids, Symmetry, format_named};
+pub use formats::{Encoder, FORMATS, Format, Holds, Lids, SymmetryPlanes, format_named};
 pub use kind_picture::kind_picture;
 pub use moldloft_io::vtk::NamedFile;
 pub use picture::picture;

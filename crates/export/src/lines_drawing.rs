@@ -2,7 +2,7 @@
 //! which it names none, laid out as body plan, waterlines and buttocks.
 
 use crate::{Failure, length_unit};
-use moldloft_document::{Document, Section};
+use moldloft_document::{ContourSection, Document};
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
 use moldloft_num::Vec3;
@@ -36,14 +36,15 @@ pub(crate) fn lines_drawing(
     let sheet = |(view, word): (View, &str)| {
         let (unit, unit_mm) = length_unit(document);
         let title = stem.into();
-        let options = drawing::Options { title, unit, unit_mm, ..drawing::Options::default() };
+        let options =
+            drawing::DrawingOptions { title, unit, unit_mm, ..drawing::DrawingOptions::default() };
         let bytes = drawing::draw(view, &contours, &options);
         NamedFile { name: format!("{stem}.{word}.svg"), bytes }
     };
     Ok(views.into_iter().map(sheet).collect())
 }
 
-fn contour(section: Section) -> drawing::Contour {
+fn contour(section: ContourSection) -> drawing::Contour {
     let lines = section.lines.iter().flat_map(|(_, lines)| lines);
     contour_of(section.axis, section.value, lines.map(points).collect())
 }

@@ -3,7 +3,7 @@
 use crate::export::lines_and_points;
 use crate::lines_drawing::points;
 use moldloft_diag::Diagnostic;
-use moldloft_document::{Document, Section};
+use moldloft_document::{ContourSection, Document};
 use moldloft_picture::{Line, Options, render};
 
 /// Contours on pictures: dark grey, so that they show on every patch.
@@ -36,7 +36,7 @@ pub fn picture(
         .map_err(|error| vec![Diagnostic::error("no-picture", error.to_string())])
 }
 
-fn drawn(section: &Section) -> Vec<Line> {
+fn drawn(section: &ContourSection) -> Vec<Line> {
     let lines = section.lines.iter().flat_map(|(_, lines)| lines);
     lines
         .map(|line| Line { points: points(line), colour: CONTOUR_COLOUR, width: CONTOUR_WIDTH })

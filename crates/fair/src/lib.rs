@@ -98,28 +98,28 @@ pub use curve::data::{
     Data, DataFit, DataOptions, Merged, MovingFit, fair_data, fair_data_with, merged,
 };
 pub use curve::fit::{
-    Fit, Spacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
+    Fit, ParameterSpacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
     parameters_across, parameters_with,
 };
 pub use curve::job::{End, Job};
 pub use curve::jumps::Jumps;
 pub use curve::knot_removal::{
-    KnotRemoval, KnotRemovalOptions, Move, Rule, Step, Stopped, Stops, knot_removal,
+    KnotRemoval, KnotRemovalOptions, Move, RemovalStep, Rule, Stopped, Stops, knot_removal,
     knot_removal_from, replay, replay_from_with, replay_with, sweeps,
 };
 pub use curve::layout::Layout;
 pub use curve::limit::{Limit, Motion};
 pub use curve::multilevel::multilevel;
 pub use curve::shape_condition::ShapeCondition;
-pub use curve::shaping::{FoundArc, Shape};
+pub use curve::shaping::{FoundArc, ShapeConstraints};
 pub use curve::space::Space;
 pub use error::FairError;
 pub use interrogate::deviation::{Deviation, certified, deviation};
 pub use interrogate::outliers::{DataFinding, data_findings, detectable, predicted};
-pub use interrogate::report::{Mode, Numbers, Report, data_report, numbers, report};
+pub use interrogate::report::{CurveStatistics, FairingReport, Mode, data_report, numbers, report};
 pub use interrogate::{shape, surface};
 pub use kinds::rows;
-pub use measure::{Measure, Norm, value};
+pub use measure::{Measure, RowNorm, value};
 pub use net::grid::{
     GridData, GridFit, MovingGrid, fair_grid, fair_grid_with, grid_parameters, grid_spacing,
 };

@@ -25,7 +25,7 @@ pub enum Measure {
 
 /// Whether a measure adds up squares or lengths of its rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Norm {
+pub enum RowNorm {
     /// Sum of squares.
     Square,
     /// Sum of lengths.
@@ -61,8 +61,8 @@ impl Measure {
     }
 
     /// How its rows are added up.
-    pub fn norm(self) -> Norm {
-        if self == Measure::JumpLengths { Norm::Length } else { Norm::Square }
+    pub fn norm(self) -> RowNorm {
+        if self == Measure::JumpLengths { RowNorm::Length } else { RowNorm::Square }
     }
 
     /// The rows of the measure on a space, free of the parameter's unit: a row times the control
@@ -88,10 +88,10 @@ impl Measure {
 }
 
 /// The value of a measure given by its rows.
-pub fn value(rows: &SparseRows, norm: Norm, points: &[Vec3<f64>]) -> f64 {
+pub fn value(rows: &SparseRows, norm: RowNorm, points: &[Vec3<f64>]) -> f64 {
     match norm {
-        Norm::Square => rows.sum_sq(points),
-        Norm::Length => rows.sum_abs(points),
+        RowNorm::Square => rows.sum_sq(points),
+        RowNorm::Length => rows.sum_abs(points),
     }
 }
 
@@ -282,7 +282,7 @@ mod tests {
             (0..9).map(|i| Vec3::of(knots[i + 1..i + 5].iter().sum(), 1.0, 0.0)).collect();
         for measure in Measure::ALL {
             let rows = measure.rows(&space).unwrap();
-            let size = value(&rows, Norm::Length, &line);
+            let size = value(&rows, RowNorm::Length, &line);
             assert!(size < 1e-10 * rows.len() as f64, "{measure:?} {size}");
             assert_eq!(Measure::named(measure.name()), Some(measure));
         }

@@ -49,7 +49,7 @@ fn main() {
         let Ok(m) = moldloft_field::mass(
             &set,
             &common::cube(4.0),
-            &moldloft_field::Measure::to_depth(depth),
+            &moldloft_field::IntegralOptions::to_depth(depth),
         ) else {
             continue;
         };

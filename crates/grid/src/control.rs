@@ -88,7 +88,7 @@ impl<T: Real> WallTerms<T> {
     /// One step towards the terms with which the grid meets the walls as asked, and how far off it is.
     pub fn update(&mut self, grid: &SurfaceGrid<T>, walls: &[Wall<T>]) -> Vec<WallReport> {
         let each = walls.iter().zip(&mut self.terms).map(|(wall, terms)| {
-            let view = View { grid, edge: wall.edge };
+            let view = EdgeView { grid, edge: wall.edge };
             let count = view.count();
             let mut report =
                 WallReport { edge: wall.edge, cells: [f64::INFINITY, 0.0], angle: 0.0 };
@@ -122,7 +122,7 @@ impl<T: Real> WallTerms<T> {
         let mut control = base.clone();
         let n = grid.n;
         for (wall, terms) in walls.iter().zip(&self.terms) {
-            let view = View { grid, edge: wall.edge };
+            let view = EdgeView { grid, edge: wall.edge };
             let fade: Vec<f64> =
                 (0..view.depth()).map(|d| libm::exp(-(d as f64) / REACH)).collect();
             for (k, [p, q]) in terms.iter().enumerate() {
@@ -158,19 +158,19 @@ pub fn wall_reports<T: Real>(grid: &SurfaceGrid<T>, walls: &[Wall<T>]) -> Vec<Wa
 
 /// The first cell off each point of an edge, and its angle to the edge; of points without one, zeros.
 pub fn wall_cells<T: Real>(grid: &SurfaceGrid<T>, edge: Edge) -> Vec<[T; 2]> {
-    let view = View { grid, edge };
+    let view = EdgeView { grid, edge };
     (0..view.count())
         .map(|k| view.cell(k).map_or([T::zero(); 2], |(length, angle)| [length, angle]))
         .collect()
 }
 
 /// A grid seen from an edge: point k along it, d cells deep.
-struct View<'a, T> {
+struct EdgeView<'a, T> {
     grid: &'a SurfaceGrid<T>,
     edge: Edge,
 }
 
-impl<T: Real> View<'_, T> {
+impl<T: Real> EdgeView<'_, T> {
     /// True when the edge runs along i.
     fn along_i(&self) -> bool {
         matches!(self.edge, Edge::FirstJ | Edge::LastJ)

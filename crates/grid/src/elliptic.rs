@@ -3,7 +3,7 @@
 //! Holds: edges stay to the bit; the same bits at any number of threads.
 
 use crate::control::{WallReport, WallTerms, middlecoff, wall_reports};
-use crate::lines::{Change, Control, Rows, larger, transposed_control};
+use crate::lines::{Change, Control, ZebraRows, larger, transposed_control};
 use crate::zebra::Banks;
 use crate::{Edge, GridError, SurfaceGrid};
 use moldloft_budget::Budget;
@@ -126,15 +126,15 @@ fn smoothed<T: Real, const L: usize>(
     }
     let planes: Vec<Vec<T>> = components.iter().map(|&c| grid.planes[c].clone()).collect();
     let mut points = match &options.on {
-        None => Points::Free(Banks::<T, L>::of(m, n, &planes)),
-        Some((surface, uv)) => Points::On(Constraint {
+        None => SmoothedPoints::Free(Banks::<T, L>::of(m, n, &planes)),
+        Some((surface, uv)) => SmoothedPoints::On(Constraint {
             surface: *surface,
-            points: Rows::of(m, n, &planes),
-            rows: Rows::of(m, n, uv),
+            points: ZebraRows::of(m, n, &planes),
+            rows: ZebraRows::of(m, n, uv),
         }),
     };
     let mut turned = false;
-    let merged = |points: &Points<T, L>, turned: bool| {
+    let merged = |points: &SmoothedPoints<T, L>, turned: bool| {
         let mut planes = grid.planes.clone();
         for (&c, plane) in components.iter().zip(points.planes(turned)) {
             planes[c] = plane;
@@ -172,11 +172,11 @@ fn smoothed<T: Real, const L: usize>(
         let mut square: f64 = 0.0;
         for colour in 0..2 {
             let moved = match (&mut points, &control) {
-                (Points::Free(banks), control) => {
+                (SmoothedPoints::Free(banks), control) => {
                     let control = control.as_ref().map(|(_, banks)| &banks[way]);
                     banks.pass(colour, options.omega, control)
                 }
-                (Points::On(constraint), control) => {
+                (SmoothedPoints::On(constraint), control) => {
                     let control = control.as_ref().map(|(planes, _)| &planes[way]);
                     constraint.pass(colour, options.omega, control)
                 }
@@ -205,17 +205,17 @@ fn smoothed<T: Real, const L: usize>(
 }
 
 /// The points under way, as rows along j, or along i when they are turned.
-enum Points<'a, T: Real, const L: usize> {
+enum SmoothedPoints<'a, T: Real, const L: usize> {
     Free(Banks<T, L>),
     On(Constraint<'a, T>),
 }
 
-impl<T: Real, const L: usize> Points<'_, T, L> {
+impl<T: Real, const L: usize> SmoothedPoints<'_, T, L> {
     /// Rows become columns.
     fn turn(&mut self) {
         match self {
-            Points::Free(banks) => banks.transpose(),
-            Points::On(constraint) => {
+            SmoothedPoints::Free(banks) => banks.transpose(),
+            SmoothedPoints::On(constraint) => {
                 constraint.points = constraint.points.transposed();
                 constraint.rows = constraint.rows.transposed();
             }
@@ -225,14 +225,14 @@ impl<T: Real, const L: usize> Points<'_, T, L> {
     /// The planes of the grid.
     fn planes(&self, turned: bool) -> Vec<Vec<T>> {
         match (self, turned) {
-            (Points::Free(banks), false) => banks.planes(),
-            (Points::Free(banks), true) => {
+            (SmoothedPoints::Free(banks), false) => banks.planes(),
+            (SmoothedPoints::Free(banks), true) => {
                 let mut banks = banks.clone();
                 banks.transpose();
                 banks.planes()
             }
-            (Points::On(constraint), false) => constraint.points.planes(),
-            (Points::On(constraint), true) => constraint.points.transposed().planes(),
+            (SmoothedPoints::On(constraint), false) => constraint.points.planes(),
+            (SmoothedPoints::On(constraint), true) => constraint.points.transposed().planes(),
         }
     }
 }
@@ -240,9 +240,9 @@ impl<T: Real, const L: usize> Points<'_, T, L> {
 /// Points that stay on a surface: their parameters move instead.
 struct Constraint<'a, T: Real> {
     surface: &'a dyn Surface<T>,
-    points: Rows<T>,
+    points: ZebraRows<T>,
     /// Their parameters.
-    rows: Rows<T>,
+    rows: ZebraRows<T>,
 }
 
 impl<T: Real> Constraint<'_, T> {

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 /// A named part of the boundary.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Patch {
+pub struct BoundaryPatch {
     /// Its name.
     pub name: String,
     /// Its type: "wall", "symmetry", "farfield", "inflow", "outflow" or "patch".
@@ -24,7 +24,7 @@ pub struct HexMesh {
     /// Cells by their nodes: four of the layer below, counter-clockwise from above, and those above them.
     pub cells: Vec<[usize; 8]>,
     /// The boundary. Faces without a name are in the patch "defaultFaces".
-    pub patches: Vec<Patch>,
+    pub patches: Vec<BoundaryPatch>,
 }
 
 /// What the faces of a block are on the boundary: name and type.
@@ -104,7 +104,7 @@ impl HexMesh {
         }
         let mut seen: HashMap<&[usize], usize> = HashMap::new();
         sides.iter().for_each(|(key, ..)| *seen.entry(key).or_default() += 1);
-        let mut patches: Vec<Patch> = Vec::new();
+        let mut patches: Vec<BoundaryPatch> = Vec::new();
         for (key, quad, name) in &sides {
             if seen[key.as_slice()] > 1 {
                 continue;
@@ -113,7 +113,7 @@ impl HexMesh {
                 name.clone().unwrap_or_else(|| ("defaultFaces".to_string(), "patch".to_string()));
             match patches.iter_mut().find(|patch| patch.name == name) {
                 Some(patch) => patch.faces.push(*quad),
-                None => patches.push(Patch { name, kind, faces: vec![*quad] }),
+                None => patches.push(BoundaryPatch { name, kind, faces: vec![*quad] }),
             }
         }
         Self { points: nodes.points, cells, patches }

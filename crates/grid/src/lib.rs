@@ -31,12 +31,12 @@ pub use block::{Faces, transfinite_block};
 pub use control::{WallReport, wall_cells};
 pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};
-pub use hex_mesh::{FaceNames, HEX_FACES, HexMesh, MeshCheck, Patch};
+pub use hex_mesh::{BoundaryPatch, FaceNames, HEX_FACES, HexMesh, MeshCheck};
 pub use marching::{
-    FailureCause, Hyperbolic, MarchFailure, MarchReport, Marched, Side, Stop, StopReason, Support,
-    hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,
+    FailureCause, Hyperbolic, MarchBoundary, MarchFailure, MarchReport, Marched, Stop, StopReason,
+    Support, hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,
 };
-pub use quality::{Metric, folded_cells, quality};
+pub use quality::{QualityMetric, folded_cells, quality};
 pub use surface_grid::{Edge, SurfaceGrid, framed};
 pub use volume_elliptic::{
     EllipticVolume, FaceWall, FaceWallReport, SmoothedVolume, elliptic_volume_until,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 /// Components of a grid (those that vary) with its even rows apart from its odd ones.
 #[derive(Clone)]
-pub struct Rows<T> {
+pub struct ZebraRows<T> {
     pub m: usize,
     pub n: usize,
     /// Of each component the even rows and the odd rows.
@@ -20,7 +20,7 @@ pub struct Control<T> {
     pub across: Vec<T>,
 }
 
-impl<T: Real> Rows<T> {
+impl<T: Real> ZebraRows<T> {
     /// The rows of planes of m by n numbers.
     pub fn of(m: usize, n: usize, planes: &[Vec<T>]) -> Self {
         let colour = |colour: usize, plane: &Vec<T>| -> Vec<T> {

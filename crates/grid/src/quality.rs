@@ -5,7 +5,7 @@ use moldloft_num::{Real, Vec3};
 
 /// What is measured of each cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Metric {
+pub enum QualityMetric {
     /// Scaled Jacobian: the least, over the corners, of the sine of the angle between the two
     /// sides; negative where the corner is turned over against the cells around. Best 1.
     ScaledJacobian,
@@ -29,32 +29,32 @@ pub enum Metric {
     Area,
 }
 
-impl Metric {
+impl QualityMetric {
     /// All, in the order of the reference.
-    pub const ALL: [Metric; 9] = [
-        Metric::ScaledJacobian,
-        Metric::Skew,
-        Metric::Aspect,
-        Metric::EdgeRatio,
-        Metric::GrowthI,
-        Metric::GrowthJ,
-        Metric::Warp,
-        Metric::Turn,
-        Metric::Area,
+    pub const ALL: [QualityMetric; 9] = [
+        QualityMetric::ScaledJacobian,
+        QualityMetric::Skew,
+        QualityMetric::Aspect,
+        QualityMetric::EdgeRatio,
+        QualityMetric::GrowthI,
+        QualityMetric::GrowthJ,
+        QualityMetric::Warp,
+        QualityMetric::Turn,
+        QualityMetric::Area,
     ];
 
     /// The name in the language.
     pub fn word(self) -> &'static str {
         match self {
-            Metric::ScaledJacobian => "sj",
-            Metric::Skew => "skew",
-            Metric::Aspect => "aspect",
-            Metric::EdgeRatio => "edge_ratio",
-            Metric::GrowthI => "growth_i",
-            Metric::GrowthJ => "growth_j",
-            Metric::Warp => "warp",
-            Metric::Turn => "turn",
-            Metric::Area => "area",
+            QualityMetric::ScaledJacobian => "sj",
+            QualityMetric::Skew => "skew",
+            QualityMetric::Aspect => "aspect",
+            QualityMetric::EdgeRatio => "edge_ratio",
+            QualityMetric::GrowthI => "growth_i",
+            QualityMetric::GrowthJ => "growth_j",
+            QualityMetric::Warp => "warp",
+            QualityMetric::Turn => "turn",
+            QualityMetric::Area => "area",
         }
     }
 }
@@ -63,7 +63,7 @@ impl Metric {
 ///
 /// Sides without length (at poles) do not count: the cell is a triangle then. A cell without area
 /// has scaled Jacobian 0 and skew 1, aspect and edge ratio infinite unless it is a point.
-pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: Metric) -> Vec<T> {
+pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: QualityMetric) -> Vec<T> {
     if grid.m < 2 || grid.n < 2 {
         return Vec::new();
     }
@@ -72,16 +72,16 @@ pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: Metric) -> Vec<T> {
         (0..cells.m * cells.n).map(|k| f(k / cells.n, k % cells.n)).collect()
     };
     match metric {
-        Metric::ScaledJacobian => {
+        QualityMetric::ScaledJacobian => {
             let normals = cells.reference_normals();
             each(&|i, j| cells.scaled_jacobian(i, j, normals[i * cells.n + j]))
         }
-        Metric::Skew => each(&|i, j| cells.skew(i, j)),
-        Metric::Aspect => each(&|i, j| {
+        QualityMetric::Skew => each(&|i, j| cells.skew(i, j)),
+        QualityMetric::Aspect => each(&|i, j| {
             let [a, b] = cells.middles(i, j);
             ratio(a, b)
         }),
-        Metric::EdgeRatio => each(&|i, j| {
+        QualityMetric::EdgeRatio => each(&|i, j| {
             let sides = cells.sides(i, j).map(|d| length(d)).into_iter();
             let known: Vec<T> = sides.filter(|s| s.re() > 0.0).collect();
             match known.iter().copied().reduce(T::max).zip(known.iter().copied().reduce(T::min)) {
@@ -89,8 +89,8 @@ pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: Metric) -> Vec<T> {
                 None => T::one(),
             }
         }),
-        Metric::GrowthI | Metric::GrowthJ => {
-            let axis = usize::from(metric == Metric::GrowthJ);
+        QualityMetric::GrowthI | QualityMetric::GrowthJ => {
+            let axis = usize::from(metric == QualityMetric::GrowthJ);
             let last = if axis == 0 { cells.m } else { cells.n };
             each(&|i, j| {
                 let k = [i, j][axis];
@@ -102,9 +102,9 @@ pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: Metric) -> Vec<T> {
                 })
             })
         }
-        Metric::Warp => each(&|i, j| cells.warp(i, j)),
-        Metric::Turn => each(&|i, j| cells.turn(i, j)),
-        Metric::Area => each(&|i, j| cells.area(i, j)),
+        QualityMetric::Warp => each(&|i, j| cells.warp(i, j)),
+        QualityMetric::Turn => each(&|i, j| cells.turn(i, j)),
+        QualityMetric::Area => each(&|i, j| cells.area(i, j)),
     }
 }
 
@@ -115,7 +115,7 @@ pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: Metric) -> Vec<T> {
 pub fn folded_cells<T: Real>(grid: &SurfaceGrid<T>) -> Vec<[usize; 2]> {
     let plain = grid.re();
     let n = grid.n.saturating_sub(1).max(1);
-    let jacobians = quality(&plain, Metric::ScaledJacobian);
+    let jacobians = quality(&plain, QualityMetric::ScaledJacobian);
     let folded = jacobians.iter().enumerate().filter(|(_, x)| **x < 0.0);
     folded.map(|(k, _)| [k / n, k % n]).collect()
 }

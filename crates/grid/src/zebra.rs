@@ -157,7 +157,8 @@ impl<T: Real, const L: usize> Banks<T, L> {
                     free,
                     omega,
                 };
-                let moved = arch.dispatch(Solve::<T, L, C, CONTROLLED> { bank, factors, rights });
+                let moved =
+                    arch.dispatch(ZebraSolve::<T, L, C, CONTROLLED> { bank, factors, rights });
                 change = larger(change, moved);
             }
             change
@@ -182,14 +183,14 @@ struct Bank<'a, T, const L: usize, const C: usize> {
 
 /// A loop that is compiled for the widest registers at hand. It is a struct because closures need not be
 /// inlined, and what is not inlined keeps the narrow ones.
-struct Solve<'a, 'b, T, const L: usize, const C: usize, const CONTROLLED: bool> {
+struct ZebraSolve<'a, 'b, T, const L: usize, const C: usize, const CONTROLLED: bool> {
     bank: Bank<'a, T, L, C>,
     factors: &'b mut [Pack<T, L>],
     rights: &'b mut [[Pack<T, L>; C]],
 }
 
 impl<T: Real, const L: usize, const C: usize, const CONTROLLED: bool> pulp::NullaryFnOnce
-    for Solve<'_, '_, T, L, C, CONTROLLED>
+    for ZebraSolve<'_, '_, T, L, C, CONTROLLED>
 {
     type Output = Change;
     #[inline(always)]

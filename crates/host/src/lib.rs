@@ -6,7 +6,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-use moldloft_lang::{ReadError, ReadText, World};
+use moldloft_lang::{ReadText, TextReadError, World};
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
@@ -66,8 +66,8 @@ impl FileWorld {
 }
 
 impl World for FileWorld {
-    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, ReadError> {
-        let refused = |reason: &str, help: Option<String>| ReadError {
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError> {
+        let refused = |reason: &str, help: Option<String>| TextReadError {
             message: format!("cannot read `{path}`: {reason}"),
             help,
         };
@@ -180,7 +180,7 @@ impl<W: World> Noted<W> {
 }
 
 impl<W: World> World for Noted<W> {
-    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, ReadError> {
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError> {
         let found = self.world.read(path, from)?;
         let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
         if !read.iter().any(|(p, f, _)| p == path && f.as_deref() == from) {
@@ -190,13 +190,13 @@ impl<W: World> World for Noted<W> {
     }
 }
 
-fn failed(path: &str, error: &std::io::Error) -> ReadError {
+fn failed(path: &str, error: &std::io::Error) -> TextReadError {
     let (reason, help) = match error.kind() {
         ErrorKind::NotFound => ("no such file".into(), near(path)),
         ErrorKind::PermissionDenied => ("permission denied".into(), None),
         _ => (error.to_string(), None),
     };
-    ReadError { message: format!("cannot read `{path}`: {reason}"), help }
+    TextReadError { message: format!("cannot read `{path}`: {reason}"), help }
 }
 
 /// A file of a similar name in the same folder.

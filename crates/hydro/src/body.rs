@@ -19,7 +19,7 @@ const FINEST: f64 = 1e-11;
 
 /// A surface that bounds a body.
 #[derive(Clone, Copy)]
-pub struct Side<'a, T: Real> {
+pub struct HullSide<'a, T: Real> {
     /// The surface.
     pub surface: &'a dyn Surface<T>,
     /// True when its outward normal is against S_u x S_v.
@@ -40,7 +40,7 @@ pub struct Body<T> {
 
 /// Areas, volume and centres of a whole skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measures<T> {
+pub struct BodyMeasures<T> {
     /// Area of the skin.
     pub area: T,
     /// Centre of the skin's area.
@@ -56,7 +56,10 @@ pub struct Measures<T> {
 }
 
 /// Area, volume and centres of one surface; `None` when it has a place that is not finite.
-pub fn surface_measures<T: Real>(surface: &dyn Surface<T>, accuracy: f64) -> Option<Measures<T>> {
+pub fn surface_measures<T: Real>(
+    surface: &dyn Surface<T>,
+    accuracy: f64,
+) -> Option<BodyMeasures<T>> {
     let steps: Vec<f64> = (0..=6).map(|k| f64::from(k) / 6.0).collect();
     let mut points = vec![Vec3::zero(); steps.len() * steps.len()];
     surface.grid(&steps, &steps, &mut points, None);
@@ -64,7 +67,7 @@ pub fn surface_measures<T: Real>(surface: &dyn Surface<T>, accuracy: f64) -> Opt
         return None;
     }
     let size = Box3::around(points.iter().map(|p| p.re())).diagonal();
-    let side = Side { surface, reversed: false, open_edges: [false; 4] };
+    let side = HullSide { surface, reversed: false, open_edges: [false; 4] };
     Some(Body::new(&[side], [], Vec::new(), size, accuracy)?.measures())
 }
 
@@ -72,7 +75,7 @@ impl<T: Real> Body<T> {
     /// The body that the sides, and panels of other skins, bound. `size` is about its diagonal. `None` when a
     /// surface has a place that is not finite.
     pub fn new(
-        sides: &[Side<'_, T>],
+        sides: &[HullSide<'_, T>],
         panels: impl IntoIterator<Item = [Vec3<T>; 4]>,
         rims: Vec<Vec<Vec3<T>>>,
         size: f64,
@@ -169,13 +172,13 @@ impl<T: Real> Body<T> {
     }
 
     /// Area, volume and centres of the whole skin.
-    pub fn measures(&self) -> Measures<T> {
+    pub fn measures(&self) -> BodyMeasures<T> {
         let bounds = self.bounds();
         let centre = bounds.centre();
         if self.cells.is_empty() {
             let zero = Vec3::zero();
             let t = T::zero();
-            return Measures {
+            return BodyMeasures {
                 area: t,
                 area_centre: zero,
                 volume: t,
@@ -203,7 +206,7 @@ impl<T: Real> Body<T> {
         let mut area_moment = sums.area_moment;
         area_moment.z += sums.wetted * above;
         let open = [sums.open[0], sums.open[1], sums.plane[0]].map(|x| x.re().abs());
-        Measures {
+        BodyMeasures {
             area: sums.wetted,
             area_centre: about(area_moment, sums.wetted) + Vec3::lifted(centre),
             volume,

@@ -31,7 +31,7 @@ pub enum Status {
 
 /// An equilibrium, or the best attempt at one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solved<T> {
+pub struct Equilibrium<T> {
     /// The figures there.
     pub flotation: Flotation<T>,
     /// Whether it is one.
@@ -122,7 +122,7 @@ pub fn equilibrium<T: Real>(
     water: Water,
     loading: Loading<T>,
     start: Attitude<T>,
-) -> Result<Solved<T>, FloatError> {
+) -> Result<Equilibrium<T>, FloatError> {
     let mass = loading.mass.re();
     if !(mass > 0.0 && mass.is_finite()) {
         return Err(FloatError::Mass { mass });
@@ -135,7 +135,7 @@ pub fn equilibrium<T: Real>(
         return Err(FloatError::HalfHeels);
     }
     let real = body.re();
-    let problem = Problem::new(&real, water, loading)?;
+    let problem = EquilibriumProblem::new(&real, water, loading)?;
     let from = [problem.level(start.trim.re(), start.heel.re())?, start.trim.re(), start.heel.re()];
     let (mut at, mut iterations, mut residual) = problem.newton(from);
     let loose = problem.loose();
@@ -156,7 +156,7 @@ pub fn equilibrium<T: Real>(
     let fixed: [T; 3] =
         std::array::from_fn(|k| if problem.free.contains(&k) { constant[k] } else { seeded[k] });
     let (free, count, size) = (problem.free.clone(), problem.count, problem.size);
-    let exact = Problem { body, water, loading, free, count, size };
+    let exact = EquilibriumProblem { body, water, loading, free, count, size };
     let off = exact.residual(fixed);
     let mut unknowns = fixed;
     if let Some(step) = problem.step(at, |r| off[r]) {
@@ -166,11 +166,11 @@ pub fn equilibrium<T: Real>(
     }
     let flotation = flotation(body, water, Attitude::of(unknowns), loading.centre);
     let stable = flotation.stable.unwrap_or(true);
-    Ok(Solved { flotation, status, iterations, residual, stable, lolls })
+    Ok(Equilibrium { flotation, status, iterations, residual, stable, lolls })
 }
 
 /// The equations of rest, made dimensionless: volume, trimming arm, heeling arm.
-struct Problem<'m, T: Real> {
+struct EquilibriumProblem<'m, T: Real> {
     body: &'m Body<T>,
     water: Water,
     loading: Loading<T>,
@@ -185,7 +185,7 @@ struct Problem<'m, T: Real> {
 /// Steps of heel in the search beyond an unstable attitude.
 const HEEL_STEP: f64 = 0.0349;
 
-impl<'m> Problem<'m, f64> {
+impl<'m> EquilibriumProblem<'m, f64> {
     fn new<S: Real>(
         body: &'m Body<f64>,
         water: Water,
@@ -360,7 +360,7 @@ impl<'m> Problem<'m, f64> {
     /// and what is left. The arm is followed at fixed heel; where it changes from overturning to righting, all
     /// unknowns are solved together.
     fn beyond(&self, at: [f64; 3]) -> Option<([f64; 3], usize, f64)> {
-        let held = Problem {
+        let held = EquilibriumProblem {
             body: self.body,
             water: self.water,
             loading: self.loading,
@@ -404,7 +404,7 @@ impl<'m> Problem<'m, f64> {
     }
 }
 
-impl<T: Real> Problem<'_, T> {
+impl<T: Real> EquilibriumProblem<'_, T> {
     /// What is missing to rest: (V - V0) / V0, and the moments of volume about the centre of gravity
     /// over V0 and the diagonal.
     fn residual(&self, unknowns: [T; 3]) -> [T; 3] {

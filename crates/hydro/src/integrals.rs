@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// What is integrated, about (x0, y0, level).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sums<T> {
+pub(crate) struct HydrostaticIntegrals<T> {
     /// Of x n_x, y n_y, z n_z.
     pub forms: [T; 3],
     /// First moments of the volume.
@@ -36,7 +36,7 @@ pub(crate) struct Sums<T> {
 /// Errors of volume, first moments of it, area, and of the water plane's area, first and second moments.
 pub(crate) type Errors = [f64; 6];
 
-impl<T: Real> Sums<T> {
+impl<T: Real> HydrostaticIntegrals<T> {
     pub fn zero() -> Self {
         let t = T::zero();
         Self {
@@ -108,7 +108,7 @@ impl<T: Real> Sums<T> {
 
 /// The integrals over all cells, and what the figures of the waterline need.
 pub(crate) struct Immersed<T> {
-    pub sums: Sums<T>,
+    pub sums: HydrostaticIntegrals<T>,
     /// The estimates of the quadrature's errors.
     pub errors: Errors,
     /// The strips that the water cuts.
@@ -135,9 +135,9 @@ const MOST_HALVED: usize = 20_000;
 const WORTH_A_THREAD: usize = 2048;
 
 /// A cell's share of the integrals.
-struct Part<T> {
+struct CellIntegrals<T> {
     cell: Arc<Cell<T>>,
-    sums: Sums<T>,
+    sums: HydrostaticIntegrals<T>,
     errors: Errors,
     waterline: Vec<Strip<T>>,
 }
@@ -185,7 +185,7 @@ pub(crate) fn immersed<T: Real>(
     let cut = Cut { axis: 2, level, epsilon: 1e-13 * size };
     let origin = Vec3::new(origin[0], origin[1], level);
     let one = |cell: &Arc<Cell<T>>| part(cell, cut, origin);
-    let mut parts: Vec<Option<Part<T>>> = if cells.len() < WORTH_A_THREAD {
+    let mut parts: Vec<Option<CellIntegrals<T>>> = if cells.len() < WORTH_A_THREAD {
         cells.iter().map(|c| Some(one(c))).collect()
     } else {
         cells.par_iter().map(|c| Some(one(c))).collect()
@@ -193,7 +193,7 @@ pub(crate) fn immersed<T: Real>(
     let mut errors = [0.0; 6];
     let mut scale = [0.0f64; 6];
     {
-        let mut sums = Sums::zero();
+        let mut sums = HydrostaticIntegrals::zero();
         for part in parts.iter().flatten() {
             sums.add(&part.sums);
             for k in 0..6 {
@@ -253,7 +253,8 @@ pub(crate) fn immersed<T: Real>(
     #[cfg(test)]
     HALVED.with(|count| count.set(count.get() + halved));
     // Summed anew: subtraction leaves rounding.
-    let mut all = Immersed { sums: Sums::zero(), errors: [0.0; 6], waterline: Vec::new() };
+    let mut all =
+        Immersed { sums: HydrostaticIntegrals::zero(), errors: [0.0; 6], waterline: Vec::new() };
     for part in parts.into_iter().flatten() {
         all.sums.add(&part.sums);
         for k in 0..6 {
@@ -267,10 +268,10 @@ pub(crate) fn immersed<T: Real>(
 /// Points of the rules on strips that are cut: along w, and across.
 const OUTER: [usize; 2] = [14, 10];
 
-fn part<T: Real>(cell: &Arc<Cell<T>>, cut: Cut<T>, origin: Vec3<T>) -> Part<T> {
+fn part<T: Real>(cell: &Arc<Cell<T>>, cut: Cut<T>, origin: Vec3<T>) -> CellIntegrals<T> {
     let mut found = Vec::new();
     let undecided = strips(cell, cut, &mut found);
-    let (mut sums, mut errors) = (Sums::zero(), [0.0; 6]);
+    let (mut sums, mut errors) = (HydrostaticIntegrals::zero(), [0.0; 6]);
     if undecided > 0.0 {
         let reach = cell.lengths().iter().sum::<f64>();
         for (k, e) in errors.iter_mut().enumerate() {
@@ -295,7 +296,7 @@ fn part<T: Real>(cell: &Arc<Cell<T>>, cut: Cut<T>, origin: Vec3<T>) -> Part<T> {
         }
     }
     found.retain(Strip::is_cut);
-    Part { cell: cell.clone(), sums, errors, waterline: found }
+    CellIntegrals { cell: cell.clone(), sums, errors, waterline: found }
 }
 
 /// The most points of a rule on whole lines.
@@ -328,8 +329,13 @@ fn points_beside(degree: usize, coarser: usize, other_exact: bool) -> usize {
 }
 
 /// The integrals over a strip by the finer (0) or the coarser (1) rule.
-fn integrated<T: Real>(strip: &Strip<T>, cut: Cut<T>, origin: Vec3<T>, coarser: usize) -> Sums<T> {
-    let mut sums = Sums::zero();
+fn integrated<T: Real>(
+    strip: &Strip<T>,
+    cut: Cut<T>,
+    origin: Vec3<T>,
+    coarser: usize,
+) -> HydrostaticIntegrals<T> {
+    let mut sums = HydrostaticIntegrals::zero();
     let degree = strip.cell.degree();
     let [inner, beside] = [degree[strip.inner], degree[1 - strip.inner]];
     let outer_exact = !strip.is_cut() && exact_along(beside);

@@ -22,9 +22,9 @@ mod measures;
 mod section;
 mod strip;
 
-pub use body::{Body, Measures, Side, USUAL_ACCURACY, surface_measures};
+pub use body::{Body, BodyMeasures, HullSide, USUAL_ACCURACY, surface_measures};
 pub use cell::Cell;
-pub use equilibrium::{FloatError, Loading, Solved, Status, equilibrium};
+pub use equilibrium::{Equilibrium, FloatError, Loading, Status, equilibrium};
 pub use figures::hydrostatics;
 pub use flotation::{Attitude, Flotation, Water, bottom, bounds, flotation};
 pub use measures::{curve_measures, solid_measures};

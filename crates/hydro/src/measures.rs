@@ -34,20 +34,20 @@ pub fn curve_measures<T: Real>(curve: &dyn Curve<T>) -> (T, Vec3<T>) {
 }
 
 /// A part of a solid that may be halved: the worst first, the earlier of two alike.
-struct Part<T> {
+struct AdaptiveBox<T> {
     low: [f64; 3],
     high: [f64; 3],
-    sums: Sums<T>,
+    sums: VolumeMoments<T>,
     /// How far the sums of its halves are from its own, and the parameter along which they are farthest.
     error: f64,
     along: usize,
-    halves: [Sums<T>; 2],
+    halves: [VolumeMoments<T>; 2],
     depth: u32,
 }
 
 /// A volume and its first moments.
 #[derive(Clone, Copy)]
-struct Sums<T> {
+struct VolumeMoments<T> {
     volume: T,
     moment: Vec3<T>,
 }
@@ -65,7 +65,7 @@ const KINKED: u32 = 20;
 /// the parameter of that difference, so that a kink inside is closed in upon. Where there is one, derivatives have
 /// no bound: the error is infinite then.
 pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)> {
-    let sums = |low: [f64; 3], high: [f64; 3]| -> Sums<T> {
+    let sums = |low: [f64; 3], high: [f64; 3]| -> VolumeMoments<T> {
         let (mut volume, mut moment) = (T::zero(), Vec3::zero());
         let rule = |k: usize| {
             let (low, step) = (low[k], high[k] - low[k]);
@@ -81,24 +81,25 @@ pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)
                 }
             }
         }
-        Sums { volume, moment }
+        VolumeMoments { volume, moment }
     };
-    let part = |low: [f64; 3], high: [f64; 3], whole: Sums<T>, depth: u32| -> Part<T> {
-        let tried = [0, 1, 2].map(|axis| {
-            let middle = 0.5 * (low[axis] + high[axis]);
-            let (mut end, mut start) = (high, low);
-            (end[axis], start[axis]) = (middle, middle);
-            let halves = [sums(low, end), sums(start, high)];
-            let both = halves[0].volume + halves[1].volume;
-            ((both - whole.volume).re().abs(), halves)
-        });
-        let along = (0..3).fold(0, |k, j| if tried[j].0 > tried[k].0 { j } else { k });
-        let (error, halves) = tried[along];
-        Part { low, high, sums: whole, error, along, halves, depth }
-    };
+    let part =
+        |low: [f64; 3], high: [f64; 3], whole: VolumeMoments<T>, depth: u32| -> AdaptiveBox<T> {
+            let tried = [0, 1, 2].map(|axis| {
+                let middle = 0.5 * (low[axis] + high[axis]);
+                let (mut end, mut start) = (high, low);
+                (end[axis], start[axis]) = (middle, middle);
+                let halves = [sums(low, end), sums(start, high)];
+                let both = halves[0].volume + halves[1].volume;
+                ((both - whole.volume).re().abs(), halves)
+            });
+            let along = (0..3).fold(0, |k, j| if tried[j].0 > tried[k].0 { j } else { k });
+            let (error, halves) = tried[along];
+            AdaptiveBox { low, high, sums: whole, error, along, halves, depth }
+        };
     let (low, high) = ([0.0; 3], [1.0; 3]);
     let mut open = vec![part(low, high, sums(low, high), 0)];
-    let mut settled: Vec<Part<T>> = Vec::new();
+    let mut settled: Vec<AdaptiveBox<T>> = Vec::new();
     let mut size = open[0].sums.volume.re().abs();
     while let Some(at) =
         (0..open.len()).reduce(|a, b| if open[b].error > open[a].error { b } else { a })

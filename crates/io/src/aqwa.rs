@@ -9,7 +9,7 @@
 //! Only the panels below z = 0 diffract, and AQWA takes none that crosses it, so the mesh must end
 //! there: see [`Mesh::immersed`]. Mass, environment and run (decks 3 and on) are the user's.
 
-use crate::solver::{Panels, corners, title};
+use crate::solver::{SolverPanels, corners, title};
 use crate::text::put;
 use crate::{Bits, PanelFileOptions, WriteError};
 use moldloft_mesh::Mesh;
@@ -27,7 +27,7 @@ const WIDTH: usize = 10;
 /// from 98 000 are those of centres of gravity); coordinates that ten characters cannot show;
 /// positions that are not finite; a half that crosses its plane.
 pub fn write(mesh: &Mesh, name: &str, options: PanelFileOptions) -> Result<Vec<u8>, WriteError> {
-    let panels = Panels::of(mesh, options)?;
+    let panels = SolverPanels::of(mesh, options)?;
     let count = panels.points.len();
     if count > MOST_NODES {
         return Err(WriteError::TooLarge { what: "vertices", count });

@@ -58,7 +58,7 @@ impl View {
 
 /// How to draw.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
+pub struct DrawingOptions {
     /// Title of the sheet.
     pub title: String,
     /// Name of the model's unit.
@@ -79,7 +79,7 @@ pub struct Options {
     pub grid_mm: f64,
 }
 
-impl Default for Options {
+impl Default for DrawingOptions {
     /// Metres, bow at low x, contours of 0.35 mm and grid of 0.13 mm (ISO 128 widths), 260 mm wide.
     fn default() -> Self {
         Self {
@@ -103,9 +103,9 @@ const FOOT: f64 = 16.0;
 /// The sheet: the view's own contours as lines, the others' values as nothing; a grid of round
 /// numbers with labels, the centre line and z = 0 heavier, names on the lines, the
 /// scale in words and as a bar. Points that are not finite end a line.
-pub fn draw(view: View, contours: &[Contour], options: &Options) -> Vec<u8> {
+pub fn draw(view: View, contours: &[Contour], options: &DrawingOptions) -> Vec<u8> {
     let lines = projected(view, contours, options);
-    let sheet = Sheet::around(&lines, options);
+    let sheet = SheetLayout::around(&lines, options);
     let mut out = String::new();
     sheet.head(&mut out, view, options);
     sheet.grid(&mut out, view, options);
@@ -131,7 +131,7 @@ struct Line {
     points: Vec<[f64; 2]>,
 }
 
-fn projected(view: View, contours: &[Contour], options: &Options) -> Vec<Line> {
+fn projected(view: View, contours: &[Contour], options: &DrawingOptions) -> Vec<Line> {
     let shown = || contours.iter().filter(|c| c.axis == view.axis());
     let (low, high) = shown().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| {
         (low.min(c.value), high.max(c.value))
@@ -186,7 +186,7 @@ fn round_up(x: f64) -> f64 {
 }
 
 /// The drawing's place on its sheet.
-struct Sheet {
+struct SheetLayout {
     /// Model coordinates of the drawing's edges, on grid lines: left, right, bottom, top.
     edges: [f64; 4],
     /// Millimetres on paper per model unit.
@@ -197,8 +197,8 @@ struct Sheet {
     step: f64,
 }
 
-impl Sheet {
-    fn around(lines: &[Line], options: &Options) -> Self {
+impl SheetLayout {
+    fn around(lines: &[Line], options: &DrawingOptions) -> Self {
         let mut edges = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
         for [x, y] in lines.iter().flat_map(|l| &l.points) {
             edges = [edges[0].min(*x), edges[1].max(*x), edges[2].min(*y), edges[3].max(*y)];
@@ -235,7 +235,7 @@ impl Sheet {
         [self.x(self.edges[1]) + MARGIN, self.y(self.edges[2]) + MARGIN + FOOT]
     }
 
-    fn head(&self, out: &mut String, view: View, options: &Options) {
+    fn head(&self, out: &mut String, view: View, options: &DrawingOptions) {
         let [width, height] = self.size();
         let view = match view {
             View::BodyPlan => "body plan",
@@ -254,7 +254,7 @@ impl Sheet {
         );
     }
 
-    fn grid(&self, out: &mut String, view: View, options: &Options) {
+    fn grid(&self, out: &mut String, view: View, options: &DrawingOptions) {
         let [left, right, bottom, top] = self.edges;
         let (thin, heavy) = (options.grid_mm, 2.0 * options.grid_mm);
         put!(*out, "<g id=\"grid\" stroke=\"#9ab\" stroke-width=\"{thin}\" fill=\"none\">\n");
@@ -311,7 +311,7 @@ impl Sheet {
         );
     }
 
-    fn line(&self, out: &mut String, line: &Line, options: &Options) {
+    fn line(&self, out: &mut String, line: &Line, options: &DrawingOptions) {
         let width = line.width.unwrap_or(options.line_mm);
         out.push_str("<path d=\"");
         for (k, [x, y]) in line.points.iter().enumerate() {
@@ -339,7 +339,7 @@ impl Sheet {
     }
 
     /// The scale in words and as a bar of five round parts.
-    fn foot(&self, out: &mut String, options: &Options) {
+    fn foot(&self, out: &mut String, options: &DrawingOptions) {
         let part = round_up(self.step / 2.0);
         let y = self.size()[1] - 8.0;
         let unit = xml(&options.unit);
@@ -390,8 +390,8 @@ mod tests {
 
     #[test]
     fn fore_body_right_after_body_left() {
-        let svg =
-            String::from_utf8(draw(View::BodyPlan, &sections(), &Options::default())).unwrap();
+        let svg = String::from_utf8(draw(View::BodyPlan, &sections(), &DrawingOptions::default()))
+            .unwrap();
         // 4 m wide at 1 : 20 is 200 mm; the centre line is at 16 + 100.
         assert!(svg.contains("scale 1 : 20"), "{svg}");
         let starts: Vec<&str> = svg
@@ -423,7 +423,7 @@ mod tests {
 
     #[test]
     fn empty_and_broken_input_still_draws() {
-        let nothing = draw(View::Buttocks, &[], &Options::default());
+        let nothing = draw(View::Buttocks, &[], &DrawingOptions::default());
         assert!(nothing.ends_with(b"</svg>\n"));
         let broken = Contour {
             name: "<&>".into(),
@@ -431,7 +431,7 @@ mod tests {
             polylines: vec![vec![[0.0; 3], [1.0, f64::NAN, 0.0], [2.0, 0.0, 0.0], [3.0, 1.0, 0.0]]],
             ..Contour::default()
         };
-        let svg = draw(View::Waterlines, &[broken], &Options::default());
+        let svg = draw(View::Waterlines, &[broken], &DrawingOptions::default());
         let svg = String::from_utf8(svg).unwrap();
         assert!(!svg.contains("NaN") && svg.contains("&lt;&amp;&gt;"));
     }

@@ -135,7 +135,7 @@ impl std::error::Error for WriteError {}
 
 /// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// A line of text, from 1.
     Line(usize),
     /// A byte, from 0.
@@ -150,7 +150,7 @@ pub struct ReadError {
     /// Name of the format.
     pub format: &'static str,
     /// Where.
-    pub place: Place,
+    pub place: FilePosition,
     /// What should be there.
     pub expected: String,
     /// What is there.
@@ -160,9 +160,9 @@ pub struct ReadError {
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (word, number) = match self.place {
-            Place::Line(line) => ("line", line),
-            Place::Byte(byte) => ("byte", byte),
-            Place::Block(block) => ("block", block),
+            FilePosition::Line(line) => ("line", line),
+            FilePosition::Byte(byte) => ("byte", byte),
+            FilePosition::Block(block) => ("block", block),
         };
         let Self { format, expected, found, .. } = self;
         write!(f, "{format}, {word} {number}: expected {expected}, found {found}")
@@ -173,7 +173,7 @@ impl std::error::Error for ReadError {}
 
 impl ReadError {
     /// A mesh that could not be built from what was read.
-    pub(crate) fn mesh(format: &'static str, place: Place, error: MeshError) -> Self {
+    pub(crate) fn mesh(format: &'static str, place: FilePosition, error: MeshError) -> Self {
         Self { format, place, expected: "a mesh".into(), found: error.to_string() }
     }
 }

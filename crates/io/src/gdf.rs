@@ -5,9 +5,9 @@
 //! is this house's own orientation; a triangle repeats a corner. `ISX` = 1 means that x = 0 is a
 //! plane of symmetry, `ISY` = 1 that y = 0 is, and only one half, or quarter, is listed.
 
-use crate::solver::{Panels, title};
+use crate::solver::{SolverPanels, title};
 use crate::text::{Line, pointed, put, quoted, real, utf8};
-use crate::{PanelFileOptions, Place, ReadError, WriteError};
+use crate::{FilePosition, PanelFileOptions, ReadError, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Order, Vec3};
 use moldloft_spline::{Basis, KnotVector};
@@ -55,7 +55,7 @@ impl Header {
 /// Positions that are not finite, and a half that crosses its symmetry plane.
 pub fn write(mesh: &Mesh, header: &Header, lids: bool) -> Result<Vec<u8>, WriteError> {
     let options = PanelFileOptions { mirror_x: header.mirror_x, mirror_y: header.mirror_y, lids };
-    let panels = Panels::of(mesh, options)?;
+    let panels = SolverPanels::of(mesh, options)?;
     let mut out = String::with_capacity(200 + 240 * panels.faces.len());
     put!(out, "{}", header.lines());
     put!(out, "{}\n", panels.faces.len());
@@ -163,7 +163,7 @@ pub fn read(bytes: &[u8]) -> Result<(Header, Mesh), ReadError> {
     let mut line = |what: &str| {
         lines.next().ok_or_else(|| ReadError {
             format: FORMAT,
-            place: Place::Byte(bytes.len()),
+            place: FilePosition::Byte(bytes.len()),
             expected: what.into(),
             found: "the end of the file".into(),
         })
@@ -202,7 +202,7 @@ pub fn read(bytes: &[u8]) -> Result<(Header, Mesh), ReadError> {
     if numbers.len() != 12 * panels {
         return Err(ReadError {
             format: FORMAT,
-            place: Place::Line(last),
+            place: FilePosition::Line(last),
             expected: format!("{} coordinates of {panels} panels", 12 * panels),
             found: numbers.len().to_string(),
         });
@@ -216,7 +216,7 @@ pub fn read(bytes: &[u8]) -> Result<(Header, Mesh), ReadError> {
         builder.add_faces(PatchInfo::new("panels"), faces)?;
         Mesh::new(builder.build().into(), positions)?.welded()
     };
-    let mesh = build().map_err(|e| ReadError::mesh(FORMAT, Place::Line(last), e))?;
+    let mesh = build().map_err(|e| ReadError::mesh(FORMAT, FilePosition::Line(last), e))?;
     Ok((Header { title, length, gravity, mirror_x, mirror_y }, mesh))
 }
 

@@ -5,7 +5,7 @@
 //! xsym says that x = 0 is a symmetry plane, ysym that y = 0 is. Corners are counter-clockwise seen
 //! from the water; a triangle has three.
 
-use crate::solver::{Panels, corners};
+use crate::solver::{SolverPanels, corners};
 use crate::text::put;
 use crate::{PanelFileOptions, WriteError};
 use moldloft_mesh::{Mesh, Tag, TopologyBuilder};
@@ -15,7 +15,7 @@ use moldloft_mesh::{Mesh, Tag, TopologyBuilder};
 /// # Errors
 /// Positions that are not finite; a half that crosses its plane.
 pub fn write(mesh: &Mesh, options: PanelFileOptions) -> Result<Vec<u8>, WriteError> {
-    Ok(file(&Panels::of(mesh, options)?, "Hull", options))
+    Ok(file(&SolverPanels::of(mesh, options)?, "Hull", options))
 }
 
 /// The file of the lids, HAMS's `WaterplaneMesh.pnl`; `None` when the mesh has none.
@@ -41,13 +41,13 @@ pub fn write_lids(mesh: &Mesh, options: PanelFileOptions) -> Result<Option<Vec<u
         return Ok(None);
     }
     Ok(Some(file(
-        &Panels::of(&lids, PanelFileOptions { lids: true, ..options })?,
+        &SolverPanels::of(&lids, PanelFileOptions { lids: true, ..options })?,
         "Waterplane",
         options,
     )))
 }
 
-fn file(panels: &Panels, what: &str, options: PanelFileOptions) -> Vec<u8> {
+fn file(panels: &SolverPanels, what: &str, options: PanelFileOptions) -> Vec<u8> {
     let (x, y) = (u8::from(options.mirror_x), u8::from(options.mirror_y));
     let rule = "-".repeat(14);
     let mut out = format!(

@@ -5,7 +5,7 @@
 //! Experts user manual; read by Capytaine's `_read_hst`). Corners are counter-clockwise seen from the
 //! water; a triangle has three.
 
-use crate::solver::{Panels, corners, title};
+use crate::solver::{SolverPanels, corners, title};
 use crate::text::put;
 use crate::{PanelFileOptions, WriteError};
 use moldloft_mesh::Mesh;
@@ -25,7 +25,7 @@ pub fn write(mesh: &Mesh, name: &str, options: PanelFileOptions) -> Result<Vec<u
             return Err(WriteError::CannotHold { format: "HydroStar", what });
         }
     };
-    let panels = Panels::of(mesh, options)?;
+    let panels = SolverPanels::of(mesh, options)?;
     let mut out = format!("PROJECT: {}\n\nSYMMETRY {symmetry}\n\nCOORDINATES\n", title(name));
     panels.node_lines(&mut out);
     out.push_str("ENDCOORDINATES\n\nPANEL TYPE 1\n");

@@ -5,7 +5,7 @@
 
 use crate::WriteError;
 use crate::text::append;
-use moldloft_brep::{Brep, Face, Side, SurfaceShape};
+use moldloft_brep::{Brep, Coedge, Face, SurfaceShape};
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 use std::collections::BTreeMap;
@@ -318,7 +318,7 @@ impl File {
 }
 
 /// True for a loop of which each edge has two sides.
-fn doubly_closed(cycle: &[Side]) -> bool {
+fn doubly_closed(cycle: &[Coedge]) -> bool {
     cycle.iter().all(|a| cycle.iter().filter(|b| a.edge == b.edge).count() == 2)
 }
 
@@ -370,7 +370,7 @@ fn rectangle(brep: &Brep, face: &Face, origin: Vec3, normal: Vec3, axis: Vec3) -
 }
 
 /// A side's curve in parameters, run as the loop runs.
-fn traced(side: &Side, curve: &Nurbs<1>, flat: Option<&Flat>) -> Option<Nurbs<1>> {
+fn traced(side: &Coedge, curve: &Nurbs<1>, flat: Option<&Flat>) -> Option<Nurbs<1>> {
     match flat {
         Some(flat) => Some(flat.trace(curve)),
         None => {

@@ -62,7 +62,7 @@ pub mod su2;
 pub mod threemf;
 pub mod vtk;
 
-pub use error::{Bits, Place, ReadError, WriteError};
+pub use error::{Bits, FilePosition, ReadError, WriteError};
 pub use solver::PanelFileOptions;
 pub use structured_grid::StructuredGrid;
 

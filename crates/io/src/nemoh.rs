@@ -5,7 +5,7 @@
 //! Delhommeau 2015, Nemoh's documentation; read by Capytaine's `_read_mar`). Corners are
 //! counter-clockwise seen from the water; a triangle repeats its last.
 
-use crate::solver::{Panels, corners};
+use crate::solver::{SolverPanels, corners};
 use crate::text::put;
 use crate::{PanelFileOptions, WriteError};
 use moldloft_mesh::Mesh;
@@ -20,7 +20,7 @@ pub fn write(mesh: &Mesh, options: PanelFileOptions) -> Result<Vec<u8>, WriteErr
     if options.mirror_x {
         return Err(WriteError::CannotHold { format: "Nemoh", what: "symmetry in x = 0" });
     }
-    let panels = Panels::of(mesh, options)?;
+    let panels = SolverPanels::of(mesh, options)?;
     let mut out = format!("2 {}\n", u8::from(options.mirror_y));
     panels.node_lines(&mut out);
     out.push_str("0 0. 0. 0.\n");

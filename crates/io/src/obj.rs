@@ -2,7 +2,7 @@
 
 use crate::error::check_positions;
 use crate::text::{Line, put, quoted, real, utf8, word};
-use crate::{LinesAndPoints, Place, ReadError, WriteError};
+use crate::{FilePosition, LinesAndPoints, ReadError, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, is_triangle};
 use moldloft_num::Vec3;
 
@@ -122,7 +122,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ReadError> {
         }
         Mesh::new(builder.build().into(), positions)
     };
-    build().map_err(|e| ReadError::mesh(FORMAT, Place::Line(last), e))
+    build().map_err(|e| ReadError::mesh(FORMAT, FilePosition::Line(last), e))
 }
 
 /// The vertex of a reference such as `3`, `-1` or `3/1/2`.
@@ -176,7 +176,11 @@ mod tests {
             ("v 0 0 0\n\nf a b c\n", 3),
             ("v 0 0 0\nf -9223372036854775808 1 1\n", 2),
         ] {
-            assert_eq!(read(bad.as_bytes()).unwrap_err().place, Place::Line(place), "{bad:?}");
+            assert_eq!(
+                read(bad.as_bytes()).unwrap_err().place,
+                FilePosition::Line(place),
+                "{bad:?}"
+            );
         }
     }
 }

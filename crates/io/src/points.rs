@@ -5,7 +5,7 @@
 //! headings, what separates the columns, the empty lines between curves, an aerofoil's two halves.
 
 use crate::text::{pointed, quoted, text_of};
-use crate::{Place, ReadError};
+use crate::{FilePosition, ReadError};
 use moldloft_num::Vec3;
 use std::ops::Range;
 
@@ -109,7 +109,7 @@ fn lines(text: &str) -> impl Iterator<Item = &str> {
 
 fn error(line: usize, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
     let (expected, found) = (expected.into(), found.into());
-    ReadError { format: FORMAT, place: Place::Line(line), expected, found }
+    ReadError { format: FORMAT, place: FilePosition::Line(line), expected, found }
 }
 
 /// The words of a line, empty ones between two delimiters included.
@@ -300,7 +300,7 @@ mod tests {
         read(text).unwrap().rows.into_iter().map(Vec3::to_array).collect()
     }
 
-    fn fault(text: &str) -> (Place, String, String) {
+    fn fault(text: &str) -> (FilePosition, String, String) {
         let error = read(text.as_bytes()).unwrap_err();
         (error.place, error.expected, error.found)
     }
@@ -355,7 +355,7 @@ mod tests {
     fn faults_have_their_line() {
         assert_eq!(
             fault("1 2\n3\n"),
-            (Place::Line(2), "2 columns, as in the lines before".into(), "1".into())
+            (FilePosition::Line(2), "2 columns, as in the lines before".into(), "1".into())
         );
         for (text, line, words) in [
             ("1 2\n3 x\n", 2, "`x`"),
@@ -378,7 +378,7 @@ mod tests {
         ] {
             let (place, _, found) = fault(text);
             assert!(
-                place == Place::Line(line) && found.contains(words),
+                place == FilePosition::Line(line) && found.contains(words),
                 "{text:?}: {place:?} {found}"
             );
         }

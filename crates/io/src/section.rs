@@ -2,7 +2,7 @@
 
 use crate::points::{self, PointTable};
 use crate::text::quoted;
-use crate::{Place, ReadError};
+use crate::{FilePosition, ReadError};
 use moldloft_num::Vec3;
 
 const FORMAT: &str = "aerofoil";
@@ -18,7 +18,7 @@ pub enum Listing {
 
 /// An aerofoil section.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Section {
+pub struct AerofoilSection {
     /// The heading.
     pub name: String,
     /// Points from the trailing edge along the upper side to the nose and back along the lower, in the
@@ -43,11 +43,11 @@ pub struct Section {
 /// let section = moldloft_io::section::read_aerofoil(selig).unwrap();
 /// assert_eq!((section.name.as_str(), section.nose), ("WEDGE", 2));
 /// ```
-pub fn read_aerofoil(bytes: &[u8]) -> Result<Section, ReadError> {
+pub fn read_aerofoil(bytes: &[u8]) -> Result<AerofoilSection, ReadError> {
     let table = points::read(bytes).map_err(|e| ReadError { format: FORMAT, ..e })?;
     let PointTable { rows, lines, head, .. } = &table;
     let error = |line: usize, expected: String, found: String| {
-        Err(ReadError { format: FORMAT, place: Place::Line(line), expected, found })
+        Err(ReadError { format: FORMAT, place: FilePosition::Line(line), expected, found })
     };
     let mut titles = head.iter().filter(|line| !line.trim_start().starts_with('#'));
     let name = titles.next().map(|line| line.trim().to_owned()).unwrap_or_default();
@@ -77,7 +77,7 @@ pub fn read_aerofoil(bytes: &[u8]) -> Result<Section, ReadError> {
             "the nose at an end of the list".into(),
         );
     }
-    Ok(Section { name, points, nose, listing })
+    Ok(AerofoilSection { name, points, nose, listing })
 }
 
 #[cfg(test)]
@@ -95,8 +95,8 @@ mod tests {
         assert_eq!((a.name.as_str(), b.name.as_str()), ("ÉTUDE 12", "NAME"));
         let short = b"NAME\n 4. 3.\n 0 0\n 0.5 0.1\n 1 0\n 0 0\n 0.4 -0.05\n 1 0\n";
         let error = read_aerofoil(short).unwrap_err();
-        assert_eq!((error.place, error.found.as_str()), (Place::Line(2), "6 points"));
-        assert_eq!(read_aerofoil(b"X\n1 0\n0 0 0\n").unwrap_err().place, Place::Line(3));
+        assert_eq!((error.place, error.found.as_str()), (FilePosition::Line(2), "6 points"));
+        assert_eq!(read_aerofoil(b"X\n1 0\n0 0 0\n").unwrap_err().place, FilePosition::Line(3));
         assert!(read_aerofoil(b"X\n0 0\n1 0\n2 0\n3 1\n4 1\n").unwrap_err().found.contains("nose"));
         assert!(read_aerofoil(b"").is_err());
     }

@@ -20,7 +20,7 @@ pub struct PanelFileOptions {
 }
 
 /// The panels to write. Panels keep the order of patches and of the faces in each.
-pub(crate) struct Panels {
+pub(crate) struct SolverPanels {
     /// Positions of the used vertices, in the order of the mesh's numbers.
     pub points: Vec<[f64; 3]>,
     /// Corners as indices of `points`, counter-clockwise seen from the water; a triangle repeats
@@ -30,7 +30,7 @@ pub(crate) struct Panels {
     pub patches: Vec<(String, usize)>,
 }
 
-impl Panels {
+impl SolverPanels {
     /// The skin of a mesh, that is all patches but lids, water and symmetry planes.
     ///
     /// Corners within 1e-9 of the mesh's diagonal from a symmetry plane are moved into it, so that

@@ -7,7 +7,7 @@
 
 use crate::error::{check_positions, check_single};
 use crate::text::{Line, put, quoted, real, utf8, word};
-use crate::{Place, ReadError, StructuredGrid, WriteError};
+use crate::{FilePosition, ReadError, StructuredGrid, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::Vec3;
 
@@ -100,7 +100,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ReadError> {
     }
     Err(ReadError {
         format: FORMAT,
-        place: Place::Byte(bytes.len().min(80)),
+        place: FilePosition::Byte(bytes.len().min(80)),
         expected: match count {
             Some(n) => format!("{} bytes of {n} triangles", HEADER + TRIANGLE * n as usize),
             None => "a header of 84 bytes".into(),
@@ -118,7 +118,7 @@ fn binary(triangles: &[u8]) -> Result<Mesh, ReadError> {
             if !p.is_finite() {
                 return Err(ReadError {
                     format: FORMAT,
-                    place: Place::Byte(HEADER + TRIANGLE * k),
+                    place: FilePosition::Byte(HEADER + TRIANGLE * k),
                     expected: "finite coordinates".into(),
                     found: format!("{:?}", p.to_array()),
                 });
@@ -126,7 +126,7 @@ fn binary(triangles: &[u8]) -> Result<Mesh, ReadError> {
             corners.push(p);
         }
     }
-    built(corners, "solid", Place::Byte(HEADER))
+    built(corners, "solid", FilePosition::Byte(HEADER))
 }
 
 fn text(bytes: &[u8]) -> Result<Mesh, ReadError> {
@@ -155,10 +155,10 @@ fn text(bytes: &[u8]) -> Result<Mesh, ReadError> {
         let line = Line { format: FORMAT, number: last, text: "" };
         return Err(line.error("three vertices in a loop", "the end of the file"));
     }
-    built(corners, name, Place::Line(last))
+    built(corners, name, FilePosition::Line(last))
 }
 
-fn built(corners: Vec<Vec3>, name: &str, place: Place) -> Result<Mesh, ReadError> {
+fn built(corners: Vec<Vec3>, name: &str, place: FilePosition) -> Result<Mesh, ReadError> {
     let build = || {
         let mut builder = TopologyBuilder::new();
         builder.add_vertices(corners.len())?;
@@ -244,7 +244,7 @@ mod tests {
         let mesh = read(text).unwrap();
         assert_eq!((measure(&mesh).area, mesh.patches()[0].info.name.as_str()), (0.5, "wedge"));
         let bad = b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n";
-        assert_eq!(read(bad).unwrap_err().place, Place::Line(6));
+        assert_eq!(read(bad).unwrap_err().place, FilePosition::Line(6));
         assert!(read(b"solid\nvertex 1 2\n").unwrap_err().expected.contains("coordinate"));
         assert!(read(b"solid\nvertex 1 2 3\n").is_err());
     }

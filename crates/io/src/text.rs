@@ -1,6 +1,6 @@
 //! Numbers and names in text formats.
 
-use crate::{Place, ReadError};
+use crate::{FilePosition, ReadError};
 use std::fmt::Write;
 
 /// The shortest decimal that reads back as the same double; -0 is written as 0.
@@ -90,7 +90,7 @@ impl<'a> Line<'a> {
 
     pub fn error(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         let (expected, found) = (expected.into(), found.into());
-        ReadError { format: self.format, place: Place::Line(self.number), expected, found }
+        ReadError { format: self.format, place: FilePosition::Line(self.number), expected, found }
     }
 
     /// A finite real; Fortran's `D` exponents are understood.
@@ -130,7 +130,7 @@ pub(crate) fn text_of(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
 pub(crate) fn utf8<'a>(bytes: &'a [u8], format: &'static str) -> Result<&'a str, ReadError> {
     std::str::from_utf8(bytes).map_err(|e| ReadError {
         format,
-        place: Place::Byte(e.valid_up_to()),
+        place: FilePosition::Byte(e.valid_up_to()),
         expected: "text".into(),
         found: "bytes that are not UTF-8".into(),
     })

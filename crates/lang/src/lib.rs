@@ -21,7 +21,7 @@ pub mod value;
 pub use functions::context::{BUILTINS, Builtin, MOST_REFINED};
 pub use run::inserted::{INSERTED_FILES, InsertedFile};
 pub use source::env::{Evaluation, Param, SolveStatus};
-pub use source::{LIBRARIES, NoFiles, ReadError, ReadText, World};
+pub use source::{LIBRARIES, NoFiles, ReadText, TextReadError, World};
 pub use value::display;
 
 use moldloft_registry::Registry;

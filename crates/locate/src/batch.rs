@@ -1,7 +1,7 @@
 //! Nearest points of one shape for many points: everything that does not depend on the point is
 //! computed beforehand.
 
-use crate::cells::{Cells, Flat, LEAF, Piece};
+use crate::cells::{Cells, Flat, LEAF, PolynomialPiece};
 use crate::nearest::{
     Sought, apart, nearest_in_curve, nearest_in_surface, on_crease, on_whole_surface,
 };
@@ -110,7 +110,7 @@ struct Foot {
 
 /// A box of a cell's parameters, in the piece's.
 #[derive(Clone, Copy)]
-struct Part {
+struct ParameterBox {
     middle: [f64; 2],
     half: [f64; 2],
     /// At the middle, by the box's own parameters: position less the point, s, t, ss, st, tt.
@@ -126,7 +126,7 @@ struct Part {
 /// One point's search.
 struct Search<'a> {
     p: Vec3,
-    piece: &'a Piece,
+    piece: &'a PolynomialPiece,
     /// Feet farther than this do not count.
     limit: f64,
     feet: SmallVec<[Foot; 4]>,
@@ -323,7 +323,7 @@ impl<'a> Search<'a> {
         self.piece = &cells.pieces[bent.piece as usize];
         let far = away.norm() + bent.reach;
         let [ss, st, tt] = bent.second;
-        self.part(&Part {
+        self.part(&ParameterBox {
             middle: bent.middle,
             half: bent.half,
             jet: [away, flat.a, flat.b, ss, st, tt],
@@ -335,7 +335,7 @@ impl<'a> Search<'a> {
     }
 
     /// Makes sure that no nearer foot is in the box.
-    fn part(&mut self, part: &Part) {
+    fn part(&mut self, part: &ParameterBox) {
         self.boxes += 1;
         let [r, s, t, ss, st, tt] = part.jet;
         let slack = self.piece.slack;
@@ -428,7 +428,7 @@ impl<'a> Search<'a> {
             for k in 0..2 {
                 open[k][usize::from(!high[k])] = false;
             }
-            self.part(&Part {
+            self.part(&ParameterBox {
                 middle,
                 half,
                 jet: [x - self.p, s * a, t * b, ss * (a * a), st * (a * b), tt * (b * b)],
@@ -442,7 +442,7 @@ impl<'a> Search<'a> {
 
     /// Newton's method for the foot in a box: where it is in the box's parameters, and the second
     /// derivatives of half the square of the distance there; `None` when it did not settle.
-    fn descend(&mut self, part: &Part, start: [f64; 2]) -> Option<([f64; 2], [f64; 3])> {
+    fn descend(&mut self, part: &ParameterBox, start: [f64; 2]) -> Option<([f64; 2], [f64; 3])> {
         let clamp = |w: [f64; 2]| w.map(|x| x.clamp(-1.0, 1.0));
         let mut w = clamp(start);
         let mut before = f64::INFINITY;

@@ -22,7 +22,7 @@ use crate::cells::{Cells, Flat, Fork, LEAF, Polynomials, forks};
 use crate::implicit::solve;
 use crate::march::{Branch, Crossing, Other, TANGENT, TracePoint, Unknowns};
 use crate::newton::OUTSIDE;
-use crate::pieces::{Patch, meet};
+use crate::pieces::{BezierPatch, meet};
 use crate::slab_tree::{Pairs, Plates, Sight, Trails, Visitor};
 use crate::tree::Boxes;
 use moldloft_num::{Box3, Field, Order, Plane, Surface, Vec3, slope_scale};
@@ -77,7 +77,7 @@ pub struct Branches {
 
 /// A cell or a part of one.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct CellPart {
     flat: Flat,
     /// The parallelogram's unit normal, zero where it has none.
     normal: Vec3,
@@ -94,7 +94,7 @@ struct Part {
     piece: u32,
 }
 
-impl Part {
+impl CellPart {
     fn of(cells: &Cells, k: usize) -> Self {
         let bent = &cells.bents[k];
         let slack = cells.pieces[bent.piece as usize].slack;
@@ -208,7 +208,7 @@ struct At<'a> {
 pub struct CutSurface {
     cells: Cells,
     /// One for each cell.
-    parts: Vec<Part>,
+    parts: Vec<CellPart>,
     plates: Plates,
     /// The tree over the pieces.
     forks: Vec<Fork>,
@@ -228,9 +228,10 @@ impl CutSurface {
     }
 
     fn of(mut cells: Cells) -> Self {
-        let parts: Vec<Part> = (0..cells.flats.len()).map(|k| Part::of(&cells, k)).collect();
+        let parts: Vec<CellPart> =
+            (0..cells.flats.len()).map(|k| CellPart::of(&cells, k)).collect();
         let plates = Plates::new(&mut cells);
-        let bounds: Vec<Box3> = cells.tree.patches.iter().map(Patch::bounds).collect();
+        let bounds: Vec<Box3> = cells.tree.patches.iter().map(BezierPatch::bounds).collect();
         let boxes = Boxes::new(&bounds, 1);
         let forks = numbered(forks(&boxes), &boxes.order);
         let quick = cells.polynomials();
@@ -270,7 +271,7 @@ struct Finder<'a> {
     bins: Vec<SmallVec<[u32; 6]>>,
     trails: Trails,
     /// Parts that are still to be looked at in pairs.
-    parts: Vec<(Part, Part)>,
+    parts: Vec<(CellPart, CellPart)>,
     found: Branches,
     pairs: usize,
 }
@@ -389,7 +390,7 @@ impl Finder<'_> {
     fn with_one(
         &mut self,
         crosses: impl Fn(&Box3) -> bool,
-        judged: impl Fn(&Part) -> Option<bool>,
+        judged: impl Fn(&CellPart) -> Option<bool>,
     ) {
         let first = self.first;
         let cells = &first.cells;
@@ -398,7 +399,7 @@ impl Finder<'_> {
         if crosses(bounds) {
             stack.push(top);
         }
-        let mut parts: Vec<Part> = Vec::new();
+        let mut parts: Vec<CellPart> = Vec::new();
         while let Some(at) = stack.pop() {
             if at & LEAF == 0 {
                 let fork = &cells.forks[at as usize];
@@ -453,7 +454,7 @@ impl Finder<'_> {
 
     /// Looks at a pair of parts that may meet; pairs of their halves are left in `parts`. False when
     /// there were too many.
-    fn pair(&mut self, p: &Part, q: &Part, simple: bool) -> bool {
+    fn pair(&mut self, p: &CellPart, q: &CellPart, simple: bool) -> bool {
         if self.exhausted() {
             return false;
         }
@@ -470,21 +471,21 @@ impl Finder<'_> {
     }
 
     /// Starts a branch from a pair unless one passes there.
-    fn start(&mut self, a: &Part, b: Option<&Part>, simple: bool) {
+    fn start(&mut self, a: &CellPart, b: Option<&CellPart>, simple: bool) {
         let second = b.zip(self.second.map(|s| &s.cells));
         let mut x = b.map_or(a.flat.c, |b| (a.flat.c + b.flat.c) * 0.5);
         let mut places = [0.0; 4];
         match self.straight(a, b, x) {
             // The planes of the cells do not meet where both cells are.
-            Straight::Beside => return,
-            Straight::Line { at, reach, places: there } => {
+            PlaneMeeting::Beside => return,
+            PlaneMeeting::Line { at, reach, places: there } => {
                 let [s, t, ..] = there;
                 if self.covered(at, reach, a.place(&self.first.cells, [s, t])) {
                     return;
                 }
                 (x, places) = (at, there);
             }
-            Straight::Parallel => {}
+            PlaneMeeting::Parallel => {}
         }
         let [s, t, k, l] = places;
         let [us, vs] = a.ranges(&self.first.cells);
@@ -531,7 +532,7 @@ impl Finder<'_> {
     }
 
     /// Where the planes of a pair's cells meet, near both.
-    fn straight(&self, a: &Part, b: Option<&Part>, near: Vec3) -> Straight {
+    fn straight(&self, a: &CellPart, b: Option<&CellPart>, near: Vec3) -> PlaneMeeting {
         let m = a.normal;
         let (n, point, bend) = match (b, self.crossing.other) {
             (Some(b), _) => (b.normal, b.flat.c, a.flat.bend + b.flat.bend),
@@ -540,18 +541,18 @@ impl Finder<'_> {
                 // Its tangent plane near the cell, and how far it may bend away from it there.
                 let (f, g, h) = field.second_order(a.flat.c);
                 let Some(n) = g.normalized() else {
-                    return Straight::Parallel;
+                    return PlaneMeeting::Parallel;
                 };
                 let half = a.flat.a.norm() + a.flat.b.norm();
                 let bent = h.iter().map(|row| row.norm_sq()).sum::<f64>().sqrt() / g.norm();
                 (n, a.flat.c - n * (f / g.norm()), a.flat.bend + bent * half * half)
             }
-            _ => return Straight::Parallel,
+            _ => return PlaneMeeting::Parallel,
         };
         let d = m.cross(n);
         let det = d.norm_sq();
         if det < LEAST_SINE * LEAST_SINE {
-            return Straight::Parallel;
+            return PlaneMeeting::Parallel;
         }
         let by_sine = 1.0 / det.sqrt();
         let d = d * by_sine;
@@ -566,13 +567,13 @@ impl Finder<'_> {
         let second = b.map_or([0.0; 4], |b| b.clip(at, d, reach, &mut stretch));
         let [low, high] = stretch;
         if low > high {
-            return Straight::Beside;
+            return PlaneMeeting::Beside;
         }
         let middle = if (low + high).is_finite() { 0.5 * (low + high) } else { 0.0 };
         let [s, t, ds, dt] = first;
         let [k, l, dk, dl] = second;
         let places = [s + ds * middle, t + dt * middle, k + dk * middle, l + dl * middle];
-        Straight::Line { at: at + d * middle, reach, places }
+        PlaneMeeting::Line { at: at + d * middle, reach, places }
     }
 
     /// True when a stretch of a branch passes within `reach` of a place of the cell with these
@@ -669,7 +670,7 @@ impl Visitor for Finder<'_> {
 
 /// True when two parts certainly have no common point.
 #[inline]
-fn apart(p: &Part, q: &Part) -> bool {
+fn apart(p: &CellPart, q: &CellPart) -> bool {
     let (a, b) = (&p.flat, &q.flat);
     let d = b.c - a.c;
     let bend = a.bend + b.bend;
@@ -713,7 +714,7 @@ impl Chord {
 }
 
 /// What the planes of a pair of cells say.
-enum Straight {
+enum PlaneMeeting {
     /// They do not meet where both cells are.
     Beside,
     /// They meet in a line, in the middle of whose stretch over both cells is `at`; the shapes meet

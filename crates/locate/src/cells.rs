@@ -7,7 +7,7 @@
 //! second derivatives at its middle, and bounds of what is left out. A first test looks at the
 //! parallelogram only, so that lies by itself.
 
-use crate::pieces::Patch;
+use crate::pieces::BezierPatch;
 use crate::tree::{Boxes, SurfaceTree};
 use moldloft_num::{Box3, Order, SurfJet, Surface, Vec3};
 use pulp::WithSimd;
@@ -24,7 +24,7 @@ const MOST_CELLS: usize = 1 << 17;
 
 /// The polynomial of a piece.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece {
+pub(crate) struct PolynomialPiece {
     /// Its parameters on the surface.
     pub uv: [[f64; 2]; 2],
     /// Coefficient of s^i t^j at [i * 4 + j], with s and t in [-1, 1].
@@ -154,7 +154,7 @@ pub(crate) const LEAF: u32 = 1 << 31;
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     pub tree: SurfaceTree,
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<PolynomialPiece>,
     /// The cells, in the order of the leaves of the tree.
     pub flats: Vec<Flat>,
     pub bents: Vec<Bent>,
@@ -169,7 +169,7 @@ pub(crate) struct Cells {
 /// A piece or a part of one, on the way from pieces to cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Twig {
-    pub patch: Patch,
+    pub patch: BezierPatch,
     pub piece: u32,
     /// The first of its halves, which follow each other; 0 for a cell.
     pub below: u32,
@@ -189,7 +189,7 @@ fn powers([a, b, c, d]: [Vec3; 4]) -> [Vec3; 4] {
     ]
 }
 
-pub(crate) fn patch_powers(patch: &Patch) -> [Vec3; 16] {
+pub(crate) fn patch_powers(patch: &BezierPatch) -> [Vec3; 16] {
     let mut out = [Vec3::zero(); 16];
     for i in 0..4 {
         out[i * 4..i * 4 + 4].copy_from_slice(&powers([0, 1, 2, 3].map(|j| patch.net[i * 4 + j])));
@@ -246,7 +246,7 @@ impl Flat {
     }
 
     /// The one in the middle of a patch with these powers.
-    pub fn new(patch: &Patch, x: &[Vec3; 16]) -> Self {
+    pub fn new(patch: &BezierPatch, x: &[Vec3; 16]) -> Self {
         let (a, b) = (x[4], x[1]);
         let high: f64 = (0..16).filter(|k| k / 4 + k % 4 > 1).map(|k| x[k].norm()).sum();
         Self::of(x[0], a, b, high + patch.slack)
@@ -254,7 +254,13 @@ impl Flat {
 }
 
 impl Bent {
-    pub fn new(cell: &Patch, x: &[Vec3; 16], piece: u32, place: [[f64; 2]; 2], full: bool) -> Self {
+    pub fn new(
+        cell: &BezierPatch,
+        x: &[Vec3; 16],
+        piece: u32,
+        place: [[f64; 2]; 2],
+        full: bool,
+    ) -> Self {
         let (s, t) = (derivative(x, 0), derivative(x, 1));
         let (ss, st, tt) = (derivative(&s, 0), derivative(&s, 1), derivative(&t, 1));
         let third =
@@ -305,7 +311,7 @@ fn second(powers: &[Vec3; 16], s: f64, t: f64) -> [Vec3; 6] {
     out
 }
 
-impl Piece {
+impl PolynomialPiece {
     /// Position, first and second derivatives at (s, t): p, s, t, ss, st, tt.
     #[inline]
     pub fn jet(&self, s: f64, t: f64) -> [Vec3; 6] {
@@ -350,7 +356,11 @@ impl Cells {
         let mut pieces = Vec::with_capacity(tree.patches.len());
         let mut twigs: Vec<Twig> = Vec::with_capacity(8 * tree.patches.len());
         for (k, patch) in tree.patches.iter().enumerate() {
-            pieces.push(Piece { uv: patch.uv, powers: patch_powers(patch), slack: patch.slack });
+            pieces.push(PolynomialPiece {
+                uv: patch.uv,
+                powers: patch_powers(patch),
+                slack: patch.slack,
+            });
             let place = [[-1.0, 1.0]; 2];
             twigs.push(Twig { patch: *patch, piece: k as u32, below: 0, cell: 0, place });
         }

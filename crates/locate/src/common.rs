@@ -5,10 +5,10 @@
 //! until they are so flat that Newton's method from the middle finds the one point there can be.
 
 use crate::march::Other;
-use crate::newton::{NewtonResult, Range, newton};
-use crate::pieces::{Patch, meet};
+use crate::newton::{NewtonResult, UnknownBounds, newton};
+use crate::pieces::{BezierPatch, meet};
 use crate::report::{LocateReport, Roots, Solution};
-use crate::roots::{FLAT, Search, TANGENT, from_all, taken};
+use crate::roots::{FLAT, RootCollector, TANGENT, from_all, taken};
 use crate::tree::SurfaceTree;
 use moldloft_num::{Order, Surface, Vec3, slope_scale};
 use smallvec::SmallVec;
@@ -91,7 +91,7 @@ impl<const N: usize> Three<'_, N> {
     }
 
     fn walk(&self, start: [f64; N], size: f64) -> NewtonResult<N> {
-        newton(start, &self.closed().map(Range::parameter), size, |q| self.residual(q))
+        newton(start, &self.closed().map(UnknownBounds::parameter), size, |q| self.residual(q))
     }
 
     /// The common point that Newton's method leads to from a start; without one, or when that fails,
@@ -126,8 +126,8 @@ impl<const N: usize> Three<'_, N> {
     }
 
     fn all(&self, trees: &[SurfaceTree], size: f64) -> Roots<N> {
-        let mut search = Search::<N>::new(size, &[0.5; N], self.closed());
-        let mut stack: Vec<SmallVec<[Patch; 3]>> =
+        let mut search = RootCollector::<N>::new(size, &[0.5; N], self.closed());
+        let mut stack: Vec<SmallVec<[BezierPatch; 3]>> =
             trees[0].patches.iter().map(|p| SmallVec::from_slice(&[*p])).collect();
         while let Some(cell) = stack.pop() {
             // One patch of each surface, as far as they meet.
@@ -145,7 +145,7 @@ impl<const N: usize> Three<'_, N> {
             if !self.may_meet(&cell) {
                 continue;
             }
-            let lengths: SmallVec<[[f64; 2]; 3]> = cell.iter().map(Patch::lengths).collect();
+            let lengths: SmallVec<[[f64; 2]; 3]> = cell.iter().map(BezierPatch::lengths).collect();
             let longest = |l: &[f64; 2]| l[0].max(l[1]);
             let flat = cell.iter().zip(&lengths).all(|(p, l)| p.bend() <= FLAT * l[0].min(l[1]));
             let most = lengths.iter().map(longest).fold(0.0, f64::max);
@@ -174,8 +174,9 @@ impl<const N: usize> Three<'_, N> {
         search.finish()
     }
 
-    fn may_meet(&self, cell: &[Patch]) -> bool {
-        let boxes: SmallVec<[moldloft_num::Box3; 3]> = cell.iter().map(Patch::bounds).collect();
+    fn may_meet(&self, cell: &[BezierPatch]) -> bool {
+        let boxes: SmallVec<[moldloft_num::Box3; 3]> =
+            cell.iter().map(BezierPatch::bounds).collect();
         let apart = (1..cell.len()).any(|k| (0..k).any(|l| !meet(&boxes[k], &boxes[l])));
         if apart {
             return false;

@@ -35,8 +35,10 @@ mod tree;
 
 pub use batch::{Nearest, NearestCurve, NearestSurface, by_place};
 pub use nearest::{nearest_in_curve, nearest_in_surface, nearest_on_curve, nearest_on_surface};
-pub use newton::{ACCURACY, LONGEST_STEP, MOST_STEPS, NewtonResult, OUTSIDE, Range, newton};
+pub use newton::{
+    ACCURACY, LONGEST_STEP, MOST_STEPS, NewtonResult, OUTSIDE, UnknownBounds, newton,
+};
 pub use plain::{PlainCurve, PlainSurface};
-pub use report::{Alternative, LocateReport, LocateStatus, Parameters, Root, Roots, Solution};
+pub use report::{Alternative, FoundRoot, LocateReport, LocateStatus, Parameters, Roots, Solution};
 pub use roots::Level;
 pub use tree::{Boxes, CurveTree, Node, SurfaceTree};

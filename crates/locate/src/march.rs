@@ -11,7 +11,7 @@
 
 use crate::cells::{Lanes, Polynomials};
 use crate::implicit::solve;
-use crate::newton::{OUTSIDE, Range, newton};
+use crate::newton::{OUTSIDE, UnknownBounds, newton};
 use crate::pieces::size_of;
 use crate::predictor::predict;
 use moldloft_num::period::closed_sides;
@@ -103,7 +103,7 @@ pub(crate) const TANGENT: f64 = 1e-5;
 const CLOSE: f64 = 1e-8;
 
 /// Both shapes at a place, and what is left of the equations there, as lengths.
-struct View {
+struct MarchResidual {
     /// Between the shapes.
     gap: f64,
     /// From the plane across.
@@ -210,7 +210,7 @@ impl<'a> Crossing<'a> {
         guess: Unknowns,
         extra: impl Fn(Unknowns, &SurfJet<f64>) -> (f64, Unknowns),
     ) -> Option<Unknowns> {
-        let wide = Range { low: -0.5, high: 1.5, step: 0.2 };
+        let wide = UnknownBounds { low: -0.5, high: 1.5, step: 0.2 };
         match self.other {
             Other::Plane(plane) => {
                 let walk = newton([guess[0], guess[1]], &[wide; 2], self.size, |[u, v]| {
@@ -350,13 +350,13 @@ impl<'a> Crossing<'a> {
     }
 
     /// Both shapes at a place near the point in the plane through `x` across `d`.
-    fn view(&self, q: Unknowns, x: Vec3, d: Vec3) -> View {
+    fn view(&self, q: Unknowns, x: Vec3, d: Vec3) -> MarchResidual {
         struct Look<'a>(&'a Crossing<'a>, Unknowns, [Vec3; 2]);
         impl pulp::WithSimd for Look<'_> {
-            type Output = View;
+            type Output = MarchResidual;
 
             #[inline(always)]
-            fn with_simd<S: pulp::Simd>(self, simd: S) -> View {
+            fn with_simd<S: pulp::Simd>(self, simd: S) -> MarchResidual {
                 let Self(crossing, q, [x, d]) = self;
                 crossing.view_by(simd, q, x, d)
             }
@@ -366,35 +366,35 @@ impl<'a> Crossing<'a> {
 
     /// The same by the registers at hand.
     #[inline(always)]
-    fn view_by<S: pulp::Simd>(&self, simd: S, q: Unknowns, x: Vec3, d: Vec3) -> View {
+    fn view_by<S: pulp::Simd>(&self, simd: S, q: Unknowns, x: Vec3, d: Vec3) -> MarchResidual {
         if let [Some(a), Some(b)] = self.quick {
             let [j, k] = Polynomials::both(simd, a, b, q);
             let (gap, off) = ((j[0] - k[0]).norm(), d.dot(j[0] - x));
-            return View { gap, off, normal: k[1].cross(k[2]), j, k: Some(k) };
+            return MarchResidual { gap, off, normal: k[1].cross(k[2]), j, k: Some(k) };
         }
         let j = tangents(self.first, q[0], q[1]);
         let off = d.dot(j[0] - x);
         match self.other {
             Other::Plane(plane) => {
-                View { gap: plane.distance(j[0]), off, normal: plane.normal, j, k: None }
+                MarchResidual { gap: plane.distance(j[0]), off, normal: plane.normal, j, k: None }
             }
             Other::Level(field) => {
                 // As a length, by the gradient.
                 let (f, g) = field.value_and_gradient(j[0]);
                 let scale = slope_scale(g);
-                View { gap: f * scale, off, normal: g * scale, j, k: None }
+                MarchResidual { gap: f * scale, off, normal: g * scale, j, k: None }
             }
             Other::Surface(second) => {
                 let k = tangents(second, q[2], q[3]);
                 let gap = (j[0] - k[0]).norm();
-                View { gap, off, normal: k[1].cross(k[2]), j, k: Some(k) }
+                MarchResidual { gap, off, normal: k[1].cross(k[2]), j, k: Some(k) }
             }
         }
     }
 
     /// The place that a Newton step leads to, and how long it is in space.
     #[inline(always)]
-    fn next(&self, q: Unknowns, view: &View, d: Vec3) -> Option<(Unknowns, f64)> {
+    fn next(&self, q: Unknowns, view: &MarchResidual, d: Vec3) -> Option<(Unknowns, f64)> {
         let ([p, u, v], n) = (view.j, view.normal);
         let m = [[n.dot(u), n.dot(v)], [d.dot(u), d.dot(v)]];
         let Some([s, k, l]) = view.k else {
@@ -420,8 +420,8 @@ impl<'a> Crossing<'a> {
     }
 
     fn steps(&self, guess: Unknowns, x: Vec3, d: Vec3, until: Until) -> Option<TracePoint> {
-        struct Steps<'a>(&'a Crossing<'a>, Unknowns, [Vec3; 2], Until);
-        impl pulp::WithSimd for Steps<'_> {
+        struct NewtonSteps<'a>(&'a Crossing<'a>, Unknowns, [Vec3; 2], Until);
+        impl pulp::WithSimd for NewtonSteps<'_> {
             type Output = Option<TracePoint>;
 
             #[inline(always)]
@@ -430,7 +430,7 @@ impl<'a> Crossing<'a> {
                 crossing.steps_by(simd, guess, [x, d], until)
             }
         }
-        Lanes::new().run(Steps(self, guess, [x, d], until))
+        Lanes::new().run(NewtonSteps(self, guess, [x, d], until))
     }
 
     /// The same, until a step is so short that nothing is evaluated again: the tangent is that of the

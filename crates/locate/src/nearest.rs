@@ -1,7 +1,7 @@
 //! Nearest points on curves and surfaces.
 
 use crate::newton::{ACCURACY, LONGEST_STEP, MOST_STEPS};
-use crate::pieces::{Feet, Patch, distance_sq, size_of};
+use crate::pieces::{BezierPatch, Feet, distance_sq, size_of};
 use crate::report::{Alternative, LocateReport, LocateStatus, Solution};
 use crate::tree::{CurveTree, SurfaceTree};
 use moldloft_num::period::{breaks_between, principal};
@@ -711,7 +711,7 @@ pub fn nearest_in_surface(
         if low.sqrt() > best + slop {
             break;
         }
-        let mut stack: Vec<Patch> = vec![tree.patches[k]];
+        let mut stack: Vec<BezierPatch> = vec![tree.patches[k]];
         while let Some(patch) = stack.pop() {
             let low = distance_sq(&patch.bounds(), near).sqrt();
             if low > best + slop {

@@ -32,7 +32,7 @@ pub struct NewtonResult<const N: usize> {
 
 /// The bounds of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
+pub struct UnknownBounds {
     /// Least value.
     pub low: f64,
     /// Greatest value.
@@ -51,21 +51,22 @@ impl<const N: usize> NewtonResult<N> {
     }
 }
 
-impl Range {
+impl UnknownBounds {
     /// A shape's parameter: [0, 1] and a hair.
-    pub const PARAMETER: Range = Range { low: -OUTSIDE, high: 1.0 + OUTSIDE, step: LONGEST_STEP };
+    pub const PARAMETER: UnknownBounds =
+        UnknownBounds { low: -OUTSIDE, high: 1.0 + OUTSIDE, step: LONGEST_STEP };
 
     /// The parameter of a closed shape: a turn to both sides of the first.
-    pub const ROUND: Range = Range { low: -1.0, high: 2.0, step: LONGEST_STEP };
+    pub const ROUND: UnknownBounds = UnknownBounds { low: -1.0, high: 2.0, step: LONGEST_STEP };
 
     /// The range of a shape's parameter.
-    pub const fn parameter(closed: bool) -> Range {
-        if closed { Range::ROUND } else { Range::PARAMETER }
+    pub const fn parameter(closed: bool) -> UnknownBounds {
+        if closed { UnknownBounds::ROUND } else { UnknownBounds::PARAMETER }
     }
 
     /// An unknown without bounds.
-    pub const FREE: Range =
-        Range { low: f64::NEG_INFINITY, high: f64::INFINITY, step: f64::INFINITY };
+    pub const FREE: UnknownBounds =
+        UnknownBounds { low: f64::NEG_INFINITY, high: f64::INFINITY, step: f64::INFINITY };
 }
 
 /// The root of `f` from `start`: full Newton steps cut to the ranges' longest, halved while the
@@ -73,7 +74,7 @@ impl Range {
 /// share of; `f` gives residuals in lengths and their derivatives.
 pub fn newton<const N: usize>(
     start: [f64; N],
-    ranges: &[Range; N],
+    ranges: &[UnknownBounds; N],
     size: f64,
     mut f: impl FnMut([f64; N]) -> ([f64; N], [[f64; N]; N]),
 ) -> NewtonResult<N> {

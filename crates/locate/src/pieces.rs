@@ -36,7 +36,7 @@ pub struct CurvePiece {
 
 /// A bicubic piece of a surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Patch {
+pub struct BezierPatch {
     /// Its parameters on the surface: from and to in u, from and to in v.
     pub uv: [[f64; 2]; 2],
     /// Bernstein control points, [i * 4 + j] with i along u.
@@ -103,7 +103,7 @@ impl CurvePiece {
     }
 }
 
-impl Patch {
+impl BezierPatch {
     /// The box around it, slack included.
     pub fn bounds(&self) -> Box3 {
         widened(Box3::around(self.net), self.slack)
@@ -203,7 +203,7 @@ fn ball(all: &[Vec3]) -> (Vec3, f64) {
     (c, all.iter().map(|q| (*q - c).norm_sq()).fold(0.0, f64::max).sqrt())
 }
 
-impl Patch {
+impl BezierPatch {
     /// See [`CurvePiece::feet`].
     pub fn feet(&self, p: Vec3) -> Feet {
         let n = &self.net;
@@ -390,7 +390,7 @@ fn alike([a, b]: [Vec3; 2]) -> bool {
 }
 
 /// The pieces of a surface, cells of the breaks' grid one after the other.
-pub fn patches(surface: &dyn Surface<f64>) -> Vec<Patch> {
+pub fn patches(surface: &dyn Surface<f64>) -> Vec<BezierPatch> {
     let [us, vs] = surface.joints().map(with_ends);
     // All cells at once: surfaces have fast grids.
     let fine = |ends: &[f64]| -> Vec<f64> {
@@ -430,7 +430,7 @@ pub fn patches(surface: &dyn Surface<f64>) -> Vec<Patch> {
 
 /// Clears the marks of the sides across which the tangents of neighbouring patches agree. The
 /// patches are those of a grid with `columns` along v.
-fn mark_smooth(cells: &mut [(Patch, [f64; 2])], columns: usize, size: f64) {
+fn mark_smooth(cells: &mut [(BezierPatch, [f64; 2])], columns: usize, size: f64) {
     for k in 0..cells.len() {
         for axis in 0..2 {
             let next = if axis == 0 { k + columns } else { k + 1 };
@@ -438,7 +438,7 @@ fn mark_smooth(cells: &mut [(Patch, [f64; 2])], columns: usize, size: f64) {
                 continue;
             }
             let (a, b) = (&cells[k].0, &cells[next].0);
-            let width = |p: &Patch| p.uv[axis][1] - p.uv[axis][0];
+            let width = |p: &BezierPatch| p.uv[axis][1] - p.uv[axis][0];
             let same = |i: usize| {
                 let at = |row: usize| if axis == 0 { row * 4 + i } else { i * 4 + row };
                 let before = (a.net[at(3)] - a.net[at(2)]) * (3.0 / width(a));
@@ -460,7 +460,7 @@ fn place(span: [f64; 2], k: usize) -> f64 {
 
 /// The bicubic through the nodes among 7 x 7 samples in ascending order, with slack; and the
 /// largest error between nodes that is due to the u and to the v direction.
-fn fit(uv: [[f64; 2]; 2], samples: &[Vec3; 49]) -> (Patch, [f64; 2]) {
+fn fit(uv: [[f64; 2]; 2], samples: &[Vec3; 49]) -> (BezierPatch, [f64; 2]) {
     let at = |a: usize, b: usize| samples[a * 7 + b];
     let mut net = [Vec3::zero(); 16];
     for i in 0..4 {
@@ -493,17 +493,17 @@ fn fit(uv: [[f64; 2]; 2], samples: &[Vec3; 49]) -> (Patch, [f64; 2]) {
             }
         }
     }
-    (Patch { uv, net, slack: 2.0 * most, share: [1.0; 2], open: [[true; 2]; 2] }, errors)
+    (BezierPatch { uv, net, slack: 2.0 * most, share: [1.0; 2], open: [[true; 2]; 2] }, errors)
 }
 
 fn split(
     surface: &dyn Surface<f64>,
-    patch: Patch,
+    patch: BezierPatch,
     errors: [f64; 2],
     size: f64,
     depth: u32,
     budget: &mut usize,
-    done: &mut Vec<Patch>,
+    done: &mut Vec<BezierPatch>,
 ) {
     let error = 0.5 * patch.slack;
     let enough = error <= CLOSE * size && (error < 1e-13 * size || depth > 2);
@@ -524,7 +524,7 @@ fn split(
         let mut samples = [Vec3::zero(); 49];
         surface.grid(&places(uv[0]), &places(uv[1]), &mut samples, None);
         let (patch, errors) = fit(uv, &samples);
-        split(surface, Patch { open, ..patch }, errors, size, depth + 1, budget, done);
+        split(surface, BezierPatch { open, ..patch }, errors, size, depth + 1, budget, done);
     }
 }
 

@@ -106,7 +106,7 @@ pub struct Solution<const N: usize> {
 
 /// A root as a search without a start finds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Root<const N: usize> {
+pub struct FoundRoot<const N: usize> {
     /// Its parameters.
     pub at: [f64; N],
     /// Where it is.
@@ -123,7 +123,7 @@ pub struct Root<const N: usize> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Roots<const N: usize> {
     /// The roots.
-    pub roots: Vec<Root<N>>,
+    pub roots: Vec<FoundRoot<N>>,
     /// False when the search ran into its limit, as it does where shapes coincide: there may be
     /// more.
     pub complete: bool,
@@ -137,7 +137,7 @@ impl<const N: usize> Roots<N> {
     /// The root nearest to `start` in parameter space, over seams where that is shorter; among equally near
     /// ones the first.
     pub fn nearest_to(&self, start: &[f64]) -> Option<usize> {
-        let away = |root: &Root<N>| -> f64 {
+        let away = |root: &FoundRoot<N>| -> f64 {
             let apart = |k: usize| parameter_distance(root.at[k], start[k], self.closed[k]);
             (0..N.min(start.len())).map(|k| apart(k) * apart(k)).sum()
         };

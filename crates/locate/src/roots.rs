@@ -6,9 +6,9 @@
 //! pieces are exact (see [`crate::pieces`]) every transversal root is found. Where the search
 //! meets its limit, as it does where shapes coincide, [`Roots::complete`] is false.
 
-use crate::newton::{NewtonResult, OUTSIDE, Range, newton};
-use crate::pieces::{CurvePiece, Patch, meet, size_of};
-use crate::report::{LocateReport, LocateStatus, Root, Roots, Solution};
+use crate::newton::{NewtonResult, OUTSIDE, UnknownBounds, newton};
+use crate::pieces::{BezierPatch, CurvePiece, meet, size_of};
+use crate::report::{FoundRoot, LocateReport, LocateStatus, Roots, Solution};
 use crate::tree::{CurveTree, SurfaceTree};
 use moldloft_num::period::parameter_distance;
 use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Surface, Vec3};
@@ -153,7 +153,7 @@ pub fn curve_level(
     if let Some(t) = start {
         let size = size_of_curve(curve);
         let closed = curve.closed();
-        let walk = newton([t], &[Range::parameter(closed)], size, |[t]| {
+        let walk = newton([t], &[UnknownBounds::parameter(closed)], size, |[t]| {
             let [g, d, _] = level.along(curve.jet(t, Order::First));
             ([g], [[d]])
         })
@@ -180,7 +180,7 @@ pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level<'_>) -> Roots<1> {
     let tree = CurveTree::new(&along);
     let value = |t: f64| level.along(curve.jet(t, Order::Second));
     let closed = curve.closed();
-    let mut search = Search::<1>::new(size, &[1.0], [closed]);
+    let mut search = RootCollector::<1>::new(size, &[1.0], [closed]);
     for piece in &tree.pieces {
         let mut stack = vec![*piece];
         while let Some(piece) = stack.pop() {
@@ -196,7 +196,7 @@ pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level<'_>) -> Roots<1> {
             let [t0, t1] = piece.t;
             let middle = 0.5 * (t0 + t1);
             if steady {
-                let walk = newton([middle], &[Range::parameter(closed)], size, |[t]| {
+                let walk = newton([middle], &[UnknownBounds::parameter(closed)], size, |[t]| {
                     let [g, d, _] = value(t);
                     ([g], [[d]])
                 });
@@ -224,16 +224,16 @@ pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level<'_>) -> Roots<1> {
 }
 
 /// Collects roots: brings candidates together, drops those found twice.
-pub(crate) struct Search<const N: usize> {
+pub(crate) struct RootCollector<const N: usize> {
     size: f64,
     pairs: usize,
-    roots: Vec<Root<N>>,
+    roots: Vec<FoundRoot<N>>,
     closest: Option<([f64; N], f64)>,
     slack: [f64; N],
     closed: [bool; N],
 }
 
-impl<const N: usize> Search<N> {
+impl<const N: usize> RootCollector<N> {
     /// `closed` states which unknowns run round.
     pub fn new(size: f64, slack: &[f64; N], closed: [bool; N]) -> Self {
         Self { size, pairs: 0, roots: Vec::new(), closest: None, slack: *slack, closed }
@@ -267,7 +267,7 @@ impl<const N: usize> Search<N> {
         if walk.found && near {
             let walk = walk.within(&self.closed);
             let (xyz, tangent) = facts(walk.at);
-            self.insert(Root {
+            self.insert(FoundRoot {
                 at: walk.at,
                 xyz,
                 residual: walk.residual,
@@ -280,17 +280,17 @@ impl<const N: usize> Search<N> {
     fn touch(&mut self, at: [f64; N], residual: f64, xyz: Vec3) {
         self.note(at, residual);
         if residual <= TOUCH * self.size {
-            self.insert(Root { at, xyz, residual, iterations: 0, tangent: true });
+            self.insert(FoundRoot { at, xyz, residual, iterations: 0, tangent: true });
         }
     }
 
-    fn insert(&mut self, root: Root<N>) {
+    fn insert(&mut self, root: FoundRoot<N>) {
         let closed = self.closed;
-        let near = |a: &Root<N>, reach: f64| {
+        let near = |a: &FoundRoot<N>, reach: f64| {
             (0..N).all(|k| parameter_distance(a.at[k], root.at[k], closed[k]) <= reach)
         };
         // Touching points are found only to the root of the accuracy.
-        let reach = |a: &Root<N>| if a.tangent || root.tangent { 1e-4 } else { 1e-9 };
+        let reach = |a: &FoundRoot<N>| if a.tangent || root.tangent { 1e-4 } else { 1e-9 };
         match self.roots.iter_mut().find(|a| near(a, reach(a))) {
             Some(same) if root.residual < same.residual && same.tangent => *same = root,
             Some(_) => {}
@@ -347,7 +347,7 @@ pub fn curve_surface(
         let size = size_of_curve(curve).max(size_of_surface(surface));
         let f = |q| curve_on_surface(curve, surface, q);
         let closed = round_of(curve, surface);
-        let walk = newton(q, &closed.map(Range::parameter), size, f).within(&closed);
+        let walk = newton(q, &closed.map(UnknownBounds::parameter), size, f).within(&closed);
         if let Some(found) = taken(&walk, &q, sine_to_surface(curve, surface, walk.at)) {
             return Ok(found);
         }
@@ -372,9 +372,9 @@ pub fn meetings(
 ) -> Roots<3> {
     let size = curve_tree.size.min(surface_tree.size);
     let closed = round_of(curve, surface);
-    let ranges = closed.map(Range::parameter);
-    let mut search = Search::<3>::new(size, &[0.5; 3], closed);
-    let mut stack: Vec<(CurvePiece, Patch)> = Vec::new();
+    let ranges = closed.map(UnknownBounds::parameter);
+    let mut search = RootCollector::<3>::new(size, &[0.5; 3], closed);
+    let mut stack: Vec<(CurvePiece, BezierPatch)> = Vec::new();
     for piece in &curve_tree.pieces {
         for k in surface_tree.meeting(&piece.bounds()) {
             stack.push((*piece, surface_tree.patches[k as usize]));
@@ -469,7 +469,7 @@ pub fn curve_curve(
     if let Some(q) = start {
         let size = size_of_curve(a).max(size_of_curve(b));
         let closed = [a.closed(), b.closed()];
-        let ranges = closed.map(Range::parameter);
+        let ranges = closed.map(UnknownBounds::parameter);
         let mut walk = newton(q, &ranges, size, |q| between_curves(a, b, q)).within(&closed);
         let sine = sine_between(a, b, walk.at);
         walk.residual = gap(walk.at);
@@ -491,9 +491,9 @@ pub fn all_curve_curve(a: &dyn Curve<f64>, b: &dyn Curve<f64>) -> Roots<2> {
     let joined = 1e-9 * size;
     let gap = |[t, s]: [f64; 2]| a.jet(t, Order::Zero)[0].distance(b.jet(s, Order::Zero)[0]);
     let closed = [a.closed(), b.closed()];
-    let ranges = closed.map(Range::parameter);
-    let mut search = Search::<2>::new(size, &[0.5; 2], closed);
-    let mut best: Option<Root<2>> = None;
+    let ranges = closed.map(UnknownBounds::parameter);
+    let mut search = RootCollector::<2>::new(size, &[0.5; 2], closed);
+    let mut best: Option<FoundRoot<2>> = None;
     let mut bound = f64::INFINITY;
     let mut stack: Vec<(CurvePiece, CurvePiece)> = Vec::new();
     let apart = |p: &Box3, q: &Box3| {
@@ -541,7 +541,7 @@ pub fn all_curve_curve(a: &dyn Curve<f64>, b: &dyn Curve<f64>) -> Roots<2> {
                 if walk.found && inside {
                     let walk = walk.within(&closed);
                     bound = bound.min(walk.residual);
-                    let root = Root {
+                    let root = FoundRoot {
                         at: walk.at,
                         xyz: a.jet(walk.at[0], Order::Zero)[0],
                         residual: walk.residual,
@@ -600,7 +600,8 @@ pub fn line_surface(
     };
     let [round_u, round_v] = surface.closed();
     let closed = [round_u, round_v, false];
-    let ranges = [Range::parameter(round_u), Range::parameter(round_v), Range::FREE];
+    let ranges =
+        [UnknownBounds::parameter(round_u), UnknownBounds::parameter(round_v), UnknownBounds::FREE];
     if let Some([u, v]) = start {
         let s = (surface.jet(u, v, Order::Zero).p - p).dot(d) / (speed * speed);
         let size = size_of_surface(surface);
@@ -614,11 +615,11 @@ pub fn line_surface(
     let centre = tree.bounds.centre();
     let s = (centre - p).dot(d) / (speed * speed);
     let reach = tree.bounds.diagonal() / speed;
-    let line = Segment { from: p + d * (s - reach), to: p + d * (s + reach) };
+    let line = LineSegment { from: p + d * (s - reach), to: p + d * (s + reach) };
     let found = meetings(&line, &CurveTree::new(&line), surface, &tree);
     let roots = found.roots.iter().map(|root| {
         let [t, u, v] = root.at;
-        Root { at: [u, v, s - reach + 2.0 * reach * t], ..*root }
+        FoundRoot { at: [u, v, s - reach + 2.0 * reach * t], ..*root }
     });
     let closest = found.closest.map(|([t, u, v], r)| ([u, v, s - reach + 2.0 * reach * t], r));
     let mut all = Roots { roots: roots.collect(), complete: found.complete, closest, closed };
@@ -647,12 +648,12 @@ pub fn line_surface(
 
 /// A straight line run evenly.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Segment {
+pub(crate) struct LineSegment {
     pub from: Vec3,
     pub to: Vec3,
 }
 
-impl Curve<f64> for Segment {
+impl Curve<f64> for LineSegment {
     fn jet(&self, t: f64, _: Order) -> CurveJet<f64> {
         [self.from * (1.0 - t) + self.to * t, self.to - self.from, Vec3::zero()]
     }

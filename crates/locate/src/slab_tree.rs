@@ -33,7 +33,7 @@ const STACK: usize = 2 * MOST_HALVINGS as usize + 2;
 /// there is of a plate is a [`Place`] and a [`Turn`].
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-struct Plate {
+struct Slab {
     /// By axis: c from the middle of the surface's box, a, b, and the unit normal.
     rows: [[f32; 4]; 3],
     /// The normal's share of c.
@@ -45,7 +45,7 @@ struct Plate {
     rest: f32,
 }
 
-impl Plate {
+impl Slab {
     #[inline(always)]
     fn normal(&self) -> [f32; 3] {
         let [x, y, z] = &self.rows;
@@ -55,14 +55,14 @@ impl Plate {
     /// True when the plane of one certainly does not come near the other, which is measured from a
     /// point that is farther by `shift`; `margin` is for the rounding of that.
     #[inline(always)]
-    fn aside(&self, o: &Plate, shift: [f32; 3], margin: f32) -> bool {
+    fn aside(&self, o: &Slab, shift: [f32; 3], margin: f32) -> bool {
         let bend = self.bend + o.bend + margin;
         self.beyond(o, shift, 1.0, bend) | o.beyond(self, shift, -1.0, bend)
     }
 
     /// True when the other is on one side of this one's plane.
     #[inline(always)]
-    fn beyond(&self, o: &Plate, [a, b, c]: [f32; 3], by: f32, bend: f32) -> bool {
+    fn beyond(&self, o: &Slab, [a, b, c]: [f32; 3], by: f32, bend: f32) -> bool {
         let [l, m, n] = self.normal();
         let [x, y, z] = &o.rows;
         // Loops and no closures: where registers are wide, those that are not inlined lose them.
@@ -78,7 +78,7 @@ impl Plate {
 /// Where a plate is.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-struct Place {
+struct SlabBox {
     /// The lower ends of its box by axis, and the upper ones with the other sign. Where the surface
     /// goes over a side of the box into the next plate the side is moved in by a hair: plates that do
     /// nothing but touch there need not be looked at, for a line in which both surfaces meet goes on
@@ -92,7 +92,7 @@ struct Place {
     smooth: bool,
 }
 
-impl Place {
+impl SlabBox {
     /// What no end is above of a box that meets this one.
     #[inline(always)]
     fn facing(&self) -> [f64; 6] {
@@ -115,14 +115,14 @@ impl Place {
 /// them along it.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-struct Turn {
+struct NormalVariation {
     /// By axis the coefficients of s, t, s^2, s t.
     rows: [[f32; 4]; 3],
     /// That of t^2, and a number for rounding.
     last: [f32; 4],
 }
 
-impl Turn {
+impl NormalVariation {
     /// How far they change along a unit vector.
     #[inline(always)]
     fn along(&self, [l, m, n]: [f32; 3]) -> f32 {
@@ -145,12 +145,12 @@ pub(crate) struct Sight<'a> {
 
 impl<'a> Sight<'a> {
     #[inline(always)]
-    fn plate(&self) -> &'a Plate {
+    fn plate(&self) -> &'a Slab {
         &self.all.plates[self.number]
     }
 
     #[inline(always)]
-    fn place(&self) -> &'a Place {
+    fn place(&self) -> &'a SlabBox {
         &self.all.places[self.number]
     }
 
@@ -200,9 +200,9 @@ impl<'a> Sight<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Plates {
     /// The pieces' first, in their order.
-    plates: Vec<Plate>,
-    places: Vec<Place>,
-    turns: Vec<Turn>,
+    plates: Vec<Slab>,
+    places: Vec<SlabBox>,
+    turns: Vec<NormalVariation>,
     /// Their parameters.
     ranges: Vec<[[f64; 2]; 2]>,
     /// Where plates are measured from, and how far they are from there at most.
@@ -284,14 +284,14 @@ impl Plates {
             let squares = [x[8], x[2], x[10]];
             let c = squares.iter().fold(flat.c, |c, x| c + *x * 0.5) - origin;
             let bend = flat.bend - 0.5 * squares.iter().map(|x| x.norm()).sum::<f64>();
-            made.plates.push(Plate {
+            made.plates.push(Slab {
                 rows: [0, 1, 2].map(|k| [c[k], flat.a[k], flat.b[k], normal[k]].map(|x| x as f32)),
                 height: normal.dot(c) as f32,
                 bend: up(bend + ROUNDING * radius),
                 longest: (2.0 * flat.a.norm().max(flat.b.norm())) as f32,
                 rest: if sure { up(rest * share + ROUNDING) } else { f32::INFINITY },
             });
-            made.places.push(Place {
+            made.places.push(SlabBox {
                 ends: [low.x, low.y, low.z, -high.x, -high.y, -high.z],
                 below: twig.below,
                 cell: twig.cell,
@@ -300,7 +300,7 @@ impl Plates {
             let turns = [0, 1, 2, 3, 4].map(|k| (turns[k] - normal * along[k]) * share);
             let [ms, mt, mss, mst, mtt] = turns;
             let margin = up(ROUNDING * turns.iter().map(|m| m.norm()).sum::<f64>());
-            made.turns.push(Turn {
+            made.turns.push(NormalVariation {
                 rows: [0, 1, 2].map(|axis| [ms, mt, mss, mst].map(|m| m[axis] as f32)),
                 last: [mtt.x as f32, mtt.y as f32, mtt.z as f32, margin],
             });

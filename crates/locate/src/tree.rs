@@ -1,6 +1,6 @@
 //! Trees of boxes over the pieces of curves and surfaces, for searches with bounds.
 
-use crate::pieces::{CurvePiece, Patch, curve_pieces, meet, patches, size_of};
+use crate::pieces::{BezierPatch, CurvePiece, curve_pieces, meet, patches, size_of};
 use moldloft_num::{Box3, Curve, Surface, Vec3};
 
 /// A node of a tree of boxes.
@@ -110,7 +110,7 @@ impl CurveTree {
 #[derive(Clone, Debug)]
 pub struct SurfaceTree {
     /// The pieces.
-    pub patches: Vec<Patch>,
+    pub patches: Vec<BezierPatch>,
     /// The tree over their boxes.
     pub boxes: Boxes,
     /// The box around all.
@@ -125,7 +125,7 @@ impl SurfaceTree {
     /// Cuts the surface up.
     pub fn new(surface: &dyn Surface<f64>) -> Self {
         let patches = patches(surface);
-        let all: Vec<Box3> = patches.iter().map(Patch::bounds).collect();
+        let all: Vec<Box3> = patches.iter().map(BezierPatch::bounds).collect();
         let boxes = Boxes::new(&all, 2);
         let bounds = all.iter().fold(Box3::EMPTY, |a, b| a.union(*b));
         let size = size_of(&bounds);
@@ -150,7 +150,7 @@ impl SurfaceTree {
 
     /// The square of the greatest distance from `p` at which the surface certainly has a point.
     pub fn reach_sq(&self, p: Vec3) -> f64 {
-        let corner = |patch: &Patch| (patch.net[0].distance(p) + patch.slack).powi(2);
+        let corner = |patch: &BezierPatch| (patch.net[0].distance(p) + patch.slack).powi(2);
         self.patches.iter().map(corner).fold(f64::INFINITY, f64::min)
     }
 }

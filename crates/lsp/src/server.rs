@@ -50,18 +50,18 @@ pub struct Ran {
 }
 
 /// A text that an editor has open.
-struct Open {
+struct OpenDocument {
     text: String,
     version: Value,
     /// Other texts that diagnostics of this one were reported for.
     told: Vec<String>,
-    state: State,
+    state: RunState,
     /// Requests that wait for the end of the run: id, method, parameters.
     waiting: Vec<(Value, String, Value)>,
 }
 
 /// What is known of a text.
-enum State {
+enum RunState {
     /// What came of its run; whether that was stopped.
     Ready(Box<Document>, bool),
     Running(Running),
@@ -95,7 +95,7 @@ impl Running {
 
 /// The open texts. Programs run on threads of their own: whatever a text says, the server answers.
 pub struct Server {
-    open: BTreeMap<String, Open>,
+    open: BTreeMap<String, OpenDocument>,
     shut_down: bool,
     events: Sender<Event>,
     runs: u64,
@@ -120,7 +120,9 @@ impl Server {
             Some(id) if !method.is_empty() => {
                 let uri = params["textDocument"]["uri"].as_str().unwrap_or("");
                 match self.open.get_mut(uri) {
-                    Some(open) if matches!(open.state, State::Running(_)) && needs_run(method) => {
+                    Some(open)
+                        if matches!(open.state, RunState::Running(_)) && needs_run(method) =>
+                    {
                         open.waiting.push((id.clone(), method.to_string(), params.clone()));
                         Vec::new()
                     }
@@ -135,7 +137,7 @@ impl Server {
     /// When [`Self::tick`] is to be called.
     pub fn deadline(&self) -> Option<Instant> {
         let running = self.open.values().filter_map(|open| match &open.state {
-            State::Running(running) => Some(running.deadline()),
+            RunState::Running(running) => Some(running.deadline()),
             _ => None,
         });
         running.min()
@@ -146,7 +148,7 @@ impl Server {
         let now = Instant::now();
         let mut late = Vec::new();
         for (uri, open) in &mut self.open {
-            if let State::Running(running) = &mut open.state
+            if let RunState::Running(running) = &mut open.state
                 && running.deadline() <= now
             {
                 match running.stopped {
@@ -162,7 +164,7 @@ impl Server {
                 continue;
             }
             let Some(open) = self.open.get_mut(&uri) else { continue };
-            open.state = State::Unknown;
+            open.state = RunState::Unknown;
             let place = json!({"line": 0, "character": 0});
             let diagnostic = json!({
                 "range": {"start": place, "end": place},
@@ -181,7 +183,7 @@ impl Server {
     pub fn ran(&mut self, ran: Ran) -> Vec<Value> {
         let Ran { uri, serial, document } = ran;
         let Some(open) = self.open.get_mut(&uri) else { return Vec::new() };
-        let State::Running(running) = &open.state else { return Vec::new() };
+        let RunState::Running(running) = &open.state else { return Vec::new() };
         if running.serial != serial {
             return Vec::new();
         }
@@ -191,8 +193,8 @@ impl Server {
         }
         let stopped = running.stopped.is_some();
         open.state = match document {
-            Some(document) => State::Ready(document, stopped),
-            None => State::Unknown,
+            Some(document) => RunState::Ready(document, stopped),
+            None => RunState::Unknown,
         };
         let mut answers = self.diagnostics(&uri);
         answers.extend(self.answer_waiting(&uri));
@@ -211,7 +213,7 @@ impl Server {
         self.runs += 1;
         let budget = document.as_ref().map_or_else(Arc::default, |d| d.budget());
         budget.resume();
-        open.state = State::Running(Running {
+        open.state = RunState::Running(Running {
             serial: self.runs,
             budget: budget.clone(),
             since: Instant::now(),
@@ -236,19 +238,19 @@ impl Server {
             let _ = events.send(Event::Ran(Ran { uri, serial, document }));
         });
         if begun.is_err() {
-            open.state = State::Unknown;
+            open.state = RunState::Unknown;
         }
     }
 
     /// Runs a text again: at once, or as soon as the run under way has stopped.
     fn run_again(&mut self, uri: &str, afresh: bool) {
         let Some(open) = self.open.get_mut(uri) else { return };
-        match std::mem::replace(&mut open.state, State::Unknown) {
-            State::Running(mut running) => {
+        match std::mem::replace(&mut open.state, RunState::Unknown) {
+            RunState::Running(mut running) => {
                 running.stop();
                 running.outdated = true;
                 let late = running.deadline() <= Instant::now();
-                open.state = State::Running(running);
+                open.state = RunState::Running(running);
                 // What waits asked about another text.
                 let waiting = std::mem::take(&mut open.waiting);
                 let changed = |(id, ..): (Value, String, Value)| {
@@ -259,8 +261,8 @@ impl Server {
                     self.start(uri, None);
                 }
             }
-            State::Ready(document, _) => self.start(uri, Some(document).filter(|_| !afresh)),
-            State::Unknown => self.start(uri, None),
+            RunState::Ready(document, _) => self.start(uri, Some(document).filter(|_| !afresh)),
+            RunState::Unknown => self.start(uri, None),
         }
     }
 
@@ -269,11 +271,11 @@ impl Server {
         match method {
             "textDocument/didOpen" => {
                 let item = &params["textDocument"];
-                let open = Open {
+                let open = OpenDocument {
                     text: item["text"].as_str().unwrap_or("").to_string(),
                     version: item["version"].clone(),
                     told: Vec::new(),
-                    state: State::Unknown,
+                    state: RunState::Unknown,
                     waiting: Vec::new(),
                 };
                 self.stop(&uri);
@@ -320,7 +322,7 @@ impl Server {
     /// Stops the run of a text; nobody waits for its end.
     fn stop(&mut self, uri: &str) {
         if let Some(open) = self.open.get_mut(uri) {
-            if let State::Running(running) = &mut open.state {
+            if let RunState::Running(running) = &mut open.state {
                 running.stop();
             }
             for (id, ..) in open.waiting.drain(..) {
@@ -333,7 +335,7 @@ impl Server {
     /// The diagnostics of a text, by the files that they are about.
     fn diagnostics(&mut self, uri: &str) -> Vec<Value> {
         let Some(open) = self.open.get_mut(uri) else { return Vec::new() };
-        let State::Ready(document, stopped) = &open.state else { return Vec::new() };
+        let RunState::Ready(document, stopped) = &open.state else { return Vec::new() };
         let sources = document.sources();
         let main = sources.ids().next();
         let main_text = &open.text;
@@ -414,7 +416,7 @@ impl Server {
                 Err(_) => Err((REQUEST_FAILED, "the text has errors and is left as it is".into())),
             };
         }
-        let State::Ready(document, _) = &mut open.state else {
+        let RunState::Ready(document, _) = &mut open.state else {
             return match needs_run(method) {
                 true => Err((REQUEST_FAILED, stopped_text())),
                 false => Err((METHOD_NOT_FOUND, format!("unknown method `{method}`"))),

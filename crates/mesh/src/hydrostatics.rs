@@ -194,7 +194,7 @@ impl<T: Real> Hydrostatics<T> {
 
 /// Integrals over the immersed skin and the waterline.
 #[derive(Clone, Copy)]
-struct Sums<T> {
+struct ImmersedIntegrals<T> {
     forms: [T; 3],
     /// First moments of the volume about (x0, y0, level).
     moment: Vec3<T>,
@@ -213,7 +213,7 @@ struct Extent<T> {
     waterline: Option<[T; 4]>,
 }
 
-impl<T: Real> Sums<T> {
+impl<T: Real> ImmersedIntegrals<T> {
     fn zero() -> Self {
         let t = T::zero();
         let extent = Extent { lowest: None, waterline: None };
@@ -357,11 +357,11 @@ impl<T: Real> Mesh<T> {
 }
 
 /// The integrals below the water; `origin` is (x0, y0, level).
-fn integrals<T: Real>(mesh: &Mesh<T>, skin: &[usize], origin: Vec3<T>) -> Sums<T> {
+fn integrals<T: Real>(mesh: &Mesh<T>, skin: &[usize], origin: Vec3<T>) -> ImmersedIntegrals<T> {
     let level = origin.z;
     chunked_sum(
         0..skin.len(),
-        Sums::zero,
+        ImmersedIntegrals::zero,
         |sum, k| {
             let panel = mesh.panel(skin[k]);
             let Some(cut) = below(&panel, level) else { return };
@@ -383,7 +383,7 @@ fn integrals<T: Real>(mesh: &Mesh<T>, skin: &[usize], origin: Vec3<T>) -> Sums<T
 /// The area inside the waterline. The waterline runs along the edge of the skin, which is clockwise
 /// seen from above about a hull whose normals point outward; in the symmetry plane y0 = 0, so the
 /// closing line adds nothing.
-fn waterline_area<T: Real>(sums: &Sums<T>) -> T {
+fn waterline_area<T: Real>(sums: &ImmersedIntegrals<T>) -> T {
     if sums.green.re() * sums.plane[0].re() < 0.0 { -sums.green } else { sums.green }
 }
 

@@ -27,7 +27,12 @@ pub fn planar_triangles(
     // The plane's own axes would be turned, which changes nothing here.
     let ears = triangulate(&lifted, loops, Vec3::of(0.0, 0.0, 1.0));
     let rim = loops.iter().flat_map(|l| (0..l.len()).map(|k| key(l[k], l[(k + 1) % l.len()])));
-    let mut net = Net { points, rim: rim.collect(), triangles: Vec::new(), sides: HashMap::new() };
+    let mut net = PlanarTriangulation {
+        points,
+        rim: rim.collect(),
+        triangles: Vec::new(),
+        sides: HashMap::new(),
+    };
     for t in ears {
         if net.turn(t[0], t[1], t[2]) > 0.0 {
             net.add(t);
@@ -48,7 +53,7 @@ fn key(a: usize, b: usize) -> (usize, usize) {
     (a.min(b), a.max(b))
 }
 
-struct Net<'p> {
+struct PlanarTriangulation<'p> {
     points: &'p [[f64; 2]],
     /// Edges that stay.
     rim: HashSet<(usize, usize)>,
@@ -57,7 +62,7 @@ struct Net<'p> {
     sides: HashMap<(usize, usize), usize>,
 }
 
-impl Net<'_> {
+impl PlanarTriangulation<'_> {
     /// Twice the area of a triangle.
     fn turn(&self, a: usize, b: usize, c: usize) -> f64 {
         let [a, b, c] = [a, b, c].map(|k| self.points[k]);
@@ -183,8 +188,12 @@ mod tests {
         let triangles = planar_triangles(&points, &loops, &inner);
         // Euler's formula: 2 n - rim - 2 + 2 holes.
         assert_eq!(triangles.len(), 2 * points.len() - 36);
-        let net =
-            Net { points: &points, rim: HashSet::new(), triangles: vec![], sides: HashMap::new() };
+        let net = PlanarTriangulation {
+            points: &points,
+            rim: HashSet::new(),
+            triangles: vec![],
+            sides: HashMap::new(),
+        };
         let areas: Vec<f64> = triangles.iter().map(|t| net.turn(t[0], t[1], t[2])).collect();
         assert!(areas.iter().all(|a| *a > 0.0));
         let polygon = |n: f64, r: f64| n * r * r * (std::f64::consts::TAU / n).sin();

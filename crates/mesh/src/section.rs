@@ -34,7 +34,7 @@ pub fn section_where(
 ) -> Vec<Polyline> {
     let distance: Vec<f64> = mesh.positions().iter().map(|&p| height(p)).collect();
     let d = |v: u32| distance[v as usize];
-    let mut pieces: Vec<[Node; 2]> = Vec::new();
+    let mut pieces: Vec<[SectionVertex; 2]> = Vec::new();
     for &face in mesh.faces() {
         let n = if is_triangle(face) { 3 } else { 4 };
         let side = |k: usize| (face[k % n], face[(k + 1) % n]);
@@ -45,7 +45,10 @@ pub fn section_where(
             }
             // Entered the positive side here; it is left at the next side that leads back.
             let Some(m) = (k + 1..k + n).find(|&m| d(side(m).1) < 0.0) else { continue };
-            let (from, to) = (Node::of(p, q, d(q)), Node::of(side(m).1, side(m).0, d(side(m).0)));
+            let (from, to) = (
+                SectionVertex::of(p, q, d(q)),
+                SectionVertex::of(side(m).1, side(m).0, d(side(m).0)),
+            );
             if from != to {
                 pieces.push([from, to]);
             }
@@ -57,10 +60,10 @@ pub fn section_where(
         let ahead = || mesh.faces()[edge[0].face()].iter().all(|&v| d(v) >= 0.0);
         let beyond = || mesh.faces()[edge[0].face()].iter().any(|&v| d(v) > 0.0);
         if d(p) == 0.0 && d(q) == 0.0 && ahead() && beyond() {
-            pieces.push([Node::of(p, p, 0.0), Node::of(q, q, 0.0)]);
+            pieces.push([SectionVertex::of(p, p, 0.0), SectionVertex::of(q, q, 0.0)]);
         }
     }
-    let place = |node: Node| {
+    let place = |node: SectionVertex| {
         let (p, q) = (mesh.positions()[node.low as usize], mesh.positions()[node.high as usize]);
         if node.low == node.high {
             return p;
@@ -82,12 +85,12 @@ pub fn section_where(
 
 /// Where the plane passes a panel side: between two vertices, or at one (twice the same).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Node {
+struct SectionVertex {
     low: u32,
     high: u32,
 }
 
-impl Node {
+impl SectionVertex {
     /// The crossing between `behind` and `ahead`, which is at `distance` in front of the plane.
     fn of(behind: u32, ahead: u32, distance: f64) -> Self {
         if distance == 0.0 {
@@ -98,13 +101,13 @@ impl Node {
 }
 
 /// Joins pieces end to end; each piece is used once.
-fn chained(pieces: &[[Node; 2]]) -> Vec<(Vec<Node>, bool)> {
-    let mut at: Vec<(Node, usize)> = Vec::with_capacity(2 * pieces.len());
+fn chained(pieces: &[[SectionVertex; 2]]) -> Vec<(Vec<SectionVertex>, bool)> {
+    let mut at: Vec<(SectionVertex, usize)> = Vec::with_capacity(2 * pieces.len());
     for (k, piece) in pieces.iter().enumerate() {
         at.extend(piece.map(|node| (node, k)));
     }
     at.sort_unstable();
-    let run = |node: Node| {
+    let run = |node: SectionVertex| {
         let first = at.partition_point(|a| a.0 < node);
         at[first..].iter().take_while(move |a| a.0 == node).map(|a| a.1)
     };

@@ -46,12 +46,12 @@ impl<T: Scalar> Graph<T> {
             }
             let moves = |key: Key| key == bead || inside.contains(&key);
             let args = object.args.iter().map(|arg| self.resolved_but(arg, &moves));
-            steps.push(Step { key, row: object.row.clone(), args: args.collect() });
+            steps.push(SweepStep { key, row: object.row.clone(), args: args.collect() });
         }
         let Some(Value::Point(at)) = self.object(bead).value() else { return Err(unrelated()) };
         let Some(place) = &at.on_curve else { return Err(unrelated()) };
         let curve = place.0.clone();
-        Ok(LocusRef::new(Swept { bead, curve, steps, context: self.context() }))
+        Ok(LocusRef::new(BeadSweep { bead, curve, steps, context: self.context() }))
     }
 
     /// The argument with the objects that stay replaced by their values.
@@ -69,17 +69,17 @@ impl<T: Scalar> Graph<T> {
 }
 
 /// One object to evaluate anew.
-struct Step<T: Scalar> {
+struct SweepStep<T: Scalar> {
     key: Key,
     row: Arc<Row>,
     /// Those that move stand as objects.
     args: Vec<Value<T>>,
 }
 
-struct Swept<T: Scalar> {
+struct BeadSweep<T: Scalar> {
     bead: Key,
     curve: CurveRef<T>,
-    steps: Vec<Step<T>>,
+    steps: Vec<SweepStep<T>>,
     context: Context,
 }
 
@@ -91,12 +91,12 @@ fn filled<T: Scalar>(arg: &Value<T>, values: &HashMap<Key, Value<T>>) -> Value<T
     }
 }
 
-impl<T: Scalar> Sweep<T> for Swept<T> {
+impl<T: Scalar> Sweep<T> for BeadSweep<T> {
     fn at(&self, t: T) -> Result<Value<T>, CallError> {
         let bead = Value::Point(Box::new(Point::on_curve(self.curve.clone(), t)));
         let mut values = HashMap::from([(self.bead, bead.named(self.bead))]);
         let mut last = Value::Unset;
-        for Step { key, row, args } in &self.steps {
+        for SweepStep { key, row, args } in &self.steps {
             let args: Vec<_> = args.iter().map(|arg| filled(arg, &values)).collect();
             let call = || T::call(row, &args, &self.context);
             // As for any object: a kind that panics must not take the model with it.

@@ -21,7 +21,7 @@ impl UnionFind {
     }
 
     /// The smallest member of the set of `k`.
-    pub fn find<M: Member>(&mut self, k: M) -> M {
+    pub fn find<M: MemberIndex>(&mut self, k: M) -> M {
         let mut k = k.index();
         while self.above[k] as usize != k {
             let next = self.above[self.above[k] as usize];
@@ -32,26 +32,26 @@ impl UnionFind {
     }
 
     /// Makes the sets of `a` and `b` one.
-    pub fn join<M: Member>(&mut self, a: M, b: M) {
+    pub fn join<M: MemberIndex>(&mut self, a: M, b: M) {
         let (a, b) = (self.find(a).index(), self.find(b).index());
         self.above[a.max(b)] = a.min(b) as u32;
     }
 
     /// True when `a` and `b` are in one set.
-    pub fn same<M: Member>(&mut self, a: M, b: M) -> bool {
+    pub fn same<M: MemberIndex>(&mut self, a: M, b: M) -> bool {
         self.find(a).index() == self.find(b).index()
     }
 }
 
 /// What members are numbered by.
-pub trait Member: Copy {
+pub trait MemberIndex: Copy {
     /// The number.
     fn index(self) -> usize;
     /// The member of that number.
     fn of(index: usize) -> Self;
 }
 
-impl Member for u32 {
+impl MemberIndex for u32 {
     fn index(self) -> usize {
         self as usize
     }
@@ -61,7 +61,7 @@ impl Member for u32 {
     }
 }
 
-impl Member for usize {
+impl MemberIndex for usize {
     fn index(self) -> usize {
         self
     }

@@ -40,7 +40,7 @@ const ASIDE: f64 = 1e-4;
 
 /// A place of the line: its parameters, and the grid line that holds it when the model changes.
 #[derive(Clone, Copy)]
-struct Node<T> {
+struct ContourNode<T> {
     uv: [T; 2],
     /// The parameter that is free along the grid line.
     free: usize,
@@ -57,7 +57,7 @@ pub fn contour_piece<T: Real>(
 ) -> Option<ContourPiece<T>> {
     let breaks = surface.breaks();
     let follow = Follower { surface, breaks, family, value, origin: Vec3::lifted(origin) };
-    let mut nodes: Vec<Node<T>> = line.uv.iter().map(|&uv| follow.node(uv)).collect();
+    let mut nodes: Vec<ContourNode<T>> = line.uv.iter().map(|&uv| follow.node(uv)).collect();
     if line.closed {
         nodes.push(*nodes.first()?);
     }
@@ -93,7 +93,7 @@ impl<T: Real> Follower<'_, T> {
     }
 
     /// A point of the line on its grid line, moving along it with the model.
-    fn node(&self, uv: [f64; 2]) -> Node<T> {
+    fn node(&self, uv: [f64; 2]) -> ContourNode<T> {
         let mut at = uv.map(T::from);
         let slopes = self.height(at).1;
         let creased = [0, 1].map(|k| self.breaks[k].iter().any(|x| x.to_bits() == uv[k].to_bits()));
@@ -112,14 +112,14 @@ impl<T: Real> Follower<'_, T> {
         if slopes[free].re() != 0.0 {
             at[free] -= height / slopes[free];
         }
-        Node { uv: at, free }
+        ContourNode { uv: at, free }
     }
 
     /// Length and swept area between two neighbouring points.
-    fn between(&self, a: Node<T>, b: Node<T>) -> Option<(T, Vec3<T>)> {
+    fn between(&self, a: ContourNode<T>, b: ContourNode<T>) -> Option<(T, Vec3<T>)> {
         let along = [b.uv[0] - a.uv[0], b.uv[1] - a.uv[1]];
         // Across the line both ends move up the slope.
-        let across = |node: Node<T>| {
+        let across = |node: ContourNode<T>| {
             let slope = self.height(node.uv).1[node.free].re();
             let mut direction = [0.0; 2];
             direction[node.free] = slope.signum();

@@ -2,7 +2,7 @@
 //! that neighbours mark are among them, and between the edges along straight lines of the
 //! parameter square.
 
-use crate::roots::{MarkSource, Stop, on_its_root, pieces};
+use crate::roots::{EdgeParameter, MarkSource, on_its_root, pieces};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Point, Scalar, SurfaceRef};
@@ -18,9 +18,9 @@ pub(crate) type Shares = Option<Arc<[f64]>>;
 
 /// A run of divisions along an edge.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Segment {
+pub(crate) struct DivisionRun {
     /// The edge's parameter where it ends; it begins where the one before does, or at 0.
-    pub until: Stop,
+    pub until: EdgeParameter,
     pub count: u32,
     pub shares: Shares,
 }
@@ -31,7 +31,7 @@ pub(crate) enum EdgePlan {
     /// From 0 to 1 in one run.
     Whole(u32, Shares),
     /// Run by run.
-    Segments(Vec<Segment>),
+    Segments(Vec<DivisionRun>),
     /// As edge 0..4 of the same patch.
     As(u8),
     /// As the same edge of another patch.
@@ -87,8 +87,8 @@ pub(crate) fn along_edge<T: Real>(
             for (at, segment) in segments.iter().enumerate() {
                 let to = match segment.until {
                     _ if at + 1 == segments.len() => T::one(),
-                    Stop::Piece(p) => pieces.get(usize::from(p))?.until,
-                    Stop::Inside(p, source, turned) => {
+                    EdgeParameter::Piece(p) => pieces.get(usize::from(p))?.until,
+                    EdgeParameter::Inside(p, source, turned) => {
                         let piece = pieces.get(usize::from(p))?;
                         // On the root that both have, and from there to the piece's own.
                         let t = parameter(source, places)?;

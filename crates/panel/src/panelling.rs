@@ -15,7 +15,7 @@ use crate::identity::Identities;
 use crate::joined_patches::JoinedPatches;
 use crate::notes::PanelNote;
 use crate::patch_values::{PatchValues, evaluated_all, names};
-use crate::roots::Roots;
+use crate::roots::RootTable;
 use crate::topology::{self, Counts, EdgeRun, Nominal, PanelTopology, PatchTopology};
 use crate::triangle_bodies::{self, MeshedBody};
 use moldloft_budget::Spent;
@@ -108,7 +108,7 @@ impl Panelling {
         let mut drafts = drafts(graph);
         let identities = Identities::new(graph, &drafts);
         identities.collapse(&mut drafts);
-        let roots = Roots::new(graph, &drafts, identities);
+        let roots = RootTable::new(graph, &drafts, identities);
         let made = topology::solve(graph, roots, &drafts, nominal);
         let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
         let mut bodies = triangle_bodies::bodies(graph);

@@ -5,7 +5,7 @@ use crate::border_curves;
 use crate::draft::surface_of;
 use crate::edges::{EdgePlan, PatchLookup, along_edge, evaluated};
 use crate::knuckles::ASIDE;
-use crate::roots::{MarkSource, Stop};
+use crate::roots::{EdgeParameter, MarkSource};
 use crate::topology::{PanelTopology, PatchTopology};
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
@@ -54,7 +54,7 @@ pub(crate) fn names(graph: &Graph<f64>, structure: &PanelTopology) -> HashMap<Ke
     for plan in structure.patches.iter().flat_map(|f| &f.plans) {
         let EdgePlan::Segments(segments) = plan else { continue };
         for segment in segments {
-            if let Stop::Inside(_, source, _) = segment.until
+            if let EdgeParameter::Inside(_, source, _) = segment.until
                 && let MarkSource::Bead { point: key, .. } | MarkSource::Magnet { point: key, .. } =
                     source
                 && let Some(object) = graph.get(key)

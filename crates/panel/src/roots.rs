@@ -68,7 +68,7 @@ pub(crate) type IntervalId = u32;
 
 /// The places of all roots in ascending order, root by root.
 #[derive(Debug, Default)]
-pub(crate) struct Roots {
+pub(crate) struct RootTable {
     ids: HashMap<Root, usize>,
     /// The first place of each root, and one past the last.
     start: Vec<u32>,
@@ -87,12 +87,12 @@ pub(crate) struct EdgeInterval {
     /// The places at its begin and end, in the direction of the edge.
     pub ends: [RootPlaceId; 2],
     /// The edge's parameter at its end.
-    pub until: Stop,
+    pub until: EdgeParameter,
 }
 
 /// A parameter of an edge, as something that can be had with any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Stop {
+pub(crate) enum EdgeParameter {
     /// Where a piece ends.
     Piece(u16),
     /// Inside a piece, at a mark of its root; true for a piece that runs on a root against its own.
@@ -106,7 +106,7 @@ struct RawMark {
     source: MarkSource,
 }
 
-impl Roots {
+impl RootTable {
     /// All places that edges and corners of the patches mark.
     pub fn new(graph: &Graph<f64>, drafts: &[Draft], identities: Identities) -> Self {
         let mut all = Self { identities, ..Self::default() };
@@ -258,7 +258,7 @@ impl Roots {
                 (self.find(root, piece.from.t + 0.0), self.find(root, piece.to.t + 0.0));
             let p = p as u16;
             if from == to {
-                let until = Stop::Piece(p);
+                let until = EdgeParameter::Piece(p);
                 spans.push(EdgeInterval {
                     interval: None,
                     backwards: false,
@@ -272,9 +272,9 @@ impl Roots {
             while at != to {
                 let next = if backwards { at - 1 } else { at + 1 };
                 let until = if next == to {
-                    Stop::Piece(p)
+                    EdgeParameter::Piece(p)
                 } else {
-                    Stop::Inside(p, self.places[next as usize].source, turned)
+                    EdgeParameter::Inside(p, self.places[next as usize].source, turned)
                 };
                 let interval = Some(at.min(next));
                 spans.push(EdgeInterval { interval, backwards, ends: [at, next], until });

@@ -1,7 +1,7 @@
 //! The skin of a model as a body for measures: its surfaces, which way they face, and where they are open.
 
 use crate::panelling::Panelling;
-use moldloft_hydro::{Body, Side};
+use moldloft_hydro::{Body, HullSide};
 use moldloft_mesh::{Closes, EdgeName, Mesh, closure};
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
@@ -127,11 +127,11 @@ impl Skin {
             _ => None,
         };
         let surfaces: Vec<_> = self.sides.iter().map(surface).collect::<Option<_>>()?;
-        let sides: Vec<Side<'_, T>> = self
+        let sides: Vec<HullSide<'_, T>> = self
             .sides
             .iter()
             .zip(&surfaces)
-            .map(|(side, surface)| Side {
+            .map(|(side, surface)| HullSide {
                 surface: &**surface,
                 reversed: side.reversed,
                 open_edges: side.open_edges,

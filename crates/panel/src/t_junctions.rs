@@ -18,7 +18,7 @@ const SAME_PLACE: f64 = 1e-7;
 const MOST_REPORTED: usize = 20;
 
 /// An open panel edge at the rim of a patch.
-struct OpenEdge {
+struct OpenPanelEdge {
     patch: usize,
     edge: u8,
     /// Parameters along the edge, and the vertices, at both ends.
@@ -41,7 +41,7 @@ struct Coincidence {
 
 /// The open panel edges, and those that come near each cell of space.
 struct OpenEdges {
-    sides: Vec<OpenEdge>,
+    sides: Vec<OpenPanelEdge>,
     cells: HashMap<Cell, Vec<usize>>,
     /// The length of a cell: that of the longest panel edge.
     longest: f64,
@@ -51,7 +51,7 @@ struct OpenEdges {
 
 impl OpenEdges {
     /// `None` when there are none.
-    fn new(sides: Vec<OpenEdge>) -> Option<Self> {
+    fn new(sides: Vec<OpenPanelEdge>) -> Option<Self> {
         let size = sides
             .iter()
             .flat_map(|s| s.ends)
@@ -84,7 +84,7 @@ impl OpenEdges {
     }
 
     /// The open edges that may come near a place.
-    fn near(&self, p: Vec3) -> impl Iterator<Item = &OpenEdge> {
+    fn near(&self, p: Vec3) -> impl Iterator<Item = &OpenPanelEdge> {
         let cell = p.to_array().map(|x| (x / self.longest).floor() as i64);
         self.cells.get(&cell).into_iter().flatten().map(|&k| &self.sides[k])
     }
@@ -158,7 +158,7 @@ impl Panelling {
             // Edges that only cross meet in one of the two at most.
             let there = |share: f64| -> HashSet<(usize, u8)> {
                 let p = own(share);
-                let meets = |other: &OpenEdge| {
+                let meets = |other: &OpenPanelEdge| {
                     let itself = (other.patch, other.edge) == (side.patch, side.edge);
                     let Some(surface) = &known.surfaces[other.patch] else { return false };
                     let point = |t: f64| {
@@ -265,7 +265,7 @@ impl Panelling {
     }
 
     /// The open panel edges.
-    fn sides(&self, graph: &Graph<f64>) -> Vec<OpenEdge> {
+    fn sides(&self, graph: &Graph<f64>) -> Vec<OpenPanelEdge> {
         let known = PatchValues::new(graph, &self.structure, &self.names);
         let open: HashSet<(u32, u32, u32)> = self.joined.free_edges.iter().copied().collect();
         let mut sides = Vec::with_capacity(open.len());
@@ -278,7 +278,7 @@ impl Panelling {
                         continue;
                     }
                     let [a, b] = [pair[0], pair[1]];
-                    sides.push(OpenEdge {
+                    sides.push(OpenPanelEdge {
                         patch,
                         edge: k,
                         ts: [ts[m], ts[m + 1]],

@@ -3,9 +3,9 @@
 
 use crate::counts::{Conflict, CountProblem, Links, Node, Sum};
 use crate::draft::Draft;
-use crate::edges::{EdgePlan, Segment, Shares, reversed, shares_of};
+use crate::edges::{DivisionRun, EdgePlan, Shares, reversed, shares_of};
 use crate::notes::{ChainStep, PanelNote};
-use crate::roots::{EdgeInterval, IntervalId, RootPlaceId, Roots, Stop};
+use crate::roots::{EdgeInterval, EdgeParameter, IntervalId, RootPlaceId, RootTable};
 use moldloft_model::Graph;
 use moldloft_num::trace::{Edge, Key, Named, Root};
 use moldloft_num::{Real, Vec3};
@@ -100,7 +100,7 @@ pub(crate) struct Counts {
 struct TopologySolver<'a, 'g> {
     graph: &'g Graph<f64>,
     drafts: &'a [Draft<'g>],
-    roots: Roots,
+    roots: RootTable,
     spans: Vec<[Option<Vec<EdgeInterval>>; 4]>,
     divider: CountProblem,
     /// The patch and edge of each sum.
@@ -114,7 +114,7 @@ struct TopologySolver<'a, 'g> {
 
 pub(crate) fn solve<'g>(
     graph: &'g Graph<f64>,
-    roots: Roots,
+    roots: RootTable,
     drafts: &[Draft<'g>],
     nominal: Option<&Nominal>,
 ) -> SolvedTopology {
@@ -284,8 +284,8 @@ impl TopologySolver<'_, '_> {
         let mut stops = vec![0.0];
         for span in self.spans[patch][k].iter().flatten() {
             stops.push(match span.until {
-                Stop::Piece(p) => pieces[usize::from(p)].until,
-                Stop::Inside(p, _, turned) => {
+                EdgeParameter::Piece(p) => pieces[usize::from(p)].until,
+                EdgeParameter::Inside(p, _, turned) => {
                     let piece = &pieces[usize::from(p)];
                     let t = self.roots.places()[span.ends[1] as usize].parameter();
                     let t = if turned { 1.0 - t } else { t };
@@ -592,7 +592,7 @@ impl TopologySolver<'_, '_> {
             let (backwards, shares) = settled.entry((interval, count)).or_insert_with(own);
             let same_way = *backwards == span.backwards;
             let shares = if same_way { shares.clone() } else { reversed(shares) };
-            segments.push(Segment { until: span.until, count, shares });
+            segments.push(DivisionRun { until: span.until, count, shares });
             begin += count;
         }
         let plan = match &segments[..] {

@@ -23,7 +23,7 @@ impl Default for Camera {
 /// A point on the picture: pixels from the top left corner, and nearness, which grows towards the
 /// viewer and is linear across every plane on the picture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen {
+pub(crate) struct ScreenPoint {
     pub x: f32,
     pub y: f32,
     pub near: f32,
@@ -123,14 +123,14 @@ impl Aimed {
     }
 
     /// Where a point appears.
-    pub fn see(&self, p: Vec3) -> Seen {
+    pub fn see(&self, p: Vec3) -> ScreenPoint {
         let [x, y, z] = self.local(p);
         let (factor, near) = match self.distance {
             None => (self.scale, z),
             // Nearness 1 / (depth / distance), which is linear on the picture.
             Some(d) => (self.scale / (d - z), d / (d - z)),
         };
-        Seen {
+        ScreenPoint {
             x: (self.middle[0] + x * factor) as f32,
             y: (self.middle[1] - y * factor) as f32,
             near: near as f32,
@@ -179,7 +179,7 @@ mod tests {
             for azimuth_deg in [0.0, -130.0, 90.0] {
                 let camera = Camera { azimuth_deg, elevation_deg: 25.0, view_angle_deg };
                 let aimed = Aimed::at(&camera, &points, 800.0, 500.0);
-                let seen: Vec<Seen> = points.iter().map(|&p| aimed.see(p)).collect();
+                let seen: Vec<ScreenPoint> = points.iter().map(|&p| aimed.see(p)).collect();
                 let [x0, x1, y0, y1] = spread(seen.iter().map(|s| [s.x as f64, s.y as f64]));
                 assert!(x0 > 40.0 && x1 < 760.0 && y0 > 25.0 && y1 < 475.0, "{x0} {x1} {y0} {y1}");
                 assert!(x1 - x0 > 600.0 || y1 - y0 > 350.0, "{x0} {x1} {y0} {y1}");

@@ -1,12 +1,12 @@
 //! Triangles and lines into samples with depth.
 
-use crate::camera::Seen;
+use crate::camera::ScreenPoint;
 use crate::palette::Gamma;
 
 /// A corner of a triangle: where it is seen and its light (linear).
 #[derive(Clone, Copy)]
 pub(crate) struct Corner {
-    pub at: Seen,
+    pub at: ScreenPoint,
     pub light: [f32; 3],
 }
 
@@ -26,7 +26,7 @@ pub(crate) fn length(x: f32, y: f32) -> f32 {
 
 /// Lines drawn along the sides of a panel.
 #[derive(Clone, Copy)]
-pub(crate) struct Sides {
+pub(crate) struct PanelSides {
     /// Which sides (from corner k to k + 1) carry a line.
     pub shown: [bool; 3],
     /// Half the line's width in samples.
@@ -49,7 +49,7 @@ impl Raster {
     }
 
     /// Fills a triangle, nearer samples winning.
-    pub fn triangle(&mut self, corners: [Corner; 3], sides: Option<Sides>) {
+    pub fn triangle(&mut self, corners: [Corner; 3], sides: Option<PanelSides>) {
         let [a, b, c] = corners.map(|c| c.at);
         let double_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
         if double_area == 0.0 || !double_area.is_finite() {
@@ -62,12 +62,13 @@ impl Raster {
         let (x0, x1) = (low(a.x, b.x, c.x), high(a.x, b.x, c.x, self.width));
         let (y0, y1) = (low(a.y, b.y, c.y), high(a.y, b.y, c.y, self.height));
         // Weight of each corner, linear on the picture; and distance to the side opposite to it.
-        let weight = |p: Seen, q: Seen| {
+        let weight = |p: ScreenPoint, q: ScreenPoint| {
             let (dx, dy) = ((q.x - p.x) / double_area, (q.y - p.y) / double_area);
             (move |x: f32, y: f32| (y - p.y) * dx - (x - p.x) * dy, -dy)
         };
         let ((wa, wa_x), (wb, wb_x)) = (weight(b, c), weight(c, a));
-        let per_weight = |p: Seen, q: Seen| double_area.abs() / length(q.x - p.x, q.y - p.y);
+        let per_weight =
+            |p: ScreenPoint, q: ScreenPoint| double_area.abs() / length(q.x - p.x, q.y - p.y);
         let distances = sides.map(|s| (s, [per_weight(a, b), per_weight(b, c), per_weight(c, a)]));
         for y in y0..y1 {
             let py = y as f32 + 0.5;
@@ -106,7 +107,14 @@ impl Raster {
     }
 
     /// Draws a line of `half_width` samples, where it is not hidden by more than `slack` of nearness.
-    pub fn line(&mut self, a: Seen, b: Seen, half_width: f32, slack: f32, colour: [u8; 3]) {
+    pub fn line(
+        &mut self,
+        a: ScreenPoint,
+        b: ScreenPoint,
+        half_width: f32,
+        slack: f32,
+        colour: [u8; 3],
+    ) {
         let (dx, dy) = (b.x - a.x, b.y - a.y);
         let length_sq = dx * dx + dy * dy;
         if !length_sq.is_finite() {

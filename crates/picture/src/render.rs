@@ -1,8 +1,8 @@
 //! The picture of a mesh and some lines as a PNG file. The same input gives the same bytes; no display is needed.
 
-use crate::camera::{Aimed, Camera, Seen};
+use crate::camera::{Aimed, Camera, ScreenPoint};
 use crate::palette::{Gamma, patch_colour};
-use crate::raster::{Corner, Raster, Sides, length};
+use crate::raster::{Corner, PanelSides, Raster, length};
 use moldloft_mesh::{Mesh, Tag, is_triangle};
 use moldloft_num::{Box3, Vec3};
 use std::fmt;
@@ -209,7 +209,7 @@ impl Painter<'_> {
     fn panels(&self, raster: &mut Raster, signs: [f64; 3]) {
         let side: f64 = signs.iter().product();
         let positions: Vec<Vec3> = self.mesh.positions().iter().map(|&p| image(p, signs)).collect();
-        let seen: Vec<Seen> = positions.iter().map(|&p| self.aimed.see(p)).collect();
+        let seen: Vec<ScreenPoint> = positions.iter().map(|&p| self.aimed.see(p)).collect();
         let mut normals = vec![Vec3::zero(); positions.len()];
         for (index, patch) in self.mesh.patches().iter().enumerate() {
             if signs != [1.0; 3] && patch.info.tag == Tag::Symmetry {
@@ -248,14 +248,14 @@ impl Painter<'_> {
     }
 
     /// Where a raised point is seen: in its place, but nearer.
-    fn raised(&self, p: Vec3) -> Seen {
+    fn raised(&self, p: Vec3) -> ScreenPoint {
         let nearer = self.aimed.see(p + self.aimed.towards(p) * self.lift);
-        Seen { near: nearer.near, ..self.aimed.see(p) }
+        ScreenPoint { near: nearer.near, ..self.aimed.see(p) }
     }
 
     /// How strongly the outlines of a patch's panels are drawn, 0 to 1: of a patch that is finer than can be seen
     /// none, lest those of its few larger panels show as stains.
-    fn outlines(&self, faces: &[[u32; 4]], seen: &[Seen]) -> f32 {
+    fn outlines(&self, faces: &[[u32; 4]], seen: &[ScreenPoint]) -> f32 {
         if !self.options.edges {
             return 0.0;
         }
@@ -267,7 +267,8 @@ impl Painter<'_> {
         // Lines closer than about 3 points would only darken the surface.
         let apart = (breadth([a.at, b.at, c.at, d.at]) - 4.0) / 10.0;
         let strength = 0.62 * outlines * apart.clamp(0.0, 1.0);
-        let sides = |shown| (strength > 0.0).then_some(Sides { shown, half_width: 0.55, strength });
+        let sides =
+            |shown| (strength > 0.0).then_some(PanelSides { shown, half_width: 0.55, strength });
         if triangle {
             raster.triangle([a, b, c], sides([true; 3]));
         } else {
@@ -294,7 +295,7 @@ impl Painter<'_> {
 }
 
 /// How broad a panel is in the picture, across its longest side.
-fn breadth([a, b, c, d]: [Seen; 4]) -> f32 {
+fn breadth([a, b, c, d]: [ScreenPoint; 4]) -> f32 {
     let cross = (c.x - a.x) * (d.y - b.y) - (c.y - a.y) * (d.x - b.x);
     let sides = [(a, b), (b, c), (c, d), (d, a)].map(|(p, q)| length(q.x - p.x, q.y - p.y));
     0.5 * cross.abs() / sides.into_iter().fold(1.0, f32::max)
@@ -304,7 +305,8 @@ fn breadth([a, b, c, d]: [Seen; 4]) -> f32 {
 fn axes(raster: &mut Raster, aimed: &Aimed, width: usize, height: usize) {
     let size = 2.0 * (width.min(height) as f64) * 0.045;
     let (x0, y0) = (1.9 * size, 2.0 * height as f64 - 1.9 * size);
-    let at = |x: f64, y: f64| Seen { x: (x0 + x) as f32, y: (y0 - y) as f32, near: f32::MAX };
+    let at =
+        |x: f64, y: f64| ScreenPoint { x: (x0 + x) as f32, y: (y0 - y) as f32, near: f32::MAX };
     // Strokes of the letters in a square of side 2 about the origin.
     let letters: [&[[f64; 4]]; 3] = [
         &[[-0.7, -1.0, 0.7, 1.0], [-0.7, 1.0, 0.7, -1.0]],

@@ -596,7 +596,7 @@ impl PyDocument {
             let points = arrays::filled(py, [line.points.len(), 3], fill).0;
             (name.to_owned(), points, line.closed)
         };
-        let section = |section: moldloft::document::Section| {
+        let section = |section: moldloft::document::ContourSection| {
             let all = section.lines.iter();
             let lines = all.flat_map(|(name, lines)| lines.iter().map(|l| line(name, l)));
             (section.value, lines.collect())

@@ -2,7 +2,7 @@
 
 use crate::diagnostics::Diagnostic;
 use moldloft::diag::Sources;
-use moldloft::io::{Place, ReadError};
+use moldloft::io::{FilePosition, ReadError};
 use pyo3::prelude::*;
 
 mod raised {
@@ -41,9 +41,9 @@ pub fn unknown_name(message: impl std::fmt::Display) -> PyErr {
 /// An exception about bytes that are not a file of their format.
 pub fn format_error(error: ReadError) -> PyErr {
     let (place, number) = match error.place {
-        Place::Line(line) => ("line", line),
-        Place::Byte(byte) => ("byte", byte),
-        Place::Block(block) => ("block", block),
+        FilePosition::Line(line) => ("line", line),
+        FilePosition::Byte(byte) => ("byte", byte),
+        FilePosition::Block(block) => ("block", block),
     };
     let message = error.to_string();
     let ReadError { format, expected, found, .. } = error;

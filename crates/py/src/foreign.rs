@@ -41,21 +41,21 @@ pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny
 }
 
 /// A field or set made in Python, as a function without arguments.
-enum Shape {
+enum ImplicitShape {
     Field(moldloft::field::Primitive),
     Set(moldloft::field::Set),
 }
 
-impl Shape {
+impl ImplicitShape {
     fn value<T: Real>(&self) -> Value<T> {
         match self {
-            Shape::Field(f) => moldloft::field::field_value(f.constant()),
-            Shape::Set(s) => moldloft::field::set_value(s.constant()),
+            ImplicitShape::Field(f) => moldloft::field::field_value(f.constant()),
+            ImplicitShape::Set(s) => moldloft::field::set_value(s.constant()),
         }
     }
 }
 
-impl Foreign for Shape {
+impl Foreign for ImplicitShape {
     fn call_plain(&self, _: &[Value<f64>], _: &Context) -> Result<Value<f64>, CallError> {
         Ok(self.value())
     }
@@ -67,16 +67,16 @@ impl Foreign for Shape {
 /// The row of a field or set: a call without arguments gives it. `None` for anything else.
 pub fn shape_row(name: &str, object: &Bound<'_, PyAny>) -> Option<Row> {
     let shape = if let Ok(field) = object.cast::<crate::implicit::PyField>() {
-        Shape::Field(field.get().inner.clone())
+        ImplicitShape::Field(field.get().inner.clone())
     } else {
-        Shape::Set(object.cast::<crate::implicit::PySet>().ok()?.get().inner.clone())
+        ImplicitShape::Set(object.cast::<crate::implicit::PySet>().ok()?.get().inner.clone())
     };
     let row = Row::new(name.to_owned(), Body::Foreign(Arc::new(shape)));
     Some(row.doc("A field or set made in Python."))
 }
 
 impl PythonFunction {
-    fn call<T: Number>(&self, args: &[Value<T>]) -> Result<Value<T>, CallError> {
+    fn call<T: ScalarParts>(&self, args: &[Value<T>]) -> Result<Value<T>, CallError> {
         let mut encoded = Vec::with_capacity(args.len());
         for (k, arg) in args.iter().enumerate() {
             encoded.push(encode(arg).ok_or_else(|| {
@@ -138,12 +138,12 @@ impl Foreign for PythonFunction {
 }
 
 /// A scalar as its parts.
-trait Number: Real {
+trait ScalarParts: Real {
     fn parts(self) -> Vec<f64>;
     fn of_parts(parts: &[f64]) -> Self;
 }
 
-impl Number for f64 {
+impl ScalarParts for f64 {
     fn parts(self) -> Vec<f64> {
         vec![self]
     }
@@ -152,7 +152,7 @@ impl Number for f64 {
     }
 }
 
-impl Number for Dual4 {
+impl ScalarParts for Dual4 {
     fn parts(self) -> Vec<f64> {
         let [a, b, c, d] = self.eps;
         vec![self.re, a, b, c, d]
@@ -166,8 +166,8 @@ impl Number for Dual4 {
     }
 }
 
-fn encode<T: Number>(value: &Value<T>) -> Option<Encoded> {
-    let vector = |v: &Vec3<T>| v.to_array().map(Number::parts);
+fn encode<T: ScalarParts>(value: &Value<T>) -> Option<Encoded> {
+    let vector = |v: &Vec3<T>| v.to_array().map(ScalarParts::parts);
     let extents = |shape: moldloft::rows::ArrayShape| match shape {
         moldloft::rows::ArrayShape::Row(n) => vec![n],
         moldloft::rows::ArrayShape::Grid(m, n) => vec![m, n],
@@ -187,7 +187,7 @@ fn encode<T: Number>(value: &Value<T>) -> Option<Encoded> {
     })
 }
 
-fn decode<T: Number>(shape: &[usize], numbers: &[Vec<f64>]) -> Option<Value<T>> {
+fn decode<T: ScalarParts>(shape: &[usize], numbers: &[Vec<f64>]) -> Option<Value<T>> {
     let all: Vec<T> = numbers.iter().map(|parts| T::of_parts(parts)).collect();
     let vectors = || all.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect::<Vec<_>>();
     Some(match *shape {

@@ -2,7 +2,7 @@
 
 use crate::arrays;
 use crate::error::plain_error;
-use moldloft::export::{FORMATS, Format, SplinePatch, Symmetry};
+use moldloft::export::{FORMATS, Format, SplinePatch, SymmetryPlanes};
 use moldloft::num::Vec3;
 use numpy::{PyArray1, PyArray3, PyReadonlyArray1, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -20,10 +20,10 @@ pub fn formats(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         dict.set_item("about", format.about)?;
         dict.set_item("holds", format.holds.word())?;
         let symmetry = match format.symmetry {
-            Symmetry::None => "",
-            Symmetry::Y => "y",
-            Symmetry::YThenX => "y, xy",
-            Symmetry::Both => "x, y, xy",
+            SymmetryPlanes::None => "",
+            SymmetryPlanes::Y => "y",
+            SymmetryPlanes::YThenX => "y, xy",
+            SymmetryPlanes::Both => "x, y, xy",
         };
         dict.set_item("symmetry", symmetry)?;
         dict.set_item("lids", format.asks_for_lids())?;

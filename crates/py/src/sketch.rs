@@ -10,7 +10,7 @@ use moldloft::lang::World;
 use moldloft::mesh::Mesh;
 use moldloft::num::Vec3;
 use moldloft::picture::{Camera, Line, Options, render};
-use moldloft::sketch::{Files, Reply, Session, Solid, script};
+use moldloft::sketch::{CommandReply, Files, SketchSession, SketchSolid, script};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
@@ -58,13 +58,13 @@ type Answer<'py> =
 /// A session of the sketch language.
 #[pyclass(frozen, name = "SketchSession", module = "moldloft._core")]
 pub struct PySketch {
-    inner: Arc<Mutex<Session>>,
+    inner: Arc<Mutex<SketchSession>>,
     /// True while lines of a file are run.
     confined: Arc<AtomicBool>,
 }
 
 impl PySketch {
-    fn lock<'a>(&'a self, py: Python<'_>) -> MutexGuard<'a, Session> {
+    fn lock<'a>(&'a self, py: Python<'_>) -> MutexGuard<'a, SketchSession> {
         // A panic is our own bug and was shown as such; the session is still in one piece.
         self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
@@ -73,7 +73,7 @@ impl PySketch {
     fn long<R: Send + 'static>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&mut Session) -> R + Send + 'static,
+        work: impl FnOnce(&mut SketchSession) -> R + Send + 'static,
     ) -> PyResult<R> {
         let inner = self.inner.clone();
         let never = Budget::default();
@@ -82,7 +82,7 @@ impl PySketch {
         })
     }
 
-    fn solid(&self, py: Python<'_>, name: &str) -> PyResult<Solid<f64>> {
+    fn solid(&self, py: Python<'_>, name: &str) -> PyResult<SketchSolid<f64>> {
         let wanted = name.to_owned();
         let data = self.long(py, move |s| {
             s.objects().into_iter().find(|o| o.name.eq_ignore_ascii_case(&wanted))
@@ -100,7 +100,7 @@ fn no_object(name: &str) -> PyErr {
     unknown_name(format!("unknown object `{name}` in this sketch"))
 }
 
-fn answer(py: Python<'_>, reply: Reply) -> Answer<'_> {
+fn answer(py: Python<'_>, reply: CommandReply) -> Answer<'_> {
     let severity = match reply.severity {
         Severity::Error => "error",
         Severity::Warning => "warning",
@@ -111,7 +111,7 @@ fn answer(py: Python<'_>, reply: Reply) -> Answer<'_> {
 }
 
 /// Chords of curves within a thousandth of the body's size, unless a tolerance is given.
-fn mesh_of(solid: &Solid<f64>, tolerance: Option<f64>) -> Mesh<f64> {
+fn mesh_of(solid: &SketchSolid<f64>, tolerance: Option<f64>) -> Mesh<f64> {
     let size = solid.vertices.iter().map(|v| v.at.norm()).fold(0.0, f64::max);
     solid.mesh(tolerance.filter(|t| *t > 0.0).unwrap_or(1e-3 * size))
 }
@@ -123,7 +123,7 @@ impl PySketch {
         let folder = folder.as_deref().map(Path::new).map(Path::to_path_buf);
         let confined = Arc::<AtomicBool>::default();
         let disk = Disk { folder, confined: confined.clone() };
-        Self { inner: Arc::new(Mutex::new(Session::with_files(Box::new(disk)))), confined }
+        Self { inner: Arc::new(Mutex::new(SketchSession::with_files(Box::new(disk)))), confined }
     }
 
     /// From now on, lines read files inside of the folder only, as those of a file must, or anywhere.

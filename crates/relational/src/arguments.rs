@@ -244,27 +244,27 @@ pub fn common_curve<T: Real>(
 /// One of a list of names, given by its name or by its number in the list (from 1), as old model
 /// files have it.
 #[derive(Clone, Debug)]
-pub enum Named {
+pub enum NamedOption {
     /// By name.
     Text(Arc<str>),
     /// By number.
     Number(usize),
 }
 
-impl Named {
+impl NamedOption {
     /// The name among `names`.
     ///
     /// # Errors
     /// `unknown-name`, in field `field`.
     pub fn among<'n>(&self, names: &[&'n str], field: FieldId) -> Result<&'n str, CallError> {
         let found = match self {
-            Named::Text(text) => names.iter().find(|name| **name == &**text),
-            Named::Number(k) => k.checked_sub(1).and_then(|k| names.get(k)),
+            NamedOption::Text(text) => names.iter().find(|name| **name == &**text),
+            NamedOption::Number(k) => k.checked_sub(1).and_then(|k| names.get(k)),
         };
         found.copied().ok_or_else(|| {
             let found = match self {
-                Named::Text(text) => format!("\"{text}\""),
-                Named::Number(k) => k.to_string(),
+                NamedOption::Text(text) => format!("\"{text}\""),
+                NamedOption::Number(k) => k.to_string(),
             };
             let list = names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>();
             CallError::new("unknown-name", format!("there is no {found} to choose here"))
@@ -275,12 +275,12 @@ impl Named {
     }
 }
 
-impl<T: Real> FromValue<T> for Named {
+impl<T: Real> FromValue<T> for NamedOption {
     const CLASS: Class = Class::Any;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
-            Value::Text(text) => Ok(Named::Text(text.clone())),
-            Value::Number(_) => usize::from_value(value).map(Named::Number),
+            Value::Text(text) => Ok(NamedOption::Text(text.clone())),
+            Value::Number(_) => usize::from_value(value).map(NamedOption::Number),
             other => wrong(Class::Text, other),
         }
     }
@@ -293,9 +293,9 @@ pub struct AxisName(pub usize);
 impl<T: Real> FromValue<T> for AxisName {
     const CLASS: Class = Class::Any;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
-        let at = match Named::from_value(value)? {
-            Named::Text(text) => ["x", "y", "z"].iter().position(|name| *name == &*text),
-            Named::Number(k) => k.checked_sub(1).filter(|k| *k < 3),
+        let at = match NamedOption::from_value(value)? {
+            NamedOption::Text(text) => ["x", "y", "z"].iter().position(|name| *name == &*text),
+            NamedOption::Number(k) => k.checked_sub(1).filter(|k| *k < 3),
         };
         at.map(Self).ok_or_else(|| {
             CallError::new("unknown-axis", "unknown axis")

@@ -28,13 +28,13 @@ pub fn nodes(a: f64, b: f64) -> impl Iterator<Item = f64> {
 }
 
 /// A polynomial on a stretch of the parameter, by its Chebyshev coefficients.
-pub struct Piece<T> {
+pub struct ChebyshevPiece<T> {
     pub from: f64,
     pub to: f64,
     coefficients: Vec<Vec3<T>>,
 }
 
-impl<T: Real> Piece<T> {
+impl<T: Real> ChebyshevPiece<T> {
     /// The polynomial through `samples` at the nodes between `from` and `to` (Trefethen 2013, ch. 3).
     pub fn through(from: f64, to: f64, samples: &[Vec3<T>]) -> Self {
         let n = DEGREE;
@@ -65,17 +65,17 @@ pub fn in_charge<P>(pieces: &[P], from: impl Fn(&P) -> f64, t: f64) -> usize {
 }
 
 /// The curve of such pieces.
-pub struct Way<T> {
-    pub pieces: Vec<Piece<T>>,
+pub struct PiecewiseChebyshev<T> {
+    pub pieces: Vec<ChebyshevPiece<T>>,
 }
 
-impl<T: Real> CurveFormula for Way<T> {
+impl<T: Real> CurveFormula for PiecewiseChebyshev<T> {
     type Scalar = T;
 
     /// Clenshaw's recurrence.
     fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
         let k = in_charge(&self.pieces, |piece| piece.from, t.re());
-        let Piece { from, to, coefficients } = &self.pieces[k];
+        let ChebyshevPiece { from, to, coefficients } = &self.pieces[k];
         let x = ((t - *from) * 2.0 / (*to - *from)) - 1.0;
         let (mut b, mut c) = (Vec3::<J>::zero(), Vec3::<J>::zero());
         for coefficient in coefficients[1..].iter().rev() {
@@ -100,7 +100,7 @@ mod tests {
     fn a_smooth_curve_is_met_to_rounding() {
         let f = |t: f64| Vec3::of(Real::sin(3.0 * t), Real::exp(t), t * t);
         let samples: Vec<Vec3> = nodes(0.25, 1.0).map(f).collect();
-        let way = Way { pieces: vec![Piece::through(0.25, 1.0, &samples)] };
+        let way = PiecewiseChebyshev { pieces: vec![ChebyshevPiece::through(0.25, 1.0, &samples)] };
         assert!(way.pieces[0].rest() < 1e-14);
         for t in [0.25, 0.4, 0.77, 1.0] {
             let [p, d, dd] = way.jet(t, Order::Second);

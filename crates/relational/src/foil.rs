@@ -1,7 +1,7 @@
 //! What foil curves, foil snakes and foil lofts have in common: their arguments, and their section
 //! from them.
 
-use crate::arguments::Named;
+use crate::arguments::NamedOption;
 use crate::third_derivatives;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Real, Vec3};
 use moldloft_registry::{CallError, CurveRef, FieldId};
@@ -40,7 +40,7 @@ macro_rules! foil_kind {
             /// Thickness form: "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A",
             /// "64A", "65A" or "66tmb", or its number in this list.
             #[field(default = "4-digit")]
-            family: crate::arguments::Named,
+            family: crate::arguments::NamedOption,
             /// Mean line: "flat", "parabolic", "210" to "250", "221" to "241", "a" or "a modified"; "" is
             /// the usual one of the family.
             #[field(default = "")]
@@ -113,7 +113,7 @@ pub(crate) use foil_kind;
 /// The arguments of a foil but its points.
 #[derive(Clone)]
 pub struct Arguments<T: Real> {
-    pub family: Named,
+    pub family: NamedOption,
     pub mean: Arc<str>,
     pub camber_at: T,
     pub load: Option<T>,

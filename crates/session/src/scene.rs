@@ -4,7 +4,7 @@
 //! only what it has not. What has lost its value while the model has errors stays as it was, with the reason.
 
 use crate::patches::{self, Connections, Prepared, PreparedPatch};
-use moldloft_document::{Document, Section};
+use moldloft_document::{ContourSection, Document};
 use moldloft_mesh::{Mesh, Topology};
 use moldloft_model::Object;
 use moldloft_num::{Box3, Order, Vec3};
@@ -424,7 +424,7 @@ fn faces(item: Item, solid: &SolidRef<f64>) -> Item {
     Item { normals, connections: drawn.connections, ..item.at(&drawn.points) }
 }
 
-fn contour((k, section): (usize, &Section)) -> Item {
+fn contour((k, section): (usize, &ContourSection)) -> Item {
     let lines = section.lines.iter().flat_map(|(_, lines)| lines).map(|line| {
         let again = line.points.first().filter(|_| line.closed);
         line.points.iter().chain(again).copied().collect()

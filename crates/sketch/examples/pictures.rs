@@ -1,7 +1,7 @@
 //! The picture of each sketch with its planes and dimensions, as SVG into a folder:
 //! `cargo run -p moldloft-sketch --example pictures -- docs/images`.
 
-use moldloft_sketch::Session;
+use moldloft_sketch::SketchSession;
 
 fn main() -> std::io::Result<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
@@ -11,7 +11,7 @@ fn main() -> std::io::Result<()> {
         ("bracket", include_str!("../../../examples/sketch/bracket.skt")),
         ("shed", include_str!("../../../examples/sketch/shed.skt")),
     ] {
-        let mut session = Session::new();
+        let mut session = SketchSession::new();
         session.run_text(text);
         for reply in session.run_text("SHOW PLANES\nEXPORT SVG picture") {
             if let Some(file) = reply.file {

@@ -3,7 +3,7 @@
 //! `cargo run --release -p moldloft-sketch --example timing`
 
 use moldloft_num::Vec3;
-use moldloft_sketch::{Planes, Session, faces, solid, solve};
+use moldloft_sketch::{Planes, SketchSession, faces, solid, solve};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::time::Instant;
@@ -71,7 +71,7 @@ fn plate(holes: usize) -> (Vec<Vec3>, Vec<[usize; 2]>) {
 }
 
 fn main() {
-    let mut session = Session::new();
+    let mut session = SketchSession::new();
     for reply in session.run_text(&stair(249)) {
         assert!(!reply.is_error(), "{}", reply.text);
     }

@@ -1,6 +1,6 @@
 //! What a feature is made of: other objects, and how. Its body is computed by [`crate::body`].
 
-use crate::object::Object;
+use crate::object::SketchObject;
 use crate::solid::operation::Operation;
 use crate::{Axis, Expr, PointId};
 use std::sync::Arc;
@@ -55,9 +55,9 @@ pub enum FeatureKind {
 
 /// An object that a feature is made of.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Operand {
+pub struct FeatureOperand {
     /// The object.
-    pub object: Arc<Object>,
+    pub object: Arc<SketchObject>,
     /// What its names begin with in the feature.
     pub prefix: String,
 }
@@ -68,5 +68,5 @@ pub struct Feature {
     /// How.
     pub kind: FeatureKind,
     /// Of what.
-    pub operands: Vec<Operand>,
+    pub operands: Vec<FeatureOperand>,
 }

@@ -70,26 +70,30 @@ mod format;
 mod object;
 pub mod solid;
 
-pub use command::{CommandError, Files, NoFiles, OutFile, Reply, Session, Suggestion};
+pub use command::{
+    CommandError, CommandReply, Files, NullFiles, OutFile, SketchSession, Suggestion,
+};
 pub use dimension::expr::{Expr, FUNCTIONS, NoValue};
 pub use dimension::layout::{
     Count, DimensionFault, Layout, Loose, agree, chain, chain_text, solve,
 };
 pub use dimension::solver::scale;
-pub use dimension::{Dimension, Measure, Role, Variable};
+pub use dimension::{Dimension, DimensionRole, MeasuredQuantity, Variable};
 pub use drawing::axis::{Axis, Free, Letters, Naming};
 pub use drawing::estimate::{Estimate, FreeDepth, MAX_PLANES};
 pub use drawing::line_types::{DOUBTFUL, NAMING_TOLERANCE};
 pub use drawing::planes::{Planes, Reason, TypeFault, why};
 pub use drawing::projection::Projection;
-pub use drawing::{Align, Drawing, FaceId, Hit, Line, LineId, Point, PointId, Snap, Source};
-pub use feature::{Feature, FeatureKind, Operand, Placement};
+pub use drawing::{
+    Align, Drawing, DrawnPoint, FaceId, Hit, Line, LineId, LineTypeSource, PointId, Snap,
+};
+pub use feature::{Feature, FeatureKind, FeatureOperand, Placement};
 pub use format::script::script;
 pub use format::{dxf, export, json, json_format};
 pub use moldloft_mesh::triangulate;
-pub use object::{Face, Object, Reference};
+pub use object::{Face, Reference, SketchObject};
 pub use solid::feature::{NoBody, body};
 pub use solid::gradient::{Gradient, Swept, gradient};
 pub use solid::mass::Mass;
 pub use solid::ruled_faces::RoundFace;
-pub use solid::{Solid, curve, faces, merge, solid};
+pub use solid::{SketchSolid, curve, faces, merge, solid};

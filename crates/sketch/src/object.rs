@@ -2,7 +2,7 @@
 
 use crate::feature::Feature;
 use crate::solid::curve::Curve;
-use crate::{Axis, Dimension, Drawing, FaceId, LineId, Measure, PointId, Variable};
+use crate::{Axis, Dimension, Drawing, FaceId, LineId, MeasuredQuantity, PointId, Variable};
 use indexmap::IndexMap;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -45,7 +45,7 @@ pub struct Reference {
 
 /// An object.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Object {
+pub struct SketchObject {
     /// Its name, as written.
     pub name: String,
     /// Whether it is shown.
@@ -68,19 +68,19 @@ pub struct Object {
     pub feature: Option<Arc<Feature>>,
 }
 
-impl Object {
+impl SketchObject {
     /// An empty object of a name; a cross section perpendicular to `section` if given.
-    pub fn new(name: &str, section: Option<Axis>) -> Object {
+    pub fn new(name: &str, section: Option<Axis>) -> SketchObject {
         let drawing = Drawing {
             section,
             projection: section.map(crate::Projection::section).unwrap_or_default(),
             ..Drawing::default()
         };
-        Object {
+        SketchObject {
             name: name.to_owned(),
             display: true,
             drawing: Arc::new(drawing),
-            ..Object::default()
+            ..SketchObject::default()
         }
     }
 
@@ -134,10 +134,10 @@ impl Object {
         let mut gone = Vec::new();
         self.dimensions.retain(|_, d| {
             let stays = match &d.measure {
-                Measure::Along { p, q, .. } => point(p) && point(q),
-                Measure::Datum { point: p, .. } => point(p),
-                Measure::Length(l) | Measure::Slope(l) => line(l),
-                Measure::Angle(a, b) | Measure::Equal(a, b) => line(a) && line(b),
+                MeasuredQuantity::Along { p, q, .. } => point(p) && point(q),
+                MeasuredQuantity::Datum { point: p, .. } => point(p),
+                MeasuredQuantity::Length(l) | MeasuredQuantity::Slope(l) => line(l),
+                MeasuredQuantity::Angle(a, b) | MeasuredQuantity::Equal(a, b) => line(a) && line(b),
             };
             if !stays {
                 gone.push(d.name.clone());

@@ -516,10 +516,10 @@ impl<T: Real> Growth<T> {
 struct TanhLaw<T> {
     cells: usize,
     w: T,
-    side: Side<T>,
+    side: SpacedEnds<T>,
 }
 
-enum Side<T> {
+enum SpacedEnds<T> {
     Both { skew: T },
     Start,
     End,
@@ -532,10 +532,10 @@ impl<T: Real> TanhLaw<T> {
         let (b, side) = match (start.re() > 0.0, end.re() > 0.0) {
             (true, true) => {
                 let (a, b) = (start.sqrt(), end.sqrt());
-                (T::one() / (a * b * n), Side::Both { skew: b / a })
+                (T::one() / (a * b * n), SpacedEnds::Both { skew: b / a })
             }
-            (true, false) => (T::one() / (start * n), Side::Start),
-            _ => (T::one() / (end * n), Side::End),
+            (true, false) => (T::one() / (start * n), SpacedEnds::Start),
+            _ => (T::one() / (end * n), SpacedEnds::End),
         };
         // Below the smallest ratio the tangent is vertical at the ends to working precision.
         let sound = b.is_finite() && (1e-12..LARGEST).contains(&b.re());
@@ -546,7 +546,7 @@ impl<T: Real> TanhLaw<T> {
     fn shares(&self, i: usize) -> (T, T) {
         let (x, y) = (i as f64 / self.cells as f64, (self.cells - i) as f64 / self.cells as f64);
         match self.side {
-            Side::Both { skew } => {
+            SpacedEnds::Both { skew } => {
                 let c = x - 0.5;
                 let shrink = sinhc(self.w * 0.25) * cos_of_sq(-(self.w * (c * c)));
                 let part = |x: f64| sinhc(self.w * (x * x)) / shrink * x;
@@ -554,8 +554,8 @@ impl<T: Real> TanhLaw<T> {
                 let whole = before + after;
                 (before / whole, after / whole)
             }
-            Side::Start => self.one_sided(x),
-            Side::End => {
+            SpacedEnds::Start => self.one_sided(x),
+            SpacedEnds::End => {
                 let (near, far) = self.one_sided(y);
                 (far, near)
             }

@@ -32,7 +32,7 @@ pub struct GridSpline<T: Real> {
 
 /// The cell in charge of a parameter, with the weights of the two points beside it and of their
 /// slopes: values, first and second derivatives.
-struct Weights<T> {
+struct HermiteWeights<T> {
     cell: usize,
     points: [[T; 2]; 3],
     slopes: [[T; 2]; 3],
@@ -90,7 +90,13 @@ impl<T: Real> GridSpline<T> {
     }
 
     #[inline(always)]
-    fn combine(&self, a: &Weights<T>, b: &Weights<T>, du: usize, dv: usize) -> Vec3<T> {
+    fn combine(
+        &self,
+        a: &HermiteWeights<T>,
+        b: &HermiteWeights<T>,
+        du: usize,
+        dv: usize,
+    ) -> Vec3<T> {
         let n = self.v.len();
         let mut sum = Vec3::zero();
         for i in 0..2 {
@@ -107,7 +113,7 @@ impl<T: Real> GridSpline<T> {
         sum
     }
 
-    fn jet_of(&self, a: &Weights<T>, b: &Weights<T>, order: Order) -> SurfJet<T> {
+    fn jet_of(&self, a: &HermiteWeights<T>, b: &HermiteWeights<T>, order: Order) -> SurfJet<T> {
         let mut jet = SurfJet { p: self.combine(a, b, 0, 0), ..SurfJet::default() };
         if order >= Order::First {
             jet.u = self.combine(a, b, 1, 0);
@@ -121,7 +127,7 @@ impl<T: Real> GridSpline<T> {
         jet
     }
 
-    fn weights(&self, knots: &[T], t: T) -> Weights<T> {
+    fn weights(&self, knots: &[T], t: T) -> HermiteWeights<T> {
         if self.slopes.is_some() { cubic(knots, t) } else { linear(knots, t) }
     }
 }
@@ -182,23 +188,23 @@ fn cell<T: Real>(knots: &[T], t: T) -> (usize, T, T) {
     (k, (t - knots[k]) / width, T::one() / width)
 }
 
-fn linear<T: Real>(knots: &[T], t: T) -> Weights<T> {
+fn linear<T: Real>(knots: &[T], t: T) -> HermiteWeights<T> {
     let (cell, s, shrink) = cell(knots, t);
     let zero = T::zero();
     let points = [[-s + 1.0, s], [-shrink, shrink], [zero, zero]];
-    Weights { cell, points, slopes: [[zero; 2]; 3] }
+    HermiteWeights { cell, points, slopes: [[zero; 2]; 3] }
 }
 
 /// Hermite's cubics: the weights of the points are 1 - q and q with q = s^2 (3 - 2 s), those of the
 /// slopes, h s (1 - s)^2 and h s^2 (s - 1).
-fn cubic<T: Real>(knots: &[T], t: T) -> Weights<T> {
+fn cubic<T: Real>(knots: &[T], t: T) -> HermiteWeights<T> {
     let (cell, s, shrink) = cell(knots, t);
     let width = knots[cell + 1] - knots[cell];
     let r = -s + 1.0;
     let q = s * s * (-(s * 2.0) + 3.0);
     let rise = s * r * shrink * 6.0;
     let bend = (-(s * 2.0) + 1.0) * shrink * shrink * 6.0;
-    Weights {
+    HermiteWeights {
         cell,
         points: [[-q + 1.0, q], [-rise, rise], [-bend, bend]],
         slopes: [
@@ -221,7 +227,7 @@ impl<T: Real> Surface<T> for GridSpline<T> {
         points: &mut [Vec3<T>],
         mut normals: Option<&mut [Vec3<T>]>,
     ) {
-        let across: Vec<Weights<T>> =
+        let across: Vec<HermiteWeights<T>> =
             vs.iter().map(|&v| self.weights(&self.v, T::from(v))).collect();
         for (i, &u) in us.iter().enumerate() {
             let along = self.weights(&self.u, T::from(u));

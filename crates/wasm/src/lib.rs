@@ -30,7 +30,7 @@ unsafe extern "C" {
 
 /// What a page begins with.
 #[derive(Deserialize)]
-struct Start {
+struct InitialModel {
     /// The model's name; its ending says what it is.
     name: String,
     /// The text.
@@ -107,7 +107,7 @@ pub extern "C" fn start() -> bool {
 fn begun(message: &[u8]) -> Option<Session> {
     let (length, rest) = message.split_first_chunk::<4>()?;
     let (json, bytes) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
-    let start: Start = serde_json::from_slice(json).ok()?;
+    let start: InitialModel = serde_json::from_slice(json).ok()?;
     let mut files = HashMap::new();
     for file in start.files {
         let data = bytes.get(file.offset..file.offset.checked_add(file.count)?)?;

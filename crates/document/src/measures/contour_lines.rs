@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 /// The lines of one section of a contours object.
 #[derive(Clone, Debug)]
-pub struct Section {
+pub struct ContourSection {
     /// The contours object, such as `stations`.
     pub contours: String,
     /// The plane's coordinate axis: 0, 1, 2 for X, Y, Z; 3 for sections of other kinds.
@@ -27,22 +27,22 @@ type Cutters<'g> = HashMap<Key, ContourCutter<'g, f64>>;
 impl Document {
     /// The sections by all shown contours of the surfaces and bodies that they name, or of all that are shown; sections
     /// without lines left out.
-    pub fn sections(&self) -> Vec<Section> {
+    pub fn sections(&self) -> Vec<ContourSection> {
         let mut cutters = Cutters::new();
         let shown = self.graph().objects().filter(|o| o.head.shown());
-        let mut sections: Vec<Section> =
+        let mut sections: Vec<ContourSection> =
             shown.flat_map(|object| self.cut(object, &mut cutters)).collect();
         sections.retain(|section| !section.lines.is_empty());
         sections
     }
 
     /// All sections of one contours object, in the order of its values; empty when it is none.
-    pub fn sections_of(&self, name: &str) -> Vec<Section> {
+    pub fn sections_of(&self, name: &str) -> Vec<ContourSection> {
         let object = self.graph().objects().find(|o| &*o.name == name);
         object.map_or_else(Vec::new, |object| self.cut(object, &mut Cutters::new()))
     }
 
-    fn cut<'g>(&'g self, object: &Object<f64>, cutters: &mut Cutters<'g>) -> Vec<Section> {
+    fn cut<'g>(&'g self, object: &Object<f64>, cutters: &mut Cutters<'g>) -> Vec<ContourSection> {
         let Some(Value::Contours(contours)) = object.value() else { return Vec::new() };
         let graph = self.graph();
         let keys = listed_shapes(graph, object)
@@ -64,7 +64,7 @@ impl Document {
                 };
                 (!lines.is_empty()).then(|| (object.name.to_string(), lines))
             };
-            Section {
+            ContourSection {
                 contours: object.name.to_string(),
                 axis: contours.axis,
                 value,

@@ -1,12 +1,12 @@
 //! What is computed from a model: expressions, panels, hydrostatics, and their derivatives.
 
-use crate::document::{Document, Source};
+use crate::document::{Document, ObjectSource};
 use crate::measures::bodied::{Numbers, Whole};
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::USUAL_ACCURACY;
 use moldloft_lang::run::interpreter::Inputs;
-use moldloft_lang::run::program::Program;
+use moldloft_lang::run::program::RunContext;
 use moldloft_lang::run::whole::{body_numbers, mesh_numbers, not_finite, one_of};
 use moldloft_lang::source::env::Evaluation;
 use moldloft_lang::value::variables::Called as _;
@@ -74,7 +74,7 @@ impl Document {
             budget: &budget,
             settings: self.settings,
         };
-        let program = Program {
+        let program = RunContext {
             modules: &mut self.modules,
             world: &*self.world,
             registry: &self.registry,
@@ -211,8 +211,8 @@ impl Document {
     }
 
     /// The options of the model's hydrostatics: water at z = 0, mirrored as its header says.
-    pub fn hydrostatic_options(&self) -> crate::measures::hydrostatics::Options {
-        crate::measures::hydrostatics::Options {
+    pub fn hydrostatic_options(&self) -> crate::measures::hydrostatics::HydrostaticsOptions {
+        crate::measures::hydrostatics::HydrostaticsOptions {
             mirrored: self.symmetry().contains('y'),
             ..Default::default()
         }
@@ -220,7 +220,7 @@ impl Document {
 
     /// True when objects come from a program.
     pub fn is_program(&self) -> bool {
-        matches!(self.source, Source::Program)
+        matches!(self.source, ObjectSource::Program)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::Document;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::{
-    Attitude, Body, FloatError, Flotation, Loading, Solved, Status, Water, bottom, bounds,
+    Attitude, Body, Equilibrium, FloatError, Flotation, Loading, Status, Water, bottom, bounds,
     equilibrium, flotation, section_area,
 };
 use moldloft_lang::run::weight::mass_and_centre;
@@ -222,7 +222,7 @@ fn cannot_float(error: FloatError) -> Vec<Diagnostic> {
     }]
 }
 
-type Answered<T> = Result<(Solved<T>, bool, &'static str), FloatError>;
+type Answered<T> = Result<(Equilibrium<T>, bool, &'static str), FloatError>;
 
 /// The answers of all requests, each from canonical data: none starts from another's.
 fn answers<T: Real>(
@@ -265,7 +265,7 @@ fn answers<T: Real>(
             let flotation = flotation(body, water, Attitude { level, trim, heel }, centre);
             let status = Status::Converged;
             let stable = flotation.stable.unwrap_or(true);
-            Solved { flotation, status, iterations: 0, residual: 0.0, stable, lolls: false }
+            Equilibrium { flotation, status, iterations: 0, residual: 0.0, stable, lolls: false }
         };
         Ok(match request.immersion {
             Immersion::Level(level) => (given(T::from(level)), false, sides),
@@ -285,7 +285,7 @@ fn answers<T: Real>(
     requests.par_iter().map(one).collect()
 }
 
-fn answer((solved, sought, sides): &(Solved<f64>, bool, &'static str)) -> FloatAnswer {
+fn answer((solved, sought, sides): &(Equilibrium<f64>, bool, &'static str)) -> FloatAnswer {
     let Flotation { earth, .. } = &solved.flotation;
     let figures = solved.flotation.figures();
     FloatAnswer {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// How the model floats.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct HydrostaticsOptions {
     /// Height z of the water.
     pub level: f64,
     /// True when the mesh is one side of y = 0 and both are meant.
@@ -20,13 +20,13 @@ pub struct Options {
     pub density: f64,
 }
 
-impl Default for Options {
+impl Default for HydrostaticsOptions {
     fn default() -> Self {
         Self { level: 0.0, mirrored: false, density: 1.0 }
     }
 }
 
-impl Options {
+impl HydrostaticsOptions {
     fn symmetry(&self) -> Symmetry {
         if self.mirrored { Symmetry::MirroredTwice } else { Symmetry::None }
     }
@@ -37,7 +37,10 @@ impl Document {
     ///
     /// # Errors
     /// When there is no skin.
-    pub fn hydrostatics(&mut self, options: &Options) -> Result<Hydrostatics<f64>, Diagnostic> {
+    pub fn hydrostatics(
+        &mut self,
+        options: &HydrostaticsOptions,
+    ) -> Result<Hydrostatics<f64>, Diagnostic> {
         let bodied = self.bodied(USUAL_ACCURACY)?;
         let level = options.level;
         Ok(hydrostatics(&bodied.body, level, options.symmetry(), options.density))

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 /// The fields of one structured patch, point (i, j) of its block at `i * nv + j`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PatchFields {
+pub struct PatchAnalysis {
     /// The patch's name.
     pub patch: String,
     /// Curvatures, reflections and normals, and of a plane patch the metric of its grid.
@@ -26,7 +26,7 @@ impl Document {
     ///
     /// # Errors
     /// As [`Document::panelled`].
-    pub fn patch_fields(&mut self) -> Result<Vec<PatchFields>, Diagnostic> {
+    pub fn patch_fields(&mut self) -> Result<Vec<PatchAnalysis>, Diagnostic> {
         let panelled = self.panelled()?;
         let Some(places) = panelled.panelling.parameters(self.graph()) else {
             return Ok(Vec::new());
@@ -46,7 +46,7 @@ impl Document {
                     let grid: Vec<Vec3> = block.vertices.iter().map(at).collect();
                     fields.extend(metric(&grid, block.nu, block.nv));
                 }
-                PatchFields { patch: patch.info.name.clone(), fields }
+                PatchAnalysis { patch: patch.info.name.clone(), fields }
             })
             .collect())
     }

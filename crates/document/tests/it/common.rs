@@ -1,7 +1,7 @@
 //! What the tests of documents share: opening texts, values.
 
 use moldloft_diag::Diagnostic;
-use moldloft_document::{Document, NoFiles, ReadError, ReadText, World, registry};
+use moldloft_document::{Document, NoFiles, ReadText, TextReadError, World, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::Value;
 pub use moldloft_testing::{Random, soak};
@@ -65,11 +65,11 @@ pub fn vector(document: &mut Document, text: &str) -> Vec3 {
 pub struct Files(pub Vec<(&'static str, &'static str)>);
 
 impl World for Files {
-    fn read(&self, path: &str, _from: Option<&str>) -> Result<ReadText, ReadError> {
+    fn read(&self, path: &str, _from: Option<&str>) -> Result<ReadText, TextReadError> {
         let found = self.0.iter().find(|(name, _)| *name == path);
         found
             .map(|(name, text)| ReadText { name: name.to_string(), bytes: text.as_bytes().into() })
-            .ok_or_else(|| ReadError { message: format!("unknown file `{path}`"), help: None })
+            .ok_or_else(|| TextReadError { message: format!("unknown file `{path}`"), help: None })
     }
 }
 

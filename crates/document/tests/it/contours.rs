@@ -1,7 +1,7 @@
 //! Contours of all families, and lists of objects.
 
 use crate::common::{ids, number, open, sound, told};
-use moldloft_document::Section;
+use moldloft_document::ContourSection;
 use std::f64::consts::PI;
 
 /// A cone about an oblique axis (r = 1 - s/4 at the distance s from its base), and a box beside it.
@@ -12,11 +12,11 @@ AbsPoint P(-3, 0, 0); AbsPoint Q(-2, 0, 0); AbsPoint R(-3, 0, 2); AbsPoint S(-2,
 Line l(P, Q); Line k(R, S); RuledSurf wall(l, k); RuledSurf hidden(l, k, visible = 0);
 ";
 
-fn sections(text: &str) -> Vec<Section> {
+fn sections(text: &str) -> Vec<ContourSection> {
     sound(&format!("{BODY}{text}")).sections()
 }
 
-fn points(section: &Section) -> Vec<moldloft_num::Vec3> {
+fn points(section: &ContourSection) -> Vec<moldloft_num::Vec3> {
     section.lines.iter().flat_map(|(_, lines)| lines).flat_map(|l| l.points.clone()).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Model files: read, built, edited, converted to programs and back; and what is wrong with bad ones.
 
 use moldloft_diag::Severity;
-use moldloft_document::{Document, Format, NoFiles, ReadError, ReadText, World, registry};
+use moldloft_document::{Document, Format, NoFiles, ReadText, TextReadError, World, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::{Attributes, Value};
 use std::f64::consts::PI;
@@ -357,7 +357,7 @@ fn what_is_built_on_unknown_entities_is_told_once() {
 struct Bytes(&'static [u8]);
 
 impl World for Bytes {
-    fn read(&self, path: &str, _: Option<&str>) -> Result<ReadText, ReadError> {
+    fn read(&self, path: &str, _: Option<&str>) -> Result<ReadText, TextReadError> {
         Ok(ReadText { name: path.into(), bytes: self.0.into() })
     }
 }

@@ -1,7 +1,7 @@
 //! Sketches in a model: parameters, objects, the solid, derivatives, refusals.
 
 use crate::common::number;
-use moldloft_document::{Document, NoFiles, ReadError, ReadText, World, registry};
+use moldloft_document::{Document, NoFiles, ReadText, TextReadError, World, registry};
 use moldloft_registry::Value;
 use std::collections::BTreeMap;
 
@@ -12,10 +12,10 @@ const BRACKET: &str = include_str!("../../../../examples/sketch/bracket.skt");
 struct Shelf(BTreeMap<String, String>);
 
 impl World for Shelf {
-    fn read(&self, path: &str, _: Option<&str>) -> Result<ReadText, ReadError> {
+    fn read(&self, path: &str, _: Option<&str>) -> Result<ReadText, TextReadError> {
         match self.0.get(path) {
             Some(text) => Ok(ReadText { name: path.into(), bytes: text.as_bytes().into() }),
-            None => Err(ReadError { message: format!("there is no `{path}`"), help: None }),
+            None => Err(TextReadError { message: format!("there is no `{path}`"), help: None }),
         }
     }
 }

@@ -2,12 +2,12 @@
 
 use super::faces::{not_fitted, plane};
 use crate::Failure;
-use moldloft_brep::{Brep, Edge, Face, Side, SurfaceShape};
+use moldloft_brep::{Brep, Coedge, Edge, Face, SurfaceShape};
 use moldloft_num::{Order, Rational, Vec3};
 use moldloft_panel::{FaceOutline, OutlineCurve, OutlineSide};
 use moldloft_picture::PALETTE;
 use moldloft_registry::CurveRef;
-use moldloft_spline::nurbs::{FitOptions, Nurbs, Source, fit, of_curve};
+use moldloft_spline::nurbs::{FitOptions, Nurbs, SampledShape, fit, of_curve};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ struct Sided<'a> {
 }
 
 /// A stretch of a side between two vertices at which edges end.
-struct Run {
+struct SideInterval {
     side: usize,
     from: usize,
     to: usize,
@@ -142,7 +142,7 @@ impl<'a> Sewing<'a> {
             loops.push(sides);
         }
         let surface = &self.surfaces[face];
-        let seam = |cycle: &Vec<Side>| {
+        let seam = |cycle: &Vec<Coedge>| {
             cycle.iter().enumerate().any(|(k, a)| cycle[..k].iter().any(|b| a.edge == b.edge))
         };
         let flat = if loops.iter().any(seam) { None } else { plane(surface) };
@@ -180,14 +180,14 @@ impl<'a> Sewing<'a> {
     }
 
     /// The sides of edges that a side of an outline consists of, by increasing parameter.
-    fn side(&mut self, side: usize) -> Result<Vec<Side>, Failure> {
+    fn side(&mut self, side: usize) -> Result<Vec<Coedge>, Failure> {
         let vertices = &self.sides[side].side.vertices;
         let mut runs = Vec::new();
         let mut from = 0;
         for to in 1..vertices.len() {
             if self.ends.contains(&vertices[to]) || to + 1 == vertices.len() {
                 if vertices[from..=to].iter().any(|v| *v != vertices[from]) {
-                    runs.push(Run { side, from, to });
+                    runs.push(SideInterval { side, from, to });
                 }
                 from = to;
             }
@@ -218,7 +218,7 @@ impl<'a> Sewing<'a> {
     }
 
     /// The edge of a run, new or known.
-    fn edge(&mut self, run: &Run) -> Result<Side, Failure> {
+    fn edge(&mut self, run: &SideInterval) -> Result<Coedge, Failure> {
         self.curve(run.side)?;
         let sided = &self.sides[run.side];
         let surface = &self.surfaces[sided.face];
@@ -250,7 +250,7 @@ impl<'a> Sewing<'a> {
             if let Some((forward, alike, gap)) = self.same(edge, ends, &curve) {
                 self.brep.gap = self.brep.gap.max(gap.max(error));
                 let trace = if forward { trace } else { trace.reversed() };
-                return Ok(Side { edge, forward, trace: Some(trace), alike });
+                return Ok(Coedge { edge, forward, trace: Some(trace), alike });
             }
         }
         let far = |k: usize, t: f64| curve.at([t]).distance(self.brep.vertices[ends[k]]);
@@ -258,7 +258,7 @@ impl<'a> Sewing<'a> {
         let edge = self.brep.edges.len();
         self.brep.edges.push(Edge { ends, curve });
         self.edges.entry(key).or_default().push(edge);
-        Ok(Side { edge, forward: true, trace: Some(trace), alike: true })
+        Ok(Coedge { edge, forward: true, trace: Some(trace), alike: true })
     }
 
     fn vertex(&mut self, v: u32) -> usize {
@@ -363,5 +363,8 @@ fn trace(
     let slope = 2.0 * u_size.chain(v_size).fold(0.0, f64::max);
     let options =
         FitOptions::within(if slope > 0.0 { (accuracy / slope).max(1e-13) } else { 1e-9 });
-    fit(&Source { sample: &sample, joints: [snake.joints()], rational: Rational::none() }, &options)
+    fit(
+        &SampledShape { sample: &sample, joints: [snake.joints()], rational: Rational::none() },
+        &options,
+    )
 }

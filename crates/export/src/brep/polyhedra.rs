@@ -1,7 +1,7 @@
 //! Bodies of triangles as faces: triangles that lie in one plane and hang together are one plane face.
 
 use crate::Failure;
-use moldloft_brep::{Brep, Edge, Face, Side, SurfaceShape};
+use moldloft_brep::{Brep, Coedge, Edge, Face, SurfaceShape};
 use moldloft_diag::Diagnostic;
 use moldloft_mesh::Mesh;
 use moldloft_num::{Pace, Vec3};
@@ -166,7 +166,7 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Fa
                     brep.edges.push(Edge { ends: [a.min(b), a.max(b)], curve: segment(p, q) });
                     brep.edges.len() - 1
                 });
-                sides.push(Side { edge, forward: a < b, trace: None, alike: true });
+                sides.push(Coedge { edge, forward: a < b, trace: None, alike: true });
             }
             made.push(sides);
         }

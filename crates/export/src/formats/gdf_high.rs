@@ -1,6 +1,6 @@
 //! WAMIT's high-order geometry: the surfaces themselves as B-spline patches.
 
-use super::{Format, Holds, Lids, Symmetry};
+use super::{Format, Holds, Lids, SymmetryPlanes};
 use crate::spline_patches::spline_patches;
 use crate::{Export, Failure, GRAVITY};
 use moldloft_io::gdf::{self, Header};
@@ -11,7 +11,7 @@ pub const FORMAT: Format = Format {
     suffix: "high.gdf",
     about: "WAMIT high-order B-spline patches (.high.gdf)",
     holds: Holds::Surfaces,
-    symmetry: Symmetry::Both,
+    symmetry: SymmetryPlanes::Both,
     lids: Lids::Asked,
     text: true,
     write,

@@ -1,6 +1,6 @@
 //! HydroStar's panels.
 
-use super::{Format, Symmetry};
+use super::{Format, SymmetryPlanes};
 use crate::{Export, Failure};
 use moldloft_io::hydrostar;
 use moldloft_io::vtk::NamedFile;
@@ -10,7 +10,7 @@ pub const FORMAT: Format = Format {
     aliases: &["hst"],
     suffix: "hst",
     about: "HydroStar panels (.hst)",
-    symmetry: Symmetry::YThenX,
+    symmetry: SymmetryPlanes::YThenX,
     write,
     ..Format::PANEL_CODE
 };

@@ -83,7 +83,7 @@ pub struct Format {
     /// What of a model its files hold.
     pub holds: Holds,
     /// The planes x = 0 and y = 0 that its files can name as planes of symmetry.
-    pub symmetry: Symmetry,
+    pub symmetry: SymmetryPlanes,
     /// What becomes of lids.
     pub lids: Lids,
     /// The immersed part alone can be written.
@@ -110,7 +110,7 @@ impl Format {
         other_suffix: "",
         about: "",
         holds: Holds::Panels,
-        symmetry: Symmetry::None,
+        symmetry: SymmetryPlanes::None,
         lids: Lids::Patches,
         immersed: false,
         text: false,
@@ -126,7 +126,7 @@ impl Format {
     /// What files of panel codes are: text, the skin, lids when asked for, both planes of symmetry.
     pub const PANEL_CODE: Self = Self {
         holds: Holds::Panels,
-        symmetry: Symmetry::Both,
+        symmetry: SymmetryPlanes::Both,
         lids: Lids::Asked,
         immersed: true,
         text: true,
@@ -180,7 +180,7 @@ impl Holds {
 
 /// The planes of symmetry that a file can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Symmetry {
+pub enum SymmetryPlanes {
     /// None: one side is written as it is.
     None,
     /// y = 0; a model that is mirrored in x = 0 is written with its image.
@@ -191,7 +191,7 @@ pub enum Symmetry {
     Both,
 }
 
-impl Symmetry {
+impl SymmetryPlanes {
     /// True when a file can name x = 0, for a model that is mirrored in y = 0 or is not.
     pub fn names_x(self, mirror_y: bool) -> bool {
         match self {

@@ -1,6 +1,6 @@
 //! Nemoh's panels.
 
-use super::{Format, Symmetry};
+use super::{Format, SymmetryPlanes};
 use crate::{Export, Failure};
 use moldloft_io::nemoh;
 use moldloft_io::vtk::NamedFile;
@@ -11,7 +11,7 @@ pub const FORMAT: Format = Format {
     suffix: "mar",
     other_suffix: "dat",
     about: "Nemoh panels (.mar)",
-    symmetry: Symmetry::Y,
+    symmetry: SymmetryPlanes::Y,
     write,
     ..Format::PANEL_CODE
 };

@@ -4,7 +4,8 @@ mod spline_patches;
 
 use moldloft_document::{Document, NoFiles, registry};
 use moldloft_export::{
-    FORMATS, Holds, Lids, Symmetry, WriteOptions, format_named, write, write_blocks, write_grids,
+    FORMATS, Holds, Lids, SymmetryPlanes, WriteOptions, format_named, write, write_blocks,
+    write_grids,
 };
 use moldloft_io::StructuredGrid;
 use moldloft_num::Vec3;
@@ -120,7 +121,7 @@ fn a_symmetry_without_a_flag_is_written_out() {
     assert_eq!(gdf.lines().nth(3), Some("12"));
     // Nemoh has no flag for x = 0: twice the panels.
     assert!(panels("xy", "nemoh").lines().count() > panels("y", "nemoh").lines().count() * 3 / 2);
-    assert_eq!(Symmetry::YThenX.names_x(true), !Symmetry::YThenX.names_x(false));
+    assert_eq!(SymmetryPlanes::YThenX.names_x(true), !SymmetryPlanes::YThenX.names_x(false));
 }
 
 #[test]

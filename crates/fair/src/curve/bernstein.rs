@@ -39,14 +39,14 @@ fn dot<T: Real>(a: P<T>, b: P<T>) -> T {
 
 /// What has a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sign {
+pub(crate) enum SignedQuantity {
     /// The curvature: x' x x''.
     Turn,
     /// The curvature's slope: det(x', x''') |x'|^2 - 3 det(x', x'') (x' . x'').
     Slope,
 }
 
-impl Sign {
+impl SignedQuantity {
     /// The Bernstein coefficients on a span with these Bézier points, up to a positive factor.
     pub fn coefficients<T: Real>(self, bezier: &[P<T>]) -> Vec<T> {
         // With p points less one, x' = p D, x'' = p (p - 1) E, x''' = p (p - 1) (p - 2) F.
@@ -129,8 +129,10 @@ mod tests {
                 }
                 [0, 1].map(|a| factor * value(&c.iter().map(|p| p[a]).collect::<Vec<_>>(), t))
             };
-            let (turn, slope) =
-                (Sign::Turn.coefficients(&bezier), Sign::Slope.coefficients(&bezier));
+            let (turn, slope) = (
+                SignedQuantity::Turn.coefficients(&bezier),
+                SignedQuantity::Slope.coefficients(&bezier),
+            );
             let p = n as f64;
             for t in [0.0, 0.2, 0.55, 1.0] {
                 let [x, y, z] = [1, 2, 3].map(|k| at(t, k));
@@ -141,7 +143,7 @@ mod tests {
                 let own = value(&slope, t) * p.powi(4) * (p - 1.0);
                 assert!((own - wanted).abs() < 1e-11 * (1.0 + wanted.abs()), "{own} {wanted}");
             }
-            for sign in [Sign::Turn, Sign::Slope] {
+            for sign in [SignedQuantity::Turn, SignedQuantity::Slope] {
                 let all = sign.linear(&bezier);
                 for (i, c) in [(0, 0), (1, 1), (2, 0)] {
                     let mut moved = bezier.clone();

@@ -9,7 +9,7 @@ use crate::curve::bernstein::P;
 
 /// A line or an arc of a chain, and the points that it is near.
 #[derive(Clone, Debug)]
-pub(crate) struct Part {
+pub(crate) struct ChainElement {
     pub arc: bool,
     /// Its first and last point.
     pub between: [usize; 2],
@@ -19,14 +19,14 @@ pub(crate) struct Part {
 
 /// A part that has been found: where it begins, its direction there, its curvature and length.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece {
+pub(crate) struct FittedSegment {
     pub start: P<f64>,
     pub angle: f64,
     pub curvature: f64,
     pub length: f64,
 }
 
-impl Piece {
+impl FittedSegment {
     /// Place and direction at an arc length.
     pub fn at(&self, s: f64) -> (P<f64>, P<f64>) {
         let half = 0.5 * self.curvature * s;
@@ -56,7 +56,7 @@ impl Piece {
 /// A chain near its points.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<FittedSegment>,
 }
 
 impl Chain {
@@ -108,7 +108,7 @@ impl Chain {
 
 /// The unknowns of a chain, in the order of [`Fit::pieces`].
 struct Fit<'a> {
-    parts: &'a [Part],
+    parts: &'a [ChainElement],
     points: &'a [P<f64>],
     /// Point and part of each residual.
     rows: Vec<(usize, usize)>,
@@ -122,7 +122,7 @@ impl Fit<'_> {
         self.points[self.parts[0].between[0]]
     }
 
-    fn pieces(&self, x: &[f64]) -> Vec<Piece> {
+    fn pieces(&self, x: &[f64]) -> Vec<FittedSegment> {
         let mut x = x.iter().copied();
         let mut next = || x.next().expect("as many as unknowns");
         let offset = next();
@@ -144,7 +144,7 @@ impl Fit<'_> {
             } else {
                 next()
             };
-            let piece = Piece { start, angle, curvature, length };
+            let piece = FittedSegment { start, angle, curvature, length };
             (start, angle) = (piece.at(length).0, angle + curvature * length);
             out.push(piece);
         }
@@ -289,7 +289,7 @@ impl Fit<'_> {
 pub(crate) fn chain(
     points: &[P<f64>],
     radii: &[f64],
-    parts: Vec<Part>,
+    parts: Vec<ChainElement>,
 ) -> Result<Chain, (usize, usize, f64)> {
     // In units of its own size.
     let (from, to) = (parts[0].between[0], parts[parts.len() - 1].between[1]);
@@ -338,7 +338,7 @@ pub(crate) fn chain(
     if over.is_nan() || over > 1.0 {
         return Err((part, point, over * allowed[worst] * size));
     }
-    let back = |p: Piece| Piece {
+    let back = |p: FittedSegment| FittedSegment {
         start: p.start.map(|c| c * size),
         curvature: p.curvature / size,
         length: p.length * size,
@@ -357,9 +357,9 @@ mod tests {
         // Flat bottom, bilge of radius 1.4, side.
         let truth = Chain {
             pieces: vec![
-                Piece { start: [0.0, 0.02], angle: 0.03, curvature: 0.0, length: 3.2 },
-                Piece { start: [0.0; 2], angle: 0.0, curvature: 1.0 / 1.4, length: 2.1 },
-                Piece { start: [0.0; 2], angle: 0.0, curvature: 0.0, length: 4.8 },
+                FittedSegment { start: [0.0, 0.02], angle: 0.03, curvature: 0.0, length: 3.2 },
+                FittedSegment { start: [0.0; 2], angle: 0.0, curvature: 1.0 / 1.4, length: 2.1 },
+                FittedSegment { start: [0.0; 2], angle: 0.0, curvature: 0.0, length: 4.8 },
             ],
         };
         let mut truth = truth;
@@ -373,7 +373,7 @@ mod tests {
         let points: Vec<P<f64>> = s.iter().map(|&s| truth.at(s).0).collect();
         let last = |j: f64| s.iter().rposition(|&s| s <= j).unwrap();
         let (a, b) = (last(joints[0]), last(joints[1]));
-        let part = |arc, between| Part { arc, between, angle: None };
+        let part = |arc, between| ChainElement { arc, between, angle: None };
         let parts = vec![part(false, [0, a]), part(true, [a + 1, b]), part(false, [b + 1, 29])];
         let found = chain(&points, &[1e-6; 30], parts).unwrap();
         for (own, wanted) in found.pieces.iter().zip(&truth.pieces) {

@@ -1,7 +1,7 @@
 //! Splines through points that are only continuous at some of them: intended breaks.
 
 use crate::error::check_finite;
-use crate::{FairError, Fit, Space, Spacing, fit, fit_with, parameters};
+use crate::{FairError, Fit, ParameterSpacing, Space, fit, fit_with, parameters};
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::KnotVector;
 
@@ -43,7 +43,7 @@ pub struct FitWithCorners<T> {
 pub fn interpolate_with_corners<T: Real>(
     degree: usize,
     points: &[Vec3<T>],
-    spacing: Spacing,
+    spacing: ParameterSpacing,
     closed: bool,
     breaks: &[usize],
 ) -> Result<FitWithCorners<T>, FairError> {
@@ -173,8 +173,14 @@ mod tests {
         for closed in [false, true] {
             for degree in [2, 3, 5] {
                 let breaks = [0, 1, 3, 11];
-                let s = interpolate_with_corners(degree, &points, Spacing::Chord, closed, &breaks)
-                    .unwrap();
+                let s = interpolate_with_corners(
+                    degree,
+                    &points,
+                    ParameterSpacing::Chord,
+                    closed,
+                    &breaks,
+                )
+                .unwrap();
                 assert!(s.fit.largest < 1e-12, "{}", s.fit.largest);
                 assert_eq!(s.marks.len(), if closed { 5 } else { 4 });
                 for (&m, b) in s.marks.iter().zip(breaks) {
@@ -195,7 +201,7 @@ mod tests {
                 }
             }
         }
-        let refused = interpolate_with_corners(3, &points, Spacing::Chord, false, &[12]);
+        let refused = interpolate_with_corners(3, &points, ParameterSpacing::Chord, false, &[12]);
         assert_eq!(refused.unwrap_err(), FairError::Mark { index: 12, count: 12 });
     }
 }

@@ -11,11 +11,13 @@
 use crate::curve::exact::exact;
 use crate::curve::job::End;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
-use crate::optimum::goal::{Found, Goal, Moving, Path, check_single, moved, rounding};
+use crate::optimum::goal::{
+    Found, Goal, GoalVariation, RegularizationPath, check_single, moved, rounding,
+};
 use crate::optimum::{Bounded, DataLimits, Parts, kept};
 use crate::{
-    Certificate, Condition, FairError, FoundArc, Job, Layout, Limit, Measure, Shape, SparseRows,
-    shape,
+    Certificate, Condition, FairError, FoundArc, Job, Layout, Limit, Measure, ShapeConstraints,
+    SparseRows, shape,
 };
 use moldloft_num::{Real, Vec3};
 
@@ -42,7 +44,7 @@ pub struct DataOptions {
     /// Linear conditions on the control points.
     pub conditions: Vec<Condition>,
     /// What shape it has to have, for these data: [`Data::shaped`].
-    pub shape: Shape,
+    pub shape: ShapeConstraints,
     /// Whether the curve may have more inflections than the one of least bending within the same
     /// tolerances.
     pub bends: bool,
@@ -53,7 +55,7 @@ pub struct DataOptions {
 impl DataOptions {
     /// A measure and a goal without conditions, to a relative gap of 1e-9; inflections as they come.
     pub fn of(measure: Measure, goal: Goal) -> Self {
-        let (conditions, shape) = (Vec::new(), Shape::default());
+        let (conditions, shape) = (Vec::new(), ShapeConstraints::default());
         Self { measure, goal, conditions, shape, bends: true, accuracy: 1e-9 }
     }
 }
@@ -406,7 +408,7 @@ impl Data {
             }
         }
         // The signs of the curve of least bending as conditions.
-        if let Some(shape) = Shape::pattern(space, &stiffest) {
+        if let Some(shape) = ShapeConstraints::pattern(space, &stiffest) {
             let signed = DataOptions { shape: shape.clone(), ..options.clone() };
             match self.with_signs(&signed, job, shape, &stiffest) {
                 Ok(mut made) if good(&made.points) => {
@@ -437,7 +439,8 @@ impl Data {
     /// The control points of the curve of least bending within the tolerances.
     fn least_bending(&self, options: &DataOptions, job: &Job) -> Result<Vec<Vec3<f64>>, FairError> {
         let (measure, goal) = (Measure::Bending, Goal::Fairest);
-        let least = DataOptions { measure, goal, shape: Shape::default(), ..options.clone() };
+        let least =
+            DataOptions { measure, goal, shape: ShapeConstraints::default(), ..options.clone() };
         let mut own = self.parts(&least, job)?;
         Ok(self.along(&least, job, &mut own, None)?.points)
     }
@@ -449,7 +452,7 @@ impl Data {
         let own = options.shape.by(space, &job.points);
         let met = own.miss(self, &job.points, self.slack()).0 <= 0.0;
         if met && options.shape.counted(space, &job.points).is_none() {
-            let plain = DataOptions { shape: Shape::default(), ..options.clone() };
+            let plain = DataOptions { shape: ShapeConstraints::default(), ..options.clone() };
             let mut parts = self.parts(&plain, job)?;
             let made = self.along(&plain, job, &mut parts, None)?;
             if made.points == job.points {
@@ -492,7 +495,7 @@ impl Data {
 
     /// The control points of the fairest curve by the measure, whatever its shape.
     fn fairest(&self, options: &DataOptions, job: &Job) -> Result<Vec<Vec3<f64>>, FairError> {
-        let (goal, shape) = (Goal::Fairest, Shape::default());
+        let (goal, shape) = (Goal::Fairest, ShapeConstraints::default());
         let plain = DataOptions { goal, shape, bends: true, ..options.clone() };
         let mut parts = self.parts(&plain, job)?;
         Ok(self.along(&plain, job, &mut parts, None)?.points)
@@ -500,7 +503,7 @@ impl Data {
 
     /// The curve with the control points of lines and arcs in their places to rounding, where that
     /// leaves all data within their tolerances.
-    fn exact(&self, shape: &Shape, made: DataFit) -> DataFit {
+    fn exact(&self, shape: &ShapeConstraints, made: DataFit) -> DataFit {
         let points = shape.projected(&made.points);
         let residuals = self.residuals(&points);
         let within = |(r, most): (&f64, &f64)| *r <= most * (1.0 + 1e-9);
@@ -533,7 +536,7 @@ impl Data {
         &self,
         options: &DataOptions,
         job: &Job,
-        shape: Shape,
+        shape: ShapeConstraints,
         start: &[Vec3<f64>],
     ) -> Result<DataFit, FairError> {
         let mut control = shape.projected(start);
@@ -634,7 +637,7 @@ impl Data {
             let value = crate::measure::value(&rows, norm, &job.points);
             return Ok(Found::unmoved(&job.points, value, still));
         }
-        let path = Path {
+        let path = RegularizationPath {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
             squares: |points: &[Vec3<f64>]| {
                 let moved: Vec<_> = points.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
@@ -723,7 +726,7 @@ pub fn fair_data_with<T: Real>(
     if !fixed(&knots) {
         check_single(&found, crate::measure::value(&parts.measure, parts.norm, &job.points))?;
     }
-    if parts.norm != crate::Norm::Square {
+    if parts.norm != crate::RowNorm::Square {
         return Err(FairError::Goal(
             "derivatives of a sum of lengths through moving knots are not known: take another \
              measure, or spacing \"index\"",
@@ -764,7 +767,7 @@ pub fn fair_data_with<T: Real>(
         .map(|k| owner(&k).unwrap_or_else(|| largest(k)))
         .collect();
     let targets: Vec<T> = data.held().into_iter().flat_map(|c| start[c].to_array()).collect();
-    let moving = Moving {
+    let moving = GoalVariation {
         originals: through(control, &job.points)?,
         tolerances: &own,
         pulled: limited.iter().filter_map(owner).collect(),

@@ -2,13 +2,13 @@
 
 use crate::error::check_finite;
 use crate::optimum::problem::{self, Bounds, Problem};
-use crate::{FairError, Motion, Norm, Space, SparseRows};
+use crate::{FairError, Motion, RowNorm, Space, SparseRows};
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::KnotVector;
 
 /// How data points are given parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Spacing {
+pub enum ParameterSpacing {
     /// Equal steps.
     Uniform,
     /// By distance.
@@ -42,7 +42,7 @@ pub struct Fit {
 /// [`FairError::TurnsAlong`] when the points run back along a given direction.
 pub fn parameters(
     points: &[Vec3<f64>],
-    spacing: Spacing,
+    spacing: ParameterSpacing,
     closed: bool,
 ) -> Result<Vec<f64>, FairError> {
     check_finite(points)?;
@@ -55,7 +55,7 @@ pub fn parameters(
 /// As [`parameters`].
 pub fn parameters_with<T: Real>(
     points: &[Vec3<T>],
-    spacing: Spacing,
+    spacing: ParameterSpacing,
     closed: bool,
 ) -> Result<Vec<T>, FairError> {
     let n = points.len();
@@ -71,13 +71,15 @@ pub fn parameters_with<T: Real>(
     for k in 0..steps {
         let chord = || (points[(k + 1) % n] - points[k]).norm();
         let step = match spacing {
-            Spacing::Uniform => T::one(),
-            Spacing::Chord if chord().re() == 0.0 => T::zero(),
-            Spacing::Chord => chord(),
-            Spacing::Centripetal if chord().re() == 0.0 => T::zero(),
-            Spacing::Centripetal => chord().sqrt(),
-            Spacing::Along(_) if closed => return Err(FairError::TurnsAlong { index: n - 1 }),
-            Spacing::Along(a) => {
+            ParameterSpacing::Uniform => T::one(),
+            ParameterSpacing::Chord if chord().re() == 0.0 => T::zero(),
+            ParameterSpacing::Chord => chord(),
+            ParameterSpacing::Centripetal if chord().re() == 0.0 => T::zero(),
+            ParameterSpacing::Centripetal => chord().sqrt(),
+            ParameterSpacing::Along(_) if closed => {
+                return Err(FairError::TurnsAlong { index: n - 1 });
+            }
+            ParameterSpacing::Along(a) => {
                 let (first, own) = (along(a, 0), along(a, k));
                 let step = if first.re() < 0.0 { -own } else { own };
                 if step.re() < 0.0 || step.re().is_nan() {
@@ -110,11 +112,13 @@ const SHALLOW: f64 = 0.2;
 /// As [`parameters`].
 pub fn parameters_across<T: Real>(
     points: &[Vec3<T>],
-    spacing: Spacing,
+    spacing: ParameterSpacing,
     closed: bool,
     motion: Motion,
 ) -> Result<Vec<T>, FairError> {
-    let (Motion::Along(d), Spacing::Chord | Spacing::Centripetal) = (motion, spacing) else {
+    let (Motion::Along(d), ParameterSpacing::Chord | ParameterSpacing::Centripetal) =
+        (motion, spacing)
+    else {
         return parameters_with(points, spacing, closed);
     };
     let flat = |p: &Vec3<T>| {
@@ -148,7 +152,7 @@ pub fn parameters_across<T: Real>(
 pub fn interpolate(
     degree: usize,
     points: &[Vec3<f64>],
-    spacing: Spacing,
+    spacing: ParameterSpacing,
     closed: bool,
 ) -> Result<Fit, FairError> {
     let at = parameters(points, spacing, closed)?;
@@ -183,7 +187,7 @@ pub fn least_squares(
     degree: usize,
     points: &[Vec3<f64>],
     count: usize,
-    spacing: Spacing,
+    spacing: ParameterSpacing,
     closed: bool,
 ) -> Result<Fit, FairError> {
     let at = parameters(points, spacing, closed)?;
@@ -256,7 +260,7 @@ pub fn fit(
             dimension: 3,
             offsets: (0..weighted.len()).map(off).collect(),
             measure: weighted.clone(),
-            norm: Norm::Square,
+            norm: RowNorm::Square,
             bounds: Bounds::none(),
             frozen: frozen.clone(),
             conditions: Vec::new(),
@@ -343,7 +347,7 @@ fn squares(measure: SparseRows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Pr
     Problem {
         dimension: 3,
         measure,
-        norm: Norm::Square,
+        norm: RowNorm::Square,
         offsets,
         bounds,
         frozen,

@@ -2,7 +2,7 @@
 
 use crate::indexed_heap::IndexedHeap;
 use crate::optimum::certificate::ball_gap;
-use crate::{FairError, Job, Jumps, Measure, Norm, SparseRows, shape};
+use crate::{FairError, Job, Jumps, Measure, RowNorm, SparseRows, shape};
 use moldloft_num::{Real, Vec3};
 
 /// Which knot comes next.
@@ -18,7 +18,7 @@ pub enum Rule {
 
 /// What one step does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum RemovalStep {
     /// The knot's jump is made zero (Farin, Rein, Sapidis and Worsey 1987). On knots that are not
     /// uniform a step is taken only when the measure falls.
     Knot,
@@ -89,7 +89,7 @@ pub struct KnotRemovalOptions {
     /// Which knot comes next.
     pub rule: Rule,
     /// What one step does.
-    pub step: Step,
+    pub step: RemovalStep,
     /// The measure that [`Step::Vertex`] lowers and that stops look at; one of squares.
     pub measure: Measure,
     /// When to end.
@@ -103,7 +103,7 @@ impl KnotRemovalOptions {
     pub fn faithful(steps: usize) -> Self {
         Self {
             rule: Rule::Achievable,
-            step: Step::Knot,
+            step: RemovalStep::Knot,
             measure: Measure::Second,
             stops: Stops::after(steps),
             log: false,
@@ -143,7 +143,7 @@ pub fn replay(original: &[Vec3<f64>], log: &[Move]) -> Vec<Vec3<f64>> {
 }
 
 /// One linear form per control point whose zero is the point's step, and who listens to whom.
-pub(crate) struct Steps {
+pub(crate) struct PointSteps {
     /// Empty where a point has no step.
     pub rows: SparseRows,
     /// The factor of the point itself in its row.
@@ -152,15 +152,15 @@ pub(crate) struct Steps {
     pub listeners: SparseRows,
 }
 
-impl Steps {
+impl PointSteps {
     /// The steps of `job` by `step`, none for frozen points.
-    pub fn of(job: &Job, step: Step, measure: &SparseRows) -> Self {
+    pub fn of(job: &Job, step: RemovalStep, measure: &SparseRows) -> Self {
         let n = job.points.len();
         let frozen = job.frozen();
         let mut rows = SparseRows::new();
         let mut own = vec![0.0; n];
         match step {
-            Step::Vertex => {
+            RemovalStep::Vertex => {
                 let gram = measure.gram(n);
                 for (j, own) in own.iter_mut().enumerate() {
                     let (columns, factors) = gram.row(j);
@@ -176,7 +176,7 @@ impl Steps {
                     }
                 }
             }
-            Step::Knot => {
+            RemovalStep::Knot => {
                 let jumps = Jumps::of(&job.space);
                 let jump_rows = job.own_rows(&jumps.rows);
                 let mut of_point = vec![usize::MAX; n];
@@ -245,11 +245,11 @@ pub fn knot_removal_from(
     }
     let n = job.points.len();
     let rows = job.measure_rows(options.measure)?;
-    let steps = Steps::of(job, options.step, &rows);
+    let steps = PointSteps::of(job, options.step, &rows);
     // Where the step is not the measure's own, each step is checked to lower it.
     let check = match options.step {
-        Step::Knot if !job.space.is_uniform() || job.weights.is_some() => {
-            Some(Steps::of(job, Step::Vertex, &rows))
+        RemovalStep::Knot if !job.space.is_uniform() || job.weights.is_some() => {
+            Some(PointSteps::of(job, RemovalStep::Vertex, &rows))
         }
         _ => None,
     };
@@ -300,7 +300,7 @@ pub fn knot_removal_from(
         }
         if watch && done > 0 && done % n == 0 {
             if stops.gap > 0.0 {
-                let gap = ball_gap(job, &rows, Norm::Square, &points);
+                let gap = ball_gap(job, &rows, RowNorm::Square, &points);
                 if gap.gap <= stops.gap * gap.value {
                     break Stopped::Gap;
                 }
@@ -361,7 +361,7 @@ pub fn sweeps(job: &Job, measure: Measure, count: usize) -> Result<Vec<Vec3<f64>
     job.check()?;
     let n = job.points.len();
     let rows = job.measure_rows(measure)?;
-    let steps = Steps::of(job, Step::Vertex, &rows);
+    let steps = PointSteps::of(job, RemovalStep::Vertex, &rows);
     let origin = job.origin();
     let mut points = job.points.clone();
     let widest = (0..n).map(|j| steps.rows.row(j).0.len()).max().unwrap_or(1);
@@ -407,7 +407,7 @@ pub fn replay_from_with<T: Real>(
     tolerances: &[T],
 ) -> Result<Vec<Vec3<T>>, FairError> {
     let rows = job.measure_rows(options.measure)?;
-    let steps = Steps::of(job, options.step, &rows);
+    let steps = PointSteps::of(job, options.step, &rows);
     let mut now = from.to_vec();
     for step in log {
         let j = step.index as usize;

@@ -5,8 +5,8 @@
 //! its slope are polynomials in them: these are made linear at the curve before, and solved again
 //! until the curve itself has them ([`crate::fair_data`]).
 
-use crate::curve::bernstein::{P, Sign};
-use crate::curve::chain::{Chain, Part, chain};
+use crate::curve::bernstein::{P, SignedQuantity};
+use crate::curve::chain::{Chain, ChainElement, chain};
 use crate::curve::monotone::runs_of;
 use crate::curve::shape_condition::ShapeCondition;
 use crate::interrogate::shape;
@@ -29,12 +29,12 @@ pub struct FoundArc {
 
 /// The plane of a curve, with the axes of its coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plane {
+pub(crate) struct CurvePlane {
     pub origin: Vec3<f64>,
     pub axes: [Vec3<f64>; 2],
 }
 
-impl Plane {
+impl CurvePlane {
     /// The plane of a curve, if it is plane.
     fn of(space: &Space, points: &[Vec3<f64>]) -> Option<Self> {
         let normal = shape::plane_normal(&shape::samples(space, points, None, 4))?;
@@ -72,7 +72,7 @@ impl Plane {
 #[derive(Clone, Debug)]
 struct Signed {
     span: isize,
-    what: Sign,
+    what: SignedQuantity,
     positive: bool,
     /// How far a coefficient may be on the other side.
     slack: f64,
@@ -96,8 +96,8 @@ struct Line {
 
 /// Where and what is asked, resolved for data: see [`Data::shaped`].
 #[derive(Clone, Debug, Default)]
-pub struct Shape {
-    plane: Option<Plane>,
+pub struct ShapeConstraints {
+    plane: Option<CurvePlane>,
     signs: Vec<Signed>,
     lines: Vec<Line>,
     /// Control points of arcs.
@@ -144,14 +144,17 @@ impl Data {
     ///
     /// # Errors
     /// [`FairError::Shapeless`] for what these data cannot have: with the number of the condition.
-    pub fn shaped(mut self, wanted: &[ShapeCondition]) -> Result<(Self, Shape), FairError> {
-        let mut out = Shape::default();
+    pub fn shaped(
+        mut self,
+        wanted: &[ShapeCondition],
+    ) -> Result<(Self, ShapeConstraints), FairError> {
+        let mut out = ShapeConstraints::default();
         if wanted.is_empty() {
             return Ok((self, out));
         }
         let n = self.points.len();
         let through = self.layout.through(&self.layout.data(&self.points))?;
-        out.plane = Plane::of(&self.layout.space, &through);
+        out.plane = CurvePlane::of(&self.layout.space, &through);
         let degree = self.layout.space.degree();
         let closed = self.layout.space.is_closed();
         let mut runs = Vec::new();
@@ -253,7 +256,7 @@ impl Data {
                     let spans = of(between);
                     out.signs.extend(spans.into_iter().map(|span| Signed {
                         span,
-                        what: Sign::Turn,
+                        what: SignedQuantity::Turn,
                         positive: *left,
                         slack: 0.0,
                         owner,
@@ -272,7 +275,7 @@ impl Data {
 
 type Run = (usize, [usize; 2], bool, Option<Vec3<f64>>);
 
-impl Shape {
+impl ShapeConstraints {
     /// Whether nothing is asked.
     pub fn is_empty(&self) -> bool {
         self.signs.is_empty()
@@ -286,15 +289,15 @@ impl Shape {
 
     /// The signs of a curve's curvature span by span, where it has one: no inflection but its own.
     pub(crate) fn pattern(space: &Space, control: &[Vec3<f64>]) -> Option<Self> {
-        let plane = Plane::of(space, control)?;
+        let plane = CurvePlane::of(space, control)?;
         let mut out = Self { plane: Some(plane), ..Self::default() };
         for span in space.spans() {
-            let all = Sign::Turn.coefficients(&out.bezier(space, span, control));
+            let all = SignedQuantity::Turn.coefficients(&out.bezier(space, span, control));
             let (some, none) = (all.iter().any(|&c| c > 0.0), all.iter().any(|&c| c < 0.0));
             if some != none {
                 out.signs.push(Signed {
                     span,
-                    what: Sign::Turn,
+                    what: SignedQuantity::Turn,
                     positive: some,
                     slack: 0.0,
                     owner: usize::MAX,
@@ -433,7 +436,7 @@ impl Shape {
     fn hold(
         &mut self,
         data: &Data,
-        plane: Plane,
+        plane: CurvePlane,
         group: &[Run],
         (chain, feet): &(Chain, Vec<f64>),
     ) -> Result<(), FairError> {
@@ -568,7 +571,7 @@ impl Shape {
     fn check(
         &mut self,
         data: &Data,
-        plane: Plane,
+        plane: CurvePlane,
         run: &Run,
         chain: &Chain,
         part: usize,
@@ -610,7 +613,7 @@ impl Shape {
 }
 
 /// The chain of a group of runs, and the feet of its data.
-fn placed(data: &Data, plane: Plane, group: &[Run]) -> Result<(Chain, Vec<f64>), FairError> {
+fn placed(data: &Data, plane: CurvePlane, group: &[Run]) -> Result<(Chain, Vec<f64>), FairError> {
     let points: Vec<P<f64>> = data.points.iter().map(|&p| plane.down(p)).collect();
     let part = |&(_, between, arc, along): &Run| {
         let angle = along.map(|d| {
@@ -619,9 +622,9 @@ fn placed(data: &Data, plane: Plane, group: &[Run]) -> Result<(Chain, Vec<f64>),
             let back = (q[0] - p[0]) * x + (q[1] - p[1]) * y < 0.0;
             if back { libm::atan2(-y, -x) } else { libm::atan2(y, x) }
         });
-        Part { arc, between, angle }
+        ChainElement { arc, between, angle }
     };
-    let parts: Vec<Part> = group.iter().map(part).collect();
+    let parts: Vec<ChainElement> = group.iter().map(part).collect();
     let found = chain(&points, &data.limit.radii, parts).map_err(|(part, point, off)| {
         let what = if group[part].2 { "arc" } else { "straight run" };
         refused(
@@ -649,7 +652,7 @@ fn placed(data: &Data, plane: Plane, group: &[Run]) -> Result<(Chain, Vec<f64>),
     Ok((found, feet))
 }
 
-impl Shape {
+impl ShapeConstraints {
     /// The equations of lines and arcs, made linear at a curve, and whose they are.
     pub(crate) fn conditions(&self, control: &[Vec3<f64>]) -> Vec<(Condition, usize)> {
         let mut all = Vec::new();
@@ -856,11 +859,11 @@ impl Shape {
         for (owner, spans) in &self.one_way {
             let turn: f64 = spans
                 .iter()
-                .flat_map(|&k| Sign::Turn.coefficients(&self.bezier(space, k, control)))
+                .flat_map(|&k| SignedQuantity::Turn.coefficients(&self.bezier(space, k, control)))
                 .sum();
             out.signs.extend(spans.iter().map(|&span| Signed {
                 span,
-                what: Sign::Turn,
+                what: SignedQuantity::Turn,
                 positive: turn >= 0.0,
                 slack: 0.0,
                 owner: *owner,
@@ -883,7 +886,13 @@ impl Shape {
                     .map(|w| libm::hypot(w[1][0] - w[0][0], w[1][1] - w[0][1]))
                     .sum();
                 let slack = UNCOUNTED * range * length.powi(5) / (p.powi(4) * (p - 1.0));
-                out.signs.push(Signed { span, what: Sign::Slope, positive, slack, owner });
+                out.signs.push(Signed {
+                    span,
+                    what: SignedQuantity::Slope,
+                    positive,
+                    slack,
+                    owner,
+                });
             }
         }
         out.one_way.clear();

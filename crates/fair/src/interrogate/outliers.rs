@@ -105,7 +105,7 @@ const FREEDOM: f64 = (2 * SIDE - 4) as f64;
 
 /// What a point looks like from its neighbours.
 #[derive(Clone, Copy, Debug)]
-struct Seen {
+struct NeighbourFit {
     /// Across the curve, over the root of 1 + leverage.
     off: f64,
     expected: Vec3<f64>,
@@ -192,7 +192,7 @@ fn window(i: usize, n: usize, closed: bool) -> (Vec<usize>, usize) {
     ((low..=low + 2 * side).filter(|&j| j != i).collect(), i - low)
 }
 
-fn seen(points: &[Vec3<f64>], i: usize, closed: bool) -> Option<Seen> {
+fn seen(points: &[Vec3<f64>], i: usize, closed: bool) -> Option<NeighbourFit> {
     let n = points.len();
     let (near, place) = window(i, n, closed);
     let m = near.len();
@@ -250,7 +250,7 @@ fn seen(points: &[Vec3<f64>], i: usize, closed: bool) -> Option<Seen> {
     let off = off.norm() / (1.0 + leverage).sqrt();
     let judged = inside && (closed || (i > 0 && i + 1 < n));
     let central = closed || 2 * place == m;
-    (off.is_finite() && scale.is_finite()).then_some(Seen {
+    (off.is_finite() && scale.is_finite()).then_some(NeighbourFit {
         off,
         expected: at,
         leverage,
@@ -271,7 +271,7 @@ fn median(mut all: Vec<f64>) -> f64 {
 /// A point set against its scale.
 #[derive(Clone, Copy, Debug)]
 struct Judged {
-    seen: Seen,
+    seen: NeighbourFit,
     /// How far it is off, as a multiple of its scale.
     score: f64,
     /// The score from which it is proposed.
@@ -315,7 +315,8 @@ fn threshold(count: usize, freedom: f64) -> f64 {
 
 /// All points set against their scales.
 fn judged(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<Option<Judged>> {
-    let all: Vec<Option<Seen>> = (0..points.len()).map(|i| seen(points, i, closed)).collect();
+    let all: Vec<Option<NeighbourFit>> =
+        (0..points.len()).map(|i| seen(points, i, closed)).collect();
     let fit = || all.iter().flatten().filter(|s| s.judged);
     let file = (1.4826 * median(fit().map(|s| s.off).collect())).max(floor);
     let weight = prior(fit().map(|s| s.scale), floor.max(f64::MIN_POSITIVE));

@@ -2,7 +2,7 @@
 
 use crate::{
     Certificate, Data, DataFit, DataOptions, Deviation, FairError, Finding, Job, Jumps,
-    KnotRemoval, KnotRemovalOptions, Limit, Measure, Norm, Optimum, OptimumOptions, Stopped,
+    KnotRemoval, KnotRemovalOptions, Limit, Measure, Optimum, OptimumOptions, RowNorm, Stopped,
     ball_gap, deviation, fair_data, knot_removal, multilevel, optimum, shape, sweeps,
 };
 use moldloft_num::Vec3;
@@ -23,7 +23,7 @@ pub enum Mode {
 
 /// Counts and sums over a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Numbers {
+pub struct CurveStatistics {
     /// The measure that was asked for.
     pub measure: f64,
     /// Sum of squared jumps.
@@ -40,15 +40,15 @@ pub struct Numbers {
 
 /// The result of a fairing with all that is to be said about it. The time is the caller's to take.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct FairingReport {
     /// The faired control points.
     pub points: Vec<Vec3<f64>>,
     /// The measure's name.
     pub measure: &'static str,
     /// The original curve.
-    pub before: Numbers,
+    pub before: CurveStatistics,
     /// The faired curve.
-    pub after: Numbers,
+    pub after: CurveStatistics,
     /// Distance from the original.
     pub deviation: Deviation,
     /// The measure and the optimality gap.
@@ -74,13 +74,17 @@ const SAMPLES: usize = 16;
 ///
 /// # Errors
 /// [`FairError::Degree`].
-pub fn numbers(job: &Job, measure: Measure, points: &[Vec3<f64>]) -> Result<Numbers, FairError> {
+pub fn numbers(
+    job: &Job,
+    measure: Measure,
+    points: &[Vec3<f64>],
+) -> Result<CurveStatistics, FairError> {
     let samples = shape::samples(&job.space, points, job.weights.as_deref(), SAMPLES);
     let curvatures = shape::curvatures(&samples);
     let rows = job.own_rows(&Jumps::of(&job.space).rows);
     let relative = job.relative(points);
     let jumps = (0..rows.len()).map(|k| rows.apply(k, &relative).norm());
-    Ok(Numbers {
+    Ok(CurveStatistics {
         measure: job.value(measure, points)?,
         jumps: rows.sum_sq(&relative),
         largest_jump: jumps.fold(0.0, f64::max),
@@ -105,7 +109,7 @@ pub fn numbers(job: &Job, measure: Measure, points: &[Vec3<f64>]) -> Result<Numb
 /// assert!(report.deviation.certified <= 0.02 && report.after.jumps < 1e-3 * report.before.jumps);
 /// assert!(report.to_string().contains("certified"));
 /// ```
-pub fn report(job: &Job, mode: &Mode) -> Result<Report, FairError> {
+pub fn report(job: &Job, mode: &Mode) -> Result<FairingReport, FairError> {
     let (points, measure, certificate, steps, stopped, active) = match mode {
         Mode::Optimum(options) => {
             let Optimum { points, certificate, iterations, active } = optimum(job, options)?;
@@ -114,18 +118,18 @@ pub fn report(job: &Job, mode: &Mode) -> Result<Report, FairError> {
         Mode::KnotRemoval(options) => {
             let KnotRemoval { points, steps, stopped, .. } = knot_removal(job, options)?;
             let rows = job.measure_rows(options.measure)?;
-            let gap = ball_gap(job, &rows, Norm::Square, &points);
+            let gap = ball_gap(job, &rows, RowNorm::Square, &points);
             (points, options.measure, gap, steps, Some(stopped), None)
         }
         Mode::Sweeps(measure, count) | Mode::Multilevel(measure, count) => {
-            if measure.norm() != Norm::Square {
+            if measure.norm() != RowNorm::Square {
                 return Err(FairError::Squares);
             }
             let points = match mode {
                 Mode::Sweeps(..) => sweeps(job, *measure, *count)?,
                 _ => multilevel(job, *measure, *count, u32::BITS)?,
             };
-            let gap = ball_gap(job, &job.measure_rows(*measure)?, Norm::Square, &points);
+            let gap = ball_gap(job, &job.measure_rows(*measure)?, RowNorm::Square, &points);
             (points, *measure, gap, *count, Some(Stopped::Steps), None)
         }
     };
@@ -135,7 +139,7 @@ pub fn report(job: &Job, mode: &Mode) -> Result<Report, FairError> {
         let relative = job.relative(p);
         (0..rows.len()).map(|k| rows.apply(k, &relative).norm()).collect()
     });
-    let mut report = Report {
+    let mut report = FairingReport {
         deviation: deviation(job, &points),
         points,
         measure: measure.name(),
@@ -158,7 +162,10 @@ pub fn report(job: &Job, mode: &Mode) -> Result<Report, FairError> {
 ///
 /// # Errors
 /// As [`fair_data`].
-pub fn data_report(data: &Data, options: &DataOptions) -> Result<(DataFit, Report), FairError> {
+pub fn data_report(
+    data: &Data,
+    options: &DataOptions,
+) -> Result<(DataFit, FairingReport), FairError> {
     let made = fair_data(data, options)?;
     let n = made.points.len();
     let job = Job {
@@ -205,7 +212,7 @@ pub fn data_report(data: &Data, options: &DataOptions) -> Result<(DataFit, Repor
             made.bends
         ));
     }
-    let report = Report {
+    let report = FairingReport {
         deviation: deviation(&job, &made.points),
         points: made.points.clone(),
         measure: options.measure.name(),
@@ -229,7 +236,7 @@ fn unmarked(job: &Job) -> Vec<Finding> {
     found
 }
 
-fn notes(job: &Job, report: &Report) -> Vec<String> {
+fn notes(job: &Job, report: &FairingReport) -> Vec<String> {
     let mut notes = Vec::new();
     if report.stopped == Some(Stopped::Stalled) {
         notes.push(
@@ -269,7 +276,7 @@ fn notes(job: &Job, report: &Report) -> Vec<String> {
     notes
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for FairingReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (b, a, d) = (&self.before, &self.after, &self.deviation);
         writeln!(f, "                         before         after")?;

@@ -2,7 +2,7 @@
 
 use super::demands::{Demand, Demands};
 use super::shapes::{self, Ended};
-use super::{Intent, Own, Places, end, faithful, fault, measure, role};
+use super::{ArgumentFields, GivenKnots, Intent, end, faithful, fault, measure, role};
 use crate::{FairError, ShapeCondition};
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
@@ -256,10 +256,10 @@ impl<T: Real> FairCurve<T> {
 
 impl<T: Real> FairCurve<T> {
     /// Weights and knots, where they have a meaning.
-    fn own(&self) -> Result<Own, CallError> {
+    fn own(&self) -> Result<GivenKnots, CallError> {
         let plain =
             |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
-        let own = Own { knots: plain(&self.knots), weights: plain(&self.weights) };
+        let own = GivenKnots { knots: plain(&self.knots), weights: plain(&self.weights) };
         let given =
             [(own.weights.is_some(), "weights", WEIGHTS), (own.knots.is_some(), "knots", KNOTS)];
         for (_, what, field) in given.into_iter().filter(|g| g.0) {
@@ -356,7 +356,7 @@ impl<T: Real> FairCurve<T> {
 }
 
 /// Which of the joins a refusal is about.
-fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &Places) -> CallError {
+fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &ArgumentFields) -> CallError {
     let present: Vec<usize> = joins.iter().flatten().copied().collect();
     let about = |k: Option<&usize>, id: &'static str, message: String| {
         let fault = CallError::new(id, message);
@@ -413,7 +413,7 @@ impl<T: Real> Build<T> for FairCurve<T> {
         };
         let demands = self.demands()?;
         let near_only = self.near_only();
-        let places = Places {
+        let places = ArgumentFields {
             points: Self::POINTS,
             tolerance: Self::TOLERANCE,
             degree: Self::DEGREE,
@@ -447,9 +447,9 @@ impl<T: Real> Build<T> for FairCurve<T> {
             }
             e => unjoined(e, joins, &places),
         };
-        let index = matches!(intent.spacing, crate::Spacing::Uniform);
+        let index = matches!(intent.spacing, crate::ParameterSpacing::Uniform);
         let alone = intent.joins.iter().all(Option::is_none);
-        if intent.role == super::Role::Fit && !intent.faithful && alone && !index {
+        if intent.role == super::PointRole::Fit && !intent.faithful && alone && !index {
             let curve = intent.near(&points, &demands).map_err(about)?;
             let [first, .., last] = self.points.as_slice() else {
                 return Err(

@@ -1,6 +1,6 @@
 //! The functions `fair`, `jumps` and `curvature` of the language.
 
-use super::{Intent, Places, Role, faithful, fault, measure};
+use super::{ArgumentFields, Intent, PointRole, faithful, fault, measure};
 use crate::{FairError, Space};
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Array, Build, CallError, Context, CurveRef, Kind, Value, Vectors};
@@ -42,18 +42,18 @@ impl<T: Real> Build<T> for Fair<T> {
             tolerance: self.tolerance,
             degree: 3,
             closed: self.closed == 1,
-            role: Role::Control,
+            role: PointRole::Control,
             measure: measure(&self.measure, Self::MEASURE)?,
             faithful: faithful(&self.mode, Self::MODE)?,
             end: crate::End::Points(2),
             breaks: Vec::new(),
             joins: [None; 2],
-            own: super::Own::default(),
-            spacing: crate::Spacing::Uniform,
+            own: super::GivenKnots::default(),
+            spacing: crate::ParameterSpacing::Uniform,
             goal: crate::Goal::Fairest,
             motion: crate::Motion::Ball,
         };
-        let places = Places {
+        let places = ArgumentFields {
             points: Self::POINTS,
             tolerance: Self::TOLERANCE,
             degree: Self::POINTS,
@@ -93,7 +93,7 @@ impl<T: Real> Build<T> for Jumps<T> {
             (_, ..5) => Err(FairError::TooFew { expected: 5, actual: n }),
             _ => Space::floating(3, n),
         };
-        let places = Places {
+        let places = ArgumentFields {
             points: Self::POINTS,
             tolerance: Self::POINTS,
             degree: Self::POINTS,

@@ -13,7 +13,7 @@ mod surface;
 use crate::curve::condition::{end_jet, joined};
 use crate::{
     Bound, Condition, End, FairError, Goal, Job, KnotRemovalOptions, Limit, Measure, Motion,
-    OptimumOptions, Space, Spacing, interpolate_with_corners, knot_removal, optimum_with,
+    OptimumOptions, ParameterSpacing, Space, interpolate_with_corners, knot_removal, optimum_with,
     replay_with,
 };
 use moldloft_num::{Real, Vec3};
@@ -52,7 +52,7 @@ pub(crate) struct Intent<T> {
     pub tolerance: T,
     pub degree: usize,
     pub closed: bool,
-    pub role: Role,
+    pub role: PointRole,
     pub measure: Measure,
     pub faithful: bool,
     pub end: End,
@@ -62,9 +62,9 @@ pub(crate) struct Intent<T> {
     /// parameter that runs as its own.
     pub joins: [Option<[Vec3<T>; 2]>; 2],
     /// Knots of the control points, and their weights, which stay.
-    pub own: Own,
+    pub own: GivenKnots,
     /// How points get their parameters; the index for control points and knot removal.
-    pub spacing: Spacing,
+    pub spacing: ParameterSpacing,
     /// Which of the curves within the tolerances is wanted.
     pub goal: Goal,
     /// The directions in which points may move.
@@ -72,12 +72,12 @@ pub(crate) struct Intent<T> {
 }
 
 /// The way in which points get their parameters that is called `name`.
-pub(crate) fn spacing(name: &str, field: FieldId) -> Result<Spacing, CallError> {
-    let axis = |x, y, z| Spacing::Along(Vec3::of(x, y, z));
+pub(crate) fn spacing(name: &str, field: FieldId) -> Result<ParameterSpacing, CallError> {
+    let axis = |x, y, z| ParameterSpacing::Along(Vec3::of(x, y, z));
     Ok(match name {
-        "chord" => Spacing::Chord,
-        "centripetal" => Spacing::Centripetal,
-        "index" => Spacing::Uniform,
+        "chord" => ParameterSpacing::Chord,
+        "centripetal" => ParameterSpacing::Centripetal,
+        "index" => ParameterSpacing::Uniform,
         "x" => axis(1.0, 0.0, 0.0),
         "y" => axis(0.0, 1.0, 0.0),
         "z" => axis(0.0, 0.0, 1.0),
@@ -132,12 +132,12 @@ pub(crate) fn goal_of(
 
 /// Knots and weights of the user's.
 #[derive(Clone, Default)]
-pub(crate) struct Own {
+pub(crate) struct GivenKnots {
     pub knots: Option<Vec<f64>>,
     pub weights: Option<Vec<f64>>,
 }
 
-impl Own {
+impl GivenKnots {
     /// The space of `count` control points on its knots, or on uniform ones.
     pub fn space(&self, degree: usize, count: usize) -> Result<Space, FairError> {
         let Some(knots) = &self.knots else {
@@ -162,7 +162,7 @@ impl Own {
 
 /// What the given points are.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Role {
+pub(crate) enum PointRole {
     /// Points that the spline passes through before it is faired.
     Fit,
     /// Control points.
@@ -173,7 +173,7 @@ pub(crate) enum Role {
 
 /// The places of the arguments that can be at fault.
 #[derive(Clone, Copy)]
-pub(crate) struct Places {
+pub(crate) struct ArgumentFields {
     pub points: FieldId,
     pub tolerance: FieldId,
     pub degree: FieldId,
@@ -189,11 +189,11 @@ fn unknown(noun: &str, found: &str, all: &[&str], field: FieldId) -> CallError {
 }
 
 /// The role called `name`, an argument in `field`.
-pub(crate) fn role(name: &str, field: FieldId) -> Result<Role, CallError> {
+pub(crate) fn role(name: &str, field: FieldId) -> Result<PointRole, CallError> {
     Ok(match name {
-        "fit" => Role::Fit,
-        "control" => Role::Control,
-        "points" => Role::Points,
+        "fit" => PointRole::Fit,
+        "control" => PointRole::Control,
+        "points" => PointRole::Points,
         _ => return Err(unknown("role of points", name, &["fit", "control", "points"], field)),
     })
 }
@@ -220,7 +220,7 @@ pub(crate) fn end(name: &str, field: FieldId) -> Result<End, CallError> {
 }
 
 /// A refusal as a fault at its argument.
-pub(crate) fn fault(error: FairError, places: &Places) -> CallError {
+pub(crate) fn fault(error: FairError, places: &ArgumentFields) -> CallError {
     let text = error.to_string();
     match error {
         FairError::TooFew { expected, actual } => CallError::new("too-few-items", text)
@@ -267,10 +267,16 @@ impl<T: Real> Intent<T> {
         let n = points.len();
         let marks = indices(&self.breaks, n)?;
         let fitted = |points: &[Vec3<T>]| {
-            interpolate_with_corners(self.degree, points, Spacing::Uniform, self.closed, &marks)
+            interpolate_with_corners(
+                self.degree,
+                points,
+                ParameterSpacing::Uniform,
+                self.closed,
+                &marks,
+            )
         };
         match self.role {
-            Role::Control => {
+            PointRole::Control => {
                 let space = if self.closed {
                     let knots = (0..n).map(|k| k as f64 / n as f64).collect();
                     Space::periodic(self.degree, knots, 1.0)?
@@ -280,13 +286,13 @@ impl<T: Real> Intent<T> {
                 let faired = self.within(&space, points, Bound::Bezier, marks)?;
                 Ok((space, faired))
             }
-            Role::Fit => {
+            PointRole::Fit => {
                 let sharp = fitted(points)?;
                 let space = sharp.fit.space;
                 let faired = self.within(&space, &sharp.points, Bound::Bezier, sharp.marks)?;
                 Ok((space, faired))
             }
-            Role::Points => {
+            PointRole::Points => {
                 let sharp = fitted(&self.faired_points(points)?)?;
                 Ok((sharp.fit.space, sharp.points))
             }

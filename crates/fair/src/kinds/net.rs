@@ -1,9 +1,9 @@
 //! `FairNet` and `NetCurve`: networks of curves that share points.
 
 use super::shapes::{self, Ended};
-use super::{ACCURACY, Places, fault, measure};
+use super::{ACCURACY, ArgumentFields, fault, measure};
 use crate::{
-    End, FairError, Layout, Limit, Motion, Network, NetworkCurve, Space, Spacing,
+    End, FairError, Layout, Limit, Motion, Network, NetworkCurve, ParameterSpacing, Space,
     interpolate_with_corners, parameters_across,
 };
 use moldloft_num::trace::Key;
@@ -15,9 +15,9 @@ use moldloft_spline::SplineWithKnotDerivatives;
 use std::sync::Arc;
 
 /// The points of one curve of a network.
-struct Row<T: Real>(Vec<Point<T>>);
+struct PointRow<T: Real>(Vec<Point<T>>);
 
-impl<T: Real> FromValue<T> for Row<T> {
+impl<T: Real> FromValue<T> for PointRow<T> {
     const CLASS: Class = Class::Any;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         many(value).map(Self)
@@ -45,7 +45,7 @@ impl<T: Real> FromValue<T> for Row<T> {
 pub struct FairNet<T: Real> {
     /// The curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
     #[field(min_items = 1)]
-    curves: Vec<Row<T>>,
+    curves: Vec<PointRow<T>>,
     /// Largest move of each point; 0 leaves all unchanged.
     #[field(min = 0)]
     tolerance: T,
@@ -92,7 +92,7 @@ struct Joined<T: Real> {
 }
 
 impl<T: Real> Joined<T> {
-    fn of(rows: &[Row<T>]) -> Self {
+    fn of(rows: &[PointRow<T>]) -> Self {
         let mut points: Vec<Point<T>> = Vec::new();
         let mut known: Vec<(Key, usize)> = Vec::new();
         let mut place = |p: &Point<T>| {
@@ -104,7 +104,7 @@ impl<T: Real> Joined<T> {
             known.extend(p.key.map(|key| (key, points.len() - 1)));
             points.len() - 1
         };
-        let curve = |row: &Row<T>| {
+        let curve = |row: &PointRow<T>| {
             let mut own: Vec<usize> = row.0.iter().map(&mut place).collect();
             let closed = own.len() > 1 && own.first() == own.last();
             if closed {
@@ -168,7 +168,7 @@ impl<T: Real> Build<T> for FairNet<T> {
         let marks_of = |own: &[usize]| -> Vec<usize> {
             (0..own.len()).filter(|&k| marked.contains(&own[k])).collect()
         };
-        let places = Places {
+        let places = ArgumentFields {
             points: Self::CURVES,
             tolerance: Self::TOLERANCE,
             degree: Self::DEGREE,
@@ -179,7 +179,8 @@ impl<T: Real> Build<T> for FairNet<T> {
             crate::Goal::Near(_) => crate::Goal::Near(super::NETWORK_BUDGET),
             other => other,
         };
-        let index = matches!(spaced, Spacing::Uniform) || super::faithful(&self.mode, Self::MODE)?;
+        let index =
+            matches!(spaced, ParameterSpacing::Uniform) || super::faithful(&self.mode, Self::MODE)?;
         let motion = match &self.along {
             None => Motion::Ball,
             Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
@@ -213,9 +214,9 @@ impl<T: Real> Build<T> for FairNet<T> {
             } else {
                 let at = match parameters_across(&list, spaced, *closed, motion) {
                     Err(FairError::TurnsAlong { .. } | FairError::Coincident { .. })
-                        if matches!(spaced, Spacing::Along(_)) =>
+                        if matches!(spaced, ParameterSpacing::Along(_)) =>
                     {
-                        parameters_across(&list, Spacing::Chord, *closed, motion)
+                        parameters_across(&list, ParameterSpacing::Chord, *closed, motion)
                     }
                     other => other,
                 };
@@ -264,9 +265,14 @@ impl<T: Real> Build<T> for FairNet<T> {
                 return Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)));
             }
             let marks = marks_of(own);
-            let sharp =
-                interpolate_with_corners(degree, &points, Spacing::Uniform, *closed, &marks)
-                    .map_err(about)?;
+            let sharp = interpolate_with_corners(
+                degree,
+                &points,
+                ParameterSpacing::Uniform,
+                *closed,
+                &marks,
+            )
+            .map_err(about)?;
             let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
                 CallError::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
             })?;

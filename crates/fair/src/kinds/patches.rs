@@ -1,7 +1,7 @@
 //! `FairPatches` and `NetSurf`: surfaces faired together with their common edges.
 
 use super::surface::{Grid, Rims, fitted, turned};
-use super::{ACCURACY, Places, Role, fault, measure, role};
+use super::{ACCURACY, ArgumentFields, PointRole, fault, measure, role};
 use crate::{Bound, End, FairError, Limit, Network, PatchNet, Seam, Space};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Build, CallError, Class, Context, Kind, SurfaceRef, Value};
@@ -56,9 +56,9 @@ impl<T: Real> Build<T> for FairPatches<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let measure = measure(&self.measure, Self::MEASURE)?;
         let fit = match role(&self.r#as, Self::AS)? {
-            Role::Fit => true,
-            Role::Control => false,
-            Role::Points => {
+            PointRole::Fit => true,
+            PointRole::Control => false,
+            PointRole::Points => {
                 return Err(CallError::new("unknown-name", "surfaces have no role \"points\"")
                     .expected("\"fit\" or \"control\"")
                     .found("\"points\"")
@@ -75,7 +75,7 @@ impl<T: Real> Build<T> for FairPatches<T> {
             }
         };
         let Rims([south, east, north, west]) = self.rims;
-        let places = Places {
+        let places = ArgumentFields {
             points: Self::SURFACES,
             tolerance: Self::TOLERANCE,
             degree: Self::DEGREE,

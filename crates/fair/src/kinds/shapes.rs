@@ -48,13 +48,13 @@ impl<T: Real, C: Curve<T>> Curve<T> for Ended<C> {
 }
 
 /// The curve X(t) = S(w(t)) of a spline path w(t) = (u, v, 0) in the parameters of a surface.
-pub(crate) struct OnSurface<T: Real, P> {
+pub(crate) struct SplineOnSurface<T: Real, P> {
     pub surface: SurfaceRef<T>,
     pub path: P,
     pub ends: [Option<Key>; 2],
 }
 
-impl<T: Real, P: Curve<T>> Curve<T> for OnSurface<T, P> {
+impl<T: Real, P: Curve<T>> Curve<T> for SplineOnSurface<T, P> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         let [w, d, dd] = self.path.jet(t, order);
         let s = self.surface.jet(w.x, w.y, order);

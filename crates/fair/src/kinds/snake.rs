@@ -1,7 +1,7 @@
 //! `FairSnake`: a fair curve in the parameters of a surface.
 
-use super::shapes::{self, OnSurface};
-use super::{Intent, Places, Role, end, faithful, fault, measure};
+use super::shapes::{self, SplineOnSurface};
+use super::{ArgumentFields, Intent, PointRole, end, faithful, fault, measure};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     Build, CallError, Class, Context, CurveRef, FromValue, Kind, Point, SurfaceRef, Value,
@@ -9,13 +9,13 @@ use moldloft_registry::{
 use std::sync::Arc;
 
 /// A point on a surface.
-struct Magnet<T: Real> {
+struct SurfacePoint<T: Real> {
     point: Point<T>,
     surface: SurfaceRef<T>,
     uv: [T; 2],
 }
 
-impl<T: Real> FromValue<T> for Magnet<T> {
+impl<T: Real> FromValue<T> for SurfacePoint<T> {
     const CLASS: Class = Class::Magnet;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         if let Value::Point(p) = value
@@ -42,7 +42,7 @@ impl<T: Real> FromValue<T> for Magnet<T> {
 pub struct FairSnake<T: Real> {
     /// Magnets of one surface, at least degree + 2 of them.
     #[field(min_items = 3)]
-    magnets: Vec<Magnet<T>>,
+    magnets: Vec<SurfacePoint<T>>,
     /// Largest distance from the path through the magnets, in u and v.
     #[field(min = 0)]
     tolerance: T,
@@ -93,18 +93,18 @@ impl<T: Real> Build<T> for FairSnake<T> {
             tolerance: self.tolerance,
             degree: self.degree,
             closed: false,
-            role: Role::Fit,
+            role: PointRole::Fit,
             measure: measure(&self.measure, Self::MEASURE)?,
             faithful: faithful(&self.mode, Self::MODE)?,
             end,
             breaks: Vec::new(),
             joins: [None; 2],
-            own: super::Own::default(),
-            spacing: crate::Spacing::Chord,
+            own: super::GivenKnots::default(),
+            spacing: crate::ParameterSpacing::Chord,
             goal: crate::Goal::Near(super::BUDGET),
             motion: crate::Motion::Ball,
         };
-        let places = Places {
+        let places = ArgumentFields {
             points: Self::MAGNETS,
             tolerance: Self::TOLERANCE,
             degree: Self::DEGREE,
@@ -117,13 +117,13 @@ impl<T: Real> Build<T> for FairSnake<T> {
             let path = intent
                 .near(&path, &super::demands::Demands::none())
                 .map_err(|e| fault(e, &places))?;
-            let shape = OnSurface { surface: surface.clone(), path, ends };
+            let shape = SplineOnSurface { surface: surface.clone(), path, ends };
             return Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)));
         }
         let (space, control) = intent.spline(&path).map_err(|e| fault(e, &places))?;
         let path = shapes::curve(&space, &control)
             .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::MAGNETS))?;
-        let shape = OnSurface { surface: surface.clone(), path, ends };
+        let shape = SplineOnSurface { surface: surface.clone(), path, ends };
         Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)))
     }
 }

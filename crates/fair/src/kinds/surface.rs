@@ -1,9 +1,11 @@
 //! `FairSurf`: the faired surface of a grid of points.
 
 use super::moving_surface::MovingSurface;
-use super::{ACCURACY, Own, Places, Role, faithful, fault, indices, measure, role};
+use super::{
+    ACCURACY, ArgumentFields, GivenKnots, PointRole, faithful, fault, indices, measure, role,
+};
 use crate::{
-    Bound, End, FairError, GridData, Layout, Limit, Motion, Network, Space, Spacing,
+    Bound, End, FairError, GridData, Layout, Limit, Motion, Network, ParameterSpacing, Space,
     fair_grid_with, grid_parameters, interpolate_with_corners,
 };
 use moldloft_num::{Real, Vec3};
@@ -124,10 +126,11 @@ impl<T: Real> FromValue<T> for Weights {
 
 impl<T: Real> FairSurf<T> {
     /// Weights and knots, where they have a meaning.
-    fn own(&self, shape: ArrayShape) -> Result<[Own; 2], CallError> {
+    fn own(&self, shape: ArrayShape) -> Result<[GivenKnots; 2], CallError> {
         let plain =
             |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
-        let own = [&self.knots_u, &self.knots_v].map(|k| Own { knots: plain(k), weights: None });
+        let own =
+            [&self.knots_u, &self.knots_v].map(|k| GivenKnots { knots: plain(k), weights: None });
         let fields = [
             (self.weights.is_some(), "weights", WEIGHTS),
             (own[0].knots.is_some(), "knots", KNOTS[0]),
@@ -209,7 +212,8 @@ pub(super) fn fitted<T: Real>(
     let mut common = None;
     for j in 0..n {
         let line: Vec<Vec3<T>> = (0..m).map(|i| grid[i * n + j]).collect();
-        let sharp = interpolate_with_corners(degree, &line, Spacing::Uniform, false, breaks)?;
+        let sharp =
+            interpolate_with_corners(degree, &line, ParameterSpacing::Uniform, false, breaks)?;
         out.resize(sharp.points.len() * n, Vec3::zero());
         for (i, p) in sharp.points.into_iter().enumerate() {
             out[i * n + j] = p;
@@ -237,22 +241,22 @@ impl<T: Real> Build<T> for FairSurf<T> {
         };
         let measure = measure(&self.measure, Self::MEASURE)?;
         let fitted_first = match role(&self.r#as, Self::AS)? {
-            Role::Fit => true,
-            Role::Control => false,
-            Role::Points => {
+            PointRole::Fit => true,
+            PointRole::Control => false,
+            PointRole::Points => {
                 return Err(CallError::new("unknown-name", "surfaces have no role \"points\"")
                     .expected("\"fit\" or \"control\"")
                     .found("\"points\"")
                     .in_field(Self::AS));
             }
         };
-        let places = Places {
+        let places = ArgumentFields {
             points: Self::POINTS,
             tolerance: Self::TOLERANCE,
             degree: Self::DEGREE,
             breaks: Self::BREAKS_U,
         };
-        let along_v = Places { breaks: Self::BREAKS_V, ..places };
+        let along_v = ArgumentFields { breaks: Self::BREAKS_V, ..places };
         let passes = faithful(&self.mode, Self::MODE)?.then_some(self.passes);
         let [marks_u, marks_v] = [(&self.breaks_u, m, &places), (&self.breaks_v, n, &along_v)].map(
             |(breaks, count, places)| {
@@ -273,7 +277,8 @@ impl<T: Real> Build<T> for FairSurf<T> {
         };
         let spacing = super::spacing(&self.spacing, Self::SPACING)?;
         let goal = super::goal(&self.goal, Self::GOAL)?;
-        let by_data = fitted_first && passes.is_none() && !matches!(spacing, Spacing::Uniform);
+        let by_data =
+            fitted_first && passes.is_none() && !matches!(spacing, ParameterSpacing::Uniform);
         let weights = self.weights.as_ref().map(|w| w.items.clone());
         let Rims([south, east, north, west]) = self.rims;
         let rims = [[west, east], [south, north]];

@@ -21,9 +21,9 @@ impl Line {
 
 /// How the surface at one place hangs on the control points: for each its share in the position and
 /// in the derivatives by u and v, by the spaces' own knots.
-struct Place(Vec<(usize, [f64; 3])>);
+struct ControlStencil(Vec<(usize, [f64; 3])>);
 
-impl Place {
+impl ControlStencil {
     fn of(u: &Line, v: &Line, count: usize, weights: Option<&[f64]>) -> Self {
         let mut all = Vec::with_capacity(u.columns.len() * v.columns.len());
         for (a, &i) in u.columns.iter().enumerate() {
@@ -62,13 +62,13 @@ impl Network {
         self.net_parts().ok_or(none)
     }
 
-    fn place(&self, at: [f64; 2]) -> Result<Place, FairError> {
+    fn place(&self, at: [f64; 2]) -> Result<ControlStencil, FairError> {
         let (spaces, weights) = self.spaces()?;
         let line = |k: usize| {
             let (start, end) = spaces[k].domain();
             Line::of(&spaces[k], start + (end - start) * at[k])
         };
-        Ok(Place::of(&line(0), &line(1), spaces[1].count(), weights))
+        Ok(ControlStencil::of(&line(0), &line(1), spaces[1].count(), weights))
     }
 
     /// The surface passes through a point at (u, v) in [0, 1]: three conditions.
@@ -159,7 +159,7 @@ impl Network {
         let mut slope = vec![Vec3::zero(); self.points.len()];
         for (ws, lu) in &u {
             for (wt, lv) in &v {
-                let place = Place::of(lu, lv, spaces[1].count(), weights);
+                let place = ControlStencil::of(lu, lv, spaces[1].count(), weights);
                 let by = slopes(place.sum(1, &self.points), place.sum(2, &self.points));
                 for (i, x) in &place.0 {
                     for k in 0..3 {

@@ -10,11 +10,13 @@
 //! from 0 to 1, hence by the measure of a curve of unit length.
 
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
-use crate::optimum::goal::{Found, Goal, Moving, Path, check_single, moved, rounding};
+use crate::optimum::goal::{
+    Found, Goal, GoalVariation, RegularizationPath, check_single, moved, rounding,
+};
 use crate::optimum::{Bounded, DataLimits, Parts};
 use crate::{
-    Certificate, Condition, End, FairError, Layout, Limit, Measure, Motion, Network, Norm, Spacing,
-    SparseRows, parameters_across,
+    Certificate, Condition, End, FairError, Layout, Limit, Measure, Motion, Network,
+    ParameterSpacing, RowNorm, SparseRows, parameters_across,
 };
 use moldloft_num::{Real, Vec3};
 
@@ -62,7 +64,7 @@ pub struct GridFit {
 pub fn grid_parameters<T: Real>(
     points: &[Vec3<T>],
     [m, n]: [usize; 2],
-    spacing: [Spacing; 2],
+    spacing: [ParameterSpacing; 2],
     closed: [bool; 2],
     motion: Motion,
 ) -> Result<[Vec<T>; 2], FairError> {
@@ -77,9 +79,9 @@ pub fn grid_parameters<T: Real>(
             let list: Vec<Vec3<T>> = (0..count).map(|k| points[at(k, line)]).collect();
             let own = match parameters_across(&list, spacing, closed, motion) {
                 Err(FairError::TurnsAlong { .. } | FairError::Coincident { .. })
-                    if matches!(spacing, Spacing::Along(_)) =>
+                    if matches!(spacing, ParameterSpacing::Along(_)) =>
                 {
-                    parameters_across(&list, Spacing::Chord, closed, motion)
+                    parameters_across(&list, ParameterSpacing::Chord, closed, motion)
                 }
                 own => own,
             };
@@ -108,13 +110,13 @@ pub fn grid_parameters<T: Real>(
 pub fn grid_spacing(
     points: &[Vec3<f64>],
     [m, n]: [usize; 2],
-    spacing: Spacing,
+    spacing: ParameterSpacing,
     closed: [bool; 2],
-) -> [Spacing; 2] {
+) -> [ParameterSpacing; 2] {
     let own = |d: usize, lines: usize, at: &dyn Fn(usize, usize) -> usize| {
-        let fit = matches!(spacing, Spacing::Chord) && !closed[d] && points.len() == m * n;
+        let fit = matches!(spacing, ParameterSpacing::Chord) && !closed[d] && points.len() == m * n;
         let axis = if fit { stations(points, [m, n][d], lines, at) } else { None };
-        axis.map_or(spacing, Spacing::Along)
+        axis.map_or(spacing, ParameterSpacing::Along)
     };
     [own(0, n, &|k, line| k * n + line), own(1, m, &|k, line| line * n + k)]
 }
@@ -236,7 +238,7 @@ impl GridData {
         let [u, v] = &self.layouts;
         let nv = v.space.count();
         let mut rows = SparseRows::new();
-        let squares = measure.norm() == Norm::Square;
+        let squares = measure.norm() == RowNorm::Square;
         let scale = |w: f64| if squares { w.sqrt() } else { w };
         let (mu, mv) = (measure.rows(&u.space)?, measure.rows(&v.space)?);
         let (wu, wv) =
@@ -410,7 +412,7 @@ impl GridData {
             let value = crate::measure::value(&rows, norm, original);
             return Ok(Found::unmoved(original, value, true));
         }
-        let path = Path {
+        let path = RegularizationPath {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
             squares: |points: &[Vec3<f64>]| {
                 let moved: Vec<_> = points.iter().zip(original).map(|(p, q)| *p - *q).collect();
@@ -606,7 +608,7 @@ pub fn fair_grid_with<T: Real>(
     if !ku.iter().chain(&kv).all(|k| k.is_constant()) {
         check_single(&found, before)?;
     }
-    if parts.norm != Norm::Square {
+    if parts.norm != RowNorm::Square {
         return Err(FairError::Goal(
             "derivatives of a sum of lengths through moving knots are not known: take another \
              measure",
@@ -655,7 +657,7 @@ pub fn fair_grid_with<T: Real>(
     let largest = largest.unwrap_or_else(T::zero);
     let of = |k: &usize| data.owner(k / columns, k % columns).map_or(largest, |i| tolerances[i]);
     let own: Vec<T> = limited.iter().map(of).collect();
-    let moving = Moving {
+    let moving = GoalVariation {
         originals: through(control, &original)?,
         tolerances: &own,
         pulled: pulling.iter().map(|&(_, i)| tolerances[i]).collect(),

@@ -3,9 +3,9 @@
 
 use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
-use crate::net::patches::{Across, Patch};
+use crate::net::patches::{Across, PlacedNet};
 use crate::optimum::certificate::gap;
-use crate::optimum::goal::{Found, Goal, Moving, Path, moved, rounding};
+use crate::optimum::goal::{Found, Goal, GoalVariation, RegularizationPath, moved, rounding};
 use crate::optimum::{Bounded, Optimum, Parts};
 use crate::{
     Bound, Certificate, Condition, End, FairError, Job, KnotRemovalOptions, Limit, Measure, Space,
@@ -61,7 +61,7 @@ pub struct Network {
     net: Option<[Space; 2]>,
     weights: Option<Vec<f64>>,
     /// The nets of joined surfaces.
-    pub(crate) patches: Vec<Patch>,
+    pub(crate) patches: Vec<PlacedNet>,
     /// What holds across their seams, and how it hangs on the points given.
     pub(crate) seams: Vec<Condition>,
     pub(crate) across: Vec<Across>,
@@ -391,7 +391,7 @@ impl Network {
     ) -> Result<(Found, SparseRows, Vec<usize>), FairError> {
         let (pull, owners) = self.pull(&parts.frozen);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
-        let path = Path {
+        let path = RegularizationPath {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
             squares: |points: &[Vec3<f64>]| {
                 let moved: Vec<_> = points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
@@ -457,7 +457,7 @@ impl Network {
                  derivatives are not known: take the goal \"budget\"",
             ));
         }
-        if parts.norm != crate::Norm::Square
+        if parts.norm != crate::RowNorm::Square
             && (found.share < 1.0 || ats.iter().any(Option::is_some))
         {
             return Err(FairError::Goal(
@@ -487,13 +487,13 @@ impl Network {
                 }
             }
         }
-        let forces = if parts.norm == crate::Norm::Square {
+        let forces = if parts.norm == crate::RowNorm::Square {
             let slope = rows.slope(&solved.optimum.points);
             slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect()
         } else {
             Vec::new()
         };
-        let moving = |forces, budget| Moving {
+        let moving = |forces, budget| GoalVariation {
             originals: points.to_vec(),
             tolerances,
             pulled: owners.iter().map(|&i| tolerances[i]).collect(),

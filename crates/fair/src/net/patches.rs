@@ -145,7 +145,7 @@ fn size(points: &[Vec3<f64>]) -> f64 {
 
 /// A net within a network, and where its points stand there.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Patch {
+pub(crate) struct PlacedNet {
     pub net: Network,
     pub places: Vec<usize>,
 }
@@ -332,7 +332,7 @@ impl Network {
                     strands.push(own);
                 }
             }
-            patches.push(Patch { net, places });
+            patches.push(PlacedNet { net, places });
         }
         kept.sort_unstable();
         kept.dedup();

@@ -1,6 +1,6 @@
 //! Bounds on the optimality gap, computed from the result alone.
 
-use crate::{Job, Limit, Motion, Norm, SparseRows};
+use crate::{Job, Limit, Motion, RowNorm, SparseRows};
 use moldloft_num::Vec3;
 
 /// How near a result is to the best within its limits.
@@ -25,7 +25,7 @@ impl Certificate {
 /// side over all y within the limits is found point by point: |d - d0| <= r gives
 /// gap = sum of g (d - d0) + r |g|. No solver is trusted. Infinite when a point is not limited and
 /// the slope there is not zero.
-pub fn ball_gap(job: &Job, rows: &SparseRows, norm: Norm, points: &[Vec3<f64>]) -> Certificate {
+pub fn ball_gap(job: &Job, rows: &SparseRows, norm: RowNorm, points: &[Vec3<f64>]) -> Certificate {
     let relative = job.relative(points);
     gap(&job.points, &job.limit, &job.frozen(), rows, norm, points, &relative)
 }
@@ -36,7 +36,7 @@ pub(crate) fn gap(
     limit: &Limit,
     frozen: &[bool],
     rows: &SparseRows,
-    norm: Norm,
+    norm: RowNorm,
     points: &[Vec3<f64>],
     relative: &[Vec3<f64>],
 ) -> Certificate {
@@ -45,8 +45,8 @@ pub(crate) fn gap(
     let part = |k: usize| {
         let row = rows.apply(k, relative);
         match norm {
-            Norm::Square => row * 2.0,
-            Norm::Length => row.normalized().unwrap_or_default(),
+            RowNorm::Square => row * 2.0,
+            RowNorm::Length => row.normalized().unwrap_or_default(),
         }
     };
     rows.add_transposed(part, &mut slope);

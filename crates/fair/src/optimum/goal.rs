@@ -6,7 +6,7 @@
 
 use crate::curve::moving::{MapReal, MovingRows};
 use crate::optimum::{Optimum, Parts, Solved};
-use crate::{Certificate, FairError, Norm, SparseRows};
+use crate::{Certificate, FairError, RowNorm, SparseRows};
 use moldloft_num::{Dual4, Real, Vec3};
 
 /// Which of the curves within the tolerances is wanted.
@@ -91,19 +91,19 @@ const CLOSEST: f64 = 1e6;
 const GOAL_ACCURACY: f64 = 1e-7;
 
 /// The measure that rounding of the points alone may leave.
-pub(crate) fn rounding(rows: &SparseRows, norm: Norm, points: &[Vec3<f64>]) -> f64 {
+pub(crate) fn rounding(rows: &SparseRows, norm: RowNorm, points: &[Vec3<f64>]) -> f64 {
     let of = |k: usize| {
         let (columns, factors) = rows.row(k);
         let size: f64 =
             columns.iter().zip(factors).map(|(&c, f)| f.abs() * points[c as usize].norm()).sum();
         let noise = 64.0 * f64::EPSILON * size;
-        if norm == Norm::Square { noise * noise } else { noise }
+        if norm == RowNorm::Square { noise * noise } else { noise }
     };
     (0..rows.len()).map(of).sum()
 }
 
 /// The way from the fairest curve to the data as their weight grows.
-pub(crate) struct Path<'a, E, S> {
+pub(crate) struct RegularizationPath<'a, E, S> {
     /// The measure at points.
     pub energy: E,
     /// The sum of squared residuals over tolerances.
@@ -139,7 +139,7 @@ impl Found {
     }
 }
 
-impl<E, S> Path<'_, E, S>
+impl<E, S> RegularizationPath<'_, E, S>
 where
     E: Fn(&[Vec3<f64>]) -> f64,
     S: Fn(&[Vec3<f64>]) -> f64,
@@ -158,7 +158,7 @@ where
     pub fn follow(
         &self,
         goal: Goal,
-        norm: Norm,
+        norm: RowNorm,
         conditioned: bool,
         mut solve: impl FnMut(f64) -> Result<Optimum, FairError>,
     ) -> Result<Found, FairError> {
@@ -183,7 +183,7 @@ where
         let squares = (self.squares)(&fairest.points);
         let mut between = false;
         let goal = match goal {
-            Goal::Near(share) if self.adapts && norm == Norm::Square => {
+            Goal::Near(share) if self.adapts && norm == RowNorm::Square => {
                 let used = squares / mean;
                 let own = allowed(share, used, self.count);
                 between = own.is_some_and(|own| own != share);
@@ -267,7 +267,7 @@ where
                 if share.is_nan() || share <= 0.0 {
                     return Err(FairError::Goal("a budget is a positive share"));
                 }
-                if squares <= share * mean || norm != Norm::Square {
+                if squares <= share * mean || norm != RowNorm::Square {
                     return settle(fairest, 0.0);
                 }
             }
@@ -283,7 +283,7 @@ where
                 }
             }
         }
-        if norm != Norm::Square {
+        if norm != RowNorm::Square {
             return Err(FairError::Goal(
                 "a sum of lengths has neither budget nor share: take `fairest`",
             ));
@@ -361,7 +361,7 @@ pub(crate) fn check_single(found: &Found, begin: f64) -> Result<(), FairError> {
 const NOTHING: f64 = 1e-9;
 
 /// What the derivatives of a result hang on.
-pub(crate) struct Moving<'a, T: Real> {
+pub(crate) struct GoalVariation<'a, T: Real> {
     /// The originals, as they and the limits move.
     pub originals: Vec<Vec3<T>>,
     /// Tolerances of the limits.
@@ -388,7 +388,7 @@ pub(crate) fn moved<T: Real>(
     goal: Goal,
     found: &Found,
     pull: &SparseRows,
-    moving: Moving<'_, T>,
+    moving: GoalVariation<'_, T>,
 ) -> Result<Vec<Vec3<T>>, FairError> {
     if found.share == 0.0 {
         return Ok(moving.start.to_vec());

@@ -4,9 +4,9 @@
 //! displacement is zero.
 
 use crate::optimum::band::Band;
-use crate::optimum::problem::{Active, NONE, Order, Problem, Solution};
+use crate::optimum::problem::{Active, CertifiedSolution, NONE, Problem, UnknownOrder};
 use crate::optimum::second_order_cone::{Cone, Pair, V, axpy, dot};
-use crate::{FairError, Norm, SparseRows};
+use crate::{FairError, RowNorm, SparseRows};
 use moldloft_num::Real;
 
 const MOST_ITERATIONS: usize = 80;
@@ -67,9 +67,9 @@ impl<const D: usize> Half<D> {
     }
 }
 
-pub(crate) struct State<'a, const D: usize> {
+pub(crate) struct InteriorPointState<'a, const D: usize> {
     pub p: &'a Problem,
-    pub order: Order,
+    pub order: UnknownOrder,
     pub measure: SparseRows,
     pub limit_rows: SparseRows,
     offsets: Vec<V<D>>,
@@ -174,8 +174,8 @@ fn identity<const D: usize>() -> [V<D>; D] {
     std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c))))
 }
 
-impl<'a, const D: usize> State<'a, D> {
-    pub fn new(p: &'a Problem, order: Order) -> Self {
+impl<'a, const D: usize> InteriorPointState<'a, D> {
+    pub fn new(p: &'a Problem, order: UnknownOrder) -> Self {
         let place = &order.place;
         let mut reach = vec![0.0; order.unknowns];
         for (&at, &r) in place.iter().zip(&p.reach) {
@@ -228,7 +228,7 @@ impl<'a, const D: usize> State<'a, D> {
     /// The zero matrix of the unknowns; the measure's share is computed once where it is not huge.
     pub fn band(&mut self) -> Result<Band, FairError> {
         let mut band = Band::zero(self.unknowns() * D, D * (self.order.span + 1) - 1)?;
-        if self.p.norm == Norm::Square && band.size() <= KEPT {
+        if self.p.norm == RowNorm::Square && band.size() <= KEPT {
             self.add_measure(&mut band);
             self.base = Some(band.clone());
         }
@@ -247,7 +247,7 @@ impl<'a, const D: usize> State<'a, D> {
             Some(base) => band.copy(base),
             None => {
                 band.clear();
-                if self.p.norm == Norm::Square {
+                if self.p.norm == RowNorm::Square {
                     self.add_measure(band);
                 }
             }
@@ -333,7 +333,7 @@ impl<'a, const D: usize> State<'a, D> {
     ) {
         let limits = self.limits();
         out.x.fill([0.0; D]);
-        if self.p.norm == Norm::Square {
+        if self.p.norm == RowNorm::Square {
             for k in 0..self.measure.len() {
                 spread(&self.measure, k, self.error(k).map(|c| -c), &mut out.x);
             }
@@ -443,11 +443,11 @@ impl<'a, const D: usize> State<'a, D> {
         for k in 0..self.measure.len() {
             let e = self.error(k);
             let z = match p.norm {
-                Norm::Square => {
+                RowNorm::Square => {
                     value += 0.5 * dot(e, e);
                     e
                 }
-                Norm::Length => {
+                RowNorm::Length => {
                     let z = self.cones[limits + k].y.1.map(|c| -c);
                     let length = dot(e, e).sqrt();
                     value += length;
@@ -528,7 +528,7 @@ impl<'a, const D: usize> State<'a, D> {
         let mut lengths = Vec::new();
         for (k, &e) in errors.iter().enumerate() {
             let mut z = e;
-            if self.p.norm == Norm::Length {
+            if self.p.norm == RowNorm::Length {
                 let t = 0.5 * (mu + (mu * mu + 4.0 * dot(e, e)).sqrt());
                 z = e.map(|c| c / t);
                 lengths.push(Cone::new((t, e), (1.0, z.map(|c| -c))));
@@ -555,11 +555,11 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Whether the last digits are worth a try: half-spaces keep those of the interior point.
     fn polished(&self) -> bool {
-        self.p.norm == Norm::Square && self.halves.is_empty()
+        self.p.norm == RowNorm::Square && self.halves.is_empty()
     }
 
     /// By points.
-    fn solution(self, iterations: usize) -> Solution {
+    fn solution(self, iterations: usize) -> CertifiedSolution {
         let (value, gap) = self.certificate();
         let misses = self.misses();
         let outside = self.halves.iter().map(|h| (h.outside(&self.x) - INSIDE).max(0.0)).collect();
@@ -568,7 +568,7 @@ impl<'a, const D: usize> State<'a, D> {
             at => widened(self.x[at as usize]),
         };
         let wide = |p: Pair<D>| (p.0, widened(p.1));
-        Solution {
+        CertifiedSolution {
             x: self.order.place.iter().map(point).collect(),
             value,
             gap,
@@ -584,7 +584,7 @@ impl<'a, const D: usize> State<'a, D> {
     /// See [`crate::optimum::problem::respond`].
     pub fn respond<T: Real>(
         mut self,
-        solution: &Solution,
+        solution: &CertifiedSolution,
         offsets: &[[T; 3]],
         radii: &[T],
         values: &[T],
@@ -623,8 +623,8 @@ impl<'a, const D: usize> State<'a, D> {
         for (k, change) in offsets.iter().enumerate() {
             let change: [T; D] = cut(change);
             let force = match self.p.norm {
-                Norm::Square => change,
-                Norm::Length => {
+                RowNorm::Square => change,
+                RowNorm::Length => {
                     let w = self.cones[limits + k].stiffness(true);
                     let row = |r: usize| (0..D).fold(T::zero(), |s, c| s + change[c] * w[r][c]);
                     std::array::from_fn(row)
@@ -674,7 +674,7 @@ pub(crate) struct Schur {
 }
 
 impl Schur {
-    pub fn new<const D: usize>(state: &State<D>, band: &Band) -> Self {
+    pub fn new<const D: usize>(state: &InteriorPointState<D>, band: &Band) -> Self {
         let row = |c: &Linear<D>| {
             let mut by_point = vec![[0.0; D]; state.x.len()];
             for (i, factor) in &c.entries {
@@ -707,7 +707,12 @@ impl Schur {
 
     /// Turns the unconstrained direction into one that meets the conditions; returns their
     /// multipliers.
-    pub fn solve<const D: usize>(&self, state: &State<D>, now: &[V<D>], x: &mut [f64]) -> Vec<f64> {
+    pub fn solve<const D: usize>(
+        &self,
+        state: &InteriorPointState<D>,
+        now: &[V<D>],
+        x: &mut [f64],
+    ) -> Vec<f64> {
         let m = self.rows.len();
         if m == 0 {
             return Vec::new();
@@ -751,11 +756,11 @@ impl Schur {
 
 /// See [`crate::optimum::problem::solve`].
 pub(crate) fn solve<const D: usize>(
-    mut state: State<D>,
+    mut state: InteriorPointState<D>,
     accuracy: f64,
     floor: f64,
     margin: f64,
-) -> Result<Solution, FairError> {
+) -> Result<CertifiedSolution, FairError> {
     state.start();
     let mut iterations = 0;
     if state.unknowns() == 0 {

@@ -10,7 +10,7 @@ mod second_order_cone;
 
 use crate::curve::condition::{AXES, across};
 use crate::curve::job::End;
-use crate::{Certificate, Condition, FairError, Job, Limit, Measure, Motion, Norm, SparseRows};
+use crate::{Certificate, Condition, FairError, Job, Limit, Measure, Motion, RowNorm, SparseRows};
 use moldloft_num::{Order, Real, Vec3};
 use problem::{Bounds, Problem, V};
 
@@ -140,7 +140,7 @@ pub(crate) struct Solved {
     pub frame: Frame,
     pub problem: Problem,
     pub optimum: Optimum,
-    pub solution: problem::Solution,
+    pub solution: problem::CertifiedSolution,
 }
 
 impl Solved {
@@ -197,7 +197,7 @@ pub(crate) struct Parts<'a> {
     pub relative: Vec<Vec3<f64>>,
     pub limit: &'a Limit,
     pub measure: SparseRows,
-    pub norm: Norm,
+    pub norm: RowNorm,
     pub frozen: Vec<bool>,
     pub conditions: Vec<Condition>,
     /// Whether the measure sees points from their mean, as of rational splines.
@@ -402,14 +402,14 @@ impl<'a> Parts<'a> {
         &self,
         frame: &Frame,
         problem: &Problem,
-    ) -> Result<(Optimum, problem::Solution), FairError> {
+    ) -> Result<(Optimum, problem::CertifiedSolution), FairError> {
         // Gaps below the rounding of the measure are no gaps.
         let size = self.relative.iter().map(|p| p.norm()).fold(0.0, f64::max);
         let noise = 4.0 * f64::EPSILON * size;
         let rows = problem.measure.len() as f64;
         let floor = match self.norm {
-            Norm::Square => noise * noise * rows,
-            Norm::Length => noise * rows,
+            RowNorm::Square => noise * noise * rows,
+            RowNorm::Length => noise * rows,
         };
         // Positions round by half a unit in the last place of the largest coordinate, moves too.
         let margin = 4.0 * f64::EPSILON * self.points.iter().map(|p| p.norm()).fold(0.0, f64::max);
@@ -446,7 +446,7 @@ impl<'a> Parts<'a> {
             return Err(FairError::Shape { shapes, miss });
         }
         // Squares are solved as halves.
-        let unit = if self.norm == Norm::Square { 2.0 } else { 1.0 };
+        let unit = if self.norm == RowNorm::Square { 2.0 } else { 1.0 };
         let certificate = Certificate { value: unit * solution.value, gap: unit * solution.gap };
         let active = active(problem, &solution);
         let iterations = solution.iterations;
@@ -556,7 +556,7 @@ impl<'a> Parts<'a> {
 }
 
 /// The limits that are reached.
-fn active(p: &Problem, s: &problem::Solution) -> usize {
+fn active(p: &Problem, s: &problem::CertifiedSolution) -> usize {
     let groups = if p.bounds.separate { p.dimension } else { 1 };
     let mut count = 0;
     for k in 0..p.bounds.rows.len() {

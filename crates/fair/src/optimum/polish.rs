@@ -10,7 +10,7 @@
 
 use crate::SparseRows;
 use crate::optimum::band::Band;
-use crate::optimum::interior_point::{Schur, State, add_block, apply, spread};
+use crate::optimum::interior_point::{InteriorPointState, Schur, add_block, apply, spread};
 use crate::optimum::problem::Active;
 use crate::optimum::second_order_cone::{V, axpy, dot};
 use moldloft_num::Real;
@@ -41,7 +41,7 @@ fn own_stiffness(rows: &SparseRows, k: usize, h: &[f64]) -> f64 {
     near.map(of).fold(0.0, f64::max)
 }
 
-impl<const D: usize> State<'_, D> {
+impl<const D: usize> InteriorPointState<'_, D> {
     /// What cone `c`'s row is, and its length.
     fn limit(&self, c: usize, x: &[V<D>]) -> (V<D>, f64) {
         let (rows, k) = self.rows_of(c);

@@ -11,9 +11,9 @@
 //! cone program solvers"); the lengths' own unknowns t are eliminated row by row. Half-spaces C x <= d
 //! are kept with slacks of their own, which may begin outside.
 
-use crate::optimum::interior_point::{self, State};
+use crate::optimum::interior_point::{self, InteriorPointState};
 use crate::optimum::second_order_cone::Pair;
-use crate::{FairError, Norm, SparseRows};
+use crate::{FairError, RowNorm, SparseRows};
 use moldloft_num::Real;
 
 /// One coordinate triple; only those of the problem's dimension are used.
@@ -66,7 +66,7 @@ pub(crate) struct Problem {
     pub dimension: usize,
     /// SparseRows of the measure over points.
     pub measure: SparseRows,
-    pub norm: Norm,
+    pub norm: RowNorm,
     /// SparseRows times the original points.
     pub offsets: Vec<V>,
     pub bounds: Bounds,
@@ -79,7 +79,7 @@ pub(crate) struct Problem {
 }
 
 /// A solution with the certificate's parts.
-pub(crate) struct Solution {
+pub(crate) struct CertifiedSolution {
     /// Displacements, zero for frozen points.
     pub x: Vec<V>,
     /// psi's sum.
@@ -112,7 +112,7 @@ pub(crate) struct Active {
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Which unknown each point is.
-pub(crate) struct Order {
+pub(crate) struct UnknownOrder {
     /// Unknown number of each point, or [`NONE`].
     pub place: Vec<u32>,
     pub unknowns: usize,
@@ -120,7 +120,7 @@ pub(crate) struct Order {
     pub span: usize,
 }
 
-impl Order {
+impl UnknownOrder {
     pub fn of(p: &Problem) -> Self {
         if p.dimension == 0 {
             return Self { place: vec![NONE; p.frozen.len()], unknowns: 0, span: 0 };
@@ -229,12 +229,14 @@ pub(crate) fn solve(
     accuracy: f64,
     floor: f64,
     margin: f64,
-) -> Result<Solution, FairError> {
-    let order = Order::of(p);
+) -> Result<CertifiedSolution, FairError> {
+    let order = UnknownOrder::of(p);
     match p.dimension {
-        0 | 1 => interior_point::solve(State::<1>::new(p, order), accuracy, floor, margin),
-        2 => interior_point::solve(State::<2>::new(p, order), accuracy, floor, margin),
-        _ => interior_point::solve(State::<3>::new(p, order), accuracy, floor, margin),
+        0 | 1 => {
+            interior_point::solve(InteriorPointState::<1>::new(p, order), accuracy, floor, margin)
+        }
+        2 => interior_point::solve(InteriorPointState::<2>::new(p, order), accuracy, floor, margin),
+        _ => interior_point::solve(InteriorPointState::<3>::new(p, order), accuracy, floor, margin),
     }
 }
 
@@ -247,16 +249,22 @@ pub(crate) fn solve(
 /// [`FairError::TooLarge`].
 pub(crate) fn respond<T: Real>(
     p: &Problem,
-    solution: &Solution,
+    solution: &CertifiedSolution,
     offsets: &[[T; 3]],
     radii: &[T],
     values: &[T],
     pushes: &[[T; 3]],
 ) -> Result<Vec<[T; 3]>, FairError> {
-    let order = Order::of(p);
+    let order = UnknownOrder::of(p);
     match p.dimension {
-        0 | 1 => State::<1>::new(p, order).respond(solution, offsets, radii, values, pushes),
-        2 => State::<2>::new(p, order).respond(solution, offsets, radii, values, pushes),
-        _ => State::<3>::new(p, order).respond(solution, offsets, radii, values, pushes),
+        0 | 1 => {
+            InteriorPointState::<1>::new(p, order).respond(solution, offsets, radii, values, pushes)
+        }
+        2 => {
+            InteriorPointState::<2>::new(p, order).respond(solution, offsets, radii, values, pushes)
+        }
+        _ => {
+            InteriorPointState::<3>::new(p, order).respond(solution, offsets, radii, values, pushes)
+        }
     }
 }

@@ -11,7 +11,9 @@ fn interpolation_meets_every_point() {
         .map(|a| Vec3::of(a.cos(), a.sin(), 0.1 * a))
         .collect();
     for points in [naca(), waisted(), circle] {
-        for spacing in [Spacing::Uniform, Spacing::Chord, Spacing::Centripetal] {
+        for spacing in
+            [ParameterSpacing::Uniform, ParameterSpacing::Chord, ParameterSpacing::Centripetal]
+        {
             for degree in [1, 2, 3, 5] {
                 let fit = interpolate(degree, &points, spacing, false).unwrap();
                 assert!(fit.largest < 1e-12, "{degree} {spacing:?} {}", fit.largest);
@@ -21,7 +23,7 @@ fn interpolation_meets_every_point() {
     }
     let f = f3();
     for degree in [2, 3, 4, 5] {
-        let fit = interpolate(degree, &f.points, Spacing::Chord, true).unwrap();
+        let fit = interpolate(degree, &f.points, ParameterSpacing::Chord, true).unwrap();
         assert!(fit.largest < 1e-12 && fit.space.is_closed(), "{degree} {}", fit.largest);
     }
 }
@@ -34,11 +36,11 @@ fn least_squares_reproduces_and_averages() {
         Vec3::of(t, t * t * t - 0.3 * t, 2.0 * t)
     };
     let points: Vec<_> = (0..100).map(cubic).collect();
-    let fit = least_squares(3, &points, 12, Spacing::Uniform, false).unwrap();
+    let fit = least_squares(3, &points, 12, ParameterSpacing::Uniform, false).unwrap();
     assert!(fit.largest < 1e-13, "{}", fit.largest);
 
     let f = f3();
-    let smooth = least_squares(3, &f.points, 16, Spacing::Uniform, true).unwrap();
+    let smooth = least_squares(3, &f.points, 16, ParameterSpacing::Uniform, true).unwrap();
     let radius = |p: Vec3<f64>| (p.norm() - 1.0).abs();
     let samples = shape::samples(&smooth.space, &smooth.points, None, 10);
     assert!(samples.iter().all(|s| radius(s.point) < 1.5e-3));
@@ -51,7 +53,7 @@ fn interpolated_then_faired() {
     let mut random = Lcg::new(1);
     let points: Vec<_> =
         naca().iter().map(|p| *p + Vec3::of(0.0, 3e-4 * random.centred(), 0.0)).collect();
-    let fit = interpolate(3, &points, Spacing::Centripetal, false).unwrap();
+    let fit = interpolate(3, &points, ParameterSpacing::Centripetal, false).unwrap();
     let job = Job::new(fit.space, fit.points.clone(), 3e-4).unwrap();
     let before = job.value(Measure::Jumps, &fit.points).unwrap();
     let faithful = knot_removal(&job, &KnotRemovalOptions::faithful(fit.points.len())).unwrap();
@@ -66,16 +68,19 @@ fn bad_data_are_refused() {
     let line: Vec<_> = (0..9).map(|i| Vec3::of(f64::from(i), 0.0, 0.0)).collect();
     let mut twice = line.clone();
     twice[4] = twice[3];
-    let refused = interpolate(3, &twice, Spacing::Chord, false);
+    let refused = interpolate(3, &twice, ParameterSpacing::Chord, false);
     assert_eq!(refused, Err(FairError::Coincident { first: 3 }));
-    assert!(interpolate(3, &twice, Spacing::Uniform, false).is_ok());
-    let few = interpolate(3, &line[..4], Spacing::Chord, false);
+    assert!(interpolate(3, &twice, ParameterSpacing::Uniform, false).is_ok());
+    let few = interpolate(3, &line[..4], ParameterSpacing::Chord, false);
     assert_eq!(few, Err(FairError::TooFew { expected: 5, actual: 4 }));
-    let more = least_squares(3, &line, 10, Spacing::Chord, false);
+    let more = least_squares(3, &line, 10, ParameterSpacing::Chord, false);
     assert_eq!(more, Err(FairError::TooFew { expected: 10, actual: 9 }));
     let mut nan = line.clone();
     nan[2].z = f64::INFINITY;
-    assert_eq!(parameters(&nan, Spacing::Chord, true), Err(FairError::NotFinite { index: 2 }));
+    assert_eq!(
+        parameters(&nan, ParameterSpacing::Chord, true),
+        Err(FairError::NotFinite { index: 2 })
+    );
     let gap = fit(
         Space::clamped(3, 9).unwrap(),
         &line,
@@ -86,7 +91,7 @@ fn bad_data_are_refused() {
     let weight = fit(
         Space::clamped(3, 5).unwrap(),
         &line,
-        parameters(&line, Spacing::Chord, false).unwrap(),
+        parameters(&line, ParameterSpacing::Chord, false).unwrap(),
         &[0.0; 9],
     );
     assert_eq!(weight, Err(FairError::Weight { index: 0, weight: 0.0 }));

@@ -21,7 +21,7 @@ fn data(points: &[Vec3<f64>], shape: [usize; 2], tolerance: f64, motion: Motion)
         shape,
         tolerance,
         motion,
-        grid_spacing(points, shape, Spacing::Chord, [false; 2]),
+        grid_spacing(points, shape, ParameterSpacing::Chord, [false; 2]),
     )
 }
 
@@ -30,7 +30,7 @@ fn spaced(
     shape: [usize; 2],
     tolerance: f64,
     motion: Motion,
-    spacing: [Spacing; 2],
+    spacing: [ParameterSpacing; 2],
 ) -> GridData {
     let at = grid_parameters(points, shape, spacing, [false; 2], motion).unwrap();
     GridData {
@@ -146,7 +146,7 @@ fn rims_and_fixed_points_stay() {
 
 #[test]
 fn derivatives_go_through_the_knots() {
-    let chords = [Spacing::Chord; 2];
+    let chords = [ParameterSpacing::Chord; 2];
     let mut random = Lcg::new(7);
     let (xs, zs) = (uneven(&mut random, 7, 3.0), uneven(&mut random, 6, 2.0));
     let mut points = offsets(&xs, &zs, |x, z| (1.0 - x * x) * (1.0 - z * z));

@@ -81,7 +81,7 @@ fn counts_and_graphs() {
         .map(|i| f64::from(i) * 0.03)
         .map(|a| Vec3::of((0.3 * a).exp() * a.cos(), (0.3 * a).exp() * a.sin(), 0.0))
         .collect();
-    let fit = interpolate(5, &spiral, Spacing::Uniform, false).unwrap();
+    let fit = interpolate(5, &spiral, ParameterSpacing::Uniform, false).unwrap();
     let samples = shape::samples(&fit.space, &fit.points, None, 4);
     let graph = shape::logarithmic_graph(&samples[80..samples.len() - 80]);
     let (first, last) = (graph[0], graph[graph.len() - 1]);

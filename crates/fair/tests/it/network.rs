@@ -295,7 +295,7 @@ fn uneven_stations_and_waterlines() {
             let curve = |own: Vec<usize>| {
                 let list: Vec<_> = own.iter().map(|&i| data[i]).collect();
                 let motion = Motion::Along(Vec3::of(0.0, 1.0, 0.0));
-                let at = parameters_across(&list, Spacing::Chord, false, motion).unwrap();
+                let at = parameters_across(&list, ParameterSpacing::Chord, false, motion).unwrap();
                 NetworkCurve {
                     space: Space::floating(3, own.len()).unwrap(),
                     points: own,

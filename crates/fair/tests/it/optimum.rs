@@ -68,11 +68,11 @@ fn the_certificate_bounds_the_true_gap() {
         for steps in [0, 1, 3, 10] {
             let result =
                 knot_removal(&job, &KnotRemovalOptions::faithful(steps * f.points.len())).unwrap();
-            let gap = ball_gap(&job, &rows, Norm::Square, &result.points);
+            let gap = ball_gap(&job, &rows, RowNorm::Square, &result.points);
             assert!(gap.gap >= gap.value - least - 1e-12 * least, "{}", f.name);
         }
         let done = best(&job, Measure::Second);
-        let own = ball_gap(&job, &rows, Norm::Square, &done.points);
+        let own = ball_gap(&job, &rows, RowNorm::Square, &done.points);
         assert!(own.relative() < 1e-8, "{} {own:?}", f.name);
     }
 }

@@ -56,7 +56,7 @@ fn a_midship_section_has_flats_and_an_arc() {
     let noise = 2e-3;
     for seed in 1..=5 {
         let (points, a, b) = section(30, seed, noise);
-        let data = data_of(&points, noise, Spacing::Chord);
+        let data = data_of(&points, noise, ParameterSpacing::Chord);
         let wanted = [
             ShapeCondition::Straight { between: [0, a - 1], along: None },
             ShapeCondition::Arc { between: [a, b - 1] },
@@ -96,7 +96,7 @@ fn turns_pieces_and_limits_hold() {
                 Vec3::of(x + g.unit() * scale, y + g.unit() * scale, 0.0)
             })
             .collect();
-        let own = || data_of(&points, noise, Spacing::Chord);
+        let own = || data_of(&points, noise, ParameterSpacing::Chord);
         let all = [0, 35];
         for goal in [Goal::Near(0.8), Goal::Fairest, Goal::Closest] {
             let turn = ShapeCondition::Turn { between: all, left: true };
@@ -139,7 +139,7 @@ fn turns_pieces_and_limits_hold() {
 #[test]
 fn the_nearest_of_a_measure_is_between_the_data_and_the_fairest() {
     let (points, ..) = section(30, 1, 2e-3);
-    let data = data_of(&points, 2e-3, Spacing::Chord);
+    let data = data_of(&points, 2e-3, ParameterSpacing::Chord);
     let run = |goal| fair_data(&data, &DataOptions::of(Measure::Variation, goal));
     let least = run(Goal::Fairest).unwrap();
     let most = 1.5 * least.certificate.value;

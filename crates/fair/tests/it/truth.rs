@@ -127,7 +127,7 @@ pub fn case(shape: &str, kind: &str, seed: u64) -> (Vec<Vec3<f64>>, Vec<Vec3<f64
     (truth, data, a)
 }
 
-pub fn data_of(points: &[Vec3<f64>], tolerance: f64, spacing: Spacing) -> Data {
+pub fn data_of(points: &[Vec3<f64>], tolerance: f64, spacing: ParameterSpacing) -> Data {
     let at = parameters(points, spacing, false).unwrap();
     Data {
         limit: Limit::ball(points.len(), tolerance).unwrap(),
@@ -229,7 +229,7 @@ fn least_energies_are_a_conic_solvers() {
     for (shape, row) in SHAPES.iter().zip(&ENERGIES) {
         for (kind, wanted) in SPACINGS.iter().zip(row) {
             let (_, points, a) = case(shape, kind, 1);
-            let data = data_of(&points, a, Spacing::Chord);
+            let data = data_of(&points, a, ParameterSpacing::Chord);
             let mean = data.layout.space.mean_span();
             for (k, measure) in [Measure::Variation, Measure::Bending].into_iter().enumerate() {
                 let fit = fair_data(&data, &options(measure, Goal::Fairest)).unwrap();
@@ -251,7 +251,7 @@ fn near_is_nearer_to_the_truth_at_any_spacing() {
         for (shape, (pieces, inflections)) in SHAPES.iter().zip(TRUE) {
             for kind in SPACINGS {
                 let (truth, points, a) = case(shape, kind, seed);
-                let data = data_of(&points, a, Spacing::Chord);
+                let data = data_of(&points, a, ParameterSpacing::Chord);
                 let fit = fair_data(&data, &options(Measure::Variation, Goal::Near(0.8))).unwrap();
                 let space = &data.layout.space;
                 let (p, i) = counted(space, &fit.points, *shape != "helix");
@@ -294,13 +294,13 @@ fn moved(fit: &DataFit) -> f64 {
 fn exact_shapes_do_not_move() {
     let mut g = Lcg::new(7);
     let rounds = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 300 } else { 12 };
-    let x = Spacing::Along(Vec3::of(1.0, 0.0, 0.0));
+    let x = ParameterSpacing::Along(Vec3::of(1.0, 0.0, 0.0));
     let measures =
         [Measure::Second, Measure::Third, Measure::Jumps, Measure::Bending, Measure::Variation];
     for round in 0..rounds {
         let t = stations(&mut g, 12 + round % 30);
         let line: Vec<_> = t.iter().map(|&t| Vec3::of(t, 0.1 * t - 0.3, 0.7 * t)).collect();
-        for spacing in [x, Spacing::Chord] {
+        for spacing in [x, ParameterSpacing::Chord] {
             for measure in measures {
                 for goal in [Goal::Fairest, Goal::Near(0.8), Goal::Budget(0.8)] {
                     let data = data_of(&line, 0.01, spacing);
@@ -328,7 +328,7 @@ fn exact_shapes_do_not_move() {
         let all = [Measure::Second, Measure::Bending, Measure::Third, Measure::Variation];
         for (shape, measures) in [(circle, &all[..]), (helix, &all[..2])] {
             for &measure in measures {
-                let data = data_of(&shape, 1e-4, Spacing::Chord);
+                let data = data_of(&shape, 1e-4, ParameterSpacing::Chord);
                 let fit = fair_data(&data, &options(measure, Goal::Near(0.8))).unwrap();
                 assert!(moved(&fit) <= 1e-12, "{measure:?}: {}", moved(&fit));
             }
@@ -340,7 +340,7 @@ fn exact_shapes_do_not_move() {
 fn results_turn_and_scale_with_the_data() {
     let (_, points, a) = case("sac", "random", 3);
     let place = |points: &[Vec3<f64>], a: f64| -> Vec<Vec3<f64>> {
-        let data = data_of(points, a, Spacing::Chord);
+        let data = data_of(points, a, ParameterSpacing::Chord);
         let fit = fair_data(&data, &options(Measure::Variation, Goal::Near(0.8))).unwrap();
         (0..points.len())
             .map(|k| {
@@ -375,7 +375,7 @@ fn third_derivatives_add_no_bends() {
                 Vec3::of(x, (0.02 + x * x).sqrt() + 6e-3 * g.unit(), 0.0)
             })
             .collect();
-        let data = data_of(&points, 6e-3, Spacing::Chord);
+        let data = data_of(&points, 6e-3, ParameterSpacing::Chord);
         let count = |measure, bends| {
             let options = DataOptions { bends, ..options(measure, Goal::Fairest) };
             let fit = fair_data(&data, &options).unwrap();
@@ -394,7 +394,7 @@ fn data_without_tolerance_and_repeated_data() {
     (radii[10], radii[30]) = (0.0, f64::INFINITY);
     let data = Data {
         limit: Limit::new(Motion::Ball, radii).unwrap(),
-        ..data_of(&points, a, Spacing::Chord)
+        ..data_of(&points, a, ParameterSpacing::Chord)
     };
     for goal in [Goal::Fairest, Goal::Near(0.8), Goal::Nearest(0.1)] {
         let fit = fair_data(&data, &options(Measure::Variation, goal)).unwrap();

@@ -4,7 +4,7 @@ use crate::expr::algebra::{Gradient, Hessian, Unary};
 use crate::expr::form::Form;
 use crate::expr::interval::Interval;
 use crate::expr::oracle::{Affine, Oracle};
-use crate::expr::tape::Tape;
+use crate::expr::tape::ExprTape;
 use crate::{FieldError, error};
 use moldloft_num::{Box3, Field, Plane, Real, Vec3};
 use rustc_hash::FxHasher;
@@ -44,13 +44,13 @@ pub(crate) enum Op<T: Real> {
     Binary(Binary, Primitive<T>, Primitive<T>),
 }
 
-pub(crate) struct Node<T: Real> {
+pub(crate) struct PrimitiveNode<T: Real> {
     pub(crate) op: Op<T>,
     form: Form<T>,
     degree: u32,
     /// By which different expressions mostly differ.
     pub(crate) fingerprint: u64,
-    tape: OnceLock<Arc<Tape<T>>>,
+    tape: OnceLock<Arc<ExprTape<T>>>,
 }
 
 /// An implicit function f(x, y, z): solid where it is negative, surface where it is zero, air where it
@@ -73,7 +73,7 @@ pub(crate) struct Node<T: Real> {
 /// assert_eq!(cylinder.degree(), 2);
 /// ```
 #[derive(Clone)]
-pub struct Primitive<T: Real = f64>(pub(crate) Arc<Node<T>>);
+pub struct Primitive<T: Real = f64>(pub(crate) Arc<PrimitiveNode<T>>);
 
 impl<T: Real> Op<T> {
     fn take_children(&mut self) -> [Option<Primitive<T>>; 2] {
@@ -113,7 +113,7 @@ impl<T: Real> Op<T> {
     }
 }
 
-impl<T: Real> Drop for Node<T> {
+impl<T: Real> Drop for PrimitiveNode<T> {
     /// Long chains are taken apart in a loop: recursion would overflow the stack.
     fn drop(&mut self) {
         let mut pending: Vec<Primitive<T>> =
@@ -153,7 +153,7 @@ impl<T: Real> Primitive<T> {
             Op::Binary(_, a, b) => a.degree().max(b.degree()),
         };
         let fingerprint = op.fingerprint();
-        Self(Arc::new(Node { op, form, degree, fingerprint, tape: OnceLock::new() }))
+        Self(Arc::new(PrimitiveNode { op, form, degree, fingerprint, tape: OnceLock::new() }))
     }
 
     /// The same function, remembered as `form`.
@@ -366,8 +366,8 @@ impl<T: Real> Primitive<T> {
     }
 
     /// The compiled expression.
-    pub(crate) fn tape(&self) -> &Arc<Tape<T>> {
-        self.0.tape.get_or_init(|| Arc::new(Tape::of_primitive(self)))
+    pub(crate) fn tape(&self) -> &Arc<ExprTape<T>> {
+        self.0.tape.get_or_init(|| Arc::new(ExprTape::of_primitive(self)))
     }
 
     /// The value at a point.
@@ -436,7 +436,8 @@ impl<T: Real> Primitive<T> {
     ) -> Primitive<S> {
         // Children first, each once, without recursion.
         let order = crate::expr::tape::order(self);
-        let mut made: std::collections::HashMap<*const Node<T>, Primitive<S>> = Default::default();
+        let mut made: std::collections::HashMap<*const PrimitiveNode<T>, Primitive<S>> =
+            Default::default();
         for node in &order {
             let of = |p: &Primitive<T>| made[&Arc::as_ptr(&p.0)].clone();
             let op = match &node.0.op {

@@ -23,7 +23,7 @@ impl<T: Real> Primitive<T> {
                     sum.unwrap_or_else(|| Self::real(T::zero())) + *offset
                 }
                 Op::User { oracle, map } => {
-                    let inner = Remapped {
+                    let inner = RemappedOracle {
                         oracle: oracle.clone(),
                         map: *map,
                         coordinates: coordinates.clone(),
@@ -49,13 +49,13 @@ pub fn twist<T: Real>(rate: T) -> [Primitive<T>; 3] {
 }
 
 /// A primitive from outside whose coordinates are replaced by primitives.
-pub(crate) struct Remapped<T: Real> {
+pub(crate) struct RemappedOracle<T: Real> {
     pub(crate) oracle: Arc<dyn Oracle<T>>,
     pub(crate) map: Affine<T>,
     pub(crate) coordinates: [Primitive<T>; 3],
 }
 
-impl<T: Real> Remapped<T> {
+impl<T: Real> RemappedOracle<T> {
     /// The image of a point, and the gradients of its coordinates.
     fn image(&self, p: Vec3<T>) -> (Vec3<T>, [Vec3<T>; 3]) {
         let [x, y, z] = [0, 1, 2].map(|k| self.coordinates[k].gradient(p));
@@ -73,7 +73,7 @@ impl<T: Real> Remapped<T> {
     }
 }
 
-impl<T: Real> Field<T> for Remapped<T> {
+impl<T: Real> Field<T> for RemappedOracle<T> {
     fn value(&self, p: Vec3<T>) -> T {
         let [x, y, z] = [0, 1, 2].map(|k| self.coordinates[k].value(p));
         self.oracle.value(self.map.apply(Vec3::new(x, y, z)))
@@ -86,12 +86,12 @@ impl<T: Real> Field<T> for Remapped<T> {
     }
 }
 
-impl<T: Real> Oracle<T> for Remapped<T> {
+impl<T: Real> Oracle<T> for RemappedOracle<T> {
     fn range(&self, over: &Box3) -> Interval {
         self.oracle.range(&self.image_range(over))
     }
     fn re(&self) -> Arc<dyn Oracle<f64>> {
-        Arc::new(Remapped {
+        Arc::new(RemappedOracle {
             oracle: self.oracle.re(),
             map: self.map.re(),
             coordinates: [0, 1, 2].map(|k| self.coordinates[k].re()),

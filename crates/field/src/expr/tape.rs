@@ -8,7 +8,7 @@
 use crate::expr::algebra::{Algebra, GradientRange, Unary};
 use crate::expr::interval::Interval;
 use crate::expr::oracle::{Affine, Oracle};
-use crate::expr::primitive::{Binary, Node, Op, Primitive};
+use crate::expr::primitive::{Binary, Op, Primitive, PrimitiveNode};
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -42,7 +42,7 @@ pub(crate) enum Code<T> {
 }
 
 /// A compiled expression; its value is that of the last instruction.
-pub(crate) struct Tape<T: Real> {
+pub(crate) struct ExprTape<T: Real> {
     pub(crate) code: Vec<Code<T>>,
     /// The leaf of each instruction, or [`NO_LEAF`].
     pub(crate) leaf: Vec<u32>,
@@ -54,7 +54,7 @@ pub(crate) struct Tape<T: Real> {
 
 /// The nodes of an expression, operands before their users, each once.
 pub(crate) fn order<T: Real>(root: &Primitive<T>) -> Vec<Primitive<T>> {
-    let mut done: HashMap<*const Node<T>, ()> = HashMap::new();
+    let mut done: HashMap<*const PrimitiveNode<T>, ()> = HashMap::new();
     let mut out = Vec::new();
     let mut stack = vec![(root, false)];
     while let Some((p, ready)) = stack.pop() {
@@ -78,7 +78,7 @@ pub(crate) struct Builder<T: Real> {
     code: Vec<Code<T>>,
     leaf: Vec<u32>,
     known: HashMap<NumberKey, u32>,
-    nodes: HashMap<*const Node<T>, u32>,
+    nodes: HashMap<*const PrimitiveNode<T>, u32>,
     users: Vec<(Arc<dyn Oracle<T>>, Affine<T>)>,
 }
 
@@ -112,8 +112,9 @@ impl<T: Real> Builder<T> {
             if self.nodes.contains_key(&pointer) {
                 continue;
             }
-            let of =
-                |p: &Primitive<T>, nodes: &HashMap<*const Node<T>, u32>| nodes[&Arc::as_ptr(&p.0)];
+            let of = |p: &Primitive<T>, nodes: &HashMap<*const PrimitiveNode<T>, u32>| {
+                nodes[&Arc::as_ptr(&p.0)]
+            };
             let constant = |p: &Primitive<T>| match p.0.op {
                 Op::Real(c) => Some(c),
                 _ => None,
@@ -164,8 +165,8 @@ impl<T: Real> Builder<T> {
         self.leaf[at as usize]
     }
 
-    pub(crate) fn build(self, root: u32) -> Tape<T> {
-        let all = Tape::with(self.code, self.leaf, self.users.into());
+    pub(crate) fn build(self, root: u32) -> ExprTape<T> {
+        let all = ExprTape::with(self.code, self.leaf, self.users.into());
         all.reduced(root, |_, _, _| None)
     }
 }
@@ -273,7 +274,7 @@ pub(crate) struct RangeRoom {
     gradients: Vec<GradientRange>,
 }
 
-impl<T: Real> Tape<T> {
+impl<T: Real> ExprTape<T> {
     pub(crate) fn of_primitive(p: &Primitive<T>) -> Self {
         let mut builder = Builder::new();
         let root = builder.primitive(p);
@@ -439,7 +440,7 @@ impl<T: Real> Tape<T> {
 /// The work of [`Tape::bulk`]; a struct, for closures need not be inlined, and what is not inlined does
 /// not get the wide registers.
 struct Bulk<'a> {
-    tape: &'a Tape<f64>,
+    tape: &'a ExprTape<f64>,
     points: &'a [Vec3],
     out: &'a mut [f64],
     room: &'a mut Room,
@@ -453,7 +454,7 @@ impl pulp::NullaryFnOnce for Bulk<'_> {
     }
 }
 
-impl Tape<f64> {
+impl ExprTape<f64> {
     /// The leaves that decide at some points.
     pub(crate) fn winners(&self, points: &[Vec3], values: &mut Vec<f64>) -> Vec<u32> {
         if self.has_users() {

@@ -12,8 +12,8 @@
 use super::cell::{face_edges, start_corner};
 use super::grid::Grid;
 use super::types::{Block, Crossing, SIDE, Several};
-use super::vertex::{Placed, Solver, Surfaces};
-use crate::expr::tape::Tape;
+use super::vertex::{PlacedVertex, Solver, Surfaces};
+use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_num::Vec3;
 use rayon::prelude::*;
@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 /// A vertex before it has its number: that of a cell, or one on an edge or a face of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Name {
+pub(super) enum VertexKey {
     Cell(u32),
     Edge(u64),
     Face(u64),
@@ -47,27 +47,27 @@ pub(super) struct Changes {
     /// Vertices about which polygons are fans, …
     pub(super) fanned: BTreeSet<u32>,
     /// … those that are elsewhere, …
-    pub(super) moved: BTreeMap<u32, (Placed, Surfaces)>,
+    pub(super) moved: BTreeMap<u32, (PlacedVertex, Surfaces)>,
     /// … and the first ones of pieces of surface that have no others after all.
     pub(super) merged: BTreeSet<u32>,
 }
 
 /// A vertex of a cell.
-pub(super) type Corner<'s> = (Name, &'s Placed, &'s Surfaces);
+pub(super) type Corner<'s> = (VertexKey, &'s PlacedVertex, &'s Surfaces);
 
 /// A vertex outside cells, with a cell beside it.
-type Extra = (Name, Vec3, Surfaces, [usize; 3]);
+type Extra = (VertexKey, Vec3, Surfaces, [usize; 3]);
 
 #[derive(Default)]
-struct Part {
-    triangles: Vec<(u32, [Name; 3])>,
+struct AssemblyPart {
+    triangles: Vec<(u32, [VertexKey; 3])>,
     extra: Vec<Extra>,
 }
 
 pub(super) struct Assembly<'a> {
     pub(super) grid: &'a Grid,
     pub(super) leaves: &'a [Leaf],
-    pub(super) blocks: &'a [(Arc<Tape<f64>>, Arc<Block>)],
+    pub(super) blocks: &'a [(Arc<ExprTape<f64>>, Arc<Block>)],
     at: FxHashMap<[u32; 3], usize>,
     base: Vec<u32>,
     /// How many vertices the blocks have.
@@ -83,7 +83,7 @@ impl<'a> Assembly<'a> {
     pub(super) fn new(
         grid: &'a Grid,
         leaves: &'a [Leaf],
-        blocks: &'a [(Arc<Tape<f64>>, Arc<Block>)],
+        blocks: &'a [(Arc<ExprTape<f64>>, Arc<Block>)],
     ) -> Self {
         let mut base = Vec::with_capacity(blocks.len());
         let mut count = 0u32;
@@ -110,10 +110,10 @@ impl<'a> Assembly<'a> {
     pub(super) fn corner(&self, owner: usize, vertex: usize) -> Corner<'_> {
         let number = self.number(owner, vertex);
         if let Some((placed, surfaces)) = self.changes.moved.get(&number) {
-            return (Name::Cell(number), placed, surfaces);
+            return (VertexKey::Cell(number), placed, surfaces);
         }
         let vertex = &self.blocks[owner].1.vertices[vertex];
-        (Name::Cell(number), &vertex.placed, &vertex.surfaces)
+        (VertexKey::Cell(number), &vertex.placed, &vertex.surfaces)
     }
 
     /// True when a piece of surface with several vertices has one only.
@@ -134,10 +134,10 @@ impl<'a> Assembly<'a> {
     /// All triangles.
     pub(super) fn triangles(&self) -> Assembled {
         let Self { blocks, count, .. } = *self;
-        let parts: Vec<Part> = (0..blocks.len())
+        let parts: Vec<AssemblyPart> = (0..blocks.len())
             .into_par_iter()
             .map_init(Solver::default, |solver, k| {
-                let mut part = Part::default();
+                let mut part = AssemblyPart::default();
                 for crossing in &blocks[k].1.crossings {
                     self.polygon(k, crossing, solver, &mut part);
                 }
@@ -178,13 +178,13 @@ impl<'a> Assembly<'a> {
         extra.dedup_by_key(|e| e.0);
         positions.extend(extra.iter().map(|e| e.1));
         surfaces.extend(extra.iter().map(|e| e.2.clone()));
-        let number = |name: Name| match name {
-            Name::Cell(k) => k,
+        let number = |name: VertexKey| match name {
+            VertexKey::Cell(k) => k,
             _ => count + extra.partition_point(|e| e.0 < name) as u32,
         };
         let triangles = parts.iter().flat_map(|p| &p.triangles).map(|(l, t)| (*l, t.map(number)));
         let triangles = triangles.collect();
-        let pinned = extra.iter().enumerate().filter(|(_, e)| matches!(e.0, Name::Face(_)));
+        let pinned = extra.iter().enumerate().filter(|(_, e)| matches!(e.0, VertexKey::Face(_)));
         doubtful.extend(pinned.map(|(k, e)| (count + k as u32, e.3)));
         Assembled { positions, surfaces, triangles, doubtful, blunt }
     }
@@ -212,13 +212,19 @@ impl<'a> Assembly<'a> {
     }
 
     /// Adds the polygon round a crossed edge.
-    fn polygon(&self, block: usize, crossing: &Crossing, solver: &mut Solver, part: &mut Part) {
+    fn polygon(
+        &self,
+        block: usize,
+        crossing: &Crossing,
+        solver: &mut Solver,
+        part: &mut AssemblyPart,
+    ) {
         let a = crossing.axis as usize;
         let (b, c) = ((a + 1) % 3, (a + 2) % 3);
         let origin = self.blocks[block].1.at.map(|x| x as usize * SIDE);
         let at = [0, 1, 2].map(|k| origin[k] + crossing.at[k] as usize);
         let mut cells = [[0; 3]; 4];
-        let mut corners = [Name::Cell(0); 4];
+        let mut corners = [VertexKey::Cell(0); 4];
         let mut points = [Vec3::zero(); 4];
         let (mut strayed, mut fan) = (false, false);
         for (k, below) in ROUND.iter().enumerate() {
@@ -238,16 +244,16 @@ impl<'a> Assembly<'a> {
                 unreachable!("a cell beside a crossed edge is divided like the edge's own block")
             };
             strayed |= placed.strayed;
-            fan |= matches!(name, Name::Cell(v) if self.changes.fanned.contains(&v));
+            fan |= matches!(name, VertexKey::Cell(v) if self.changes.fanned.contains(&v));
             (cells[k], corners[k], points[k]) = (cell, name, placed.point);
         }
-        let mut rim: SmallVec<[Name; 8]> = SmallVec::new();
+        let mut rim: SmallVec<[VertexKey; 8]> = SmallVec::new();
         for k in 0..4 {
             rim.push(corners[k]);
             rim.extend(self.pin(block, [cells[k], cells[(k + 1) % 4]], at, a, solver, part));
         }
         let turned = !crossing.outward;
-        let mut push = |t: [Name; 3]| {
+        let mut push = |t: [VertexKey; 3]| {
             let t = if turned { [t[0], t[2], t[1]] } else { t };
             part.triangles.push((crossing.leaf, t));
         };
@@ -268,7 +274,7 @@ impl<'a> Assembly<'a> {
                 return;
             }
         }
-        let hub = Name::Edge(key(at, a));
+        let hub = VertexKey::Edge(key(at, a));
         for k in 0..rim.len() {
             push([hub, rim[k], rim[(k + 1) % rim.len()]]);
         }
@@ -276,7 +282,7 @@ impl<'a> Assembly<'a> {
     }
 
     /// Fills the gaps on the faces of a cell where the vertices of a piece of surface change.
-    fn gaps(&self, block: usize, several: &Several, solver: &mut Solver, part: &mut Part) {
+    fn gaps(&self, block: usize, several: &Several, solver: &mut Solver, part: &mut AssemblyPart) {
         let local = several.cell.map(|x| x as usize);
         let own = &self.blocks[block].1;
         let cell = self.cell(block, several.cell);
@@ -324,7 +330,7 @@ impl<'a> Assembly<'a> {
         edge: usize,
         next: usize,
         solver: &mut Solver,
-        part: &mut Part,
+        part: &mut AssemblyPart,
     ) {
         let place = |e: usize| {
             let start = start_corner(e);
@@ -354,7 +360,7 @@ impl<'a> Assembly<'a> {
         };
         if let Some(pin) = pin {
             let both = Surfaces::from_slice(&[p.leaf, q.leaf]);
-            let placed = Placed { point: p.point, residual: 0.0, strayed: false };
+            let placed = PlacedVertex { point: p.point, residual: 0.0, strayed: false };
             let pin = (pin, &placed, &both);
             here.windows(2).for_each(|w| push([pin, w[0], w[1]]));
             there.windows(2).for_each(|w| push([pin, w[1], w[0]]));
@@ -385,8 +391,8 @@ impl<'a> Assembly<'a> {
         at: [usize; 3],
         axis: usize,
         solver: &mut Solver,
-        part: &mut Part,
-    ) -> Option<Name> {
+        part: &mut AssemblyPart,
+    ) -> Option<VertexKey> {
         let normal = (0..3).find(|&k| cell[k] != next[k])?;
         let (low, high) = if cell[normal] < next[normal] { (cell, next) } else { (next, cell) };
         let same_loop = |cell: [usize; 3], side: usize| {
@@ -422,11 +428,11 @@ impl<'a> Assembly<'a> {
         flat[normal] = face.low[normal];
         face.high = flat.into();
         let middle = (p.point + q.point) * 0.5;
-        let Placed { point, .. } =
+        let PlacedVertex { point, .. } =
             solver.place(self.leaves, &surfaces, middle, &face, self.grid.goal);
         // One number per face and pair: the pair that holds the face's first edge is the first.
         let pair = u64::from(first != 0);
-        let name = Name::Face(2 * key(high, normal) + pair);
+        let name = VertexKey::Face(2 * key(high, normal) + pair);
         part.extra.push((name, point, surfaces, high));
         Some(name)
     }

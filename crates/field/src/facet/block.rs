@@ -2,11 +2,11 @@
 
 use super::cell::{case, face_edges, start_corner};
 use super::grid::Grid;
-use super::place_vertices::{PieceVertices, Placement};
-use super::types::{Block, Crossing, Ring, SIDE, Several, Vertex, cell_index};
+use super::place_vertices::{PieceVertices, VertexPlacer};
+use super::types::{Block, CellVertex, Crossing, Ring, SIDE, Several, cell_index};
 use super::unresolved::Quiet;
-use super::vertex::{Placed, Solver, Surfaces};
-use crate::expr::tape::{Room, Tape};
+use super::vertex::{PlacedVertex, Solver, Surfaces};
+use crate::expr::tape::{ExprTape, Room};
 use crate::measure::taylor::TaylorRoom;
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
@@ -35,7 +35,7 @@ pub(super) struct Scratch {
 pub(super) fn compute(
     grid: &Grid,
     at: [u32; 3],
-    tape: &Arc<Tape<f64>>,
+    tape: &Arc<ExprTape<f64>>,
     leaves: &[Leaf],
     scratch: &mut Scratch,
 ) -> Result<Block, Vec3> {
@@ -145,7 +145,7 @@ pub(super) fn compute(
                 let case = block.case(cell);
                 let pieces = case.loops > 1;
                 let small = cell.map(|x| x as u8);
-                let mut more: SmallVec<[Vertex; 4]> = SmallVec::new();
+                let mut more: SmallVec<[CellVertex; 4]> = SmallVec::new();
                 for number in 0..case.loops {
                     let edges: Ring = (0..12)
                         .filter(|&e| case.loop_of[e] == number)
@@ -156,7 +156,7 @@ pub(super) fn compute(
                             (e, &crossings[at as usize])
                         })
                         .collect();
-                    let mut placement = Placement {
+                    let mut placement = VertexPlacer {
                         tape,
                         leaves,
                         cell: &sides,
@@ -167,17 +167,18 @@ pub(super) fn compute(
                     match placement.vertices(&edges, &case.next) {
                         PieceVertices::One { placed, surfaces, blunt } => {
                             let (cell, doubtful) = (small, pieces || placed.strayed);
-                            let vertex = Vertex { placed, cell, doubtful, blunt, surfaces };
+                            let vertex = CellVertex { placed, cell, doubtful, blunt, surfaces };
                             block.vertices.push(vertex);
                         }
                         PieceVertices::Several(mut split) => {
-                            let vertex = |(placed, surfaces): (Placed, Surfaces)| Vertex {
-                                placed,
-                                cell: small,
-                                doubtful: true,
-                                blunt: false,
-                                surfaces,
-                            };
+                            let vertex =
+                                |(placed, surfaces): (PlacedVertex, Surfaces)| CellVertex {
+                                    placed,
+                                    cell: small,
+                                    doubtful: true,
+                                    blunt: false,
+                                    surfaces,
+                                };
                             let mut own = std::mem::take(&mut split.vertices).into_iter();
                             block.vertices.extend(own.next().map(vertex));
                             // The first vertices of all pieces come before the others.
@@ -288,7 +289,7 @@ impl Edge {
 
 /// Where the set changes sign on each edge; all edges are searched at once, because values at many points are
 /// cheaper than at one.
-fn cross(tape: &Tape<f64>, edges: &mut [Edge], room: &mut Room) -> Vec<Vec3> {
+fn cross(tape: &ExprTape<f64>, edges: &mut [Edge], room: &mut Room) -> Vec<Vec3> {
     let mut open: Vec<u32> = (0..edges.len() as u32).collect();
     let (mut points, mut values) = (Vec::new(), Vec::new());
     for step in 0..80 {

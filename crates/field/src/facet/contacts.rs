@@ -3,7 +3,7 @@
 
 use super::{Facets, Memory, at_step};
 use crate::measure::certified::{Effort, certified};
-use crate::{FieldError, Options, Set};
+use crate::{FacetOptions, FieldError, Set};
 use moldloft_budget::Budget;
 use moldloft_mesh::{Mesh, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
@@ -97,7 +97,7 @@ pub(super) fn together(
     over: &Box3,
     step: f64,
     accuracy: f64,
-    options: &Options,
+    options: &FacetOptions,
 ) -> Result<Facets, FieldError> {
     let each = sets.iter().map(|s| at_step(s, over, step, accuracy, options, None));
     let parts: Vec<Facets> = each.collect::<Result<_, _>>()?;

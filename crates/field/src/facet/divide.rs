@@ -2,10 +2,10 @@
 
 use super::block::{Scratch, compute};
 use super::grid::Grid;
-use super::types::{Block, Options, Reuse, SIDE};
+use super::types::{Block, FacetOptions, Reuse, SIDE};
 use crate::FieldError;
 use crate::expr::interval::Interval;
-use crate::expr::tape::Tape;
+use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The blocks that the surface may pass through, in a fixed order, with their pruned tapes.
 pub(super) struct Divided {
-    pub(super) blocks: Vec<(Arc<Tape<f64>>, Arc<Block>)>,
+    pub(super) blocks: Vec<(Arc<ExprTape<f64>>, Arc<Block>)>,
     /// How many blocks were computed; the others were taken over.
     pub(super) computed: usize,
 }
@@ -24,7 +24,7 @@ const BYTES: u64 = 60_000;
 struct Division<'a> {
     grid: &'a Grid,
     leaves: &'a [Leaf],
-    options: &'a Options,
+    options: &'a FacetOptions,
     reuse: Option<&'a Reuse<'a>>,
     computed: AtomicUsize,
     active: AtomicUsize,
@@ -33,9 +33,9 @@ struct Division<'a> {
 /// Divides the grid wherever the range of the set contains zero, and computes the blocks there.
 pub(super) fn divide(
     grid: &Grid,
-    tape: &Arc<Tape<f64>>,
+    tape: &Arc<ExprTape<f64>>,
     leaves: &[Leaf],
-    options: &Options,
+    options: &FacetOptions,
     reuse: Option<&Reuse>,
 ) -> Result<Divided, FieldError> {
     let blocks = grid.cells.map(|n| n / SIDE);
@@ -97,9 +97,9 @@ impl Division<'_> {
         &self,
         at: [usize; 3],
         size: usize,
-        tape: &Arc<Tape<f64>>,
+        tape: &Arc<ExprTape<f64>>,
         room: &mut Vec<Interval>,
-    ) -> Result<Option<Arc<Tape<f64>>>, FieldError> {
+    ) -> Result<Option<Arc<ExprTape<f64>>>, FieldError> {
         self.options.budget.poll()?;
         let low = at.map(|x| x * SIDE);
         let high = [0, 1, 2].map(|k| (low[k] + size * SIDE).min(self.grid.cells[k]));
@@ -113,9 +113,9 @@ impl Division<'_> {
     fn block(
         &self,
         at: [usize; 3],
-        tape: Arc<Tape<f64>>,
+        tape: Arc<ExprTape<f64>>,
         scratch: &mut Scratch,
-    ) -> Result<Option<(Arc<Tape<f64>>, Arc<Block>)>, FieldError> {
+    ) -> Result<Option<(Arc<ExprTape<f64>>, Arc<Block>)>, FieldError> {
         let at = at.map(|x| x as u32);
         if let Some(old) = self.reuse.and_then(|reuse| reuse.get(at, &tape)) {
             return Ok(Some((tape, old)));

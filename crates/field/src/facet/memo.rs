@@ -2,7 +2,7 @@
 //!
 //! This changes no result: [`crate::refacet`] gives the same bits whatever it takes over.
 
-use super::{Facets, Options, Resolution, refacet};
+use super::{FacetOptions, Facets, Resolution, refacet};
 use crate::{FieldError, Set};
 use moldloft_num::Box3;
 use std::collections::VecDeque;
@@ -37,7 +37,7 @@ impl FacetMemo {
         &self,
         set: &Set,
         over: &Box3,
-        options: &Options,
+        options: &FacetOptions,
     ) -> Result<Arc<Facets>, FieldError> {
         let mut before = None;
         {

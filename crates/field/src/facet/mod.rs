@@ -31,19 +31,19 @@ pub(crate) mod vertex;
 
 use crate::error::solid_box;
 use crate::expr::form::Form;
-use crate::expr::tape::Tape;
+use crate::expr::tape::ExprTape;
 use crate::set::{Attributes, Leaf};
 use crate::{FieldError, Set};
 pub use crossing::crossing_faces;
 use grid::Grid;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
-use refine::{Rule, Tapes, refine};
+use refine::{RefinementRule, Tapes, refine};
 use smallvec::SmallVec;
 use std::sync::Arc;
 use types::Block;
 use types::Reuse;
-pub use types::{Options, Resolution, Unresolved};
+pub use types::{FacetOptions, Resolution, Unresolved};
 
 /// The boundary of a set within a box.
 #[derive(Clone, Debug)]
@@ -85,7 +85,7 @@ pub struct Facets {
 #[derive(Clone)]
 struct Memory {
     grid: Grid,
-    blocks: Arc<Vec<(Arc<Tape<f64>>, Arc<Block>)>>,
+    blocks: Arc<Vec<(Arc<ExprTape<f64>>, Arc<Block>)>>,
 }
 
 impl std::fmt::Debug for Memory {
@@ -136,7 +136,7 @@ fn capped(set: &Set, over: &Box3) -> Result<Set, FieldError> {
 /// assert_eq!(names, ["sphere", "cap -z"]);
 /// # Ok::<(), moldloft_field::FieldError>(())
 /// ```
-pub fn facet(set: &Set, over: &Box3, options: &Options) -> Result<Facets, FieldError> {
+pub fn facet(set: &Set, over: &Box3, options: &FacetOptions) -> Result<Facets, FieldError> {
     refacet(set, over, options, None)
 }
 
@@ -148,7 +148,7 @@ pub fn facet(set: &Set, over: &Box3, options: &Options) -> Result<Facets, FieldE
 pub fn refacet(
     set: &Set,
     over: &Box3,
-    options: &Options,
+    options: &FacetOptions,
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
     facet_within(set, over, over, options, before)
@@ -159,7 +159,7 @@ pub(crate) fn facet_within(
     set: &Set,
     over: &Box3,
     sized: &Box3,
-    options: &Options,
+    options: &FacetOptions,
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
     let (over, sized) = (solid_box(*over)?, solid_box(*sized)?);
@@ -260,20 +260,20 @@ const MOST_CELLS: f64 = 3e6;
 const MATTERS: f64 = 1e-5;
 
 /// Facets that miss nothing, with the sets that they are made of where these only touch.
-struct Whole {
+struct CompleteFacets {
     facets: Facets,
     /// False when more cells would have been needed than allowed.
     all: bool,
     parted: Option<(Vec<Set>, Vec<Vec3>)>,
 }
 
-impl Whole {
+impl CompleteFacets {
     fn again(
         &self,
         set: &Set,
         over: &Box3,
         (step, accuracy): (f64, f64),
-        options: &Options,
+        options: &FacetOptions,
         before: Option<&Facets>,
     ) -> Result<Facets, FieldError> {
         match &self.parted {
@@ -291,9 +291,9 @@ fn whole(
     over: &Box3,
     facets: Facets,
     most: f64,
-    options: &Options,
-) -> Result<Whole, FieldError> {
-    let mut found = Whole { facets, all: true, parted: None };
+    options: &FacetOptions,
+) -> Result<CompleteFacets, FieldError> {
+    let mut found = CompleteFacets { facets, all: true, parted: None };
     let mut asked = false;
     loop {
         let missed = found.facets.unresolved.iter().filter(|u| u.missed);
@@ -344,7 +344,7 @@ fn at_step(
     over: &Box3,
     step: f64,
     accuracy: f64,
-    options: &Options,
+    options: &FacetOptions,
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
     let grid = Grid::new(over, step)?;
@@ -358,7 +358,7 @@ fn at_step(
     let own = compiled.places.len().saturating_sub(CAPS.len());
     let own_leaves = compiled.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0);
     let mut made = remove_intersections::assembled(&grid, &leaves, &divided.blocks, options.sharp);
-    let rule = Rule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
+    let rule = RefinementRule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
     let tapes = Tapes::new(&grid, &divided.blocks, &compiled.tape);
     refine(&mut made, &leaves, &tapes, rule);
     let open = divided.blocks.iter().flat_map(|b| b.1.unresolved.iter().copied()).collect();
@@ -475,7 +475,7 @@ impl Facets {
 }
 
 /// The signed distance from a primitive's surface, to first order.
-fn distance(solver: &mut vertex::Solver, tape: &Tape<f64>, p: Vec3) -> f64 {
+fn distance(solver: &mut vertex::Solver, tape: &ExprTape<f64>, p: Vec3) -> f64 {
     let g = solver.gradient(tape, p);
     if g.value == 0.0 { 0.0 } else { g.value / g.slope.norm() }
 }

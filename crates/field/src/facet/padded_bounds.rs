@@ -5,7 +5,7 @@
 //! and may as well be further away. That it does not is proved by intervals.
 
 use crate::expr::interval::{Interval, sides};
-use crate::expr::tape::Tape;
+use crate::expr::tape::ExprTape;
 use crate::{Primitive, Set};
 use moldloft_num::{Box3, Vec3};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ const MOST_BOXES: usize = 4096;
 pub(crate) fn padded_bounds(over: &Box3, set: &Set, surfaces: &[&Primitive]) -> Box3 {
     let mut over = *over;
     let size = (0..3).map(|k| over.high[k] - over.low[k]).fold(0.0, f64::max);
-    let mut search = Search::of(set, surfaces);
+    let mut search = SurfaceSearch::of(set, surfaces);
     for axis in 0..3 {
         let missing = 0.5 * (LEAST * size - (over.high[axis] - over.low[axis]));
         let missing = missing.max(MORE * size);
@@ -43,13 +43,13 @@ fn clipped(corner: Vec3, axis: usize, at: f64) -> Vec3 {
 }
 
 /// Looks for points of a set on some surfaces.
-struct Search {
-    set: Arc<Tape<f64>>,
-    surfaces: Vec<Arc<Tape<f64>>>,
+struct SurfaceSearch {
+    set: Arc<ExprTape<f64>>,
+    surfaces: Vec<Arc<ExprTape<f64>>>,
     ranges: Vec<Interval>,
 }
 
-impl Search {
+impl SurfaceSearch {
     fn of(set: &Set, surfaces: &[&Primitive]) -> Self {
         let surfaces = surfaces.iter().map(|f| f.tape().clone()).collect();
         Self { set: set.compiled().tape, surfaces, ranges: Vec::new() }
@@ -62,7 +62,7 @@ impl Search {
             let Some(part) = stack.pop() else { return true };
             let at = sides(&part);
             let ranges = &mut self.ranges;
-            let off = |f: &Arc<Tape<f64>>, ranges: &mut Vec<Interval>| {
+            let off = |f: &Arc<ExprTape<f64>>, ranges: &mut Vec<Interval>| {
                 let range = f.range(&at, ranges);
                 range.low > 0.0 || range.high < 0.0
             };

@@ -4,9 +4,9 @@
 use super::cell::faces_of;
 use super::split::split;
 use super::types::{Crossing, Ring, Split};
-use super::vertex::{Placed, Solver, Surfaces};
+use super::vertex::{PlacedVertex, Solver, Surfaces};
 use crate::expr::form::Form;
-use crate::expr::tape::{NO_LEAF, Tape};
+use crate::expr::tape::{ExprTape, NO_LEAF};
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
@@ -16,8 +16,8 @@ use smallvec::SmallVec;
 const MIN_FEATURE: f64 = 0.01;
 
 /// What the vertices of a cell are placed with.
-pub(super) struct Placement<'a> {
-    pub(super) tape: &'a Tape<f64>,
+pub(super) struct VertexPlacer<'a> {
+    pub(super) tape: &'a ExprTape<f64>,
     pub(super) leaves: &'a [Leaf],
     pub(super) cell: &'a Box3,
     pub(super) goal: f64,
@@ -28,12 +28,12 @@ pub(super) struct Placement<'a> {
 /// What a piece of surface comes to.
 pub(super) enum PieceVertices {
     /// One vertex, on these surfaces; `blunt` if it should be on more.
-    One { placed: Placed, surfaces: Surfaces, blunt: bool },
+    One { placed: PlacedVertex, surfaces: Surfaces, blunt: bool },
     /// Several.
     Several(Split),
 }
 
-impl Placement<'_> {
+impl VertexPlacer<'_> {
     /// The vertices of the piece of surface with these crossings; `next` is the edge after each edge.
     pub(super) fn vertices(&mut self, edges: &Ring, next: &[u8; 12]) -> PieceVertices {
         let mut surfaces = Surfaces::new();
@@ -76,7 +76,7 @@ impl Placement<'_> {
         }
         // The tip of a cone is a vertex.
         if let Some(apex) = self.apex(&surfaces) {
-            placed = Placed { point: apex, residual: 0.0, strayed: false };
+            placed = PlacedVertex { point: apex, residual: 0.0, strayed: false };
         }
         // A primitive without a crossing of its own may still cut the vertex off: an edge or corner
         // that only pokes into the cell.
@@ -89,7 +89,7 @@ impl Placement<'_> {
             if other.residual > self.goal {
                 break;
             }
-            (placed, surfaces) = (Placed { strayed: placed.strayed, ..other }, more);
+            (placed, surfaces) = (PlacedVertex { strayed: placed.strayed, ..other }, more);
         }
         PieceVertices::One { placed, surfaces, blunt: false }
     }
@@ -117,7 +117,7 @@ impl Placement<'_> {
 
     /// A point of the cell on as many of a piece's surfaces as two or, failing that, one: that with the most
     /// crossings, which is at one of these at worst.
-    pub(super) fn blunt(&mut self, edges: &Ring) -> (Placed, Surfaces) {
+    pub(super) fn blunt(&mut self, edges: &Ring) -> (PlacedVertex, Surfaces) {
         let leaves = by_number(edges);
         for (k, &a) in leaves.iter().enumerate() {
             for &b in &leaves[k + 1..] {
@@ -133,9 +133,9 @@ impl Placement<'_> {
     }
 
     /// A point of the cell on one of a piece's surfaces, near a point beside the cell.
-    pub(super) fn near(&mut self, edges: &Ring, at: Vec3) -> (Placed, Surfaces) {
+    pub(super) fn near(&mut self, edges: &Ring, at: Vec3) -> (PlacedVertex, Surfaces) {
         let clamped = [0, 1, 2].map(|k| at[k].clamp(self.cell.low[k], self.cell.high[k]));
-        let mut best: Option<(f64, Placed, u32)> = None;
+        let mut best: Option<(f64, PlacedVertex, u32)> = None;
         for leaf in by_number(edges) {
             let placed = self.place(&[leaf], clamped.into());
             let far = placed.point.distance(at);
@@ -152,7 +152,7 @@ impl Placement<'_> {
     }
 
     /// A point of a box on one of a piece's surfaces, that with the most crossings.
-    pub(super) fn flat(&mut self, edges: &Ring, within: Box3) -> (Placed, Surfaces) {
+    pub(super) fn flat(&mut self, edges: &Ring, within: Box3) -> (PlacedVertex, Surfaces) {
         for leaf in by_number(edges) {
             let start = mean(edges, &[leaf]);
             let placed = self.solver.place(self.leaves, &[leaf], start, &within, self.goal);
@@ -188,7 +188,12 @@ impl Placement<'_> {
     }
 
     /// Where two surfaces meet on a side of the cell, between two crossings.
-    pub(super) fn change(&mut self, p: &Crossing, q: &Crossing, side: &Box3) -> Option<Placed> {
+    pub(super) fn change(
+        &mut self,
+        p: &Crossing,
+        q: &Crossing,
+        side: &Box3,
+    ) -> Option<PlacedVertex> {
         let both = [p.leaf.min(q.leaf), p.leaf.max(q.leaf)];
         let start = (p.point + q.point) * 0.5;
         let change = self.solver.place(self.leaves, &both, start, side, self.goal);
@@ -198,11 +203,16 @@ impl Placement<'_> {
     /// A better place than `placed`, found by way of the cell's faces. Where two neighbouring
     /// crossings show different primitives, the surface changes from one to the other on the face
     /// between them: so there is a point on both, and more are nearby inside.
-    fn by_sides(&mut self, surfaces: &[u32], edges: &Ring, mut placed: Placed) -> Placed {
+    fn by_sides(
+        &mut self,
+        surfaces: &[u32],
+        edges: &Ring,
+        mut placed: PlacedVertex,
+    ) -> PlacedVertex {
         let goal = self.goal;
         let mut sum = Vec3::zero();
         let mut count = 0.0;
-        let mut changes: SmallVec<[Placed; 4]> = SmallVec::new();
+        let mut changes: SmallVec<[PlacedVertex; 4]> = SmallVec::new();
         for (e, p) in edges {
             for (f, q) in edges.iter().filter(|(f, q)| f > e && q.leaf != p.leaf) {
                 let Some(side) = self.shared_side(*e, *f) else { continue };
@@ -236,7 +246,7 @@ impl Placement<'_> {
         placed
     }
 
-    pub(super) fn place(&mut self, surfaces: &[u32], start: Vec3) -> Placed {
+    pub(super) fn place(&mut self, surfaces: &[u32], start: Vec3) -> PlacedVertex {
         self.solver.place(self.leaves, surfaces, start, self.cell, self.goal)
     }
 }
@@ -262,7 +272,7 @@ fn mean(edges: &Ring, of: &[u32]) -> Vec3 {
 }
 
 /// The crossing that is nearest to the middle of all.
-pub(super) fn nearest(edges: &Ring) -> (Placed, Surfaces) {
+pub(super) fn nearest(edges: &Ring) -> (PlacedVertex, Surfaces) {
     let leaves: Surfaces = edges.iter().map(|e| e.1.leaf).collect();
     let middle = mean(edges, &leaves);
     let far = |e: &&(usize, &Crossing)| e.1.point.distance(middle);
@@ -270,5 +280,5 @@ pub(super) fn nearest(edges: &Ring) -> (Placed, Surfaces) {
         .iter()
         .min_by(|a, b| far(a).total_cmp(&far(b)))
         .map_or((middle, 0), |e| (e.1.point, e.1.leaf));
-    (Placed { point, residual: 0.0, strayed: false }, Surfaces::from_slice(&[leaf]))
+    (PlacedVertex { point, residual: 0.0, strayed: false }, Surfaces::from_slice(&[leaf]))
 }

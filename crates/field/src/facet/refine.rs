@@ -11,7 +11,7 @@ use super::crossing::crossings;
 use super::grid::Grid;
 use super::types::Block;
 use super::vertex::{Solver, Surfaces};
-use crate::expr::tape::Tape;
+use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// When an edge is divided.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rule {
+pub(super) struct RefinementRule {
     /// The least cosine between the normals at its ends.
     pub(super) turn: f64,
     /// How far its middle may be from the surface.
@@ -51,20 +51,20 @@ const GAIN: f64 = 0.9;
 /// The set as it is near a point: the whole one costs as much as it has primitives.
 pub(super) struct Tapes<'a> {
     grid: &'a Grid,
-    at: FxHashMap<[u32; 3], &'a Tape<f64>>,
-    whole: &'a Tape<f64>,
+    at: FxHashMap<[u32; 3], &'a ExprTape<f64>>,
+    whole: &'a ExprTape<f64>,
 }
 
 impl<'a> Tapes<'a> {
     pub(super) fn new(
         grid: &'a Grid,
-        blocks: &'a [(Arc<Tape<f64>>, Arc<Block>)],
-        whole: &'a Tape<f64>,
+        blocks: &'a [(Arc<ExprTape<f64>>, Arc<Block>)],
+        whole: &'a ExprTape<f64>,
     ) -> Self {
         Self { grid, at: blocks.iter().map(|(tape, b)| (b.at, &**tape)).collect(), whole }
     }
 
-    fn at(&self, p: Vec3) -> &Tape<f64> {
+    fn at(&self, p: Vec3) -> &ExprTape<f64> {
         self.at.get(&self.grid.block_of(p)).copied().unwrap_or(self.whole)
     }
 }
@@ -98,8 +98,8 @@ fn key(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
-struct Work<'a> {
-    rule: Rule,
+struct Refiner<'a> {
+    rule: RefinementRule,
     leaves: &'a [Leaf],
     tapes: &'a Tapes<'a>,
     positions: Vec<Vec3>,
@@ -114,7 +114,7 @@ struct Work<'a> {
     solver: Solver,
 }
 
-impl Work<'_> {
+impl Refiner<'_> {
     fn at(&self, v: u32) -> Vec3 {
         self.positions[v as usize]
     }
@@ -359,9 +359,9 @@ impl Work<'_> {
 }
 
 /// Divides the edges that want it. Where that makes triangles cut others, all is left as it was.
-pub(super) fn refine(made: &mut Assembled, leaves: &[Leaf], tapes: &Tapes, rule: Rule) {
+pub(super) fn refine(made: &mut Assembled, leaves: &[Leaf], tapes: &Tapes, rule: RefinementRule) {
     let normals = normals(&made.positions, &made.surfaces, leaves);
-    let mut work = Work {
+    let mut work = Refiner {
         rule,
         leaves,
         tapes,
@@ -403,7 +403,7 @@ pub(super) fn refine(made: &mut Assembled, leaves: &[Leaf], tapes: &Tapes, rule:
 
 /// All passes, as often as it takes until no changed triangle cuts another; `kept` are vertices beside which
 /// nothing may change.
-fn attempt(work: &mut Work, near: &[u32], mut kept: Vec<bool>) {
+fn attempt(work: &mut Refiner, near: &[u32], mut kept: Vec<bool>) {
     let count = work.positions.len();
     let old: Vec<(u32, Corner)> = work.triangles.clone();
     for attempt in 0..=TRIES {

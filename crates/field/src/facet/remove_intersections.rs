@@ -9,10 +9,10 @@ use super::assemble::{Assembled, Assembly};
 use super::cell::start_corner;
 use super::crossing::crossings;
 use super::grid::Grid;
-use super::place_vertices::{Placement, nearest};
+use super::place_vertices::{VertexPlacer, nearest};
 use super::types::{Block, Ring};
-use super::vertex::{Placed, Solver, Surfaces};
-use crate::expr::tape::Tape;
+use super::vertex::{PlacedVertex, Solver, Surfaces};
+use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use std::collections::BTreeMap;
@@ -44,7 +44,7 @@ pub(super) fn crossing(
 pub(super) fn assembled(
     grid: &Grid,
     leaves: &[Leaf],
-    blocks: &[(Arc<Tape<f64>>, Arc<Block>)],
+    blocks: &[(Arc<ExprTape<f64>>, Arc<Block>)],
     sharp: bool,
 ) -> Assembled {
     let mut assembly = Assembly::new(grid, leaves, blocks);
@@ -95,11 +95,11 @@ pub(super) fn assembled(
 }
 
 /// Where a vertex goes.
-struct Way {
+struct VertexMove {
     vertex: u32,
     /// True when it was one of several of its piece of surface.
     several: bool,
-    place: (Placed, Surfaces),
+    place: (PlacedVertex, Surfaces),
 }
 
 impl Assembly<'_> {
@@ -131,7 +131,7 @@ impl Assembly<'_> {
 
     /// Where a vertex goes that gives way: onto a surface in its cell as near as can be, elsewhere there, onto one between its crossings, to a
     /// crossing. A piece of surface with several vertices keeps the first.
-    fn way(&self, vertex: u32, way: u8, solver: &mut Solver) -> Option<Way> {
+    fn way(&self, vertex: u32, way: u8, solver: &mut Solver) -> Option<VertexMove> {
         let (owner, k) = self.owner(vertex);
         let (tape, block) = &self.blocks[owner];
         let local = block.vertices[k].cell.map(|x| x as usize);
@@ -139,7 +139,7 @@ impl Assembly<'_> {
         let (number, ring) = (block.piece(k), self.ring(vertex)?);
         let edge = ring.first()?.0;
         let sides = self.grid.cell(cell);
-        let mut placement = Placement {
+        let mut placement = VertexPlacer {
             tape,
             leaves: self.leaves,
             cell: &sides,
@@ -157,7 +157,7 @@ impl Assembly<'_> {
             _ => nearest(&ring),
         };
         let vertex = self.number(owner, block.plain(local, edge));
-        Some(Way { vertex, several: block.has_several(local, number), place })
+        Some(VertexMove { vertex, several: block.has_several(local, number), place })
     }
 }
 

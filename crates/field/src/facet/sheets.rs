@@ -7,8 +7,8 @@
 //! solid. Likewise a wire is the edge between two sheets, and a point the corner of three.
 
 use crate::facet::padded_bounds::padded_bounds;
-use crate::facet::types::{Flat, On};
-use crate::facet::{Facets, Options, facet, facet_within};
+use crate::facet::types::{Flat, LeafIncidence};
+use crate::facet::{FacetOptions, Facets, facet, facet_within};
 use crate::{FieldError, Leaf, Primitive, Set};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
@@ -22,14 +22,14 @@ pub struct Sheet {
     /// The number of its leaf among [`Set::leaves`].
     pub leaf: usize,
     /// What its vertices lie on.
-    pub on: On,
+    pub on: LeafIncidence,
     /// The number of its primitive among the leaves of `on`.
     pub own: usize,
 }
 
 /// A curve in which two sheets meet.
 #[derive(Clone, Debug)]
-pub struct Wire {
+pub struct FacetWire {
     /// Its vertices in order; the first is not repeated when it is closed.
     pub points: Vec<Vec3>,
     /// True when it ends where it began.
@@ -37,7 +37,7 @@ pub struct Wire {
     /// The numbers of its two leaves.
     pub leaves: [usize; 2],
     /// What its vertices lie on.
-    pub on: On,
+    pub on: LeafIncidence,
 }
 
 /// A point where three sheets meet.
@@ -48,7 +48,7 @@ pub struct Dot {
     /// The numbers of its three leaves.
     pub leaves: [usize; 3],
     /// What it lies on.
-    pub on: On,
+    pub on: LeafIncidence,
 }
 
 impl Sheet {
@@ -64,7 +64,7 @@ impl Sheet {
     }
 }
 
-impl Wire {
+impl FacetWire {
     /// The length of its chords.
     pub fn length(&self) -> f64 {
         let steps = self.points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
@@ -83,7 +83,7 @@ pub struct Mixed {
     /// The sheets, in the order of their leaves.
     pub sheets: Vec<Sheet>,
     /// The wires, in the order of their leaves.
-    pub wires: Vec<Wire>,
+    pub wires: Vec<FacetWire>,
     /// The points where three sheets meet.
     pub points: Vec<Dot>,
     /// The leaves of the set, by which the others are numbered.
@@ -132,7 +132,7 @@ fn with_sheets(set: &Set, kept: &[&Primitive]) -> Set {
 /// assert_eq!(shell.sheets.len(), 1);
 /// # Ok::<(), moldloft_field::FieldError>(())
 /// ```
-pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, FieldError> {
+pub fn facet_mixed(set: &Set, over: &Box3, options: &FacetOptions) -> Result<Mixed, FieldError> {
     let solid_set = with_sheets(set, &[]);
     let solid = facet(&solid_set, over, options)?;
     let leaves = set.leaves();
@@ -178,7 +178,7 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
                     let at = |v: &u32| facets.mesh.positions()[*v as usize];
                     let points = chain.iter().map(at).collect();
                     let on = lying_on(&facets, &chain);
-                    wires.push(Wire { points, closed, leaves: [a, b], on });
+                    wires.push(FacetWire { points, closed, leaves: [a, b], on });
                 }
             }
             for &c in thin.iter().skip(j + 1) {
@@ -204,9 +204,9 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
 }
 
 /// What some vertices of facets lie on.
-fn lying_on(facets: &Facets, vertices: &[u32]) -> On {
+fn lying_on(facets: &Facets, vertices: &[u32]) -> LeafIncidence {
     let surfaces = vertices.iter().map(|&v| facets.surfaces[v as usize].clone()).collect();
-    On { leaves: facets.leaves.clone(), surfaces }
+    LeafIncidence { leaves: facets.leaves.clone(), surfaces }
 }
 
 /// The number of a primitive among the leaves of facets.
@@ -219,7 +219,7 @@ fn patch_of(
     facets: &Facets,
     f: &Primitive,
     info: PatchInfo,
-) -> Result<Option<(Mesh, On, usize)>, FieldError> {
+) -> Result<Option<(Mesh, LeafIncidence, usize)>, FieldError> {
     let Some(leaf) = number(facets, f) else { return Ok(None) };
     let patch = facets.patch_leaves.iter().position(|&l| l == leaf as usize);
     let Some(patch) = patch.map(|k| &facets.mesh.patches()[k]) else { return Ok(None) };

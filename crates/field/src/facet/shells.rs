@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 /// A connected part of facets.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shell {
+pub struct FacetShell {
     /// The volume that it encloses; negative for a cavity.
     pub volume: f64,
     /// Its triangles, ascending.
@@ -17,7 +17,7 @@ pub struct Shell {
 impl Facets {
     /// The connected parts of the surface, in the order of their first triangles. A body has one of positive
     /// volume and one of negative volume for each of its cavities.
-    pub fn shells(&self) -> Vec<Shell> {
+    pub fn shells(&self) -> Vec<FacetShell> {
         let faces = self.mesh.faces();
         let mut parts = UnionFind::new(self.mesh.positions().len());
         for f in faces {
@@ -26,11 +26,11 @@ impl Facets {
             }
         }
         let mut number: HashMap<u32, usize> = HashMap::new();
-        let mut shells: Vec<Shell> = Vec::new();
+        let mut shells: Vec<FacetShell> = Vec::new();
         for (t, f) in faces.iter().enumerate() {
             let at = parts.find(f[0]);
             let k = *number.entry(at).or_insert_with(|| {
-                shells.push(Shell { volume: 0.0, faces: Vec::new() });
+                shells.push(FacetShell { volume: 0.0, faces: Vec::new() });
                 shells.len() - 1
             });
             let [a, b, c] = [0, 1, 2].map(|i| self.mesh.positions()[f[i] as usize]);

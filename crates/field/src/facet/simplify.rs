@@ -7,7 +7,7 @@
 use super::refine::{Normals, normals};
 use super::{Facets, crossing_faces, distance, vertex};
 use crate::FieldError;
-use crate::expr::tape::Tape;
+use crate::expr::tape::ExprTape;
 use moldloft_mesh::{Mesh, TopologyBuilder};
 use moldloft_num::Vec3;
 use smallvec::SmallVec;
@@ -51,10 +51,10 @@ impl Ord for Candidate {
 
 type Star = SmallVec<[u32; 8]>;
 
-struct Work<'a> {
+struct Simplifier<'a> {
     positions: &'a [Vec3],
     surfaces: &'a [SmallVec<[u32; 3]>],
-    tapes: Vec<&'a Arc<Tape<f64>>>,
+    tapes: Vec<&'a Arc<ExprTape<f64>>>,
     triangles: Vec<[u32; 3]>,
     leaves: Vec<u32>,
     alive: Vec<bool>,
@@ -66,7 +66,7 @@ struct Work<'a> {
     accuracy: f64,
 }
 
-impl Work<'_> {
+impl Simplifier<'_> {
     fn corners(&self, t: [u32; 3]) -> [Vec3; 3] {
         t.map(|v| self.positions[v as usize])
     }
@@ -282,7 +282,7 @@ impl Facets {
         for (t, corners) in triangles.iter().enumerate() {
             corners.iter().for_each(|&v| stars[v as usize].push(t as u32));
         }
-        let mut work = Work {
+        let mut work = Simplifier {
             positions,
             surfaces: &self.surfaces,
             tapes: self.leaves.iter().map(|l| l.primitive.tape()).collect(),

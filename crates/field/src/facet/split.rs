@@ -6,9 +6,9 @@
 //! are two edges: cut through both runs of A, their vertices lie on A and B and on A and C. With A B C D there are two
 //! corners; the cut through A and C, or B and D, has them. Parts are cut again while they have no common point.
 
-use super::place_vertices::Placement;
+use super::place_vertices::VertexPlacer;
 use super::types::{Crossing, Ring, Split};
-use super::vertex::{Placed, Surfaces};
+use super::vertex::{PlacedVertex, Surfaces};
 use moldloft_num::Vec3;
 use smallvec::SmallVec;
 
@@ -17,7 +17,7 @@ const MOST_RUNS: usize = 8;
 const MOST_SEARCHES: usize = 60;
 
 /// Neighbouring crossings of one primitive; none of a primitive that shows between two edges only.
-struct Run {
+struct CrossingRun {
     leaf: u32,
     /// Places in the ring.
     places: std::ops::Range<usize>,
@@ -26,22 +26,22 @@ struct Run {
 }
 
 /// A part of the ring with its vertices.
-struct Part {
-    vertices: SmallVec<[(Placed, Surfaces); 2]>,
+struct RingPart {
+    vertices: SmallVec<[(PlacedVertex, Surfaces); 2]>,
     parent: SmallVec<[u8; 2]>,
     /// For each of its runs, its vertices in the order of the ring.
     of_run: SmallVec<[(usize, SmallVec<[u8; 3]>); 4]>,
 }
 
 struct Splitting<'s, 'a, 'c> {
-    placement: &'s mut Placement<'a>,
+    placement: &'s mut VertexPlacer<'a>,
     ring: Ring<'c>,
-    runs: Vec<Run>,
+    runs: Vec<CrossingRun>,
     searches: usize,
 }
 
 /// The vertices of the piece of surface with these crossings, if there are several that will do.
-pub(super) fn split(placement: &mut Placement, edges: &Ring, next: &[u8; 12]) -> Option<Split> {
+pub(super) fn split(placement: &mut VertexPlacer, edges: &Ring, next: &[u8; 12]) -> Option<Split> {
     let mut ring: Ring = SmallVec::new();
     let mut at = edges.first()?.0;
     for _ in 0..edges.len() {
@@ -64,16 +64,16 @@ pub(super) fn split(placement: &mut Placement, edges: &Ring, next: &[u8; 12]) ->
 }
 
 /// The runs of a ring, with those that show on the cell's sides only.
-fn runs_of(placement: &mut Placement, ring: &Ring) -> Vec<Run> {
+fn runs_of(placement: &mut VertexPlacer, ring: &Ring) -> Vec<CrossingRun> {
     let n = ring.len();
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Vec<CrossingRun> = Vec::new();
     let mut start = 0;
     for k in 0..n {
         let (p, q) = (ring[k], ring[(k + 1) % n]);
         if p.1.leaf == q.1.leaf {
             continue;
         }
-        let mut run = Run { leaf: p.1.leaf, places: start..k + 1, change: None };
+        let mut run = CrossingRun { leaf: p.1.leaf, places: start..k + 1, change: None };
         start = k + 1;
         let Some(side) = placement.shared_side(p.0, q.0) else {
             runs.push(run);
@@ -94,7 +94,7 @@ fn runs_of(placement: &mut Placement, ring: &Ring) -> Vec<Run> {
                 run.change = first.map(|c| c.point);
                 runs.push(run);
                 let change = second.map(|c| c.point);
-                runs.push(Run { leaf, places: k + 1..k + 1, change });
+                runs.push(CrossingRun { leaf, places: k + 1..k + 1, change });
             }
         }
     }
@@ -103,7 +103,7 @@ fn runs_of(placement: &mut Placement, ring: &Ring) -> Vec<Run> {
 
 impl Splitting<'_, '_, '_> {
     /// A vertex on all the primitives of these runs, and on the surface of the set.
-    fn vertex(&mut self, list: &[usize]) -> Option<(Placed, Surfaces)> {
+    fn vertex(&mut self, list: &[usize]) -> Option<(PlacedVertex, Surfaces)> {
         let mut surfaces = Surfaces::new();
         for &k in list {
             let leaf = self.runs[k].leaf;
@@ -145,19 +145,19 @@ impl Splitting<'_, '_, '_> {
     }
 
     /// The vertices of these runs: one or, if `several`, more.
-    fn solve(&mut self, list: &[usize], several: bool) -> Option<Part> {
+    fn solve(&mut self, list: &[usize], several: bool) -> Option<RingPart> {
         if let Some(vertex) = self.vertex(list) {
             let of_run = list.iter().map(|&k| (k, SmallVec::from_slice(&[0]))).collect();
             let (mut vertices, mut parent) = (SmallVec::new(), SmallVec::new());
             vertices.push(vertex);
             parent.push(0);
-            return Some(Part { vertices, parent, of_run });
+            return Some(RingPart { vertices, parent, of_run });
         }
         if several && list.len() > 3 { self.cut(list, true) } else { None }
     }
 
     /// The vertices of two parts of these runs, cut where both have some: of one each if that is possible.
-    fn cut(&mut self, list: &[usize], several: bool) -> Option<Part> {
+    fn cut(&mut self, list: &[usize], several: bool) -> Option<RingPart> {
         let n = list.len();
         let pairs = (0..n).flat_map(|i| (i + 2..n).map(move |j| (i, j)));
         let mut pairs: SmallVec<[(usize, usize); 20]> =
@@ -181,7 +181,7 @@ impl Splitting<'_, '_, '_> {
     }
 
     /// Gives each crossing the vertex that is nearest to it, in the order of the ring.
-    fn finish(self, part: Part) -> Option<Split> {
+    fn finish(self, part: RingPart) -> Option<Split> {
         let mut group = [0u8; 12];
         let mut used = vec![false; part.vertices.len()];
         for (run, vertices) in &part.of_run {
@@ -213,7 +213,7 @@ impl Splitting<'_, '_, '_> {
 }
 
 /// Two parts of a ring as one, which are joined along the cut from one run to another.
-fn joined(mut a: Part, mut b: Part, [i, j]: [usize; 2]) -> Part {
+fn joined(mut a: RingPart, mut b: RingPart, [i, j]: [usize; 2]) -> RingPart {
     let shift = a.vertices.len() as u8;
     for (_, vertices) in &mut b.of_run {
         vertices.iter_mut().for_each(|v| *v += shift);

@@ -2,8 +2,8 @@
 //! look-ups only, so that the steps that make and read them know these types and not each other.
 
 use super::cell::{Case, NONE, case};
-use super::vertex::{Placed, Surfaces};
-use crate::expr::tape::Tape;
+use super::vertex::{PlacedVertex, Surfaces};
+use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_budget::Budget;
 use moldloft_num::{Box3, Vec3};
@@ -25,7 +25,7 @@ pub enum Resolution {
 
 /// How facets are made.
 #[derive(Clone, Debug)]
-pub struct Options {
+pub struct FacetOptions {
     /// How fine they are.
     pub resolution: Resolution,
     /// The most cells that the surface may pass through.
@@ -37,7 +37,7 @@ pub struct Options {
     pub budget: Arc<Budget>,
 }
 
-impl Options {
+impl FacetOptions {
     /// Facets of that resolution, at most 20 million cells.
     pub fn new(resolution: Resolution) -> Self {
         Self { resolution, limit: 2e7, sharp: false, budget: Arc::default() }
@@ -63,8 +63,8 @@ pub(super) struct Crossing {
 
 /// The vertex of a piece of surface in a cell.
 #[derive(Clone, Debug)]
-pub(super) struct Vertex {
-    pub(super) placed: Placed,
+pub(super) struct CellVertex {
+    pub(super) placed: PlacedVertex,
     /// The cell, in the block.
     pub(super) cell: [u8; 3],
     /// True when the cell has several vertices, or its vertex is not in it: nothing is known of its triangles
@@ -101,7 +101,7 @@ pub(super) struct Block {
     pub(super) joins: Box<[u8; SIDE * SIDE * SIDE]>,
     /// First vertex of every cell.
     pub(super) first: Box<[u32; SIDE * SIDE * SIDE]>,
-    pub(super) vertices: Vec<Vertex>,
+    pub(super) vertices: Vec<CellVertex>,
     /// The pieces of surface that have several vertices, in the order of cells.
     pub(super) splits: Vec<Several>,
     /// Crossings of the edges that start in the block, its far faces excepted.
@@ -130,7 +130,7 @@ pub(super) type Ring<'c> = SmallVec<[(usize, &'c Crossing); 12]>;
 /// The vertices of a piece of surface and how they hang together.
 #[derive(Clone, Debug)]
 pub(super) struct Split {
-    pub(super) vertices: SmallVec<[(Placed, Surfaces); 2]>,
+    pub(super) vertices: SmallVec<[(PlacedVertex, Surfaces); 2]>,
     /// The vertex of each crossed edge.
     pub(super) group: [u8; 12],
     /// The tree of vertices: the one towards the first, which is its own.
@@ -251,12 +251,12 @@ impl Block {
 
 /// Blocks of an earlier division by position.
 pub(super) struct Reuse<'a> {
-    pub(super) blocks: FxHashMap<[u32; 3], &'a (Arc<Tape<f64>>, Arc<Block>)>,
+    pub(super) blocks: FxHashMap<[u32; 3], &'a (Arc<ExprTape<f64>>, Arc<Block>)>,
 }
 
 impl Reuse<'_> {
     /// The old block, if the set was the same there.
-    pub(super) fn get(&self, at: [u32; 3], tape: &Tape<f64>) -> Option<Arc<Block>> {
+    pub(super) fn get(&self, at: [u32; 3], tape: &ExprTape<f64>) -> Option<Arc<Block>> {
         let (old, block) = self.blocks.get(&at)?;
         (old.leaf == tape.leaf && old.same(tape)).then(|| block.clone())
     }
@@ -275,7 +275,7 @@ pub(crate) struct Flat<'a> {
 
 /// On which leaves each of some points lies.
 #[derive(Clone, Debug, Default)]
-pub struct On {
+pub struct LeafIncidence {
     /// The leaves.
     pub leaves: Vec<Leaf>,
     /// For each point, numbers of leaves.

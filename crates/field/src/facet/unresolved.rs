@@ -8,7 +8,7 @@ use super::block::CORNERS;
 use super::types::{SIDE, Unresolved};
 use crate::expr::interval::Interval;
 use crate::expr::second_order::HessianRange;
-use crate::expr::tape::{Code, NO_LEAF, Tape};
+use crate::expr::tape::{Code, ExprTape, NO_LEAF};
 use crate::measure::taylor::{self, Combination, TaylorRoom};
 use moldloft_num::{Box3, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -24,7 +24,7 @@ const SEEN: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 
 /// Whether a set has unions and intersections between its leaves.
-fn joins(tape: &Tape<f64>) -> (bool, bool) {
+fn joins(tape: &ExprTape<f64>) -> (bool, bool) {
     let (mut unions, mut common) = (false, false);
     for code in &tape.code {
         unions |= matches!(code, Code::Union(..));
@@ -36,7 +36,7 @@ fn joins(tape: &Tape<f64>) -> (bool, bool) {
 /// How far a leaf may be below or above what its values at the corners of a cell say, by second derivatives over the
 /// whole block: the error of multilinear interpolation.
 fn interpolation_error(
-    tape: &Tape<f64>,
+    tape: &ExprTape<f64>,
     sides: &[Interval; 3],
     step: f64,
     forms: &mut Vec<HessianRange>,
@@ -55,7 +55,7 @@ fn interpolation_error(
 
 /// A block of cells with the values at their corners.
 pub(super) struct Quiet<'a> {
-    pub tape: &'a Arc<Tape<f64>>,
+    pub tape: &'a Arc<ExprTape<f64>>,
     pub values: &'a [f64],
     /// The position of a corner of the block.
     pub corner: &'a dyn Fn([usize; 3]) -> [f64; 3],
@@ -91,7 +91,7 @@ impl Quiet<'_> {
         let (unions, common) = joins(self.tape);
         let whole = self.sides([0; 3], SIDE);
         let mut open = Vec::new();
-        let mut work = Search { room, left: MOST, open: &mut open };
+        let mut work = UnresolvedSearch { room, left: MOST, open: &mut open };
         // Of a union that is air at all corners every operand is; of an intersection that is solid likewise.
         let error = match unions && common {
             true => f64::INFINITY,
@@ -129,16 +129,16 @@ impl Quiet<'_> {
     }
 }
 
-struct Search<'a> {
+struct UnresolvedSearch<'a> {
     room: &'a mut TaylorRoom,
     /// How many more parts may be looked at.
     left: usize,
     open: &'a mut Vec<Unresolved>,
 }
 
-impl Search<'_> {
+impl UnresolvedSearch<'_> {
     /// Looks at a cell whose corners are all solid or all air, and in its parts as far as need be.
-    fn look(&mut self, tape: &Arc<Tape<f64>>, sides: &[Interval; 3], solid: bool, depth: u32) {
+    fn look(&mut self, tape: &Arc<ExprTape<f64>>, sides: &[Interval; 3], solid: bool, depth: u32) {
         let range = tape.range(sides, &mut self.room.ranges.ranges);
         if range.low > 0.0 || range.high < 0.0 {
             // Proved; a part that is wholly of the other kind is missed.

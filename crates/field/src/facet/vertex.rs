@@ -2,7 +2,7 @@
 //! shows, and into the cell.
 
 use crate::expr::algebra::Gradient;
-use crate::expr::tape::Tape;
+use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
@@ -20,7 +20,7 @@ pub(crate) struct Solver {
 
 /// The outcome of a search.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
+pub(crate) struct PlacedVertex {
     pub(crate) point: Vec3,
     /// The largest distance |f| / |f'| from a surface that it should lie on.
     pub(crate) residual: f64,
@@ -34,12 +34,12 @@ const STEPS: usize = 30;
 
 impl Solver {
     /// The value and gradient of a leaf.
-    pub(crate) fn gradient(&mut self, tape: &Tape<f64>, p: Vec3) -> Gradient<f64> {
+    pub(crate) fn gradient(&mut self, tape: &ExprTape<f64>, p: Vec3) -> Gradient<f64> {
         tape.eval::<Gradient<f64>>(&p, &mut self.values)
     }
 
     /// The value of a leaf.
-    pub(crate) fn value(&mut self, tape: &Tape<f64>, p: Vec3) -> f64 {
+    pub(crate) fn value(&mut self, tape: &ExprTape<f64>, p: Vec3) -> f64 {
         tape.eval::<f64>(&p, &mut self.plain)
     }
 
@@ -52,8 +52,8 @@ impl Solver {
         start: Vec3,
         cell: &Box3,
         goal: f64,
-    ) -> Placed {
-        let tapes: SmallVec<[&Arc<Tape<f64>>; 3]> =
+    ) -> PlacedVertex {
+        let tapes: SmallVec<[&Arc<ExprTape<f64>>; 3]> =
             surfaces.iter().map(|&s| leaves[s as usize].primitive.tape()).collect();
         let first = self.search(&tapes, start, cell, goal, false);
         if first.residual <= goal {
@@ -73,22 +73,22 @@ impl Solver {
         start: Vec3,
         cell: &Box3,
         goal: f64,
-    ) -> Placed {
+    ) -> PlacedVertex {
         let size = (cell.high - cell.low) * 2.0;
         let wide = Box3 { low: cell.low - size, high: cell.high + size };
-        Placed { strayed: true, ..self.place(leaves, surfaces, start, &wide, goal) }
+        PlacedVertex { strayed: true, ..self.place(leaves, surfaces, start, &wide, goal) }
     }
 
     fn search(
         &mut self,
-        tapes: &[&Arc<Tape<f64>>],
+        tapes: &[&Arc<ExprTape<f64>>],
         start: Vec3,
         cell: &Box3,
         goal: f64,
         stay: bool,
-    ) -> Placed {
+    ) -> PlacedVertex {
         let mut p = start;
-        let mut best = Placed { point: p, residual: f64::INFINITY, strayed: false };
+        let mut best = PlacedVertex { point: p, residual: f64::INFINITY, strayed: false };
         let mut free = [0, 1, 2].map(|k| cell.low[k] < cell.high[k]);
         for _ in 0..STEPS {
             let mut rows: SmallVec<[(Vec3, f64); 3]> = SmallVec::new();
@@ -107,7 +107,7 @@ impl Solver {
                 rows.push((normal, distance));
             }
             if residual < best.residual {
-                best = Placed { point: p, residual, strayed: false };
+                best = PlacedVertex { point: p, residual, strayed: false };
             }
             // A step beyond the goal costs one evaluation and squares the error.
             if residual <= 0.01 * goal {

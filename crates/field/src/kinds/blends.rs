@@ -1,6 +1,6 @@
 //! Blends as rows of the registry.
 
-use super::read::{Shape, fault, field, set};
+use super::read::{NamedField, fault, field, set};
 use super::region::corners;
 use crate::{Blend, FieldError, Primitive, check_rail, check_rails, liming, liming_on_rail, zhang};
 use moldloft_num::Real;
@@ -21,14 +21,14 @@ use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Point, Value};
 )]
 pub struct Liming<T: Real> {
     /// A body.
-    l1: Shape<T>,
+    l1: NamedField<T>,
     /// The other body.
-    l2: Shape<T>,
+    l2: NamedField<T>,
     /// The rail, or one of the two others.
-    l3: Shape<T>,
+    l3: NamedField<T>,
     /// The other of them.
     #[field(default)]
-    l4: Option<Shape<T>>,
+    l4: Option<NamedField<T>>,
     /// Shape: near 0 the blend hugs the rail, near 1 the bodies.
     #[field(default = 0.5)]
     lambda: T,
@@ -74,13 +74,13 @@ fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), CallEr
 )]
 pub struct Zhang<T: Real> {
     /// The body that it begins on.
-    l1: Shape<T>,
+    l1: NamedField<T>,
     /// The body that it ends on.
-    l2: Shape<T>,
+    l2: NamedField<T>,
     /// The rail on the first body.
-    l3: Shape<T>,
+    l3: NamedField<T>,
     /// The rail on the second.
-    l4: Shape<T>,
+    l4: NamedField<T>,
     /// Shape: which body it follows longer.
     #[field(default = 0.5)]
     lambda: T,
@@ -116,9 +116,9 @@ impl<T: Real> Build<T> for Zhang<T> {
 )]
 pub struct Setback<T: Real> {
     /// A body.
-    l1: Shape<T>,
+    l1: NamedField<T>,
     /// The other body.
-    l2: Shape<T>,
+    l2: NamedField<T>,
     /// Setback on the second body, measured by the first.
     #[field(min = 0)]
     a: T,
@@ -144,9 +144,9 @@ macro_rules! corner_blend {
         #[kind(class = Set, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {
             /// A body.
-            l1: Shape<T>,
+            l1: NamedField<T>,
             /// The other body.
-            l2: Shape<T>,
+            l2: NamedField<T>,
             /// Setback of the blend on both bodies.
             #[field(min = 0)]
             width: T,
@@ -189,11 +189,11 @@ macro_rules! corner_blend {
 /// The blend with its parts named: the bodies as they are called, the blend as its function is.
 fn finished<T: Real>(
     blend: Blend<T>,
-    bodies: [&Shape<T>; 2],
+    bodies: [&NamedField<T>; 2],
     word: &str,
 ) -> Result<Value<T>, CallError> {
     let name = |p: &Primitive<T>| {
-        let called = |s: &&&Shape<T>| s.primitive.same(p) || s.primitive.same(&-p);
+        let called = |s: &&&NamedField<T>| s.primitive.same(p) || s.primitive.same(&-p);
         match bodies.iter().find(called) {
             Some(body) => body.name.as_ref().map(|n| n.to_string()),
             None => Some(word.to_string()),
@@ -229,13 +229,13 @@ corner_blend!(
 )]
 pub struct Transition<T: Real> {
     /// The body that it begins on.
-    l1: Shape<T>,
+    l1: NamedField<T>,
     /// The body that it ends on.
-    l2: Shape<T>,
+    l2: NamedField<T>,
     /// The rail on the first body: its solid side keeps the body.
-    l3: Shape<T>,
+    l3: NamedField<T>,
     /// The rail on the second.
-    l4: Shape<T>,
+    l4: NamedField<T>,
     /// Shape: which body it follows longer.
     #[field(default = 0.5)]
     lambda: T,

@@ -1,17 +1,17 @@
 //! Facets of a set as a body of triangles.
 
-use super::read::{Solid, fault};
+use super::read::{SetArgument, fault};
 use super::region::region;
 use crate::facet::sheets::Mixed;
-use crate::facet::{Facets, Options, Resolution};
+use crate::facet::{FacetOptions, Facets, Resolution};
 use crate::{FacetMemo, FieldError, Leaf, Lifter, Set, facet_mixed};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Group, Kind, Point, TriangleBody, Value};
 use std::sync::Arc;
 
 /// Facets of that resolution, which stop when the model does.
-pub fn options(resolution: Resolution, context: &Context) -> Options {
-    Options { budget: context.budget.clone(), ..Options::new(resolution) }
+pub fn options(resolution: Resolution, context: &Context) -> FacetOptions {
+    FacetOptions { budget: context.budget.clone(), ..FacetOptions::new(resolution) }
 }
 
 /// The surface of a set as triangles: a mesh like any other.
@@ -27,7 +27,7 @@ pub fn options(resolution: Resolution, context: &Context) -> Options {
 )]
 pub struct SetBody<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// Low corner of the box; found around a set that has an end.
     #[field(default)]
     low: Option<Point<T>>,
@@ -109,7 +109,7 @@ pub enum Pieces {
 fn facets_of(
     set: &Set,
     over: &moldloft_num::Box3,
-    options: &Options,
+    options: &FacetOptions,
     memo: &FacetMemo,
 ) -> Result<Pieces, FieldError> {
     if set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
@@ -121,9 +121,9 @@ fn facets_of(
 
 /// Names that were used, so that each is given once.
 #[derive(Default)]
-struct Names(std::collections::HashMap<String, usize>);
+struct UniqueNames(std::collections::HashMap<String, usize>);
 
-impl Names {
+impl UniqueNames {
     fn of(&mut self, name: &str) -> String {
         let count = self.0.entry(name.to_string()).or_insert(0);
         *count += 1;
@@ -161,7 +161,7 @@ impl Pieces {
         let mut points: Vec<Vec3<T>> = lifted.mesh.positions().to_vec();
         let mut triangles: Vec<[u32; 3]> = Vec::new();
         let mut groups = Vec::new();
-        let mut names = Names::default();
+        let mut names = UniqueNames::default();
         let mut take = |mesh: &moldloft_mesh::Mesh, start: u32, leaves: &[&Leaf]| {
             for (patch, leaf) in mesh.patches().iter().zip(leaves) {
                 let first = triangles.len();

@@ -1,6 +1,6 @@
 //! Operations on whole sets and replaced coordinates, as rows of the registry.
 
-use super::read::{Shape, Solid, fault, field, primitive_of, set, set_of, set_value};
+use super::read::{NamedField, SetArgument, fault, field, primitive_of, set, set_of, set_value};
 use crate::{Affine, Primitive, Set};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Class, Context, FieldId, FromValue, Kind, Point, Value};
@@ -55,11 +55,11 @@ pub struct Remapped<T: Real> {
     /// What is moved.
     shape: Any<T>,
     /// What takes the place of x.
-    x: Shape<T>,
+    x: NamedField<T>,
     /// What takes the place of y.
-    y: Shape<T>,
+    y: NamedField<T>,
     /// What takes the place of z.
-    z: Shape<T>,
+    z: NamedField<T>,
 }
 
 impl<T: Real> Build<T> for Remapped<T> {
@@ -100,9 +100,9 @@ impl<T: Real> Build<T> for Twisted<T> {
 )]
 pub struct Remainder<T: Real> {
     /// The dividend.
-    x: Shape<T>,
+    x: NamedField<T>,
     /// The divisor.
-    y: Shape<T>,
+    y: NamedField<T>,
 }
 
 impl<T: Real> Build<T> for Remainder<T> {
@@ -121,7 +121,7 @@ impl<T: Real> Build<T> for Remainder<T> {
 )]
 pub struct Repeated<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// From each copy to the next.
     by: Point<T>,
     /// How many there are.
@@ -151,14 +151,14 @@ impl<T: Real> Build<T> for Repeated<T> {
     name = "set_offset",
     example = "set grown = set_offset(cuboid({0, 0, 0}, {1, 1, 1}), 0.1); assert abs(volume(grown) - 1.728) < 1e-9;"
 )]
-pub struct Offset<T: Real> {
+pub struct SetOffset<T: Real> {
     /// The set, of planes, balls, cylinders, cones and tori.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// How far its faces move outward.
     distance: T,
 }
 
-impl<T: Real> Build<T> for Offset<T> {
+impl<T: Real> Build<T> for SetOffset<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         set(self.set.0.offset(self.distance))
     }
@@ -172,15 +172,15 @@ impl<T: Real> Build<T> for Offset<T> {
     name = "set_shell",
     example = "set tank = set_shell(cuboid({0, 0, 0}, {1, 1, 1}), 0.1); assert abs(volume(tank) - 0.488) < 1e-9;"
 )]
-pub struct Shell<T: Real> {
+pub struct SetShell<T: Real> {
     /// The set, of planes, balls, cylinders, cones and tori.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// How thick the wall is.
     #[field(min = 0)]
     thickness: T,
 }
 
-impl<T: Real> Build<T> for Shell<T> {
+impl<T: Real> Build<T> for SetShell<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         set(self.set.0.shell(self.thickness))
     }
@@ -196,9 +196,9 @@ impl<T: Real> Build<T> for Shell<T> {
 )]
 pub struct FilletSets<T: Real> {
     /// A set, of planes, balls, cylinders, cones and tori.
-    a: Solid<T>,
+    a: SetArgument<T>,
     /// The other.
-    b: Solid<T>,
+    b: SetArgument<T>,
     /// Setback of the blend on both.
     #[field(min = 0)]
     width: T,
@@ -231,7 +231,7 @@ impl<T: Real> Build<T> for FilletSets<T> {
 )]
 pub struct RoundEdges<T: Real> {
     /// The set, of planes, balls, cylinders, cones and tori.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// Setback of the round on both faces.
     #[field(min = 0)]
     width: T,
@@ -260,7 +260,7 @@ impl<T: Real> Build<T> for RoundEdges<T> {
 )]
 pub struct ChamferEdges<T: Real> {
     /// The set, of planes, balls, cylinders, cones and tori.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// Setback of the chamfer on both faces.
     #[field(min = 0)]
     width: T,

@@ -2,7 +2,7 @@
 
 use super::read::{fault, set};
 use crate::shapes::Inside;
-use crate::{FieldError, Primitive, Profile, Round, Set, Sides, faced};
+use crate::{FieldError, Primitive, Round, RoundProfile, Set, Sides, faced};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Kind, TriangleBody, Value};
 use std::sync::Arc;
@@ -100,9 +100,9 @@ impl<T: Real> Build<T> for FaceSet<T> {
                     .in_item(5 * k + 4));
             }
             let profile = if sweep.re() == 0.0 {
-                Profile::Parabola([v[0], v[1], v[2]])
+                RoundProfile::Parabola([v[0], v[1], v[2]])
             } else {
-                Profile::Conic { centre: v[0], a: v[1], b: v[2], sweep }
+                RoundProfile::Conic { centre: v[0], a: v[1], b: v[2], sweep }
             };
             Ok(Round { side: side as u32, profile, shift: v[3], scale })
         };

@@ -1,13 +1,13 @@
 //! What is asked of fields and sets, as rows of the registry.
 
 use super::body::options;
-use super::read::{Solid, fault, primitive_of, set_of};
+use super::read::{SetArgument, fault, primitive_of, set_of};
 use super::region::{Region, around, region};
 use crate::facet::{Facets, Resolution};
 use crate::measure::curved::{self, Curved};
 use crate::query::foot;
 use crate::{
-    FacetMemo, FieldError, Lifter, Measure, Membership, Moments, Primitive, Set, bracket,
+    FacetMemo, FieldError, IntegralOptions, Lifter, Membership, Moments, Primitive, Set, bracket,
     facet_mixed, mass_of,
 };
 use moldloft_num::{Box3, Real, Vec3};
@@ -23,8 +23,8 @@ const DEPTHS: [u32; 2] = [5, 9];
 const ALIKE: f64 = 1e-6;
 
 /// Facets for integrals, which stop when the model does.
-fn sharp(depth: u32, context: &Context) -> crate::Options {
-    crate::Options { sharp: true, ..options(Resolution::Level(depth), context) }
+fn sharp(depth: u32, context: &Context) -> crate::FacetOptions {
+    crate::FacetOptions { sharp: true, ..options(Resolution::Level(depth), context) }
 }
 
 /// Moments of a set: best values inside a proved bracket.
@@ -34,10 +34,10 @@ fn moments<T: Real>(
     accuracy: Option<T>,
     context: &Context,
 ) -> Result<Moments<T>, FieldError> {
-    let measure = Measure {
+    let measure = IntegralOptions {
         agreement: accuracy.map(T::re),
         budget: context.budget.clone(),
-        ..Measure::default()
+        ..IntegralOptions::default()
     };
     let found = mass_of(set, &region.over, region.corners, &measure, &context.kept.of())?;
     // Without an accuracy, six digits are taken for enough.
@@ -66,7 +66,7 @@ macro_rules! measure {
         #[kind(class = $class, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {
             /// The set.
-            set: Solid<T>,
+            set: SetArgument<T>,
             /// Low corner of the box.
             #[field(default)]
             low: Option<Point<T>>,
@@ -172,7 +172,7 @@ fn refined<T: Real>(
     accuracy: Option<T>,
     field: FieldId,
     context: &Context,
-    measure: impl Fn(&crate::Options) -> Result<T, FieldError>,
+    measure: impl Fn(&crate::FacetOptions) -> Result<T, FieldError>,
 ) -> Result<Value<T>, CallError> {
     let asked = match accuracy {
         Some(a) => Some(
@@ -196,7 +196,7 @@ fn refined<T: Real>(
 fn area<T: Real>(
     set: &Set<T>,
     region: &Region<T>,
-    options: &crate::Options,
+    options: &crate::FacetOptions,
     memo: &FacetMemo,
 ) -> Result<T, FieldError> {
     let plain = set.re();
@@ -224,7 +224,7 @@ fn area<T: Real>(
 fn length<T: Real>(
     set: &Set<T>,
     region: &Region<T>,
-    options: &crate::Options,
+    options: &crate::FacetOptions,
 ) -> Result<T, FieldError> {
     let plain = set.re();
     let lifter = Lifter::of(set, &plain, region.corners);
@@ -245,7 +245,7 @@ fn length<T: Real>(
 )]
 pub struct VolumeBracket<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// Low corner of the box.
     #[field(default)]
     low: Option<Point<T>>,
@@ -277,7 +277,7 @@ impl<T: Real> Build<T> for VolumeBracket<T> {
 )]
 pub struct Member<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// The point.
     point: Point<T>,
     /// Distance from a surface that counts as on it.
@@ -306,7 +306,7 @@ impl<T: Real> Build<T> for Member<T> {
 )]
 pub struct Winner<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// The point.
     point: Point<T>,
 }
@@ -432,7 +432,7 @@ impl<T: Real> Build<T> for Degree<T> {
 )]
 pub struct NearestPoint<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// The point.
     point: Point<T>,
     /// Low corner of the box.
@@ -474,7 +474,7 @@ impl<T: Real> Build<T> for NearestPoint<T> {
 )]
 pub struct FirstHit<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// Start of the ray.
     start: Point<T>,
     /// Its image.
@@ -529,9 +529,9 @@ impl<T: Real> Build<T> for FirstHit<T> {
 )]
 pub struct Distance<T: Real> {
     /// A set.
-    a: Solid<T>,
+    a: SetArgument<T>,
     /// The other.
-    b: Solid<T>,
+    b: SetArgument<T>,
     /// Low corner of the box.
     #[field(default)]
     low: Option<Point<T>>,
@@ -573,7 +573,7 @@ impl<T: Real> Build<T> for Distance<T> {
 )]
 pub struct Components<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// Low corner of the box.
     #[field(default)]
     low: Option<Point<T>>,
@@ -609,7 +609,7 @@ impl<T: Real> Build<T> for Components<T> {
 )]
 pub struct Bounds<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// Largest excess over the set.
     #[field(default = 1e-3, min = 0)]
     accuracy: T,

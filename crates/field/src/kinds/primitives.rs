@@ -1,6 +1,6 @@
 //! The primitives as rows of the registry.
 
-use super::read::{Shape, field};
+use super::read::{NamedField, field};
 use crate::Primitive;
 use moldloft_num::{Axis, Plane, Real};
 use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
@@ -189,7 +189,7 @@ impl<T: Real> Build<T> for Cyclide<T> {
 )]
 pub struct FieldObject<T: Real> {
     /// The function.
-    field: Shape<T>,
+    field: NamedField<T>,
     /// The objects that it was computed from.
     #[field(default)]
     of: Option<Vec<Value<T>>>,

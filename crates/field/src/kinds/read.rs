@@ -77,12 +77,12 @@ pub fn set_of<T: Real>(value: &Value<T>) -> Option<Set<T>> {
 }
 
 /// A field with the name that it was declared under.
-pub struct Shape<T: Real> {
+pub struct NamedField<T: Real> {
     pub primitive: Primitive<T>,
     pub name: Option<Arc<str>>,
 }
 
-impl<T: Real> Shape<T> {
+impl<T: Real> NamedField<T> {
     /// It as a value again.
     pub fn value(self) -> Value<T> {
         let mut field = FieldRef::new(self.primitive);
@@ -91,7 +91,7 @@ impl<T: Real> Shape<T> {
     }
 }
 
-impl<T: Real> FromValue<T> for Shape<T> {
+impl<T: Real> FromValue<T> for NamedField<T> {
     const CLASS: Class = Class::Field;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let name = match value {
@@ -106,9 +106,9 @@ impl<T: Real> FromValue<T> for Shape<T> {
 }
 
 /// A set, or the solid side of a field.
-pub struct Solid<T: Real>(pub Set<T>);
+pub struct SetArgument<T: Real>(pub Set<T>);
 
-impl<T: Real> FromValue<T> for Solid<T> {
+impl<T: Real> FromValue<T> for SetArgument<T> {
     const CLASS: Class = Class::Set;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match set_of(value) {

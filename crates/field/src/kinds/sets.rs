@@ -1,14 +1,14 @@
 //! Sets as rows of the registry.
 
-use super::read::{Shape, Solid, set, set_value};
+use super::read::{NamedField, SetArgument, set, set_value};
 use crate::{Attributes, Set};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Point, Value};
 use std::sync::Arc;
 
 /// What a set is made of: its solid side, a wire or a point.
-enum Source<T: Real> {
-    Field(Shape<T>),
+enum SetSource<T: Real> {
+    Field(NamedField<T>),
     Line([Vec3<T>; 2]),
     Point(Vec3<T>),
 }
@@ -16,7 +16,7 @@ enum Source<T: Real> {
 /// How far a line may be from straight, as a share of its length.
 const STRAIGHT: f64 = 1e-9;
 
-impl<T: Real> FromValue<T> for Source<T> {
+impl<T: Real> FromValue<T> for SetSource<T> {
     const CLASS: Class = Class::Any;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
@@ -42,7 +42,7 @@ impl<T: Real> FromValue<T> for Source<T> {
             Value::Point(_) | Value::Vector(_) => {
                 Point::from_value(value).map(|p| Self::Point(p.xyz))
             }
-            _ => Shape::from_value(value).map(Self::Field),
+            _ => NamedField::from_value(value).map(Self::Field),
         }
     }
 }
@@ -60,21 +60,21 @@ impl<T: Real> FromValue<T> for Source<T> {
 )]
 pub struct SetOf<T: Real> {
     /// The field, line or point.
-    field: Source<T>,
+    field: SetSource<T>,
 }
 
 impl<T: Real> Build<T> for SetOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         match self.field {
-            Source::Field(field) => {
+            SetSource::Field(field) => {
                 let set = Set::new(&field.primitive);
                 Ok(set_value(match &field.name {
                     Some(name) => set.named(name),
                     None => set,
                 }))
             }
-            Source::Line([from, to]) => set(Set::segment(from, to)),
-            Source::Point(at) => set(Set::point(at)),
+            SetSource::Line([from, to]) => set(Set::segment(from, to)),
+            SetSource::Point(at) => set(Set::point(at)),
         }
     }
 }
@@ -130,7 +130,7 @@ impl<T: Real> Build<T> for Tetrahedron<T> {
 )]
 pub struct Thin<T: Real> {
     /// The set, whose primitives meet.
-    set: Solid<T>,
+    set: SetArgument<T>,
 }
 
 impl<T: Real> Build<T> for Thin<T> {
@@ -188,7 +188,7 @@ impl<T: Real> Build<T> for Nothing<T> {
 )]
 pub struct Attributed<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// The name of its faces.
     #[field(default)]
     name: Option<Arc<str>>,
@@ -241,7 +241,7 @@ impl<T: Real> Build<T> for Attributed<T> {
 )]
 pub struct Regularized<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
 }
 
 impl<T: Real> Build<T> for Regularized<T> {
@@ -255,7 +255,7 @@ impl<T: Real> Build<T> for Regularized<T> {
 #[kind(class = Set, name = "Set", example = "Set ball(set(sphere({0, 0, 0}, 1)));")]
 pub struct SetObject<T: Real> {
     /// The set.
-    set: Solid<T>,
+    set: SetArgument<T>,
     /// The objects that it was computed from.
     #[field(default)]
     of: Option<Vec<Value<T>>>,

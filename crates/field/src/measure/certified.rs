@@ -9,7 +9,7 @@ use super::moments::{Moments, POWERS};
 use super::taylor::{self, Combination, TaylorRoom, frame};
 use crate::error::solid_box;
 use crate::expr::interval::{Interval, sides};
-use crate::expr::tape::{Code, Tape};
+use crate::expr::tape::{Code, ExprTape};
 use crate::facet::sheets::solid_part;
 use crate::set::Leaf;
 use crate::{FieldError, Primitive, Set};
@@ -59,7 +59,7 @@ pub struct Certified {
 /// A cell of which only part is solid.
 struct Open {
     sides: [Interval; 3],
-    tape: Arc<Tape<f64>>,
+    tape: Arc<ExprTape<f64>>,
     combination: Option<Combination>,
     bracket: [Interval; 10],
     /// The width of its volume's bracket.
@@ -67,7 +67,7 @@ struct Open {
     depth: u32,
 }
 
-enum Outcome {
+enum CellOutcome {
     Air,
     Solid([Interval; 10]),
     Open(Box<Open>),
@@ -112,18 +112,18 @@ impl Work<'_> {
     /// What a cell contributes.
     fn examined(
         &self,
-        tape: &Arc<Tape<f64>>,
+        tape: &Arc<ExprTape<f64>>,
         sides: [Interval; 3],
         depth: u32,
         room: &mut TaylorRoom,
-    ) -> Outcome {
+    ) -> CellOutcome {
         let range = tape.range(&sides, &mut room.ranges.ranges);
         if range.low > 0.0 {
-            return Outcome::Air;
+            return CellOutcome::Air;
         }
         let local = [0, 1, 2].map(|k| sides[k] - Interval::point(self.about[k]));
         if range.high < 0.0 {
-            return Outcome::Solid(whole(&local));
+            return CellOutcome::Solid(whole(&local));
         }
         let tape = tape.pruned(&room.ranges.ranges).map_or_else(|| tape.clone(), Arc::new);
         let all = whole(&local);
@@ -146,7 +146,7 @@ impl Work<'_> {
             let bracket = self.between(&[Interval::ZERO; 10], all[0].high, &local);
             let width = all[0].high;
             let open = Open { sides, tape, combination: None, bracket, width, depth };
-            return Outcome::Open(Box::new(open));
+            return CellOutcome::Open(Box::new(open));
         };
         let (centre, half) = frame(&sides);
         let pad = ROUNDING * all[0].high;
@@ -161,7 +161,7 @@ impl Work<'_> {
         if high <= 2.0 * pad {
             // All air, to rounding: as much as that may be solid.
             if parts.most[0] <= 0.0 {
-                return Outcome::Air;
+                return CellOutcome::Air;
             }
         }
         least[0] = Interval { low, high: low.max(least[0].high) };
@@ -170,10 +170,10 @@ impl Work<'_> {
         bracket[0] = Interval { low, high };
         let width = (high - low).max(0.0);
         if parts.least[0] >= all[0].low * (1.0 - ROUNDING) {
-            return Outcome::Solid(all);
+            return CellOutcome::Solid(all);
         }
         let open = Open { sides, tape, combination, bracket, width, depth };
-        Outcome::Open(Box::new(open))
+        CellOutcome::Open(Box::new(open))
     }
 
     /// Integrals of a part that is certain and of up to `more` volume anywhere in the cell.
@@ -242,10 +242,10 @@ pub fn certified(
     let mut sealed = Moments::zero(about);
     let mut open: Vec<Open> = Vec::new();
     let mut cells = 1;
-    let mut take = |outcome: Outcome, open: &mut Vec<Open>| match outcome {
-        Outcome::Air => {}
-        Outcome::Solid(part) => sealed.add(&part),
-        Outcome::Open(cell) => open.push(*cell),
+    let mut take = |outcome: CellOutcome, open: &mut Vec<Open>| match outcome {
+        CellOutcome::Air => {}
+        CellOutcome::Solid(part) => sealed.add(&part),
+        CellOutcome::Open(cell) => open.push(*cell),
     };
     let first = work.examined(&compiled.tape, sides(&over), 0, &mut TaylorRoom::default());
     take(first, &mut open);
@@ -275,7 +275,7 @@ pub fn certified(
         }
         open = kept;
         cells += 8 * chosen.len();
-        let parts: Vec<Vec<Outcome>> = chosen
+        let parts: Vec<Vec<CellOutcome>> = chosen
             .par_iter()
             .map_init(TaylorRoom::default, |room, cell| {
                 let each = |half| work.examined(&cell.tape, half, cell.depth + 1, room);

@@ -16,7 +16,7 @@
 use super::moments::{Moments, POWERS};
 use super::moved::moved;
 use crate::expr::algebra::Algebra;
-use crate::facet::sheets::Wire;
+use crate::facet::sheets::FacetWire;
 use crate::facet::types::Flat;
 use crate::set::Leaf;
 use crate::{Gradient, Hessian, Primitive};
@@ -327,7 +327,7 @@ fn points<T: Real>(p: [Vec3<T>; 3], m: [Vec3<T>; 3]) -> [(Vec3<T>, Vec3<T>); 7] 
 }
 
 /// The length of a wire, of fourth order: that of parabolas through middles.
-pub(crate) fn length<T: Real>(wire: &Wire, primitives: &[Option<Primitive<T>>]) -> T {
+pub(crate) fn length<T: Real>(wire: &FacetWire, primitives: &[Option<Primitive<T>>]) -> T {
     let (points, surfaces, leaves) = (&wire.points, &wire.on.surfaces, &wire.on.leaves);
     let goal = goal(&Box3::around(points.iter().copied()));
     let mut solver = Solver::default();

@@ -2,7 +2,7 @@
 
 use super::curved::Curved;
 use super::moved::moved;
-use crate::facet::types::On;
+use crate::facet::types::LeafIncidence;
 use crate::{Facets, FieldError, Leaf, Moments, Primitive, Set};
 use moldloft_mesh::Mesh;
 use moldloft_num::{Real, Vec3};
@@ -73,7 +73,11 @@ impl<T: Real> Lifter<T> {
     ///
     /// # Errors
     /// Surfaces that are not the set's.
-    pub fn moved_on(&self, points: &[Vec3], on: &On) -> Result<Vec<Vec3<T>>, FieldError> {
+    pub fn moved_on(
+        &self,
+        points: &[Vec3],
+        on: &LeafIncidence,
+    ) -> Result<Vec<Vec3<T>>, FieldError> {
         let primitives = self.primitives_on(on)?;
         Ok(moved(points, &on.surfaces, &primitives))
     }
@@ -82,7 +86,10 @@ impl<T: Real> Lifter<T> {
     ///
     /// # Errors
     /// Surfaces that are not the set's.
-    pub(crate) fn primitives_on(&self, on: &On) -> Result<Vec<Option<Primitive<T>>>, FieldError> {
+    pub(crate) fn primitives_on(
+        &self,
+        on: &LeafIncidence,
+    ) -> Result<Vec<Option<Primitive<T>>>, FieldError> {
         self.those_of(&on.leaves, on.surfaces.iter().flatten().copied())
     }
 

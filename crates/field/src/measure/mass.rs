@@ -12,7 +12,7 @@ use crate::expr::interval::Interval;
 use crate::facet::memo::FacetMemo;
 use crate::facet::sheets::solid_part;
 use crate::facet::types::Flat;
-use crate::facet::{Facets, Options, Resolution};
+use crate::facet::{FacetOptions, Facets, Resolution};
 use crate::{FieldError, Lifter, Primitive, Set};
 use moldloft_budget::Budget;
 use moldloft_num::{Box3, Real, Vec3};
@@ -65,7 +65,7 @@ fn effort(depth: u32) -> Result<Effort, FieldError> {
 
 /// How integrals are made.
 #[derive(Clone, Default)]
-pub struct Measure {
+pub struct IntegralOptions {
     /// Boxes of the bracket are halved this often at most; by default a few thousand are enough.
     pub depth: Option<u32>,
     /// How far the volume may be from its best value, proved.
@@ -78,7 +78,7 @@ pub struct Measure {
     pub budget: Arc<Budget>,
 }
 
-impl Measure {
+impl IntegralOptions {
     /// With a bracket of boxes halved that often.
     pub fn to_depth(depth: u32) -> Self {
         Self { depth: Some(depth), ..Self::default() }
@@ -92,7 +92,7 @@ impl Measure {
 
 /// A bracket and the best value inside it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mass<T: Real = f64> {
+pub struct BracketedMass<T: Real = f64> {
     /// Proved.
     pub bracket: Moments<Interval>,
     /// Within the bracket.
@@ -106,7 +106,11 @@ pub struct Mass<T: Real = f64> {
 /// # Errors
 /// As [`bracket`] and [`crate::facet`]; [`FieldError::NotReached`] when the accuracy would need more cells than
 /// allowed.
-pub fn mass(set: &Set, over: &Box3, measure: &Measure) -> Result<Mass, FieldError> {
+pub fn mass(
+    set: &Set,
+    over: &Box3,
+    measure: &IntegralOptions,
+) -> Result<BracketedMass, FieldError> {
     mass_of(set, over, None, measure, &FacetMemo::default())
 }
 
@@ -118,9 +122,9 @@ pub fn mass_of<T: Real>(
     set: &Set<T>,
     over: &Box3,
     corners: Option<[Vec3<T>; 2]>,
-    measure: &Measure,
+    measure: &IntegralOptions,
     memo: &FacetMemo,
-) -> Result<Mass<T>, FieldError> {
+) -> Result<BracketedMass<T>, FieldError> {
     let plain = set.re();
     let solid = solid_part(&plain);
     let budget = &measure.budget;
@@ -155,11 +159,11 @@ pub fn mass_of<T: Real>(
     let size = (0..3).map(|k| over.high[k] - over.low[k]).product::<f64>();
     let exact = width <= 1e-3 * measure.agreement.unwrap_or(USUAL * size);
     if exact && corners.is_none() {
-        return Ok(Mass { bracket, best: from_cells(&checked, &bracket), uncertain: 0.0 });
+        return Ok(BracketedMass { bracket, best: from_cells(&checked, &bracket), uncertain: 0.0 });
     }
     let faceted = by_facets(&solid, over, &lifter, measure, memo, &bracket)?;
     if let Some(Faceted { moments, settled: true, .. }) = faceted {
-        return Ok(Mass { bracket, best: within(moments, &bracket), uncertain: 0.0 });
+        return Ok(BracketedMass { bracket, best: within(moments, &bracket), uncertain: 0.0 });
     }
     // What facets do not show, or not as well as was asked.
     let thin = match checked.cells >= THIN {
@@ -175,10 +179,10 @@ pub fn mass_of<T: Real>(
         && change < half
     {
         let uncertain = if change <= agreement { 0.0 } else { 2.0 * change };
-        return Ok(Mass { bracket, best: within(moments, &bracket), uncertain });
+        return Ok(BracketedMass { bracket, best: within(moments, &bracket), uncertain });
     }
     let uncertain = if half <= agreement { 0.0 } else { half };
-    Ok(Mass { bracket, best: from_cells(&thin, &bracket), uncertain })
+    Ok(BracketedMass { bracket, best: from_cells(&thin, &bracket), uncertain })
 }
 
 /// The numbers of both brackets.
@@ -213,7 +217,7 @@ fn by_facets<T: Real>(
     solid: &Set,
     over: &Box3,
     lifter: &Lifter<T>,
-    measure: &Measure,
+    measure: &IntegralOptions,
     memo: &FacetMemo,
     bracket: &Moments<Interval>,
 ) -> Result<Option<Faceted<T>>, FieldError> {
@@ -225,10 +229,10 @@ fn by_facets<T: Real>(
     let mut before: Option<(Arc<Facets>, f64)> = None;
     let mut change = f64::INFINITY;
     for level in LEVELS[0]..=FINEST {
-        let options = Options {
+        let options = FacetOptions {
             sharp: true,
             budget: measure.budget.clone(),
-            ..Options::new(Resolution::Level(level))
+            ..FacetOptions::new(Resolution::Level(level))
         };
         let facets = memo.facet(solid, over, &options)?;
         let missed = facets.unresolved.iter().filter(|u| u.missed).count();

@@ -32,11 +32,11 @@ pub(super) struct Face<T: Real> {
 
 /// A convex piece.
 #[derive(Clone, Debug)]
-pub(super) struct Polytope<T: Real> {
+pub(super) struct CellPolytope<T: Real> {
     pub faces: SmallVec<[Face<T>; 8]>,
 }
 
-impl<T: Real> Polytope<T> {
+impl<T: Real> CellPolytope<T> {
     /// The box about the origin with these half sides.
     pub fn of_box(half: Vec3) -> Self {
         let mut faces = SmallVec::new();
@@ -196,7 +196,7 @@ mod tests {
     #[test]
     fn parts_of_a_box_have_its_moments() {
         let half = Vec3::of(0.5, 0.7, 0.9);
-        let whole = Polytope::<f64>::of_box(half);
+        let whole = CellPolytope::<f64>::of_box(half);
         let m = whole.moments();
         assert!((m[0] - 8.0 * 0.5 * 0.7 * 0.9).abs() < 1e-15);
         assert!((m[4] - m[0] * 0.25 / 3.0).abs() < 1e-15 && m[7].abs() < 1e-15);

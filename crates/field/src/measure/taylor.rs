@@ -4,11 +4,11 @@
 //! monotone in its leaves, so that with the remainders at their upper ends it is less, and at their lower ends
 //! more, than it is: both are parted by planes, and integrated exactly.
 
-use super::polytope::{Cut, Polytope, SECOND};
+use super::polytope::{CellPolytope, Cut, SECOND};
 use crate::expr::algebra::GradientRange;
 use crate::expr::interval::Interval;
 use crate::expr::second_order::{HessianRange, PAIRS};
-use crate::expr::tape::{Code, NO_LEAF, RangeRoom, Tape};
+use crate::expr::tape::{Code, ExprTape, NO_LEAF, RangeRoom};
 use crate::{Hessian, Primitive};
 use moldloft_num::{Real, Vec3};
 use smallvec::SmallVec;
@@ -18,7 +18,7 @@ pub(crate) const MOST_LEAVES: usize = 6;
 
 /// How leaves are combined.
 #[derive(Clone, Copy, Debug)]
-enum Node {
+enum CombinationNode {
     Leaf(u8),
     Or(u8, u8),
     And(u8, u8),
@@ -27,7 +27,7 @@ enum Node {
 /// A combination of few leaves.
 #[derive(Clone, Debug)]
 pub(crate) struct Combination {
-    nodes: SmallVec<[Node; 12]>,
+    nodes: SmallVec<[CombinationNode; 12]>,
     /// The instruction and the number of each leaf.
     pub leaves: SmallVec<[(u32, u32); 6]>,
 }
@@ -37,7 +37,7 @@ type Signs = [i8; MOST_LEAVES];
 
 impl Combination {
     /// That of a tape; `None` when it has no leaf or too many.
-    pub fn of(tape: &Tape<f64>) -> Option<Self> {
+    pub fn of(tape: &ExprTape<f64>) -> Option<Self> {
         let mut number = vec![u8::MAX; tape.code.len()];
         let mut out = Self { nodes: SmallVec::new(), leaves: SmallVec::new() };
         let mut stack: SmallVec<[(u32, bool); 16]> = SmallVec::new();
@@ -53,15 +53,15 @@ impl Combination {
                         return None;
                     }
                     out.leaves.push((at, tape.leaf[k]));
-                    Node::Leaf(out.leaves.len() as u8 - 1)
+                    CombinationNode::Leaf(out.leaves.len() as u8 - 1)
                 }
                 Code::Union(a, b) | Code::Common(a, b) if !ready => {
                     stack.push((at, true));
                     stack.extend([(b, false), (a, false)]);
                     continue;
                 }
-                Code::Union(a, b) => Node::Or(number[a as usize], number[b as usize]),
-                Code::Common(a, b) => Node::And(number[a as usize], number[b as usize]),
+                Code::Union(a, b) => CombinationNode::Or(number[a as usize], number[b as usize]),
+                Code::Common(a, b) => CombinationNode::And(number[a as usize], number[b as usize]),
                 _ => return None,
             };
             if out.nodes.len() == usize::from(u8::MAX) {
@@ -77,9 +77,9 @@ impl Combination {
         let mut values: SmallVec<[i8; 12]> = SmallVec::new();
         for node in &self.nodes {
             values.push(match *node {
-                Node::Leaf(k) => signs[k as usize],
-                Node::Or(a, b) => values[a as usize].min(values[b as usize]),
-                Node::And(a, b) => values[a as usize].max(values[b as usize]),
+                CombinationNode::Leaf(k) => signs[k as usize],
+                CombinationNode::Or(a, b) => values[a as usize].min(values[b as usize]),
+                CombinationNode::And(a, b) => values[a as usize].max(values[b as usize]),
             });
         }
         values[self.nodes.len() - 1]
@@ -88,11 +88,11 @@ impl Combination {
     /// Hands every solid part of a piece to `take`; `false` from it ends the search.
     fn solid_parts<T: Real>(
         &self,
-        piece: Polytope<T>,
+        piece: CellPolytope<T>,
         cuts: &[Option<Cut<T>>],
         signs: Signs,
         from: usize,
-        take: &mut dyn FnMut(&Polytope<T>),
+        take: &mut dyn FnMut(&CellPolytope<T>),
     ) {
         match self.state(&signs) {
             -1 => return take(&piece),
@@ -122,7 +122,7 @@ struct Form {
 }
 
 /// The part of a box that is solid, of which bounds are proved.
-pub(crate) struct Parts {
+pub(crate) struct MomentBounds {
     /// At least …
     pub least: [f64; 10],
     /// … and at most.
@@ -151,12 +151,12 @@ pub(crate) struct TaylorRoom {
 /// Bounds of the integrals over the solid part of a box, about its middle; of what is solid at most the volume only,
 /// unless its other `moments` are asked for.
 pub(crate) fn bounds(
-    tape: &Tape<f64>,
+    tape: &ExprTape<f64>,
     combination: &Combination,
     sides: &[Interval; 3],
     moments: bool,
     room: &mut TaylorRoom,
-) -> Parts {
+) -> MomentBounds {
     let (centre, half) = frame(sides);
     tape.eval::<HessianRange>(sides, &mut room.forms);
     tape.eval::<GradientRange>(&centre.to_array().map(Interval::point), &mut room.centre);
@@ -196,7 +196,7 @@ pub(crate) fn bounds(
         Form { value, slope, rest }
     };
     let forms: SmallVec<[Form; 6]> = combination.leaves.iter().map(|l| form(l.0)).collect();
-    let whole = Polytope::<f64>::of_box(half);
+    let whole = CellPolytope::<f64>::of_box(half);
     let integrate = |least: bool| {
         let mut signs = [0; MOST_LEAVES];
         let cuts: SmallVec<[Option<Cut<f64>>; 6]> = forms
@@ -225,7 +225,7 @@ pub(crate) fn bounds(
         });
         sum
     };
-    Parts { least: integrate(true), most: integrate(false) }
+    MomentBounds { least: integrate(true), most: integrate(false) }
 }
 
 /// The best guess of the integrals over the solid part of a box, about its middle: that of the leaves' planes at the
@@ -249,7 +249,7 @@ pub(crate) fn best<T: Real>(
         })
         .collect();
     let mut sum = [T::zero(); 10];
-    let whole = Polytope::<T>::of_box(half);
+    let whole = CellPolytope::<T>::of_box(half);
     combination.solid_parts(whole, &cuts, [0; MOST_LEAVES], 0, &mut |part| {
         sum.iter_mut().zip(part.moments()).for_each(|(s, x)| *s += x);
         for face in &part.faces {

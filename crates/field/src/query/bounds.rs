@@ -1,7 +1,7 @@
 //! The box around a set.
 
 use crate::expr::interval::Interval;
-use crate::expr::tape::Tape;
+use crate::expr::tape::ExprTape;
 use crate::{FieldError, Set};
 use moldloft_num::{Box3, Vec3};
 use std::cmp::Ordering;
@@ -13,26 +13,26 @@ const WORLD: f64 = 1048576.0;
 /// The most boxes to look at for one side.
 const MOST: usize = 100_000;
 
-struct Part {
+struct ReachBox {
     /// How far it reaches in the direction asked for.
     reach: f64,
     depth: u32,
     sides: [Interval; 3],
-    tape: Arc<Tape<f64>>,
+    tape: Arc<ExprTape<f64>>,
 }
 
-impl PartialEq for Part {
+impl PartialEq for ReachBox {
     fn eq(&self, o: &Self) -> bool {
         self.cmp(o) == Ordering::Equal
     }
 }
-impl Eq for Part {}
-impl PartialOrd for Part {
+impl Eq for ReachBox {}
+impl PartialOrd for ReachBox {
     fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
         Some(self.cmp(o))
     }
 }
-impl Ord for Part {
+impl Ord for ReachBox {
     /// The farthest first; of equally far ones the smallest, so that flat ends are not searched over.
     fn cmp(&self, o: &Self) -> Ordering {
         let places = o.sides.into_iter().zip(self.sides).map(|(a, b)| a.low.total_cmp(&b.low));
@@ -77,17 +77,17 @@ pub fn bounds(set: &Set, accuracy: f64) -> Result<Option<Box3>, FieldError> {
 
 /// How far the set reaches along an axis, from above; `None` when it is empty.
 fn farthest(
-    tape: &Arc<Tape<f64>>,
+    tape: &Arc<ExprTape<f64>>,
     axis: usize,
     sign: f64,
     accuracy: f64,
 ) -> Result<Option<f64>, FieldError> {
     let world = Interval::new(-WORLD, WORLD);
     let mut heap = BinaryHeap::new();
-    heap.push(Part { reach: WORLD, depth: 0, sides: [world; 3], tape: tape.clone() });
+    heap.push(ReachBox { reach: WORLD, depth: 0, sides: [world; 3], tape: tape.clone() });
     let mut room = Vec::new();
     let mut seen = 0;
-    while let Some(Part { reach, depth, sides, tape }) = heap.pop() {
+    while let Some(ReachBox { reach, depth, sides, tape }) = heap.pop() {
         let range = tape.range(&sides, &mut room);
         if range.low > 0.0 {
             continue;
@@ -111,7 +111,7 @@ fn farthest(
                 }
             });
             let reach = if sign > 0.0 { half[axis].high } else { -half[axis].low };
-            heap.push(Part { reach, depth: depth + 1, sides: half, tape: tape.clone() });
+            heap.push(ReachBox { reach, depth: depth + 1, sides: half, tape: tape.clone() });
         }
     }
     Ok(None)

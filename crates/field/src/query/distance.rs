@@ -3,7 +3,7 @@
 use super::foot;
 use super::separation::{Gauge, proved as separation, suggested};
 use crate::expr::interval::{Interval, sides};
-use crate::expr::tape::{NO_LEAF, RangeRoom, Tape};
+use crate::expr::tape::{ExprTape, NO_LEAF, RangeRoom};
 use crate::{FieldError, Set};
 use moldloft_num::{Box3, Vec3};
 use std::cmp::Ordering;
@@ -25,9 +25,9 @@ pub struct Distance {
 
 type Sides = [Interval; 3];
 
-struct Part {
+struct DistanceBox {
     sides: Sides,
-    tape: Arc<Tape<f64>>,
+    tape: Arc<ExprTape<f64>>,
     /// True when all of it is in the set.
     solid: bool,
     /// True when it is away from the faces of the whole box.
@@ -38,7 +38,7 @@ struct Part {
 
 /// The part of a box in which a primitive with these slopes can be zero; `None` when there is none.
 fn contracted(
-    tape: &Tape<f64>,
+    tape: &ExprTape<f64>,
     mut sides: Sides,
     slope: &Sides,
     room: &mut RangeRoom,
@@ -66,7 +66,7 @@ fn contracted(
 
 /// True when no nearest pair of points can be in two boxes apart: inside a solid, or where the way
 /// between them is nowhere along the gradient, outward.
-fn can_prune(pair: &[Arc<Part>; 2]) -> bool {
+fn can_prune(pair: &[Arc<DistanceBox>; 2]) -> bool {
     (0..2).any(|k| {
         let (own, other) = (&pair[k], &pair[1 - k]);
         if own.within && own.solid {
@@ -86,7 +86,7 @@ fn can_prune(pair: &[Arc<Part>; 2]) -> bool {
 struct Pair {
     distance: f64,
     depth: u32,
-    parts: [Arc<Part>; 2],
+    parts: [Arc<DistanceBox>; 2],
 }
 
 impl PartialEq for Pair {
@@ -170,7 +170,7 @@ pub fn distance(
     let near = 1e-9 * over.diagonal();
     let sets = [a, b];
     let mut room = RangeRoom::default();
-    let mut part = |sides: Sides, tape: &Arc<Tape<f64>>| {
+    let mut part = |sides: Sides, tape: &Arc<ExprTape<f64>>| {
         let range = tape.range(&sides, &mut room.ranges);
         if range.low > 0.0 {
             return None;
@@ -180,7 +180,7 @@ pub fn distance(
         let within = (0..3).all(|k| sides[k].low > over.low[k] && sides[k].high < over.high[k]);
         let alone = !solid && tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
         // Points that are nearest are on the surface, or in a face of the whole box.
-        let mut part = Part { sides, tape, solid, within, slope: None };
+        let mut part = DistanceBox { sides, tape, solid, within, slope: None };
         if alone && within {
             let range = part.tape.mean_value(&part.sides, &mut room);
             part.sides = contracted(&part.tape, part.sides, &range.slope, &mut room)?;
@@ -260,7 +260,12 @@ pub fn distance(
 
 /// Points of both sets near the given ones: the points themselves where they are in the sets, else
 /// nearest ones of the surfaces there, by turns.
-fn tried(sets: [&Set; 2], parts: &[Arc<Part>; 2], at: [Vec3; 2], near: f64) -> Option<[Vec3; 2]> {
+fn tried(
+    sets: [&Set; 2],
+    parts: &[Arc<DistanceBox>; 2],
+    at: [Vec3; 2],
+    near: f64,
+) -> Option<[Vec3; 2]> {
     let inside = |set: &Set, p: Vec3| set.member(p, near) != crate::Membership::Air;
     let mut pair = at;
     for turn in 0..6 {

@@ -1,7 +1,7 @@
 //! The nearest point of a set's surface, and plane sections.
 
 use crate::expr::interval::{Interval, sides};
-use crate::expr::tape::{NO_LEAF, RangeRoom, Tape};
+use crate::expr::tape::{ExprTape, NO_LEAF, RangeRoom};
 use crate::facet::Facets;
 use crate::facet::vertex::Solver;
 use crate::{FieldError, Gradient, Primitive, Set};
@@ -15,7 +15,7 @@ struct Candidate {
     distance: f64,
     sides: [Interval; 3],
     depth: u32,
-    tape: Arc<Tape<f64>>,
+    tape: Arc<ExprTape<f64>>,
 }
 
 impl PartialEq for Candidate {
@@ -43,7 +43,7 @@ impl Ord for Candidate {
 
 /// The nearest point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
+pub struct CertifiedNearest {
     /// The point.
     pub point: Vec3,
     /// Its distance.
@@ -81,7 +81,7 @@ pub fn nearest(
     p: Vec3,
     over: &Box3,
     accuracy: f64,
-) -> Result<Option<Nearest>, FieldError> {
+) -> Result<Option<CertifiedNearest>, FieldError> {
     crate::error::positive("accuracy", accuracy)?;
     let over = crate::error::solid_box(*over)?;
     let compiled = set.compiled();
@@ -103,7 +103,11 @@ pub fn nearest(
             // Near a minimum of the distance the place is known by its root only: Newton's method settles it.
             let point = crate::query::foot::polished(set, p, point, 1e-9 * over.diagonal());
             let found = point.distance(p).min(found);
-            return Ok(Some(Nearest { point, distance: found, at_least: distance.min(found) }));
+            return Ok(Some(CertifiedNearest {
+                point,
+                distance: found,
+                at_least: distance.min(found),
+            }));
         }
         seen += 1;
         if seen > 2 * MOST {
@@ -145,7 +149,7 @@ pub fn nearest(
             }
         }
     }
-    Ok(best.map(|(point, distance)| Nearest {
+    Ok(best.map(|(point, distance)| CertifiedNearest {
         point,
         distance,
         at_least: (distance - accuracy).max(proved).min(distance),
@@ -154,7 +158,7 @@ pub fn nearest(
 
 /// True when one primitive alone decides in the box, away from the faces of all of it, and its gradient
 /// is nowhere parallel to the way from `p`: then the nearest point is elsewhere.
-fn no_foot(tape: &Tape<f64>, sides: &[Interval; 3], p: Vec3, over: &Box3) -> bool {
+fn no_foot(tape: &ExprTape<f64>, sides: &[Interval; 3], p: Vec3, over: &Box3) -> bool {
     let alone = tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
     let within = (0..3).all(|k| sides[k].low > over.low[k] && sides[k].high < over.high[k]);
     if !alone || !within {
@@ -187,7 +191,7 @@ fn reach(sides: &[Interval; 3], p: Vec3) -> f64 {
 fn surface_point(
     set: &Set,
     leaves: &[crate::Leaf],
-    tape: &Tape<f64>,
+    tape: &ExprTape<f64>,
     sides: &[Interval; 3],
     p: Vec3,
 ) -> Option<Vec3> {
@@ -233,7 +237,7 @@ fn surface_point(
 fn edge_point(
     set: &Set,
     leaves: &[crate::Leaf],
-    tape: &Tape<f64>,
+    tape: &ExprTape<f64>,
     sides: &[Interval; 3],
     p: Vec3,
     solver: &mut Solver,

@@ -6,7 +6,7 @@
 //! secants.
 
 use crate::expr::interval::Interval;
-use crate::expr::tape::{Code, NO_LEAF, Tape};
+use crate::expr::tape::{Code, ExprTape, NO_LEAF};
 use crate::{Leaf, Membership, Primitive, Set};
 use moldloft_num::{Real, Vec3, find_root};
 use smallvec::SmallVec;
@@ -49,7 +49,7 @@ impl Ray {
 type Polynomial = SmallVec<[f64; 5]>;
 
 /// The primitive along a ray, when it is a polynomial of degree 4 at most.
-fn polynomial(tape: &Tape<f64>, ray: &Ray) -> Option<Polynomial> {
+fn polynomial(tape: &ExprTape<f64>, ray: &Ray) -> Option<Polynomial> {
     let mut values: Vec<Polynomial> = Vec::with_capacity(tape.code.len());
     let zip = |a: &Polynomial, b: &Polynomial, sign: f64| -> Polynomial {
         let part = |p: &Polynomial, k: usize| p.get(k).copied().unwrap_or(0.0);
@@ -230,7 +230,7 @@ pub fn roots(f: &Primitive, ray: &Ray) -> Vec<f64> {
 pub struct Caster<'a> {
     set: &'a Set,
     leaves: Vec<Leaf>,
-    tape: Arc<Tape<f64>>,
+    tape: Arc<ExprTape<f64>>,
 }
 
 impl<'a> Caster<'a> {

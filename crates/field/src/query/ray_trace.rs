@@ -1,6 +1,6 @@
 //! Pictures of sets by ray casting: exact surfaces, lights, shadows, highlights.
 
-use crate::facet::Options;
+use crate::facet::FacetOptions;
 use crate::query::ray::{Caster, Hit, Ray};
 use crate::{FieldError, Set};
 use moldloft_num::{Box3, Real, Vec3};
@@ -79,7 +79,7 @@ pub fn ray_trace(
     set: &Set,
     over: &Box3,
     view: &RayTrace,
-    options: &Options,
+    options: &FacetOptions,
 ) -> Result<Vec<u8>, FieldError> {
     let over = crate::error::solid_box(*over)?;
     let ahead = crate::error::unit("direction of the view", view.centre - view.eye)?;
@@ -90,7 +90,7 @@ pub fn ray_trace(
     let [width, height] = view.size;
     let reach = Real::tan(0.5 * view.angle);
     let n = view.samples.max(1);
-    let scene = Scene { caster: &caster, over: &over, view };
+    let scene = RayScene { caster: &caster, over: &over, view };
     let rows: Vec<Vec<u8>> = (0..height)
         .into_par_iter()
         .map(|row| {
@@ -123,13 +123,13 @@ pub fn ray_trace(
     Ok(rows.concat())
 }
 
-struct Scene<'a> {
+struct RayScene<'a> {
     caster: &'a Caster<'a>,
     over: &'a Box3,
     view: &'a RayTrace,
 }
 
-impl Scene<'_> {
+impl RayScene<'_> {
     fn first(&self, start: Vec3, direction: Vec3) -> Option<Hit> {
         let [near, far] = clipped(start, direction, self.over)?;
         // A little before the box, so that its faces are crossed and not begun on.

@@ -3,7 +3,7 @@
 use crate::expr::algebra::Unary;
 use crate::expr::interval::Interval;
 use crate::expr::primitive::{Binary, Op};
-use crate::expr::tape::{Builder, Code, NO_LEAF, Tape};
+use crate::expr::tape::{Builder, Code, ExprTape, NO_LEAF};
 use crate::{Affine, FieldError, Primitive};
 use moldloft_num::{Box3, Real, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet, FxHasher};
@@ -66,7 +66,7 @@ enum Kind<T: Real> {
     Intersection,
 }
 
-struct Node<T: Real> {
+struct SetNode<T: Real> {
     kind: Kind<T>,
     /// Two operands of unions and intersections.
     operands: Vec<Set<T>>,
@@ -74,7 +74,7 @@ struct Node<T: Real> {
     fingerprint: u64,
 }
 
-impl<T: Real> Drop for Node<T> {
+impl<T: Real> Drop for SetNode<T> {
     /// Long chains are taken apart in a loop: recursion would overflow the stack.
     fn drop(&mut self) {
         let mut pending = std::mem::take(&mut self.operands);
@@ -105,7 +105,7 @@ impl<T: Real> Drop for Node<T> {
 /// # Ok::<(), moldloft_field::FieldError>(())
 /// ```
 pub struct Set<T: Real = f64> {
-    node: Arc<Node<T>>,
+    node: Arc<SetNode<T>>,
     attributes: Option<Arc<Attributes>>,
 }
 
@@ -127,7 +127,7 @@ pub struct Leaf<T: Real = f64> {
 /// A compiled set.
 #[derive(Clone)]
 pub(crate) struct Compiled<T: Real> {
-    pub(crate) tape: Arc<Tape<T>>,
+    pub(crate) tape: Arc<ExprTape<T>>,
     pub(crate) leaves: Vec<Leaf<T>>,
     /// The number of the leaf at every place of the tree, in order; those of a part that occurs many times once.
     pub(crate) places: Vec<u32>,
@@ -142,7 +142,7 @@ impl<T: Real> Set<T> {
         }
         operands.iter().for_each(|o| o.node.fingerprint.hash(&mut h));
         let fingerprint = h.finish();
-        Self { node: Arc::new(Node { kind, operands, fingerprint }), attributes: None }
+        Self { node: Arc::new(SetNode { kind, operands, fingerprint }), attributes: None }
     }
 
     /// A number by which different sets mostly differ.
@@ -478,7 +478,7 @@ impl<T: Real> Set<T> {
         join: &dyn Fn(bool, R, R) -> R,
     ) -> R {
         let mut out: Vec<R> = Vec::new();
-        let mut known: FxHashMap<*const Node<T>, R> = FxHashMap::default();
+        let mut known: FxHashMap<*const SetNode<T>, R> = FxHashMap::default();
         let mut stack = vec![(self, false)];
         while let Some((set, ready)) = stack.pop() {
             if let Some(made) = known.get(&Arc::as_ptr(&set.node)) {
@@ -581,7 +581,7 @@ impl<T: Real> Set<T> {
     /// The primitives of its leaves in order; those of a part that occurs many times once.
     pub(crate) fn traversal(&self) -> Vec<Primitive<T>> {
         let (mut out, mut stack) = (Vec::new(), vec![self]);
-        let mut seen: FxHashSet<*const Node<T>> = FxHashSet::default();
+        let mut seen: FxHashSet<*const SetNode<T>> = FxHashSet::default();
         while let Some(set) = stack.pop() {
             if seen.insert(Arc::as_ptr(&set.node)) {
                 out.extend(set.primitive().cloned());
@@ -597,7 +597,8 @@ impl<T: Real> Set<T> {
         let mut values: Vec<u32> = Vec::new();
         let mut places = Vec::new();
         // A node under the same attributes has one value, and attributes under the same outer ones are the same.
-        let mut known: FxHashMap<(*const Node<T>, *const Attributes), u32> = FxHashMap::default();
+        let mut known: FxHashMap<(*const SetNode<T>, *const Attributes), u32> =
+            FxHashMap::default();
         type Inherited = FxHashMap<(*const Attributes, *const Attributes), Arc<Attributes>>;
         let mut inherited = Inherited::default();
         let none = Arc::new(Attributes::default());

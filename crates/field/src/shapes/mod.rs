@@ -176,7 +176,7 @@ pub struct NotClosed {
 }
 
 /// A box about a run of triangles, and where its halves are; a leaf has none.
-struct Node {
+struct BvhNode {
     bounds: Box3,
     triangles: std::ops::Range<u32>,
     halves: Option<[u32; 2]>,
@@ -184,7 +184,7 @@ struct Node {
 
 /// Triangles prepared for nearest points, in plain numbers.
 struct Tree {
-    nodes: Vec<Node>,
+    nodes: Vec<BvhNode>,
     order: Vec<u32>,
     /// For each triangle the normals of its three corners and of its three edges, as sums that tell sides.
     sides: Vec<[Vec3; 7]>,
@@ -267,7 +267,7 @@ impl Tree {
             self.order[own.clone()].iter().flat_map(|&t| corners(points, triangles[t as usize]));
         let bounds = Box3::around(all);
         let number = self.nodes.len() as u32;
-        self.nodes.push(Node { bounds, triangles: run.clone(), halves: None });
+        self.nodes.push(BvhNode { bounds, triangles: run.clone(), halves: None });
         if own.len() > LEAF {
             let size = bounds.high - bounds.low;
             let axis = (0..3).fold(0, |best, k| if size[k] > size[best] { k } else { best });

@@ -8,7 +8,7 @@
 
 use crate::expr::interval::Interval;
 use moldloft_locate::Boxes;
-use moldloft_locate::pieces::{Patch, distance_sq, patches, widened};
+use moldloft_locate::pieces::{BezierPatch, distance_sq, patches, widened};
 use moldloft_num::{Box3, Surface, Vec3};
 
 /// Pieces are halved until their normals differ by this from that in the middle, …
@@ -20,7 +20,7 @@ const MOST: usize = 1 << 13;
 const LEAF: usize = 4;
 
 /// A piece of the surface.
-struct Piece {
+struct SurfacePiece {
     middle: Vec3,
     /// How far it reaches from the middle, …
     reach: f64,
@@ -34,7 +34,7 @@ struct Piece {
 
 /// The pieces of a surface.
 pub(crate) struct SignedSide {
-    pieces: Vec<Piece>,
+    pieces: Vec<SurfacePiece>,
     boxes: Boxes,
 }
 
@@ -46,8 +46,8 @@ fn ball(all: &[Vec3]) -> (Vec3, f64) {
     (mean, all.iter().map(|v| v.distance(mean)).fold(0.0, f64::max))
 }
 
-impl Piece {
-    fn of(patch: &Patch) -> Self {
+impl SurfacePiece {
+    fn of(patch: &BezierPatch) -> Self {
         let n = &patch.net;
         let (mut du, mut dv) = ([Vec3::zero(); 12], [Vec3::zero(); 12]);
         for i in 0..3 {
@@ -95,10 +95,10 @@ impl SignedSide {
     pub(crate) fn new(surface: &dyn Surface<f64>) -> Self {
         let mut pieces = Vec::new();
         let mut bounds = Vec::new();
-        let mut pending: Vec<(Patch, u32)> =
+        let mut pending: Vec<(BezierPatch, u32)> =
             patches(surface).into_iter().rev().map(|p| (p, 0)).collect();
         while let Some((patch, halvings)) = pending.pop() {
-            let piece = Piece::of(&patch);
+            let piece = SurfacePiece::of(&patch);
             let full = pieces.len() + pending.len() >= MOST;
             if piece.turn <= TURN || halvings == MOST_HALVINGS || full {
                 bounds.push(patch.bounds());

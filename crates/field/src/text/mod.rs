@@ -87,13 +87,13 @@ fn numbers(out: &mut String, values: &[f64]) {
 }
 
 #[derive(Default)]
-struct Writer {
+struct TextWriter {
     out: String,
     count: usize,
     primitives: HashMap<usize, usize>,
 }
 
-impl Writer {
+impl TextWriter {
     fn line(&mut self, text: &str) -> usize {
         let _ = writeln!(self.out, "{} {text}", self.count);
         self.count += 1;
@@ -224,7 +224,7 @@ impl Set<f64> {
     /// # Ok::<(), moldloft_field::FieldError>(())
     /// ```
     pub fn to_text(&self) -> Result<String, FieldError> {
-        let mut writer = Writer { out: format!("{HEADER}\n"), ..Writer::default() };
+        let mut writer = TextWriter { out: format!("{HEADER}\n"), ..TextWriter::default() };
         let mut known: HashMap<(usize, usize), usize> = HashMap::new();
         let mut values: Vec<usize> = Vec::new();
         let mut stack = vec![(self, false)];
@@ -269,8 +269,8 @@ impl Set<f64> {
     /// What is wrong with the text, with the line.
     pub fn from_text(text: &str) -> Result<Self, TextError> {
         match read(text)? {
-            Node::Set(set) => Ok(set),
-            Node::Field(_) => wrong(1, "expected a set, found a field"),
+            ParsedShape::Set(set) => Ok(set),
+            ParsedShape::Field(_) => wrong(1, "expected a set, found a field"),
         }
     }
 }
@@ -281,7 +281,7 @@ impl Primitive<f64> {
     /// # Errors
     /// [`FieldError::Outside`] when part of it is a function from outside.
     pub fn to_text(&self) -> Result<String, FieldError> {
-        let mut writer = Writer { out: format!("{HEADER}\n"), ..Writer::default() };
+        let mut writer = TextWriter { out: format!("{HEADER}\n"), ..TextWriter::default() };
         let root = writer.primitive(self)?;
         let _ = writeln!(writer.out, "root {root}");
         Ok(writer.out)
@@ -293,14 +293,14 @@ impl Primitive<f64> {
     /// What is wrong with the text, with the line.
     pub fn from_text(text: &str) -> Result<Self, TextError> {
         match read(text)? {
-            Node::Field(f) => Ok(f),
-            Node::Set(_) => wrong(1, "expected a field, found a set"),
+            ParsedShape::Field(f) => Ok(f),
+            ParsedShape::Set(_) => wrong(1, "expected a field, found a set"),
         }
     }
 }
 
 #[derive(Clone)]
-enum Node {
+enum ParsedShape {
     Field(Primitive),
     Set(Set),
 }
@@ -378,7 +378,7 @@ impl Words<'_> {
     }
 }
 
-fn read(text: &str) -> Result<Node, TextError> {
+fn read(text: &str) -> Result<ParsedShape, TextError> {
     let mut lines = text.lines().enumerate().map(|(k, l)| (k + 1, l.trim()));
     match lines.next() {
         Some((_, HEADER)) => {}
@@ -388,7 +388,7 @@ fn read(text: &str) -> Result<Node, TextError> {
         }
         None => return wrong(1, format!("expected `{HEADER}`, found nothing")),
     }
-    let mut nodes: Vec<Node> = Vec::new();
+    let mut nodes: Vec<ParsedShape> = Vec::new();
     for (number, line) in lines.filter(|l| !l.1.is_empty() && !l.1.starts_with('#')) {
         let list = words(line, number)?;
         let mut w = Words { list: &list, at: 0, line: number };
@@ -413,10 +413,10 @@ fn read(text: &str) -> Result<Node, TextError> {
     wrong(text.lines().count(), "the text ends without `root`")
 }
 
-fn read_node(w: &mut Words, nodes: &[Node]) -> Result<Node, TextError> {
+fn read_node(w: &mut Words, nodes: &[ParsedShape]) -> Result<ParsedShape, TextError> {
     let line = w.line;
     let word = w.next("an operation")?.to_owned();
-    let operand = |w: &mut Words| -> Result<Node, TextError> {
+    let operand = |w: &mut Words| -> Result<ParsedShape, TextError> {
         let k = w.whole()?;
         match nodes.get(k) {
             Some(node) => Ok(node.clone()),
@@ -424,12 +424,12 @@ fn read_node(w: &mut Words, nodes: &[Node]) -> Result<Node, TextError> {
         }
     };
     let field = |w: &mut Words| match operand(w)? {
-        Node::Field(f) => Ok(f),
-        Node::Set(_) => wrong(line, "expected a field, found a set"),
+        ParsedShape::Field(f) => Ok(f),
+        ParsedShape::Set(_) => wrong(line, "expected a field, found a set"),
     };
     let set = |w: &mut Words| match operand(w)? {
-        Node::Set(s) => Ok(s),
-        Node::Field(_) => wrong(line, "expected a set, found a field"),
+        ParsedShape::Set(s) => Ok(s),
+        ParsedShape::Field(_) => wrong(line, "expected a set, found a field"),
     };
     let op = match &*word {
         "everything" => return with_attributes(w, Set::everything()),
@@ -474,7 +474,7 @@ fn read_node(w: &mut Words, nodes: &[Node]) -> Result<Node, TextError> {
     };
     let made = Primitive::from_op(op);
     if w.done() {
-        return Ok(Node::Field(made));
+        return Ok(ParsedShape::Field(made));
     }
     match w.next("`as`")? {
         "as" => {}
@@ -495,12 +495,12 @@ fn read_node(w: &mut Words, nodes: &[Node]) -> Result<Node, TextError> {
         },
         other => return wrong(line, format!("there is no form `{other}`")),
     };
-    Ok(Node::Field(made.remembered(form)))
+    Ok(ParsedShape::Field(made.remembered(form)))
 }
 
-fn with_attributes(w: &mut Words, set: Set) -> Result<Node, TextError> {
+fn with_attributes(w: &mut Words, set: Set) -> Result<ParsedShape, TextError> {
     if w.done() {
-        return Ok(Node::Set(set));
+        return Ok(ParsedShape::Set(set));
     }
     let line = w.line;
     match w.next("`with`")? {
@@ -528,5 +528,5 @@ fn with_attributes(w: &mut Words, set: Set) -> Result<Node, TextError> {
             other => return wrong(line, format!("there is no attribute `{other}`")),
         }
     }
-    Ok(Node::Set(set.with(a)))
+    Ok(ParsedShape::Set(set.with(a)))
 }

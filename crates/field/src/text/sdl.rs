@@ -8,7 +8,7 @@ use crate::{FieldError, Primitive, Set};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-struct Writer<'a> {
+struct SdlWriter<'a> {
     out: String,
     name: &'a str,
     fields: HashMap<usize, String>,
@@ -19,7 +19,7 @@ fn number(x: f64) -> String {
     if x < 0.0 { format!("({x:?})") } else { format!("{x:?}") }
 }
 
-impl Writer<'_> {
+impl SdlWriter<'_> {
     fn fresh(&mut self, kind: &str, text: &str) -> String {
         self.count += 1;
         let name = format!("{}_{}", self.name, self.count);
@@ -88,7 +88,7 @@ impl Set<f64> {
     /// # Errors
     /// [`FieldError::Outside`] when a primitive is a function from outside.
     pub fn to_sdl(&self, name: &str) -> Result<String, FieldError> {
-        let mut w = Writer { out: String::new(), name, fields: HashMap::new(), count: 0 };
+        let mut w = SdlWriter { out: String::new(), name, fields: HashMap::new(), count: 0 };
         for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
             let n = [0, 1, 2].map(|i| if i == k { "1" } else { "0" }).join(", ");
             let _ = writeln!(w.out, "field {name}_{axis} = plane({{{n}}}, {{0, 0, 0}});");

@@ -2,7 +2,8 @@
 
 use crate::common::{axis, cube, t_piece, v};
 use moldloft_field::{
-    Affine, Effort, Measure, Options, Primitive, Resolution, Set, around, certified, facet, mass,
+    Affine, Effort, FacetOptions, IntegralOptions, Primitive, Resolution, Set, around, certified,
+    facet, mass,
 };
 use moldloft_num::{Axis, Box3, Vec3};
 use moldloft_testing::Random;
@@ -80,7 +81,7 @@ fn thin_bodies_anywhere_have_their_volume_inside_the_bracket() {
         let best = found.best.volume() / exact;
         assert!(low <= best && best <= high, "{name} {t:e}: {best} in [{low}, {high}]");
         // What is thin along a line is left to facets with cells as thin.
-        let m = mass(&set, &over, &Measure::default()).unwrap();
+        let m = mass(&set, &over, &IntegralOptions::default()).unwrap();
         assert!(m.bracket.contains(&m.best));
         let off = m.best.volume() / exact - 1.0;
         println!("{name} {t:.1e}: best {:.1e}, {off:.1e}, bracket {:.1e}", best - 1.0, high - low);
@@ -93,7 +94,7 @@ fn the_volume_is_the_same_whatever_asks() {
     for t in [0.03, 0.01, 1e-3, 1e-5] {
         let (plate, exact, _) = thin(0, t);
         let over = around(&plate).unwrap().unwrap();
-        let m = mass(&plate, &over, &Measure::default()).unwrap();
+        let m = mass(&plate, &over, &IntegralOptions::default()).unwrap();
         assert!(m.bracket.contains(&m.best));
         assert!((m.best.volume() / exact - 1.0).abs() < 1e-9, "{t}: {}", m.best.volume());
     }
@@ -105,7 +106,7 @@ fn inertia_and_centroid_do_not_depend_on_the_place() {
         let p = v(o, -o, o);
         let block = Set::cuboid(p, p + v(1.0, 1.0, 1.0)).unwrap();
         let over = Box3 { low: p - v(0.1, 0.11, 0.12), high: p + v(1.1, 1.12, 1.13) };
-        let m = mass(&block, &over, &Measure::default()).unwrap();
+        let m = mass(&block, &over, &IntegralOptions::default()).unwrap();
         let c = m.best.centroid() - p;
         assert!(c.distance(v(0.5, 0.5, 0.5)) < 1e-9, "{o}: {c:?}");
         let inertia = m.best.inertia();
@@ -147,7 +148,7 @@ fn facets_miss_nothing_in_silence() {
         let turn = Affine::rotation(&axis(v(0.0, 0.0, 0.0), direction(&mut random)), 0.7);
         let set = set.mapped(&turn).unwrap();
         let over = around(&set).unwrap().unwrap();
-        let f = facet(&set, &over, &Options::new(Resolution::Level(6))).unwrap();
+        let f = facet(&set, &over, &FacetOptions::new(Resolution::Level(6))).unwrap();
         let missed = f.unresolved.iter().filter(|u| u.missed).count();
         let part = crate::common::volume(&f) / exact;
         println!(
@@ -156,7 +157,7 @@ fn facets_miss_nothing_in_silence() {
             f.unresolved.len()
         );
         assert!(missed > 0 || (part - 1.0).abs() < 0.05, "{name} {t}: {part}");
-        let coarse = facet(&set, &over, &Options::new(Resolution::Depth(4))).unwrap();
+        let coarse = facet(&set, &over, &FacetOptions::new(Resolution::Depth(4))).unwrap();
         let part = crate::common::volume(&coarse) / exact;
         assert!(!coarse.unresolved.is_empty() || (part - 1.0).abs() < 0.2, "{name} {t}: {part}");
     }
@@ -224,7 +225,7 @@ fn texts_give_the_same_set_again() {
 fn fillets_rounds_and_chamfers_of_sets_have_their_volumes() {
     let volume = |set: &Set| {
         let over = around(set).unwrap().unwrap();
-        mass(set, &over, &Measure::default()).unwrap().best.volume()
+        mass(set, &over, &IntegralOptions::default()).unwrap().best.volume()
     };
     let block = Set::cuboid(v(0.0, 0.0, 0.0), v(10.0, 6.0, 4.0)).unwrap();
     let chamfered = moldloft_field::chamfer_edges(&block, 1.0, None).unwrap();

@@ -1,7 +1,7 @@
 //! Models that several tests use.
 #![allow(dead_code, reason = "the example that measures times uses some of them")]
 
-use moldloft_field::{Facets, Options, Primitive, Resolution, Set, facet};
+use moldloft_field::{FacetOptions, Facets, Primitive, Resolution, Set, facet};
 use moldloft_mesh::{TopologyReport, measure};
 use moldloft_num::{Axis, Box3, Vec3};
 use std::f64::consts::SQRT_2;
@@ -18,8 +18,8 @@ pub fn cube(half: f64) -> Box3 {
     Box3 { low: v(-half, -half, -half), high: v(half, half, half) }
 }
 
-pub fn at_depth(depth: u32) -> Options {
-    Options::new(Resolution::Depth(depth))
+pub fn at_depth(depth: u32) -> FacetOptions {
+    FacetOptions::new(Resolution::Depth(depth))
 }
 
 /// The T-piece: two pipes and Liming's blend with the rail of a cone of 17 degrees.

@@ -1,6 +1,6 @@
 //! Bodies by their faces as sets: exact inside, outside and on the surface, also where planes cross.
 
-use moldloft_field::{FieldError, Profile, Round, Set, Sides, bracket, faced};
+use moldloft_field::{FieldError, Round, RoundProfile, Set, Sides, bracket, faced};
 use moldloft_num::{Box3, Dual, Vec3};
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -136,7 +136,7 @@ fn arc(
     let centre = Vec3::of(centre[0], centre[1], 0.0);
     let way = (0..chords).map(|k| (centre + at(from + over * k as f64 / chords as f64), side));
     let b = at(from + over.signum() * FRAC_PI_2);
-    let profile = Profile::Conic { centre, a: at(from), b, sweep: over.abs() };
+    let profile = RoundProfile::Conic { centre, a: at(from), b, sweep: over.abs() };
     let shift = Vec3::of(0.0, 0.0, 2.0);
     (way.collect(), Round { side, profile, shift, scale: 1.0 })
 }
@@ -255,7 +255,7 @@ fn cones_have_one_nappe_and_parabolas_one_branch() {
     outline.push((corner[2], 2));
     let (points, triangles, sides) = prism(&outline);
     let shift = Vec3::of(0.0, 0.0, 2.0);
-    let rounds = [Round { side: 1, profile: Profile::Parabola(corner), shift, scale: 1.0 }];
+    let rounds = [Round { side: 1, profile: RoundProfile::Parabola(corner), shift, scale: 1.0 }];
     let body =
         Sides { points: &points, triangles: &triangles, sides: Some(&sides), rounds: &rounds };
     let set = faced(&body).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::common::{at_depth, axis, cube, facets, sound, t_piece, v, volume};
 use moldloft_field::{
-    FieldError, Options, Primitive, Resolution, Set, crossing_faces, facet, refacet,
+    FacetOptions, FieldError, Primitive, Resolution, Set, crossing_faces, facet, refacet,
 };
 use moldloft_num::{Box3, Vec3};
 use std::f64::consts::PI;
@@ -134,7 +134,8 @@ fn accuracy_is_kept() {
     let torus =
         Set::new(&Primitive::torus(axis(Vec3::zero(), v(0.0, 0.3, 1.0)), 1.0, 0.3).unwrap());
     for accuracy in [1e-2, 1e-3, 3e-4] {
-        let f = facet(&torus, &cube(1.5), &Options::new(Resolution::Accuracy(accuracy))).unwrap();
+        let f =
+            facet(&torus, &cube(1.5), &FacetOptions::new(Resolution::Accuracy(accuracy))).unwrap();
         assert!(f.worst_centre() <= accuracy);
         assert!(sound(&f).euler == 0);
     }
@@ -192,11 +193,11 @@ fn bad_requests_are_refused() {
     assert!(matches!(facet(&ball, &flat, &at_depth(3)), Err(FieldError::EmptyBox { .. })));
     let endless = Box3 { low: v(0.0, 0.0, 0.0), high: v(1.0, f64::INFINITY, 1.0) };
     assert!(matches!(facet(&ball, &endless, &at_depth(3)), Err(FieldError::EmptyBox { .. })));
-    let fine = Options::new(Resolution::Accuracy(1e-13));
+    let fine = FacetOptions::new(Resolution::Accuracy(1e-13));
     let Err(FieldError::TooFine { boxes, .. }) = facet(&ball, &cube(2.0), &fine) else { panic!() };
     assert!(boxes > 1e11, "{boxes}");
     assert!(matches!(facet(&ball, &cube(2.0), &at_depth(30)), Err(FieldError::TooFine { .. })));
-    let zero = Options::new(Resolution::Accuracy(0.0));
+    let zero = FacetOptions::new(Resolution::Accuracy(0.0));
     assert!(matches!(facet(&ball, &cube(2.0), &zero), Err(FieldError::NotPositive { .. })));
     let stopped = at_depth(5);
     stopped.budget.cancel();

@@ -1,7 +1,7 @@
 //! Mass properties: brackets that hold, best values, derivatives.
 
 use crate::common::{axis, cube, facets, t_piece, v};
-use moldloft_field::{FieldError, Measure, Primitive, Set, bracket, mass};
+use moldloft_field::{FieldError, IntegralOptions, Primitive, Set, bracket, mass};
 use moldloft_num::{Axis, Dual, Real, Vec3};
 use std::f64::consts::PI;
 
@@ -18,7 +18,7 @@ fn brackets_contain_closed_forms_and_close_at_second_order() {
     ];
     for (name, set, exact) in cases {
         let at = |depth| {
-            let m = mass(&set, &cube(1.5), &Measure::to_depth(depth)).unwrap();
+            let m = mass(&set, &cube(1.5), &IntegralOptions::to_depth(depth)).unwrap();
             assert!(m.bracket.volume().contains(exact), "{name}: {:?}", m.bracket.volume());
             assert!(m.bracket.contains(&m.best));
             (m.bracket.volume().width(), (m.best.volume() - exact).abs())
@@ -34,7 +34,7 @@ fn brackets_contain_closed_forms_and_close_at_second_order() {
 #[test]
 fn centroid_and_inertia_of_a_ball_and_a_box() {
     let ball = Set::new(&Primitive::sphere(v(0.3, -0.2, 0.1), 1.0).unwrap());
-    let m = mass(&ball, &cube(1.5), &Measure::to_depth(6)).unwrap();
+    let m = mass(&ball, &cube(1.5), &IntegralOptions::to_depth(6)).unwrap();
     assert!(m.best.centroid().distance(v(0.3, -0.2, 0.1)) < 1e-6);
     for (range, x) in m.bracket.centroid().iter().zip([0.3, -0.2, 0.1]) {
         assert!(range.contains(x), "{range:?} {x}");
@@ -88,7 +88,7 @@ fn the_cyclide_has_its_closed_forms() {
         let (area, volume) = cyclide(a, m, c);
         let along = z.direction.perpendicular();
         let set = Set::new(&Primitive::cyclide(z, along, a, m, c).unwrap());
-        let whole = mass(&set, &cube(1.8), &Measure::to_depth(6)).unwrap();
+        let whole = mass(&set, &cube(1.8), &IntegralOptions::to_depth(6)).unwrap();
         assert!(whole.bracket.volume().contains(volume), "{:?}", whole.bracket.volume());
         assert!((whole.best.volume() - volume).abs() < 1e-4 * volume, "{a} {m} {c}");
         let error = |depth| {
@@ -139,7 +139,7 @@ fn best_values_are_of_high_order() {
 
 #[test]
 fn the_t_piece_weighs_what_it_should() {
-    let m = mass(&t_piece(), &cube(4.0), &Measure::to_depth(7)).unwrap();
+    let m = mass(&t_piece(), &cube(4.0), &IntegralOptions::to_depth(7)).unwrap();
     assert!((m.best.volume() - 25.097).abs() < 1e-3, "{}", m.best.volume());
     assert!(m.bracket.volume().contains(25.097) && m.bracket.volume().width() < 2.0);
     // The model is symmetric in y.

@@ -134,7 +134,7 @@ fn wires_and_points_beside_a_solid() {
     let half = (1.0 - (centre.norm_sq() - centre.dot(d).powi(2))).sqrt();
     let length = |m: &Mixed| m.wires.iter().map(|w| w.length()).sum::<f64>();
     assert!((length(&both) - (from.distance(to) - 2.0 * half)).abs() < 1e-9);
-    let ended = |w: &moldloft_field::Wire| {
+    let ended = |w: &moldloft_field::FacetWire| {
         [w.points[0], w.points[w.points.len() - 1]].iter().any(|p| ball().value(*p).abs() < 1e-9)
     };
     assert!(both.wires.iter().all(ended));

@@ -2,7 +2,7 @@
 
 use crate::common::{at_depth, v};
 use moldloft_field::{
-    FieldError, Measure, Options, Primitive, Resolution, Set, facet, facet_mixed, mass,
+    FacetOptions, FieldError, IntegralOptions, Primitive, Resolution, Set, facet, facet_mixed, mass,
 };
 use moldloft_num::Box3;
 
@@ -48,7 +48,7 @@ fn what_the_box_cuts_is_refused_or_finer() {
     };
     refused(facet_mixed(&wave, &thin(), &at_depth(5)).unwrap_err());
     refused(facet(&ball, &thin(), &at_depth(7)).unwrap_err());
-    let level = Options::new(Resolution::Level(6));
+    let level = FacetOptions::new(Resolution::Level(6));
     for options in [at_depth(8), level.clone()] {
         let f = facet(&ball, &thin(), &options).unwrap();
         crate::common::sound(&f);
@@ -60,9 +60,9 @@ fn what_the_box_cuts_is_refused_or_finer() {
     }
     let strips = facet_mixed(&wave, &thin(), &level).unwrap();
     assert_eq!(strips.sheets[0].mesh.report().open_loops.len(), 3);
-    let found = mass(&ball, &thin(), &Measure::to_depth(5)).unwrap();
+    let found = mass(&ball, &thin(), &IntegralOptions::to_depth(5)).unwrap();
     assert!((found.best.volume() - 0.6283).abs() < 1e-4);
     // An accuracy finds its own cells.
-    let fine = facet(&ball, &thin(), &Options::new(Resolution::Accuracy(1e-3))).unwrap();
+    let fine = facet(&ball, &thin(), &FacetOptions::new(Resolution::Accuracy(1e-3))).unwrap();
     crate::common::sound(&fine);
 }

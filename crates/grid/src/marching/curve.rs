@@ -1,10 +1,10 @@
 //! Marching off a curve: in its plane, or on a surface that the grid stays on (a collar).
 
-use super::front::{self, Front, Step};
-use super::line::{Matrix, System, mirrored, smoothed};
+use super::front::{self, Front, MarchStep};
+use super::line::{BlockTridiagonal, Matrix, mirrored, smoothed};
 use super::outcome::{MarchFailure, Marched};
 use super::report::{self, Worst};
-use super::settings::{Hyperbolic, Side};
+use super::settings::{Hyperbolic, MarchBoundary};
 use crate::{GridError, SurfaceGrid};
 use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
@@ -16,11 +16,11 @@ pub trait Support<T: Real>: Sync {
 }
 
 /// The plane of a curve.
-struct Plane<T> {
+struct MarchPlane<T> {
     normal: Vec3<T>,
 }
 
-impl<T: Real> Support<T> for Plane<T> {
+impl<T: Real> Support<T> for MarchPlane<T> {
     fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)> {
         points.iter().map(|p| (*p, self.normal)).collect()
     }
@@ -37,7 +37,7 @@ pub fn hyperbolic_curve<T: Real>(
     options: &Hyperbolic<T>,
 ) -> Result<Marched<T>, GridError> {
     let unit = normal.normalized().ok_or(GridError::NoNormal { at: [1, 1] })?;
-    hyperbolic_curve_until(curve, &Plane { normal: unit }, options, &Budget::default())
+    hyperbolic_curve_until(curve, &MarchPlane { normal: unit }, options, &Budget::default())
 }
 
 /// As [`hyperbolic_curve`], in a plane or on any other support, to the left as seen against its normal; ends when
@@ -59,7 +59,8 @@ pub fn hyperbolic_curve_until<T: Real>(
         return Err(GridError::NotFinite { at: [k + 1, 1] });
     }
     report::check_heights(&options.heights)?;
-    let closed = options.sides[0] == Side::Periodic || options.sides[1] == Side::Periodic;
+    let closed =
+        options.sides[0] == MarchBoundary::Periodic || options.sides[1] == MarchBoundary::Periodic;
     let mut wall = curve.to_vec();
     if closed {
         report::check_seam(&[(curve[0].re(), curve[n - 1].re(), [n, 1])], curve)?;
@@ -85,11 +86,11 @@ struct CurveFront<'a, T: Real> {
     wall: Vec<Vec3<T>>,
     support: &'a dyn Support<T>,
     closed: bool,
-    ends: [Side; 2],
+    ends: [MarchBoundary; 2],
 }
 
 /// What is known of a curve at a node.
-struct Node<T> {
+struct CurveNode<T> {
     next: Vec3<T>,
     last: Vec3<T>,
     /// Lengths of the edges to them.
@@ -101,7 +102,7 @@ struct Node<T> {
     cosine: T,
 }
 
-impl<T: Real> Node<T> {
+impl<T: Real> CurveNode<T> {
     /// The mean length of the edges.
     fn length(&self) -> T {
         (self.lengths[0] + self.lengths[1]) * 0.5
@@ -124,7 +125,7 @@ impl<T: Real> CurveFront<'_, T> {
         let n = r.len();
         let beyond = |end: usize, here: Vec3<T>, inner: Vec3<T>| {
             let mut ghost = (here * T::from(2.0) - inner).to_array();
-            if let Side::Symmetry(axis) = self.ends[end] {
+            if let MarchBoundary::Symmetry(axis) = self.ends[end] {
                 let inner = inner.to_array();
                 for c in 0..3 {
                     if c != axis {
@@ -147,7 +148,7 @@ impl<T: Real> CurveFront<'_, T> {
         [next, last]
     }
 
-    fn nodes(&self, r: &[Vec3<T>], up: &[Vec3<T>]) -> Vec<Node<T>> {
+    fn nodes(&self, r: &[Vec3<T>], up: &[Vec3<T>]) -> Vec<CurveNode<T>> {
         (0..r.len())
             .map(|k| {
                 let [next, last] = self.neighbours(r, k);
@@ -162,7 +163,7 @@ impl<T: Real> CurveFront<'_, T> {
                     false => -p,
                 };
                 let sine = (twice * 0.5).max(T::from(LEAST_SINE));
-                Node { next, last, lengths, normal, sine, cosine: normal.dot(p) }
+                CurveNode { next, last, lengths, normal, sine, cosine: normal.dot(p) }
             })
             .collect()
     }
@@ -178,7 +179,7 @@ impl<T: Real> CurveFront<'_, T> {
         }
         let last = to.len() - 1;
         for (end, k) in [(0, 0), (1, last)] {
-            if let Side::Symmetry(axis) | Side::Constant(axis) = self.ends[end] {
+            if let MarchBoundary::Symmetry(axis) | MarchBoundary::Constant(axis) = self.ends[end] {
                 let mut p = to[k].to_array();
                 p[axis] = from[k][axis];
                 to[k] = p.into();
@@ -255,8 +256,8 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
         edges.sum::<f64>() / count as f64
     }
 
-    fn step(&self, step: Step<'_, T>, _: &Budget) -> Vec<Vec3<T>> {
-        let Step { r, before, d, s, last, smoothed: state, cap, dissipation, first } = step;
+    fn step(&self, step: MarchStep<'_, T>, _: &Budget) -> Vec<Vec3<T>> {
+        let MarchStep { r, before, d, s, last, smoothed: state, cap, dissipation, first } = step;
         let n = r.len();
         let half = T::from(0.5);
         let ups = self.ups(r);
@@ -299,7 +300,7 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
             }
         }
         let shift = report::shift(s, last);
-        let mut system = System::unit(n);
+        let mut system = BlockTridiagonal::unit(n);
         for (k, node) in nodes.iter().enumerate() {
             let length = node.length() * node.sine;
             let h = volumes[k] / length;
@@ -394,7 +395,7 @@ impl<T: Real> CurveFront<'_, T> {
         inner: &mut Matrix<T>,
     ) {
         let (target, term) = match self.ends[end] {
-            Side::Symmetry(axis) => (inner, mirrored(outer, axis)),
+            MarchBoundary::Symmetry(axis) => (inner, mirrored(outer, axis)),
             _ => (middle, *outer),
         };
         for a in 0..3 {

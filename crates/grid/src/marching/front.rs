@@ -8,7 +8,7 @@ use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
 
 /// One step of a march.
-pub(super) struct Step<'a, T> {
+pub(super) struct MarchStep<'a, T> {
     /// The points, and those of the step before.
     pub r: &'a [Vec3<T>],
     pub before: &'a [Vec3<T>],
@@ -36,7 +36,7 @@ pub(super) trait Front<T: Real> {
     /// The mean length of the edges.
     fn mean_edge(&self, r: &[Vec3<T>]) -> f64;
     /// The points after a step.
-    fn step(&self, step: Step<'_, T>, budget: &Budget) -> Vec<Vec3<T>>;
+    fn step(&self, step: MarchStep<'_, T>, budget: &Budget) -> Vec<Vec3<T>>;
     /// The least scaled Jacobian, and its cell, between two layers.
     fn worst_cell(&self, below: &[Vec3<T>], above: &[Vec3<T>]) -> Worst;
     /// The indices, from 1, of a node or cell.
@@ -60,7 +60,7 @@ const MOST_STEPS: usize = 40_000;
 const LADDER: [(Option<f64>, f64); 3] = [(Some(CAP), 1.0), (None, 1.0), (None, 3.0)];
 
 /// What a march came to.
-pub(super) struct Outcome<T> {
+pub(super) struct MarchOutcome<T> {
     pub layers: Vec<Vec<Vec3<T>>>,
     pub steps: usize,
     /// The rung of the ladder, from 1.
@@ -74,8 +74,8 @@ pub(super) fn march<T: Real>(
     front: &impl Front<T>,
     options: &Hyperbolic<T>,
     budget: &Budget,
-) -> Result<Outcome<T>, GridError> {
-    let mut farthest: Option<Outcome<T>> = None;
+) -> Result<MarchOutcome<T>, GridError> {
+    let mut farthest: Option<MarchOutcome<T>> = None;
     for (k, (cap, dissipation)) in LADDER.into_iter().enumerate() {
         let mut outcome = attempt(front, options, cap, dissipation * options.smoothing, budget)?;
         outcome.rung = k + 1;
@@ -99,10 +99,10 @@ fn attempt<T: Real>(
     cap: Option<f64>,
     dissipation: f64,
     budget: &Budget,
-) -> Result<Outcome<T>, GridError> {
+) -> Result<MarchOutcome<T>, GridError> {
     let heights = &options.heights;
     let mut outcome =
-        Outcome { layers: vec![front.wall().to_vec()], steps: 0, rung: 0, failure: None };
+        MarchOutcome { layers: vec![front.wall().to_vec()], steps: 0, rung: 0, failure: None };
     let mut r = front.wall().to_vec();
     let mut before = r.clone();
     let mut smoothed = vec![T::one(); r.len()];
@@ -156,7 +156,7 @@ fn attempt<T: Real>(
             // The rest of the layer in equal steps; only their number depends on the lengths.
             let d = rest * (1.0 / (rest.re() / most - 1e-9).ceil());
             let share = (d.re() / target.re()).min(1.0);
-            let step = Step {
+            let step = MarchStep {
                 r: &r,
                 before: &before,
                 d,

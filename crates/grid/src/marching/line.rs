@@ -5,14 +5,14 @@ use moldloft_num::{Real, Vec3};
 pub(super) type Matrix<T> = [[T; 3]; 3];
 
 /// One line of equations: low x_(k-1) + middle x_k + high x_(k+1) = right.
-pub(super) struct System<T> {
+pub(super) struct BlockTridiagonal<T> {
     pub low: Vec<Matrix<T>>,
     pub middle: Vec<Matrix<T>>,
     pub high: Vec<Matrix<T>>,
     pub right: Vec<Vec3<T>>,
 }
 
-impl<T: Real> System<T> {
+impl<T: Real> BlockTridiagonal<T> {
     /// The system of unit rows with nothing on the right.
     pub fn unit(count: usize) -> Self {
         Self {

@@ -19,5 +19,5 @@ mod surface;
 pub use curve::{Support, hyperbolic_curve, hyperbolic_curve_until};
 pub use outcome::{FailureCause, MarchFailure, MarchReport, Marched, StopReason};
 pub(crate) use report::hexahedron;
-pub use settings::{Hyperbolic, Side, Stop};
+pub use settings::{Hyperbolic, MarchBoundary, Stop};
 pub use surface::{hyperbolic, hyperbolic_until};

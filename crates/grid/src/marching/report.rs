@@ -1,6 +1,6 @@
 //! What is measured of a march: cells, corners, walls, and whether it ends early.
 
-use super::front::{Front, Outcome};
+use super::front::{Front, MarchOutcome};
 use super::outcome::{FailureCause, MarchReport, StopReason};
 use super::settings::Hyperbolic;
 use crate::surface_grid::SAME;
@@ -148,10 +148,10 @@ pub(super) fn check_seam<T: Real>(
 pub(super) fn settled<T: Real>(
     front: &impl Front<T>,
     options: &Hyperbolic<T>,
-    outcome: Outcome<T>,
+    outcome: MarchOutcome<T>,
     first: Vec<(f64, f64)>,
 ) -> Result<(Vec<Vec<Vec3<T>>>, MarchReport), GridError> {
-    let Outcome { mut layers, steps, rung, failure } = outcome;
+    let MarchOutcome { mut layers, steps, rung, failure } = outcome;
     if let Some(failure) = &failure
         && !options.stop.keep
     {

@@ -4,7 +4,7 @@ use moldloft_num::Real;
 
 /// What happens at an edge of the surface, or an end of the curve, that a grid is marched from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Side {
+pub enum MarchBoundary {
     /// The edge goes where the equations, one-sided there, take it.
     #[default]
     Free,
@@ -55,7 +55,7 @@ pub struct Hyperbolic<T> {
     /// heights are means, since volumes are smoothed.
     pub heights: Vec<T>,
     /// At the edges s[1,], s[m,], s[,1], s[,n]; of a curve the first two.
-    pub sides: [Side; 4],
+    pub sides: [MarchBoundary; 4],
     /// How strongly lines that converge are smoothed apart; 1 for nearly everything, 0 for not at all.
     pub smoothing: f64,
     /// When to end early.
@@ -65,11 +65,11 @@ pub struct Hyperbolic<T> {
 impl<T: Real> Hyperbolic<T> {
     /// Free edges, ordinary smoothing, and no early end.
     pub fn new(heights: Vec<T>) -> Self {
-        Self { heights, sides: [Side::Free; 4], smoothing: 1.0, stop: Stop::default() }
+        Self { heights, sides: [MarchBoundary::Free; 4], smoothing: 1.0, stop: Stop::default() }
     }
 
     /// The same with sides.
-    pub fn with_sides(mut self, sides: [Side; 4]) -> Self {
+    pub fn with_sides(mut self, sides: [MarchBoundary; 4]) -> Self {
         self.sides = sides;
         self
     }

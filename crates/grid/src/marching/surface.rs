@@ -1,11 +1,11 @@
 //! Marching off a surface.
 
 use super::curve::{ACUTE, LEAST_SINE};
-use super::front::{self, Front, Step};
-use super::line::{Matrix, System, inverse, mirrored, smoothed, times};
+use super::front::{self, Front, MarchStep};
+use super::line::{BlockTridiagonal, Matrix, inverse, mirrored, smoothed, times};
 use super::outcome::{MarchFailure, Marched};
 use super::report::{self, Worst};
-use super::settings::{Hyperbolic, Side};
+use super::settings::{Hyperbolic, MarchBoundary};
 use crate::{GridError, SurfaceGrid};
 use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
@@ -42,8 +42,9 @@ pub fn hyperbolic_until<T: Real>(
     surface.check_finite()?;
     report::check_heights(&options.heights)?;
     let sides = options.sides;
-    let closed = [0, 1]
-        .map(|axis| sides[2 * axis] == Side::Periodic || sides[2 * axis + 1] == Side::Periodic);
+    let closed = [0, 1].map(|axis| {
+        sides[2 * axis] == MarchBoundary::Periodic || sides[2 * axis + 1] == MarchBoundary::Periodic
+    });
     let (m, n) = (surface.m, surface.n);
     let size = [m - usize::from(closed[0]), n - usize::from(closed[1])];
     if size[0] < 3 || size[1] < 3 {
@@ -77,12 +78,12 @@ struct SurfaceFront<T> {
     wall: Vec<Vec3<T>>,
     size: [usize; 2],
     closed: [bool; 2],
-    sides: [Side; 4],
+    sides: [MarchBoundary; 4],
 }
 
 /// What is known of one direction at a node.
 #[derive(Clone, Copy)]
-struct Way<T> {
+struct NodeDirection<T> {
     next: Vec3<T>,
     last: Vec3<T>,
     lengths: [T; 2],
@@ -93,7 +94,7 @@ struct Way<T> {
     cosine: T,
 }
 
-impl<T: Real> Way<T> {
+impl<T: Real> NodeDirection<T> {
     fn length(&self) -> T {
         (self.lengths[0] + self.lengths[1]) * 0.5
     }
@@ -101,13 +102,13 @@ impl<T: Real> Way<T> {
 
 /// What is known of the surface at a node.
 #[derive(Clone, Copy)]
-struct Node<T> {
-    ways: [Way<T>; 2],
+struct SurfaceNode<T> {
+    ways: [NodeDirection<T>; 2],
     normal: Vec3<T>,
     pole: bool,
 }
 
-impl<T: Real> Node<T> {
+impl<T: Real> SurfaceNode<T> {
     fn sharp(&self) -> bool {
         self.ways.iter().any(|way| way.cosine.re() < -0.5)
     }
@@ -117,7 +118,7 @@ impl<T: Real> Node<T> {
 const TINY: f64 = 1e-300;
 
 impl<T: Real> SurfaceFront<T> {
-    fn side(&self, axis: usize, end: usize) -> Side {
+    fn side(&self, axis: usize, end: usize) -> MarchBoundary {
         self.sides[2 * axis + end]
     }
 
@@ -126,14 +127,14 @@ impl<T: Real> SurfaceFront<T> {
     }
 
     fn has_pole(&self, axis: usize) -> bool {
-        (0..2).any(|end| self.side(axis, end) == Side::Pole)
+        (0..2).any(|end| self.side(axis, end) == MarchBoundary::Pole)
     }
 
     fn is_pole(&self, k: usize) -> bool {
         let at = [k / self.size[1], k % self.size[1]];
         (0..2).any(|axis| {
-            at[axis] == 0 && self.side(axis, 0) == Side::Pole
-                || at[axis] + 1 == self.size[axis] && self.side(axis, 1) == Side::Pole
+            at[axis] == 0 && self.side(axis, 0) == MarchBoundary::Pole
+                || at[axis] + 1 == self.size[axis] && self.side(axis, 1) == MarchBoundary::Pole
         })
     }
 
@@ -144,7 +145,7 @@ impl<T: Real> SurfaceFront<T> {
         let beyond = |end: usize, inner: Vec3<T>| {
             let here = r[k];
             let mut ghost = (here * T::from(2.0) - inner).to_array();
-            if let Side::Symmetry(plane) = self.side(axis, end) {
+            if let MarchBoundary::Symmetry(plane) = self.side(axis, end) {
                 let inner = inner.to_array();
                 for c in 0..3 {
                     if c != plane {
@@ -169,7 +170,7 @@ impl<T: Real> SurfaceFront<T> {
 
     /// Of each axis, which of its lines turn round an edge: at the foot of a post the bisector leans away from
     /// it, so that less counts than for a prescribed motion.
-    fn lines_that_turn(&self, nodes: &[Node<T>]) -> [Vec<bool>; 2] {
+    fn lines_that_turn(&self, nodes: &[SurfaceNode<T>]) -> [Vec<bool>; 2] {
         [0, 1].map(|axis| {
             let turns = |line: usize| {
                 (0..self.size[axis]).any(|along| {
@@ -180,7 +181,7 @@ impl<T: Real> SurfaceFront<T> {
         })
     }
 
-    fn nodes(&self, r: &[Vec3<T>]) -> Vec<Node<T>> {
+    fn nodes(&self, r: &[Vec3<T>]) -> Vec<SurfaceNode<T>> {
         let tiny = T::from(TINY);
         let node = |k: usize| {
             let way = |axis: usize| {
@@ -209,11 +210,11 @@ impl<T: Real> SurfaceFront<T> {
                 };
                 let lean = |p: Vec3<T>, l: T| (p - r[k]).dot(normal) / l;
                 let cosine = (lean(next, lengths[0]) + lean(last, lengths[1])) * 0.5;
-                Way { next, last, lengths, turn, sine, cosine }
+                NodeDirection { next, last, lengths, turn, sine, cosine }
             });
-            Node { ways, normal, pole: self.is_pole(k) }
+            SurfaceNode { ways, normal, pole: self.is_pole(k) }
         };
-        let mut nodes: Vec<Node<T>> = (0..r.len()).into_par_iter().map(node).collect();
+        let mut nodes: Vec<SurfaceNode<T>> = (0..r.len()).into_par_iter().map(node).collect();
         let normals: Vec<Vec3<T>> = nodes.iter().map(|node| node.normal).collect();
         for (k, unit) in self.pole_directions(&normals) {
             nodes[k].normal = unit;
@@ -239,13 +240,13 @@ impl<T: Real> SurfaceFront<T> {
         for axis in 0..2 {
             let (count, lines) = (self.size[axis], self.size[1 - axis]);
             for (end, k, beside) in [(0, 0, 1), (1, count - 1, count - 2)] {
-                if self.side(axis, end) != Side::Pole {
+                if self.side(axis, end) != MarchBoundary::Pole {
                     continue;
                 }
                 let ring = (0..lines).map(|l| vectors[self.index(axis, beside, l)]);
                 let mut mean = ring.fold(Vec3::zero(), |sum, v| sum + v).to_array();
                 for end in 0..2 {
-                    if let Side::Symmetry(plane) = self.side(1 - axis, end) {
+                    if let MarchBoundary::Symmetry(plane) = self.side(1 - axis, end) {
                         mean[plane] = T::zero();
                     }
                 }
@@ -259,7 +260,9 @@ impl<T: Real> SurfaceFront<T> {
     fn keep_planes(&self, from: &[Vec3<T>], to: &mut [Vec3<T>]) {
         for axis in 0..2 {
             for (end, along) in [(0, 0), (1, self.size[axis] - 1)] {
-                let (Side::Symmetry(plane) | Side::Constant(plane)) = self.side(axis, end) else {
+                let (MarchBoundary::Symmetry(plane) | MarchBoundary::Constant(plane)) =
+                    self.side(axis, end)
+                else {
                     continue;
                 };
                 for line in 0..self.size[1 - axis] {
@@ -306,7 +309,7 @@ impl<T: Real> SurfaceFront<T> {
 }
 
 /// The least sine of a node's concave half angles: its distance from the wall over its travel.
-fn concave_sine<T: Real>(node: &Node<T>) -> T {
+fn concave_sine<T: Real>(node: &SurfaceNode<T>) -> T {
     node.ways.iter().fold(T::one(), |least, way| {
         if way.cosine.re() > 1e-3 && !node.pole { least.min(way.sine) } else { least }
     })
@@ -396,8 +399,8 @@ impl<T: Real> Front<T> for SurfaceFront<T> {
         sum / f64::from(edges)
     }
 
-    fn step(&self, step: Step<'_, T>, budget: &Budget) -> Vec<Vec3<T>> {
-        let Step { r, before, d, s, last, smoothed: state, cap, dissipation, first } = step;
+    fn step(&self, step: MarchStep<'_, T>, budget: &Budget) -> Vec<Vec3<T>> {
+        let MarchStep { r, before, d, s, last, smoothed: state, cap, dissipation, first } = step;
         let nodes = self.nodes(r);
         let count = r.len();
         let heights = self.heights(&nodes, [r, before], [d, s], state, cap);
@@ -451,7 +454,7 @@ impl<T: Real> Front<T> for SurfaceFront<T> {
             }
             // Rows: r_i . dr = 0, r_j . dr = 0, (r_i x r_j) . dr = V; A and B multiply the derivatives of dr by i
             // and by j. The tangents have the mean lengths of their edges and are at right angles to e.
-            let tangent = |way: &Way<T>| {
+            let tangent = |way: &NodeDirection<T>| {
                 let t = way.turn * (way.length() * 0.5);
                 t - e * t.dot(e)
             };
@@ -500,7 +503,7 @@ impl<T: Real> SurfaceFront<T> {
     /// The heights of a step: as volumes of the layer to come, smoothed over a length of the height reached.
     fn heights(
         &self,
-        nodes: &[Node<T>],
+        nodes: &[SurfaceNode<T>],
         [r, before]: [&[Vec3<T>]; 2],
         [d, s]: [T; 2],
         state: &mut [T],
@@ -587,7 +590,7 @@ impl<T: Real> SurfaceFront<T> {
             if budget.is_spent() {
                 return vec![Vec3::zero(); count];
             }
-            let mut system = System::unit(count);
+            let mut system = BlockTridiagonal::unit(count);
             for k in 0..count {
                 let at = self.index(axis, k, line);
                 system.right[k] = right[at];
@@ -637,7 +640,7 @@ impl<T: Real> SurfaceFront<T> {
         inner: &mut Matrix<T>,
     ) {
         let (target, term) = match self.side(axis, end) {
-            Side::Symmetry(plane) => (inner, mirrored(outer, plane)),
+            MarchBoundary::Symmetry(plane) => (inner, mirrored(outer, plane)),
             _ => (middle, *outer),
         };
         for a in 0..3 {

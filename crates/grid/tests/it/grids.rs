@@ -429,32 +429,32 @@ fn derivatives_flow_through_sweeps() {
 
 #[test]
 fn metrics_of_known_cells() {
-    let one = |f: &dyn Fn(f64, f64) -> Vec3, metric: Metric| {
+    let one = |f: &dyn Fn(f64, f64) -> Vec3, metric: QualityMetric| {
         quality(&SurfaceGrid::<f64>::from_fn(2, 2, |i, j| f(i as f64, j as f64)), metric)[0]
     };
     let square = |u: f64, v: f64| Vec3::of(u, v, 0.0);
     for (metric, value) in [
-        (Metric::ScaledJacobian, 1.0),
-        (Metric::Skew, 0.0),
-        (Metric::Aspect, 1.0),
-        (Metric::EdgeRatio, 1.0),
-        (Metric::GrowthI, 1.0),
-        (Metric::Warp, 0.0),
-        (Metric::Turn, 0.0),
-        (Metric::Area, 1.0),
+        (QualityMetric::ScaledJacobian, 1.0),
+        (QualityMetric::Skew, 0.0),
+        (QualityMetric::Aspect, 1.0),
+        (QualityMetric::EdgeRatio, 1.0),
+        (QualityMetric::GrowthI, 1.0),
+        (QualityMetric::Warp, 0.0),
+        (QualityMetric::Turn, 0.0),
+        (QualityMetric::Area, 1.0),
     ] {
         assert!((one(&square, metric) - value).abs() < 1e-15, "{metric:?}");
     }
     let h = 0.5f64.sqrt();
     let rhombus = |u: f64, v: f64| Vec3::of(u + h * v, h * v, 0.0);
-    assert!((one(&rhombus, Metric::ScaledJacobian) - h).abs() < 1e-15);
-    assert!((one(&rhombus, Metric::Skew) - 0.5).abs() < 1e-15);
+    assert!((one(&rhombus, QualityMetric::ScaledJacobian) - h).abs() < 1e-15);
+    assert!((one(&rhombus, QualityMetric::Skew) - 0.5).abs() < 1e-15);
     let rectangle = |u: f64, v: f64| Vec3::of(0.0, 2.0 * u, v);
-    assert_eq!(one(&rectangle, Metric::EdgeRatio), 2.0);
-    assert_eq!(one(&rectangle, Metric::Aspect), 2.0);
+    assert_eq!(one(&rectangle, QualityMetric::EdgeRatio), 2.0);
+    assert_eq!(one(&rectangle, QualityMetric::Aspect), 2.0);
     let lift = |u: f64, v: f64| Vec3::of(u, v, if u == v { 0.1 } else { -0.1 });
-    let area = one(&lift, Metric::Area);
-    assert!((one(&lift, Metric::Warp) - 0.1 / area.sqrt()).abs() < 1e-15);
+    let area = one(&lift, QualityMetric::Area);
+    assert!((one(&lift, QualityMetric::Warp) - 0.1 / area.sqrt()).abs() < 1e-15);
     // Widths 1, 3, 9 along i; a bend of 30 degrees along j.
     let grid = SurfaceGrid::<f64>::from_fn(4, 3, |i, j| {
         let x = [0.0, 1.0, 4.0, 13.0][i];
@@ -462,23 +462,23 @@ fn metrics_of_known_cells() {
         let y = [0.0, 1.0, 1.0 + a.cos()][j];
         Vec3::of(x, y, if j == 2 { a.sin() } else { 0.0 })
     });
-    let growth = quality(&grid, Metric::GrowthI);
+    let growth = quality(&grid, QualityMetric::GrowthI);
     assert!(growth.iter().all(|g| (g - 3.0).abs() < 1e-14) && growth.len() == 6);
-    assert!(quality(&grid, Metric::GrowthJ).iter().all(|g| (g - 1.0).abs() < 1e-14));
-    assert!(quality(&grid, Metric::Turn).iter().all(|g| (g - PI / 6.0).abs() < 1e-14));
+    assert!(quality(&grid, QualityMetric::GrowthJ).iter().all(|g| (g - 1.0).abs() < 1e-14));
+    assert!(quality(&grid, QualityMetric::Turn).iter().all(|g| (g - PI / 6.0).abs() < 1e-14));
     // A pole: triangles, none folded.
     let fan = SurfaceGrid::<f64>::from_fn(3, 5, |i, j| {
         let a = 0.3 * j as f64;
         Vec3::of(i as f64 * a.cos(), i as f64 * a.sin(), 0.0)
     });
     assert!(folded_cells(&fan).is_empty());
-    let skew = quality(&fan, Metric::Skew);
+    let skew = quality(&fan, QualityMetric::Skew);
     assert!((skew[0] - (1.0 - 0.3 / (PI / 3.0))).abs() < 1e-14, "{}", skew[0]);
-    assert!(quality(&fan, Metric::ScaledJacobian)[0] > 0.29);
+    assert!(quality(&fan, QualityMetric::ScaledJacobian)[0] > 0.29);
     assert!(
         quality(
             &SurfaceGrid::<f64>::from_fn(1, 4, |_, j| Vec3::of(j as f64, 0.0, 0.0)),
-            Metric::Area
+            QualityMetric::Area
         )
         .is_empty()
     );

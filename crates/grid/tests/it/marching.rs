@@ -13,12 +13,12 @@ fn even(n: usize, last: f64) -> Vec<f64> {
 }
 
 fn options(wall: &Wall) -> Hyperbolic<f64> {
-    let mut sides = [Side::Free; 4];
+    let mut sides = [MarchBoundary::Free; 4];
     if wall.closed {
-        sides[..2].fill(Side::Periodic);
+        sides[..2].fill(MarchBoundary::Periodic);
     }
     if wall.constant_ends {
-        sides[..2].fill(Side::Symmetry(0));
+        sides[..2].fill(MarchBoundary::Symmetry(0));
     }
     Hyperbolic::new(wall.heights.clone()).with_sides(sides)
 }
@@ -197,7 +197,7 @@ fn concave_corners_march_up_to_the_limit() {
 fn circles_keep_their_height() {
     let error = |n: usize| {
         let points = walls::round(n - 1, |a| [a.cos(), a.sin()]);
-        let sides = [Side::Periodic; 4];
+        let sides = [MarchBoundary::Periodic; 4];
         let marched = hyperbolic_curve(
             &points,
             UP,
@@ -299,8 +299,8 @@ fn post(round: bool, n: usize, nj: usize) -> SurfaceGrid<f64> {
 fn posts_on_plates() {
     for (is_round, least) in [(false, 0.33), (true, 0.6)] {
         for first in [1e-2, 1e-3] {
-            let mut sides = [Side::Free; 4];
-            sides[..2].fill(Side::Periodic);
+            let mut sides = [MarchBoundary::Free; 4];
+            sides[..2].fill(MarchBoundary::Periodic);
             let surface = post(is_round, if is_round { 12 } else { 16 }, 15);
             let options = Hyperbolic::new(geometric(0.5, first, 25)).with_sides(sides);
             let marched = hyperbolic(&surface, &options).unwrap();
@@ -322,7 +322,12 @@ fn ball(m: usize, n: usize, flat: f64) -> SurfaceGrid<f64> {
 /// Spheres and flat ellipsoids with two poles; spheres reach the radius asked for, the better the finer.
 #[test]
 fn balls_with_two_poles() {
-    let sides = [Side::Pole, Side::Pole, Side::Periodic, Side::Periodic];
+    let sides = [
+        MarchBoundary::Pole,
+        MarchBoundary::Pole,
+        MarchBoundary::Periodic,
+        MarchBoundary::Periodic,
+    ];
     for (flat, least) in [(1.0, 0.8), (0.2, 0.75)] {
         for first in [1e-2, 1e-3] {
             let surface = ball(25, 33, flat);
@@ -359,7 +364,12 @@ fn noses_stay_one_point_on_the_axis() {
     });
     // s_i x s_j points inward on such a half body: march off its swapped image.
     let turned = SurfaceGrid::from_fn(n, m, |j, i| body.at(i, j));
-    let sides = [Side::Symmetry(2), Side::Symmetry(2), Side::Pole, Side::Free];
+    let sides = [
+        MarchBoundary::Symmetry(2),
+        MarchBoundary::Symmetry(2),
+        MarchBoundary::Pole,
+        MarchBoundary::Free,
+    ];
     let layers =
         hyperbolic(&turned, &Hyperbolic::new(even(9, 0.15)).with_sides(sides)).unwrap().layers;
     for layer in &layers[1..] {
@@ -379,7 +389,12 @@ fn a_half_ball_with_a_pole_stays_one() {
             let b = FRAC_PI_2 - PI * j as f64 / (n - 1) as f64;
             Vec3::of(-a.cos(), a.sin() * b.cos(), a.sin() * b.sin())
         });
-        let sides = [Side::Pole, Side::Free, Side::Symmetry(1), Side::Symmetry(1)];
+        let sides = [
+            MarchBoundary::Pole,
+            MarchBoundary::Free,
+            MarchBoundary::Symmetry(1),
+            MarchBoundary::Symmetry(1),
+        ];
         let heights = vec![0.0, 0.1 * tall, 0.3 * tall, 0.6 * tall, tall];
         let options = Hyperbolic::new(heights).with_sides(sides);
         let layers = hyperbolic(&half, &options).unwrap().layers;
@@ -410,7 +425,7 @@ fn derivatives_are_those_of_the_steps() {
             .map(|p| Vec3::new(T::from(p.x), h * (p.y * 5.0), T::zero()))
             .collect();
         let heights = geometric(5.0, 1e-3, 21).into_iter().map(T::from).collect();
-        let options = Hyperbolic::new(heights).with_sides([Side::Periodic; 4]);
+        let options = Hyperbolic::new(heights).with_sides([MarchBoundary::Periodic; 4]);
         hyperbolic_curve(&points, Vec3::lifted(UP), &options).unwrap().layers.remove(0)
     }
     let against =
@@ -443,8 +458,9 @@ fn refusals_name_the_place() {
     assert!(matches!(error, GridError::NoNormal { at: [1, 1] }));
     // A circle marched inward past its centre, and a periodic curve that does not close.
     let mut inward = walls::round(64, |a| [a.cos(), -a.sin()]);
-    let options =
-        |last: f64| Hyperbolic::new(geometric(last, 1e-2, 31)).with_sides([Side::Periodic; 4]);
+    let options = |last: f64| {
+        Hyperbolic::new(geometric(last, 1e-2, 31)).with_sides([MarchBoundary::Periodic; 4])
+    };
     assert!(jacobian(&hyperbolic_curve(&inward, UP, &options(0.9)).unwrap().layers[0]) > 0.9);
     let error = hyperbolic_curve(&inward, UP, &options(1.2)).unwrap_err();
     let GridError::March(failure) = &error else { panic!("{error}") };
@@ -477,7 +493,8 @@ fn refusals_name_the_place() {
 #[test]
 fn marches_end_where_the_criteria_say() {
     let points = walls::round(64, |a| [a.cos(), a.sin()]);
-    let mut options = Hyperbolic::new(geometric(5.0, 1e-2, 31)).with_sides([Side::Periodic; 4]);
+    let mut options =
+        Hyperbolic::new(geometric(5.0, 1e-2, 31)).with_sides([MarchBoundary::Periodic; 4]);
     options.stop.isotropic = true;
     let marched = hyperbolic_curve(&points, UP, &options).unwrap();
     assert_eq!(marched.report.stopped, Some(StopReason::Isotropic));
@@ -504,7 +521,8 @@ fn collars_stay_on_their_surface() {
         let (a, cancel) = (0.5f64, Budget::default());
         let points = walls::round(n, |b| [a.sin() * b.cos(), a.sin() * b.sin()]);
         let points: Vec<Vec3> = points.iter().map(|p| Vec3::of(p.x, p.y, a.cos())).collect();
-        let options = Hyperbolic::new(geometric(0.8, 0.01, 25)).with_sides([Side::Periodic; 4]);
+        let options =
+            Hyperbolic::new(geometric(0.8, 0.01, 25)).with_sides([MarchBoundary::Periodic; 4]);
         let marched = hyperbolic_curve_until(&points, &Sphere, &options, &cancel).unwrap();
         let grid = &marched.layers[0];
         assert!(grid.points().all(|p| (p.norm() - 1.0).abs() < 1e-14));

@@ -5,7 +5,7 @@
 
 use super::read_text::read_text;
 use super::variant::{FORMAT, Laid, Variant};
-use crate::{Place, ReadError, StructuredGrid};
+use crate::{FilePosition, ReadError, StructuredGrid};
 
 /// The blocks of a file and which variant it is.
 ///
@@ -47,7 +47,7 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), ReadError> {
     Err(complaints.into_iter().next().map_or_else(
         || ReadError {
             format: FORMAT,
-            place: Place::Byte(0),
+            place: FilePosition::Byte(0),
             expected: "the sizes of a grid, as text or as binary numbers".into(),
             found: match bytes.len() {
                 0 => "an empty file".into(),
@@ -68,7 +68,7 @@ struct Complaint {
 fn complaint(rank: usize, byte: usize, expected: String, found: String) -> Complaint {
     Complaint {
         rank,
-        error: ReadError { format: FORMAT, place: Place::Byte(byte), expected, found },
+        error: ReadError { format: FORMAT, place: FilePosition::Byte(byte), expected, found },
     }
 }
 
@@ -89,7 +89,7 @@ fn finite(blocks: &[StructuredGrid]) -> Result<(), ReadError> {
             let (number, x) = (number + 1, plane[at]);
             return Err(ReadError {
                 format: FORMAT,
-                place: Place::Block(number),
+                place: FilePosition::Block(number),
                 expected: "finite coordinates".into(),
                 found: format!("{axis} = {x} at point [{i},{j},{k}]"),
             });

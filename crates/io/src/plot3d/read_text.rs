@@ -2,10 +2,10 @@
 
 use super::read::{fill, sizes};
 use super::variant::{FORMAT, Laid, Variant};
-use crate::{Place, ReadError, StructuredGrid};
+use crate::{FilePosition, ReadError, StructuredGrid};
 
 /// A word of the text: a number, perhaps several times over, and the line it stands in.
-struct Words {
+struct TextNumbers {
     values: Vec<f64>,
     whole: Vec<bool>,
     lines: Vec<u32>,
@@ -14,8 +14,8 @@ struct Words {
 /// A repeat count may not make more numbers than this out of a file.
 const MOST_REPEATED: usize = 1 << 27;
 
-fn words(bytes: &[u8]) -> Result<Words, ReadError> {
-    let mut all = Words { values: Vec::new(), whole: Vec::new(), lines: Vec::new() };
+fn words(bytes: &[u8]) -> Result<TextNumbers, ReadError> {
+    let mut all = TextNumbers { values: Vec::new(), whole: Vec::new(), lines: Vec::new() };
     let text = std::str::from_utf8(bytes).unwrap_or("");
     for (number, line) in (1..).zip(text.lines()) {
         for word in line.split(|c: char| c.is_whitespace() || c == ',' || c == ';') {
@@ -24,7 +24,7 @@ fn words(bytes: &[u8]) -> Result<Words, ReadError> {
             }
             let error = |expected: &str| ReadError {
                 format: FORMAT,
-                place: Place::Line(number),
+                place: FilePosition::Line(number),
                 expected: expected.into(),
                 found: format!("`{word}`"),
             };
@@ -148,7 +148,7 @@ pub(super) fn read_text(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), 
     let line = words.lines.last().copied().unwrap_or(1) as usize;
     let error = |expected: String, found: String| ReadError {
         format: FORMAT,
-        place: Place::Line(line),
+        place: FilePosition::Line(line),
         expected,
         found,
     };

@@ -1,7 +1,7 @@
 //! Every variant forth and back, damaged files, and what a variant cannot hold.
 
 use super::*;
-use crate::{Place, StructuredGrid, WriteError};
+use crate::{FilePosition, StructuredGrid, WriteError};
 
 fn blocks(three: bool, many: bool, deep: bool) -> Vec<StructuredGrid> {
     let one = |m: usize, n: usize, k: usize, shift: f64| {
@@ -125,7 +125,7 @@ fn what_is_no_number_is_told_with_its_place() {
         let at = bytes.windows(8).position(|eight| eight == marked).unwrap();
         bytes[at..at + 8].copy_from_slice(&f64::NAN.to_le_bytes());
         let error = read(&bytes).unwrap_err();
-        assert_eq!(error.place, Place::Block(2));
+        assert_eq!(error.place, FilePosition::Block(2));
         assert_eq!(error.found, "y = NaN at point [2,2,1]");
     }
     for (word, expected) in
@@ -133,7 +133,7 @@ fn what_is_no_number_is_told_with_its_place() {
     {
         let text = format!("1\n2 2 1\n1 2 3 4\n1 {word} 1 1\n0 0 0 0\n");
         let error = read(text.as_bytes()).unwrap_err();
-        assert_eq!((error.place, error.expected.as_str()), (Place::Line(4), expected));
+        assert_eq!((error.place, error.expected.as_str()), (FilePosition::Line(4), expected));
         assert_eq!(error.found, format!("`{word}`"));
     }
 }

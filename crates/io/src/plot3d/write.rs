@@ -37,9 +37,9 @@ pub fn write(blocks: &[StructuredGrid], variant: Variant) -> Result<Vec<u8>, Wri
         }
     }
     if variant.multi {
-        out.record(&[Part::Integers(&[integer(blocks.len())?])])?;
+        out.record(&[RecordPart::Integers(&[integer(blocks.len())?])])?;
     }
-    out.record(&[Part::Integers(&sizes)])?;
+    out.record(&[RecordPart::Integers(&sizes)])?;
     for block in blocks {
         let ones;
         let blank = match &block.iblank {
@@ -53,12 +53,12 @@ pub fn write(blocks: &[StructuredGrid], variant: Variant) -> Result<Vec<u8>, Wri
         let (step, layers) = if variant.planes { (ni * nj, nk) } else { (block.count(), 1) };
         for layer in 0..layers {
             let range = layer * step..(layer + 1) * step;
-            let mut parts: Vec<Part> = block.planes[..axes]
+            let mut parts: Vec<RecordPart> = block.planes[..axes]
                 .iter()
-                .map(|plane| Part::Reals(&plane[range.clone()]))
+                .map(|plane| RecordPart::Reals(&plane[range.clone()]))
                 .collect();
             if variant.iblank {
-                parts.push(Part::Integers(&blank[range.clone()]));
+                parts.push(RecordPart::Integers(&blank[range.clone()]));
             }
             out.record(&parts)?;
         }
@@ -66,7 +66,7 @@ pub fn write(blocks: &[StructuredGrid], variant: Variant) -> Result<Vec<u8>, Wri
     Ok(out.bytes)
 }
 
-enum Part<'a> {
+enum RecordPart<'a> {
     Integers(&'a [i32]),
     Reals(&'a [f64]),
 }
@@ -99,7 +99,7 @@ impl Out {
         Ok(())
     }
 
-    fn record(&mut self, parts: &[Part]) -> Result<(), WriteError> {
+    fn record(&mut self, parts: &[RecordPart]) -> Result<(), WriteError> {
         if self.variant.laid == Laid::Formatted {
             for part in parts {
                 self.text(part);
@@ -107,20 +107,20 @@ impl Out {
             return Ok(());
         }
         let width = if self.variant.double { 8 } else { 4 };
-        let length = |part: &Part| match part {
-            Part::Integers(all) => 4 * all.len(),
-            Part::Reals(all) => width * all.len(),
+        let length = |part: &RecordPart| match part {
+            RecordPart::Integers(all) => 4 * all.len(),
+            RecordPart::Reals(all) => width * all.len(),
         };
         let length = parts.iter().map(length).sum();
         self.mark(length)?;
         for part in parts {
             match part {
-                Part::Integers(all) => all.iter().for_each(|x| self.put(x.to_le_bytes())),
+                RecordPart::Integers(all) => all.iter().for_each(|x| self.put(x.to_le_bytes())),
                 // Adding zero turns -0 into 0.
-                Part::Reals(all) if self.variant.double => {
+                RecordPart::Reals(all) if self.variant.double => {
                     all.iter().for_each(|x| self.put((x + 0.0).to_le_bytes()));
                 }
-                Part::Reals(all) => {
+                RecordPart::Reals(all) => {
                     all.iter().for_each(|x| self.put((*x as f32 + 0.0).to_le_bytes()))
                 }
             }
@@ -128,10 +128,10 @@ impl Out {
         self.mark(length)
     }
 
-    fn text(&mut self, part: &Part) {
+    fn text(&mut self, part: &RecordPart) {
         let words: Vec<String> = match part {
-            Part::Integers(all) => all.iter().map(|x| x.to_string()).collect(),
-            Part::Reals(all) => all.iter().map(|x| real(*x)).collect(),
+            RecordPart::Integers(all) => all.iter().map(|x| x.to_string()).collect(),
+            RecordPart::Reals(all) => all.iter().map(|x| real(*x)).collect(),
         };
         for line in words.chunks(6) {
             self.bytes.extend_from_slice(line.join(" ").as_bytes());

@@ -1,7 +1,7 @@
 //! Runs a program: expressions by the recipes of their earlier executions.
 
 use crate::array::lanes::{Lanes, not_finite};
-use crate::array::lower::Work;
+use crate::array::lower::TapeBuilder;
 use crate::array::recipe::{Course, Entry, Key, Kind, Read, Recipe, Recorder, Slot};
 use crate::functions::elementary::{self, Elementary};
 use crate::run::interpreter::{DEEPEST, Interpreter};
@@ -22,7 +22,7 @@ use std::sync::Arc;
 const MOST_MISFITS: u8 = 4;
 
 /// How a kept recipe went.
-enum Outcome<T: Real> {
+enum RecipeOutcome<T: Real> {
     Done(Result<Value<T>, Diagnostic>),
     /// It does not fit: what was read goes through the tree.
     Misfit(Read<T>),
@@ -49,11 +49,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let outcome = self.follow(m, key, &mut recipe);
                 recipe.values.clear();
                 match outcome {
-                    Outcome::Done(value) => {
+                    RecipeOutcome::Done(value) => {
                         self.arrays.recipes.insert(key, Slot::Kept(recipe));
                         Course::Done(value)
                     }
-                    Outcome::Misfit(read) => {
+                    RecipeOutcome::Misfit(read) => {
                         let misfits = recipe.misfits + 1;
                         let record = (misfits < MOST_MISFITS).then_some(misfits);
                         if record.is_none() {
@@ -72,7 +72,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// Keeps what was recorded, or gives the expression up.
-    pub fn keep_recipe(&mut self, key: Key, misfits: u8, lanes: Option<Lanes>, work: &mut Work<T>) {
+    pub fn keep_recipe(
+        &mut self,
+        key: Key,
+        misfits: u8,
+        lanes: Option<Lanes>,
+        work: &mut TapeBuilder<T>,
+    ) {
         let slot = match (work.recorder.take(), lanes) {
             (Some(recorder), Some(lanes)) if !recorder.given_up => {
                 let mut tape = std::mem::take(&mut work.tape);
@@ -102,13 +108,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.arrays.recipes.insert(key, slot);
     }
 
-    fn follow(&mut self, m: &Module, key: Key, recipe: &mut Recipe<T>) -> Outcome<T> {
+    fn follow(&mut self, m: &Module, key: Key, recipe: &mut Recipe<T>) -> RecipeOutcome<T> {
         let Recipe { entries, functions, exponents, depth, tape, calls, lanes, values, .. } =
             recipe;
         let base = self.usage.depth;
         let hidden = functions.iter().any(|symbol| self.hides_function(m, *symbol));
         if hidden || base + *depth >= DEEPEST {
-            return Outcome::Misfit(Vec::new());
+            return RecipeOutcome::Misfit(Vec::new());
         }
         values.clear();
         // What was read so far, when the tree must do the rest.
@@ -143,13 +149,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                                 other => other,
                             };
                             all.push((expr, found));
-                            return Outcome::Misfit(all);
+                            return RecipeOutcome::Misfit(all);
                         }
                     }
                 }
                 ref computed => match compute(computed, of) {
                     Some(value) => value,
-                    None => return Outcome::Misfit(so_far(values)),
+                    None => return RecipeOutcome::Misfit(so_far(values)),
                 },
             };
             values.push(value);
@@ -165,7 +171,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             _ => false,
         };
         if !fits || !tape.aliases.iter().all(alike) {
-            return Outcome::Misfit(so_far(values));
+            return RecipeOutcome::Misfit(so_far(values));
         }
         for k in 0..tape.const_origins.len() {
             let Origin { cell, part } = tape.const_origins[k];
@@ -176,7 +182,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Value::Number(x) => *x,
                 Value::Vector(v) => component(v, part),
                 Value::Point(p) => component(&p.xyz, part),
-                _ => return Outcome::Misfit(so_far(values)),
+                _ => return RecipeOutcome::Misfit(so_far(values)),
             };
         }
         let mut rows: SmallVec<[&Vec<T>; 16]> = SmallVec::new();
@@ -184,7 +190,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             rows.push(match &values[cell.0 as usize] {
                 Value::Numbers(a) => &a.items,
                 Value::Vectors(a) => &a.planes[*part as usize],
-                _ => return Outcome::Misfit(so_far(values)),
+                _ => return RecipeOutcome::Misfit(so_far(values)),
             });
         }
         let (roots, count) = (lanes.roots(), lanes.shape.count());
@@ -192,12 +198,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !tape.is_checked() {
             let filled = |outs: &mut [Vec<T>]| tape.execute(&rows, &roots, count, outs).is_ok();
             if let Some(value) = self.filled_in_place(m, key, lanes, filled) {
-                return Outcome::Done(Ok(value));
+                return RecipeOutcome::Done(Ok(value));
             }
         }
         let spare = &mut self.arrays.spare;
         let mut outs: SmallVec<[Vec<T>; 3]> = roots.iter().map(|_| spare.take(count)).collect();
-        Outcome::Done(match tape.execute(&rows, &roots, count, &mut outs) {
+        RecipeOutcome::Done(match tape.execute(&rows, &roots, count, &mut outs) {
             Ok(()) => Ok(lanes.value(outs)),
             Err(check) => {
                 let (span, name) = calls[check];

@@ -25,12 +25,12 @@ use std::collections::VecDeque;
 
 /// An operand: a value and where a recording finds it again, or rows of a tape.
 #[derive(Clone, Debug)]
-pub(crate) enum Operand<T: Real> {
+pub(crate) enum LoweredOperand<T: Real> {
     Value(Value<T>, Cell),
     Lanes(Lanes),
 }
 
-type Operated<T> = Result<Operand<T>, Diagnostic>;
+type Operated<T> = Result<LoweredOperand<T>, Diagnostic>;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The value of an expression whose outermost operator is element-wise.
@@ -61,14 +61,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &mut self,
         m: &Module,
         id: ExprId,
-        tree: impl Fn(&mut Self, &mut Work<T>) -> Operated<T>,
+        tree: impl Fn(&mut Self, &mut TapeBuilder<T>) -> Operated<T>,
     ) -> Result<Value<T>, Diagnostic> {
         let key = Key::of(m, id);
         let (read, record) = match self.by_recipe(m, key) {
             Course::Done(value) => return value,
             Course::Tree { read, record } => (read, record),
         };
-        let mut work = Work {
+        let mut work = TapeBuilder {
             tape: self.arrays.tapes.pop().unwrap_or_default(),
             calls: Vec::new(),
             ready: read.into(),
@@ -76,17 +76,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         let operand = tree(self, &mut work);
         let lanes = match &operand {
-            Ok(Operand::Lanes(lanes)) => Some(*lanes),
+            Ok(LoweredOperand::Lanes(lanes)) => Some(*lanes),
             // Scalars have no recipe.
-            Ok(Operand::Value(..)) => {
+            Ok(LoweredOperand::Value(..)) => {
                 work.give_up();
                 None
             }
             Err(_) => None,
         };
         let value = match operand {
-            Ok(Operand::Value(value, _)) => Ok(value),
-            Ok(Operand::Lanes(lanes)) => {
+            Ok(LoweredOperand::Value(value, _)) => Ok(value),
+            Ok(LoweredOperand::Lanes(lanes)) => {
                 let tape = &mut work.tape;
                 let filled = match tape.is_checked() {
                     // What can fail must leave the variable as it was.
@@ -108,7 +108,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// The elements of rows of a tape.
-    fn computed(&mut self, lanes: &Lanes, work: &mut Work<T>) -> Result<Value<T>, Diagnostic> {
+    fn computed(
+        &mut self,
+        lanes: &Lanes,
+        work: &mut TapeBuilder<T>,
+    ) -> Result<Value<T>, Diagnostic> {
         let (roots, count) = (lanes.roots(), lanes.shape.count());
         let mut rows: SmallVec<[Vec<T>; 3]> =
             roots.iter().map(|_| self.arrays.spare.take(count)).collect();
@@ -123,10 +127,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     /// A part of an expression that is not an operator, executed as it stands; an object is read when
     /// `read`.
-    fn leaf(&mut self, m: &Module, id: ExprId, read: bool, work: &mut Work<T>) -> Operated<T> {
+    fn leaf(
+        &mut self,
+        m: &Module,
+        id: ExprId,
+        read: bool,
+        work: &mut TapeBuilder<T>,
+    ) -> Operated<T> {
         if let ExprKind::Number(literal) = m.program[id].kind {
             let x = T::from(m.program[literal].value);
-            return Ok(Operand::Value(Value::Number(x), work.noted(|r| r.literal(x))));
+            return Ok(LoweredOperand::Value(Value::Number(x), work.noted(|r| r.literal(x))));
         }
         // Another expression than this one was read when a name has come to mean something else: then it
         // was a name alone, or the component of one, and reading it has changed nothing.
@@ -141,17 +151,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let kind = Kind::of(&value).filter(|_| !object);
         let depth = self.usage.depth;
         let cell = work.noted(|r| r.leaf(m, (id, read), depth, kind));
-        Ok(Operand::Value(value, cell))
+        Ok(LoweredOperand::Value(value, cell))
     }
 
     fn value_of(
         &mut self,
-        operand: Operand<T>,
-        work: &mut Work<T>,
+        operand: LoweredOperand<T>,
+        work: &mut TapeBuilder<T>,
     ) -> Result<Value<T>, Diagnostic> {
         match operand {
-            Operand::Value(value, _) => Ok(value),
-            Operand::Lanes(lanes) => {
+            LoweredOperand::Value(value, _) => Ok(value),
+            LoweredOperand::Lanes(lanes) => {
                 work.give_up();
                 self.computed(&lanes, work)
             }
@@ -167,7 +177,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// The operand that an expression is, objects read.
-    fn operated(&mut self, m: &Module, id: ExprId, work: &mut Work<T>) -> Operated<T> {
+    fn operated(&mut self, m: &Module, id: ExprId, work: &mut TapeBuilder<T>) -> Operated<T> {
         let expr = m.program[id];
         let inner = match expr.kind {
             ExprKind::Paren(_)
@@ -206,7 +216,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         m: &Module,
         kind: ExprKind,
         span: Span,
-        work: &mut Work<T>,
+        work: &mut TapeBuilder<T>,
     ) -> Operated<T> {
         match kind {
             ExprKind::Paren(inner) => self.operated(m, inner, work),
@@ -214,14 +224,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let operand = self.operated(m, inner, work)?;
                 let plain = self.arrays.plain_operators;
                 Ok(match operand {
-                    Operand::Value(ref value, cell) => match work.lanes(value, cell, !plain) {
-                        Some(lanes) => Operand::Lanes(work.magnitude(lanes)),
+                    LoweredOperand::Value(ref value, cell) => match work.lanes(value, cell, !plain)
+                    {
+                        Some(lanes) => LoweredOperand::Lanes(work.magnitude(lanes)),
                         None => {
                             let cell = work.noted(|r| r.magnitude(cell));
-                            Operand::Value(ops::magnitude(value)?, cell)
+                            LoweredOperand::Value(ops::magnitude(value)?, cell)
                         }
                     },
-                    Operand::Lanes(lanes) => Operand::Lanes(work.magnitude(lanes)),
+                    LoweredOperand::Lanes(lanes) => LoweredOperand::Lanes(work.magnitude(lanes)),
                 })
             }
             ExprKind::Unary { op, operand } => {
@@ -240,34 +251,34 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let operand = self.operated(m, base, work)?;
                 let c = axis(m.program.name(name)).expect("checked by the caller");
                 match operand {
-                    Operand::Lanes(Lanes { shape, what: What::Vector(v) }) => {
-                        Ok(Operand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
+                    LoweredOperand::Lanes(Lanes { shape, what: What::Vector(v) }) => {
+                        Ok(LoweredOperand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
                     }
-                    Operand::Value(value @ Value::Vectors(_), cell)
+                    LoweredOperand::Value(value @ Value::Vectors(_), cell)
                         if !self.arrays.plain_operators =>
                     {
                         match work.lanes(&value, cell, true) {
                             Some(Lanes { shape, what: What::Vector(v) }) => {
-                                Ok(Operand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
+                                Ok(LoweredOperand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
                             }
                             _ => {
                                 work.give_up();
                                 let component = variables::component(&value, c);
                                 let value = component.ok_or_else(silent)?;
-                                Ok(Operand::Value(value, Cell::NONE))
+                                Ok(LoweredOperand::Value(value, Cell::NONE))
                             }
                         }
                     }
                     other => {
                         let cell = match &other {
-                            Operand::Value(_, cell) => *cell,
-                            Operand::Lanes(_) => Cell::NONE,
+                            LoweredOperand::Value(_, cell) => *cell,
+                            LoweredOperand::Lanes(_) => Cell::NONE,
                         };
                         let value = self.value_of(other, work)?;
                         match variables::component(&value, c) {
                             Some(component) => {
                                 let cell = work.noted(|r| r.component(cell, c));
-                                Ok(Operand::Value(component, cell))
+                                Ok(LoweredOperand::Value(component, cell))
                             }
                             None => {
                                 let found = value.called();
@@ -293,36 +304,48 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    fn signed(&mut self, op: UnaryOp, operand: Operand<T>, work: &mut Work<T>) -> Operated<T> {
+    fn signed(
+        &mut self,
+        op: UnaryOp,
+        operand: LoweredOperand<T>,
+        work: &mut TapeBuilder<T>,
+    ) -> Operated<T> {
         if op == UnaryOp::Plus {
             return Ok(operand);
         }
         let lanes = match &operand {
-            Operand::Lanes(lanes) => Some(*lanes),
-            Operand::Value(value, cell) => work.lanes(value, *cell, !self.arrays.plain_operators),
+            LoweredOperand::Lanes(lanes) => Some(*lanes),
+            LoweredOperand::Value(value, cell) => {
+                work.lanes(value, *cell, !self.arrays.plain_operators)
+            }
         };
         Ok(match (lanes, operand) {
-            (Some(lanes), _) => Operand::Lanes(work.mapped(lanes, Code::Neg)),
-            (None, Operand::Value(value, cell)) => {
+            (Some(lanes), _) => LoweredOperand::Lanes(work.mapped(lanes, Code::Neg)),
+            (None, LoweredOperand::Value(value, cell)) => {
                 let cell = work.noted(|r| r.negated(cell));
-                Operand::Value(ops::negated(&value)?, cell)
+                LoweredOperand::Value(ops::negated(&value)?, cell)
             }
             (None, lanes) => lanes,
         })
     }
 
-    fn chained(&mut self, m: &Module, items: List<ChainItem>, work: &mut Work<T>) -> Operated<T> {
+    fn chained(
+        &mut self,
+        m: &Module,
+        items: List<ChainItem>,
+        work: &mut TapeBuilder<T>,
+    ) -> Operated<T> {
         let mut operands = Vec::new();
         let mut sets = false;
         for item in &m.program[items] {
             if let ChainItem::Operand(expr) = item {
                 let operand = self.operated(m, *expr, work)?;
-                sets |= matches!(&operand, Operand::Value(value, _) if ops::is_set(value));
+                sets |= matches!(&operand, LoweredOperand::Value(value, _) if ops::is_set(value));
                 operands.push(Some((*expr, operand)));
             }
         }
         let grouping = if sets { Grouping::Sets } else { Grouping::Numbers };
-        let mut stack: Vec<(Operand<T>, Span)> = Vec::new();
+        let mut stack: Vec<(LoweredOperand<T>, Span)> = Vec::new();
         let mut next = operands.iter_mut();
         for step in m.program.grouped(items, grouping) {
             let operand = match step {
@@ -338,7 +361,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         (UnaryOp::Not, operand) => {
                             let value = self.value_of(operand, work)?;
                             let value = ops::unary(op, &value).map_err(|d| d.or_at(span))?;
-                            Operand::Value(value, Cell::NONE)
+                            LoweredOperand::Value(value, Cell::NONE)
                         }
                         (op, operand) => {
                             self.signed(op, operand, work).map_err(|d| d.or_at(span))?
@@ -361,7 +384,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// `{a, b, c}`: three rows of numbers make a row of vectors; else a vector or list.
-    fn braces(&mut self, m: &Module, items: List<ExprId>, work: &mut Work<T>) -> Operated<T> {
+    fn braces(
+        &mut self,
+        m: &Module,
+        items: List<ExprId>,
+        work: &mut TapeBuilder<T>,
+    ) -> Operated<T> {
         let mut values = Vec::with_capacity(items.len());
         for &item in &m.program[items] {
             // Objects stay unread in lists.
@@ -375,8 +403,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let lanes: Vec<Lanes> = values
                 .iter()
                 .filter_map(|value| match value {
-                    Operand::Lanes(lanes) => Some(*lanes),
-                    Operand::Value(value, cell) => work.lanes(value, *cell, true),
+                    LoweredOperand::Lanes(lanes) => Some(*lanes),
+                    LoweredOperand::Value(value, cell) => work.lanes(value, *cell, true),
                 })
                 .collect();
             if let [
@@ -387,10 +415,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 && shape == s
                 && shape == t
             {
-                return Ok(Operand::Lanes(Lanes { shape, what: What::Vector([x, y, z]) }));
+                return Ok(LoweredOperand::Lanes(Lanes { shape, what: What::Vector([x, y, z]) }));
             }
         }
-        let cells: Vec<Cell> = values.iter().map(Operand::cell).collect();
+        let cells: Vec<Cell> = values.iter().map(LoweredOperand::cell).collect();
         let mut all = Vec::with_capacity(values.len());
         for value in values {
             all.push(self.value_of(value, work)?);
@@ -400,7 +428,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             _ => Cell::NONE,
         };
         let spans: Vec<Span> = m.program[items].iter().map(|&e| m.program[e].span).collect();
-        ops::braces(all.clone()).map(|value| Operand::Value(value, cell)).map_err(|d| {
+        ops::braces(all.clone()).map(|value| LoweredOperand::Value(value, cell)).map_err(|d| {
             let shapes: Vec<String> = all.iter().map(shape_text).collect();
             let first = shapes.iter().position(|s| *s != shapes[0]).unwrap_or(0);
             self.differing(m, d, [spans[0], spans[first]], [&shapes[0], &shapes[first]])
@@ -412,14 +440,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &mut self,
         m: &Module,
         op: BinaryOp,
-        a: Operand<T>,
-        b: Operand<T>,
+        a: LoweredOperand<T>,
+        b: LoweredOperand<T>,
         spans: [Span; 2],
-        work: &mut Work<T>,
+        work: &mut TapeBuilder<T>,
     ) -> Operated<T> {
         let arrays = [&a, &b].map(|o| match o {
-            Operand::Lanes(_) => true,
-            Operand::Value(value, _) => matches!(value, Value::Numbers(_) | Value::Vectors(_)),
+            LoweredOperand::Lanes(_) => true,
+            LoweredOperand::Value(value, _) => {
+                matches!(value, Value::Numbers(_) | Value::Vectors(_))
+            }
         });
         if !self.arrays.plain_operators && arrays.contains(&true) && !work.tape.is_long() {
             let operands = [&a, &b].map(|o| work.operand(o));
@@ -434,7 +464,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
                 let alike = x.0.is_none() || y.0.is_none() || x.0 == y.0;
                 if alike && let Some(lanes) = work.binary(op, x, y) {
-                    return Ok(Operand::Lanes(lanes));
+                    return Ok(LoweredOperand::Lanes(lanes));
                 }
             }
         }
@@ -442,7 +472,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let (a, b) = (self.value_of(a, work)?, self.value_of(b, work)?);
         let cell = work.noted(|r| r.binary(op, cells[0], cells[1]));
         ops::binary(op, &a, &b)
-            .map(|value| Operand::Value(value, cell))
+            .map(|value| LoweredOperand::Value(value, cell))
             .map_err(|d| self.differing(m, d, spans, [&shape_text(&a), &shape_text(&b)]))
     }
 
@@ -538,7 +568,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         function: elementary::Elementary<T>,
         args: &[ExprId],
         span: Span,
-        work: &mut Work<T>,
+        work: &mut TapeBuilder<T>,
     ) -> Operated<T> {
         let mut operands = Vec::with_capacity(2);
         for &arg in args {
@@ -567,10 +597,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 };
                 debug_assert_eq!(work.tape.checks(), work.calls.len() + 1);
                 work.calls.push((span, name));
-                return Ok(Operand::Lanes(Lanes { shape: shapes[0], what: What::Number(src) }));
+                return Ok(LoweredOperand::Lanes(Lanes {
+                    shape: shapes[0],
+                    what: What::Number(src),
+                }));
             }
         }
-        let cells: Vec<Cell> = operands.iter().map(Operand::cell).collect();
+        let cells: Vec<Cell> = operands.iter().map(LoweredOperand::cell).collect();
         let cell = work.noted(|r| r.function(name, function, &cells));
         let mut values = Vec::with_capacity(2);
         for operand in operands {
@@ -592,7 +625,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !value.is_finite() {
             return Err(not_finite(name).at(span));
         }
-        Ok(Operand::Value(value, cell))
+        Ok(LoweredOperand::Value(value, cell))
     }
 }
 
@@ -615,13 +648,13 @@ type Loose<T> = (Option<ArrayShape>, Loosely<T>);
 
 #[derive(Clone, Copy)]
 enum Loosely<T> {
-    Number(Number<T>),
-    Vector([Number<T>; 3]),
+    Number(TapeNumber<T>),
+    Vector([TapeNumber<T>; 3]),
 }
 
 /// A number of an operand; constants enter the tape when they are used.
 #[derive(Clone, Copy)]
-enum Number<T> {
+enum TapeNumber<T> {
     Src(Src),
     Const(T, Origin),
 }
@@ -629,7 +662,7 @@ enum Number<T> {
 /// The components of a vector as constants.
 fn constants<T: Real>(v: moldloft_num::Vec3<T>, cell: Cell) -> Loosely<T> {
     let [x, y, z] = v.to_array();
-    let of = |x, part| Number::Const(x, Origin::of(cell, part));
+    let of = |x, part| TapeNumber::Const(x, Origin::of(cell, part));
     Loosely::Vector([of(x, 0), of(y, 1), of(z, 2)])
 }
 
@@ -657,7 +690,7 @@ fn described<T>(operand: Loose<T>) -> String {
 }
 
 /// A tape under way.
-pub(crate) struct Work<T: Real> {
+pub(crate) struct TapeBuilder<T: Real> {
     pub tape: Tape<T>,
     pub calls: Calls,
     /// Leaves that were read already, the next first.
@@ -666,16 +699,16 @@ pub(crate) struct Work<T: Real> {
     pub recorder: Option<Recorder<T>>,
 }
 
-impl<T: Real> Operand<T> {
+impl<T: Real> LoweredOperand<T> {
     fn cell(&self) -> Cell {
         match self {
-            Operand::Value(_, cell) => *cell,
-            Operand::Lanes(_) => Cell::NONE,
+            LoweredOperand::Value(_, cell) => *cell,
+            LoweredOperand::Lanes(_) => Cell::NONE,
         }
     }
 }
 
-impl<T: Real> Work<T> {
+impl<T: Real> TapeBuilder<T> {
     /// Notes something that has a value, while that is wanted.
     fn noted(&mut self, note: impl FnOnce(&mut Recorder<T>) -> Cell) -> Cell {
         self.recorder.as_mut().map_or(Cell::NONE, note)
@@ -722,29 +755,33 @@ impl<T: Real> Work<T> {
         })
     }
 
-    fn operand(&mut self, operand: &Operand<T>) -> Option<Loose<T>> {
+    fn operand(&mut self, operand: &LoweredOperand<T>) -> Option<Loose<T>> {
         let lanes = match operand {
-            Operand::Lanes(lanes) => *lanes,
-            Operand::Value(Value::Number(x), cell) => {
-                return Some((None, Loosely::Number(Number::Const(*x, Origin::of(*cell, 0)))));
+            LoweredOperand::Lanes(lanes) => *lanes,
+            LoweredOperand::Value(Value::Number(x), cell) => {
+                return Some((None, Loosely::Number(TapeNumber::Const(*x, Origin::of(*cell, 0)))));
             }
-            Operand::Value(Value::Vector(v), cell) => return Some((None, constants(*v, *cell))),
-            Operand::Value(Value::Point(p), cell) => return Some((None, constants(p.xyz, *cell))),
-            Operand::Value(value, cell) => self.lanes(value, *cell, true)?,
+            LoweredOperand::Value(Value::Vector(v), cell) => {
+                return Some((None, constants(*v, *cell)));
+            }
+            LoweredOperand::Value(Value::Point(p), cell) => {
+                return Some((None, constants(p.xyz, *cell)));
+            }
+            LoweredOperand::Value(value, cell) => self.lanes(value, *cell, true)?,
         };
         Some((
             Some(lanes.shape),
             match lanes.what {
-                What::Number(a) => Loosely::Number(Number::Src(a)),
-                What::Vector(v) => Loosely::Vector(v.map(Number::Src)),
+                What::Number(a) => Loosely::Number(TapeNumber::Src(a)),
+                What::Vector(v) => Loosely::Vector(v.map(TapeNumber::Src)),
             },
         ))
     }
 
-    fn src(&mut self, number: &Number<T>) -> Src {
+    fn src(&mut self, number: &TapeNumber<T>) -> Src {
         match number {
-            Number::Src(src) => *src,
-            Number::Const(x, origin) => self.tape.constant(*x, *origin),
+            TapeNumber::Src(src) => *src,
+            TapeNumber::Const(x, origin) => self.tape.constant(*x, *origin),
         }
     }
 
@@ -826,11 +863,11 @@ impl<T: Real> Work<T> {
             }
             (BinaryOp::Caret, Number(x), Number(y)) => {
                 let whole = match y {
-                    self::Number::Const(k, origin) => {
+                    self::TapeNumber::Const(k, origin) => {
                         self.noting(|r| r.exponent(origin, k));
                         ops::whole_power(k)
                     }
-                    self::Number::Src(_) => None,
+                    self::TapeNumber::Src(_) => None,
                 };
                 let x = self.src(&x);
                 What::Number(match whole {

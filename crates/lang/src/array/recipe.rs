@@ -36,7 +36,7 @@ pub(crate) enum Slot<T: Real> {
 }
 
 /// Slots by expression.
-pub(crate) type Slots<T> = HashMap<Key, Slot<T>, BuildHasherDefault<Mixed>>;
+pub(crate) type Slots<T> = HashMap<Key, Slot<T>, BuildHasherDefault<KeyHasher>>;
 
 /// An expression of all files of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,9 +56,9 @@ impl Hash for Key {
 
 /// Scalar statements look here each time, so the hash is the shortest that spreads such keys.
 #[derive(Default)]
-pub(crate) struct Mixed(u64);
+pub(crate) struct KeyHasher(u64);
 
-impl Hasher for Mixed {
+impl Hasher for KeyHasher {
     fn finish(&self) -> u64 {
         self.0
     }

@@ -1,13 +1,13 @@
 //! Functions that need more than the values of their arguments: the place that an argument is, the
 //! files of the run, how fine it is asked for.
 
-use crate::functions::files::{Mode, STANDARD_OUTPUT};
+use crate::functions::files::{OpenMode, STANDARD_OUTPUT};
 use crate::functions::format::{self, Item};
 use crate::functions::grid_files::{GridFormat, RowFormat};
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::source::scope::{Binding, Passed};
-use crate::value::subarray::{Place, Section};
+use crate::value::subarray::{ArraySection, Place};
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Extent;
@@ -355,7 +355,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let place = self.place(m, given[0])?;
                 let (_, value, known) = self.known(&place)?;
                 let set = match shape_of(value) {
-                    Some(shape) => known.has(shape, place.section.unwrap_or(Section::whole(shape))),
+                    Some(shape) => {
+                        known.has(shape, place.section.unwrap_or(ArraySection::whole(shape)))
+                    }
                     None => !matches!(value, Value::Unset),
                 };
                 Ok(Value::Number(T::from(f64::from(u8::from(set)))))
@@ -432,12 +434,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let mode = match rest.get(1) {
             Some(&mode) => {
                 let word = self.text(m, mode)?;
-                Mode::parse(&word).map_err(|d| d.or_at(m.program[mode].span))?
+                OpenMode::parse(&word).map_err(|d| d.or_at(m.program[mode].span))?
             }
-            None if unit.is_some() => Mode::Write,
-            None => Mode::Read,
+            None if unit.is_some() => OpenMode::Write,
+            None => OpenMode::Read,
         };
-        if mode != Mode::Read && self.run.extent() == Extent::Edit {
+        if mode != OpenMode::Read && self.run.extent() == Extent::Edit {
             return Err(Diagnostic::error(
                 "misplaced-assignment",
                 "a queried expression cannot write files",
@@ -474,7 +476,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if ty == Type::String {
             return self.env.files.line(unit).map(|line| Value::text(&line));
         }
-        let section = |shape: ArrayShape| place.section.unwrap_or(Section::whole(shape)).shape();
+        let section =
+            |shape: ArrayShape| place.section.unwrap_or(ArraySection::whole(shape)).shape();
         let vectors = matches!(value, Value::Vectors(_) | Value::Vector(_));
         let vectors = vectors && place.component.is_none();
         let shape = match shape_of(value) {
@@ -589,16 +592,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .expected("a surface (a grid of vectors)")
                 .found(value.called()));
         };
-        let whole = place.section.unwrap_or(Section::whole(shape));
-        let Section::Grid(a, b) = whole else { return Err(silent()) };
+        let whole = place.section.unwrap_or(ArraySection::whole(shape));
+        let ArraySection::Grid(a, b) = whole else { return Err(silent()) };
         let end = |s: crate::value::subarray::Selection, last: bool| {
             crate::value::subarray::Selection::at(s.position(if last { s.count - 1 } else { 0 }))
         };
         let edges = [
-            ("i = 1", Section::Grid(end(a, false), b)),
-            ("i = d1", Section::Grid(end(a, true), b)),
-            ("j = 1", Section::Grid(a, end(b, false))),
-            ("j = d2", Section::Grid(a, end(b, true))),
+            ("i = 1", ArraySection::Grid(end(a, false), b)),
+            ("i = d1", ArraySection::Grid(end(a, true), b)),
+            ("j = 1", ArraySection::Grid(a, end(b, false))),
+            ("j = d2", ArraySection::Grid(a, end(b, true))),
         ];
         for (edge, section) in edges {
             if let Some(at) = known.first_missing(shape, section) {

@@ -35,7 +35,7 @@ pub fn predeclared(name: &str) -> Option<f64> {
 /// What a run has opened and written.
 #[derive(Debug, Default)]
 pub struct Files {
-    open: BTreeMap<u32, Open>,
+    open: BTreeMap<u32, OpenFile>,
     written: IndexMap<String, Vec<u8>>,
     /// Files that the host makes CGNS of, and the names of their blocks.
     cgns: IndexMap<String, Vec<String>>,
@@ -43,14 +43,14 @@ pub struct Files {
 }
 
 #[derive(Debug)]
-enum Open {
+enum OpenFile {
     Read { name: String, text: Arc<str>, at: usize },
     Write { name: String },
 }
 
 /// How a file is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
+pub enum OpenMode {
     /// An existing file, read from its beginning.
     Read,
     /// A new file, or an existing one emptied.
@@ -59,13 +59,13 @@ pub enum Mode {
     Append,
 }
 
-impl Mode {
+impl OpenMode {
     /// The mode of the word `read`, `write` or `append`.
     pub fn parse(word: &str) -> Result<Self, Diagnostic> {
         match word {
-            "r" => Ok(Mode::Read),
-            "w" => Ok(Mode::Write),
-            "a" => Ok(Mode::Append),
+            "r" => Ok(OpenMode::Read),
+            "w" => Ok(OpenMode::Write),
+            "a" => Ok(OpenMode::Append),
             _ => Err(Diagnostic::error("unknown-mode", format!("unknown mode \"{word}\""))
                 .expected("\"r\" to read, \"w\" to write or \"a\" to append")
                 .found(format!("\"{word}\""))),
@@ -110,7 +110,7 @@ impl Files {
         world: &dyn World,
         from: &str,
         path: &str,
-        mode: Mode,
+        mode: OpenMode,
         unit: Option<u32>,
     ) -> Result<u32, Diagnostic> {
         let unit = unit.unwrap_or_else(|| {
@@ -126,7 +126,7 @@ impl Files {
                 .help("close it first, or let open(\"name\", \"w\") choose a unit"));
         }
         let open = match mode {
-            Mode::Read => {
+            OpenMode::Read => {
                 // What this run wrote is seen before what is on the disk.
                 let own = inside(path).ok().and_then(|name| self.written.get(&name));
                 let text = match own {
@@ -138,11 +138,11 @@ impl Files {
                         moldloft_syntax::decode(&read.bytes, &read.name)?.to_string()
                     }
                 };
-                Open::Read { name: path.into(), text: text.into(), at: 0 }
+                OpenFile::Read { name: path.into(), text: text.into(), at: 0 }
             }
-            Mode::Write | Mode::Append => {
+            OpenMode::Write | OpenMode::Append => {
                 let name = inside(path)?;
-                let busy = |o: &Open| matches!(o, Open::Write { name: n } if *n == name);
+                let busy = |o: &OpenFile| matches!(o, OpenFile::Write { name: n } if *n == name);
                 if self.open.values().any(busy) {
                     return Err(Diagnostic::error(
                         "unit-in-use",
@@ -152,11 +152,11 @@ impl Files {
                 }
                 self.cgns.shift_remove(&name);
                 let file = self.written.entry(name.clone()).or_default();
-                if mode == Mode::Write {
+                if mode == OpenMode::Write {
                     self.bytes -= file.len();
                     file.clear();
                 }
-                Open::Write { name }
+                OpenFile::Write { name }
             }
         };
         self.open.insert(unit, open);
@@ -177,7 +177,7 @@ impl Files {
     /// A whole file.
     pub fn put(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Diagnostic> {
         let name = inside(path)?;
-        if self.open.values().any(|o| matches!(o, Open::Write { name: n } if *n == name)) {
+        if self.open.values().any(|o| matches!(o, OpenFile::Write { name: n } if *n == name)) {
             let message = format!("`{name}` is open for writing already");
             return Err(Diagnostic::error("unit-in-use", message).help("close it first"));
         }
@@ -210,7 +210,7 @@ impl Files {
     /// Adds to a file.
     pub fn write(&mut self, unit: u32, text: &str) -> Result<(), Diagnostic> {
         let Some(open) = self.open.get(&unit) else { return Err(not_open(unit)) };
-        let Open::Write { name } = open else {
+        let OpenFile::Write { name } = open else {
             return Err(Diagnostic::error(
                 "wrong-mode",
                 format!("unit {unit} is open for reading"),
@@ -232,8 +232,8 @@ impl Files {
                 .help("read from a file: open(\"name\", \"r\")"));
         }
         match self.open.get_mut(&unit) {
-            Some(Open::Read { name, text, at }) => Ok((name, text, at)),
-            Some(Open::Write { .. }) => {
+            Some(OpenFile::Read { name, text, at }) => Ok((name, text, at)),
+            Some(OpenFile::Write { .. }) => {
                 Err(Diagnostic::error("wrong-mode", format!("unit {unit} is open for writing"))
                     .help("close it and open it with \"r\" to read"))
             }

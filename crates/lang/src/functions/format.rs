@@ -20,12 +20,12 @@ pub(crate) fn format(pattern: &str, items: &[Item]) -> Result<String, Diagnostic
     let pieces = parse(pattern)?;
     let mut out = String::new();
     let mut items = items.iter().peekable();
-    let takes = pieces.iter().any(|p| matches!(p, Piece::Directive(_)));
+    let takes = pieces.iter().any(|p| matches!(p, FormatPiece::Directive(_)));
     loop {
         for piece in &pieces {
             match piece {
-                Piece::Text(text) => out.push_str(text),
-                Piece::Directive(d) => match items.next() {
+                FormatPiece::Text(text) => out.push_str(text),
+                FormatPiece::Directive(d) => match items.next() {
                     Some(item) => out.push_str(&d.spell(item)?),
                     // Where values are used up the format ends.
                     None if !out.is_empty() => return Ok(out),
@@ -49,7 +49,7 @@ pub(crate) fn format(pattern: &str, items: &[Item]) -> Result<String, Diagnostic
     }
 }
 
-enum Piece {
+enum FormatPiece {
     Text(String),
     Directive(Directive),
 }
@@ -65,7 +65,7 @@ struct Directive {
     letter: char,
 }
 
-fn parse(pattern: &str) -> Result<Vec<Piece>, Diagnostic> {
+fn parse(pattern: &str) -> Result<Vec<FormatPiece>, Diagnostic> {
     let mut pieces = Vec::new();
     let mut text = String::new();
     let mut chars = pattern.chars().peekable();
@@ -111,8 +111,8 @@ fn parse(pattern: &str) -> Result<Vec<Piece>, Diagnostic> {
             Some('%') => text.push('%'),
             Some(letter @ ('d' | 'i' | 'f' | 'e' | 'g' | 's' | 'E' | 'G')) => {
                 d.letter = letter;
-                pieces.push(Piece::Text(std::mem::take(&mut text)));
-                pieces.push(Piece::Directive(d));
+                pieces.push(FormatPiece::Text(std::mem::take(&mut text)));
+                pieces.push(FormatPiece::Directive(d));
             }
             other => {
                 let found = other.map_or("the end of the format".into(), |c| format!("%{c}"));
@@ -122,7 +122,7 @@ fn parse(pattern: &str) -> Result<Vec<Piece>, Diagnostic> {
             }
         }
     }
-    pieces.push(Piece::Text(text));
+    pieces.push(FormatPiece::Text(text));
     Ok(pieces)
 }
 

@@ -7,7 +7,7 @@ use crate::source::scope::{Binding, Bound};
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
-use moldloft_syntax::model_file::{Field as Written, FieldKind, Object as Line};
+use moldloft_syntax::model_file::{Field as Written, FieldKind, ObjectEntry as Line};
 
 impl<T: Scalar> Producer<'_, '_, T> {
     /// The value of a `Variable` or `Formula`.

@@ -18,7 +18,7 @@ pub use to_model_file::to_model_file;
 pub use to_program::{prevents_conversion, quoted, to_program};
 
 use crate::run::interpreter::{Inputs, Settings};
-use crate::run::program::{NotLiteral, Program};
+use crate::run::program::{NotLiteral, RunContext};
 use crate::source::NoFiles;
 use crate::source::env::{Environment, Evaluation};
 use crate::source::fault_location;
@@ -34,7 +34,7 @@ use moldloft_registry::{
     Attributes, CallError, Class, Field, Given, Registry, Row, Scalar, Unit, Value, bind_arguments,
 };
 use moldloft_syntax::model_file::{
-    self, Field as Written, FieldKind, Fields, ModelFile, NumberId, Object as Line,
+    self, Field as Written, FieldKind, Fields, ModelFile, NumberId, ObjectEntry as Line,
 };
 use names::{degrees, is_layer, is_real, our_word, system_name, words};
 use std::collections::{HashMap, HashSet};
@@ -90,7 +90,7 @@ pub enum Outcome {
 }
 
 /// Why objects are missing.
-struct Root {
+struct RootCause {
     diagnostics: Vec<Diagnostic>,
     /// The objects that could not be built for want of it.
     blocked: Vec<String>,
@@ -144,7 +144,7 @@ impl ModelFileSource {
     /// Declares the objects in a graph.
     pub fn run<T: Scalar>(
         &self,
-        host: Program<'_>,
+        host: RunContext<'_>,
         evaluation: &mut Evaluation<T>,
         inputs: Inputs<'_, T>,
         found: &mut Vec<Diagnostic>,
@@ -190,7 +190,7 @@ impl ModelFileSource {
             producer.roots
         });
         let mut diagnostics: Vec<Diagnostic> =
-            roots.drain(..).flat_map(Root::into_diagnostics).collect();
+            roots.drain(..).flat_map(RootCause::into_diagnostics).collect();
         diagnostics.sort_by_key(|d| d.span().start);
         let beyond = diagnostics.len().saturating_sub(MOST_DIAGNOSTICS);
         if beyond > 0 {
@@ -565,7 +565,7 @@ pub struct Producer<'a, 'g, T: Scalar> {
     /// The rows of all kinds.
     pub registry: &'a Registry,
     /// The program that loads the file, with its host.
-    pub host: Program<'a>,
+    pub host: RunContext<'a>,
     /// The environment that the run leaves behind.
     pub env: &'a mut Environment<T>,
     /// The numbers of variables and formulas, by their place in the file.
@@ -576,14 +576,14 @@ pub struct Producer<'a, 'g, T: Scalar> {
     pub run: &'a mut Run<'g, T>,
     /// By the place of the object in the file.
     pub outcomes: Vec<Option<Outcome>>,
-    roots: Vec<Root>,
+    roots: Vec<RootCause>,
     /// How often a nearest name was looked for, which takes long in large models.
     suggestions: usize,
 }
 
 impl<T: Scalar> Producer<'_, '_, T> {
     fn root(&mut self, diagnostics: Vec<Diagnostic>) -> Outcome {
-        self.roots.push(Root { diagnostics, blocked: Vec::new(), first_use: None });
+        self.roots.push(RootCause { diagnostics, blocked: Vec::new(), first_use: None });
         Outcome::Missing(self.roots.len() - 1)
     }
 
@@ -927,9 +927,9 @@ impl<T: Scalar> Producer<'_, '_, T> {
     }
 }
 
-impl Root {
+impl RootCause {
     fn into_diagnostics(self) -> Vec<Diagnostic> {
-        let Root { mut diagnostics, blocked, first_use } = self;
+        let RootCause { mut diagnostics, blocked, first_use } = self;
         let Some((span, name)) = first_use else { return diagnostics };
         let Some(first) = diagnostics.first_mut() else { return diagnostics };
         let shown = blocked.iter().take(5).map(String::as_str).collect::<Vec<_>>().join(", ");
@@ -968,7 +968,7 @@ pub fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, 
     let file = sources.add(name, text);
     let (source, mut found) = ModelFileSource::parse(text.to_string(), file);
     let (mut modules, mut evaluation) = (Modules::default(), Evaluation::default());
-    let host = Program {
+    let host = RunContext {
         modules: &mut modules,
         world: &NoFiles,
         registry,

@@ -6,7 +6,7 @@ use crate::model_file::{ModelFileSource, Sorted};
 use crate::source::env::Evaluation;
 use moldloft_diag::Diagnostic;
 use moldloft_registry::{Attributes, Class, Field, PanelAttributes, Registry, Spacing, Unit};
-use moldloft_syntax::model_file::{Field as Written, FieldKind, ItemKind, Object as Line};
+use moldloft_syntax::model_file::{Field as Written, FieldKind, ItemKind, ObjectEntry as Line};
 use moldloft_syntax::number;
 use std::fmt::Write;
 

@@ -5,7 +5,7 @@ use crate::source::fault_location;
 use crate::source::module::Module;
 use crate::source::scope::{Binding, Bound, Passed};
 use crate::value::ops;
-use crate::value::subarray::{Place, Section, Selection};
+use crate::value::subarray::{ArraySection, Place, Selection};
 use crate::value::variables;
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
@@ -370,7 +370,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 {
                     return variables::part(
                         &value,
-                        Section::Row(Selection::at(x.re() as usize - 1)),
+                        ArraySection::Row(Selection::at(x.re() as usize - 1)),
                     );
                 }
             }
@@ -458,7 +458,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         extents: &[usize],
         shape: &str,
         subs: List<Subscript>,
-    ) -> Result<Section, Diagnostic> {
+    ) -> Result<ArraySection, Diagnostic> {
         if extents.len() != subs.len() {
             return Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
                 .expected(format!("{} subscripts", extents.len()))
@@ -484,8 +484,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             })?;
         }
         Ok(match subs.len() {
-            1 => Section::Row(parts[0]),
-            _ => Section::Grid(parts[0], parts[1]),
+            1 => ArraySection::Row(parts[0]),
+            _ => ArraySection::Grid(parts[0], parts[1]),
         })
     }
 

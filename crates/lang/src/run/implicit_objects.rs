@@ -1,7 +1,7 @@
 //! Runs a program: fields and sets that become objects.
 
 use crate::run::interpreter::{Interpreter, silent};
-use crate::source::env::Origin;
+use crate::source::env::DeclarationOrigin;
 use crate::source::module::Module;
 use crate::source::scope::Binding;
 use moldloft_diag::Diagnostic;
@@ -80,7 +80,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .declare(declaration)
             .map_err(|fault| crate::source::fault_location::unplaced(&fault).at(item.name.span))?;
         let module = self.current as u32;
-        self.env.origins.push(Origin { module, stmt: id, repeated: false });
+        self.env.origins.push(DeclarationOrigin { module, stmt: id, repeated: false });
         self.env.scope.bind(name, item.name.span, Binding::Object(key));
         Ok(())
     }

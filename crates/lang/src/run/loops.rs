@@ -2,7 +2,7 @@
 
 use crate::run::interpreter::{Flow, Interpreter};
 use crate::source::module::Module;
-use crate::source::scope::{Binding, Passed, Turn};
+use crate::source::scope::{Binding, LoopIteration, Passed};
 use crate::value::variables;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
@@ -16,7 +16,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         self.turns += 1;
         let id = self.turns;
-        self.env.scope.frame_mut().loops.push(Turn { label, id });
+        self.env.scope.frame_mut().loops.push(LoopIteration { label, id });
         let flow = self.statement(m, body);
         self.env.scope.frame_mut().loops.pop();
         flow

@@ -2,7 +2,7 @@
 
 use crate::run::inserted::{Content, inserted_file};
 use crate::run::interpreter::{Interpreter, silent};
-use crate::source::env::Origin;
+use crate::source::env::DeclarationOrigin;
 use crate::source::module::{Module, RoutineAt};
 use crate::source::scope::{Binding, Bound};
 use moldloft_diag::{Diagnostic, Span};
@@ -132,7 +132,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         })?;
         let frame = self.env.scope.frame();
         let repeated = !frame.global || !frame.loops.is_empty() || !frame.prefix.is_empty();
-        self.env.origins.push(Origin { module: self.current as u32, stmt: id, repeated });
+        self.env.origins.push(DeclarationOrigin {
+            module: self.current as u32,
+            stmt: id,
+            repeated,
+        });
         let what = match turn {
             None => Binding::Object(key),
             Some((family, turn)) => Binding::Turn { now: key, turn, family },

@@ -19,7 +19,7 @@ use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind, Type};
 use std::sync::Arc;
 
 /// What running a program needs.
-pub struct Program<'a> {
+pub struct RunContext<'a> {
     /// The modules parsed up to now.
     pub modules: &'a mut Modules,
     /// The files that may be read.
@@ -70,7 +70,7 @@ pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
     f()
 }
 
-impl Program<'_> {
+impl RunContext<'_> {
     /// Runs module 0 and what it loads.
     pub fn run<T: Scalar>(
         self,

@@ -1,7 +1,7 @@
 //! Runs a program: the objects of loaded sketches.
 
 use crate::run::interpreter::Interpreter;
-use crate::source::env::{Origin, Param};
+use crate::source::env::{DeclarationOrigin, Param};
 use crate::source::module::Module;
 use crate::source::scope::{Binding, Bound};
 use crate::source::sketch_file::{Drawn, SketchFile};
@@ -11,8 +11,8 @@ use moldloft_model::{Declaration, Extent};
 use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
 use moldloft_registry::{Given, Scalar, Value, bind_arguments};
-use moldloft_sketch::curve::{Piece, Traced};
-use moldloft_sketch::{Axis, DimensionFault, NoBody, PointId, RoundFace, Solid, solve};
+use moldloft_sketch::curve::{SmoothPiece, Traced};
+use moldloft_sketch::{Axis, DimensionFault, NoBody, PointId, RoundFace, SketchSolid, solve};
 use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -43,7 +43,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn sketch_origin(&mut self, id: StmtId) -> u32 {
         let origin = self.env.origins.len() as u32;
         // Several objects are made by the statement, so none of them has a literal in it.
-        self.env.origins.push(Origin { module: self.current as u32, stmt: id, repeated: true });
+        self.env.origins.push(DeclarationOrigin {
+            module: self.current as u32,
+            stmt: id,
+            repeated: true,
+        });
         origin
     }
 
@@ -196,7 +200,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 diagnostic.at(site.span).help("CONVERT in the sketch names the free points"),
             );
         }
-        let mut names = Names { prefix, site, members: Vec::new(), points: BTreeMap::new() };
+        let mut names =
+            SketchDeclarations { prefix, site, members: Vec::new(), points: BTreeMap::new() };
         for &id in drawn.planes.ids() {
             if let Some(at) = layout.point(&drawn.planes, id) {
                 self.sketch_point(&mut names, id, at);
@@ -246,7 +251,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.env.sketches.push(prefix.to_owned());
     }
 
-    fn sketch_point(&mut self, names: &mut Names<'_, T>, id: PointId, at: Vec3<T>) {
+    fn sketch_point(&mut self, names: &mut SketchDeclarations<'_, T>, id: PointId, at: Vec3<T>) {
         let xyz = at.to_array().map(Value::Number).to_vec();
         if let Some(key) = self.part(names, &format!("p{id}"), "AbsPoint", xyz, true) {
             names.points.insert(id, key);
@@ -254,7 +259,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// Faces, curves, the mesh and its measures.
-    fn sketch_body(&mut self, names: &mut Names<'_, T>, drawn: &Drawn, body: &Solid<T>) {
+    fn sketch_body(
+        &mut self,
+        names: &mut SketchDeclarations<'_, T>,
+        drawn: &Drawn,
+        body: &SketchSolid<T>,
+    ) {
         let object = &drawn.object;
         for (k, curve) in object.curves.values().enumerate() {
             let Some(traced) = body.curves.get(&k) else { continue };
@@ -314,7 +324,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// Declares `prefix.name`.
     fn part(
         &mut self,
-        names: &mut Names<'_, T>,
+        names: &mut SketchDeclarations<'_, T>,
         name: &str,
         kind: &str,
         args: Vec<Value<T>>,
@@ -348,7 +358,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 }
 
 /// The arguments of `FaceSet`: the mesh, the face of each triangle, and the round faces.
-fn face_arguments<T: Scalar>(body: &Solid<T>, mesh: &Mesh<T>, key: Key) -> Vec<Value<T>> {
+fn face_arguments<T: Scalar>(body: &SketchSolid<T>, mesh: &Mesh<T>, key: Key) -> Vec<Value<T>> {
     let number = |n: usize| T::from((n + 1) as f64);
     let mut sides = Vec::new();
     for (n, patch) in mesh.patches().iter().enumerate() {
@@ -371,7 +381,7 @@ fn face_arguments<T: Scalar>(body: &Solid<T>, mesh: &Mesh<T>, key: Key) -> Vec<V
 }
 
 /// What is being declared, and under which names.
-struct Names<'a, T: Scalar> {
+struct SketchDeclarations<'a, T: Scalar> {
     prefix: &'a str,
     site: Site,
     members: Vec<(String, Value<T>)>,
@@ -393,7 +403,7 @@ fn curve_arguments<T: Scalar>(
     ends: [Option<Key>; 2],
 ) -> (&'static str, Vec<Value<T>>) {
     let end = |k: usize, at: Vec3<T>| ends[k].map_or(Value::Vector(at), Value::Object);
-    if let [Piece::Conic { centre, a, b, sweep }] = traced.pieces[..] {
+    if let [SmoothPiece::Conic { centre, a, b, sweep }] = traced.pieces[..] {
         let args = vec![
             Value::Vector(centre),
             end(0, centre + a),
@@ -405,8 +415,8 @@ fn curve_arguments<T: Scalar>(
     }
     let cubics: Vec<[Vec3<T>; 4]> = (traced.pieces.iter())
         .filter_map(|p| match p {
-            Piece::Cubic(points) => Some(*points),
-            Piece::Conic { .. } => None,
+            SmoothPiece::Cubic(points) => Some(*points),
+            SmoothPiece::Conic { .. } => None,
         })
         .collect();
     let mut points: Vec<Value<T>> = Vec::new();

@@ -33,7 +33,7 @@ pub struct Param {
 
 /// Where an object was declared.
 #[derive(Clone, Copy, Debug)]
-pub struct Origin {
+pub struct DeclarationOrigin {
     /// The module, by its number.
     pub module: u32,
     /// The statement of the module.
@@ -114,7 +114,7 @@ pub struct Environment<T: Scalar> {
     /// Objects made in loops and subroutines, by the name without its last index.
     pub families: IndexMap<Arc<str>, Vec<Key>>,
     /// The place of declaration of each object, by its key.
-    pub origins: Vec<Origin>,
+    pub origins: Vec<DeclarationOrigin>,
     /// Variables and formulas of a model file.
     pub numbers: IndexMap<String, T>,
     /// The solve sets, in the order of the text.

@@ -93,14 +93,14 @@ pub struct Frame<T: Scalar> {
     /// Goes before the names of objects: "fore." in the call `leg fore(...)`.
     pub prefix: Arc<str>,
     /// The loops under way, outermost first.
-    pub loops: Vec<Turn>,
+    pub loops: Vec<LoopIteration>,
     /// The call that the frame belongs to, and the module it stands in.
     pub called: Option<(Span, u32)>,
 }
 
 /// A turn of a loop under way.
 #[derive(Clone, Debug)]
-pub struct Turn {
+pub struct LoopIteration {
     /// The loop variable's value as it stands in names; `None` in a `while`.
     pub label: Option<f64>,
     /// Unique among the turns of a run.

@@ -6,7 +6,9 @@
 
 use crate::World;
 use moldloft_diag::{Diagnostic, FileId, Span};
-use moldloft_sketch::{Estimate, Files, Object, Planes, Role, Session, json_format};
+use moldloft_sketch::{
+    DimensionRole, Estimate, Files, Planes, SketchObject, SketchSession, json_format,
+};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -33,7 +35,7 @@ pub struct SketchFile {
 #[derive(Debug)]
 pub struct Drawn {
     /// The object.
-    pub object: Object,
+    pub object: SketchObject,
     /// Its dimensioning planes.
     pub planes: Planes,
     estimate: OnceLock<Option<Estimate>>,
@@ -54,7 +56,7 @@ impl Drawn {
         let variables = (self.object.variables.iter())
             .filter_map(|(key, v)| Some((key, &v.name, v.value.literal()?, v.range)));
         let dimensions = (self.object.dimensions.iter())
-            .filter(|(_, d)| d.role == Role::Driving)
+            .filter(|(_, d)| d.role == DimensionRole::Driving)
             .filter_map(|(key, d)| Some((key, &d.name, d.value.as_ref()?.literal()?, d.range)));
         variables.chain(dimensions)
     }
@@ -111,7 +113,7 @@ impl SketchFile {
         };
         // A session cannot wait for the world, so it is run again with each file that it asks for.
         for _ in 0..=MOST_FILES {
-            let mut session = Session::with_files(Box::new(ShelfFiles(shelf.clone())));
+            let mut session = SketchSession::with_files(Box::new(ShelfFiles(shelf.clone())));
             let mut faults = Vec::new();
             let commands = script.as_deref().unwrap_or(text);
             let mut at = 0;
@@ -171,7 +173,7 @@ impl SketchFile {
 }
 
 /// A reply as a diagnostic; notes are nothing wrong.
-fn told(reply: moldloft_sketch::Reply, span: Span) -> Option<Diagnostic> {
+fn told(reply: moldloft_sketch::CommandReply, span: Span) -> Option<Diagnostic> {
     let code = reply.code.map_or(String::new(), |c| format!(" [{c}]"));
     let text = format!("{}{code}", reply.text);
     let diagnostic = match reply.severity {

@@ -7,7 +7,7 @@ pub trait World: Send + Sync {
     ///
     /// # Errors
     /// Why it cannot be read.
-    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, ReadError>;
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError>;
 }
 
 /// A text and where it came from.
@@ -21,7 +21,7 @@ pub struct ReadText {
 
 /// Why a text cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReadError {
+pub struct TextReadError {
     /// One line: what is wrong.
     pub message: String,
     /// The remedy.
@@ -33,7 +33,7 @@ pub struct ReadError {
 pub struct NoFiles;
 
 impl World for NoFiles {
-    fn read(&self, path: &str, _from: Option<&str>) -> Result<ReadText, ReadError> {
-        Err(ReadError { message: format!("cannot read `{path}`: no files here"), help: None })
+    fn read(&self, path: &str, _from: Option<&str>) -> Result<ReadText, TextReadError> {
+        Err(TextReadError { message: format!("cannot read `{path}`: no files here"), help: None })
     }
 }

@@ -21,7 +21,7 @@ pub const MEMBERS: [&str; 4] = ["positions", "lengths", "areas", "lines"];
 const MEET: f64 = 1e-9;
 
 /// One section, measured.
-struct Section<T> {
+struct MeasuredSection<T> {
     length: T,
     area: T,
     /// The longest chord that closes a line for its area.
@@ -79,7 +79,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let graph = self.run.graph();
         let measured =
             contours.values.iter().map(|&x| section(graph, contours, x, &shapes, &planes));
-        let sections: Vec<Section<T>> = measured.collect::<Result<_, Diagnostic>>()?;
+        let sections: Vec<MeasuredSection<T>> = measured.collect::<Result<_, Diagnostic>>()?;
         if word == "lines" {
             let lines = sections.into_iter().flat_map(|s| s.lines).map(|line| {
                 let points = line.into_iter().map(Vec3::lifted).collect();
@@ -163,10 +163,11 @@ fn section<T: Scalar>(
     x: T,
     shapes: &[(Key, Value<T>)],
     planes: &[usize],
-) -> Result<Section<T>, Diagnostic> {
+) -> Result<MeasuredSection<T>, Diagnostic> {
     let family = &contours.family;
     let mut pieces: Vec<ContourPiece<T>> = Vec::new();
-    let mut found = Section { length: T::zero(), area: T::zero(), chord: 0.0, lines: Vec::new() };
+    let mut found =
+        MeasuredSection { length: T::zero(), area: T::zero(), chord: 0.0, lines: Vec::new() };
     // Sums of bodies, whose triangles say which side is inside.
     let mut swept: Vec3<T> = Vec3::zero();
     for (key, shape) in shapes {

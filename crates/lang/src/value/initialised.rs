@@ -4,7 +4,7 @@
 //! there (the ends before `line`, the edges before `transfinite`) ask here, so that zeros are not
 //! taken for data.
 
-use crate::value::subarray::{Section, Selection};
+use crate::value::subarray::{ArraySection, Selection};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Value};
 
@@ -39,12 +39,12 @@ impl Known {
     }
 
     /// True when all elements of the section have a value.
-    pub fn has(&self, shape: ArrayShape, section: Section) -> bool {
+    pub fn has(&self, shape: ArrayShape, section: ArraySection) -> bool {
         self.first_missing(shape, section).is_none()
     }
 
     /// The first element of the section without a value, by its numbers from 1.
-    pub fn first_missing(&self, shape: ArrayShape, section: Section) -> Option<Vec<usize>> {
+    pub fn first_missing(&self, shape: ArrayShape, section: ArraySection) -> Option<Vec<usize>> {
         let missing = self.missing.as_ref()?;
         let mut found = None;
         section.runs(shape, |start, count, step| {
@@ -60,7 +60,7 @@ impl Known {
 
     /// Notes that the section (the whole when `None`) was given a value; `value` is the variable's
     /// new value.
-    pub fn give<T: Real>(&mut self, section: Option<Section>, value: &Value<T>) {
+    pub fn give<T: Real>(&mut self, section: Option<ArraySection>, value: &Value<T>) {
         let shape = match value {
             Value::Numbers(a) => a.shape,
             Value::Vectors(a) => a.shape,
@@ -86,7 +86,7 @@ impl Known {
         if let (Value::Vectors(a), ArrayShape::Grid(m, n)) = (value, shape) {
             let point = |i: usize, j: usize| a.at(i * n + j).re();
             match section {
-                Some(Section::Grid(a, b)) => self.give_edges([m, n], a, b, point),
+                Some(ArraySection::Grid(a, b)) => self.give_edges([m, n], a, b, point),
                 _ => self.edges = None,
             }
         }

@@ -70,17 +70,17 @@ impl Selection {
 
 /// What all subscripts select.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Section {
+pub enum ArraySection {
     Row(Selection),
     Grid(Selection, Selection),
 }
 
-impl Section {
+impl ArraySection {
     /// The whole of an array.
     pub fn whole(shape: ArrayShape) -> Self {
         match shape {
-            ArrayShape::Row(n) => Section::Row(Selection::whole(n)),
-            ArrayShape::Grid(m, n) => Section::Grid(Selection::whole(m), Selection::whole(n)),
+            ArrayShape::Row(n) => ArraySection::Row(Selection::whole(n)),
+            ArrayShape::Grid(m, n) => ArraySection::Grid(Selection::whole(m), Selection::whole(n)),
         }
     }
 
@@ -88,8 +88,8 @@ impl Section {
     pub fn extents(self) -> ([usize; 2], usize) {
         let mut extents = ([0; 2], 0);
         let parts = match self {
-            Section::Row(a) => [Some(a), None],
-            Section::Grid(a, b) => [Some(a), Some(b)],
+            ArraySection::Row(a) => [Some(a), None],
+            ArraySection::Grid(a, b) => [Some(a), Some(b)],
         };
         for part in parts.into_iter().flatten().filter(|s| s.keeps) {
             extents.0[extents.1] = part.count;
@@ -108,27 +108,27 @@ impl Section {
     }
 
     /// What `inner` selects from what this selects; `None` when it has other dimensions.
-    pub fn of(self, inner: Section) -> Option<Section> {
+    pub fn of(self, inner: ArraySection) -> Option<ArraySection> {
         Some(match (self, inner) {
-            (Section::Row(a), Section::Row(s)) if a.keeps => Section::Row(a.of(s)),
-            (Section::Grid(a, b), Section::Grid(s, t)) if a.keeps && b.keeps => {
-                Section::Grid(a.of(s), b.of(t))
+            (ArraySection::Row(a), ArraySection::Row(s)) if a.keeps => ArraySection::Row(a.of(s)),
+            (ArraySection::Grid(a, b), ArraySection::Grid(s, t)) if a.keeps && b.keeps => {
+                ArraySection::Grid(a.of(s), b.of(t))
             }
-            (Section::Grid(a, b), Section::Row(s)) if a.keeps && !b.keeps => {
-                Section::Grid(a.of(s), b)
+            (ArraySection::Grid(a, b), ArraySection::Row(s)) if a.keeps && !b.keeps => {
+                ArraySection::Grid(a.of(s), b)
             }
-            (Section::Grid(a, b), Section::Row(s)) if b.keeps && !a.keeps => {
-                Section::Grid(a, b.of(s))
+            (ArraySection::Grid(a, b), ArraySection::Row(s)) if b.keeps && !a.keeps => {
+                ArraySection::Grid(a, b.of(s))
             }
             _ => return None,
         })
     }
 
     /// True when some element is in both.
-    pub fn meets(self, o: Section) -> bool {
+    pub fn meets(self, o: ArraySection) -> bool {
         match (self, o) {
-            (Section::Row(a), Section::Row(b)) => a.meets(b),
-            (Section::Grid(a, b), Section::Grid(c, d)) => a.meets(c) && b.meets(d),
+            (ArraySection::Row(a), ArraySection::Row(b)) => a.meets(b),
+            (ArraySection::Grid(a, b), ArraySection::Grid(c, d)) => a.meets(c) && b.meets(d),
             _ => true,
         }
     }
@@ -137,8 +137,8 @@ impl Section {
     /// neighbours: (first position, count, step).
     pub fn runs(self, shape: ArrayShape, mut f: impl FnMut(usize, usize, isize)) {
         match (self, shape) {
-            (Section::Row(a), _) => f(a.start, a.count, a.step),
-            (Section::Grid(a, b), ArrayShape::Grid(_, n)) => {
+            (ArraySection::Row(a), _) => f(a.start, a.count, a.step),
+            (ArraySection::Grid(a, b), ArrayShape::Grid(_, n)) => {
                 if b.count == 1 {
                     f(a.start * n + b.start, a.count, a.step * n as isize);
                 } else if b.run() == Some(0..n) && a.run().is_some() {
@@ -147,13 +147,13 @@ impl Section {
                     a.positions().for_each(|i| f(i * n + b.start, b.count, b.step));
                 }
             }
-            (Section::Grid(..), ArrayShape::Row(_)) => {}
+            (ArraySection::Grid(..), ArrayShape::Row(_)) => {}
         }
     }
 }
 
 /// The selected elements of `items`, in order.
-pub fn picked<E: Copy>(items: &[E], shape: ArrayShape, section: Section) -> Vec<E> {
+pub fn picked<E: Copy>(items: &[E], shape: ArrayShape, section: ArraySection) -> Vec<E> {
     let mut out = Vec::with_capacity(section.shape().map_or(1, ArrayShape::count));
     section.runs(shape, |start, count, step| {
         if step == 1 {
@@ -167,7 +167,7 @@ pub fn picked<E: Copy>(items: &[E], shape: ArrayShape, section: Section) -> Vec<
 }
 
 /// Writes `from`, in order, to the selected elements of `items`.
-pub fn put<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section, from: &[E]) {
+pub fn put<E: Copy>(items: &mut [E], shape: ArrayShape, section: ArraySection, from: &[E]) {
     let mut done = 0;
     section.runs(shape, |start, count, step| {
         let part = &from[done..done + count];
@@ -182,7 +182,7 @@ pub fn put<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section, from: 
 }
 
 /// Writes one value to all selected elements of `items`.
-pub fn put_all<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section, x: E) {
+pub fn put_all<E: Copy>(items: &mut [E], shape: ArrayShape, section: ArraySection, x: E) {
     section.runs(shape, |start, count, step| {
         let at = |k: usize| (start as isize + step * k as isize) as usize;
         (0..count).for_each(|k| items[at(k)] = x);
@@ -196,7 +196,7 @@ pub struct Place {
     pub frame: Option<u32>,
     pub name: Name,
     /// The subscripts, when there are some.
-    pub section: Option<Section>,
+    pub section: Option<ArraySection>,
     /// The component x, y, z as 0, 1, 2.
     pub component: Option<usize>,
 }
@@ -211,7 +211,7 @@ impl Place {
     ///
     /// # Errors
     /// When this place has no such dimensions.
-    pub fn indexed(self, inner: Section) -> Result<Self, Diagnostic> {
+    pub fn indexed(self, inner: ArraySection) -> Result<Self, Diagnostic> {
         let section = match self.section {
             None => Some(inner),
             Some(outer) => outer.of(inner),
@@ -245,13 +245,14 @@ mod tests {
     fn sections_of_sections() {
         let shape = ArrayShape::Grid(4, 5);
         let items: Vec<usize> = (0..20).collect();
-        let column = Section::Grid(Selection::whole(4), Selection::at(2));
+        let column = ArraySection::Grid(Selection::whole(4), Selection::at(2));
         assert_eq!(picked(&items, shape, column), [2, 7, 12, 17]);
         let back = Selection { start: 3, step: -2, count: 2, keeps: true };
-        let part = column.of(Section::Row(back)).unwrap();
+        let part = column.of(ArraySection::Row(back)).unwrap();
         assert_eq!(picked(&items, shape, part), [17, 7]);
         assert_eq!(part.shape(), Some(ArrayShape::Row(2)));
-        let block = Section::Grid(back, Selection { start: 1, step: 3, count: 2, keeps: true });
+        let block =
+            ArraySection::Grid(back, Selection { start: 1, step: 3, count: 2, keeps: true });
         assert_eq!(picked(&items, shape, block), [16, 19, 6, 9]);
         assert!(column.of(column).is_none());
         let mut copy = items.clone();
@@ -259,7 +260,7 @@ mod tests {
         assert_eq!((copy[16], copy[19], copy[6], copy[9], copy[7]), (0, 0, 0, 1, 7));
         assert!(part.meets(column) && !part.meets(block));
         let rows =
-            Section::Grid(Selection { start: 1, ..Selection::whole(2) }, Selection::whole(5));
+            ArraySection::Grid(Selection { start: 1, ..Selection::whole(2) }, Selection::whole(5));
         assert_eq!(picked(&items, shape, rows), (5..15).collect::<Vec<_>>());
     }
 }

@@ -1,6 +1,6 @@
 //! Variables: types, sections, and assignment.
 
-use crate::value::subarray::{Place, Section, picked, put, put_all};
+use crate::value::subarray::{ArraySection, Place, picked, put, put_all};
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
@@ -267,13 +267,16 @@ fn is_array<T: Real>(value: &Value<T>) -> bool {
 }
 
 /// The section, or the whole; checked against the dimensions.
-fn section_of(shape: ArrayShape, section: Option<Section>) -> Result<Section, Diagnostic> {
+fn section_of(
+    shape: ArrayShape,
+    section: Option<ArraySection>,
+) -> Result<ArraySection, Diagnostic> {
     match (shape, section) {
-        (_, None) => Ok(Section::whole(shape)),
-        (ArrayShape::Row(_), Some(s @ Section::Row(_)))
-        | (ArrayShape::Grid(..), Some(s @ Section::Grid(..))) => Ok(s),
+        (_, None) => Ok(ArraySection::whole(shape)),
+        (ArrayShape::Row(_), Some(s @ ArraySection::Row(_)))
+        | (ArrayShape::Grid(..), Some(s @ ArraySection::Grid(..))) => Ok(s),
         (_, Some(section)) => {
-            let found = if matches!(section, Section::Row(_)) { 1 } else { 2 };
+            let found = if matches!(section, ArraySection::Row(_)) { 1 } else { 2 };
             Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
                 .expected(match shape {
                     ArrayShape::Row(_) => "one subscript, as in c[3]",
@@ -287,11 +290,11 @@ fn section_of(shape: ArrayShape, section: Option<Section>) -> Result<Section, Di
 /// Writes `value` into the selected elements, or one component of them.
 fn fill<T: Real>(
     old: &mut Value<T>,
-    section: Option<Section>,
+    section: Option<ArraySection>,
     component: Option<usize>,
     value: Value<T>,
 ) -> Result<(), Diagnostic> {
-    let differ = |to: Section, from: ArrayShape| {
+    let differ = |to: ArraySection, from: ArrayShape| {
         let to = to.shape().map_or("a single element".to_string(), |s| s.to_string());
         Diagnostic::error("shapes-differ", format!("shapes differ: {to} = {from}"))
             .expected(format!("a value of shape {to}, or a single one"))
@@ -312,7 +315,7 @@ fn fill<T: Real>(
         Value::List(_) => converted(Type::Curve, value)?,
         other => other,
     };
-    let alike = |section: Section, from: ArrayShape| match section.shape() == Some(from) {
+    let alike = |section: ArraySection, from: ArrayShape| match section.shape() == Some(from) {
         true => Ok(()),
         false => Err(differ(section, from)),
     };
@@ -389,7 +392,7 @@ fn component_mut<T>(v: &mut Vec3<T>, component: usize) -> &mut T {
 ///
 /// # Errors
 /// When subscripts and dimensions do not go together.
-pub fn part<T: Real>(value: &Value<T>, section: Section) -> Result<Value<T>, Diagnostic> {
+pub fn part<T: Real>(value: &Value<T>, section: ArraySection) -> Result<Value<T>, Diagnostic> {
     Ok(match value {
         Value::Numbers(array) => {
             let section = section_of(array.shape, Some(section))?;
@@ -408,9 +411,9 @@ pub fn part<T: Real>(value: &Value<T>, section: Section) -> Result<Value<T>, Dia
             }
         }
         Value::List(items) => match section {
-            Section::Row(one) if !one.keeps => items[one.start].clone(),
-            Section::Row(some) => Value::list(some.positions().map(|k| items[k].clone())),
-            Section::Grid(..) => {
+            ArraySection::Row(one) if !one.keeps => items[one.start].clone(),
+            ArraySection::Row(some) => Value::list(some.positions().map(|k| items[k].clone())),
+            ArraySection::Grid(..) => {
                 return Err(Diagnostic::error("wrong-subscripts", "a list has one subscript"));
             }
         },
@@ -465,7 +468,8 @@ pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
             (false, 0) => Type::Float,
             (false, _) => Type::Farray,
         };
-    let dimensions = |shape: ArrayShape| place.section.unwrap_or(Section::whole(shape)).extents().1;
+    let dimensions =
+        |shape: ArrayShape| place.section.unwrap_or(ArraySection::whole(shape)).extents().1;
     match root {
         Value::Numbers(a) => of(dimensions(a.shape), false),
         Value::Vectors(a) => of(dimensions(a.shape), true),
@@ -476,7 +480,7 @@ pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
 
 /// A type with the extents of a value of it: `curve[60]`, `surface[60,25]`, `number`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub enum SizedType {
     /// Numbers, and their extents.
     Numbers(ArrayShape),
     /// Vectors, and their extents.
@@ -487,25 +491,25 @@ pub enum Shape {
     Other(Class),
 }
 
-impl std::fmt::Display for Shape {
+impl std::fmt::Display for SizedType {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Shape::Numbers(shape) => write!(f, "farray{shape}"),
-            Shape::Vectors(shape @ ArrayShape::Row(_)) => write!(f, "curve{shape}"),
-            Shape::Vectors(shape) => write!(f, "surface{shape}"),
-            Shape::List(n) => write!(f, "list[{n}]"),
-            Shape::Other(class) => f.write_str(class.name()),
+            SizedType::Numbers(shape) => write!(f, "farray{shape}"),
+            SizedType::Vectors(shape @ ArrayShape::Row(_)) => write!(f, "curve{shape}"),
+            SizedType::Vectors(shape) => write!(f, "surface{shape}"),
+            SizedType::List(n) => write!(f, "list[{n}]"),
+            SizedType::Other(class) => f.write_str(class.name()),
         }
     }
 }
 
 /// The type and extents of a value.
-pub fn shape_of<T: Real>(value: &Value<T>) -> Shape {
+pub fn shape_of<T: Real>(value: &Value<T>) -> SizedType {
     match value {
-        Value::Numbers(a) => Shape::Numbers(a.shape),
-        Value::Vectors(a) => Shape::Vectors(a.shape),
-        Value::List(items) => Shape::List(items.len()),
-        other => Shape::Other(other.class()),
+        Value::Numbers(a) => SizedType::Numbers(a.shape),
+        Value::Vectors(a) => SizedType::Vectors(a.shape),
+        Value::List(items) => SizedType::List(items.len()),
+        other => SizedType::Other(other.class()),
     }
 }
 

@@ -32,17 +32,18 @@ pub struct Boundary {
 
 /// How the parameters of one face run on another: swapped, then each reversed or not.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Turn {
+struct FaceOrientation {
     swap: bool,
     flip: [bool; 2],
 }
 
-impl Turn {
-    const ALL: [Turn; 8] = {
-        let mut all = [Turn { swap: false, flip: [false; 2] }; 8];
+impl FaceOrientation {
+    const ALL: [FaceOrientation; 8] = {
+        let mut all = [FaceOrientation { swap: false, flip: [false; 2] }; 8];
         let mut bits = 0;
         while bits < 8 {
-            all[bits] = Turn { swap: bits & 1 == 1, flip: [bits & 2 == 2, bits & 4 == 4] };
+            all[bits] =
+                FaceOrientation { swap: bits & 1 == 1, flip: [bits & 2 == 2, bits & 4 == 4] };
             bits += 1;
         }
         all
@@ -123,7 +124,13 @@ impl<'a> Faces<'a> {
 
     /// The panel on the second face that lies `step` panels from `start` and has there, turned so,
     /// the vertices of `own`.
-    fn partner(&self, own: Place, start: Place, turn: Turn, step: [usize; 2]) -> Option<Place> {
+    fn partner(
+        &self,
+        own: Place,
+        start: Place,
+        turn: FaceOrientation,
+        step: [usize; 2],
+    ) -> Option<Place> {
         let (block, face, _) = start;
         let size = self.blocks[block].face_size(face);
         let by = turn.step(step[0] as isize, step[1] as isize);
@@ -145,7 +152,7 @@ impl<'a> Faces<'a> {
     }
 
     /// The largest rectangle from `own` on, first along its face's first parameter.
-    fn grown(&self, own: Place, start: Place, turn: Turn) -> Rectangle {
+    fn grown(&self, own: Place, start: Place, turn: FaceOrientation) -> Rectangle {
         let [m, n] = self.blocks[own.0].face_size(own.1);
         let mut used: HashSet<Place> = HashSet::new();
         let pair = |a: usize, b: usize, used: &mut HashSet<Place>| {
@@ -190,11 +197,13 @@ pub fn find(blocks: &[HexBlock]) -> (Vec<Interface>, Vec<Boundary>) {
             continue;
         }
         let Some(start) = faces.other(own) else { continue };
-        let grown = Turn::ALL.into_iter().map(|turn| (turn, faces.grown(own, start, turn)));
-        let best = grown.fold(None, |best: Option<(Turn, Rectangle)>, next| match best {
-            Some(best) if best.1.panels.len() >= next.1.panels.len() => Some(best),
-            _ => Some(next),
-        });
+        let grown =
+            FaceOrientation::ALL.into_iter().map(|turn| (turn, faces.grown(own, start, turn)));
+        let best =
+            grown.fold(None, |best: Option<(FaceOrientation, Rectangle)>, next| match best {
+                Some(best) if best.1.panels.len() >= next.1.panels.len() => Some(best),
+                _ => Some(next),
+            });
         let Some((turn, Rectangle { size, panels })) = best else { continue };
         if panels.is_empty() {
             continue;
@@ -211,7 +220,7 @@ fn interface(
     blocks: &[HexBlock],
     own: Place,
     start: Place,
-    turn: Turn,
+    turn: FaceOrientation,
     size: [usize; 2],
 ) -> Interface {
     let first = &blocks[own.0];
@@ -254,7 +263,7 @@ fn boundaries(faces: &mut Faces) -> Vec<Boundary> {
     found
 }
 
-fn axes(face_a: usize, face_b: usize, turn: Turn) -> [(usize, bool); 3] {
+fn axes(face_a: usize, face_b: usize, turn: FaceOrientation) -> [(usize, bool); 3] {
     let ([p, q, own], [r, s, other]) = (HexBlock::face_axes(face_a), HexBlock::face_axes(face_b));
     let mut axes = [(0, false); 3];
     let on = |k: usize| ([r, s][k], turn.flip[k]);

@@ -61,7 +61,7 @@ impl BlocksReport {
 
 /// What is summed over cells, in their order.
 #[derive(Clone, Copy)]
-struct Tally {
+struct VolumeTally {
     volume: f64,
     folded: usize,
     sum: f64,
@@ -69,15 +69,16 @@ struct Tally {
     worst: Option<BadCell>,
 }
 
-impl Tally {
-    const EMPTY: Tally = Tally { volume: 0.0, folded: 0, sum: 0.0, aspect: 0.0, worst: None };
+impl VolumeTally {
+    const EMPTY: VolumeTally =
+        VolumeTally { volume: 0.0, folded: 0, sum: 0.0, aspect: 0.0, worst: None };
 
-    fn and(self, o: Tally) -> Tally {
+    fn and(self, o: VolumeTally) -> VolumeTally {
         let worst = match (self.worst, o.worst) {
             (Some(a), Some(b)) if b.scaled_jacobian < a.scaled_jacobian => Some(b),
             (a, b) => a.or(b),
         };
-        Tally {
+        VolumeTally {
             volume: self.volume + o.volume,
             folded: self.folded + o.folded,
             sum: self.sum + o.sum,
@@ -108,8 +109,9 @@ impl Blocks<f64> {
         let hex = &self.blocks()[block];
         let [nu, ..] = hex.divisions();
         // A slab of cells each; added up in order, so the bits do not depend on threads.
-        let slabs: Vec<Tally> = (0..nu).into_par_iter().map(|i| self.slab(block, i)).collect();
-        let tally = slabs.into_iter().fold(Tally::EMPTY, Tally::and);
+        let slabs: Vec<VolumeTally> =
+            (0..nu).into_par_iter().map(|i| self.slab(block, i)).collect();
+        let tally = slabs.into_iter().fold(VolumeTally::EMPTY, VolumeTally::and);
         let cells = hex.cell_count();
         BlockQuality {
             name: hex.name.clone(),
@@ -122,18 +124,18 @@ impl Blocks<f64> {
         }
     }
 
-    fn slab(&self, block: usize, i: usize) -> Tally {
+    fn slab(&self, block: usize, i: usize) -> VolumeTally {
         let hex = &self.blocks()[block];
         let divisions = hex.divisions();
         let [_, nv, nw] = divisions;
-        let mut tally = Tally::EMPTY;
+        let mut tally = VolumeTally::EMPTY;
         for (j, k) in (0..nv).flat_map(|j| (0..nw).map(move |k| (j, k))) {
             let place = [i, j, k];
             let cell = self.cell(block, place);
             let (scaled, at) = cell.scaled_jacobian();
             // A position that is not a number is as bad as a folded cell.
             let good = scaled > 0.0;
-            let one = Tally {
+            let one = VolumeTally {
                 volume: cell.volume(),
                 folded: usize::from(!good),
                 sum: scaled,

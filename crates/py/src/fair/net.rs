@@ -7,8 +7,8 @@ use super::spline::spacing;
 use crate::arrays;
 use moldloft::fair::{
     Condition, End, FairError, GridData, Layout, Limit, Measure, Network, NetworkCurve,
-    NetworkMode, NetworkReport, PatchNet, Seam, Space, Spacing, fair_grid, grid_parameters,
-    grid_spacing, parameters_across,
+    NetworkMode, NetworkReport, ParameterSpacing, PatchNet, Seam, Space, fair_grid,
+    grid_parameters, grid_spacing, parameters_across,
 };
 use moldloft::num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -311,7 +311,7 @@ impl Web {
                 marks: marks.clone(),
                 ends: [End::Points(1); 2],
                 at: match spaced {
-                    Spacing::Uniform => None,
+                    ParameterSpacing::Uniform => None,
                     spaced => {
                         let list: Vec<Vec3> = own.iter().map(|&i| self.points[i]).collect();
                         let at =
@@ -319,9 +319,14 @@ impl Web {
                                 match error {
                                     // Sections run across the stations.
                                     FairError::TurnsAlong { .. } | FairError::Coincident { .. }
-                                        if matches!(spaced, Spacing::Along(_)) =>
+                                        if matches!(spaced, ParameterSpacing::Along(_)) =>
                                     {
-                                        parameters_across(&list, Spacing::Chord, *closed, motion)
+                                        parameters_across(
+                                            &list,
+                                            ParameterSpacing::Chord,
+                                            *closed,
+                                            motion,
+                                        )
                                     }
                                     error => Err(error),
                                 }

@@ -3,9 +3,10 @@
 use super::arguments::{certificate, fair_error, measure, refused};
 use super::spline::{Spline, spacing, told};
 use moldloft::fair::{
-    Bound as Bounded, Condition, Data, DataOptions, End, FairError, Goal, Job, KnotRemovalOptions,
-    Layout, Limit, Mode, Motion, Numbers, OptimumOptions, Report, Rule, ShapeCondition, Space,
-    Step, Stops, data_report, knot_removal, merged, parameters_across, report, shape,
+    Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, End, FairError, FairingReport,
+    Goal, Job, KnotRemovalOptions, Layout, Limit, Mode, Motion, OptimumOptions, RemovalStep, Rule,
+    ShapeCondition, Space, Stops, data_report, knot_removal, merged, parameters_across, report,
+    shape,
 };
 use moldloft::num::{Order, Vec3};
 use numpy::ToPyArray;
@@ -126,9 +127,9 @@ fn asked(spline: &Spline, options: Options) -> PyResult<(Job, Mode, Vec<usize>)>
             }
             Mode::Optimum(chosen)
         }
-        "faithful" => local(Rule::Achievable, Step::Knot)?,
-        "literal" => local(Rule::Literal, Step::Knot)?,
-        "vertex" => local(Rule::Achievable, Step::Vertex)?,
+        "faithful" => local(Rule::Achievable, RemovalStep::Knot)?,
+        "literal" => local(Rule::Literal, RemovalStep::Knot)?,
+        "vertex" => local(Rule::Achievable, RemovalStep::Vertex)?,
         "sweeps" => Mode::Sweeps(named, steps),
         "levels" => Mode::Multilevel(named, steps),
         _ => {
@@ -381,7 +382,7 @@ pub fn contradiction(
     refused(format!("{what} cannot hold within the tolerance (missed by {miss:.3e}){named}"))
 }
 
-fn numbers<'py>(py: Python<'py>, n: &Numbers) -> PyResult<Bound<'py, PyDict>> {
+fn numbers<'py>(py: Python<'py>, n: &CurveStatistics) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("measure", n.measure)?;
     dict.set_item("jumps", n.jumps)?;
@@ -392,7 +393,7 @@ fn numbers<'py>(py: Python<'py>, n: &Numbers) -> PyResult<Bound<'py, PyDict>> {
     Ok(dict)
 }
 
-fn dictionary<'py>(py: Python<'py>, r: &Report) -> PyResult<Bound<'py, PyDict>> {
+fn dictionary<'py>(py: Python<'py>, r: &FairingReport) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("measure", r.measure)?;
     dict.set_item("before", numbers(py, &r.before)?)?;

@@ -5,7 +5,7 @@ use super::solve;
 use crate::arrays;
 use moldloft::fair::shape::{self, Sample};
 use moldloft::fair::{
-    Finding, Job, Jumps, Space, Spacing, fit, fit_rational, interpolate_with_corners,
+    Finding, Job, Jumps, ParameterSpacing, Space, fit, fit_rational, interpolate_with_corners,
     least_squares, parameters, surface,
 };
 use moldloft::num::Vec3;
@@ -22,13 +22,13 @@ pub struct Spline {
     pub weights: Option<Vec<f64>>,
 }
 
-pub fn spacing(name: &str, direction: [f64; 3]) -> PyResult<Spacing> {
+pub fn spacing(name: &str, direction: [f64; 3]) -> PyResult<ParameterSpacing> {
     Ok(match name {
         // The literal rule of the report: the index is the parameter.
-        "uniform" | "index" => Spacing::Uniform,
-        "chord" => Spacing::Chord,
-        "centripetal" => Spacing::Centripetal,
-        "along" => Spacing::Along(direction.into()),
+        "uniform" | "index" => ParameterSpacing::Uniform,
+        "chord" => ParameterSpacing::Chord,
+        "centripetal" => ParameterSpacing::Centripetal,
+        "along" => ParameterSpacing::Along(direction.into()),
         _ => {
             let known = "chord, centripetal, index (or uniform), x, y, z, a direction";
             return Err(refused(format!("unknown spacing `{name}`; expected one of: {known}")));

@@ -8,8 +8,8 @@ use crate::error::plain_error;
 use crate::work::interruptible;
 use moldloft::budget::Budget;
 use moldloft::field::{
-    Affine, Attributes, Caster, FieldError, Light, Mass, Measure, Membership, Options, Pieces, Ray,
-    RayTrace, Resolution, Set, facet_mixed,
+    Affine, Attributes, BracketedMass, Caster, FacetOptions, FieldError, IntegralOptions, Light,
+    Membership, Pieces, Ray, RayTrace, Resolution, Set, facet_mixed,
 };
 use moldloft::num::{Box3, Vec3};
 use numpy::{PyArray1, PyReadonlyArray2};
@@ -371,7 +371,7 @@ impl PySet {
         };
         let (pieces, over) = self.long(py, move |set, budget| {
             let over = region(set, given(corners))?;
-            let options = Options { limit, budget, ..Options::new(resolution) };
+            let options = FacetOptions { limit, budget, ..FacetOptions::new(resolution) };
             let plain = set.leaves().iter().all(|l| !l.primitive.is_sheet());
             // Only what is given is taken over: what a caller times or counts is what was done.
             let pieces = if plain {
@@ -402,10 +402,11 @@ impl PySet {
                     None => return Ok(None),
                 },
             };
-            let measure = Measure { depth, accuracy, cells, budget, ..Measure::default() };
+            let measure =
+                IntegralOptions { depth, accuracy, cells, budget, ..IntegralOptions::default() };
             moldloft::field::mass(set, &over, &measure).map(Some)
         })?;
-        let Some(Mass { bracket, best, .. }) = found else {
+        let Some(BracketedMass { bracket, best, .. }) = found else {
             let dict = PyDict::new(py);
             dict.set_item("volume", 0.0)?;
             dict.set_item("volume_bracket", (0.0, 0.0))?;
@@ -539,7 +540,7 @@ impl PySet {
         };
         let rgb = self.long(py, move |set, budget| {
             let over = region(set, given(corners))?;
-            let options = Options { budget, ..Options::new(Resolution::Depth(1)) };
+            let options = FacetOptions { budget, ..FacetOptions::new(Resolution::Depth(1)) };
             moldloft::field::ray_trace(set, &over, &view, &options)
         })?;
         let png = moldloft::picture::encoded(&rgb, size[0], size[1]).map_err(plain_error)?;

@@ -146,7 +146,7 @@ fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>,
     // Parts of parts are parts of the whole, so that nesting does not grow.
     let ((curve, a), (_, b)) = (whole(&from), whole(&to));
     let law = SubParameter::Straight([a, b]);
-    let mut found = like(&curve, Run { curve: curve.clone(), law, trace });
+    let mut found = like(&curve, GovernedCurve { curve: curve.clone(), law, trace });
     found.part_of = Some(Arc::new((curve, [a, b])));
     Ok(Value::Curve(found))
 }
@@ -171,7 +171,7 @@ fn redistributed<T: Real>(
     let trace = Trace::Own([first.key, last.key]);
     Ok(Value::Curve(like(
         &curve,
-        Run { curve: curve.clone(), law: SubParameter::Spline(law), trace },
+        GovernedCurve { curve: curve.clone(), law: SubParameter::Spline(law), trace },
     )))
 }
 
@@ -201,13 +201,13 @@ impl<T: Real> SubParameter<T> {
 }
 
 /// A curve run by a law.
-struct Run<T: Real> {
+struct GovernedCurve<T: Real> {
     curve: CurveRef<T>,
     law: SubParameter<T>,
     trace: Trace<T>,
 }
 
-impl<T: Real> Run<T> {
+impl<T: Real> GovernedCurve<T> {
     fn chained(&self, [_, rate, bend]: [T; 3], [p, d, dd]: CurveJet<T>) -> CurveJet<T> {
         [p, d * rate, dd * (rate * rate) + d * bend]
     }
@@ -216,7 +216,7 @@ impl<T: Real> Run<T> {
 /// Each span of a law is searched in so many steps for the breaks of the curve.
 const STEPS: usize = 8;
 
-impl<T: Real> Curve<T> for Run<T> {
+impl<T: Real> Curve<T> for GovernedCurve<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         let law = self.law.at(t, order);
         self.chained(law, self.curve.jet(law[0], order))

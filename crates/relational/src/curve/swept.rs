@@ -1,7 +1,7 @@
 //! The locus of a point whose bead runs along its curve.
 
 use crate::arguments::Bead;
-use crate::chebyshev::{DEEPEST, MOST_PIECES, NODES, Piece, Way, nodes};
+use crate::chebyshev::{ChebyshevPiece, DEEPEST, MOST_PIECES, NODES, PiecewiseChebyshev, nodes};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, MovingPoint, Value};
 
@@ -50,11 +50,11 @@ impl<T: Real> Build<T> for ProcCurve<T> {
             let first = samples[0].re();
             size = samples.iter().fold(size, |s, p: &Vec3<T>| s.max(p.re().distance(first)));
             size = size.max(f64::EPSILON * first.norm());
-            let piece = Piece::through(a, b, &samples);
+            let piece = ChebyshevPiece::through(a, b, &samples);
             let fits = piece.rest() <= ACCURACY * size;
             Ok((piece, fits))
         })?;
-        Ok(Value::Curve(CurveRef::new(Way { pieces }, 0)))
+        Ok(Value::Curve(CurveRef::new(PiecewiseChebyshev { pieces }, 0)))
     }
 }
 

@@ -65,7 +65,7 @@ pub(super) const RUN: usize = NODES + 1;
 /// place is the point of the intersection in the plane across the cubic. The length up to it is a
 /// polynomial to rounding, so that neither it nor its derivatives depend on where pieces end.
 #[derive(Clone, Debug)]
-pub(super) struct Piece<T> {
+pub(super) struct CutPiece<T> {
     /// Length along the snake at which it begins, and its own length.
     pub begin: T,
     pub length: T,
@@ -112,7 +112,7 @@ pub(super) fn guess(places: &[Unknowns; NODES], y: f64) -> Unknowns {
     q
 }
 
-impl<T: Real> Piece<T> {
+impl<T: Real> CutPiece<T> {
     /// Where the length from the beginning of the piece is `run`.
     pub fn at_length(&self, run: T) -> T {
         let plain = self.run.map(|x| x.re());
@@ -139,7 +139,7 @@ impl<T: Real> Piece<T> {
 pub(super) struct Cut<T: Real> {
     pub trace: Trace<T>,
     pub both: Both<T>,
-    pub pieces: Vec<Piece<T>>,
+    pub pieces: Vec<CutPiece<T>>,
     pub total: T,
     pub size: f64,
     pub closed: bool,
@@ -336,7 +336,7 @@ impl<T: Real> Both<T> {
 
 impl<T: Real> Cut<T> {
     /// The piece with the share `t` of the length, and the length into it.
-    fn share(&self, t: T) -> (&Piece<T>, T) {
+    fn share(&self, t: T) -> (&CutPiece<T>, T) {
         let s = self.total * t;
         let k = self.pieces.partition_point(|p| p.begin.re() <= s.re()).saturating_sub(1);
         let piece = &self.pieces[k];
@@ -393,7 +393,7 @@ impl<T: Real> Curve<T> for Cut<T> {
 
     /// Where it crosses joints and seams of the surfaces.
     fn breaks(&self) -> Vec<f64> {
-        let share = |p: &Piece<T>| p.begin.re() / self.total.re();
+        let share = |p: &CutPiece<T>| p.begin.re() / self.total.re();
         self.pieces[1..].iter().filter(|p| p.joint).map(share).collect()
     }
 

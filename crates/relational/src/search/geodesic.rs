@@ -70,11 +70,11 @@ impl<T: Real> Build<T> for GeoSnake<T> {
         let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
         let fields = [Self::M1, Self::M2];
         let surface = common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
-        let sheet = Sheet { round: surface.closed(), surface: &surface };
+        let sheet = SeamlessSurface { round: surface.closed(), surface: &surface };
         let plain = [m1.uv, m2.uv].map(|w| w.map(|x| x.re()));
         let ways = ways(&sheet, plain, [turns_u, turns_v])?;
         let (turns, (gap, iterations, nodes)) = shortest(&sheet, plain, &ways)?;
-        let path = Path::new(&sheet, [m1.uv, m2.uv], turns, &nodes)?;
+        let path = GeodesicPath::new(&sheet, [m1.uv, m2.uv], turns, &nodes)?;
         let found = SearchReport {
             status: SearchStatus::Ok,
             residual: gap,
@@ -91,12 +91,12 @@ impl<T: Real> Build<T> for GeoSnake<T> {
 }
 
 /// A surface that goes on beyond its seams.
-struct Sheet<'s, T: Real> {
+struct SeamlessSurface<'s, T: Real> {
     surface: &'s SurfaceRef<T>,
     round: [bool; 2],
 }
 
-impl<T: Real> Sheet<'_, T> {
+impl<T: Real> SeamlessSurface<'_, T> {
     fn jet(&self, w: [T; 2], order: Order) -> SurfJet<T> {
         self.surface.jet(w[0], w[1], order)
     }
@@ -105,7 +105,7 @@ impl<T: Real> Sheet<'_, T> {
 /// The turns by which ways lead over the seams: those asked for, else none and the way round the
 /// other side.
 fn ways<T: Real>(
-    sheet: &Sheet<T>,
+    sheet: &SeamlessSurface<T>,
     [from, to]: [[f64; 2]; 2],
     asked: [Option<i32>; 2],
 ) -> Result<Vec<[f64; 2]>, CallError> {
@@ -143,7 +143,7 @@ type Solved = (f64, usize, Vec<[f64; 2]>);
 
 /// The shortest of some ways, with its turns.
 fn shortest<T: Real>(
-    sheet: &Sheet<T>,
+    sheet: &SeamlessSurface<T>,
     [from, to]: [[f64; 2]; 2],
     ways: &[[f64; 2]],
 ) -> Result<([f64; 2], Solved), CallError> {
@@ -176,7 +176,7 @@ const CREASED: f64 = 1e-6;
 /// Chords by which lengths are compared.
 const CHORDS: usize = 64;
 
-fn length<T: Real>(sheet: &Sheet<T>, places: &[[f64; 2]]) -> f64 {
+fn length<T: Real>(sheet: &SeamlessSurface<T>, places: &[[f64; 2]]) -> f64 {
     let places = resampled(places, CHORDS);
     let at = |w: &[f64; 2]| sheet.jet(w.map(T::from), Order::Zero).p.re();
     places.windows(2).map(|w| at(&w[0]).distance(at(&w[1]))).sum()
@@ -229,7 +229,7 @@ fn second_derivatives(n: usize) -> Vec<f64> {
 
 /// The equations at the inner nodes and their matrix by the inner places, in the order u, v of each.
 fn equations<T: Real>(
-    sheet: &Sheet<T>,
+    sheet: &SeamlessSurface<T>,
     places: &[[T; 2]],
     dd: &[f64],
     with_matrix: bool,
@@ -295,7 +295,7 @@ fn largest(values: &[f64]) -> f64 {
 
 /// The plain places at the nodes, of a way over a seam or not.
 fn solved<T: Real>(
-    sheet: &Sheet<T>,
+    sheet: &SeamlessSurface<T>,
     [from, to]: [[f64; 2]; 2],
     turned: bool,
 ) -> Result<Solved, CallError> {
@@ -359,7 +359,7 @@ fn solved<T: Real>(
 
 /// Newton's method at n spans, halving steps that do not help; `None` when it does not settle.
 fn newton<T: Real>(
-    sheet: &Sheet<T>,
+    sheet: &SeamlessSurface<T>,
     mut places: Vec<[f64; 2]>,
     n: usize,
 ) -> Option<(Vec<[f64; 2]>, usize)> {
@@ -413,7 +413,7 @@ const NOISE: f64 = 2.5e-15;
 
 /// The path in the parameter plane: the straight line and t (1 - t) p(t), with a polynomial p in
 /// Chebyshev's of the second kind, so that its ends are the magnets' places to the bit.
-struct Path<T: Real> {
+struct GeodesicPath<T: Real> {
     ends: [[T; 2]; 2],
     /// The second end without its turns.
     last: [T; 2],
@@ -421,9 +421,9 @@ struct Path<T: Real> {
     coefficients: Vec<[T; 2]>,
 }
 
-impl<T: Real> Path<T> {
+impl<T: Real> GeodesicPath<T> {
     fn new(
-        sheet: &Sheet<T>,
+        sheet: &SeamlessSurface<T>,
         [from, last]: [[T; 2]; 2],
         turns: [f64; 2],
         plain: &[[f64; 2]],
@@ -459,7 +459,7 @@ impl<T: Real> Path<T> {
 /// The places with what they owe to the model's parameters: one step of Newton's method in T, of
 /// which the real part is left out.
 fn derived<T: Real>(
-    sheet: &Sheet<T>,
+    sheet: &SeamlessSurface<T>,
     [from, to]: [[T; 2]; 2],
     plain: &[[f64; 2]],
 ) -> Option<Vec<[T; 2]>> {
@@ -484,7 +484,7 @@ fn derived<T: Real>(
     Some(places)
 }
 
-impl<T: Real> CurveFormula for Path<T> {
+impl<T: Real> CurveFormula for GeodesicPath<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {

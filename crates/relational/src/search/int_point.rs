@@ -40,7 +40,7 @@ pub struct IntPoint<T: Real> {
 }
 
 /// One of the shapes.
-enum Shape<T: Real> {
+enum IntersectedShape<T: Real> {
     Surface(SurfaceRef<T>),
     Plane(Plane<T>),
     Field(FieldRef<T>),
@@ -54,10 +54,10 @@ impl<T: Real> Build<T> for IntPoint<T> {
             shapes.push(match target {
                 Target::Surface(onto) => {
                     starts.push(onto.from());
-                    Shape::Surface(onto.surface)
+                    IntersectedShape::Surface(onto.surface)
                 }
-                Target::Plane(plane) => Shape::Plane(plane),
-                Target::Field(field) => Shape::Field(field),
+                Target::Plane(plane) => IntersectedShape::Plane(plane),
+                Target::Field(field) => IntersectedShape::Field(field),
                 Target::Curve(_) | Target::Point(_) => {
                     let found =
                         if matches!(target, Target::Curve(_)) { "a curve" } else { "a point" };
@@ -74,7 +74,7 @@ impl<T: Real> Build<T> for IntPoint<T> {
         }
         let near = self.near.map(|p| p.xyz.re());
         // The surfaces first; which comes when does not change what they have in common.
-        shapes.sort_by_key(|shape| !matches!(shape, Shape::Surface(_)));
+        shapes.sort_by_key(|shape| !matches!(shape, IntersectedShape::Surface(_)));
         let point = match starts.len() {
             0 => planes(&shapes, near)?,
             1 => common::<T, 2>(&shapes, &starts, near)?,
@@ -94,18 +94,21 @@ fn parallel() -> CallError {
 
 /// The common point without a surface: of three planes by elimination, with fields by Newton's
 /// method from `near`.
-fn planes<T: Real>(shapes: &[Shape<T>], near: Option<Vec3>) -> Result<Point<T>, CallError> {
-    let fields = shapes.iter().any(|s| matches!(s, Shape::Field(_)));
+fn planes<T: Real>(
+    shapes: &[IntersectedShape<T>],
+    near: Option<Vec3>,
+) -> Result<Point<T>, CallError> {
+    let fields = shapes.iter().any(|s| matches!(s, IntersectedShape::Field(_)));
     let Some(mut x) = near.or_else(|| (!fields).then(Vec3::zero)) else {
         return Err(CallError::new("missing-argument", "fields have no middle to begin at")
             .expected("a point near the common point")
             .found("nothing")
             .in_field(IntPoint::<T>::NEAR));
     };
-    let at = |shape: &Shape<T>, x: Vec3<T>| match shape {
-        Shape::Field(field) => field.value_and_gradient(x),
-        Shape::Plane(plane) => (plane.distance(x), plane.normal),
-        Shape::Surface(_) => (T::zero(), Vec3::zero()),
+    let at = |shape: &IntersectedShape<T>, x: Vec3<T>| match shape {
+        IntersectedShape::Field(field) => field.value_and_gradient(x),
+        IntersectedShape::Plane(plane) => (plane.distance(x), plane.normal),
+        IntersectedShape::Surface(_) => (T::zero(), Vec3::zero()),
     };
     let step = |x: Vec3<T>| -> Result<Vec3<T>, CallError> {
         let all = [0, 1, 2].map(|k| at(&shapes[k], x));
@@ -146,26 +149,26 @@ fn planes<T: Real>(shapes: &[Shape<T>], near: Option<Vec3>) -> Result<Point<T>, 
 
 /// With at least one surface, N / 2 of them.
 fn common<T: Real, const N: usize>(
-    shapes: &[Shape<T>],
+    shapes: &[IntersectedShape<T>],
     starts: &[Option<[f64; 2]>],
     near: Option<Vec3>,
 ) -> Result<Point<T>, CallError> {
     let surfaces: Vec<PlainSurface<'_, T>> = shapes
         .iter()
         .filter_map(|s| match s {
-            Shape::Surface(surface) => Some(PlainSurface(&**surface)),
+            IntersectedShape::Surface(surface) => Some(PlainSurface(&**surface)),
             _ => None,
         })
         .collect();
     let fields: Vec<Option<PlainField<'_, T>>> = shapes
         .iter()
         .map(|s| match s {
-            Shape::Field(field) => Some(PlainField(field)),
+            IntersectedShape::Field(field) => Some(PlainField(field)),
             _ => None,
         })
         .collect();
     let others: [Other<'_>; 3] = std::array::from_fn(|k| match (&shapes[k], &fields[k]) {
-        (Shape::Plane(plane), _) => {
+        (IntersectedShape::Plane(plane), _) => {
             Other::Plane(Plane { point: plane.point.re(), normal: plane.normal.re() })
         }
         (_, Some(field)) => Other::Level(field),
@@ -193,13 +196,13 @@ fn common<T: Real, const N: usize>(
     let report: SearchReport = found(&solution.report, ANOTHER);
     let system = Common { shapes };
     let q: [T; N] = refined(&system, solution.at, T::zero()).ok_or_else(tangent)?;
-    let Shape::Surface(first) = &shapes[0] else { return Err(tangent()) };
+    let IntersectedShape::Surface(first) = &shapes[0] else { return Err(tangent()) };
     Ok(Point::free(first.jet(q[0], q[1], Order::Zero).p).with_found(report))
 }
 
 /// All shapes go through S1(u, v).
 struct Common<'a, T: Real> {
-    shapes: &'a [Shape<T>],
+    shapes: &'a [IntersectedShape<T>],
 }
 
 impl<T: Real, const N: usize> Implicit<T, N> for Common<'_, T> {
@@ -209,18 +212,18 @@ impl<T: Real, const N: usize> Implicit<T, N> for Common<'_, T> {
         let mut x = Vec3::zero();
         for (k, shape) in self.shapes.iter().enumerate() {
             match shape {
-                Shape::Surface(surface) if k == 0 => x = surface.at(q[0], q[1]),
-                Shape::Surface(surface) => {
+                IntersectedShape::Surface(surface) if k == 0 => x = surface.at(q[0], q[1]),
+                IntersectedShape::Surface(surface) => {
                     let gap = x - surface.at(q[2 * k], q[2 * k + 1]);
                     rows[row..row + 3].copy_from_slice(&gap.to_array());
                     row += 3;
                 }
-                Shape::Plane(plane) => {
+                IntersectedShape::Plane(plane) => {
                     let fixed = |v: Vec3<T>| v.map(J::fixed);
                     rows[row] = fixed(plane.normal).dot(x - fixed(plane.point));
                     row += 1;
                 }
-                Shape::Field(field) => {
+                IntersectedShape::Field(field) => {
                     rows[row] = field.at(x);
                     row += 1;
                 }
@@ -232,11 +235,11 @@ impl<T: Real, const N: usize> Implicit<T, N> for Common<'_, T> {
     fn jacobian(&self, q: [T; N], _: T) -> [[T; N]; N] {
         let mut rows = [[T::zero(); N]; N];
         let mut row = 0;
-        let Shape::Surface(first) = &self.shapes[0] else { return rows };
+        let IntersectedShape::Surface(first) = &self.shapes[0] else { return rows };
         let j = first.jet(q[0], q[1], Order::First);
         for (k, shape) in self.shapes.iter().enumerate().skip(1) {
             match shape {
-                Shape::Surface(surface) => {
+                IntersectedShape::Surface(surface) => {
                     let s = surface.jet(q[2 * k], q[2 * k + 1], Order::First);
                     let columns = [j.u, j.v, -s.u, -s.v].map(Vec3::to_array);
                     for axis in 0..3 {
@@ -249,12 +252,12 @@ impl<T: Real, const N: usize> Implicit<T, N> for Common<'_, T> {
                 }
                 other => {
                     let normal = match other {
-                        Shape::Plane(plane) => plane.normal,
-                        Shape::Field(field) => {
+                        IntersectedShape::Plane(plane) => plane.normal,
+                        IntersectedShape::Field(field) => {
                             let g = field.value_and_gradient(j.p).1;
                             g * T::from(moldloft_num::slope_scale(g.re()))
                         }
-                        Shape::Surface(_) => Vec3::zero(),
+                        IntersectedShape::Surface(_) => Vec3::zero(),
                     };
                     rows[row][0] = normal.dot(j.u);
                     rows[row][1] = normal.dot(j.v);

@@ -3,7 +3,7 @@
 use super::arguments::{Onto, Target};
 use super::cut::{Along, Both, Cut, Second};
 use super::outcome::no_intersection;
-use super::pieces::{Stop, at_seam, fitted, laid};
+use super::pieces::{PieceEnd, at_seam, fitted, laid};
 use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, refined, solve};
 use moldloft_locate::march::{Branch, Crossing, End, Other, TracePoint, Unknowns};
@@ -551,7 +551,7 @@ fn with_joints<T: Real>(
     second: &Second<T>,
     crossing: &Crossing<'_>,
     branch: &Branch,
-) -> Vec<Stop> {
+) -> Vec<PieceEnd> {
     let mut lines: Vec<(usize, f64)> = Vec::new();
     let mut add = |at: usize, [us, vs]: [Vec<f64>; 2]| {
         lines.extend(us.into_iter().map(|x| (at, x)));
@@ -561,11 +561,11 @@ fn with_joints<T: Real>(
     if let Second::Surface(surface) = second {
         add(2, surface.joints());
     }
-    let mut stops = vec![Stop::from(branch.stations[0])];
+    let mut stops = vec![PieceEnd::from(branch.stations[0])];
     let count = branch.stations.len();
     for (i, pair) in branch.stations.windows(2).enumerate() {
         let (a, b) = (&pair[0], &pair[1]);
-        let mut next = Some(Stop::from(*b));
+        let mut next = Some(PieceEnd::from(*b));
         let mut between: Vec<(f64, usize, f64)> = lines
             .iter()
             .filter(|(k, x)| (a.q[*k] - x) * (b.q[*k] - x) < 0.0 && !at_seam(a, b))
@@ -584,11 +584,11 @@ fn with_joints<T: Real>(
             }
             let chord = a.x.distance(b.x);
             let (after, before) = ((s.x - a.x).dot(a.tangent), (b.x - s.x).dot(a.tangent));
-            let ahead = |stop: &Stop| (s.x - stop.station.x).dot(a.tangent);
+            let ahead = |stop: &PieceEnd| (s.x - stop.station.x).dot(a.tangent);
             if after < -1e-9 * chord || before < -1e-9 * chord {
                 continue;
             }
-            let stop = Stop { station: s, joint: Some((k, x)) };
+            let stop = PieceEnd { station: s, joint: Some((k, x)) };
             // A station very near it gives way, but for the ends and other joints.
             let tiny = 1e-7 * crossing.size;
             let last = stops.len() - 1;

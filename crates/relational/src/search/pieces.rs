@@ -1,7 +1,7 @@
 //! Pieces of an intersection, from stations along it.
 
 use super::cut::{
-    Both, Guide, NODES, Piece, RUN, guess, node, on_guide, polynomial, powers_of, to_powers,
+    Both, CutPiece, Guide, NODES, RUN, guess, node, on_guide, polynomial, powers_of, to_powers,
 };
 use moldloft_locate::march::{Crossing, TracePoint, Unknowns};
 use moldloft_num::{Order, Real, Vec3};
@@ -23,12 +23,12 @@ const CHECKS: [f64; 3] = [-0.95, -0.1, 0.9];
 /// A place at which pieces end: a station, and the joint of a surface that it lies on, as the number
 /// of an unknown and its value there.
 #[derive(Clone, Copy)]
-pub(super) struct Stop {
+pub(super) struct PieceEnd {
     pub station: TracePoint,
     pub joint: Option<(usize, f64)>,
 }
 
-impl From<TracePoint> for Stop {
+impl From<TracePoint> for PieceEnd {
     fn from(station: TracePoint) -> Self {
         Self { station, joint: None }
     }
@@ -57,7 +57,7 @@ pub(super) struct Fit {
     guide: Guide,
     /// The unknowns at the nodes.
     at: [Unknowns; NODES],
-    pub ends: [Stop; 2],
+    pub ends: [PieceEnd; 2],
     /// True after a seam.
     seam: bool,
     /// See [`Piece::exact`].
@@ -77,7 +77,12 @@ type Matrix = [[f64; NODES]; NODES];
 
 impl Fit {
     /// The stretch between two stops, and whether its speed and its places are polynomials.
-    fn new(crossing: &Crossing<'_>, matrix: &Matrix, a: &Stop, b: &Stop) -> Option<(Self, bool)> {
+    fn new(
+        crossing: &Crossing<'_>,
+        matrix: &Matrix,
+        a: &PieceEnd,
+        b: &PieceEnd,
+    ) -> Option<(Self, bool)> {
         let ends = [*a, *b];
         let (a, b) = (&a.station, &b.station);
         let guide = cubic(a, b);
@@ -138,7 +143,7 @@ fn powers(matrix: &Matrix, at: &[Unknowns; NODES]) -> [Unknowns; NODES] {
 
 /// The stretches between the stops, halved until the speed of each is a polynomial; `None` where
 /// they cannot be followed.
-pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[Stop]) -> Option<Vec<Fit>> {
+pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<Fit>> {
     let matrix = to_powers();
     let mut all: Vec<Fit> = Vec::with_capacity(stops.len());
     let mut seam = false;
@@ -161,7 +166,7 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[Stop]) -> Option<Vec<Fit>
                     m.tangent = -m.tangent;
                     m.rate = m.rate.map(|r| -r);
                 }
-                Some(Stop::from(m))
+                Some(PieceEnd::from(m))
             };
             match (!good && halvings < MOST_HALVINGS).then(middle).flatten() {
                 Some(m) => open.extend([(b, halvings + 1), (m, halvings + 1)]),
@@ -182,7 +187,7 @@ pub(super) fn laid<T: Real>(
     fit: &Fit,
     begin: T,
     joint: impl Fn(&Unknowns, (usize, f64)) -> Option<Vec3<T>>,
-) -> Option<Piece<T>> {
+) -> Option<CutPiece<T>> {
     let matrix = to_powers();
     let (mut speeds, mut xs) = ([T::zero(); NODES], [Vec3::<T>::zero(); NODES]);
     for k in 0..NODES {
@@ -223,7 +228,7 @@ pub(super) fn laid<T: Real>(
     if let Some(far) = beyond(1) {
         length += far;
     }
-    Some(Piece {
+    Some(CutPiece {
         begin,
         length,
         guide: fit.guide,

@@ -7,7 +7,7 @@ use super::points::MirrorOrSurface;
 use super::table::Table;
 use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, jets, solve};
-use moldloft_locate::{OUTSIDE, PlainSurface, Range, newton};
+use moldloft_locate::{OUTSIDE, PlainSurface, UnknownBounds, newton};
 use moldloft_num::period::within;
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, SurfJet, Surface, Vec3};
@@ -170,7 +170,7 @@ impl<T: Real> Curve<T> for OntoMirror<T> {
 
 /// The keys of magnets that stand at the ends of a path.
 fn end_keys<T: Real>(
-    path: &Path<T>,
+    path: &ProjectedPath<T>,
     magnets: &[Magnet<T>],
     tolerance: f64,
     field: FieldId,
@@ -205,19 +205,19 @@ fn end_keys<T: Real>(
 
 /// A solved place along the curve.
 #[derive(Clone, Copy, Debug)]
-struct Node {
+struct ProjectionSample {
     t: f64,
     q: [f64; 3],
     rate: [f64; 3],
 }
 
 /// The way of the projection in the parameter plane of the surface.
-struct Path<T: Real> {
+struct ProjectedPath<T: Real> {
     surface: SurfaceRef<T>,
     point: Moving<T>,
     rays: Option<Rays<T>>,
     size: f64,
-    nodes: Vec<Node>,
+    nodes: Vec<ProjectionSample>,
     /// Made when a place is asked for first.
     table: OnceLock<Table<3>>,
 }
@@ -228,7 +228,7 @@ fn projected<T: Real>(
     onto: Onto<T>,
     rays: Option<Rays<T>>,
     [of, on]: [FieldId; 2],
-) -> Result<(Path<T>, SearchReport), CallError> {
+) -> Result<(ProjectedPath<T>, SearchReport), CallError> {
     let begin = curve.end(0.0);
     let (uv, mut found) = match rays {
         None => foot(&onto, begin, false),
@@ -241,7 +241,7 @@ fn projected<T: Real>(
     let corners = [0.0, 0.5, 1.0].map(|t| curve.end(t).re());
     let size = moldloft_locate::pieces::size_of(&moldloft_num::Box3::around(corners));
     let point = Moving::Curve(curve);
-    let mut path = Path {
+    let mut path = ProjectedPath {
         surface: onto.surface,
         point,
         rays,
@@ -301,7 +301,7 @@ fn grazes(t: f64, field: FieldId) -> CallError {
         .in_field(field)
 }
 
-impl<T: Real> Path<T> {
+impl<T: Real> ProjectedPath<T> {
     fn ray_length(&self, [u, v]: [f64; 2]) -> f64 {
         let Some(rays) = self.rays else { return 0.0 };
         let system = OnRay { surface: &self.surface, point: &self.point, rays };
@@ -311,10 +311,10 @@ impl<T: Real> Path<T> {
     }
 
     /// The place at plain `t` near `guess`, and its rate.
-    fn solved(&self, t: f64, guess: [f64; 3]) -> Option<Node> {
+    fn solved(&self, t: f64, guess: [f64; 3]) -> Option<ProjectionSample> {
         let q = self.root(t, guess)?;
         let [_, rate, _] = self.derived(q, T::from(t), Order::First)?;
-        let node = Node { t, q, rate: rate.map(|x| x.re()) };
+        let node = ProjectionSample { t, q, rate: rate.map(|x| x.re()) };
         node.rate.iter().all(|x| x.is_finite()).then_some(node)
     }
 
@@ -325,7 +325,7 @@ impl<T: Real> Path<T> {
         // A closed surface may be gone round many times.
         let wide = self.surface.closed().map(|round| {
             let beyond = if round { 1e4 } else { 0.5 };
-            Range { low: -beyond, high: 1.0 + beyond, step: 0.2 }
+            UnknownBounds { low: -beyond, high: 1.0 + beyond, step: 0.2 }
         });
         let close = CLOSE * self.size;
         match self.rays {
@@ -374,7 +374,7 @@ impl<T: Real> Path<T> {
                 {
                     return Some(std::array::from_fn(|k| guess[k] - step[k]));
                 }
-                let ranges = [wide[0], wide[1], Range::FREE];
+                let ranges = [wide[0], wide[1], UnknownBounds::FREE];
                 let walk = newton(guess, &ranges, self.size, |[u, v, s]| {
                     equations(&plain.jet(u, v, Order::First), s)
                 });
@@ -476,7 +476,7 @@ fn two<T: Real, F: Implicit<T, 2>>(f: &F, q: [f64; 2], t: T, order: Order) -> Op
 /// X(t) = S(w(t)).
 struct Projected<T: Real> {
     trace: Trace<T>,
-    path: Path<T>,
+    path: ProjectedPath<T>,
 }
 
 impl<T: Real> Curve<T> for Projected<T> {

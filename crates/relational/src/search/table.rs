@@ -14,10 +14,10 @@ const CHECKS: [f64; 4] = [-1.0, -0.3, 0.62, 1.0];
 
 /// N unknowns along a parameter from 0 to 1.
 pub(super) struct Table<const N: usize> {
-    spans: Vec<Span<N>>,
+    spans: Vec<TableSpan<N>>,
 }
 
-struct Span<const N: usize> {
+struct TableSpan<const N: usize> {
     from: f64,
     until: f64,
     /// By Chebyshev's polynomials of y from -1 to 1; `None` where the unknowns are no polynomial.
@@ -78,7 +78,7 @@ impl<const N: usize> Table<N> {
                 };
                 let terms = fitted();
                 if terms.is_some() || halvings >= MOST_HALVINGS {
-                    spans.push(Span { from, until, terms });
+                    spans.push(TableSpan { from, until, terms });
                 } else {
                     let middle = 0.5 * (from + until);
                     open.push((middle, until, halvings + 1));

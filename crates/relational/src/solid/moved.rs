@@ -1,7 +1,7 @@
 //! Solids of surfaces that are translated or swept.
 
 use super::layers::{edges_of, on};
-use crate::surface::{Mode, Moving};
+use crate::surface::{FrameMode, MovingFrame};
 use moldloft_num::trace::{Face, Faces, LayerLaw, Layers, Turn};
 use moldloft_num::{Jet, Real, SolidFormula, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SolidRef, SurfaceRef, Value};
@@ -24,17 +24,17 @@ pub struct TranSolid<T: Real> {
 
 impl<T: Real> Build<T> for TranSolid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let solid = Moved { surface: self.surface, curve: self.curve };
+        let solid = TranslationSolid { surface: self.surface, curve: self.curve };
         Ok(Value::Solid(SolidRef::new(solid, context.nesting)))
     }
 }
 
-struct Moved<T: Real> {
+struct TranslationSolid<T: Real> {
     surface: SurfaceRef<T>,
     curve: CurveRef<T>,
 }
 
-impl<T: Real> SolidFormula for Moved<T> {
+impl<T: Real> SolidFormula for TranslationSolid<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J, w: J) -> Vec3<J> {
@@ -78,18 +78,18 @@ pub struct SweepSolid<T: Real> {
 impl<T: Real> Build<T> for SweepSolid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, path, frame, up } = self;
-        let mode = Mode::of(&frame, up, [Self::FRAME, Self::UP])?;
-        let moving = Moving::new(path, mode, Self::PATH)?;
-        Ok(Value::Solid(SolidRef::new(Swept { surface, moving }, context.nesting)))
+        let mode = FrameMode::of(&frame, up, [Self::FRAME, Self::UP])?;
+        let moving = MovingFrame::new(path, mode, Self::PATH)?;
+        Ok(Value::Solid(SolidRef::new(SweptSolid { surface, moving }, context.nesting)))
     }
 }
 
-struct Swept<T: Real> {
+struct SweptSolid<T: Real> {
     surface: SurfaceRef<T>,
-    moving: Moving<T>,
+    moving: MovingFrame<T>,
 }
 
-impl<T: Real> Swept<T> {
+impl<T: Real> SweptSolid<T> {
     fn carried<J: Jet<T>>(&self, p: Vec3<J>, path: Vec3<J>, [t, r, s]: [Vec3<J>; 3]) -> Vec3<J> {
         let d = p - self.moving.path.end(0.0).map(J::fixed);
         let [a, b, c] = self.moving.first.map(|axis| d.dot(axis.map(J::fixed)));
@@ -97,7 +97,7 @@ impl<T: Real> Swept<T> {
     }
 }
 
-impl<T: Real> SolidFormula for Swept<T> {
+impl<T: Real> SolidFormula for SweptSolid<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J, w: J) -> Vec3<J> {

@@ -71,17 +71,17 @@ impl<T: Real> Build<T> for BSolid<T> {
             points[(at(0) * nv + at(1)) * nw + at(2)].key
         });
         let net = points.iter().map(|p| p.xyz).collect();
-        Ok(Value::Solid(SolidRef::new(Net { knots, net, corners }, 0)))
+        Ok(Value::Solid(SolidRef::new(BSplineSolid { knots, net, corners }, 0)))
     }
 }
 
-struct Net<T: Real> {
+struct BSplineSolid<T: Real> {
     knots: [KnotVector; 3],
     net: Vec<Vec3<T>>,
     corners: [Option<moldloft_num::trace::Key>; 8],
 }
 
-impl<T: Real> SolidFormula for Net<T> {
+impl<T: Real> SolidFormula for BSplineSolid<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J, w: J) -> Vec3<J> {

@@ -47,7 +47,8 @@ impl<T: Real> Build<T> for BSurf<T> {
             degrees: [Self::DEGREE_U, Self::DEGREE_V],
             knots: [Self::DEGREE_U, Self::DEGREE_V],
         };
-        let net = Net::new(points, [nu, nv], [degree_u, degree_v], [None, None], None, fields)?;
+        let net =
+            KeyedBSpline::new(points, [nu, nv], [degree_u, degree_v], [None, None], None, fields)?;
         Ok(Value::Surface(SurfaceRef::new(net, 0)))
     }
 }
@@ -124,12 +125,13 @@ impl<T: Scalar> Build<T> for NURBSurf<T> {
             degrees: [Self::DEGREE_U, Self::DEGREE_V],
             knots: [Self::KNOTS_U, Self::KNOTS_V],
         };
-        let net = Net::new(points, [nu, nv], [degree_u, degree_v], knots, weights, fields)?;
+        let net =
+            KeyedBSpline::new(points, [nu, nv], [degree_u, degree_v], knots, weights, fields)?;
         if knots_u.is_none() && knots_v.is_none() {
             return Ok(Value::Surface(SurfaceRef::new(net, 0)));
         }
         // The same bits with and without derivatives by the knots.
-        let Net { surface, corners, rows } = net;
+        let KeyedBSpline { surface, corners, rows } = net;
         let free = |given: Option<Vec<T>>, knots: &KnotVector| match given {
             Some(given) => FreeKnots::normalized(knots.degree(), &given),
             None => {
@@ -150,7 +152,7 @@ impl<T: Scalar> Build<T> for NURBSurf<T> {
 }
 
 /// A B-spline surface that knows the point objects at its corners.
-struct Net<T: Real> {
+struct KeyedBSpline<T: Real> {
     surface: BSplineSurface<T>,
     corners: [Option<Key>; 4],
     /// The point objects along the edges, where these are clamped.
@@ -160,7 +162,7 @@ struct Net<T: Real> {
 /// The point objects along each edge of a net.
 pub(super) type Rows = [Box<[Key]>; 4];
 
-impl<T: Real> Surface<T> for Net<T> {
+impl<T: Real> Surface<T> for KeyedBSpline<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
         self.surface.jet(u, v, order)
     }
@@ -207,7 +209,7 @@ struct NetFields {
     knots: [FieldId; 2],
 }
 
-impl<T: Real> Net<T> {
+impl<T: Real> KeyedBSpline<T> {
     fn new(
         points: Vec<Point<T>>,
         [nu, nv]: [usize; 2],

@@ -17,7 +17,7 @@ pub fn widest<R>(loops: impl FnOnce() -> R) -> R {
 
 /// What a chunk holds.
 #[derive(Clone, Copy)]
-pub enum Part {
+pub enum ChunkQuantity {
     /// Positions.
     Point,
     /// Derivatives by u.
@@ -47,7 +47,7 @@ impl<T: Real> Chunk<T> {
 
     /// The plane of part `k` of a coordinate.
     #[inline(always)]
-    pub fn plane(&mut self, part: Part, axis: usize, k: usize) -> &mut Plane {
+    pub fn plane(&mut self, part: ChunkQuantity, axis: usize, k: usize) -> &mut Plane {
         &mut self.planes[(3 * part as usize + axis) * T::PARTS + k]
     }
 

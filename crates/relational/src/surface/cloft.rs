@@ -1,7 +1,7 @@
 //! Interpolating lofts: through their master curves. A grid of points builds the loft of each column once.
 
 use super::about::{About, step};
-use super::chunk::{Chunk, LANES, Part, Plane, widest};
+use super::chunk::{Chunk, ChunkQuantity, LANES, Plane, widest};
 use super::masters::{Masters, Points};
 use crate::arguments::EndRule;
 use crate::faults;
@@ -473,7 +473,7 @@ fn fill<T: Real>(
         for axis in 0..3 {
             for k in 0..T::PARTS {
                 let coefficients = std::array::from_fn(|r| cubic[r][axis].part(k));
-                horner(coefficients, &s, stretch.len(), chunk.plane(Part::Point, axis, k));
+                horner(coefficients, &s, stretch.len(), chunk.plane(ChunkQuantity::Point, axis, k));
             }
         }
         chunk.write_points(&mut points[stretch]);
@@ -494,12 +494,12 @@ fn fill_with_normals<T: Real>(
         for axis in 0..3 {
             for k in 0..T::PARTS {
                 let position: [f64; 4] = std::array::from_fn(|r| cubic[r][axis].f.part(k));
-                horner(position, &s, n, chunk.plane(Part::Point, axis, k));
+                horner(position, &s, n, chunk.plane(ChunkQuantity::Point, axis, k));
                 let by_u = std::array::from_fn(|r| cubic[r][axis].t.part(k));
-                horner(by_u, &s, n, chunk.plane(Part::ByU, axis, k));
+                horner(by_u, &s, n, chunk.plane(ChunkQuantity::ByU, axis, k));
                 let [_, b, c, d] = position;
                 let (c2, d3) = (c * 2.0, d * 3.0);
-                let by_v = chunk.plane(Part::ByV, axis, k);
+                let by_v = chunk.plane(ChunkQuantity::ByV, axis, k);
                 for (o, &s) in by_v.iter_mut().zip(&s).take(n) {
                     *o = (d3 * s + c2) * s + b;
                 }

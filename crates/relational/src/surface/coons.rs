@@ -31,7 +31,7 @@ pub struct BlendSurf<T: Real> {
 impl<T: Real> Build<T> for BlendSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let boundary = Boundary::new(self.curves, Self::CURVES)?;
-        let patch = Patch { boundary, lift: None };
+        let patch = CoonsPatch { boundary, lift: None };
         Ok(Value::Surface(SurfaceRef::new(patch, context.nesting)))
     }
 }
@@ -60,7 +60,7 @@ impl<T: Real> Build<T> for BlendCenter<T> {
         let boundary = Boundary::new(self.curves, Self::CURVES)?;
         let half = T::from(0.5);
         let lift = Some((self.centre.xyz - boundary.coons(half, half)) * T::from(16.0));
-        let patch = Patch { boundary, lift };
+        let patch = CoonsPatch { boundary, lift };
         Ok(Value::Surface(SurfaceRef::new(patch, context.nesting)))
     }
 }
@@ -145,13 +145,13 @@ impl<T: Real> Boundary<T> {
     }
 }
 
-struct Patch<T: Real> {
+struct CoonsPatch<T: Real> {
     boundary: Boundary<T>,
     /// 16 times the way from the middle of the Coons patch to the centre.
     lift: Option<Vec3<T>>,
 }
 
-impl<T: Real> SurfaceFormula for Patch<T> {
+impl<T: Real> SurfaceFormula for CoonsPatch<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {

@@ -3,7 +3,7 @@
 use super::column::{Column, Columns};
 use super::masters::Masters;
 use super::rulings::{Pairing, pair};
-use crate::arguments::Named;
+use crate::arguments::NamedOption;
 use crate::curve::Segment;
 use crate::third_derivatives::tangent;
 use moldloft_locate::implicit::{Implicit, jets};
@@ -37,7 +37,7 @@ pub struct DevSurf<T: Real> {
     c2: CurveRef<T>,
     /// Whose parameter u is: "both", "c1" or "c2".
     #[field(default = "both")]
-    along: Named,
+    along: NamedOption,
 }
 
 impl<T: Real> Build<T> for DevSurf<T> {
@@ -50,7 +50,7 @@ impl<T: Real> Build<T> for DevSurf<T> {
         };
         let pairing = pair([&c1, &c2]).map_err(|fault| fault.in_field(Self::C2))?;
         let masters = Masters::new(vec![c1, c2], Self::C1)?;
-        let plate = Plate::new(masters, pairing, a, b)?;
+        let plate = DevelopableSurface::new(masters, pairing, a, b)?;
         Ok(Value::Surface(SurfaceRef::new(Columns(plate), context.nesting)))
     }
 }
@@ -72,7 +72,7 @@ pub enum Phase {
 }
 
 /// The plate, with s = u + a w, t = u - b w for an unknown w.
-struct Plate<T: Real> {
+struct DevelopableSurface<T: Real> {
     masters: Masters<T>,
     a: f64,
     b: f64,
@@ -83,7 +83,7 @@ struct Plate<T: Real> {
     breaks: Vec<f64>,
 }
 
-impl<T: Real> Plate<T> {
+impl<T: Real> DevelopableSurface<T> {
     fn new(masters: Masters<T>, pairing: Pairing, a: f64, b: f64) -> Result<Self, CallError> {
         // u and w of a pair (s, t): s - t = (a + b) w.
         let of = |[s, t]: [f64; 2]| {
@@ -226,7 +226,7 @@ impl<T: Real> Implicit<T, 1> for Tangency<'_, T> {
     }
 }
 
-impl<T: Real> Column for Plate<T> {
+impl<T: Real> Column for DevelopableSurface<T> {
     type Scalar = T;
     type Across<S: Real> = Segment<S>;
 

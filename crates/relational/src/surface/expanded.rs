@@ -51,7 +51,7 @@ impl<T: Real> Build<T> for ExpandedSurf<T> {
         }
         check(&surface, &places)?;
         let mut plate = Plate { surface, frame, stations: Vec::new(), edges: Edges::own() };
-        let mut at = Station { u: 0.0, angle: T::zero(), place: [T::zero(); 2] };
+        let mut at = RulingStation { u: 0.0, angle: T::zero(), place: [T::zero(); 2] };
         plate.stations.push(at);
         let breaks = plate.surface.breaks()[0].clone();
         for &u in &places[1..] {
@@ -113,7 +113,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, places: &[f64]) -> Result<(), CallErr
 
 /// Where the middle of a ruling is laid, and by how much the ruling is turned from the y axis.
 #[derive(Clone, Copy)]
-struct Station<T> {
+struct RulingStation<T> {
     u: f64,
     angle: T,
     place: [T; 2],
@@ -122,7 +122,7 @@ struct Station<T> {
 struct Plate<T: Real> {
     surface: SurfaceRef<T>,
     frame: Frame<T>,
-    stations: Vec<Station<T>>,
+    stations: Vec<RulingStation<T>>,
     edges: Edges<T>,
 }
 
@@ -156,7 +156,7 @@ impl<T: Real> Plate<T> {
     /// The station at a break of the surface, which moves with what the surface depends on. How fast
     /// follows from the surface on both sides of it, which meet there wherever it is; the stretches
     /// before and after change by what lies between.
-    fn past_break(&self, at: Station<T>) -> Station<T> {
+    fn past_break(&self, at: RulingStation<T>) -> RulingStation<T> {
         let [before, after] = [at.u.next_down(), at.u.next_up()].map(T::from);
         let half = T::from(0.5);
         let jets = [before, after].map(|u| self.surface.jet(u, half, Order::First));
@@ -170,23 +170,23 @@ impl<T: Real> Plate<T> {
         let turn = self.turning(before) - self.turning(after);
         let steps = [before, after].map(|u| Self::laid(self.step(u), at.angle));
         let place = [0, 1].map(|k| at.place[k] + (steps[0][k] - steps[1][k]) * shift);
-        Station { angle: at.angle + turn * shift, place, ..at }
+        RulingStation { angle: at.angle + turn * shift, place, ..at }
     }
 
     /// The angle at `u` from that at a station before it.
-    fn angle(&self, from: &Station<T>, u: f64) -> T {
+    fn angle(&self, from: &RulingStation<T>, u: f64) -> T {
         let parts = gauss_points(from.u, u);
         parts.into_iter().fold(from.angle, |sum, (u, w)| sum + self.turning(T::from(u)) * w)
     }
 
     /// The station at `u`, from one before it.
-    fn carried(&self, from: &Station<T>, u: f64) -> Station<T> {
+    fn carried(&self, from: &RulingStation<T>, u: f64) -> RulingStation<T> {
         let mut place = from.place;
         for (at, weight) in gauss_points(from.u, u) {
             let step = Self::laid(self.step(T::from(at)), self.angle(from, at));
             place = [0, 1].map(|k| place[k] + step[k] * weight);
         }
-        Station { u, angle: self.angle(from, u), place }
+        RulingStation { u, angle: self.angle(from, u), place }
     }
 }
 

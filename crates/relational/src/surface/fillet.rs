@@ -91,7 +91,7 @@ impl<T: Real> Build<T> for FilletSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { snake1, snake2, m1, m2, continuity, direction1, direction2, closed } = self;
         let contacts = [snake1.curve.clone(), snake2.curve.clone()];
-        let side = |snake, length, direction| Side { snake, length, direction, sign: 1.0 };
+        let side = |snake, length, direction| FilletSide { snake, length, direction, sign: 1.0 };
         let mut fillet = Fillet {
             sides: [side(snake1, m1, direction1), side(snake2, m2, direction2)],
             curved: continuity == 2,
@@ -104,7 +104,7 @@ impl<T: Real> Build<T> for FilletSurf<T> {
     }
 }
 
-struct Side<T: Real> {
+struct FilletSide<T: Real> {
     snake: Snake<T>,
     length: T,
     direction: Direction,
@@ -114,12 +114,12 @@ struct Side<T: Real> {
 
 struct Fillet<T: Real> {
     /// At v = 0 and v = 1.
-    sides: [Side<T>; 2],
+    sides: [FilletSide<T>; 2],
     curved: bool,
     closed: bool,
 }
 
-impl<T: Real> Side<T> {
+impl<T: Real> FilletSide<T> {
     /// The unit direction along increasing v, zero where there is none.
     fn direction<J: Jet<T>>(&self, at: &Along<J>, chord: Vec3<J>) -> Vec3<J> {
         let raw = match self.direction {

@@ -1,6 +1,6 @@
 //! Lofts that are linear in their masters: S(u, v) = sum B_i(v) C_i(u).
 
-use super::chunk::{Chunk, LANES, Part, Plane};
+use super::chunk::{Chunk, ChunkQuantity, LANES, Plane};
 use super::masters::{Masters, Points};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Order, Rational, Real, SurfJet, Surface, Uni1, Vec3};
@@ -45,11 +45,11 @@ impl<T: Real> Blend<T> {
 }
 
 /// The basis at all parameters v of a grid.
-struct Table {
+struct BasisTable {
     rows: Vec<Basis<f64>>,
 }
 
-impl Table {
+impl BasisTable {
     /// The stretches, at most [`LANES`] long, within which the same masters are blended.
     fn stretches(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
         let mut begin = 0;
@@ -105,7 +105,7 @@ impl<T: Real> Surface<T> for Blend<T> {
         mut normals: Option<&mut [Vec3<T>]>,
     ) {
         let order = if normals.is_some() { Order::First } else { Order::Zero };
-        let table = Table { rows: vs.iter().map(|&v| self.knots.basis(v, order)).collect() };
+        let table = BasisTable { rows: vs.iter().map(|&v| self.knots.basis(v, order)).collect() };
         let columns: Vec<Points<Uni1<T>>> = match order {
             Order::Zero => Vec::new(),
             _ => us.iter().map(|&u| self.masters.with_slopes(u)).collect(),
@@ -126,7 +126,7 @@ impl<T: Real> Surface<T> for Blend<T> {
                 let Some(normals) = normals.as_deref_mut() else {
                     for (axis, k) in each {
                         let q = |r: usize| plain[i][first + r][axis].part(k);
-                        blend(&values, q, n, chunk.plane(Part::Point, axis, k));
+                        blend(&values, q, n, chunk.plane(ChunkQuantity::Point, axis, k));
                     }
                     chunk.write_points(&mut points[out]);
                     continue;
@@ -134,9 +134,9 @@ impl<T: Real> Surface<T> for Blend<T> {
                 for (axis, k) in each {
                     let q = |r: usize| columns[i][first + r][axis].f.part(k);
                     let by_u = |r: usize| columns[i][first + r][axis].t.part(k);
-                    blend(&values, q, n, chunk.plane(Part::Point, axis, k));
-                    blend(&values, by_u, n, chunk.plane(Part::ByU, axis, k));
-                    blend(&slopes, q, n, chunk.plane(Part::ByV, axis, k));
+                    blend(&values, q, n, chunk.plane(ChunkQuantity::Point, axis, k));
+                    blend(&values, by_u, n, chunk.plane(ChunkQuantity::ByU, axis, k));
+                    blend(&slopes, q, n, chunk.plane(ChunkQuantity::ByV, axis, k));
                 }
                 chunk.write_points(&mut points[out.clone()]);
                 chunk.write_normals(&mut normals[out]);

@@ -327,17 +327,20 @@ impl<T: Real> Build<T> for RelSurf<T> {
         };
         let shifts = [shift(0), shift(1), shift(2), shift(3)];
         let corners = [0, 1, 2, 3].map(|k| points[k].key);
-        Ok(Value::Surface(SurfaceRef::new(Moved { surface, shifts, corners }, context.nesting)))
+        Ok(Value::Surface(SurfaceRef::new(
+            ShiftedSurface { surface, shifts, corners },
+            context.nesting,
+        )))
     }
 }
 
-struct Moved<T: Real> {
+struct ShiftedSurface<T: Real> {
     surface: SurfaceRef<T>,
     shifts: [Vec3<T>; 4],
     corners: [Option<Key>; 4],
 }
 
-impl<T: Real> Moved<T> {
+impl<T: Real> ShiftedSurface<T> {
     fn added(&self, mut jet: SurfJet<T>, u: T, v: T, order: Order) -> SurfJet<T> {
         let [a, b, c, d] = self.shifts;
         let (p, q) = (-u + 1.0, -v + 1.0);
@@ -353,7 +356,7 @@ impl<T: Real> Moved<T> {
     }
 }
 
-impl<T: Real> Surface<T> for Moved<T> {
+impl<T: Real> Surface<T> for ShiftedSurface<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
         self.added(self.surface.jet(u, v, order), u, v, order)
     }

@@ -52,7 +52,7 @@ pub use revolved::RevSurf;
 pub use roll::RollFillet;
 pub use ruled::RuledSurf;
 pub use sub::SubSurf;
-pub use sweep::{Mode, Moving, SweepSurf};
+pub use sweep::{FrameMode, MovingFrame, SweepSurf};
 pub use swept::ProcSurf;
 pub use tangent_patch::TanBoundary;
 pub use translated::TranSurf;

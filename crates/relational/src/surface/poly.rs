@@ -1,6 +1,6 @@
 //! Surfaces side by side as one.
 
-use crate::arguments::Named;
+use crate::arguments::NamedOption;
 use crate::snake::edge_trace;
 use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};
 use moldloft_num::{Order, Real, SurfJet, Surface};
@@ -29,7 +29,7 @@ pub struct PolySurf<T: Real> {
     surfaces: Vec<SurfaceRef<T>>,
     /// The parameter along which they follow one another: "u" or "v".
     #[field(default = "u")]
-    along: Named,
+    along: NamedOption,
     /// The parameters at which pieces meet, ascending between 0 and 1; equal shares when not given.
     breaks: Option<Vec<T>>,
 }
@@ -45,7 +45,7 @@ impl<T: Real> Build<T> for PolySurf<T> {
         }
         let by_u = along.among(&["u", "v"], Self::ALONG)? == "u";
         let ends = crate::curve::shares(surfaces.len(), breaks, Self::BREAKS)?;
-        let sides = Sides { surfaces, by_u };
+        let sides = PiecewiseSurface { surfaces, by_u };
         for k in 1..sides.surfaces.len() {
             sides.check_seam(k, context.tolerance)?;
         }
@@ -57,12 +57,12 @@ impl<T: Real> Build<T> for PolySurf<T> {
 /// Each seam is tried at so many places.
 const TRIALS: usize = 32;
 
-struct Sides<T: Real> {
+struct PiecewiseSurface<T: Real> {
     surfaces: Vec<SurfaceRef<T>>,
     by_u: bool,
 }
 
-impl<T: Real> Sides<T> {
+impl<T: Real> PiecewiseSurface<T> {
     /// The edges of each piece: low and high across the join, begin and end along it.
     fn numbers(&self) -> [usize; 4] {
         if self.by_u { [0, 2, 3, 1] } else { [3, 1, 0, 2] }
@@ -175,7 +175,7 @@ impl<T: Real> Sides<T> {
 }
 
 struct Join<T: Real> {
-    sides: Sides<T>,
+    sides: PiecewiseSurface<T>,
     /// The parameters at which pieces begin and end, 0 and 1 included.
     ends: Vec<T>,
     edges: Edges<T>,

@@ -20,7 +20,7 @@ pub struct Pairing {
 
 /// A candidate on a level s + t = const: w = (s - t) / 2 and what it is.
 #[derive(Clone, Copy)]
-struct Node {
+struct RulingCandidate {
     w: f64,
     kind: Kind,
     /// The length of the best way there, and the candidate of the level before that it comes from.
@@ -52,7 +52,7 @@ fn determinant([p, d]: Place, [q, e]: Place) -> (f64, bool) {
     (value, d.cross(ruling).dot(e.cross(ruling)) > 0.0)
 }
 
-struct Search<'c, T: Real> {
+struct RulingSearch<'c, T: Real> {
     curves: [&'c CurveRef<T>; 2],
     places: [Vec<Place>; 2],
 }
@@ -73,18 +73,18 @@ pub fn pair<T: Real>(curves: [&CurveRef<T>; 2]) -> Result<Pairing, CallError> {
         };
         (0..=STEPS).map(at).collect::<Vec<_>>()
     });
-    let search = Search { curves, places };
+    let search = RulingSearch { curves, places };
     if search.is_flat() {
         let stations = vec![[0.0; 2], [1.0; 2]];
         return Ok(Pairing { phases: vec![([0.0; 2], Phase::Flat)], stations });
     }
     let mut crossed = None;
-    let mut levels = vec![vec![Node { w: 0.0, kind: Kind::End, cost: 0.0, from: 0 }]];
+    let mut levels = vec![vec![RulingCandidate { w: 0.0, kind: Kind::End, cost: 0.0, from: 0 }]];
     for level in 1..=2 * STEPS {
         let mut nodes = if level < 2 * STEPS {
             search.candidates(level, &mut crossed)
         } else {
-            vec![Node { w: 0.0, kind: Kind::End, cost: 0.0, from: 0 }]
+            vec![RulingCandidate { w: 0.0, kind: Kind::End, cost: 0.0, from: 0 }]
         };
         connect(&levels[level - 1], &mut nodes);
         if nodes.is_empty() {
@@ -107,7 +107,7 @@ pub fn pair<T: Real>(curves: [&CurveRef<T>; 2]) -> Result<Pairing, CallError> {
 const RISE: f64 = 0.5 / STEPS as f64;
 
 /// Gives each candidate its best way from the level before, and drops those that have none.
-fn connect(before: &[Node], nodes: &mut Vec<Node>) {
+fn connect(before: &[RulingCandidate], nodes: &mut Vec<RulingCandidate>) {
     for node in nodes.iter_mut() {
         node.cost = f64::INFINITY;
         for (k, from) in before.iter().enumerate() {
@@ -128,7 +128,7 @@ fn connect(before: &[Node], nodes: &mut Vec<Node>) {
     nodes.retain(|n| n.cost.is_finite());
 }
 
-impl<T: Real> Search<'_, T> {
+impl<T: Real> RulingSearch<'_, T> {
     fn is_flat(&self) -> bool {
         let each = |p: &Place| self.places[1].iter().all(|q| determinant(*p, *q).0.abs() <= FLAT);
         self.places[0].iter().all(each)
@@ -144,11 +144,11 @@ impl<T: Real> Search<'_, T> {
 
     /// The candidates on a level, roots and both ends of it; a root at which the surface would fold
     /// back is noted.
-    fn candidates(&self, level: usize, crossed: &mut Option<[f64; 2]>) -> Vec<Node> {
+    fn candidates(&self, level: usize, crossed: &mut Option<[f64; 2]>) -> Vec<RulingCandidate> {
         let u = level as f64 * RISE;
         let (first, last) = (level.saturating_sub(STEPS), level.min(STEPS));
         let reach = u.min(1.0 - u);
-        let node = |w: f64, kind: Kind| Node { w, kind, cost: 0.0, from: 0 };
+        let node = |w: f64, kind: Kind| RulingCandidate { w, kind, cost: 0.0, from: 0 };
         let mut nodes = vec![node(-reach, Kind::Low)];
         let value = |i: usize| determinant(self.places[0][i], self.places[1][level - i]).0;
         for i in first..last {
@@ -197,12 +197,12 @@ impl<T: Real> Search<'_, T> {
     }
 
     /// Phases and stations of a way through the levels.
-    fn phases(&self, way: &[Node]) -> Pairing {
+    fn phases(&self, way: &[RulingCandidate]) -> Pairing {
         let pair_of = |level: usize, w: f64| {
             let u = level as f64 * RISE;
             [u + w, u - w]
         };
-        let phase_of = |level: usize, node: &Node| {
+        let phase_of = |level: usize, node: &RulingCandidate| {
             let early = 2 * level <= 2 * STEPS;
             match (node.kind, early) {
                 (Kind::Low, true) => Phase::Fan { first: true, end: 0.0 },

@@ -67,13 +67,13 @@ impl<T: Real> Build<T> for SubSurf<T> {
         let shape = match <[Side<T>; 2]>::try_from(sides) {
             Ok(ends) => {
                 let corners = [Vec3::zero(); 4];
-                Patch { surface, layout: Layout::Between(ends), corners }
+                SubPatch { surface, layout: Layout::Between(ends), corners }
             }
             Err(sides) => {
                 check_corners(&sides, Self::SIDES)?;
                 let (south, north) = (&sides[0], &sides[2]);
                 let corners = [end(south, 0.0), end(south, 1.0), end(north, 0.0), end(north, 1.0)];
-                Patch { surface, layout: Layout::Round(sides), corners }
+                SubPatch { surface, layout: Layout::Round(sides), corners }
             }
         };
         shape.check_folds()?;
@@ -91,7 +91,7 @@ enum Layout<T: Real> {
     Round(Vec<Side<T>>),
 }
 
-struct Patch<T: Real> {
+struct SubPatch<T: Real> {
     surface: SurfaceRef<T>,
     layout: Layout<T>,
     /// The ends of the edges v = 0 and v = 1, first those of the one.
@@ -124,7 +124,7 @@ fn check_corners<T: Real>(sides: &[Side<T>], field: FieldId) -> Result<(), CallE
 /// How many steps the patch is tried with in each direction.
 const TRIALS: usize = 8;
 
-impl<T: Real> Patch<T> {
+impl<T: Real> SubPatch<T> {
     /// The place on the surface.
     fn inside<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
         self.blended(u, v, self.along_u(u), self.along_v(v))
@@ -180,7 +180,7 @@ impl<T: Real> Patch<T> {
 /// How far apart in the other parameter the ends of a side may be that meet at a seam.
 const AT_SEAM: f64 = 1e-9;
 
-impl<T: Real> Patch<T> {
+impl<T: Real> SubPatch<T> {
     /// True when both sides end where they begin: at one point object, or at the seam of a closed
     /// surface that both run round.
     fn is_closed(&self) -> bool {
@@ -245,7 +245,7 @@ impl<T: Real> Patch<T> {
     }
 }
 
-impl<T: Real> Surface<T> for Patch<T> {
+impl<T: Real> Surface<T> for SubPatch<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
         surface_jet_of!(self, Self::position, u, v, order)
     }
@@ -379,7 +379,7 @@ impl<T: Real> Surface<T> for Patch<T> {
     }
 }
 
-impl<T: Real> Patch<T> {
+impl<T: Real> SubPatch<T> {
     /// The side that is not given, straight in the parameter plane between the ends `end` of two that
     /// are: where it lies on an edge of the surface, a part of that.
     fn implied(&self, sides: [&Side<T>; 2], points: [Option<Key>; 2], end: f64) -> Edge<T> {

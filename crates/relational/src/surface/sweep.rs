@@ -50,9 +50,9 @@ pub struct SweepSurf<T: Real> {
 impl<T: Scalar> Build<T> for SweepSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { profile, path, frame, up, twist, scale } = self;
-        let mode = Mode::of(&frame, up, [Self::FRAME, Self::UP])?;
-        let moving = Moving::new(path, mode, Self::PATH)?;
-        let shape = Sweep {
+        let mode = FrameMode::of(&frame, up, [Self::FRAME, Self::UP])?;
+        let moving = MovingFrame::new(path, mode, Self::PATH)?;
+        let shape = SweptSurface {
             profile,
             moving,
             twist: law(twist, Self::TWIST)?,
@@ -64,7 +64,7 @@ impl<T: Scalar> Build<T> for SweepSurf<T> {
 
 /// How a frame moves along a path.
 #[derive(Clone, Copy)]
-pub enum Mode<T> {
+pub enum FrameMode<T> {
     /// Without turning about the tangent.
     Minimal,
     /// With an axis as near as may be to this direction.
@@ -73,21 +73,21 @@ pub enum Mode<T> {
     Fixed,
 }
 
-impl<T: Real> Mode<T> {
+impl<T: Real> FrameMode<T> {
     /// The mode of a word, with the upright direction where one was given; `fields` are theirs.
     ///
     /// # Errors
     /// `unknown-frame` and `unused-argument`.
     pub fn of(frame: &str, up: Option<Vec3<T>>, fields: [FieldId; 2]) -> Result<Self, CallError> {
         match frame {
-            "minimal" if up.is_none() => Ok(Mode::Minimal),
-            "fixed" if up.is_none() => Ok(Mode::Fixed),
+            "minimal" if up.is_none() => Ok(FrameMode::Minimal),
+            "fixed" if up.is_none() => Ok(FrameMode::Fixed),
             "minimal" | "fixed" => {
                 Err(CallError::new("unused-argument", "`up` is for frame = \"up\" only")
                     .help("add frame = \"up\", or leave `up` out")
                     .in_field(fields[1]))
             }
-            "up" => Ok(Mode::Up(up.unwrap_or(Vec3::of(0.0, 0.0, 1.0)))),
+            "up" => Ok(FrameMode::Up(up.unwrap_or(Vec3::of(0.0, 0.0, 1.0)))),
             other => Err(CallError::new("unknown-frame", format!("unknown frame \"{other}\""))
                 .expected("\"minimal\", \"up\" or \"fixed\"")
                 .found(format!("\"{other}\""))
@@ -97,9 +97,9 @@ impl<T: Real> Mode<T> {
 }
 
 /// A path with a frame (tangent, r, tangent x r) that moves along it.
-pub struct Moving<T: Real> {
+pub struct MovingFrame<T: Real> {
     pub path: CurveRef<T>,
-    mode: Mode<T>,
+    mode: FrameMode<T>,
     /// For the minimal frame: r at parameters of the path.
     nodes: Vec<(f64, Vec3<T>)>,
     /// The frame at v = 0.
@@ -113,20 +113,20 @@ const STEPS: usize = 128;
 /// Tangents on both sides of a point of the path that differ by more than this make a corner.
 const CORNER: f64 = 1e-4;
 
-impl<T: Real> Moving<T> {
+impl<T: Real> MovingFrame<T> {
     /// # Errors
     /// `zero-tangent`, `corner-in-path` and `no-frame`, in field `field`.
-    pub fn new(path: CurveRef<T>, mode: Mode<T>, field: FieldId) -> Result<Self, CallError> {
+    pub fn new(path: CurveRef<T>, mode: FrameMode<T>, field: FieldId) -> Result<Self, CallError> {
         let zero = Vec3::zero();
         let mut moving = Self { path, mode, nodes: Vec::new(), first: [zero; 3] };
         moving.check().map_err(|fault| fault.in_field(field))?;
         let t = moving.tangent(T::zero());
         let r = match mode {
-            Mode::Minimal | Mode::Fixed => t.perpendicular(),
-            Mode::Up(up) => upright(up, t),
+            FrameMode::Minimal | FrameMode::Fixed => t.perpendicular(),
+            FrameMode::Up(up) => upright(up, t),
         };
         moving.first = [t, r, t.cross(r)];
-        if matches!(mode, Mode::Minimal) {
+        if matches!(mode, FrameMode::Minimal) {
             moving.place_nodes(r);
         }
         Ok(moving)
@@ -145,7 +145,7 @@ impl<T: Real> Moving<T> {
         for k in 0..=32 {
             let v = f64::from(k) / 32.0;
             let t = unit(v)?;
-            if let Mode::Up(up) = self.mode
+            if let FrameMode::Up(up) = self.mode
                 && up.re().cross(t).norm() <= 1e-6 * up.re().norm()
             {
                 let message = format!("the path runs along the upright direction at v = {v}");
@@ -155,7 +155,8 @@ impl<T: Real> Moving<T> {
                     .help("take another `up`, or frame = \"minimal\""));
             }
         }
-        let turning = if matches!(self.mode, Mode::Fixed) { vec![] } else { self.path.breaks() };
+        let turning =
+            if matches!(self.mode, FrameMode::Fixed) { vec![] } else { self.path.breaks() };
         for v in turning {
             let (before, after) = (unit(v - 1e-7)?, unit(v + 1e-7)?);
             if before.distance(after) > CORNER {
@@ -175,9 +176,9 @@ impl<T: Real> Moving<T> {
     /// A number of the way the frame moves: 1 minimal, 2 up, 3 fixed.
     pub fn number(&self) -> u8 {
         match self.mode {
-            Mode::Minimal => 1,
-            Mode::Up(_) => 2,
-            Mode::Fixed => 3,
+            FrameMode::Minimal => 1,
+            FrameMode::Up(_) => 2,
+            FrameMode::Fixed => 3,
         }
     }
 
@@ -233,11 +234,11 @@ impl<T: Real> Moving<T> {
     /// The frame at `v`: unit tangent, r, and their product.
     pub fn frame<J: Jet<T>>(&self, v: J) -> [Vec3<J>; 3] {
         let t = match self.mode {
-            Mode::Fixed => return self.first.map(|axis| axis.map(J::fixed)),
+            FrameMode::Fixed => return self.first.map(|axis| axis.map(J::fixed)),
             _ => self.tangent(v),
         };
         let r = match self.mode {
-            Mode::Up(up) => upright(up.map(J::fixed), t),
+            FrameMode::Up(up) => upright(up.map(J::fixed), t),
             _ => self.lifted(v),
         };
         [t, r, t.cross(r)]
@@ -274,14 +275,14 @@ fn upright<J: Real>(up: Vec3<J>, t: Vec3<J>) -> Vec3<J> {
     r / r.norm()
 }
 
-struct Sweep<T: Real> {
+struct SweptSurface<T: Real> {
     profile: CurveRef<T>,
-    moving: Moving<T>,
+    moving: MovingFrame<T>,
     twist: Option<BSplineCurve<T>>,
     scale: Option<BSplineCurve<T>>,
 }
 
-impl<T: Real> Sweep<T> {
+impl<T: Real> SweptSurface<T> {
     /// The position on the path, and what the tangent, r and t x r of the frame at 0 become.
     fn station<J: Jet<T>>(&self, v: J) -> (Vec3<J>, [Vec3<J>; 3]) {
         let [t, r, s] = self.moving.frame(v);
@@ -323,7 +324,7 @@ impl<T: Real> Sweep<T> {
     }
 }
 
-impl<T: Real> Surface<T> for Sweep<T> {
+impl<T: Real> Surface<T> for SweptSurface<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
         surface_jet_of!(self, Self::at, u, v, order)
     }

@@ -2,7 +2,7 @@
 
 use super::column::{Column, Columns};
 use crate::arguments::Bead;
-use crate::chebyshev::{NODES, Piece, Way, nodes};
+use crate::chebyshev::{ChebyshevPiece, NODES, PiecewiseChebyshev, nodes};
 use crate::curve::swept::{ACCURACY, halved, no_locus, stretches};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Order, Real, Vec3};
@@ -55,47 +55,47 @@ impl<T: Real> Build<T> for ProcSurf<T> {
             for t in nodes(from, to) {
                 ribs.push(at(t)?);
             }
-            let strip = Strip { from, to, ribs };
+            let strip = RibStrip { from, to, ribs };
             let mut rest = 0.0f64;
             for u in PROBES {
                 let places = strip.places(T::from(u));
                 let first = places[0].re();
                 size = places.iter().fold(size, |s, p| s.max(p.re().distance(first)));
                 size = size.max(f64::EPSILON * first.norm());
-                rest = rest.max(Piece::through(from, to, &places).rest());
+                rest = rest.max(ChebyshevPiece::through(from, to, &places).rest());
             }
             Ok((strip, rest <= ACCURACY * size))
         })?;
         let depth = pieces.iter().flat_map(|s| &s.ribs).map(|c| c.depth).max().unwrap_or(0);
-        let shape = Columns(Skin { strips: pieces });
+        let shape = Columns(SweptSkin { strips: pieces });
         Ok(Value::Surface(SurfaceRef::new(shape, context.nesting.max(depth))))
     }
 }
 
 /// A stretch along v: the curves at its nodes.
-struct Strip<T: Real> {
+struct RibStrip<T: Real> {
     from: f64,
     to: f64,
     ribs: Vec<CurveRef<T>>,
 }
 
-impl<T: Real> Strip<T> {
+impl<T: Real> RibStrip<T> {
     fn places<J: Jet<T>>(&self, u: J) -> Vec<Vec3<J>> {
         self.ribs.iter().map(|rib| rib.at(u)).collect()
     }
 }
 
-struct Skin<T: Real> {
-    strips: Vec<Strip<T>>,
+struct SweptSkin<T: Real> {
+    strips: Vec<RibStrip<T>>,
 }
 
-impl<T: Real> Column for Skin<T> {
+impl<T: Real> Column for SweptSkin<T> {
     type Scalar = T;
-    type Across<S: Real> = Way<S>;
+    type Across<S: Real> = PiecewiseChebyshev<S>;
 
-    fn across<J: Jet<T>>(&self, u: J) -> Option<Way<J>> {
-        let piece = |s: &Strip<T>| Piece::through(s.from, s.to, &s.places(u));
-        Some(Way { pieces: self.strips.iter().map(piece).collect() })
+    fn across<J: Jet<T>>(&self, u: J) -> Option<PiecewiseChebyshev<J>> {
+        let piece = |s: &RibStrip<T>| ChebyshevPiece::through(s.from, s.to, &s.places(u));
+        Some(PiecewiseChebyshev { pieces: self.strips.iter().map(piece).collect() })
     }
 
     fn breaks(&self) -> [Vec<f64>; 2] {

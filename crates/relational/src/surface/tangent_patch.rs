@@ -59,7 +59,7 @@ impl<T: Real> Build<T> for TanBoundary<T> {
         };
         let snakes: Vec<_> = sides.iter().enumerate().map(|(k, c)| snake(k, c)).collect();
         let boundary = Boundary::new(sides, Self::SIDES)?;
-        let patch = Patch::new(boundary, snakes)?;
+        let patch = TangentPatch::new(boundary, snakes)?;
         Ok(Value::Surface(SurfaceRef::new(patch, context.nesting)))
     }
 }
@@ -73,7 +73,7 @@ enum Across<T: Real> {
     Tangent(Snake<T>, [[T; 2]; 2]),
 }
 
-struct Patch<T: Real> {
+struct TangentPatch<T: Real> {
     boundary: Boundary<T>,
     /// Of the four edges v = 0, u = 1, v = 1, u = 0.
     across: [Across<T>; 4],
@@ -94,7 +94,7 @@ fn basis<J: Real>(at: &Along<J>) -> [Vec3<J>; 2] {
 const NEIGHBOURS: [([usize; 2], bool); 4] =
     [([3, 1], true), ([0, 2], false), ([3, 1], false), ([0, 2], true)];
 
-impl<T: Real> Patch<T> {
+impl<T: Real> TangentPatch<T> {
     fn new(boundary: Boundary<T>, snakes: Vec<Option<Snake<T>>>) -> Result<Self, CallError> {
         let zero = Vec3::zero();
         let free = || Across::Free;
@@ -103,7 +103,7 @@ impl<T: Real> Patch<T> {
             [at(0.0), at(1.0)].map(|p: Vec3<Uni1<T>>| p.map(|x| x.t))
         });
         let across = [free(), free(), free(), free()];
-        let mut patch = Patch { boundary, across, leaving, twists: [[zero; 2]; 4] };
+        let mut patch = TangentPatch { boundary, across, leaving, twists: [[zero; 2]; 4] };
         for (k, snake) in snakes.into_iter().enumerate() {
             if let Some(snake) = snake {
                 let ends = patch.components(k, &snake)?;
@@ -207,7 +207,7 @@ fn hermite<J: Real>(t: J) -> [J; 4] {
     [s * s * (t * 2.0 + 1.0), t * t * (s * 2.0 + 1.0), t * s * s, -(t * t * s)]
 }
 
-impl<T: Real> SurfaceFormula for Patch<T> {
+impl<T: Real> SurfaceFormula for TangentPatch<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {

@@ -176,7 +176,7 @@ impl<T: Real> Trimmed<T> {
             first += total;
             cycles.push(places);
         }
-        let (region, turned) = Region::new(cycles, self.scale)?;
+        let (region, turned) = TrimRegion::new(cycles, self.scale)?;
         // What was turned round is counted from its other end.
         let mut first = 0;
         for (cycle, turned) in self.cycles.iter().zip(turned) {
@@ -269,7 +269,7 @@ fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Call
 }
 
 /// A region of the parameter plane.
-struct Region<T> {
+struct TrimRegion<T> {
     /// The outer loop counter-clockwise, the holes clockwise.
     cycles: Vec<Vec<Place<T>>>,
     scale: [f64; 2],
@@ -313,7 +313,7 @@ fn distance(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-impl<T: Real> Region<T> {
+impl<T: Real> TrimRegion<T> {
     /// The region within loops, and which of them were turned round for it.
     fn new(
         mut cycles: Vec<Vec<Place<T>>>,

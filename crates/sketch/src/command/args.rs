@@ -1,7 +1,7 @@
 //! The arguments of a command, taken one after another.
 
 use super::CommandError;
-use super::words::{Kind, Token, UNITS, feet_and_inches};
+use super::words::{CommandToken, Kind, UNITS, feet_and_inches};
 use crate::{Axis, Expr, LineId, PointId};
 
 /// Labels up to this are accepted.
@@ -9,23 +9,23 @@ pub const MAX_LABEL: u32 = 1_000_000;
 
 /// A cursor over tokens.
 pub struct Args<'a> {
-    tokens: &'a [Token],
+    tokens: &'a [CommandToken],
     usage: &'a str,
 }
 
 impl<'a> Args<'a> {
     /// The tokens after the verb, and how the verb is used.
-    pub fn new(tokens: &'a [Token], usage: &'a str) -> Args<'a> {
+    pub fn new(tokens: &'a [CommandToken], usage: &'a str) -> Args<'a> {
         Args { tokens, usage }
     }
 
     /// The next token.
-    pub fn peek(&self) -> Option<&'a Token> {
+    pub fn peek(&self) -> Option<&'a CommandToken> {
         self.tokens.first()
     }
 
     /// The token after the next.
-    pub fn second(&self) -> Option<&'a Token> {
+    pub fn second(&self) -> Option<&'a CommandToken> {
         self.tokens.get(1)
     }
 

@@ -3,13 +3,13 @@
 use super::CommandError;
 use super::args::Args;
 use super::draw::{require_line, require_point};
-use super::session::{Reply, Session};
+use super::session::{CommandReply, SketchSession};
 use crate::solid::curve::{Curve, CurveFault, CurveKind, trace};
 use crate::solid::{UnbuiltCurve, UnbuiltReason};
-use crate::{Object, PointId};
+use crate::{PointId, SketchObject};
 use moldloft_syntax::number::plain;
 
-impl Session {
+impl SketchSession {
     pub(super) fn corner_curve(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
         let start = |a: &Args| a.at("LINES") || a.at("CORNER");
         let option = |a: &Args| verb == "ELLIPSE" && (a.tokens_at(0, "ARC") || a.at("FULL"));
@@ -201,7 +201,7 @@ impl Session {
     }
 
     fn add_curve(&mut self, curve: Curve) -> Result<(), CommandError> {
-        let mut object: Object = self.active()?.clone();
+        let mut object: SketchObject = self.active()?.clone();
         let (view, layout) = self.laid_out(&object);
         let at = |p: PointId| layout.point(&view.planes, p);
         match trace(&curve, &at, &layout.values) {
@@ -212,7 +212,7 @@ impl Session {
                 if let Some(c) = traced.centre {
                     text.push_str(&format!(", centre {}", c.to_array().map(plain).join(" ")));
                 }
-                self.out.push(Reply::note(text));
+                self.out.push(CommandReply::note(text));
             }
             // Without dimensions it is drawn later.
             Err(CurveFault::Undetermined) => {}
@@ -260,7 +260,7 @@ fn curve_fault(name: &str, fault: &CurveFault) -> CommandError {
 }
 
 /// A curve that is not built in, as a warning.
-pub(super) fn unbuilt_reply(unbuilt: &UnbuiltCurve) -> Reply {
+pub(super) fn unbuilt_reply(unbuilt: &UnbuiltCurve) -> CommandReply {
     let name = &unbuilt.curve;
     let fault = match &unbuilt.why {
         UnbuiltReason::Curve(fault) => curve_fault(name, fault),
@@ -292,7 +292,7 @@ pub(super) fn unbuilt_reply(unbuilt: &UnbuiltCurve) -> Reply {
             "make one of them smaller",
         ),
     };
-    let mut reply = Reply::warning(fault.text);
+    let mut reply = CommandReply::warning(fault.text);
     reply.code = (fault.code > 0).then_some(fault.code);
     reply.next = Some(fault.next);
     reply

@@ -4,17 +4,17 @@ use super::CommandError;
 use super::args::Args;
 use super::draw::{require_line, require_point, set_letters};
 use super::question::Question;
-use super::session::{Reply, Session};
+use super::session::{CommandReply, SketchSession};
 use super::words::UNITS;
 use crate::dimension::layout::agree;
 use crate::{
-    Axis, Dimension, DimensionFault, Expr, Measure, Naming, Object, PointId, Reference, Role,
-    Variable, chain, chain_text,
+    Axis, Dimension, DimensionFault, DimensionRole, Expr, MeasuredQuantity, Naming, PointId,
+    Reference, SketchObject, Variable, chain, chain_text,
 };
 use moldloft_syntax::number::plain;
 use std::sync::Arc;
 
-impl Session {
+impl SketchSession {
     pub(super) fn dimension(&mut self, args: &mut Args) -> Result<(), CommandError> {
         const KINDS: [&str; 4] = ["LENGTH", "SLOPE", "ANGLE", "EQUAL"];
         let kind = |a: &Args| KINDS.into_iter().find(|k| a.at(k));
@@ -91,7 +91,7 @@ impl Session {
         if planes.same(axis, p, q) {
             let zero = number.as_ref().is_ok_and(|x| *x == 0.0);
             if zero {
-                self.out.push(Reply::note(format!(
+                self.out.push(CommandReply::note(format!(
                     "points {p} and {q} are in one {axis} plane already"
                 )));
                 return Ok(());
@@ -104,7 +104,7 @@ impl Session {
                 "dimension two different planes, or retype a line of the path",
             ));
         }
-        let mut role = Role::Driving;
+        let mut role = DimensionRole::Driving;
         if let Some((way, names)) = chain(&object, planes, axis, p, q) {
             let ends = (layout.coordinate(planes, axis, p), layout.coordinate(planes, axis, q));
             let measured = match ends {
@@ -114,12 +114,12 @@ impl Session {
             let asked = number.ok();
             match (measured, asked) {
                 (Some(m), Some(a)) if agree(m, a) => {
-                    role = Role::Reference;
+                    role = DimensionRole::Reference;
                     let text = format!(
                         "396: determined already via {}; it agrees and is kept as a reference",
                         chain_text(&way)
                     );
-                    self.out.push(Reply::note(text));
+                    self.out.push(CommandReply::note(text));
                 }
                 (Some(m), Some(a)) => {
                     let text = format!(
@@ -145,7 +145,7 @@ impl Session {
                 }
             }
         }
-        let measure = Measure::Along { axis, p, q };
+        let measure = MeasuredQuantity::Along { axis, p, q };
         let object = self.active_mut()?;
         object.add_dimension(Dimension { name, measure, value: Some(value), role, range });
         self.report_counts()
@@ -168,10 +168,10 @@ impl Session {
             }
         }
         let measure = match (kind, second) {
-            ("LENGTH", _) => Measure::Length(first),
-            ("SLOPE", _) => Measure::Slope(first),
-            ("ANGLE", Some(second)) => Measure::Angle(first, second),
-            (_, Some(second)) => Measure::Equal(first, second),
+            ("LENGTH", _) => MeasuredQuantity::Length(first),
+            ("SLOPE", _) => MeasuredQuantity::Slope(first),
+            ("ANGLE", Some(second)) => MeasuredQuantity::Angle(first, second),
+            (_, Some(second)) => MeasuredQuantity::Equal(first, second),
             _ => return Err(args.wants("a second line")),
         };
         if kind != "EQUAL" && args.len() == 0 {
@@ -185,15 +185,15 @@ impl Session {
         let range = args.range()?;
         args.end()?;
         let before = self.laid_out(&object).1.faults;
-        let mut role = Role::Driving;
+        let mut role = DimensionRole::Driving;
         let mut tried = object;
         let dimension = Dimension { name: name.clone(), measure, value: Some(value), role, range };
         tried.add_dimension(dimension.clone());
         for fault in self.laid_out(&tried).1.faults {
             match &fault {
                 DimensionFault::Redundant { name: n, .. } if *n == name => {
-                    role = Role::Reference;
-                    self.out.push(Reply::note(
+                    role = DimensionRole::Reference;
+                    self.out.push(CommandReply::note(
                         "396: determined already; it agrees and is kept as a reference",
                     ));
                 }
@@ -208,9 +208,9 @@ impl Session {
     /// A derived dimension without a value: it only shows what the others make it.
     fn measured(
         &mut self,
-        object: &Object,
+        object: &SketchObject,
         name: String,
-        measure: Measure,
+        measure: MeasuredQuantity,
     ) -> Result<(), CommandError> {
         let (view, layout) = self.laid_out(object);
         let Some(x) = layout.measured(object, &view.planes, &measure) else {
@@ -220,9 +220,9 @@ impl Session {
                 "give it a value, or the missing dimensions; CHECK lists them",
             ));
         };
-        self.out.push(Reply::note(format!("{name} measures {}", plain(x))));
+        self.out.push(CommandReply::note(format!("{name} measures {}", plain(x))));
         let dimension =
-            Dimension { name, measure, value: None, role: Role::Reference, range: None };
+            Dimension { name, measure, value: None, role: DimensionRole::Reference, range: None };
         self.active_mut()?.add_dimension(dimension);
         Ok(())
     }
@@ -230,15 +230,15 @@ impl Session {
     /// Asks whether the estimated value is right (a dimension without a value).
     fn suggest(
         &mut self,
-        object: &Object,
+        object: &SketchObject,
         name: String,
         axis: Axis,
         (p, q): (PointId, PointId),
     ) -> Result<(), CommandError> {
         let (view, layout) = self.laid_out(object);
-        let determined = Measure::Along { axis, p, q };
+        let determined = MeasuredQuantity::Along { axis, p, q };
         if let Some(x) = layout.measured(object, &view.planes, &determined) {
-            self.out.push(Reply::note(format!(
+            self.out.push(CommandReply::note(format!(
                 "{axis} from {p} to {q} is determined already: {}",
                 plain(x)
             )));
@@ -255,7 +255,7 @@ impl Session {
         if !e.determines(axis, a, b) {
             text.push_str("; the picture leaves this depth open");
         }
-        let mut reply = Reply::note(text);
+        let mut reply = CommandReply::note(text);
         reply.next = Some("YES takes it; or give the value".to_owned());
         self.out.push(reply);
         self.question = Some(Question::Dimension { name, axis, p, q, value });
@@ -266,7 +266,7 @@ impl Session {
     /// picture leaves open says nothing.
     fn warn_of_picture(
         &mut self,
-        object: &Object,
+        object: &SketchObject,
         name: &str,
         axis: Axis,
         (p, q): (PointId, PointId),
@@ -284,7 +284,7 @@ impl Session {
         };
         let gap = e.plane(axis, b) - e.plane(axis, a);
         if e.determines(axis, a, b) && gap.abs() > CLEAR * e.extent() && gap * asked < 0.0 {
-            let mut reply = Reply::warning(format!(
+            let mut reply = CommandReply::warning(format!(
                 "{name}: the picture shows {q} on the other side of {p} along {axis}; it is taken as typed"
             ));
             reply.next = Some(format!("REVERSE {name} if the picture is right"));
@@ -337,7 +337,7 @@ impl Session {
         if layout.complete() && !object.drawing.points.is_empty() {
             text.push_str(": complete");
         }
-        self.out.push(Reply::note(text));
+        self.out.push(CommandReply::note(text));
         Ok(())
     }
 
@@ -350,7 +350,7 @@ impl Session {
             require_point(&object, p)?;
             let value = args.value(object.units.as_deref())?;
             args.end()?;
-            let measure = Measure::Datum { axis, point: p };
+            let measure = MeasuredQuantity::Datum { axis, point: p };
             let old =
                 object.dimensions.iter().find(|d| d.1.measure == measure).map(|d| d.0.clone());
             let name = match old {
@@ -361,7 +361,7 @@ impl Session {
                 name,
                 measure,
                 value: Some(value),
-                role: Role::Driving,
+                role: DimensionRole::Driving,
                 range: None,
             });
         }
@@ -436,7 +436,7 @@ impl Session {
             return self.put(Dimension {
                 value: Some(value),
                 range,
-                role: Role::Driving,
+                role: DimensionRole::Driving,
                 ..old.clone()
             });
         }
@@ -459,7 +459,7 @@ impl Session {
         let old = self.active_arc()?;
         let before = self.worked(&old);
         let name = dimension.name.clone();
-        let mut object = Object::clone(&old);
+        let mut object = SketchObject::clone(&old);
         object.add_dimension(dimension);
         let mut object = Arc::new(object);
         let tried = self.worked(&object);
@@ -468,9 +468,9 @@ impl Session {
                 DimensionFault::Redundant { name: n, .. } if *n == name => {
                     let object = Arc::make_mut(&mut object);
                     if let Some(d) = object.dimensions.get_mut(&name.to_ascii_lowercase()) {
-                        d.role = Role::Reference;
+                        d.role = DimensionRole::Reference;
                     }
-                    self.out.push(Reply::note(format!(
+                    self.out.push(CommandReply::note(format!(
                         "396: {name} is determined already; it agrees and is a reference"
                     )));
                 }
@@ -487,7 +487,7 @@ impl Session {
         in_range(&variable.name, Some(&variable.value), variable.range)?;
         let old = self.active_arc()?;
         let before = self.worked(&old);
-        let mut object = Object::clone(&old);
+        let mut object = SketchObject::clone(&old);
         object.variables.insert(variable.name.to_ascii_lowercase(), variable);
         let object = Arc::new(object);
         let tried = self.worked(&object);
@@ -551,7 +551,8 @@ impl Session {
         args.end()?;
         let object = self.active_mut()?;
         let dimension = object.dimensions.get_mut(&name.to_ascii_lowercase());
-        let Some(Dimension { measure: Measure::Along { p, q, .. }, .. }) = dimension else {
+        let Some(Dimension { measure: MeasuredQuantity::Along { p, q, .. }, .. }) = dimension
+        else {
             return Err(CommandError::text(
                 format!("there is no dimension {name} along an axis"),
                 "LIST DIMENSIONS lists them",
@@ -596,7 +597,7 @@ impl Session {
             let next = "give them, or see ESTIMATE for suggested values".to_owned();
             return Err(CommandError::new(404, text, next));
         }
-        self.out.push(Reply::note(format!(
+        self.out.push(CommandReply::note(format!(
             "{}: {} points are exact",
             object.name,
             view.planes.ids().len()
@@ -607,7 +608,7 @@ impl Session {
 
 /// The length of a chain of dimensions that does not hang on the reference.
 fn along(
-    object: &Object,
+    object: &SketchObject,
     values: &std::collections::BTreeMap<String, f64>,
     axis: Axis,
     way: &[PointId],
@@ -618,7 +619,7 @@ fn along(
     let mut sum = 0.0;
     for name in names {
         let d = object.dimensions.get(&name.to_ascii_lowercase())?;
-        let Measure::Along { p, q, .. } = d.measure else { return None };
+        let MeasuredQuantity::Along { p, q, .. } = d.measure else { return None };
         let (a, b) = (planes.plane(axis, p)?, planes.plane(axis, q)?);
         let value = values.get(&name.to_ascii_lowercase())?;
         (sum, at) = if at == a { (sum + value, b) } else { (sum - value, a) };

@@ -2,14 +2,14 @@
 
 use super::CommandError;
 use super::args::Args;
-use super::session::{MAX_POINTS, Reply, Session};
+use super::session::{CommandReply, MAX_POINTS, SketchSession};
 use super::words::Kind;
 use crate::{
-    Align, Axis, Drawing, FaceId, Free, Line, LineId, Naming, Object, Point, PointId, Projection,
-    Source,
+    Align, Axis, Drawing, DrawnPoint, FaceId, Free, Line, LineId, LineTypeSource, Naming, PointId,
+    Projection, SketchObject,
 };
 
-impl Session {
+impl SketchSession {
     pub(super) fn sketch(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let shape = |t: &str| ["2D", "3D"].iter().any(|d| t.eq_ignore_ascii_case(d));
         let named = args
@@ -53,7 +53,7 @@ impl Session {
                     "sketch another object, or EXTRUDE this one",
                 ));
             }
-            _ => self.insert(Object::new(&name, section)),
+            _ => self.insert(SketchObject::new(&name, section)),
         }
         Ok(())
     }
@@ -82,9 +82,9 @@ impl Session {
             ));
         }
         let id = id.unwrap_or_else(|| object.drawing.next_point());
-        let new = object.draw().points.insert(id, Point { u, v }).is_none();
+        let new = object.draw().points.insert(id, DrawnPoint { u, v }).is_none();
         let moved: Vec<LineId> = (object.drawing.lines.iter())
-            .filter(|(_, l)| (l.p == id || l.q == id) && l.source == Source::Auto)
+            .filter(|(_, l)| (l.p == id || l.q == id) && l.source == LineTypeSource::Auto)
             .map(|(k, _)| *k)
             .collect();
         if !new {
@@ -92,15 +92,15 @@ impl Session {
             moved.into_iter().for_each(|l| drawing.type_by_slope(l));
         }
         if !labelled {
-            self.out.push(Reply::note(format!("point {id}")));
+            self.out.push(CommandReply::note(format!("point {id}")));
         }
         Ok(())
     }
 
     /// The active object; an unnamed one is begun when there is none (manual: NONAME).
-    fn active_or_noname(&mut self) -> Result<&mut Object, CommandError> {
+    fn active_or_noname(&mut self) -> Result<&mut SketchObject, CommandError> {
         if self.state.active.is_none() {
-            self.insert(Object::new("NONAME", None));
+            self.insert(SketchObject::new("NONAME", None));
         }
         self.active_mut()
     }
@@ -133,13 +133,15 @@ impl Session {
             ));
         }
         let drawing = &object.drawing;
-        let mut line = Line { p, q, free: None, source: Source::Auto, confidence: 0.0 };
+        let mut line = Line { p, q, free: None, source: LineTypeSource::Auto, confidence: 0.0 };
         let mut by_slope = true;
         if args.take("TYPE") {
             by_slope = false;
             line.free = line_type(drawing, args)?;
-            (line.source, line.confidence) = (Source::User, 1.0);
-            for (word, source) in [("AUTO", Source::Auto), ("INFERRED", Source::Inferred)] {
+            (line.source, line.confidence) = (LineTypeSource::User, 1.0);
+            for (word, source) in
+                [("AUTO", LineTypeSource::Auto), ("INFERRED", LineTypeSource::Inferred)]
+            {
                 if args.take(word) {
                     line.source = source;
                     if args.at_number() {
@@ -158,7 +160,7 @@ impl Session {
         }
         let text = drawing.line_text(id);
         if !labelled {
-            self.out.push(Reply::note(format!("line {id}: {text}")));
+            self.out.push(CommandReply::note(format!("line {id}: {text}")));
         }
         Ok(())
     }
@@ -185,14 +187,19 @@ impl Session {
         for w in points.windows(2) {
             if w[0] != w[1] && drawing.line_between(w[0], w[1]).is_none() {
                 let id = drawing.next_line();
-                let line =
-                    Line { p: w[0], q: w[1], free: None, source: Source::Auto, confidence: 0.0 };
+                let line = Line {
+                    p: w[0],
+                    q: w[1],
+                    free: None,
+                    source: LineTypeSource::Auto,
+                    confidence: 0.0,
+                };
                 drawing.lines.insert(id, line);
                 drawing.type_by_slope(id);
                 made.push(format!("{id}: {}", drawing.line_text(id)));
             }
         }
-        self.out.push(Reply::note(format!("lines {}", made.join(", "))));
+        self.out.push(CommandReply::note(format!("lines {}", made.join(", "))));
         Ok(())
     }
 
@@ -213,7 +220,7 @@ impl Session {
         let drawing = object.draw();
         let (m, second) = (drawing.next_point(), drawing.next_line());
         let mix = |x: f64, y: f64| x + (y - x) * part;
-        drawing.points.insert(m, Point { u: mix(a.u, b.u), v: mix(a.v, b.v) });
+        drawing.points.insert(m, DrawnPoint { u: mix(a.u, b.u), v: mix(a.v, b.v) });
         drawing.lines.insert(id, Line { q: m, ..line });
         drawing.lines.insert(second, Line { p: m, ..line });
         for face in object.faces.values_mut() {
@@ -228,7 +235,7 @@ impl Session {
                 }
             }
         }
-        self.out.push(Reply::note(format!("point {m}, line {second}")));
+        self.out.push(CommandReply::note(format!("point {m}, line {second}")));
         Ok(())
     }
 
@@ -249,7 +256,7 @@ impl Session {
             } else {
                 format!("welded {}", welded.join(", "))
             };
-            self.out.push(Reply::note(text));
+            self.out.push(CommandReply::note(text));
             self.report_gone(gone);
             return Ok(());
         }
@@ -274,7 +281,7 @@ impl Session {
     pub(super) fn report_gone(&mut self, gone: Vec<String>) {
         if !gone.is_empty() {
             let text = format!("removed with their points or lines: {}", gone.join(", "));
-            self.out.push(Reply::warning(text));
+            self.out.push(CommandReply::warning(text));
         }
     }
 
@@ -416,18 +423,18 @@ impl Session {
         let drawing = object.draw();
         drawing.projection = projection;
         let auto: Vec<LineId> = (drawing.lines.iter())
-            .filter(|(_, l)| l.source == Source::Auto)
+            .filter(|(_, l)| l.source == LineTypeSource::Auto)
             .map(|(id, _)| *id)
             .collect();
         auto.into_iter().for_each(|id| drawing.type_by_slope(id));
         let up = drawing.letters.up;
         let n = projection.sight(up);
         let [a, b, c] = projection.angle_deg;
-        self.out.push(Reply::note(format!("axes at {a:.2}, {b:.2}, {c:.2} degrees")));
+        self.out.push(CommandReply::note(format!("axes at {a:.2}, {b:.2}, {c:.2} degrees")));
         let small = 1e-9 * n.norm();
         if n.to_array().iter().any(|x| x.abs() <= small) && self.active()?.drawing.section.is_none()
         {
-            self.out.push(Reply::warning(
+            self.out.push(CommandReply::warning(
                 "one family of planes is seen edge-on: depths are poorly determined",
             ));
         }
@@ -441,10 +448,10 @@ impl Session {
             let proposed = drawing.type_all();
             let text: Vec<String> = proposed.iter().map(|&l| drawing.line_text(l)).collect();
             let lines = drawing.lines.len();
-            self.out.push(Reply::note(format!("{lines} lines typed")));
+            self.out.push(CommandReply::note(format!("{lines} lines typed")));
             if !text.is_empty() {
                 let text = format!("proposed as oblique, please check: {}", text.join(", "));
-                self.out.push(Reply::warning(text));
+                self.out.push(CommandReply::warning(text));
             }
             return Ok(());
         }
@@ -461,7 +468,7 @@ impl Session {
         args.end()?;
         for id in lines {
             let line = require_line(object, id)?;
-            let typed = Line { free, source: Source::User, confidence: 1.0, ..line };
+            let typed = Line { free, source: LineTypeSource::User, confidence: 1.0, ..line };
             object.draw().lines.insert(id, typed);
         }
         Ok(())
@@ -519,7 +526,7 @@ pub(super) fn line_type(drawing: &Drawing, args: &mut Args) -> Result<Option<Fre
 }
 
 /// The point must exist.
-pub(super) fn require_point(object: &Object, p: PointId) -> Result<(), CommandError> {
+pub(super) fn require_point(object: &SketchObject, p: PointId) -> Result<(), CommandError> {
     if object.drawing.points.contains_key(&p) {
         return Ok(());
     }
@@ -532,7 +539,7 @@ pub(super) fn require_point(object: &Object, p: PointId) -> Result<(), CommandEr
 }
 
 /// The line must exist.
-pub(super) fn require_line(object: &Object, id: LineId) -> Result<Line, CommandError> {
+pub(super) fn require_line(object: &SketchObject, id: LineId) -> Result<Line, CommandError> {
     object.drawing.lines.get(&id).copied().ok_or_else(|| {
         let (code, text) = if object.drawing.lines.is_empty() {
             (102, format!("object {} has no lines", object.name))

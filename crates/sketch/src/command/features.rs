@@ -2,10 +2,10 @@
 
 use super::CommandError;
 use super::args::Args;
-use super::session::{Reply, Session};
-use crate::Object;
+use super::session::{CommandReply, SketchSession};
+use crate::SketchObject;
 use crate::dimension::expr::Expr;
-use crate::feature::{Feature, FeatureKind, Operand, Placement};
+use crate::feature::{Feature, FeatureKind, FeatureOperand, Placement};
 use crate::solid::combine::CombineError;
 use crate::solid::feature::{NoBody, body};
 use crate::solid::operation::Operation;
@@ -16,7 +16,7 @@ use moldloft_syntax::number::plain;
 /// More copies than this are refused.
 const MAX_COPIES: u32 = 400;
 
-impl Session {
+impl SketchSession {
     /// Combines two bodies. The result is made of both and computed again with every change of theirs.
     pub(super) fn combine(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
         let operation = match verb {
@@ -28,7 +28,7 @@ impl Session {
             [args.name("the name of an object")?, args.name("the name of a second object")?];
         let target = self.target(args, &names[0])?;
         args.end()?;
-        let mut parts: Vec<Object> = Vec::new();
+        let mut parts: Vec<SketchObject> = Vec::new();
         for name in &names {
             let object = self.known(name)?.clone();
             if object.drawing.section.is_some() {
@@ -73,7 +73,7 @@ impl Session {
     }
 
     /// Refuses an object without a body, with the reason.
-    pub(super) fn require_body(&mut self, object: &Object) -> Result<(), CommandError> {
+    pub(super) fn require_body(&mut self, object: &SketchObject) -> Result<(), CommandError> {
         if object.feature.is_none() {
             self.placed(object)?;
             if object.faces.is_empty() {
@@ -111,7 +111,7 @@ impl Session {
             solid.faces.len(),
             plain(solid.mass().volume)
         );
-        self.out.push(Reply::note(text));
+        self.out.push(CommandReply::note(text));
         self.insert(made);
         Ok(())
     }
@@ -155,7 +155,7 @@ impl Session {
         }
         self.require_body(&object)?;
         // Its numbers keep their names.
-        let operands = vec![Operand { object: object.into(), prefix: String::new() }];
+        let operands = vec![FeatureOperand { object: object.into(), prefix: String::new() }];
         let kind = FeatureKind::Revolve { line: [line.p, line.q], angle };
         self.make(Feature { kind, operands }, &target, |why| match why {
             NoBody::Axis => Some(CommandError::new(
@@ -204,7 +204,7 @@ impl Session {
             ));
         }
         self.require_body(&object)?;
-        let operands = vec![Operand { object: object.into(), prefix: String::new() }];
+        let operands = vec![FeatureOperand { object: object.into(), prefix: String::new() }];
         self.make(Feature { kind: FeatureKind::Pattern { step, count }, operands }, &target, |_| {
             None
         })
@@ -263,7 +263,7 @@ impl Session {
             ));
         }
         self.require_body(&object)?;
-        let operands = vec![Operand { object: object.into(), prefix: String::new() }];
+        let operands = vec![FeatureOperand { object: object.into(), prefix: String::new() }];
         self.make(Feature { kind: FeatureKind::Place(place), operands }, &target, |_| None)
     }
 }
@@ -274,7 +274,7 @@ fn place_text(p: Vec3) -> String {
 }
 
 /// The reason why an object has no body, with the place and the next step.
-pub fn no_body(object: &Object, why: &NoBody) -> CommandError {
+pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
     let name = &object.name;
     match why {
         NoBody::Unfinished => CommandError::new(
@@ -316,7 +316,7 @@ pub fn no_body(object: &Object, why: &NoBody) -> CommandError {
             "CHECK the dimensions",
         ),
         NoBody::Operand { name: inner, why } => {
-            let inner = no_body(&Object::new(inner, None), why);
+            let inner = no_body(&SketchObject::new(inner, None), why);
             CommandError::new(inner.code, format!("{name}: {}", inner.text), inner.next)
         }
         NoBody::NoValue(reads) => CommandError::text(

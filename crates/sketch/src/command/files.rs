@@ -2,20 +2,20 @@
 
 use super::CommandError;
 use super::args::Args;
-use super::session::{Reply, Session};
+use super::session::{CommandReply, SketchSession};
 use super::words::Kind;
 use crate::format::json::Json;
 use crate::format::json_format::{ObjectData, from_json, object_data, to_json};
 pub(super) use crate::format::script::measure_text;
 use crate::format::script::script;
-use crate::{Dimension, Measure, Object, Role, Variable, export};
+use crate::{Dimension, DimensionRole, MeasuredQuantity, SketchObject, Variable, export};
 use moldloft_syntax::number::plain;
 use std::sync::Arc;
 
-impl Session {
+impl SketchSession {
     /// All objects with what follows from them.
     pub fn objects(&mut self) -> Vec<ObjectData> {
-        let objects: Vec<Arc<Object>> = self.state.objects.values().map(Arc::clone).collect();
+        let objects: Vec<Arc<SketchObject>> = self.state.objects.values().map(Arc::clone).collect();
         objects.iter().map(|o| self.data(o)).collect()
     }
 
@@ -24,7 +24,7 @@ impl Session {
         Json::map([("objects", Json::list(self.objects().iter().map(ObjectData::to_json)))])
     }
 
-    fn data(&mut self, object: &Arc<Object>) -> ObjectData {
+    fn data(&mut self, object: &Arc<SketchObject>) -> ObjectData {
         let worked = self.worked(object);
         object_data(object, &worked.view.planes, &worked.layout, worked.solid().cloned())
     }
@@ -67,7 +67,7 @@ impl Session {
                 "SAVE object AS name.skt",
             ));
         }
-        let objects: Vec<&Object> = names.iter().filter_map(|n| self.object(n)).collect();
+        let objects: Vec<&SketchObject> = names.iter().filter_map(|n| self.object(n)).collect();
         let text = if file.to_ascii_lowercase().ends_with(".json") {
             Json::list(objects.iter().map(|o| to_json(o))).to_string() + "\n"
         } else {
@@ -121,7 +121,7 @@ impl Session {
         args.end()?;
         let text = self.read(&file)?;
         if !file.to_ascii_lowercase().ends_with(".dxf") {
-            let words = [crate::command::words::Token { kind: Kind::Text, text: file }];
+            let words = [crate::command::words::CommandToken { kind: Kind::Text, text: file }];
             return self.input(&mut Args::new(&words, ""), true);
         }
         let strokes = crate::format::dxf::dxf_lines(&text).map_err(|why| {
@@ -178,7 +178,7 @@ impl Session {
         }
         let drawing = self.active_mut()?.draw();
         let (points, lines) = crate::format::dxf::draw(drawing, strokes, 1e-6 * size);
-        self.out.push(Reply::note(format!("{points} points and {lines} lines")));
+        self.out.push(CommandReply::note(format!("{points} points and {lines} lines")));
         Ok(())
     }
 
@@ -197,19 +197,19 @@ impl Session {
         let measure = if let Some(axis) = args.axis() {
             let p = point(args)?;
             args.take_short("TO");
-            Measure::Along { axis, p, q: point(args)? }
+            MeasuredQuantity::Along { axis, p, q: point(args)? }
         } else if args.take("POINT") {
             let p = point(args)?;
             let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
-            Measure::Datum { axis, point: p }
+            MeasuredQuantity::Datum { axis, point: p }
         } else if args.take("LENGTH") {
-            Measure::Length(line(args)?)
+            MeasuredQuantity::Length(line(args)?)
         } else if args.take("SLOPE") {
-            Measure::Slope(line(args)?)
+            MeasuredQuantity::Slope(line(args)?)
         } else if args.take("ANGLE") {
-            Measure::Angle(line(args)?, line(args)?)
+            MeasuredQuantity::Angle(line(args)?, line(args)?)
         } else if args.take("EQUAL") {
-            Measure::Equal(line(args)?, line(args)?)
+            MeasuredQuantity::Equal(line(args)?, line(args)?)
         } else {
             return Err(args.wants("an axis, POINT, LENGTH, SLOPE, ANGLE or EQUAL"));
         };
@@ -218,7 +218,8 @@ impl Session {
         } else {
             Some(args.value(object.units.as_deref())?)
         };
-        let role = if args.take_short("ONLY") { Role::Reference } else { Role::Driving };
+        let role =
+            if args.take_short("ONLY") { DimensionRole::Reference } else { DimensionRole::Driving };
         let range = args.range()?;
         args.end()?;
         self.active_mut()?.add_dimension(Dimension { name, measure, value, role, range });
@@ -281,17 +282,17 @@ impl Session {
             "JSON" => (data.to_json().to_string() + "\n").into_bytes(),
             "SKETCH83" => {
                 if object.name.chars().count() > 6 {
-                    self.out.push(Reply::warning(format!(
+                    self.out.push(CommandReply::warning(format!(
                         "the name {} is cut to 6 characters",
                         object.name
                     )));
                 }
-                let mut short = Object::clone(&object);
+                let mut short = SketchObject::clone(&object);
                 short.name = object.name.chars().take(6).collect();
                 script(&short).into_bytes()
             }
             "SVG" => {
-                let shown: Vec<Arc<Object>> =
+                let shown: Vec<Arc<SketchObject>> =
                     self.state.objects.values().filter(|o| o.display).map(Arc::clone).collect();
                 if shown.is_empty() {
                     return Err(CommandError::new(
@@ -301,7 +302,7 @@ impl Session {
                     ));
                 }
                 let all: Vec<ObjectData> = shown.iter().map(|o| self.data(o)).collect();
-                let pairs: Vec<(&Object, &ObjectData)> =
+                let pairs: Vec<(&SketchObject, &ObjectData)> =
                     shown.iter().map(|o| &**o).zip(&all).collect();
                 crate::format::svg::svg(&pairs, &self.state.picture, self.page()).into_bytes()
             }

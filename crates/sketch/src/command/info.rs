@@ -3,19 +3,19 @@
 use super::args::Args;
 use super::dims::{dimension_fault, rounded};
 use super::draw::require_point;
-use super::session::{Reply, Session, View};
+use super::session::{CommandReply, DrawingCache, SketchSession};
 use super::{CommandError, words::Kind};
 use crate::{
-    Axis, DOUBTFUL, Layout, Measure, Object, Planes, PointId, Projection, Role, TypeFault, chain,
-    chain_text,
+    Axis, DOUBTFUL, DimensionRole, Layout, MeasuredQuantity, Planes, PointId, Projection,
+    SketchObject, TypeFault, chain, chain_text,
 };
 use moldloft_syntax::number::plain;
 
-impl Session {
+impl SketchSession {
     /// The first fault of types that stops a conversion: 300, 400, 401, 402.
     pub(super) fn first_type_fault(
         &self,
-        object: &Object,
+        object: &SketchObject,
         planes: &Planes,
     ) -> Option<CommandError> {
         let drawing = &object.drawing;
@@ -41,7 +41,7 @@ impl Session {
             .map(|f| self.type_fault(object, f))
     }
 
-    fn type_fault(&self, object: &Object, fault: &TypeFault) -> CommandError {
+    fn type_fault(&self, object: &SketchObject, fault: &TypeFault) -> CommandError {
         let drawing = &object.drawing;
         let text = |path: &[crate::Reason]| {
             path.iter().map(|r| r.text(drawing)).collect::<Vec<_>>().join(", ")
@@ -106,8 +106,8 @@ impl Session {
     /// Reports what is not connected to the reference, with suggestions.
     pub(super) fn loose_lines(
         &self,
-        object: &Object,
-        view: &View,
+        object: &SketchObject,
+        view: &DrawingCache,
         layout: &Layout<f64>,
     ) -> Vec<String> {
         (layout.loose.iter().zip(suggestions(object, view, layout)))
@@ -143,7 +143,7 @@ impl Session {
         let (view, layout) = self.laid_out(&object);
         for fault in view.planes.faults(&object.drawing) {
             let fault = self.type_fault(&object, &fault);
-            let mut reply = Reply::warning(fault.text);
+            let mut reply = CommandReply::warning(fault.text);
             (reply.code, reply.next) = (Some(fault.code), Some(fault.next));
             self.out.push(reply);
         }
@@ -154,20 +154,20 @@ impl Session {
                     object.drawing.line_text(*id),
                     100.0 * line.confidence
                 );
-                self.out.push(Reply::warning(text));
+                self.out.push(CommandReply::warning(text));
             }
         }
         for (kept, gone, distance) in object.drawing.gaps(None) {
             let text = format!("{gone} is {} from {kept} on the page", plain(rounded(distance)));
-            let mut reply = Reply::warning(text);
+            let mut reply = CommandReply::warning(text);
             reply.next = Some(format!("WELD {kept} {gone} if they are one point"));
             self.out.push(reply);
         }
         for fault in &layout.faults {
-            self.out.push(Reply::warning(dimension_fault(fault).text));
+            self.out.push(CommandReply::warning(dimension_fault(fault).text));
         }
         for text in self.loose_lines(&object, &view, &layout) {
-            self.out.push(Reply::warning(text));
+            self.out.push(CommandReply::warning(text));
         }
         self.report_validity()?;
         self.report_counts()
@@ -193,7 +193,7 @@ impl Session {
                             "line {id}, {}: its planes passed each other",
                             object.drawing.line_text(*id)
                         );
-                        self.out.push(Reply::warning(text));
+                        self.out.push(CommandReply::warning(text));
                     }
                 }
             }
@@ -203,7 +203,7 @@ impl Session {
             && finished
         {
             let fault = super::features::no_body(&object, why);
-            let mut reply = Reply::warning(fault.text);
+            let mut reply = CommandReply::warning(fault.text);
             (reply.code, reply.next) = (Some(fault.code).filter(|c| *c > 0), Some(fault.next));
             self.out.push(reply);
         }
@@ -214,7 +214,7 @@ impl Session {
                 let off = crate::solid::faces::flatness(&at);
                 let size = at.iter().map(|p| p.distance(at[0])).fold(0.0, f64::max);
                 if off > 1e-6 * size {
-                    let mut reply = Reply::warning(format!(
+                    let mut reply = CommandReply::warning(format!(
                         "face {id} is no longer plane (off by {}); it is measured and written as triangles",
                         plain(rounded(off))
                     ));
@@ -259,7 +259,7 @@ impl Session {
                     None => format!("{axis} from {p} to {q} is not determined"),
                 },
             };
-            self.out.push(Reply::note(text));
+            self.out.push(CommandReply::note(text));
             return Ok(());
         }
         if args.at_number() {
@@ -278,7 +278,7 @@ impl Session {
                     (Some(x), None) => format!("{axis} = {}", plain(x)),
                     (None, _) => format!("{axis} is free"),
                 };
-                self.out.push(Reply::note(text));
+                self.out.push(CommandReply::note(text));
             }
             return Ok(());
         }
@@ -291,7 +291,7 @@ impl Session {
             ));
         };
         let text = match (d.role, &d.measure) {
-            (Role::Reference, Measure::Along { axis, p, q }) => {
+            (DimensionRole::Reference, MeasuredQuantity::Along { axis, p, q }) => {
                 match chain(&object, planes, *axis, *p, *q) {
                     Some((way, names)) => format!(
                         "{name} only measures: {} determine it via {}",
@@ -301,8 +301,8 @@ impl Session {
                     None => format!("{name} only measures, and nothing determines it now"),
                 }
             }
-            (Role::Reference, _) => format!("{name} only measures"),
-            (Role::Driving, Measure::Along { axis, q, .. }) => {
+            (DimensionRole::Reference, _) => format!("{name} only measures"),
+            (DimensionRole::Driving, MeasuredQuantity::Along { axis, q, .. }) => {
                 let mut without = object.clone();
                 without.dimensions.shift_remove(&name.to_ascii_lowercase());
                 let layout = self.laid_out(&without).1;
@@ -318,7 +318,7 @@ impl Session {
             }
             _ => format!("{name} drives the shape"),
         };
-        self.out.push(Reply::note(text));
+        self.out.push(CommandReply::note(text));
         Ok(())
     }
 
@@ -334,19 +334,19 @@ impl Session {
             ));
         };
         let n = e.depths.len();
-        self.out.push(Reply::note(format!(
+        self.out.push(CommandReply::note(format!(
             "the picture leaves {n} depth{} open",
             if n == 1 { "" } else { "s" }
         )));
         for depth in &e.depths {
             let points: Vec<String> = depth.points.iter().map(ToString::to_string).collect();
-            self.out.push(Reply::note(format!(
+            self.out.push(CommandReply::note(format!(
                 "points {} can slide along the line of sight",
                 points.join(",")
             )));
         }
         for text in self.loose_lines(&object, &view, &layout) {
-            self.out.push(Reply::note(text));
+            self.out.push(CommandReply::note(text));
         }
         Ok(())
     }
@@ -369,7 +369,7 @@ impl Session {
             rows.sort_by(|a, b| {
                 a.0.unwrap_or(f64::INFINITY).total_cmp(&b.0.unwrap_or(f64::INFINITY))
             });
-            self.out.extend(rows.into_iter().map(|r| Reply::note(r.1)));
+            self.out.extend(rows.into_iter().map(|r| CommandReply::note(r.1)));
         }
         Ok(())
     }
@@ -383,12 +383,15 @@ impl Session {
         }
         if what == Some("OBJECTS") || (what.is_none() && args.len() == 0) {
             args.end()?;
-            let rows: Vec<Reply> = (self.state.objects.iter())
+            let rows: Vec<CommandReply> = (self.state.objects.iter())
                 .map(|(key, o)| {
                     let mark =
                         if self.state.active.as_ref() == Some(key) { " (active)" } else { "" };
                     let (p, l, f) = (o.drawing.points.len(), o.drawing.lines.len(), o.faces.len());
-                    Reply::note(format!("{}{mark}: {p} points, {l} lines, {f} faces", o.name))
+                    CommandReply::note(format!(
+                        "{}{mark}: {p} points, {l} lines, {f} faces",
+                        o.name
+                    ))
                 })
                 .collect();
             self.out.extend(rows);
@@ -445,14 +448,14 @@ impl Session {
             for (key, d) in &object.dimensions {
                 let value = d.value.as_ref().map_or("unset".to_owned(), |v| v.text().to_owned());
                 let number = match d.role {
-                    Role::Driving => layout.values.get(key).copied(),
-                    Role::Reference => layout.measured(&object, &view.planes, &d.measure),
+                    DimensionRole::Driving => layout.values.get(key).copied(),
+                    DimensionRole::Reference => layout.measured(&object, &view.planes, &d.measure),
                 };
                 let number = number.map_or(String::new(), |x| format!(" = {}", plain(x)));
                 let text = super::files::measure_text(&d.measure);
                 rows.push(match d.role {
-                    Role::Driving => format!("{} {text}: {value}{number}", d.name),
-                    Role::Reference => format!("({} {text}{number})", d.name),
+                    DimensionRole::Driving => format!("{} {text}: {value}{number}", d.name),
+                    DimensionRole::Reference => format!("({} {text}{number})", d.name),
                 });
             }
         }
@@ -466,7 +469,7 @@ impl Session {
             let what = what.unwrap_or("PARTS").to_lowercase();
             rows.push(format!("{} has no {what}", object.name));
         }
-        self.out.extend(rows.into_iter().map(Reply::note));
+        self.out.extend(rows.into_iter().map(CommandReply::note));
         if what == Some("PLANES") {
             return self.extensions(&mut Args::new(&[], ""));
         }
@@ -505,7 +508,7 @@ impl Session {
             ),
         ];
         let rows = rows.into_iter().filter(|r| what.is_none_or(|w| w == r.0));
-        self.out.extend(rows.map(|r| Reply::note(r.1)));
+        self.out.extend(rows.map(|r| CommandReply::note(r.1)));
         Ok(())
     }
 
@@ -539,7 +542,7 @@ impl Session {
             };
             let text: Vec<String> = face.outer.iter().map(ToString::to_string).collect();
             let text = format!("face {id} runs {}", text.join(" "));
-            self.out.push(Reply::note(text));
+            self.out.push(CommandReply::note(text));
             self.state.picture.face = Some(id);
             return Ok(());
         }
@@ -658,8 +661,8 @@ pub struct Suggestion {
 
 /// For each part that is not connected to the reference, the dimension to the nearest known plane.
 pub(super) fn suggestions(
-    object: &Object,
-    view: &View,
+    object: &SketchObject,
+    view: &DrawingCache,
     layout: &Layout<f64>,
 ) -> Vec<Option<Suggestion>> {
     let planes = &view.planes;

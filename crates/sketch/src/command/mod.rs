@@ -20,4 +20,4 @@ pub use error::CommandError;
 pub use features::no_body;
 pub use info::Suggestion;
 pub(crate) use session::Picture;
-pub use session::{Files, NoFiles, OutFile, Reply, Session};
+pub use session::{CommandReply, Files, NullFiles, OutFile, SketchSession};

@@ -2,10 +2,10 @@
 
 use super::CommandError;
 use super::args::Args;
-use super::session::{Reply, Session};
+use super::session::{CommandReply, SketchSession};
 use std::sync::Arc;
 
-impl Session {
+impl SketchSession {
     pub(super) fn using(&mut self, args: &mut Args, required: bool) -> Result<(), CommandError> {
         if args.len() == 0 && !required {
             return self.active().map(|_| ());
@@ -102,7 +102,7 @@ impl Session {
         self.take_object(args)?;
         args.end()?;
         let text = crate::format::json_format::to_json(self.active()?).to_string();
-        self.out.push(Reply::note(text));
+        self.out.push(CommandReply::note(text));
         Ok(())
     }
 }

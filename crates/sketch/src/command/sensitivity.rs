@@ -1,10 +1,10 @@
 //! Derivatives and sweeps of the objects of a session.
 
-use super::Session;
+use super::SketchSession;
 use crate::{DimensionFault, Estimate, Gradient, Planes, Swept, gradient, solid, solve};
 use std::collections::BTreeMap;
 
-impl Session {
+impl SketchSession {
     /// The body at each of the values of a dimension or variable; the session stays as it is.
     ///
     /// # Errors

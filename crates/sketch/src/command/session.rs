@@ -5,8 +5,8 @@ use super::question::Question;
 use super::words::{self, Command};
 use super::{CommandError, verbs};
 use crate::solid::feature::{NoBody, body};
-use crate::solid::{Solid, solid};
-use crate::{Estimate, Layout, Object, Planes, PointId, solve};
+use crate::solid::{SketchSolid, solid};
+use crate::{Estimate, Layout, Planes, PointId, SketchObject, solve};
 use indexmap::IndexMap;
 use moldloft_diag::Severity;
 use moldloft_num::Real;
@@ -24,9 +24,9 @@ pub trait Files: Send + Sync {
 
 /// A world without files.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct NoFiles;
+pub struct NullFiles;
 
-impl Files for NoFiles {
+impl Files for NullFiles {
     fn read(&self, _: &str) -> Result<String, String> {
         Err("no files can be read here".to_owned())
     }
@@ -43,7 +43,7 @@ pub struct OutFile {
 
 /// An answer to a command.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reply {
+pub struct CommandReply {
     /// Error, warning or note.
     pub severity: Severity,
     /// The code of 1983, for errors that have one.
@@ -56,21 +56,30 @@ pub struct Reply {
     pub file: Option<OutFile>,
 }
 
-impl Reply {
+impl CommandReply {
     /// A plain answer.
-    pub fn note(text: impl Into<String>) -> Reply {
-        Reply { severity: Severity::Note, code: None, text: text.into(), next: None, file: None }
+    pub fn note(text: impl Into<String>) -> CommandReply {
+        CommandReply {
+            severity: Severity::Note,
+            code: None,
+            text: text.into(),
+            next: None,
+            file: None,
+        }
     }
 
     /// A warning.
-    pub fn warning(text: impl Into<String>) -> Reply {
-        Reply { severity: Severity::Warning, ..Reply::note(text) }
+    pub fn warning(text: impl Into<String>) -> CommandReply {
+        CommandReply { severity: Severity::Warning, ..CommandReply::note(text) }
     }
 
     /// A file to write, with a line about it.
-    pub fn output(name: &str, bytes: Vec<u8>) -> Reply {
+    pub fn output(name: &str, bytes: Vec<u8>) -> CommandReply {
         let text = format!("{name}: {} bytes", bytes.len());
-        Reply { file: Some(OutFile { name: name.to_owned(), bytes }), ..Reply::note(text) }
+        CommandReply {
+            file: Some(OutFile { name: name.to_owned(), bytes }),
+            ..CommandReply::note(text)
+        }
     }
 
     /// Whether the command was refused.
@@ -79,11 +88,11 @@ impl Reply {
     }
 }
 
-impl From<CommandError> for Reply {
-    fn from(f: CommandError) -> Reply {
+impl From<CommandError> for CommandReply {
+    fn from(f: CommandError) -> CommandReply {
         let code = (f.code > 0).then_some(f.code);
         let severity = Severity::Error;
-        Reply { severity, code, text: f.text, next: Some(f.next), file: None }
+        CommandReply { severity, code, text: f.text, next: Some(f.next), file: None }
     }
 }
 
@@ -103,9 +112,9 @@ pub(crate) struct Picture {
 
 /// Everything that commands change.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct State {
+pub(crate) struct SessionState {
     /// Objects by folded name.
-    pub objects: IndexMap<String, Arc<Object>>,
+    pub objects: IndexMap<String, Arc<SketchObject>>,
     pub active: Option<String>,
     pub picture: Picture,
     /// Objects outside of the feature that is being read, with the active one and the feature's name.
@@ -115,17 +124,17 @@ pub(crate) struct State {
 }
 
 /// The objects around a feature: all, the active one, and the name of the feature.
-pub(crate) type Outside = (IndexMap<String, Arc<Object>>, Option<String>, String);
+pub(crate) type Outside = (IndexMap<String, Arc<SketchObject>>, Option<String>, String);
 
 /// What follows from a drawing, kept while it is the same.
-pub(crate) struct View {
+pub(crate) struct DrawingCache {
     drawing: Arc<crate::Drawing>,
     reference: Option<PointId>,
     pub planes: Arc<Planes>,
     estimate: std::sync::OnceLock<Option<Estimate>>,
 }
 
-impl View {
+impl DrawingCache {
     pub fn estimate(&self) -> Option<&Estimate> {
         let compute = || Estimate::of(&self.drawing, &self.planes, self.reference?);
         self.estimate.get_or_init(compute).as_ref()
@@ -134,21 +143,21 @@ impl View {
 
 /// An object with what follows from it, kept while it is the same.
 pub(crate) struct Worked {
-    pub object: Arc<Object>,
-    pub view: Arc<View>,
+    pub object: Arc<SketchObject>,
+    pub view: Arc<DrawingCache>,
     pub layout: Layout<f64>,
-    body: std::sync::OnceLock<Result<Solid<f64>, NoBody>>,
+    body: std::sync::OnceLock<Result<SketchSolid<f64>, NoBody>>,
 }
 
 impl Worked {
     /// The valid body, or why there is none.
-    pub fn body(&self) -> Result<&Solid<f64>, &NoBody> {
+    pub fn body(&self) -> Result<&SketchSolid<f64>, &NoBody> {
         let make = || body(&self.object, &self.view.planes, &self.layout);
         self.body.get_or_init(make).as_ref()
     }
 
     /// The body, once there are faces and all dimensions and it is valid.
-    pub fn solid(&self) -> Option<&Solid<f64>> {
+    pub fn solid(&self) -> Option<&SketchSolid<f64>> {
         self.body().ok()
     }
 }
@@ -164,18 +173,18 @@ impl Worked {
 /// }
 /// assert_eq!(s.objects()[0].area, Some(1200.0));
 /// ```
-pub struct Session {
-    pub(crate) state: State,
-    undo: Vec<State>,
+pub struct SketchSession {
+    pub(crate) state: SessionState,
+    undo: Vec<SessionState>,
     /// How many states were too old to be kept.
     forgotten: usize,
-    redo: Vec<State>,
+    redo: Vec<SessionState>,
     history: Vec<String>,
     journal: Vec<String>,
     files: Box<dyn Files>,
     pub(crate) question: Option<Question>,
     begun: String,
-    views: Vec<Arc<View>>,
+    views: Vec<Arc<DrawingCache>>,
     worked: Vec<Arc<Worked>>,
     depth: usize,
     over: bool,
@@ -184,7 +193,7 @@ pub struct Session {
     /// What the journal takes in place of the command that is running.
     pub(crate) recorded: Option<String>,
     /// Replies of the command that is running.
-    pub(crate) out: Vec<Reply>,
+    pub(crate) out: Vec<CommandReply>,
 }
 
 /// Commands that only look: an open question stays open.
@@ -213,20 +222,20 @@ const MAX_DEPTH: usize = 8;
 /// More points than this in one object are refused.
 pub(crate) const MAX_POINTS: usize = 20_000;
 
-impl Default for Session {
+impl Default for SketchSession {
     fn default() -> Self {
-        Session::new()
+        SketchSession::new()
     }
 }
 
-impl Session {
+impl SketchSession {
     /// A session without files to read.
-    pub fn new() -> Session {
-        Session::with_files(Box::new(NoFiles))
+    pub fn new() -> SketchSession {
+        SketchSession::with_files(Box::new(NullFiles))
     }
 
     /// A session that reads files through `files`.
-    pub fn with_files(files: Box<dyn Files>) -> Session {
+    pub fn with_files(files: Box<dyn Files>) -> SketchSession {
         let picture = Picture {
             labels: true,
             planes: false,
@@ -235,8 +244,8 @@ impl Session {
             face: None,
             window: None,
         };
-        Session {
-            state: State {
+        SketchSession {
+            state: SessionState {
                 objects: IndexMap::new(),
                 active: None,
                 picture,
@@ -263,7 +272,7 @@ impl Session {
 
     /// Runs a line: one or more commands, or a part of one that ends in `&`. A refused command
     /// changes nothing; those after it in the line are run.
-    pub fn run_line(&mut self, line: &str) -> Vec<Reply> {
+    pub fn run_line(&mut self, line: &str) -> Vec<CommandReply> {
         if line.contains('\n') {
             return self.run_text(line);
         }
@@ -293,18 +302,18 @@ impl Session {
     }
 
     /// Runs a text line by line.
-    pub fn run_text(&mut self, text: &str) -> Vec<Reply> {
+    pub fn run_text(&mut self, text: &str) -> Vec<CommandReply> {
         text.lines().flat_map(|line| self.run_line(line)).collect()
     }
 
-    fn run_command(&mut self, command: &Command) -> Vec<Reply> {
+    fn run_command(&mut self, command: &Command) -> Vec<CommandReply> {
         let before = self.state.clone();
         let marks = (self.undo.len() + self.forgotten, self.journal.len());
         let outer = std::mem::take(&mut self.out);
         let found = verbs::find(&command.tokens[0].text);
         let verb = found.as_ref().map_or("", |f| f.0);
         let result = found.and_then(|(verb, note)| {
-            self.out.extend(note.map(Reply::note));
+            self.out.extend(note.map(CommandReply::note));
             self.dispatch(verb, command)
         });
         let mut replies = std::mem::replace(&mut self.out, outer);
@@ -343,8 +352,8 @@ impl Session {
 
     /// Forgets the oldest states: beyond a number of steps, or of parts that they hold.
     fn forget(&mut self) {
-        let parts = |s: &State| -> usize {
-            let of = |o: &Arc<Object>| {
+        let parts = |s: &SessionState| -> usize {
+            let of = |o: &Arc<SketchObject>| {
                 o.drawing.points.len() + o.drawing.lines.len() + o.faces.len() + 1
             };
             s.objects.values().map(of).sum()
@@ -431,7 +440,7 @@ impl Session {
             "UNDO" | "REDO" => self.step(args, verb == "UNDO"),
             "HISTORY" => {
                 args.end()?;
-                self.out.push(Reply::note(self.history.join("\n")));
+                self.out.push(CommandReply::note(self.history.join("\n")));
                 Ok(())
             }
             "HELP" => self.help(args),
@@ -488,7 +497,7 @@ impl Session {
     }
 
     /// The object of a name.
-    pub fn object(&self, name: &str) -> Option<&Object> {
+    pub fn object(&self, name: &str) -> Option<&SketchObject> {
         self.state.objects.get(&name.to_lowercase()).map(|o| &**o)
     }
 
@@ -509,18 +518,18 @@ impl Session {
     }
 
     /// The body of an object, once it has faces and all dimensions.
-    pub fn solid(&mut self, name: &str) -> Option<Solid<f64>> {
+    pub fn solid(&mut self, name: &str) -> Option<SketchSolid<f64>> {
         let object = Arc::clone(self.state.objects.get(&name.to_lowercase())?);
         self.worked(&object).solid().cloned()
     }
 
     /// The active object.
-    pub fn active_object(&self) -> Option<&Object> {
+    pub fn active_object(&self) -> Option<&SketchObject> {
         self.object(self.state.active.as_deref()?)
     }
 
     /// Adds an object, or takes its namesake's place; it becomes active.
-    pub fn insert(&mut self, object: Object) {
+    pub fn insert(&mut self, object: SketchObject) {
         let key = object.name.to_lowercase();
         self.state.objects.insert(key.clone(), Arc::new(object));
         self.state.active = Some(key);
@@ -529,7 +538,7 @@ impl Session {
     /// A file that the host writes.
     pub(crate) fn write(&mut self, name: &str, bytes: Vec<u8>) {
         self.written.insert(name.to_owned(), bytes.clone());
-        self.out.push(Reply::output(name, bytes));
+        self.out.push(CommandReply::output(name, bytes));
     }
 
     pub(crate) fn read(&self, name: &str) -> Result<String, CommandError> {
@@ -542,7 +551,7 @@ impl Session {
     }
 
     /// The object of a name, or 110.
-    pub(crate) fn known(&self, name: &str) -> Result<&Object, CommandError> {
+    pub(crate) fn known(&self, name: &str) -> Result<&SketchObject, CommandError> {
         self.object(name).ok_or_else(|| {
             let names = self.state.objects.values().map(|o| o.name.as_str());
             let next = match moldloft_diag::nearest(name, names) {
@@ -554,7 +563,7 @@ impl Session {
     }
 
     /// The active object, to change it.
-    pub(crate) fn active_mut(&mut self) -> Result<&mut Object, CommandError> {
+    pub(crate) fn active_mut(&mut self) -> Result<&mut SketchObject, CommandError> {
         let none = || {
             CommandError::new(
                 112,
@@ -567,7 +576,7 @@ impl Session {
     }
 
     /// The active object.
-    pub(crate) fn active(&self) -> Result<&Object, CommandError> {
+    pub(crate) fn active(&self) -> Result<&SketchObject, CommandError> {
         self.active_object().ok_or_else(|| {
             CommandError::new(
                 112,
@@ -578,14 +587,14 @@ impl Session {
     }
 
     /// The active object, shared.
-    pub(crate) fn active_arc(&self) -> Result<Arc<Object>, CommandError> {
+    pub(crate) fn active_arc(&self) -> Result<Arc<SketchObject>, CommandError> {
         self.active()?;
         let key = self.state.active.as_deref().unwrap_or_default();
         Ok(Arc::clone(&self.state.objects[key]))
     }
 
     /// Puts another state of the active object in its place.
-    pub(crate) fn replace_active(&mut self, object: Arc<Object>) {
+    pub(crate) fn replace_active(&mut self, object: Arc<SketchObject>) {
         if let Some(key) = self.state.active.clone() {
             self.state.objects.insert(key, object);
         }
@@ -604,14 +613,15 @@ impl Session {
     }
 
     /// What follows from the drawing of an object.
-    pub(crate) fn view(&mut self, object: &Object) -> Arc<View> {
+    pub(crate) fn view(&mut self, object: &SketchObject) -> Arc<DrawingCache> {
         let reference = object.reference().map(|r| r.point);
-        let same =
-            |v: &&Arc<View>| Arc::ptr_eq(&v.drawing, &object.drawing) && v.reference == reference;
+        let same = |v: &&Arc<DrawingCache>| {
+            Arc::ptr_eq(&v.drawing, &object.drawing) && v.reference == reference
+        };
         if let Some(view) = self.views.iter().find(same) {
             return Arc::clone(view);
         }
-        let view = Arc::new(View {
+        let view = Arc::new(DrawingCache {
             drawing: Arc::clone(&object.drawing),
             reference,
             planes: Arc::new(Planes::of(&object.drawing)),
@@ -625,7 +635,7 @@ impl Session {
     }
 
     /// An object with its layout and body, from memory when it is the very same.
-    pub(crate) fn worked(&mut self, object: &Arc<Object>) -> Arc<Worked> {
+    pub(crate) fn worked(&mut self, object: &Arc<SketchObject>) -> Arc<Worked> {
         if let Some(known) = self.worked.iter().find(|w| Arc::ptr_eq(&w.object, object)) {
             return Arc::clone(known);
         }
@@ -640,13 +650,13 @@ impl Session {
     }
 
     /// Planes and layout of an object.
-    pub(crate) fn laid_out(&mut self, object: &Object) -> (Arc<View>, Layout<f64>) {
+    pub(crate) fn laid_out(&mut self, object: &SketchObject) -> (Arc<DrawingCache>, Layout<f64>) {
         let view = self.view(object);
         let layout = lay_out(object, &view, &BTreeMap::new());
         (view, layout)
     }
 
-    pub(crate) fn solid_of(&mut self, object: &Object) -> Option<Solid<f64>> {
+    pub(crate) fn solid_of(&mut self, object: &SketchObject) -> Option<SketchSolid<f64>> {
         let (view, layout) = self.laid_out(object);
         solid(object, &view.planes, &layout)
     }
@@ -670,7 +680,7 @@ impl Session {
             return Err(CommandError::text(what, "HISTORY lists the commands"));
         }
         let word = if back { "undone" } else { "done again" };
-        self.out.push(Reply::note(format!("{word}: {done}")));
+        self.out.push(CommandReply::note(format!("{word}: {done}")));
         Ok(())
     }
 
@@ -695,7 +705,7 @@ impl Session {
                 row.map_or(String::new(), |v| format!("{}\n    {}", v.forms.join("\n"), v.does))
             }
         };
-        self.out.push(Reply::note(text));
+        self.out.push(CommandReply::note(text));
         Ok(())
     }
 
@@ -726,15 +736,15 @@ impl Session {
 
 /// Computes the layout of an object with some values replaced.
 pub(crate) fn lay_out<T: Real>(
-    object: &Object,
-    view: &View,
+    object: &SketchObject,
+    view: &DrawingCache,
     overrides: &BTreeMap<String, T>,
 ) -> Layout<T> {
     solve(object, &view.planes, overrides, &|| view.estimate().cloned())
 }
 
 /// Whether nothing was changed: objects are shared until they are.
-fn same(a: &State, b: &State) -> bool {
+fn same(a: &SessionState, b: &SessionState) -> bool {
     a.active == b.active
         && a.sketch83 == b.sketch83
         && a.picture == b.picture

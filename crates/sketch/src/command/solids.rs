@@ -5,20 +5,20 @@ use super::args::Args;
 use super::draw::require_point;
 use super::info::{Suggestion, suggestions};
 use super::question::Question;
-use super::session::{MAX_POINTS, Reply, Session};
+use super::session::{CommandReply, MAX_POINTS, SketchSession};
 use crate::solid::faces::{Fit, Fitted, Polygon, fit, fit_plane};
 use crate::solid::merge::{self, Placed};
-use crate::{Axis, Expr, Face, FaceId, Object, PointId};
+use crate::{Axis, Expr, Face, FaceId, PointId, SketchObject};
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-impl Session {
+impl SketchSession {
     /// Where the points of a fully dimensioned object are, or what is missing.
     pub(super) fn placed(
         &mut self,
-        object: &Object,
+        object: &SketchObject,
     ) -> Result<BTreeMap<PointId, Vec3>, CommandError> {
         let (view, layout) = self.laid_out(object);
         if object.drawing.points.is_empty() {
@@ -46,7 +46,7 @@ impl Session {
         }
     }
 
-    fn wireframe(&mut self, object: &Object) -> Result<(Vec<PointId>, Fitted), CommandError> {
+    fn wireframe(&mut self, object: &SketchObject) -> Result<(Vec<PointId>, Fitted), CommandError> {
         let at = self.placed(object)?;
         let ids: Vec<PointId> = at.keys().copied().collect();
         let positions: Vec<Vec3> = at.values().copied().collect();
@@ -122,7 +122,7 @@ impl Session {
             ));
         }
         if !fitted.dangling.is_empty() {
-            self.out.push(Reply::warning(format!(
+            self.out.push(CommandReply::warning(format!(
                 "lines with a loose end are in no face: {}",
                 pairs(&fitted.dangling)
             )));
@@ -163,7 +163,7 @@ impl Session {
                 fit.faces.len(),
                 plain(fit.volume)
             );
-            self.out.push(Reply::note(text));
+            self.out.push(CommandReply::note(text));
             let pairs = |list: &[[usize; 2]]| {
                 let all: Vec<String> = list
                     .iter()
@@ -175,19 +175,19 @@ impl Session {
             for inner in &fit.internal {
                 let text: Vec<String> =
                     inner.iter().filter_map(|k| ids.get(*k)).map(ToString::to_string).collect();
-                self.out.push(Reply::note(format!(
+                self.out.push(CommandReply::note(format!(
                     "internal polygon {} is not a face",
                     text.join(" ")
                 )));
             }
             if !fit.branching.is_empty() {
-                self.out.push(Reply::warning(format!(
+                self.out.push(CommandReply::warning(format!(
                     "more than two faces meet at {}",
                     pairs(&fit.branching)
                 )));
             }
             if !fit.scribed.is_empty() {
-                self.out.push(Reply::note(format!(
+                self.out.push(CommandReply::note(format!(
                     "lines between faces of one plane: {}; CLEAN removes them",
                     pairs(&fit.scribed)
                 )));
@@ -196,7 +196,7 @@ impl Session {
         if fitted.fits.len() > 1 {
             let volumes: Vec<String> = fitted.fits.iter().map(|f| plain(f.volume)).collect();
             let more = if fitted.complete { "" } else { " and more" };
-            let mut reply = Reply::warning(format!(
+            let mut reply = CommandReply::warning(format!(
                 "several solids fit: {}{more}, of volumes {}",
                 fitted.fits.len(),
                 volumes.join(", ")
@@ -272,13 +272,14 @@ impl Session {
                     .iter()
                     .map(|c| c.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "))
                     .collect();
-                let mut reply = Reply::note(format!("is this a face: {}?", text.join(" HOLE ")));
+                let mut reply =
+                    CommandReply::note(format!("is this a face: {}?", text.join(" HOLE ")));
                 reply.next = Some("ACCEPT, REJECT, REVERSE or REPEAT".to_owned());
                 self.out.push(reply);
             }
             None => {
                 let (key, faces) = (object.to_lowercase(), std::mem::take(taken));
-                self.out.push(Reply::note(format!("{} faces", faces.len())));
+                self.out.push(CommandReply::note(format!("{} faces", faces.len())));
                 if let Some(object) = self.state.objects.get_mut(&key) {
                     Arc::make_mut(object).faces = (1..).map(FaceId).zip(faces).collect();
                 }
@@ -301,12 +302,15 @@ impl Session {
             .map(|(name, s)| format!("{name} {} {} TO {} = {}", s.axis, s.p, s.q, plain(s.value)))
             .collect();
         *self.active_mut()? = object;
-        self.out.push(Reply::note(format!("taken from the picture: {}", text.join(", "))));
+        self.out.push(CommandReply::note(format!("taken from the picture: {}", text.join(", "))));
         self.report_counts()
     }
 
     /// An object with its missing dimensions as the picture suggests them, and those.
-    pub(super) fn completed(&mut self, object: &Object) -> (Object, Vec<(String, Suggestion)>) {
+    pub(super) fn completed(
+        &mut self,
+        object: &SketchObject,
+    ) -> (SketchObject, Vec<(String, Suggestion)>) {
         let mut out = object.clone();
         let mut taken = Vec::new();
         loop {
@@ -317,9 +321,9 @@ impl Session {
             let name = out.fresh_name("E");
             out.add_dimension(crate::Dimension {
                 name: name.clone(),
-                measure: crate::Measure::Along { axis: s.axis, p: s.p, q: s.q },
+                measure: crate::MeasuredQuantity::Along { axis: s.axis, p: s.p, q: s.q },
                 value: Some(Expr::number(s.value)),
-                role: crate::Role::Driving,
+                role: crate::DimensionRole::Driving,
                 range: None,
             });
             taken.push((name, s));
@@ -332,7 +336,7 @@ impl Session {
     pub fn preview(
         &mut self,
         name: &str,
-    ) -> Option<(crate::Solid<f64>, Vec<(String, Suggestion)>)> {
+    ) -> Option<(crate::SketchSolid<f64>, Vec<(String, Suggestion)>)> {
         let object = self.object(name)?.clone();
         let (mut guessed, taken) = self.completed(&object);
         if guessed.faces.is_empty() && guessed.feature.is_none() {
@@ -523,7 +527,7 @@ impl Session {
             object.drawing.lines.len() - cleaned.drawing.lines.len(),
         );
         *self.active_mut()? = cleaned;
-        self.out.push(Reply::note(format!("{p} points and {l} lines removed")));
+        self.out.push(CommandReply::note(format!("{p} points and {l} lines removed")));
         self.faces_if_complete()
     }
 
@@ -577,7 +581,7 @@ impl Session {
                 keys.push(key);
             }
         }
-        let mut parts: Vec<(Arc<Object>, BTreeMap<PointId, Vec3>)> = Vec::new();
+        let mut parts: Vec<(Arc<SketchObject>, BTreeMap<PointId, Vec3>)> = Vec::new();
         for key in &keys {
             let object = Arc::clone(&self.state.objects[key]);
             if object.drawing.section.is_some() {
@@ -601,8 +605,10 @@ impl Session {
         if let [(one, _)] = &parts[..]
             && one.name.eq_ignore_ascii_case(&target)
         {
-            self.out
-                .push(Reply::note(format!("{} is the only one; nothing was changed", one.name)));
+            self.out.push(CommandReply::note(format!(
+                "{} is the only one; nothing was changed",
+                one.name
+            )));
             self.state.active = Some(old);
             return Ok(());
         }
@@ -611,14 +617,14 @@ impl Session {
         let tolerance = tolerance.filter(|t| *t >= 0.0).unwrap_or(1e-6 * size);
         let placed: Vec<Placed> =
             parts.iter().map(|(o, at)| Placed { object: o, at: at.clone() }).collect();
-        let solve = |o: &Object| {
+        let solve = |o: &SketchObject| {
             let planes = crate::Planes::of(&o.drawing);
             crate::solve(o, &planes, &BTreeMap::new(), &|| {
                 crate::Estimate::of(&o.drawing, &planes, o.reference()?.point)
             })
         };
         let (made, report) = merge::merge(&target, &placed, tolerance, keep_first, &solve);
-        let count = |f: &dyn Fn(&Object) -> usize| {
+        let count = |f: &dyn Fn(&SketchObject) -> usize| {
             parts.iter().map(|p| f(&p.0).to_string()).collect::<Vec<_>>().join("+")
         };
         let text = format!(
@@ -630,9 +636,9 @@ impl Session {
             report.lines,
             made.drawing.lines.len()
         );
-        self.out.push(Reply::note(text));
+        self.out.push(CommandReply::note(text));
         if !report.contradictory.is_empty() {
-            self.out.push(Reply::warning(format!(
+            self.out.push(CommandReply::warning(format!(
                 "these dimensions contradict others and only measure now: {}",
                 report.contradictory.join(", ")
             )));
@@ -697,8 +703,8 @@ impl Session {
     }
 }
 
-pub(super) fn faces_word() -> super::words::Token {
-    super::words::Token { kind: super::words::Kind::Word, text: "FACES".to_owned() }
+pub(super) fn faces_word() -> super::words::CommandToken {
+    super::words::CommandToken { kind: super::words::Kind::Word, text: "FACES".to_owned() }
 }
 
 fn face_of(polygon: &Polygon, ids: &[PointId]) -> Face {

@@ -15,7 +15,7 @@ pub enum Kind {
 
 /// A word, number or text of a command.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Token {
+pub struct CommandToken {
     /// What it is.
     pub kind: Kind,
     /// As written, without quotes.
@@ -30,7 +30,7 @@ pub const UNITS: [(&str, f64); 5] =
 #[derive(Clone, Debug, PartialEq)]
 pub struct Command {
     /// Its tokens; never empty.
-    pub tokens: Vec<Token>,
+    pub tokens: Vec<CommandToken>,
     /// As written.
     pub text: String,
 }
@@ -70,17 +70,18 @@ pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
     let mut start = 0;
     let chars: Vec<(usize, char)> = line.char_indices().collect();
     let mut k = 0;
-    let mut finish = |tokens: &mut Vec<Token>, fault: &mut Option<CommandError>, text: &str| {
-        match fault.take() {
-            Some(f) => parsed.commands.push(Err(f)),
-            None if !tokens.is_empty() => {
-                let tokens = std::mem::take(tokens);
-                parsed.commands.push(Ok(Command { tokens, text: text.trim().to_owned() }));
+    let mut finish =
+        |tokens: &mut Vec<CommandToken>, fault: &mut Option<CommandError>, text: &str| {
+            match fault.take() {
+                Some(f) => parsed.commands.push(Err(f)),
+                None if !tokens.is_empty() => {
+                    let tokens = std::mem::take(tokens);
+                    parsed.commands.push(Ok(Command { tokens, text: text.trim().to_owned() }));
+                }
+                None => {}
             }
-            None => {}
-        }
-        tokens.clear();
-    };
+            tokens.clear();
+        };
     while k < chars.len() {
         let (at, c) = chars[k];
         match c {
@@ -98,7 +99,7 @@ pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
                 match close {
                     Some(j) => {
                         let text = line[at + 1..chars[j].0].to_owned();
-                        tokens.push(Token { kind: Kind::Text, text });
+                        tokens.push(CommandToken { kind: Kind::Text, text });
                         k = j + 1;
                     }
                     None => {
@@ -126,15 +127,15 @@ pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
     parsed
 }
 
-fn token(text: &str, longest: Option<usize>) -> Result<Token, CommandError> {
+fn token(text: &str, longest: Option<usize>) -> Result<CommandToken, CommandError> {
     let first = text.chars().next().unwrap_or(' ');
     if ["2D", "3D"].iter().any(|d| text.eq_ignore_ascii_case(d)) || text.eq_ignore_ascii_case("3MF")
     {
-        return Ok(Token { kind: Kind::Word, text: text.to_owned() });
+        return Ok(CommandToken { kind: Kind::Word, text: text.to_owned() });
     }
     if first.is_ascii_digit() || "+-.".contains(first) {
         let (value, unit) = number(text)?;
-        return Ok(Token { kind: Kind::Number(value, unit), text: text.to_owned() });
+        return Ok(CommandToken { kind: Kind::Number(value, unit), text: text.to_owned() });
     }
     if !first.is_alphabetic() && first != '_' {
         let next = "put names in letters, digits, `_` and `.`, anything else in quotation marks";
@@ -147,7 +148,7 @@ fn token(text: &str, longest: Option<usize>) -> Result<Token, CommandError> {
         return Err(CommandError::text(format!("{what} in {text}"), next));
     }
     let text = text.chars().take(longest.unwrap_or(usize::MAX)).collect();
-    Ok(Token { kind: Kind::Word, text })
+    Ok(CommandToken { kind: Kind::Word, text })
 }
 
 /// A number with an optional unit; the errors are those that LSUCMD caught.

@@ -15,7 +15,7 @@ pub const FUNCTIONS: [&str; 17] = [
 const FIRST_OF_TWO: usize = 13;
 
 #[derive(Clone, Debug, PartialEq)]
-enum Op {
+enum ExprOp {
     Number(f64),
     Name(String),
     Negate,
@@ -36,7 +36,7 @@ enum Op {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
     text: String,
-    ops: Vec<Op>,
+    ops: Vec<ExprOp>,
 }
 
 /// Why an expression has no value: a name is unknown or has none itself.
@@ -49,7 +49,7 @@ pub struct NoValue {
 impl Expr {
     /// A plain number.
     pub fn number(value: f64) -> Expr {
-        Expr { text: moldloft_syntax::number::plain(value), ops: vec![Op::Number(value)] }
+        Expr { text: moldloft_syntax::number::plain(value), ops: vec![ExprOp::Number(value)] }
     }
 
     /// Parses a text.
@@ -75,8 +75,8 @@ impl Expr {
     /// The number, when the expression is nothing else.
     pub fn literal(&self) -> Option<f64> {
         match self.ops.as_slice() {
-            [Op::Number(x)] => Some(*x),
-            [Op::Number(x), Op::Negate] => Some(-x),
+            [ExprOp::Number(x)] => Some(*x),
+            [ExprOp::Number(x), ExprOp::Negate] => Some(-x),
             _ => None,
         }
     }
@@ -84,7 +84,7 @@ impl Expr {
     /// The names it reads, in lower case.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.ops.iter().filter_map(|op| match op {
-            Op::Name(name) => Some(name.as_str()),
+            ExprOp::Name(name) => Some(name.as_str()),
             _ => None,
         })
     }
@@ -123,10 +123,10 @@ impl Expr {
         let mut stack: Vec<T> = Vec::with_capacity(4);
         for op in &self.ops {
             let next = match op {
-                Op::Number(x) => T::from(*x),
-                Op::Name(name) => value(name).ok_or_else(|| NoValue { name: name.clone() })?,
-                Op::Negate => -pop(&mut stack),
-                Op::Binary(op) => {
+                ExprOp::Number(x) => T::from(*x),
+                ExprOp::Name(name) => value(name).ok_or_else(|| NoValue { name: name.clone() })?,
+                ExprOp::Negate => -pop(&mut stack),
+                ExprOp::Binary(op) => {
                     let (right, left) = (pop(&mut stack), pop(&mut stack));
                     match op {
                         BinaryOp::Add => left + right,
@@ -136,7 +136,7 @@ impl Expr {
                         _ => power(left, right),
                     }
                 }
-                Op::Call(k) if *k >= FIRST_OF_TWO => {
+                ExprOp::Call(k) if *k >= FIRST_OF_TWO => {
                     let (y, x) = (pop(&mut stack), pop(&mut stack));
                     match FUNCTIONS[*k] {
                         "min" => x.min(y),
@@ -145,7 +145,7 @@ impl Expr {
                         _ => x - y * (x.re() / y.re()).floor(),
                     }
                 }
-                Op::Call(k) => {
+                ExprOp::Call(k) => {
                     let x = pop(&mut stack);
                     let degree = std::f64::consts::PI / 180.0;
                     match FUNCTIONS[*k] {
@@ -186,14 +186,18 @@ fn pop<T: Real>(stack: &mut Vec<T>) -> T {
     stack.pop().unwrap_or_default()
 }
 
-fn compile(program: &Program, id: ExprId, ops: &mut Vec<Op>) -> Result<(), String> {
+fn compile(program: &Program, id: ExprId, ops: &mut Vec<ExprOp>) -> Result<(), String> {
     let expr = &program[id];
     let refused = || Err(format!("`{}` is not a number", program.slice(expr.span)));
     match expr.kind {
-        ExprKind::Number(literal) => ops.push(Op::Number(program[literal].value)),
+        ExprKind::Number(literal) => ops.push(ExprOp::Number(program[literal].value)),
         ExprKind::Name(symbol) => {
             let name = program.name(symbol).to_ascii_lowercase();
-            ops.push(if name == "pi" { Op::Number(std::f64::consts::PI) } else { Op::Name(name) });
+            ops.push(if name == "pi" {
+                ExprOp::Number(std::f64::consts::PI)
+            } else {
+                ExprOp::Name(name)
+            });
         }
         ExprKind::Member { .. } => {
             let name: String =
@@ -201,7 +205,7 @@ fn compile(program: &Program, id: ExprId, ops: &mut Vec<Op>) -> Result<(), Strin
             if !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '.') {
                 return refused();
             }
-            ops.push(Op::Name(name.to_ascii_lowercase()));
+            ops.push(ExprOp::Name(name.to_ascii_lowercase()));
         }
         ExprKind::Paren(inner) => compile(program, inner, ops)?,
         ExprKind::Unary { op, operand } => {
@@ -239,26 +243,26 @@ fn compile(program: &Program, id: ExprId, ops: &mut Vec<Op>) -> Result<(), Strin
             for arg in args {
                 compile(program, arg.value, ops)?;
             }
-            ops.push(Op::Call(k));
+            ops.push(ExprOp::Call(k));
         }
         _ => return refused(),
     }
     Ok(())
 }
 
-fn sign(op: UnaryOp, ops: &mut Vec<Op>) -> Result<(), String> {
+fn sign(op: UnaryOp, ops: &mut Vec<ExprOp>) -> Result<(), String> {
     match op {
         UnaryOp::Plus => {}
-        UnaryOp::Minus => ops.push(Op::Negate),
+        UnaryOp::Minus => ops.push(ExprOp::Negate),
         UnaryOp::Not => return Err("`not` does not apply to numbers".to_owned()),
     }
     Ok(())
 }
 
-fn binary(op: BinaryOp) -> Result<Op, String> {
+fn binary(op: BinaryOp) -> Result<ExprOp, String> {
     use BinaryOp::{Add, Caret, Div, Mul, Sub};
     match op {
-        Add | Sub | Mul | Div | Caret => Ok(Op::Binary(op)),
+        Add | Sub | Mul | Div | Caret => Ok(ExprOp::Binary(op)),
         _ => Err(format!("`{}` does not combine numbers to a number", op.spelling())),
     }
 }

@@ -6,10 +6,10 @@
 //! from the ground (routine CVTSTR), so nothing is solved, nothing flips, and derivatives are exact.
 
 use crate::dimension::solver::solve_derived;
-use crate::dimension::{Dimension, Measure, Role};
+use crate::dimension::{Dimension, DimensionRole, MeasuredQuantity};
 use crate::drawing::estimate::Estimate;
 use crate::drawing::planes::Planes;
-use crate::object::Object;
+use crate::object::SketchObject;
 use crate::{Axis, PointId};
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
@@ -135,12 +135,17 @@ impl<T: Real> Layout<T> {
     }
 
     /// What a measure comes to, if its points are determined.
-    pub fn measured(&self, object: &Object, planes: &Planes, measure: &Measure) -> Option<T> {
+    pub fn measured(
+        &self,
+        object: &SketchObject,
+        planes: &Planes,
+        measure: &MeasuredQuantity,
+    ) -> Option<T> {
         match *measure {
-            Measure::Along { axis, p, q } => {
+            MeasuredQuantity::Along { axis, p, q } => {
                 Some(self.coordinate(planes, axis, q)? - self.coordinate(planes, axis, p)?)
             }
-            Measure::Datum { axis, point } => self.coordinate(planes, axis, point),
+            MeasuredQuantity::Datum { axis, point } => self.coordinate(planes, axis, point),
             _ => crate::dimension::solver::value(object, measure, &|p| self.point(planes, p)),
         }
     }
@@ -191,12 +196,12 @@ impl Graph {
 const REFERENCE: usize = usize::MAX;
 
 /// The two nodes that a dimension joins on its axis, from and to; the ground is node `planes`.
-fn ends(planes: &Planes, measure: &Measure) -> Option<(Axis, usize, usize)> {
+fn ends(planes: &Planes, measure: &MeasuredQuantity) -> Option<(Axis, usize, usize)> {
     match *measure {
-        Measure::Along { axis, p, q } => {
+        MeasuredQuantity::Along { axis, p, q } => {
             Some((axis, planes.plane(axis, p)?, planes.plane(axis, q)?))
         }
-        Measure::Datum { axis, point } => {
+        MeasuredQuantity::Datum { axis, point } => {
             Some((axis, planes.counts()[axis.index()], planes.plane(axis, point)?))
         }
         _ => None,
@@ -206,7 +211,7 @@ fn ends(planes: &Planes, measure: &Measure) -> Option<(Axis, usize, usize)> {
 /// The chain of driving dimensions between two points on an axis, as the points it goes through and
 /// the dimensions' names; `None` when they are not connected.
 pub fn chain(
-    object: &Object,
+    object: &SketchObject,
     planes: &Planes,
     axis: Axis,
     p: PointId,
@@ -226,9 +231,9 @@ pub fn chain(
         at = far.unwrap_or(b);
         let (first, last, name) = match object.dimensions.get_index(d) {
             Some((_, dimension)) => match dimension.measure {
-                Measure::Along { p, q, .. } if forward => (p, q, dimension.name.clone()),
-                Measure::Along { p, q, .. } => (q, p, dimension.name.clone()),
-                Measure::Datum { point, .. } => (point, point, dimension.name.clone()),
+                MeasuredQuantity::Along { p, q, .. } if forward => (p, q, dimension.name.clone()),
+                MeasuredQuantity::Along { p, q, .. } => (q, p, dimension.name.clone()),
+                MeasuredQuantity::Datum { point, .. } => (point, point, dimension.name.clone()),
                 _ => continue,
             },
             None => match object.reference() {
@@ -256,7 +261,7 @@ pub fn chain_text(points: &[PointId]) -> String {
 }
 
 /// The forests of driving dimensions, and the dimensions that close loops in them.
-fn graphs(object: &Object, planes: &Planes) -> ([Graph; 3], Vec<usize>) {
+fn graphs(object: &SketchObject, planes: &Planes) -> ([Graph; 3], Vec<usize>) {
     let mut graphs = planes.counts().map(|n| Graph::new(n + 1));
     if let Some(r) = object.reference() {
         for axis in Axis::ALL {
@@ -268,7 +273,7 @@ fn graphs(object: &Object, planes: &Planes) -> ([Graph; 3], Vec<usize>) {
     let mut closing = Vec::new();
     for (k, dimension) in object.dimensions.values().enumerate() {
         let Some((axis, a, b)) = ends(planes, &dimension.measure) else { continue };
-        if dimension.role != Role::Driving || dimension.value.is_none() {
+        if dimension.role != DimensionRole::Driving || dimension.value.is_none() {
             continue;
         }
         let graph = &mut graphs[axis.index()];
@@ -284,7 +289,7 @@ fn graphs(object: &Object, planes: &Planes) -> ([Graph; 3], Vec<usize>) {
 /// Computes the layout. `overrides` replaces the values of dimensions and variables (folded names);
 /// `estimate` is asked for only when derived dimensions (length, slope, …) need a start.
 pub fn solve<T: Real>(
-    object: &Object,
+    object: &SketchObject,
     planes: &Planes,
     overrides: &BTreeMap<String, T>,
     estimate: &dyn Fn() -> Option<Estimate>,
@@ -340,7 +345,7 @@ pub fn solve<T: Real>(
         counts[k] = Count { required, given: required.saturating_sub(parts), missing: parts };
     }
     let derived: Vec<&Dimension> = (object.dimensions.values())
-        .filter(|d| d.role == Role::Driving && d.value.is_some())
+        .filter(|d| d.role == DimensionRole::Driving && d.value.is_some())
         .filter(|d| ends(planes, &d.measure).is_none())
         .collect();
     let mut layout = Layout { coordinates, counts, loose: Vec::new(), faults: Vec::new(), values };
@@ -398,7 +403,7 @@ pub fn agree(a: f64, b: f64) -> bool {
 
 /// Evaluates all variables and dimensions, each after those it reads.
 fn evaluate<T: Real>(
-    object: &Object,
+    object: &SketchObject,
     overrides: &BTreeMap<String, T>,
 ) -> (BTreeMap<String, T>, Vec<DimensionFault>) {
     // Names of other objects come with the overrides.
@@ -505,7 +510,7 @@ fn evaluate<T: Real>(
 /// The driving dimensions between two points as a sum of names; `None` when they are not connected,
 /// or through given coordinates only.
 pub fn chain_expression(
-    object: &Object,
+    object: &SketchObject,
     planes: &Planes,
     axis: Axis,
     p: PointId,

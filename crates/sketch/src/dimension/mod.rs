@@ -11,7 +11,7 @@ use crate::{Axis, Expr, LineId, PointId};
 
 /// The quantity that a dimension fixes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
+pub enum MeasuredQuantity {
     /// `coordinate(q) - coordinate(p)` on an axis. The sign never changes by itself.
     Along {
         /// The axis.
@@ -40,7 +40,7 @@ pub enum Measure {
 
 /// Part of a dimension in the account of its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum DimensionRole {
     /// It does.
     Driving,
     /// It only shows what follows from others.
@@ -53,11 +53,11 @@ pub struct Dimension {
     /// As the user wrote it.
     pub name: String,
     /// The quantity.
-    pub measure: Measure,
+    pub measure: MeasuredQuantity,
     /// Its value, in model units or degrees; `None` when it was unset.
     pub value: Option<Expr>,
     /// Driving or measuring.
-    pub role: Role,
+    pub role: DimensionRole,
     /// The values that make sense, for sliders and studies.
     pub range: Option<[f64; 2]>,
 }

@@ -8,10 +8,10 @@
 //! more step in the scalar itself (implicit function theorem).
 
 use crate::dimension::layout::{DimensionFault, Layout};
-use crate::dimension::{Dimension, Measure};
+use crate::dimension::{Dimension, MeasuredQuantity};
 use crate::drawing::estimate::Estimate;
 use crate::drawing::planes::Planes;
-use crate::object::Object;
+use crate::object::SketchObject;
 use crate::{Axis, LineId, PointId};
 use moldloft_num::{Dual, Real, Vec3, determinant, solve_dense};
 
@@ -19,7 +19,7 @@ type Floating<T> = Vec<(Axis, Vec<(usize, T)>)>;
 
 /// The ends of a line; for an angle, away from the common point.
 fn vector<T: Real>(
-    object: &Object,
+    object: &SketchObject,
     line: LineId,
     from: Option<PointId>,
     at: &dyn Fn(PointId) -> Option<Vec3<T>>,
@@ -31,14 +31,14 @@ fn vector<T: Real>(
 
 /// What a derived measure comes to. An [`Measure::Equal`] is the ratio of the lengths.
 pub fn value<T: Real>(
-    object: &Object,
-    measure: &Measure,
+    object: &SketchObject,
+    measure: &MeasuredQuantity,
     at: &dyn Fn(PointId) -> Option<Vec3<T>>,
 ) -> Option<T> {
     let lines = &object.drawing.lines;
     match *measure {
-        Measure::Length(l) => Some(vector(object, l, None, at)?.norm()),
-        Measure::Slope(l) => {
+        MeasuredQuantity::Length(l) => Some(vector(object, l, None, at)?.norm()),
+        MeasuredQuantity::Slope(l) => {
             let d = vector(object, l, None, at)?;
             let up = object.drawing.letters.up.index();
             let run = Axis::ALL.into_iter().map(Axis::index).filter(|&k| k != up);
@@ -46,27 +46,27 @@ pub fn value<T: Real>(
             let rise = d[up].abs();
             (rise.re() > 0.0).then(|| square.sqrt() / rise)
         }
-        Measure::Angle(a, b) => {
+        MeasuredQuantity::Angle(a, b) => {
             let (la, lb) = (lines.get(&a)?, lines.get(&b)?);
             let common = [la.p, la.q].into_iter().find(|p| [lb.p, lb.q].contains(p));
             let (a, b) = (vector(object, a, common, at)?, vector(object, b, common, at)?);
             let angle = a.cross(b).norm().atan2(a.dot(b));
             Some(angle * (180.0 / std::f64::consts::PI))
         }
-        Measure::Equal(a, b) => {
+        MeasuredQuantity::Equal(a, b) => {
             let length = vector(object, a, None, at)?.norm();
             (length.re() > 0.0).then_some(())?;
             Some(vector(object, b, None, at)?.norm() / length)
         }
-        Measure::Along { .. } | Measure::Datum { .. } => None,
+        MeasuredQuantity::Along { .. } | MeasuredQuantity::Datum { .. } => None,
     }
 }
 
 /// The points of a derived measure.
-fn points(object: &Object, measure: &Measure) -> Vec<PointId> {
+fn points(object: &SketchObject, measure: &MeasuredQuantity) -> Vec<PointId> {
     let lines = match *measure {
-        Measure::Length(l) | Measure::Slope(l) => vec![l],
-        Measure::Angle(a, b) | Measure::Equal(a, b) => vec![a, b],
+        MeasuredQuantity::Length(l) | MeasuredQuantity::Slope(l) => vec![l],
+        MeasuredQuantity::Angle(a, b) | MeasuredQuantity::Equal(a, b) => vec![a, b],
         _ => vec![],
     };
     lines.iter().filter_map(|l| object.drawing.lines.get(l)).flat_map(|l| [l.p, l.q]).collect()
@@ -74,7 +74,7 @@ fn points(object: &Object, measure: &Measure) -> Vec<PointId> {
 
 /// Solves for the positions of floating parts, which leave `floating` when they are determined.
 pub(crate) fn solve_derived<T: Real>(
-    object: &Object,
+    object: &SketchObject,
     planes: &Planes,
     layout: &mut Layout<T>,
     floating: &mut Floating<T>,
@@ -199,14 +199,14 @@ fn block(table: &[Vec<usize>]) -> Option<(Vec<usize>, Vec<usize>)> {
 
 /// Model units per unit of the page, from the dimensions along axes.
 pub fn scale<T: Real>(
-    object: &Object,
+    object: &SketchObject,
     planes: &Planes,
     layout: &Layout<T>,
     estimate: &Estimate,
 ) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
     for (key, d) in &object.dimensions {
-        if let Measure::Along { axis, p, q } = d.measure
+        if let MeasuredQuantity::Along { axis, p, q } = d.measure
             && let (Some(a), Some(b)) = (planes.plane(axis, p), planes.plane(axis, q))
             && let Some(value) = layout.values.get(key)
         {
@@ -220,7 +220,7 @@ pub fn scale<T: Real>(
     }
     // No dimension along an axis: from the lengths.
     for (key, d) in &object.dimensions {
-        if let Measure::Length(l) = d.measure
+        if let MeasuredQuantity::Length(l) = d.measure
             && let (Some(line), Some(value)) =
                 (object.drawing.lines.get(&l), layout.values.get(key))
         {
@@ -233,7 +233,7 @@ pub fn scale<T: Real>(
 }
 
 fn check<T: Real>(
-    object: &Object,
+    object: &SketchObject,
     planes: &Planes,
     layout: &Layout<T>,
     d: &Dimension,
@@ -255,7 +255,7 @@ const MOST_TOGETHER: usize = 60;
 
 /// A square system of derived dimensions.
 struct System<'a, T> {
-    object: &'a Object,
+    object: &'a SketchObject,
     planes: &'a Planes,
     layout: &'a Layout<T>,
     floating: &'a Floating<T>,
@@ -266,7 +266,7 @@ struct System<'a, T> {
 }
 
 /// A point on the way from the drawing to the values asked for.
-struct Step {
+struct ContinuationPoint {
     x: Vec<f64>,
     /// The sign of the determinant there.
     sign: f64,
@@ -319,7 +319,7 @@ impl<T: Real> System<'_, T> {
     fn drawn_turns(&self, x: &[f64]) -> Vec<f64> {
         let at = |p: PointId| self.at::<f64>(x, &|t: T| t.re(), p);
         let turn = |d: &&Dimension| match d.measure {
-            Measure::Angle(a, b) => match self.arms([a, b], &at) {
+            MeasuredQuantity::Angle(a, b) => match self.arms([a, b], &at) {
                 Some(([a, b], Some(normal))) => {
                     let side = a.cross(b)[normal.index()];
                     if side < 0.0 { -1.0 } else { 1.0 }
@@ -335,7 +335,7 @@ impl<T: Real> System<'_, T> {
     fn measured(&self, x: &[f64]) -> Option<Vec<f64>> {
         let at = |p: PointId| self.at::<f64>(x, &|t: T| t.re(), p);
         let one = |(d, turn): (&&Dimension, &f64)| match d.measure {
-            Measure::Angle(a, b) if *turn != 0.0 => {
+            MeasuredQuantity::Angle(a, b) if *turn != 0.0 => {
                 let ([a, b], normal) = self.arms([a, b], &at)?;
                 let side = a.cross(b)[normal?.index()] * *turn;
                 Some(Real::atan2(side, a.dot(b)) * (180.0 / std::f64::consts::PI))
@@ -351,18 +351,18 @@ impl<T: Real> System<'_, T> {
         let at = |p: PointId| self.at(x, lift, p);
         let one = |((d, &asked), &turn): ((&&Dimension, &S), &f64)| -> Option<S> {
             match d.measure {
-                Measure::Length(l) => {
+                MeasuredQuantity::Length(l) => {
                     let square = vector(self.object, l, None, &at)?.norm_sq();
                     let half = if asked.re().abs() > 0.0 { asked * 2.0 } else { S::one() };
                     Some((square - asked * asked) / half)
                 }
-                Measure::Equal(a, b) => {
+                MeasuredQuantity::Equal(a, b) => {
                     let first = vector(self.object, a, None, &at)?.norm_sq();
                     let second = vector(self.object, b, None, &at)?.norm_sq();
                     let size = first.re().max(second.re()).sqrt().max(f64::MIN_POSITIVE);
                     Some((second - first * asked * asked) / (2.0 * size))
                 }
-                Measure::Angle(a, b) if turn != 0.0 => {
+                MeasuredQuantity::Angle(a, b) if turn != 0.0 => {
                     let ([a, b], normal) = self.arms([a, b], &at)?;
                     let side = a.cross(b)[normal?.index()] * turn;
                     let degrees = side.atan2(a.dot(b)) * (180.0 / std::f64::consts::PI);
@@ -393,7 +393,7 @@ impl<T: Real> System<'_, T> {
     }
 
     /// Newton's method from `x`; `None` when it does not converge at once and near.
-    fn correct(&self, mut x: Vec<f64>, asked: &[f64], reach: f64) -> Option<Step> {
+    fn correct(&self, mut x: Vec<f64>, asked: &[f64], reach: f64) -> Option<ContinuationPoint> {
         let start = x.clone();
         let mut last = f64::INFINITY;
         for _ in 0..8 {
@@ -408,22 +408,22 @@ impl<T: Real> System<'_, T> {
                 return None;
             }
             if size <= 1e-13 * (1.0 + x.iter().fold(0.0f64, |m, a| m.max(a.abs()))) {
-                return Some(Step { x, sign });
+                return Some(ContinuationPoint { x, sign });
             }
             last = size;
         }
         (last <= 1e-9 * reach).then(|| {
             let sign = self.jacobian(&x, asked).map_or(0.0, |j| determinant(&j, x.len()).signum());
-            Step { x, sign }
+            ContinuationPoint { x, sign }
         })
     }
 
     /// Follows the solution from values `from`, which hold at `x`, to `to`. `None` where it turns back.
-    fn follow(&self, x: Vec<f64>, from: &[f64], to: &[f64]) -> Option<Step> {
+    fn follow(&self, x: Vec<f64>, from: &[f64], to: &[f64]) -> Option<ContinuationPoint> {
         const SHORTEST: f64 = 1e-5;
         const MOST: usize = 3000;
         let sign = determinant(&self.jacobian(&x, from)?, x.len()).signum();
-        let mut here = Step { x, sign };
+        let mut here = ContinuationPoint { x, sign };
         let (mut s, mut step) = (0.0, 0.125);
         for _ in 0..MOST {
             if s >= 1.0 {
@@ -452,8 +452,8 @@ impl<T: Real> System<'_, T> {
     fn size(&self, x: &[f64]) -> f64 {
         let at = |p: PointId| self.at::<f64>(x, &|t: T| t.re(), p);
         let lines = self.dimensions.iter().flat_map(|d| match d.measure {
-            Measure::Length(l) | Measure::Slope(l) => vec![l],
-            Measure::Angle(a, b) | Measure::Equal(a, b) => vec![a, b],
+            MeasuredQuantity::Length(l) | MeasuredQuantity::Slope(l) => vec![l],
+            MeasuredQuantity::Angle(a, b) | MeasuredQuantity::Equal(a, b) => vec![a, b],
             _ => vec![],
         });
         let lengths = lines.filter_map(|l| Some(vector(self.object, l, None, &at)?.norm()));
@@ -472,7 +472,7 @@ impl<T: Real> System<'_, T> {
             self.follow(x.clone(), from, &plain).or_else(|| {
                 // Another way: first the lengths, then the angles, or the other way about.
                 let mixed = |angles: bool| -> Vec<f64> {
-                    let kind = |d: &&&Dimension| matches!(d.measure, Measure::Angle(..));
+                    let kind = |d: &&&Dimension| matches!(d.measure, MeasuredQuantity::Angle(..));
                     let pick = |(k, d): (usize, &&Dimension)| {
                         if kind(&d) == angles { plain[k] } else { from[k] }
                     };

@@ -1,7 +1,7 @@
 //! Types of lines from their slopes, and from planes that their ends share.
 
 use crate::drawing::planes::Planes;
-use crate::{Axis, Drawing, Free, Line, LineId, Source};
+use crate::{Axis, Drawing, Free, Line, LineId, LineTypeSource};
 
 /// How far a line may lean off an axis and still be named after it: 5 % of the slope (manual, p. 10).
 pub const NAMING_TOLERANCE: f64 = 0.05;
@@ -36,7 +36,7 @@ impl Drawing {
             Some((free, confidence)) => (Some(free), confidence),
             None => (None, 0.0),
         };
-        self.lines.insert(id, Line { free, confidence, source: Source::Auto, ..line });
+        self.lines.insert(id, Line { free, confidence, source: LineTypeSource::Auto, ..line });
     }
 
     /// Types every line that the user has not typed: by its stroke and those parallel to it in space,
@@ -49,7 +49,7 @@ impl Drawing {
         let share = |id: &LineId| verdicts.get(id).map_or(1.0, |v| v.share);
         for &id in &ids {
             let line = self.lines[&id];
-            if line.source == Source::User && line.free.is_some() {
+            if line.source == LineTypeSource::User && line.free.is_some() {
                 continue;
             }
             let Some(verdict) = verdicts.get(&id) else { continue };
@@ -59,7 +59,7 @@ impl Drawing {
                 (None, None) => None,
             };
             let confidence = if free.is_some() { verdict.share } else { 0.0 };
-            self.lines.insert(id, Line { free, confidence, source: Source::Auto, ..line });
+            self.lines.insert(id, Line { free, confidence, source: LineTypeSource::Auto, ..line });
         }
         loop {
             let planes = Planes::of(self);
@@ -73,7 +73,7 @@ impl Drawing {
                 if let Some(free) = free.filter(|&f| f != Free::OBLIQUE) {
                     let inferred = Line {
                         free: Some(free),
-                        source: Source::Inferred,
+                        source: LineTypeSource::Inferred,
                         confidence: share(id),
                         ..line
                     };
@@ -89,7 +89,7 @@ impl Drawing {
         for id in &left {
             if let Some(line) = self.lines.get_mut(id) {
                 line.free = Some(Free::OBLIQUE);
-                line.source = Source::Inferred;
+                line.source = LineTypeSource::Inferred;
                 line.confidence = 0.5f64.min(share(id));
             }
         }

@@ -40,7 +40,7 @@ numbered!(
 
 /// A point as drawn. Where it is in space follows from its planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct DrawnPoint {
     /// Screen right.
     pub u: f64,
     /// Screen up.
@@ -49,7 +49,7 @@ pub struct Point {
 
 /// Who said which type a line has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum LineTypeSource {
     /// Its slope, within the tolerance.
     Auto,
     /// The user.
@@ -58,13 +58,13 @@ pub enum Source {
     Inferred,
 }
 
-impl Source {
+impl LineTypeSource {
     /// The word for files.
     pub fn word(self) -> &'static str {
         match self {
-            Source::Auto => "auto",
-            Source::User => "user",
-            Source::Inferred => "inferred",
+            LineTypeSource::Auto => "auto",
+            LineTypeSource::User => "user",
+            LineTypeSource::Inferred => "inferred",
         }
     }
 }
@@ -79,7 +79,7 @@ pub struct Line {
     /// Its type; `None` while unknown.
     pub free: Option<Free>,
     /// Where the type is from.
-    pub source: Source,
+    pub source: LineTypeSource,
     /// How sure the type is, 0 to 1; below 0.6 it is listed by CHECK.
     pub confidence: f64,
 }
@@ -130,7 +130,7 @@ pub struct Drawing {
     /// What H, P and F mean.
     pub letters: Letters,
     /// The points by label.
-    pub points: BTreeMap<PointId, Point>,
+    pub points: BTreeMap<PointId, DrawnPoint>,
     /// The lines by label.
     pub lines: BTreeMap<LineId, Line>,
     /// Points in common planes beyond what lines say.
@@ -186,7 +186,7 @@ impl Drawing {
     pub fn gaps(&self, reach: Option<f64>) -> Vec<(PointId, PointId, f64)> {
         let mut uses: BTreeMap<PointId, usize> = BTreeMap::new();
         self.lines.values().flat_map(|l| [l.p, l.q]).for_each(|p| *uses.entry(p).or_default() += 1);
-        let far = |f: &dyn Fn(&Point) -> f64| {
+        let far = |f: &dyn Fn(&DrawnPoint) -> f64| {
             let all = self.points.values().map(f);
             let (low, high) =
                 all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
@@ -194,7 +194,8 @@ impl Drawing {
         };
         let given = reach.is_some();
         let reach = reach.unwrap_or(0.005 * far(&|p| p.u).max(far(&|p| p.v)));
-        let mut order: Vec<(PointId, Point)> = self.points.iter().map(|(k, p)| (*k, *p)).collect();
+        let mut order: Vec<(PointId, DrawnPoint)> =
+            self.points.iter().map(|(k, p)| (*k, *p)).collect();
         order.sort_by(|a, b| a.1.u.total_cmp(&b.1.u).then(a.0.cmp(&b.0)));
         let mut pairs = Vec::new();
         for (k, &(a, p)) in order.iter().enumerate() {

@@ -33,7 +33,7 @@ impl<T: Real> Build<T> for ConjugateArc<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let centre = self.centre.xyz;
         let end = self.end.and_then(|p| p.key);
-        let arc = Swept {
+        let arc = EllipticArc {
             centre,
             a: self.start.xyz - centre,
             b: self.quarter.xyz - centre,
@@ -44,7 +44,7 @@ impl<T: Real> Build<T> for ConjugateArc<T> {
     }
 }
 
-struct Swept<T> {
+struct EllipticArc<T> {
     centre: Vec3<T>,
     a: Vec3<T>,
     b: Vec3<T>,
@@ -52,7 +52,7 @@ struct Swept<T> {
     ends: [Option<moldloft_num::trace::Key>; 2],
 }
 
-impl<T: Real> CurveFormula for Swept<T> {
+impl<T: Real> CurveFormula for EllipticArc<T> {
     type Scalar = T;
     fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
         let angle = t.scaled(self.sweep);

@@ -1,6 +1,6 @@
 //! Drawings of other programs as sketches.
 
-use crate::{Drawing, Line, Point, PointId, Source};
+use crate::{Drawing, DrawnPoint, Line, LineTypeSource, PointId};
 
 /// A straight stroke on the page.
 pub type Stroke = [[f64; 2]; 2];
@@ -99,7 +99,7 @@ pub fn draw(drawing: &mut Drawing, strokes: &[Stroke], tolerance: f64) -> (usize
                 let id = PointId(next_point);
                 next_point += 1;
                 points += 1;
-                drawing.points.insert(id, Point { u, v });
+                drawing.points.insert(id, DrawnPoint { u, v });
                 known.entry([i, j]).or_default().push(id);
                 id
             })
@@ -108,7 +108,7 @@ pub fn draw(drawing: &mut Drawing, strokes: &[Stroke], tolerance: f64) -> (usize
             let id = crate::LineId(next_line);
             next_line += 1;
             lines += 1;
-            let line = Line { p, q, free: None, source: Source::Auto, confidence: 0.0 };
+            let line = Line { p, q, free: None, source: LineTypeSource::Auto, confidence: 0.0 };
             drawing.lines.insert(id, line);
             drawing.type_by_slope(id);
         }

@@ -1,6 +1,6 @@
 //! Writers of finished objects: bytes out, no input or output.
 
-use crate::Solid;
+use crate::SketchSolid;
 use crate::format::json::Json;
 use moldloft_mesh::{Mesh, is_triangle};
 use moldloft_num::Vec3;
@@ -235,7 +235,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 /// DXF (release 12): facets as 3DFACE, edges as LINE on a layer of their own.
-pub fn dxf(mesh: &Facets, solid: &Solid<f64>, tolerance: f64) -> String {
+pub fn dxf(mesh: &Facets, solid: &SketchSolid<f64>, tolerance: f64) -> String {
     let mut out = String::from("0\nSECTION\n2\nENTITIES\n");
     let point = |out: &mut String, k: u32, p: Vec3| {
         let [x, y, z] = p.to_array().map(plain);

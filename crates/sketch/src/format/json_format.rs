@@ -2,7 +2,9 @@
 
 use crate::format::json::Json;
 use crate::format::script::measure_text;
-use crate::{Axis, Face, FaceId, Layout, LineId, Loose, Mass, Object, Planes, PointId, Solid};
+use crate::{
+    Axis, Face, FaceId, Layout, LineId, Loose, Mass, Planes, PointId, SketchObject, SketchSolid,
+};
 use moldloft_num::Vec3;
 
 /// What a finished (or unfinished) object is, for hosts.
@@ -33,15 +35,15 @@ pub struct ObjectData {
     /// Dimensions with their values, in order.
     pub dimensions: Vec<(String, String, Option<f64>)>,
     /// The body with curves, of a solid or a section with faces.
-    pub solid: Option<Solid<f64>>,
+    pub solid: Option<SketchSolid<f64>>,
 }
 
 /// The data of an object from what was computed about it.
 pub fn object_data(
-    object: &Object,
+    object: &SketchObject,
     planes: &Planes,
     layout: &Layout<f64>,
-    solid: Option<Solid<f64>>,
+    solid: Option<SketchSolid<f64>>,
 ) -> ObjectData {
     let mut points: Vec<(PointId, [Option<f64>; 3])> = (planes.ids().iter())
         .map(|&p| (p, Axis::ALL.map(|a| layout.coordinate(planes, a, p))))
@@ -53,7 +55,7 @@ pub fn object_data(
     }
     let lines = (object.drawing.lines.iter())
         .map(|(id, l)| (*id, l.p, l.q, l.free.map_or("", crate::Free::spelling)));
-    let mass = solid.as_ref().map(Solid::mass);
+    let mass = solid.as_ref().map(SketchSolid::mass);
     let flat = object.drawing.section.is_some();
     ObjectData {
         name: object.name.clone(),
@@ -135,7 +137,7 @@ impl ObjectData {
 
 /// The twin: format and version, the fields of the object as data, and the commands that make it,
 /// which are what is read back.
-pub fn to_json(object: &Object) -> Json {
+pub fn to_json(object: &SketchObject) -> Json {
     let d = &object.drawing;
     let points = d
         .points

@@ -2,7 +2,7 @@
 
 use crate::feature::{Feature, FeatureKind, Placement};
 use crate::solid::curve::{Curve, CurveKind};
-use crate::{Axis, Expr, Measure, Object, Role, Source};
+use crate::{Axis, DimensionRole, Expr, LineTypeSource, MeasuredQuantity, SketchObject};
 use moldloft_syntax::number::plain;
 use std::fmt::Write;
 
@@ -20,14 +20,14 @@ fn quoted(text: &str) -> String {
 }
 
 /// `X 1 TO 3`, `LENGTH 4`: what a dimension measures, as in its command.
-pub(crate) fn measure_text(measure: &Measure) -> String {
+pub(crate) fn measure_text(measure: &MeasuredQuantity) -> String {
     match measure {
-        Measure::Along { axis, p, q } => format!("{axis} {p} TO {q}"),
-        Measure::Datum { axis, point } => format!("POINT {point} {axis}"),
-        Measure::Length(l) => format!("LENGTH {l}"),
-        Measure::Slope(l) => format!("SLOPE {l}"),
-        Measure::Angle(a, b) => format!("ANGLE {a} {b}"),
-        Measure::Equal(a, b) => format!("EQUAL {a} {b}"),
+        MeasuredQuantity::Along { axis, p, q } => format!("{axis} {p} TO {q}"),
+        MeasuredQuantity::Datum { axis, point } => format!("POINT {point} {axis}"),
+        MeasuredQuantity::Length(l) => format!("LENGTH {l}"),
+        MeasuredQuantity::Slope(l) => format!("SLOPE {l}"),
+        MeasuredQuantity::Angle(a, b) => format!("ANGLE {a} {b}"),
+        MeasuredQuantity::Equal(a, b) => format!("EQUAL {a} {b}"),
     }
 }
 
@@ -36,7 +36,7 @@ fn range_text(range: Option<[f64; 2]>) -> String {
 }
 
 /// The commands that make an object. Running them gives the same object.
-pub fn script(object: &Object) -> String {
+pub fn script(object: &SketchObject) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
     let _ = write(object, &mut out);
@@ -44,7 +44,7 @@ pub fn script(object: &Object) -> String {
 }
 
 /// A feature: its parts, the command that makes it of them, and its numbers.
-fn write_feature(object: &Object, feature: &Feature, out: &mut String) -> std::fmt::Result {
+fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> std::fmt::Result {
     let name = quoted(&object.name);
     writeln!(out, "WITHIN {name}")?;
     for operand in &feature.operands {
@@ -109,7 +109,7 @@ fn write_feature(object: &Object, feature: &Feature, out: &mut String) -> std::f
     writeln!(out, "END")
 }
 
-fn write(object: &Object, out: &mut String) -> std::fmt::Result {
+fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
     if let Some(feature) = &object.feature {
         return write_feature(object, feature, out);
     }
@@ -143,14 +143,14 @@ fn write(object: &Object, out: &mut String) -> std::fmt::Result {
     for (id, l) in &drawing.lines {
         write!(out, "LINE {id} FROM {} TO {}", l.p, l.q)?;
         let slope = drawing.slope_type(l);
-        let by_slope = l.source == Source::Auto
+        let by_slope = l.source == LineTypeSource::Auto
             && slope.map_or((None, 0.0), |s| (Some(s.0), s.1)) == (l.free, l.confidence);
         if !by_slope {
             write!(out, " TYPE {}", l.free.map_or("NONE", crate::Free::spelling))?;
             match l.source {
-                Source::User => {}
-                Source::Auto => write!(out, " AUTO {}", plain(l.confidence))?,
-                Source::Inferred => write!(out, " INFERRED {}", plain(l.confidence))?,
+                LineTypeSource::User => {}
+                LineTypeSource::Auto => write!(out, " AUTO {}", plain(l.confidence))?,
+                LineTypeSource::Inferred => write!(out, " INFERRED {}", plain(l.confidence))?,
             }
         }
         writeln!(out)?;
@@ -166,7 +166,7 @@ fn write(object: &Object, out: &mut String) -> std::fmt::Result {
     }
     for d in object.dimensions.values() {
         let value = d.value.as_ref().map_or("UNSET".to_owned(), |v| quoted(v.text()));
-        let role = if d.role == Role::Reference { " ONLY" } else { "" };
+        let role = if d.role == DimensionRole::Reference { " ONLY" } else { "" };
         let text = measure_text(&d.measure);
         writeln!(out, "GIVE {} {text} = {value}{role}{}", d.name, range_text(d.range))?;
     }

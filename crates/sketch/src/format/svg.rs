@@ -3,7 +3,7 @@
 
 use crate::command::Picture;
 use crate::format::json_format::ObjectData;
-use crate::{Axis, Measure, Object, Projection, Solid};
+use crate::{Axis, MeasuredQuantity, Projection, SketchObject, SketchSolid};
 use moldloft_num::{Real, Vec3};
 use moldloft_syntax::number::plain;
 use std::collections::BTreeMap;
@@ -36,7 +36,11 @@ enum Item {
 }
 
 /// The picture of objects; `page` is the part of the page that is drawn on.
-pub(crate) fn svg(objects: &[(&Object, &ObjectData)], picture: &Picture, page: [f64; 4]) -> String {
+pub(crate) fn svg(
+    objects: &[(&SketchObject, &ObjectData)],
+    picture: &Picture,
+    page: [f64; 4],
+) -> String {
     let view = match picture.view.as_str() {
         "TOP" => Some(Projection { angle_deg: [0.0, 90.0, 0.0], scale: [1.0, 1.0, 0.0] }),
         "FRONT" => Some(Projection { angle_deg: [0.0, 0.0, 90.0], scale: [1.0, 0.0, 1.0] }),
@@ -90,7 +94,7 @@ fn around(items: &[Item]) -> Option<[f64; 4]> {
 
 /// A sketch as drawn.
 fn sketch(
-    object: &Object,
+    object: &SketchObject,
     data: &ObjectData,
     picture: &Picture,
     page: [f64; 4],
@@ -121,7 +125,7 @@ fn sketch(
 
 /// A witness line for each dimensioning plane, from its first point (X-, Y-, Z-planes along Z, X, Y, so
 /// that each runs inside its plane), and the dimensions between them.
-fn planes(object: &Object, data: &ObjectData, size: f64, items: &mut Vec<Item>) {
+fn planes(object: &SketchObject, data: &ObjectData, size: f64, items: &mut Vec<Item>) {
     let d = &object.drawing;
     let derived = crate::Planes::of(d);
     let middle = {
@@ -156,7 +160,7 @@ fn planes(object: &Object, data: &ObjectData, size: f64, items: &mut Vec<Item>) 
     // Dimensions on several axes between the same points are reported one below the other.
     let mut told: BTreeMap<(crate::PointId, crate::PointId), f64> = BTreeMap::new();
     for (key, dimension) in &object.dimensions {
-        let Measure::Along { axis, p, q } = dimension.measure else { continue };
+        let MeasuredQuantity::Along { axis, p, q } = dimension.measure else { continue };
         let (Some(a), Some(b)) = (d.points.get(&p), d.points.get(&q)) else { continue };
         let value =
             data.dimensions.iter().find(|x| x.0.eq_ignore_ascii_case(key)).and_then(|x| x.2);
@@ -174,9 +178,9 @@ fn planes(object: &Object, data: &ObjectData, size: f64, items: &mut Vec<Item>) 
 
 /// A body from a side: faces that look at the viewer from far to near, hidden edges dashed.
 fn body(
-    solid: &Solid<f64>,
+    solid: &SketchSolid<f64>,
     view: &Projection,
-    object: &Object,
+    object: &SketchObject,
     picture: &Picture,
     items: &mut Vec<Item>,
 ) {
@@ -239,7 +243,7 @@ fn shade(facing: f64, chosen: bool) -> String {
 }
 
 /// The points of a cycle of edges, the last of each left to the next.
-fn walk(solid: &Solid<f64>, cycle: &[(usize, bool)]) -> Vec<Vec3> {
+fn walk(solid: &SketchSolid<f64>, cycle: &[(usize, bool)]) -> Vec<Vec3> {
     let mut way = Vec::new();
     for &(e, forward) in cycle {
         let mut own = solid.polyline(e, CHORDS);
@@ -253,7 +257,7 @@ fn walk(solid: &Solid<f64>, cycle: &[(usize, bool)]) -> Vec<Vec3> {
 }
 
 fn edge(
-    solid: &Solid<f64>,
+    solid: &SketchSolid<f64>,
     e: usize,
     view: &Projection,
     colour: &'static str,

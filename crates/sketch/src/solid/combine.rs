@@ -7,9 +7,9 @@
 //! from one more step in the scalar (implicit function theorem).
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
-use super::curve::Piece;
-use super::surface::{Met, On, Surface, meet};
-use super::{Solid, SolidEdge, SolidFace, Trace, Trim, Vertex};
+use super::curve::SmoothPiece;
+use super::surface::{Carrier, FaceSurface, Met, meet};
+use super::{IntersectionEdge, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
 use crate::PointId;
 use crate::solid::operation::Operation;
 use moldloft_mesh::triangulate;
@@ -44,9 +44,9 @@ impl From<ArrangeError> for CombineError {
 /// # Errors
 /// [`CombineError`], with the place.
 pub fn combined<T: Real>(
-    bodies: [&Solid<T>; 2],
+    bodies: [&SketchSolid<T>; 2],
     operation: Operation,
-) -> Result<Solid<T>, CombineError> {
+) -> Result<SketchSolid<T>, CombineError> {
     let rule = move |w: [i32; 2]| operation.holds(w[0] > 0, w[1] > 0);
     build(&bodies, false, &rule).map(|b| b.0)
 }
@@ -56,7 +56,7 @@ pub fn combined<T: Real>(
 ///
 /// # Errors
 /// [`CombineError`], with the place.
-pub fn resolved<T: Real>(body: &Solid<T>) -> Result<(Solid<T>, bool), CombineError> {
+pub fn resolved<T: Real>(body: &SketchSolid<T>) -> Result<(SketchSolid<T>, bool), CombineError> {
     build(&[body], true, &|w| w[0] > 0)
 }
 
@@ -64,43 +64,43 @@ pub fn resolved<T: Real>(body: &Solid<T>) -> Result<(Solid<T>, bool), CombineErr
 ///
 /// # Errors
 /// [`CombineError`], with the place.
-pub fn united<T: Real>(bodies: &[&Solid<T>]) -> Result<Solid<T>, CombineError> {
+pub fn united<T: Real>(bodies: &[&SketchSolid<T>]) -> Result<SketchSolid<T>, CombineError> {
     build(bodies, true, &|w| w[0] > 0).map(|b| b.0)
 }
 
 /// What facets of the bodies stand for.
-struct Source<T> {
-    surfaces: Vec<Surface<T>>,
+struct FacetSource<T> {
+    surfaces: Vec<FaceSurface<T>>,
     /// By edge: its curve where it has a closed form, and the surfaces beside it.
-    edges: Vec<(Option<Piece<T>>, Vec<u32>)>,
+    edges: Vec<(Option<SmoothPiece<T>>, Vec<u32>)>,
 }
 
 /// The facets of bodies, and what they stand for.
 struct Facetted<T> {
     points: Vec<Vec3<T>>,
     facets: Vec<Facet>,
-    sources: Vec<Source<T>>,
+    sources: Vec<FacetSource<T>>,
     /// By point: whether it is a vertex of its body.
     vertex: Vec<bool>,
 }
 
 fn build<T: Real>(
-    bodies: &[&Solid<T>],
+    bodies: &[&SketchSolid<T>],
     crossing: bool,
     rule: &dyn Fn([i32; 2]) -> bool,
-) -> Result<(Solid<T>, bool), CombineError> {
+) -> Result<(SketchSolid<T>, bool), CombineError> {
     let mut all = Facetted {
         points: Vec::new(),
         facets: Vec::new(),
         sources: Vec::new(),
         vertex: Vec::new(),
     };
-    let mut operands: Vec<Source<T>> = Vec::new();
+    let mut operands: Vec<FacetSource<T>> = Vec::new();
     for (k, body) in bodies.iter().enumerate() {
         // United bodies are one operand; their faces and edges are numbered on.
         let operand = if crossing { 0 } else { k };
         if operand >= operands.len() {
-            operands.push(Source { surfaces: Vec::new(), edges: Vec::new() });
+            operands.push(FacetSource { surfaces: Vec::new(), edges: Vec::new() });
         }
         add_facets(body, operand, &mut operands[operand], &mut all);
     }
@@ -120,9 +120,9 @@ fn build<T: Real>(
 
 /// The facets of a body: plane faces whole, round ones in strips.
 fn add_facets<T: Real>(
-    body: &Solid<T>,
+    body: &SketchSolid<T>,
     operand: usize,
-    source: &mut Source<T>,
+    source: &mut FacetSource<T>,
     all: &mut Facetted<T>,
 ) {
     let first_point = all.points.len() as u32;
@@ -137,31 +137,32 @@ fn add_facets<T: Real>(
     }
     let size = outline.points.iter().map(|p| p.re().distance(outline.points[0].re()));
     let size = size.fold(0.0, f64::max);
-    let mut put = |source: &mut Source<T>, surface: Surface<T>, facets: Vec<LoopsAndTags>| {
-        let tag = source.surfaces.len() as u32;
-        let plane = matches!(surface, Surface::Plane { .. });
-        source.surfaces.push(surface);
-        for (loops, tags) in facets {
-            for t in tags.iter().flatten().filter(|t| **t != INNER) {
-                let beside = &mut source.edges[(first_edge + t) as usize].1;
-                if !beside.contains(&tag) {
-                    beside.push(tag);
+    let mut put =
+        |source: &mut FacetSource<T>, surface: FaceSurface<T>, facets: Vec<LoopsAndTags>| {
+            let tag = source.surfaces.len() as u32;
+            let plane = matches!(surface, FaceSurface::Plane { .. });
+            source.surfaces.push(surface);
+            for (loops, tags) in facets {
+                for t in tags.iter().flatten().filter(|t| **t != INNER) {
+                    let beside = &mut source.edges[(first_edge + t) as usize].1;
+                    if !beside.contains(&tag) {
+                        beside.push(tag);
+                    }
                 }
+                let at = |v: &u32| outline.points[*v as usize].re();
+                let normal = if let FaceSurface::Plane { normal, .. } = surface {
+                    Some(normal.re())
+                } else {
+                    newell(&loops[0].iter().map(at).collect::<Vec<_>>()).normalized()
+                };
+                let Some(normal) = normal else { continue };
+                let shift = |c: Vec<u32>| c.into_iter().map(|v| v + first_point).collect();
+                let mark = |t: u32| if t == INNER { INNER } else { t + first_edge };
+                let tags = tags.into_iter().map(|c| c.into_iter().map(mark).collect()).collect();
+                let loops = loops.into_iter().map(shift).collect();
+                all.facets.push(Facet::new(operand, tag, plane, normal, loops, tags));
             }
-            let at = |v: &u32| outline.points[*v as usize].re();
-            let normal = if let Surface::Plane { normal, .. } = surface {
-                Some(normal.re())
-            } else {
-                newell(&loops[0].iter().map(at).collect::<Vec<_>>()).normalized()
-            };
-            let Some(normal) = normal else { continue };
-            let shift = |c: Vec<u32>| c.into_iter().map(|v| v + first_point).collect();
-            let mark = |t: u32| if t == INNER { INNER } else { t + first_edge };
-            let tags = tags.into_iter().map(|c| c.into_iter().map(mark).collect()).collect();
-            let loops = loops.into_iter().map(shift).collect();
-            all.facets.push(Facet::new(operand, tag, plane, normal, loops, tags));
-        }
-    };
+        };
     for f in 0..body.faces.len() {
         let at = |v: u32| outline.points[v as usize];
         if let Some(surface) = body.surface(f) {
@@ -174,7 +175,7 @@ fn add_facets<T: Real>(
         let off = |v: &u32| normal.re().dot(at(*v).re() - ring[0].re()).abs();
         let warped = loops.iter().flatten().map(off).fold(0.0, f64::max) > 1e-10 * size;
         if !warped {
-            put(source, Surface::Plane { at: ring[0], normal }, vec![(loops, tags)]);
+            put(source, FaceSurface::Plane { at: ring[0], normal }, vec![(loops, tags)]);
             continue;
         }
         // A face that is not plane is its triangles, each with a plane of its own.
@@ -188,7 +189,7 @@ fn add_facets<T: Real>(
             let Some(normal) = newell(&ring).normalized() else { continue };
             let tags = [(a, b), (b, c), (c, a)].map(|e| *side.get(&e).unwrap_or(&INNER));
             let facet = (vec![vec![a, b, c]], vec![tags.to_vec()]);
-            put(source, Surface::Plane { at: ring[0], normal }, vec![facet]);
+            put(source, FaceSurface::Plane { at: ring[0], normal }, vec![facet]);
         }
     }
 }
@@ -251,12 +252,12 @@ impl<'a, T: Real> Placing<'a, T> {
         Placing { all, arranged, scale, original, placed: HashMap::new() }
     }
 
-    fn surface(&self, face: usize) -> &'a Surface<T> {
+    fn surface(&self, face: usize) -> &'a FaceSurface<T> {
         let (operand, tag) = self.arranged.faces[face].sources[0];
         &self.all.sources[operand].surfaces[tag as usize]
     }
 
-    fn finish(mut self, flat: bool) -> Result<Solid<T>, CombineError> {
+    fn finish(mut self, flat: bool) -> Result<SketchSolid<T>, CombineError> {
         let faces = &self.arranged.faces;
         // The face to the left of each directed side.
         let mut left: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
@@ -389,7 +390,7 @@ impl<'a, T: Real> Placing<'a, T> {
             out.push(SolidFace { id: None, ruled: false, loops, trim });
         }
         let facets = (!trims.is_empty()).then(|| self.facets(&chains, &number, &vertices));
-        let mut solid = Solid { vertices, edges, faces: out, flat, ..Solid::default() };
+        let mut solid = SketchSolid { vertices, edges, faces: out, flat, ..SketchSolid::default() };
         solid.trims = trims;
         solid.facets = facets;
         self.agrees(&solid)?;
@@ -398,7 +399,7 @@ impl<'a, T: Real> Placing<'a, T> {
 
     /// Exact faces and facets must tell of one body: that they differ by more than chords do means that
     /// an edge was followed to a wrong place.
-    fn agrees(&self, solid: &Solid<T>) -> Result<(), CombineError> {
+    fn agrees(&self, solid: &SketchSolid<T>) -> Result<(), CombineError> {
         let Some(facets) = &solid.facets else { return Ok(()) };
         let origin = facets.points.first().map_or(Vec3::zero(), |p| p.re());
         let (mut volume, mut area) = (0.0, 0.0);
@@ -430,17 +431,17 @@ impl<'a, T: Real> Placing<'a, T> {
             return Ok(Some(self.all.points[k as usize]));
         }
         let guess = self.arranged.points[v as usize];
-        let parameters = |s: &Surface<T>| match s {
-            Surface::Plane { .. } => [0.0; 2],
+        let parameters = |s: &FaceSurface<T>| match s {
+            FaceSurface::Plane { .. } => [0.0; 2],
             _ => s.parameters(guess),
         };
         // Every surface at the corner, with its normal there; planes of one position count once.
-        let mut surfaces: Vec<(&Surface<T>, Vec3, [f64; 2])> = Vec::new();
+        let mut surfaces: Vec<(&FaceSurface<T>, Vec3, [f64; 2])> = Vec::new();
         for &f in faces {
             let s = self.surface(f);
             let start = parameters(s);
             let normal = match s {
-                Surface::Plane { normal, .. } => normal.re(),
+                FaceSurface::Plane { normal, .. } => normal.re(),
                 _ => {
                     let [_, du, dv] = s.jet(T::from(start[0]), T::from(start[1]));
                     du.re().cross(dv.re()).normalized().unwrap_or_default()
@@ -448,7 +449,7 @@ impl<'a, T: Real> Placing<'a, T> {
             };
             surfaces.push((s, normal, start));
         }
-        let mut best: Option<(f64, Vec<On<'_, T>>, Vec<[f64; 2]>)> = None;
+        let mut best: Option<(f64, Vec<Carrier<'_, T>>, Vec<[f64; 2]>)> = None;
         for &(operand, tag) in edges {
             let (Some(piece), beside) = &self.all.sources[operand].edges[tag as usize] else {
                 continue;
@@ -464,7 +465,7 @@ impl<'a, T: Real> Placing<'a, T> {
                 // A little preferred: it holds where the faces beside the edge are tangent.
                 let rate = 1.5 * direction.dot(normal).abs();
                 if best.as_ref().is_none_or(|b| rate > b.0) {
-                    let on = vec![On::Curve(piece), On::Surface(surface)];
+                    let on = vec![Carrier::Curve(piece), Carrier::Surface(surface)];
                     best = Some((rate, on, vec![[s, 0.0], start]));
                 }
             }
@@ -475,7 +476,7 @@ impl<'a, T: Real> Placing<'a, T> {
                     let (a, b, c) = (&surfaces[i], &surfaces[j], &surfaces[k]);
                     let rate = a.1.dot(b.1.cross(c.1)).abs();
                     if best.as_ref().is_none_or(|b| rate > b.0) {
-                        let on = [a, b, c].map(|s| On::Surface(s.0)).to_vec();
+                        let on = [a, b, c].map(|s| Carrier::Surface(s.0)).to_vec();
                         best = Some((rate, on, vec![a.2, b.2, c.2]));
                     }
                 }
@@ -493,29 +494,29 @@ impl<'a, T: Real> Placing<'a, T> {
     }
 
     /// The points of an edge that is not straight, with their places on the round faces beside it.
-    fn trace(&self, chain: &[u32], kind: Kind) -> Result<Trace<T>, CombineError> {
+    fn trace(&self, chain: &[u32], kind: Kind) -> Result<IntersectionEdge<T>, CombineError> {
         let rough: Vec<Vec3> = chain.iter().map(|&v| self.arranged.points[v as usize]).collect();
         let curve = kind.2.and_then(|(o, t)| self.all.sources[o].edges[t as usize].0.as_ref());
         let pair = [self.surface(kind.0), self.surface(kind.1)];
-        let fixed: Vec<On<'_, T>> = match curve {
-            Some(piece) => vec![On::Curve(piece)],
-            None => pair.iter().map(|s| On::Surface(*s)).collect(),
+        let fixed: Vec<Carrier<'_, T>> = match curve {
+            Some(piece) => vec![Carrier::Curve(piece)],
+            None => pair.iter().map(|s| Carrier::Surface(*s)).collect(),
         };
         let first = |p: Vec3| -> Vec<[f64; 2]> {
             fixed
                 .iter()
                 .map(|o| match o {
-                    On::Surface(Surface::Plane { .. }) => [0.0; 2],
-                    On::Surface(s) => s.parameters(p),
-                    On::Curve(c) => [along(c, p), 0.0],
+                    Carrier::Surface(FaceSurface::Plane { .. }) => [0.0; 2],
+                    Carrier::Surface(s) => s.parameters(p),
+                    Carrier::Curve(c) => [along(c, p), 0.0],
                 })
                 .collect()
         };
         let mut start = first(rough[0]);
         // A plane across an edge may meet its surfaces elsewhere too.
-        let solve = |plane: &Surface<T>, guess: Vec3, reach: f64, start: &mut Vec<[f64; 2]>| {
+        let solve = |plane: &FaceSurface<T>, guess: Vec3, reach: f64, start: &mut Vec<[f64; 2]>| {
             let mut on = fixed.clone();
-            on.push(On::Surface(plane));
+            on.push(Carrier::Surface(plane));
             let from = |s: &Vec<[f64; 2]>| {
                 let mut s = s.clone();
                 s.push([0.0; 2]);
@@ -548,7 +549,8 @@ impl<'a, T: Real> Placing<'a, T> {
             let after = rough[(k + 1).min(m - 1)];
             let normal = (after - before).normalized();
             let normal = normal.ok_or(CombineError::Touching(rough[k]))?;
-            let plane = Surface::Plane { at: Vec3::lifted(rough[k]), normal: Vec3::lifted(normal) };
+            let plane =
+                FaceSurface::Plane { at: Vec3::lifted(rough[k]), normal: Vec3::lifted(normal) };
             let reach = 0.5 * (after.distance(rough[k]) + before.distance(rough[k]));
             points.push(solve(&plane, rough[k], reach, &mut start)?.at);
         }
@@ -565,14 +567,14 @@ impl<'a, T: Real> Placing<'a, T> {
             let rate = lifted.dot(step);
             for (x, w) in GAUSS_8_UNIT {
                 let at = pair[0] + step * T::from(x);
-                let plane = Surface::Plane { at, normal: lifted };
+                let plane = FaceSurface::Plane { at, normal: lifted };
                 let met = solve(&plane, at.re(), 0.5 * step.re().norm(), &mut start)?;
                 let by = met.moved * (rate * w);
                 nodes.push((met.at, by));
                 for (r, &f) in round.iter().enumerate() {
                     let surface = self.surface(f);
                     let own = fixed.iter().position(
-                        |o| matches!(o, On::Surface(s) if std::ptr::eq::<Surface<T>>(*s, surface)),
+                        |o| matches!(o, Carrier::Surface(s) if std::ptr::eq::<FaceSurface<T>>(*s, surface)),
                     );
                     let place = match own {
                         Some(k) => {
@@ -591,7 +593,7 @@ impl<'a, T: Real> Placing<'a, T> {
                 }
             }
         }
-        Ok(Trace { points, nodes, places: round.into_iter().zip(places).collect() })
+        Ok(IntersectionEdge { points, nodes, places: round.into_iter().zip(places).collect() })
     }
 
     /// The mesh: parts of faces with their points where the exact edges run.
@@ -637,7 +639,7 @@ impl<'a, T: Real> Placing<'a, T> {
 }
 
 /// The parameter of the point of a piece nearest to `p`.
-fn along<T: Real>(piece: &Piece<T>, p: Vec3) -> f64 {
+fn along<T: Real>(piece: &SmoothPiece<T>, p: Vec3) -> f64 {
     let at = |s: f64| piece.at(T::from(s)).re();
     let mut s = (0..=16)
         .map(|k| f64::from(k) / 16.0)
@@ -656,7 +658,7 @@ fn along<T: Real>(piece: &Piece<T>, p: Vec3) -> f64 {
 
 /// The place of a point on a surface: u, v, and the change of u as the point moves by `by`.
 pub(super) fn located<T: Real>(
-    surface: &Surface<T>,
+    surface: &FaceSurface<T>,
     p: Vec3<T>,
     by: Vec3<T>,
     from: Option<[f64; 2]>,

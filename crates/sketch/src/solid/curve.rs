@@ -68,7 +68,7 @@ pub struct Curve {
 
 /// A smooth piece, run through by s in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Piece<T> {
+pub enum SmoothPiece<T> {
     /// `centre + a cos(s sweep) + b sin(s sweep)`
     Conic {
         /// Centre.
@@ -84,20 +84,20 @@ pub enum Piece<T> {
     Cubic([Vec3<T>; 4]),
 }
 
-impl<T: Real> Piece<T> {
+impl<T: Real> SmoothPiece<T> {
     /// The straight piece.
-    pub fn straight(p: Vec3<T>, q: Vec3<T>) -> Piece<T> {
+    pub fn straight(p: Vec3<T>, q: Vec3<T>) -> SmoothPiece<T> {
         let third = T::from(1.0 / 3.0);
-        Piece::Cubic([p, p.lerp(q, third), q.lerp(p, third), q])
+        SmoothPiece::Cubic([p, p.lerp(q, third), q.lerp(p, third), q])
     }
 
     /// The point at `s`.
     pub fn at(&self, s: T) -> Vec3<T> {
         match *self {
-            Piece::Conic { centre, a, b, sweep } => {
+            SmoothPiece::Conic { centre, a, b, sweep } => {
                 centre + a * (s * sweep).cos() + b * (s * sweep).sin()
             }
-            Piece::Cubic([p, q, r, e]) => {
+            SmoothPiece::Cubic([p, q, r, e]) => {
                 let w = -s + 1.0;
                 p * (w * w * w) + q * (w * w * s * 3.0) + r * (w * s * s * 3.0) + e * (s * s * s)
             }
@@ -107,10 +107,10 @@ impl<T: Real> Piece<T> {
     /// The derivative by `s`.
     pub fn velocity(&self, s: T) -> Vec3<T> {
         match *self {
-            Piece::Conic { a, b, sweep, .. } => {
+            SmoothPiece::Conic { a, b, sweep, .. } => {
                 (b * (s * sweep).cos() - a * (s * sweep).sin()) * sweep
             }
-            Piece::Cubic([p, q, r, e]) => {
+            SmoothPiece::Cubic([p, q, r, e]) => {
                 let w = -s + 1.0;
                 ((q - p) * (w * w) + (r - q) * (w * s * 2.0) + (e - r) * (s * s)) * T::from(3.0)
             }
@@ -119,13 +119,13 @@ impl<T: Real> Piece<T> {
 
     /// The same piece from its other end.
     #[must_use]
-    pub fn reversed(&self) -> Piece<T> {
+    pub fn reversed(&self) -> SmoothPiece<T> {
         match *self {
-            Piece::Conic { centre, a, b, sweep } => {
+            SmoothPiece::Conic { centre, a, b, sweep } => {
                 let (c, s) = (sweep.cos(), sweep.sin());
-                Piece::Conic { centre, a: a * c + b * s, b: a * s - b * c, sweep }
+                SmoothPiece::Conic { centre, a: a * c + b * s, b: a * s - b * c, sweep }
             }
-            Piece::Cubic([p, q, r, e]) => Piece::Cubic([e, r, q, p]),
+            SmoothPiece::Cubic([p, q, r, e]) => SmoothPiece::Cubic([e, r, q, p]),
         }
     }
 
@@ -145,11 +145,11 @@ impl<T: Real> Piece<T> {
     pub fn chords(&self, tolerance: f64) -> usize {
         // A chord over ds misses by |p''| ds² / 8.
         let bend = match self {
-            Piece::Conic { a, b, sweep, .. } => {
+            SmoothPiece::Conic { a, b, sweep, .. } => {
                 let radius = a.re().norm().max(b.re().norm());
                 radius * sweep.re() * sweep.re()
             }
-            Piece::Cubic([p, q, r, e]) => {
+            SmoothPiece::Cubic([p, q, r, e]) => {
                 let (p, q, r, e) = (p.re(), q.re(), r.re(), e.re());
                 6.0 * (p - q * 2.0 + r).norm().max((q - r * 2.0 + e).norm())
             }
@@ -187,7 +187,7 @@ pub enum CurveFault {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traced<T> {
     /// Its pieces, end to start.
-    pub pieces: Vec<Piece<T>>,
+    pub pieces: Vec<SmoothPiece<T>>,
     /// For a corner: the tangent points on the first and on the second line.
     pub tangents: Option<[Vec3<T>; 2]>,
     /// For a conic: its centre.
@@ -223,7 +223,7 @@ pub fn trace<T: Real>(
             let two = |x: Vec3<T>, y: Vec3<T>| x.lerp(y, T::from(0.5));
             let half = |s: Vec3<T>, c: Vec3<T>, e: Vec3<T>| {
                 let third = T::from(2.0 / 3.0);
-                Piece::Cubic([s, s.lerp(c, third), e.lerp(c, third), e])
+                SmoothPiece::Cubic([s, s.lerp(c, third), e.lerp(c, third), e])
             };
             let pieces = vec![half(a, two(a, q), m), half(m, two(q, b), b)];
             Ok(Traced { pieces, tangents: None, centre: None })
@@ -268,7 +268,7 @@ pub fn trace<T: Real>(
                 } else {
                     -phi + std::f64::consts::PI
                 };
-                let pieces = vec![Piece::Conic { centre, a: start, b: side * radius, sweep }];
+                let pieces = vec![SmoothPiece::Conic { centre, a: start, b: side * radius, sweep }];
                 Ok(Traced { pieces, tangents: Some([t1, t2]), centre: Some(centre) })
             } else {
                 let [m, n] = match &curve.semi {
@@ -284,7 +284,7 @@ pub fn trace<T: Real>(
                 let centre = corner + a * m + b * n;
                 let turns = if curve.kind == CurveKind::Ellipse { 2.0 } else { 0.5 };
                 let sweep = T::from(turns * std::f64::consts::PI);
-                let pieces = vec![Piece::Conic { centre, a: -(b * n), b: -(a * m), sweep }];
+                let pieces = vec![SmoothPiece::Conic { centre, a: -(b * n), b: -(a * m), sweep }];
                 let tangents = Some([corner + a * m, corner + b * n]);
                 Ok(Traced { pieces, tangents, centre: Some(centre) })
             }
@@ -296,7 +296,7 @@ pub fn trace<T: Real>(
 /// The cubic between the second and third of four points with tangents (P3 - P1)/2 and (P4 - P2)/2
 /// (Brewer and Anderson, SIGGRAPH 1977), in Bézier form; with centripetal knots the non-uniform
 /// Catmull-Rom form of it. `None` when neighbouring points coincide (centripetal only).
-fn overhauser<T: Real>(p: [Vec3<T>; 4], centripetal: bool) -> Option<Piece<T>> {
+fn overhauser<T: Real>(p: [Vec3<T>; 4], centripetal: bool) -> Option<SmoothPiece<T>> {
     let third = T::from(1.0 / 3.0);
     let (m1, m2) = if centripetal {
         let [d1, d2, d3] = [0, 1, 2].map(|k| p[k].distance(p[k + 1]).sqrt());
@@ -311,7 +311,7 @@ fn overhauser<T: Real>(p: [Vec3<T>; 4], centripetal: bool) -> Option<Piece<T>> {
         let half = T::from(0.5);
         ((p[2] - p[0]) * half, (p[3] - p[1]) * half)
     };
-    Some(Piece::Cubic([p[1], p[1] + m1 * third, p[2] - m2 * third, p[2]]))
+    Some(SmoothPiece::Cubic([p[1], p[1] + m1 * third, p[2] - m2 * third, p[2]]))
 }
 
 /// The semi-axes of an ellipse of conjugate half-diameters `a` and `b`, longer first: the singular

@@ -4,9 +4,9 @@ use super::combine::{CombineError, combined, united};
 use super::place::Similarity;
 use super::turn::turned;
 use super::validity::{Flaw, valid};
-use super::{Solid, unchecked};
-use crate::feature::{Feature, FeatureKind, Operand, Placement};
-use crate::{Estimate, Expr, Layout, Object, Planes, Variable, solve};
+use super::{SketchSolid, unchecked};
+use crate::feature::{Feature, FeatureKind, FeatureOperand, Placement};
+use crate::{Estimate, Expr, Layout, Planes, SketchObject, Variable, solve};
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,10 +38,10 @@ pub enum NoBody {
 /// # Errors
 /// [`NoBody`], with the place.
 pub fn body<T: Real>(
-    object: &Object,
+    object: &SketchObject,
     planes: &Planes,
     layout: &Layout<T>,
-) -> Result<Solid<T>, NoBody> {
+) -> Result<SketchSolid<T>, NoBody> {
     match &object.feature {
         Some(feature) => feature.body(layout),
         None => {
@@ -53,8 +53,8 @@ pub fn body<T: Real>(
 
 impl Feature {
     /// An object of this feature. The numbers of its operands become its variables.
-    pub fn object(self, name: &str) -> Object {
-        let mut out = Object::new(name, None);
+    pub fn object(self, name: &str) -> SketchObject {
+        let mut out = SketchObject::new(name, None);
         if let Some(first) = self.operands.first() {
             out.units.clone_from(&first.object.units);
             let drawing = out.draw();
@@ -69,7 +69,7 @@ impl Feature {
             let named = |n: &str| inner.has_name(n).then(|| format!("{}{n}", operand.prefix));
             let variables = inner.variables.values().map(|v| (&v.name, &v.value, v.range));
             let dimensions = (inner.dimensions.values())
-                .filter(|d| d.role == crate::Role::Driving)
+                .filter(|d| d.role == crate::DimensionRole::Driving)
                 .filter_map(|d| Some((&d.name, d.value.as_ref()?, d.range)));
             for (name, value, range) in variables.chain(dimensions) {
                 let name = format!("{}{name}", operand.prefix);
@@ -83,7 +83,7 @@ impl Feature {
     }
 
     /// The operands of objects, with the prefixes that keep their names apart.
-    pub fn operands(objects: &[&Object]) -> Vec<Operand> {
+    pub fn operands(objects: &[&SketchObject]) -> Vec<FeatureOperand> {
         let mut taken: Vec<String> = Vec::new();
         objects
             .iter()
@@ -97,12 +97,12 @@ impl Feature {
                     format!("{}.", crate::solid::merge::identifier(&object.name))
                 };
                 taken.extend(names().map(|n| format!("{}{n}", prefix.to_ascii_lowercase())));
-                Operand { object: Arc::new(object.clone()), prefix }
+                FeatureOperand { object: Arc::new(object.clone()), prefix }
             })
             .collect()
     }
 
-    fn body<T: Real>(&self, layout: &Layout<T>) -> Result<Solid<T>, NoBody> {
+    fn body<T: Real>(&self, layout: &Layout<T>) -> Result<SketchSolid<T>, NoBody> {
         let value = |e: &Expr| {
             let x = e.eval(&|n| layout.values.get(n).copied());
             x.map_err(|no| NoBody::NoValue(no.name))
@@ -147,7 +147,7 @@ impl Feature {
                     place = place.then(&step);
                     copies.push(body.placed(&place));
                 }
-                let all: Vec<&Solid<T>> = copies.iter().collect();
+                let all: Vec<&SketchSolid<T>> = copies.iter().collect();
                 united(&all).map_err(NoBody::Combine)
             }
             _ => Err(NoBody::Unfinished),
@@ -176,7 +176,7 @@ impl Placement {
 }
 
 /// Whether a section lies on one side of a line.
-fn one_side<T: Real>(section: &Solid<T>, [p, q]: [Vec3; 2]) -> bool {
+fn one_side<T: Real>(section: &SketchSolid<T>, [p, q]: [Vec3; 2]) -> bool {
     let Some(direction) = (q - p).normalized() else { return false };
     let mesh = section.faceted();
     let arms: Vec<Vec3> = mesh.positions().iter().map(|x| (x.re() - p).cross(direction)).collect();

@@ -1,7 +1,7 @@
 //! Derivatives of a finished object by its dimensions and variables.
 
 use crate::solid::Vertex;
-use crate::{Estimate, Object, Planes, solid, solve};
+use crate::{Estimate, Planes, SketchObject, solid, solve};
 use moldloft_num::{Dual, Vec3};
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ pub struct Gradient {
 ///
 /// # Errors
 /// The first name that is not a dimension or variable with a value; an empty one when there is no solid.
-pub fn gradient(object: &Object, planes: &Planes, by: &[String]) -> Result<Gradient, String> {
+pub fn gradient(object: &SketchObject, planes: &Planes, by: &[String]) -> Result<Gradient, String> {
     let estimate = || Estimate::of(&object.drawing, planes, object.reference()?.point);
     let plain = solve(object, planes, &BTreeMap::<String, f64>::new(), &estimate);
     let keys: Vec<String> = by.iter().map(|n| n.to_ascii_lowercase()).collect();
@@ -80,11 +80,11 @@ pub struct Swept {
 
 #[cfg(test)]
 mod tests {
-    use crate::Session;
+    use crate::SketchSession;
 
     #[test]
     fn a_dam_by_its_dimensions() {
-        let mut s = Session::new();
+        let mut s = SketchSession::new();
         s.run_text(include_str!("../../../../examples/sketch/dam.skt"));
         let names: Vec<String> =
             ["Crest", "run", "LENGTH1", "HEIGHT", "PARAPET"].map(String::from).to_vec();

@@ -1,6 +1,6 @@
 //! Area, volume, centroid and inertia, by exact formulas for triangles and Gauss's rule for curves.
 
-use crate::solid::curve::Piece;
+use crate::solid::curve::SmoothPiece;
 use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3};
 
@@ -19,16 +19,16 @@ pub struct Mass<T> {
 }
 
 /// A directed edge of a plane face, between its ends.
-pub(crate) enum Side<T> {
+pub(crate) enum DirectedEdge<T> {
     Straight,
-    Piece(Piece<T>),
+    Piece(SmoothPiece<T>),
     /// Points along it with the weighted way along it.
     Nodes(Vec<(Vec3<T>, Vec3<T>)>),
 }
 
 /// Surface integrals, taken from an origin near the body.
 #[derive(Clone, Debug)]
-pub(crate) struct Sums<T> {
+pub(crate) struct MassIntegrals<T> {
     origin: Vec3<T>,
     pub area: T,
     area_moment: Vec3<T>,
@@ -40,10 +40,10 @@ pub(crate) struct Sums<T> {
     patch: (T, Vec3<T>),
 }
 
-impl<T: Real> Sums<T> {
-    pub fn new(origin: Vec3<T>) -> Sums<T> {
+impl<T: Real> MassIntegrals<T> {
+    pub fn new(origin: Vec3<T>) -> MassIntegrals<T> {
         let (t, v) = (T::zero(), Vec3::zero());
-        Sums {
+        MassIntegrals {
             origin,
             area: t,
             area_moment: v,
@@ -85,24 +85,24 @@ impl<T: Real> Sums<T> {
     }
 
     /// Adds a plane face. `edges` are its directed edges; straight ones have no piece.
-    pub fn plane(&mut self, edges: &[(Vec3<T>, Vec3<T>, Side<T>)]) {
+    pub fn plane(&mut self, edges: &[(Vec3<T>, Vec3<T>, DirectedEdge<T>)]) {
         let Some(&(apex, ..)) = edges.first() else { return };
         let mut vector = Vec3::zero();
         let mut moments: Vec<(Vec3<T>, Vec3<T>)> = Vec::new();
         for (p, q, side) in edges {
             let (p, q) = (*p, *q);
             let nodes = match side {
-                Side::Straight => {
+                DirectedEdge::Straight => {
                     self.triangle(apex, p, q);
                     let da = (p - apex).cross(q - apex) * T::from(0.5);
                     vector += da;
                     moments.push(((apex + p + q) / T::from(3.0) - self.origin, da));
                     continue;
                 }
-                Side::Piece(piece) => along()
+                DirectedEdge::Piece(piece) => along()
                     .map(|(s, w)| (piece.at(T::from(s)), piece.velocity(T::from(s)) * T::from(w)))
                     .collect(),
-                Side::Nodes(nodes) => nodes.clone(),
+                DirectedEdge::Nodes(nodes) => nodes.clone(),
             };
             // The sector from the apex to the curve: apex + r (c(s) - apex).
             for (at, by) in nodes {
@@ -150,7 +150,7 @@ impl<T: Real> Sums<T> {
 
     /// Adds a ruled patch: straight lines from `near(s)` to `far(s)`; its outward side is that of
     /// (∂/∂s) × (∂ from near to far).
-    pub fn ruled(&mut self, near: &Piece<T>, far: &dyn Fn(T) -> (Vec3<T>, Vec3<T>)) {
+    pub fn ruled(&mut self, near: &SmoothPiece<T>, far: &dyn Fn(T) -> (Vec3<T>, Vec3<T>)) {
         for (s, w) in along() {
             let s = T::from(s);
             let (a, da) = (near.at(s), near.velocity(s));

@@ -2,8 +2,8 @@
 
 use crate::dimension::layout::chain_expression;
 use crate::{
-    Align, Axis, Dimension, DimensionFault, Drawing, Expr, Layout, Line, Measure, Object, Planes,
-    Point, PointId, Projection, Reference, Role, Variable,
+    Align, Axis, Dimension, DimensionFault, DimensionRole, Drawing, DrawnPoint, Expr, Layout, Line,
+    MeasuredQuantity, Planes, PointId, Projection, Reference, SketchObject, Variable,
 };
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
@@ -13,14 +13,14 @@ use std::sync::Arc;
 /// An object with its positions.
 pub struct Placed<'a> {
     /// The object.
-    pub object: &'a Object,
+    pub object: &'a SketchObject,
     /// Its points and where they are.
     pub at: BTreeMap<PointId, Vec3>,
 }
 
 /// What came of a merge.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Merged {
+pub struct MergeReport {
     /// Points that were there twice.
     pub shared: usize,
     /// Lines that were there twice.
@@ -37,10 +37,10 @@ pub fn merge(
     parts: &[Placed],
     tolerance: f64,
     keep_first: bool,
-    solve: &dyn Fn(&Object) -> Layout<f64>,
-) -> (Object, Merged) {
-    let mut out = Object::new(name, None);
-    let mut report = Merged::default();
+    solve: &dyn Fn(&SketchObject) -> Layout<f64>,
+) -> (SketchObject, MergeReport) {
+    let mut out = SketchObject::new(name, None);
+    let mut report = MergeReport::default();
     let mut placed: Vec<(PointId, Vec3)> = Vec::new();
     let mut references: Vec<(String, PointId, Vec3)> = Vec::new();
     for (k, part) in parts.iter().enumerate() {
@@ -63,7 +63,7 @@ pub fn merge(
                 let new = PointId(placed.len() as u32 + 1);
                 placed.push((new, p));
                 let [u, v] = out.drawing.projection.project(p);
-                out.draw().points.insert(new, Point { u, v });
+                out.draw().points.insert(new, DrawnPoint { u, v });
                 new
             });
             number.insert(id, new);
@@ -94,12 +94,16 @@ pub fn merge(
         for d in old.dimensions.values() {
             let point = |p: PointId| number[&p];
             let measure = match d.measure {
-                Measure::Along { axis, p, q } => Measure::Along { axis, p: point(p), q: point(q) },
-                Measure::Datum { axis, point: p } => Measure::Datum { axis, point: point(p) },
-                Measure::Length(l) => Measure::Length(lines[&l]),
-                Measure::Slope(l) => Measure::Slope(lines[&l]),
-                Measure::Angle(a, b) => Measure::Angle(lines[&a], lines[&b]),
-                Measure::Equal(a, b) => Measure::Equal(lines[&a], lines[&b]),
+                MeasuredQuantity::Along { axis, p, q } => {
+                    MeasuredQuantity::Along { axis, p: point(p), q: point(q) }
+                }
+                MeasuredQuantity::Datum { axis, point: p } => {
+                    MeasuredQuantity::Datum { axis, point: point(p) }
+                }
+                MeasuredQuantity::Length(l) => MeasuredQuantity::Length(lines[&l]),
+                MeasuredQuantity::Slope(l) => MeasuredQuantity::Slope(lines[&l]),
+                MeasuredQuantity::Angle(a, b) => MeasuredQuantity::Angle(lines[&a], lines[&b]),
+                MeasuredQuantity::Equal(a, b) => MeasuredQuantity::Equal(lines[&a], lines[&b]),
             };
             let value = d.value.as_ref().map(|v| v.renamed(&own));
             let name = format!("{prefix}{}", d.name);
@@ -131,9 +135,9 @@ pub fn merge(
             if solve(&out).coordinate(&planes, axis, *point).is_none() {
                 out.add_dimension(Dimension {
                     name: format!("{prefix}ref_{}", axis.letter().to_ascii_lowercase()),
-                    measure: Measure::Datum { axis, point: *point },
+                    measure: MeasuredQuantity::Datum { axis, point: *point },
                     value: Some(Expr::number(at[axis.index()])),
-                    role: Role::Driving,
+                    role: DimensionRole::Driving,
                     range: None,
                 });
             }
@@ -145,9 +149,9 @@ pub fn merge(
 
 /// Makes references of dimensions that others determine.
 pub(crate) fn settle(
-    out: &mut Object,
-    report: &mut Merged,
-    solve: &dyn Fn(&Object) -> Layout<f64>,
+    out: &mut SketchObject,
+    report: &mut MergeReport,
+    solve: &dyn Fn(&SketchObject) -> Layout<f64>,
 ) {
     for fault in solve(out).faults {
         let (name, wrong) = match fault {
@@ -156,7 +160,7 @@ pub(crate) fn settle(
             _ => continue,
         };
         if let Some(d) = out.dimensions.get_mut(&name.to_ascii_lowercase()) {
-            d.role = Role::Reference;
+            d.role = DimensionRole::Reference;
         }
         if wrong {
             report.contradictory.push(name);
@@ -173,7 +177,11 @@ pub(crate) fn identifier(name: &str) -> String {
 
 /// Removes lines (scribed ones) and then points inside straight lines. Dimensions that end at such
 /// points become variables, and their sums take their place, so the object stays parametric.
-pub fn clean(object: &Object, lines: &[[PointId; 2]], at: &BTreeMap<PointId, Vec3>) -> Object {
+pub fn clean(
+    object: &SketchObject,
+    lines: &[[PointId; 2]],
+    at: &BTreeMap<PointId, Vec3>,
+) -> SketchObject {
     let mut out = object.clone();
     for [p, q] in lines {
         if let Some(id) = out.drawing.line_between(*p, *q) {
@@ -222,8 +230,8 @@ pub fn clean(object: &Object, lines: &[[PointId; 2]], at: &BTreeMap<PointId, Vec
     }
     let doomed: Vec<String> = (object.dimensions.iter())
         .filter(|(_, d)| match d.measure {
-            Measure::Along { p, q, .. } => gone.contains(&p) || gone.contains(&q),
-            Measure::Datum { point, .. } => gone.contains(&point),
+            MeasuredQuantity::Along { p, q, .. } => gone.contains(&p) || gone.contains(&q),
+            MeasuredQuantity::Datum { point, .. } => gone.contains(&point),
             _ => false,
         })
         .map(|(k, _)| k.clone())
@@ -257,13 +265,13 @@ pub fn clean(object: &Object, lines: &[[PointId; 2]], at: &BTreeMap<PointId, Vec
             let value = sum
                 .and_then(|s| Expr::parse(&s).ok())
                 .unwrap_or_else(|| Expr::number(here - there));
-            let measure = Measure::Along { axis, p: from.point, q: p };
+            let measure = MeasuredQuantity::Along { axis, p: from.point, q: p };
             let name = out.fresh_name("D");
             out.add_dimension(Dimension {
                 name,
                 measure,
                 value: Some(value),
-                role: Role::Driving,
+                role: DimensionRole::Driving,
                 range: None,
             });
         }
@@ -273,7 +281,7 @@ pub fn clean(object: &Object, lines: &[[PointId; 2]], at: &BTreeMap<PointId, Vec
 
 /// Makes a solid wireframe of a cross section: a second copy along its normal, `name` being the
 /// dimension between the two.
-pub fn extrude(section: &Object, name: &str, value: Expr) -> Option<Object> {
+pub fn extrude(section: &SketchObject, name: &str, value: Expr) -> Option<SketchObject> {
     let normal = section.drawing.section?;
     let mut out = section.clone();
     out.faces.clear();
@@ -285,7 +293,7 @@ pub fn extrude(section: &Object, name: &str, value: Expr) -> Option<Object> {
     let drawing = out.draw();
     drawing.section = None;
     for (&id, p) in &flat.points {
-        drawing.points.insert(up(id), Point { u: p.u + du * depth, v: p.v + dv * depth });
+        drawing.points.insert(up(id), DrawnPoint { u: p.u + du * depth, v: p.v + dv * depth });
     }
     for line in flat.lines.values() {
         let id = drawing.next_line();
@@ -296,7 +304,7 @@ pub fn extrude(section: &Object, name: &str, value: Expr) -> Option<Object> {
             p: id,
             q: up(id),
             free: Some(crate::Free::along(normal)),
-            source: crate::Source::User,
+            source: crate::LineTypeSource::User,
             confidence: 1.0,
         };
         let number = drawing.next_line();
@@ -321,9 +329,9 @@ pub fn extrude(section: &Object, name: &str, value: Expr) -> Option<Object> {
     }
     out.add_dimension(Dimension {
         name: name.to_owned(),
-        measure: Measure::Along { axis: normal, p: first, q: up(first) },
+        measure: MeasuredQuantity::Along { axis: normal, p: first, q: up(first) },
         value: Some(value),
-        role: Role::Driving,
+        role: DimensionRole::Driving,
         range: None,
     });
     Some(out)
@@ -337,10 +345,15 @@ fn product(e: &Expr, factor: f64) -> Expr {
 }
 
 /// Every length times a positive factor.
-pub fn scaled(object: &Object, factor: f64) -> Object {
+pub fn scaled(object: &SketchObject, factor: f64) -> SketchObject {
     let mut out = object.clone();
     for d in out.dimensions.values_mut() {
-        if matches!(d.measure, Measure::Along { .. } | Measure::Datum { .. } | Measure::Length(_)) {
+        if matches!(
+            d.measure,
+            MeasuredQuantity::Along { .. }
+                | MeasuredQuantity::Datum { .. }
+                | MeasuredQuantity::Length(_)
+        ) {
             d.value = d.value.as_ref().map(|v| product(v, factor));
             d.range = d.range.map(|r| r.map(|x| x * factor));
         }
@@ -356,14 +369,14 @@ pub fn scaled(object: &Object, factor: f64) -> Object {
 }
 
 /// Moved by a vector.
-pub fn moved(object: &Object, by: Vec3) -> Object {
+pub fn moved(object: &SketchObject, by: Vec3) -> SketchObject {
     let mut out = object.clone();
     if let Some(r) = object.reference() {
         let at = Vec3::from(r.at) + by;
         out.reference = Some(Reference { at: at.to_array(), ..r });
     }
     for d in out.dimensions.values_mut() {
-        if let (Measure::Datum { axis, .. }, Some(v)) = (d.measure, &d.value) {
+        if let (MeasuredQuantity::Datum { axis, .. }, Some(v)) = (d.measure, &d.value) {
             let shift = by[axis.index()];
             d.value = Some(match v.literal() {
                 Some(x) => Expr::number(x + shift),
@@ -377,12 +390,12 @@ pub fn moved(object: &Object, by: Vec3) -> Object {
 }
 
 /// Mirrored in the plane through the origin perpendicular to an axis.
-pub fn mirrored(object: &Object, axis: Axis) -> Object {
+pub fn mirrored(object: &SketchObject, axis: Axis) -> SketchObject {
     let mut out = object.clone();
     for d in out.dimensions.values_mut() {
         match &mut d.measure {
-            Measure::Along { axis: a, p, q } if *a == axis => std::mem::swap(p, q),
-            Measure::Datum { axis: a, .. } if *a == axis => {
+            MeasuredQuantity::Along { axis: a, p, q } if *a == axis => std::mem::swap(p, q),
+            MeasuredQuantity::Datum { axis: a, .. } if *a == axis => {
                 d.value = d.value.as_ref().map(|v| product(v, -1.0));
             }
             _ => {}
@@ -398,7 +411,7 @@ pub fn mirrored(object: &Object, axis: Axis) -> Object {
 }
 
 /// Turned by a quarter about an axis, right-handed: exchange the two other axes, then mirror.
-pub fn quarter_turned(object: &Object, about: Axis) -> Object {
+pub fn quarter_turned(object: &SketchObject, about: Axis) -> SketchObject {
     let (a, b) = match about {
         Axis::X => (Axis::Y, Axis::Z),
         Axis::Y => (Axis::Z, Axis::X),
@@ -420,7 +433,9 @@ pub fn quarter_turned(object: &Object, about: Axis) -> Object {
     drawing.aligns.iter_mut().for_each(|l| l.axis = other(l.axis));
     for d in out.dimensions.values_mut() {
         match &mut d.measure {
-            Measure::Along { axis, .. } | Measure::Datum { axis, .. } => *axis = other(*axis),
+            MeasuredQuantity::Along { axis, .. } | MeasuredQuantity::Datum { axis, .. } => {
+                *axis = other(*axis)
+            }
             _ => {}
         }
     }
@@ -435,7 +450,7 @@ pub fn quarter_turned(object: &Object, about: Axis) -> Object {
 }
 
 /// The picture drawn anew from positions.
-pub fn redrawn(object: &Object, at: &BTreeMap<PointId, Vec3>) -> Object {
+pub fn redrawn(object: &SketchObject, at: &BTreeMap<PointId, Vec3>) -> SketchObject {
     let mut out = object.clone();
     if let Some(normal) = out.drawing.section {
         out.draw().projection = Projection::section(normal);
@@ -444,7 +459,7 @@ pub fn redrawn(object: &Object, at: &BTreeMap<PointId, Vec3>) -> Object {
     for (id, point) in &mut drawing.points {
         if let Some(p) = at.get(id) {
             let [u, v] = drawing.projection.project(*p);
-            *point = Point { u, v };
+            *point = DrawnPoint { u, v };
         }
     }
     out

@@ -1,14 +1,14 @@
 //! A body as a mesh: chords of its round edges, facets of its faces.
 
-use super::curve::Piece;
-use super::{Quick, Solid, SolidFace, outline};
+use super::curve::SmoothPiece;
+use super::{Quick, SketchSolid, SolidFace, outline};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, triangulate};
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 
-impl<T: Real> Solid<T> {
+impl<T: Real> SketchSolid<T> {
     /// Chords per edge: as curves ask, else as `usual` says; both ends of a patch agree.
-    fn chords(&self, usual: &dyn Fn(&Piece<T>) -> usize) -> Vec<usize> {
+    fn chords(&self, usual: &dyn Fn(&SmoothPiece<T>) -> usize) -> Vec<usize> {
         let mut chords: Vec<usize> = (self.edges.iter())
             .map(|e| match (e.piece, e.curve.and_then(|c| self.steps.get(&c))) {
                 (None, _) => 1,
@@ -196,12 +196,12 @@ fn mesh_from<T: Real>(places: Vec<Vec3<T>>, parts: Vec<(String, Vec<[u32; 4]>)>)
 }
 
 /// A chord for each 5° of a round curve, 20 for a cubic that is not straight.
-fn by_angle<T: Real>(piece: &Piece<T>) -> usize {
+fn by_angle<T: Real>(piece: &SmoothPiece<T>) -> usize {
     match piece {
-        Piece::Conic { sweep, .. } => {
+        SmoothPiece::Conic { sweep, .. } => {
             let n = (sweep.re().abs().to_degrees() / 5.0 - 1e-9).ceil();
             if n.is_finite() { (n as usize).clamp(1, 720) } else { 1 }
         }
-        Piece::Cubic(_) => 20,
+        SmoothPiece::Cubic(_) => 20,
     }
 }

@@ -22,12 +22,12 @@ pub mod surface;
 mod turn;
 pub mod validity;
 
-use crate::solid::curve::{Curve, CurveFault, CurveKind, Piece, Traced, trace};
-use crate::solid::mass::{Mass, Side, Sums};
-use crate::{FaceId, Layout, Object, Planes, PointId};
+use crate::solid::curve::{Curve, CurveFault, CurveKind, SmoothPiece, Traced, trace};
+use crate::solid::mass::{DirectedEdge, Mass, MassIntegrals};
+use crate::{FaceId, Layout, Planes, PointId, SketchObject};
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-use surface::Surface;
+use surface::FaceSurface;
 
 /// A vertex of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,16 +44,16 @@ pub struct SolidEdge<T> {
     /// Indices of its vertices.
     pub ends: [usize; 2],
     /// Its curve from the first to the second; straight when `None`.
-    pub piece: Option<Piece<T>>,
+    pub piece: Option<SmoothPiece<T>>,
     /// The curve's index in the object.
     pub curve: Option<usize>,
     /// Its points, where it has no closed form: the edge of a body that was combined.
-    pub trace: Option<Trace<T>>,
+    pub trace: Option<IntersectionEdge<T>>,
 }
 
 /// An edge that two surfaces make.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trace<T> {
+pub struct IntersectionEdge<T> {
     /// Points along it, its ends included.
     pub points: Vec<Vec3<T>>,
     /// Gauss's nodes along it: points, and the way along it with the weight.
@@ -66,7 +66,7 @@ pub struct Trace<T> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trim<T> {
     /// Its surface.
-    pub surface: Surface<T>,
+    pub surface: FaceSurface<T>,
     /// The face.
     pub(crate) face: usize,
 }
@@ -123,7 +123,7 @@ pub enum UnbuiltReason {
 
 /// A body bounded by faces, or the faces of a flat figure.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Solid<T> {
+pub struct SketchSolid<T> {
     /// Its vertices; those without edges are left out.
     pub vertices: Vec<Vertex<T>>,
     /// Its edges.
@@ -148,23 +148,27 @@ struct Corner<T> {
     ends: [PointId; 2],
     tangents: [Vec3<T>; 2],
     /// From the first tangent point to the second.
-    piece: Piece<T>,
+    piece: SmoothPiece<T>,
     /// Labels of the tangent points.
     ids: [PointId; 2],
 }
 
 /// The valid body of an object; `None` while positions are undetermined, there are no faces, or it is
 /// not valid ([`feature::body`] says why).
-pub fn solid<T: Real>(object: &Object, planes: &Planes, layout: &Layout<T>) -> Option<Solid<T>> {
+pub fn solid<T: Real>(
+    object: &SketchObject,
+    planes: &Planes,
+    layout: &Layout<T>,
+) -> Option<SketchSolid<T>> {
     feature::body(object, planes, layout).ok()
 }
 
 /// Builds the body of an object, valid or not.
 pub(crate) fn unchecked<T: Real>(
-    object: &Object,
+    object: &SketchObject,
     planes: &Planes,
     layout: &Layout<T>,
-) -> Option<Solid<T>> {
+) -> Option<SketchSolid<T>> {
     if object.faces.is_empty() {
         return None;
     }
@@ -258,13 +262,13 @@ fn pair(a: PointId, b: PointId) -> (PointId, PointId) {
 }
 
 struct Builder<'a, T> {
-    object: &'a Object,
+    object: &'a SketchObject,
     place: Places<'a, T>,
     /// Points that share an edge of a face, where there are curves.
     around: BTreeMap<PointId, BTreeSet<PointId>>,
     corners: BTreeMap<PointId, Corner<T>>,
     /// Edges that become curves: from the lower label to the higher.
-    bent: BTreeMap<(PointId, PointId), (usize, Piece<T>)>,
+    bent: BTreeMap<(PointId, PointId), (usize, SmoothPiece<T>)>,
     curves: BTreeMap<usize, Traced<T>>,
     unbuilt: Vec<UnbuiltCurve>,
     next: u32,
@@ -294,7 +298,7 @@ impl<T: Real> Builder<'_, T> {
         &mut self,
         k: usize,
         edges: &[(PointId, PointId)],
-        pieces: &[Piece<T>],
+        pieces: &[SmoothPiece<T>],
     ) -> Result<(), UnbuiltReason> {
         let drawing = &self.object.drawing;
         for &(p, q) in edges {
@@ -318,7 +322,7 @@ impl<T: Real> Builder<'_, T> {
         at: PointId,
         ends: [PointId; 2],
         tangents: [Vec3<T>; 2],
-        piece: Piece<T>,
+        piece: SmoothPiece<T>,
     ) -> Result<(), UnbuiltReason> {
         if self.corners.contains_key(&at) {
             return Err(UnbuiltReason::Taken(at));
@@ -375,8 +379,12 @@ impl<T: Real> Builder<'_, T> {
             let [pf, p, pt] = [from, at, to].map(|id| self.place.of(id));
             let tangents = [(pf + p) * half, (p + pt) * half];
             let sweep = T::from(0.5 * std::f64::consts::PI);
-            let piece =
-                Piece::Conic { centre, a: tangents[0] - centre, b: tangents[1] - centre, sweep };
+            let piece = SmoothPiece::Conic {
+                centre,
+                a: tangents[0] - centre,
+                b: tangents[1] - centre,
+                sweep,
+            };
             self.corner(k, at, [from, to], tangents, piece)?;
         }
         Ok(())
@@ -421,7 +429,7 @@ impl<T: Real> Builder<'_, T> {
         }
     }
 
-    fn finish(mut self) -> Solid<T> {
+    fn finish(mut self) -> SketchSolid<T> {
         self.drop_unsupported();
         let halves: usize = self
             .object
@@ -471,7 +479,7 @@ impl<T: Real> Builder<'_, T> {
         let steps = (self.object.curves.values().enumerate())
             .filter_map(|(k, c)| Some((k, c.steps?)))
             .collect();
-        Solid {
+        SketchSolid {
             vertices: out.vertices,
             edges: out.edges,
             faces,
@@ -645,9 +653,9 @@ impl<T: Real> Builder<'_, T> {
 /// A hash of small numbers: what they are multiplied by mixes their low bits into the high ones
 /// (Knuth, The Art of Computer Programming, volume 3, section 6.4).
 #[derive(Clone, Copy, Default)]
-struct Mixed(u64);
+struct IndexHasher(u64);
 
-impl std::hash::Hasher for Mixed {
+impl std::hash::Hasher for IndexHasher {
     fn finish(&self) -> u64 {
         self.0 ^ (self.0 >> 32)
     }
@@ -673,7 +681,7 @@ impl std::hash::Hasher for Mixed {
     }
 }
 
-type Quick = std::hash::BuildHasherDefault<Mixed>;
+type Quick = std::hash::BuildHasherDefault<IndexHasher>;
 
 /// Vertices and edges, each made once.
 struct Assembly<T> {
@@ -692,7 +700,7 @@ impl<T: Real> Assembly<T> {
         })
     }
 
-    fn edge(&mut self, ends: [usize; 2], bent: Option<(usize, Piece<T>)>) -> usize {
+    fn edge(&mut self, ends: [usize; 2], bent: Option<(usize, SmoothPiece<T>)>) -> usize {
         let key = (ends[0].min(ends[1]), ends[0].max(ends[1]), bent.is_some());
         *self.known.entry(key).or_insert_with(|| {
             let (curve, piece) = bent.unzip();
@@ -702,12 +710,12 @@ impl<T: Real> Assembly<T> {
     }
 }
 
-impl<T: Real> Solid<T> {
+impl<T: Real> SketchSolid<T> {
     /// The curve of an edge in the direction it is run.
-    pub(crate) fn piece(&self, (e, forward): (usize, bool)) -> Piece<T> {
+    pub(crate) fn piece(&self, (e, forward): (usize, bool)) -> SmoothPiece<T> {
         let edge = &self.edges[e];
         let [p, q] = edge.ends.map(|v| self.vertices[v].at);
-        let piece = edge.piece.unwrap_or_else(|| Piece::straight(p, q));
+        let piece = edge.piece.unwrap_or_else(|| SmoothPiece::straight(p, q));
         if forward { piece } else { piece.reversed() }
     }
 
@@ -740,7 +748,7 @@ impl<T: Real> Solid<T> {
     pub fn mass(&self) -> Mass<T> {
         let n = self.vertices.len().max(1) as f64;
         let centre = self.vertices.iter().fold(Vec3::<f64>::zero(), |s, v| s + v.at.re()) / n;
-        let mut sums = Sums::new(Vec3::lifted(centre));
+        let mut sums = MassIntegrals::new(Vec3::lifted(centre));
         for (f, face) in self.faces.iter().enumerate() {
             if face.ruled {
                 self.ruled_sums(face, &mut sums);
@@ -764,10 +772,10 @@ impl<T: Real> Solid<T> {
                         (Some(trace), _) => {
                             let sign = T::from(if forward { 1.0 } else { -1.0 });
                             let turned = trace.nodes.iter().map(|n| (n.0, n.1 * sign));
-                            Side::Nodes(turned.collect())
+                            DirectedEdge::Nodes(turned.collect())
                         }
-                        (None, Some(_)) => Side::Piece(self.piece((e, forward))),
-                        (None, None) => Side::Straight,
+                        (None, Some(_)) => DirectedEdge::Piece(self.piece((e, forward))),
+                        (None, None) => DirectedEdge::Straight,
                     };
                     (p, q, side)
                 })
@@ -800,7 +808,7 @@ impl<T: Real> Solid<T> {
     }
 
     /// The surface of a round face.
-    pub(crate) fn surface(&self, face: usize) -> Option<Surface<T>> {
+    pub(crate) fn surface(&self, face: usize) -> Option<FaceSurface<T>> {
         let f = &self.faces[face];
         if let Some(trim) = f.trim {
             return Some(self.trims[trim].surface);
@@ -811,14 +819,14 @@ impl<T: Real> Solid<T> {
             [_, _, far, _] => self.piece(far).reversed(),
             [_, out, _] => {
                 let apex = self.vertices[self.edges[out.0].ends[usize::from(out.1)]].at;
-                Piece::straight(apex, apex)
+                SmoothPiece::straight(apex, apex)
             }
             _ => return None,
         };
-        Some(Surface::Ruled { near, far })
+        Some(FaceSurface::Ruled { near, far })
     }
 
-    fn ruled_sums(&self, face: &SolidFace, sums: &mut Sums<T>) {
+    fn ruled_sums(&self, face: &SolidFace, sums: &mut MassIntegrals<T>) {
         let cycle = &face.loops[0];
         let near = self.piece(cycle[0]);
         match cycle[..] {

@@ -1,8 +1,8 @@
 //! Bodies as plane facets, for arrangements and meshes.
 
 use super::combine::LoopsAndTags;
-use super::surface::Surface;
-use super::{Solid, SolidFace};
+use super::surface::FaceSurface;
+use super::{SketchSolid, SolidFace};
 use crate::solid::arrangement::INNER;
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
@@ -14,7 +14,7 @@ pub(super) struct Outline<T> {
     strips: Vec<Vec<LoopsAndTags>>,
 }
 
-impl<T: Real> Solid<T> {
+impl<T: Real> SketchSolid<T> {
     /// The facets of the body, with a chord for each 5° of round edges.
     pub(super) fn outline(&self) -> Outline<T> {
         if let Some(facets) = &self.facets {
@@ -94,12 +94,12 @@ impl<T: Real> Solid<T> {
 
 impl<T: Real> Outline<T> {
     /// The facets of a round face.
-    pub fn strips(&self, _: &Solid<T>, face: usize) -> Vec<LoopsAndTags> {
+    pub fn strips(&self, _: &SketchSolid<T>, face: usize) -> Vec<LoopsAndTags> {
         self.strips[face].clone()
     }
 
     /// The loops of a plane face with the edge of each side.
-    pub fn loops(&self, body: &Solid<T>, face: usize) -> LoopsAndTags {
+    pub fn loops(&self, body: &SketchSolid<T>, face: usize) -> LoopsAndTags {
         let SolidFace { loops, .. } = &body.faces[face];
         let mut points = Vec::new();
         let mut tags = Vec::new();
@@ -129,7 +129,7 @@ fn directed(chains: &[Vec<u32>], (e, forward): (usize, bool)) -> Vec<u32> {
 /// The facets of a patch bounded by its parameter lines: quads between the first edge of its cycle and
 /// the third, or triangles to the point that a cycle of three edges ends in.
 pub(super) fn patch<T: Real>(
-    surface: &Surface<T>,
+    surface: &FaceSurface<T>,
     cycle: &[(usize, bool)],
     run: &dyn Fn((usize, bool)) -> Vec<u32>,
     places: &mut Vec<Vec3<T>>,
@@ -187,7 +187,12 @@ struct Grid {
 }
 
 impl Grid {
-    fn of<T: Real>(surface: &Surface<T>, places: &[Vec3<T>], near: &[u32], left: &[u32]) -> Grid {
+    fn of<T: Real>(
+        surface: &FaceSurface<T>,
+        places: &[Vec3<T>],
+        near: &[u32],
+        left: &[u32],
+    ) -> Grid {
         let place = |v: u32| places[v as usize].re();
         let corner = |u: f64, v: f64| surface.jet(T::from(u), T::from(v))[0].re();
         // The corners of the square that the patch's own corners are nearest to.

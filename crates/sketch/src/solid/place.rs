@@ -1,8 +1,8 @@
 //! Bodies moved, turned, mirrored and scaled.
 
-use super::Solid;
-use super::curve::Piece;
-use super::surface::Surface;
+use super::SketchSolid;
+use super::curve::SmoothPiece;
+use super::surface::FaceSurface;
 use moldloft_num::{Axis as Line, Real, Vec3};
 
 /// A similarity: rotation, mirror image, scale and shift.
@@ -78,42 +78,42 @@ impl<T: Real> Similarity<T> {
         a.cross(b).dot(c).re() < 0.0
     }
 
-    fn piece(&self, piece: &Piece<T>) -> Piece<T> {
+    fn piece(&self, piece: &SmoothPiece<T>) -> SmoothPiece<T> {
         match *piece {
-            Piece::Conic { centre, a, b, sweep } => Piece::Conic {
+            SmoothPiece::Conic { centre, a, b, sweep } => SmoothPiece::Conic {
                 centre: self.point(centre),
                 a: self.vector(a),
                 b: self.vector(b),
                 sweep,
             },
-            Piece::Cubic(points) => Piece::Cubic(points.map(|p| self.point(p))),
+            SmoothPiece::Cubic(points) => SmoothPiece::Cubic(points.map(|p| self.point(p))),
         }
     }
 
-    fn surface(&self, surface: &Surface<T>) -> Surface<T> {
+    fn surface(&self, surface: &FaceSurface<T>) -> FaceSurface<T> {
         match *surface {
-            Surface::Plane { at, normal } => Surface::Plane {
+            FaceSurface::Plane { at, normal } => FaceSurface::Plane {
                 at: self.point(at),
                 normal: self.vector(normal).normalized().unwrap_or(normal),
             },
-            Surface::Ruled { near, far } => {
-                Surface::Ruled { near: self.piece(&near), far: self.piece(&far) }
+            FaceSurface::Ruled { near, far } => {
+                FaceSurface::Ruled { near: self.piece(&near), far: self.piece(&far) }
             }
-            Surface::Turned { centre, axis, profile, sweep } => {
+            FaceSurface::Turned { centre, axis, profile, sweep } => {
                 // A mirror turns the sense of rotations.
                 let image = self.vector(axis).normalized().unwrap_or(axis);
                 let axis = if self.mirrors() { -image } else { image };
                 let (centre, profile) = (self.point(centre), self.piece(&profile));
-                Surface::Turned { centre, axis, profile, sweep }
+                FaceSurface::Turned { centre, axis, profile, sweep }
             }
         }
     }
 }
 
-impl<T: Real> Solid<T> {
+impl<T: Real> SketchSolid<T> {
     /// The image of the body.
     #[must_use]
-    pub fn placed(&self, place: &Similarity<T>) -> Solid<T> {
+    pub fn placed(&self, place: &Similarity<T>) -> SketchSolid<T> {
         let mut out = self.clone();
         out.curves.clear();
         out.vertices.iter_mut().for_each(|v| v.at = place.point(v.at));

@@ -1,7 +1,7 @@
 //! The round faces of a solid, as an implicit set of it needs them.
 
-use crate::Solid;
-use crate::solid::curve::Piece;
+use crate::SketchSolid;
+use crate::solid::curve::SmoothPiece;
 use moldloft_num::{Real, Vec3};
 
 /// A face that goes straight from an arc to a copy of it, shifted and scaled: part of a cylinder, a cone
@@ -24,7 +24,7 @@ pub struct RoundFace<T> {
 /// Parts of a size below which two points are one.
 const SAME: f64 = 1e-9;
 
-impl<T: Real> Solid<T> {
+impl<T: Real> SketchSolid<T> {
     /// The faces that are parts of cylinders and cones. Other ruled faces, such as those between two
     /// cubics, are not among them.
     pub fn rounds(&self) -> Vec<RoundFace<T>> {
@@ -48,10 +48,10 @@ impl<T: Real> Solid<T> {
 }
 
 /// A piece as part of an ellipse or a parabola.
-fn profile<T: Real>(piece: &Piece<T>) -> Option<([Vec3<T>; 3], T)> {
+fn profile<T: Real>(piece: &SmoothPiece<T>) -> Option<([Vec3<T>; 3], T)> {
     match *piece {
-        Piece::Conic { centre, a, b, sweep } => Some(([centre, a, b], sweep)),
-        Piece::Cubic([p, q, r, e]) => {
+        SmoothPiece::Conic { centre, a, b, sweep } => Some(([centre, a, b], sweep)),
+        SmoothPiece::Cubic([p, q, r, e]) => {
             // A quadratic, raised to a cubic, has its middle point on both end tangents.
             let (m, n) =
                 ((q * T::from(3.0) - p) * T::from(0.5), (r * T::from(3.0) - e) * T::from(0.5));
@@ -63,7 +63,7 @@ fn profile<T: Real>(piece: &Piece<T>) -> Option<([Vec3<T>; 3], T)> {
 }
 
 /// Shift and scale of a copy.
-fn copy<T: Real>([p, q, r]: &[Vec3<T>; 3], sweep: T, far: &Piece<T>) -> Option<(Vec3<T>, T)> {
+fn copy<T: Real>([p, q, r]: &[Vec3<T>; 3], sweep: T, far: &SmoothPiece<T>) -> Option<(Vec3<T>, T)> {
     let ([u, v, w], other) = profile(far)?;
     if (sweep - other).re().abs() > SAME {
         return None;

@@ -1,12 +1,12 @@
 //! Surfaces of faces, and points where surfaces and curves meet, with derivatives.
 
-use crate::solid::curve::Piece;
+use crate::solid::curve::SmoothPiece;
 use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3, solve_dense};
 
 /// The surface of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Surface<T> {
+pub enum FaceSurface<T> {
     /// The plane through a point with a normal, outward where a face has it.
     Plane {
         /// A point of it.
@@ -17,9 +17,9 @@ pub enum Surface<T> {
     /// Straight lines from `near(u)` to `far(u)`.
     Ruled {
         /// The curve v = 0.
-        near: Piece<T>,
+        near: SmoothPiece<T>,
         /// The curve v = 1.
-        far: Piece<T>,
+        far: SmoothPiece<T>,
     },
     /// A profile turned about an axis, right-handed, by u `sweep`.
     Turned {
@@ -28,7 +28,7 @@ pub enum Surface<T> {
         /// Its unit direction.
         axis: Vec3<T>,
         /// The curve u = 0, over v.
-        profile: Piece<T>,
+        profile: SmoothPiece<T>,
         /// The angle from u = 0 to u = 1, in radians.
         sweep: T,
     },
@@ -37,16 +37,16 @@ pub enum Surface<T> {
 /// A point of a surface with the derivatives by u and v.
 pub(crate) type Jet<T> = [Vec3<T>; 3];
 
-impl<T: Real> Surface<T> {
+impl<T: Real> FaceSurface<T> {
     /// The point (u, v) with derivatives. Planes have no parameters.
     pub(crate) fn jet(&self, u: T, v: T) -> Jet<T> {
         match self {
-            Surface::Plane { at, .. } => [*at, Vec3::zero(), Vec3::zero()],
-            Surface::Ruled { near, far } => {
+            FaceSurface::Plane { at, .. } => [*at, Vec3::zero(), Vec3::zero()],
+            FaceSurface::Ruled { near, far } => {
                 let (a, b) = (near.at(u), far.at(u));
                 [a.lerp(b, v), near.velocity(u).lerp(far.velocity(u), v), b - a]
             }
-            Surface::Turned { centre, axis, profile, sweep } => {
+            FaceSurface::Turned { centre, axis, profile, sweep } => {
                 let (c, s) = ((u * *sweep).cos(), (u * *sweep).sin());
                 let turned =
                     |d: Vec3<T>| d * c + axis.cross(d) * s + *axis * (axis.dot(d) * (-c + 1.0));
@@ -101,7 +101,7 @@ impl<T: Real> Surface<T> {
     /// theorem, with integrals along v by Gauss's rule.
     pub(crate) fn sweep(&self, nodes: &[[T; 3]], mut add: impl FnMut(Vec3<T>, Vec3<T>, T)) {
         let start = T::from(self.pole());
-        let parts = if matches!(self, Surface::Ruled { .. }) { 1 } else { 3 };
+        let parts = if matches!(self, FaceSurface::Ruled { .. }) { 1 } else { 3 };
         for &[u, v, du] in nodes {
             let length = v - start;
             for part in 0..parts {
@@ -119,11 +119,11 @@ impl<T: Real> Surface<T> {
 
 /// Something that a point lies on.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum On<'a, T> {
+pub(crate) enum Carrier<'a, T> {
     /// A surface.
-    Surface(&'a Surface<T>),
+    Surface(&'a FaceSurface<T>),
     /// A curve.
-    Curve(&'a Piece<T>),
+    Curve(&'a SmoothPiece<T>),
 }
 
 /// A point with its parameters on what it lies on.
@@ -141,15 +141,15 @@ pub(crate) struct Met<T> {
 /// The point near `guess` that lies on all of `on`, which must leave it no freedom. `None` when Newton's
 /// method does not arrive, as where surfaces touch.
 pub(crate) fn meet<T: Real>(
-    on: &[On<'_, T>],
+    on: &[Carrier<'_, T>],
     guess: Vec3,
     start: &[[f64; 2]],
     scale: f64,
 ) -> Option<Met<T>> {
-    let unknowns = |o: &On<'_, T>| match o {
-        On::Surface(Surface::Plane { .. }) => 0,
-        On::Surface(_) => 2,
-        On::Curve(_) => 1,
+    let unknowns = |o: &Carrier<'_, T>| match o {
+        Carrier::Surface(FaceSurface::Plane { .. }) => 0,
+        Carrier::Surface(_) => 2,
+        Carrier::Curve(_) => 1,
     };
     let n = 3 + on.iter().map(unknowns).sum::<usize>();
     let rows: usize = on.iter().map(|o| if unknowns(o) == 0 { 1 } else { 3 }).sum();
@@ -166,14 +166,14 @@ pub(crate) fn meet<T: Real>(
         let (mut row, mut column) = (0, 3);
         for o in on {
             match o {
-                On::Surface(Surface::Plane { at, normal }) => {
+                Carrier::Surface(FaceSurface::Plane { at, normal }) => {
                     right[row] = normal.dot(p - *at);
                     for k in 0..3 {
                         matrix[row * n + k] = normal[k];
                     }
                     row += 1;
                 }
-                On::Surface(surface) => {
+                Carrier::Surface(surface) => {
                     let [s, du, dv] = surface.jet(x[column], x[column + 1]);
                     for k in 0..3 {
                         right[row] = p[k] - s[k];
@@ -184,7 +184,7 @@ pub(crate) fn meet<T: Real>(
                     }
                     column += 2;
                 }
-                On::Curve(piece) => {
+                Carrier::Curve(piece) => {
                     let (s, ds) = (piece.at(x[column]), piece.velocity(x[column]));
                     for k in 0..3 {
                         right[row] = p[k] - s[k];

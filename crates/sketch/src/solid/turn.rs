@@ -1,22 +1,26 @@
 //! Bodies of revolution: a section turned about a line in its plane.
 
-use super::curve::Piece;
-use super::surface::Surface;
-use super::{Solid, SolidEdge, SolidFace, Trim, Vertex};
+use super::curve::SmoothPiece;
+use super::surface::FaceSurface;
+use super::{SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
 use crate::PointId;
 use moldloft_num::{Axis as Line, Real, Vec3};
 use std::collections::HashMap;
 
 /// A directed side of the section: its ends as numbers, and its curve.
-struct Side<T> {
+struct SectionSide<T> {
     ends: [usize; 2],
-    piece: Piece<T>,
+    piece: SmoothPiece<T>,
     straight: bool,
 }
 
 /// Turns a flat body about a line by an angle in radians; a full turn when it is 2π or more. `None` when
 /// the line has no length or the section nothing on its side.
-pub fn turned<T: Real>(section: &Solid<T>, line: [Vec3<T>; 2], angle: T) -> Option<Solid<T>> {
+pub fn turned<T: Real>(
+    section: &SketchSolid<T>,
+    line: [Vec3<T>; 2],
+    angle: T,
+) -> Option<SketchSolid<T>> {
     const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
     let axis = Line::through(line[0], line[1])?;
     let full = angle.re().abs() >= 4.0 * QUARTER * (1.0 - 1e-12);
@@ -30,7 +34,7 @@ pub fn turned<T: Real>(section: &Solid<T>, line: [Vec3<T>; 2], angle: T) -> Opti
     // Sides that have the section on one side only.
     let mut uses = vec![0; section.edges.len()];
     section.faces.iter().flat_map(|f| f.loops.iter().flatten()).for_each(|h| uses[h.0] += 1);
-    let mut sides: Vec<Side<T>> = Vec::new();
+    let mut sides: Vec<SectionSide<T>> = Vec::new();
     for &(e, forward) in section.faces.iter().flat_map(|f| f.loops.iter().flatten()) {
         if uses[e] != 1 {
             continue;
@@ -43,14 +47,14 @@ pub fn turned<T: Real>(section: &Solid<T>, line: [Vec3<T>; 2], angle: T) -> Opti
             let [first, second] = halves(&piece);
             at.push(piece.at(T::from(0.5)));
             let middle = at.len() - 1;
-            sides.push(Side { ends: [ends[0], middle], piece: first, straight });
-            sides.push(Side { ends: [middle, ends[1]], piece: second, straight });
+            sides.push(SectionSide { ends: [ends[0], middle], piece: first, straight });
+            sides.push(SectionSide { ends: [middle, ends[1]], piece: second, straight });
         } else {
-            sides.push(Side { ends, piece, straight });
+            sides.push(SectionSide { ends, piece, straight });
         }
     }
     let rings = if full { steps } else { steps + 1 };
-    let mut out = Solid::<T>::default();
+    let mut out = SketchSolid::<T>::default();
     let mut vertex: HashMap<(usize, usize), usize> = HashMap::new();
     let turn = |k: usize, p: Vec3<T>| axis.rotated(p, step * k as f64);
     for ring in 0..rings {
@@ -68,17 +72,17 @@ pub fn turned<T: Real>(section: &Solid<T>, line: [Vec3<T>; 2], angle: T) -> Opti
     }
     let mut copy: HashMap<(usize, usize), usize> = HashMap::new();
     let mut arc: HashMap<(usize, usize), usize> = HashMap::new();
-    let turned_piece = |piece: &Piece<T>, k: usize| match *piece {
-        Piece::Conic { centre, a, b, sweep } => {
+    let turned_piece = |piece: &SmoothPiece<T>, k: usize| match *piece {
+        SmoothPiece::Conic { centre, a, b, sweep } => {
             let c = turn(k, centre);
-            Piece::Conic {
+            SmoothPiece::Conic {
                 centre: c,
                 a: turn(k, centre + a) - c,
                 b: turn(k, centre + b) - c,
                 sweep,
             }
         }
-        Piece::Cubic(points) => Piece::Cubic(points.map(|p| turn(k, p))),
+        SmoothPiece::Cubic(points) => SmoothPiece::Cubic(points.map(|p| turn(k, p))),
     };
     for ring in 0..rings {
         for (s, side) in sides.iter().enumerate() {
@@ -105,9 +109,9 @@ pub fn turned<T: Real>(section: &Solid<T>, line: [Vec3<T>; 2], angle: T) -> Opti
             let centre = axis.foot(p);
             let a = from - centre;
             arc.insert((v, k), out.edges.len());
-            let piece = Piece::Conic { centre, a, b: axis.direction.cross(a), sweep: step };
+            let piece = SmoothPiece::Conic { centre, a, b: axis.direction.cross(a), sweep: step };
             let piece = if step.re() < 0.0 {
-                Piece::Conic { centre, a, b: -axis.direction.cross(a), sweep: -step }
+                SmoothPiece::Conic { centre, a, b: -axis.direction.cross(a), sweep: -step }
             } else {
                 piece
             };
@@ -133,7 +137,7 @@ pub fn turned<T: Real>(section: &Solid<T>, line: [Vec3<T>; 2], angle: T) -> Opti
             let trim = if side.straight && across {
                 None
             } else {
-                let surface = Surface::Turned {
+                let surface = FaceSurface::Turned {
                     centre: axis.point,
                     axis: axis.direction,
                     profile: turned_piece(&side.piece, k),
@@ -163,11 +167,11 @@ pub fn turned<T: Real>(section: &Solid<T>, line: [Vec3<T>; 2], angle: T) -> Opti
 
 /// The section at both ends of a part of a turn.
 fn caps<T: Real>(
-    section: &Solid<T>,
-    sides: &[Side<T>],
+    section: &SketchSolid<T>,
+    sides: &[SectionSide<T>],
     copy: &HashMap<(usize, usize), usize>,
     steps: usize,
-    out: &mut Solid<T>,
+    out: &mut SketchSolid<T>,
 ) {
     // All faces of the section as one: its sides in the order of their ends.
     let _ = section;
@@ -207,25 +211,26 @@ fn caps<T: Real>(
 }
 
 /// A piece as two of equal ranges.
-fn halves<T: Real>(piece: &Piece<T>) -> [Piece<T>; 2] {
+fn halves<T: Real>(piece: &SmoothPiece<T>) -> [SmoothPiece<T>; 2] {
     match *piece {
-        Piece::Conic { centre, a, b, sweep } => {
+        SmoothPiece::Conic { centre, a, b, sweep } => {
             let half = sweep * 0.5;
             let (c, s) = (half.cos(), half.sin());
-            let second = Piece::Conic { centre, a: a * c + b * s, b: b * c - a * s, sweep: half };
-            [Piece::Conic { centre, a, b, sweep: half }, second]
+            let second =
+                SmoothPiece::Conic { centre, a: a * c + b * s, b: b * c - a * s, sweep: half };
+            [SmoothPiece::Conic { centre, a, b, sweep: half }, second]
         }
-        Piece::Cubic([p, q, r, e]) => {
+        SmoothPiece::Cubic([p, q, r, e]) => {
             let half = T::from(0.5);
             let (x, y, z) = (p.lerp(q, half), q.lerp(r, half), r.lerp(e, half));
             let (u, v) = (x.lerp(y, half), y.lerp(z, half));
             let m = u.lerp(v, half);
-            [Piece::Cubic([p, x, u, m]), Piece::Cubic([m, v, z, e])]
+            [SmoothPiece::Cubic([p, x, u, m]), SmoothPiece::Cubic([m, v, z, e])]
         }
     }
 }
 
-impl<T: Real> Solid<T> {
+impl<T: Real> SketchSolid<T> {
     /// Leaves out edges, and the vertices that only they have.
     fn drop_unused(&mut self, used: &[bool]) {
         let mut number = vec![usize::MAX; used.len()];

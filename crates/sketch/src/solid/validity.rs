@@ -6,7 +6,7 @@
 //! half out of the body becomes a notch, one that has left is gone.
 
 use super::combine::{CombineError, newell, resolved};
-use super::{Solid, SolidFace};
+use super::{SketchSolid, SolidFace};
 use crate::FaceId;
 use crate::PointId;
 use moldloft_num::union_find::UnionFind;
@@ -37,7 +37,7 @@ pub enum Flaw {
 ///
 /// # Errors
 /// [`Flaw`], with the place.
-pub fn valid<T: Real>(mut body: Solid<T>) -> Result<Solid<T>, Flaw> {
+pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, Flaw> {
     if body.vertices.iter().any(|v| !v.at.is_finite()) {
         return Err(Flaw::NotFinite);
     }
@@ -69,7 +69,7 @@ pub fn valid<T: Real>(mut body: Solid<T>) -> Result<Solid<T>, Flaw> {
     }
 }
 
-impl<T: Real> Solid<T> {
+impl<T: Real> SketchSolid<T> {
     /// All faces seen from their other sides.
     pub(super) fn turn_over(&mut self) {
         for face in &mut self.faces {
@@ -88,7 +88,7 @@ impl<T: Real> Solid<T> {
     }
 
     /// Labels of the old body for vertices at its places; the others go on counting.
-    fn named_after(mut self, old: &Solid<T>) -> Solid<T> {
+    fn named_after(mut self, old: &SketchSolid<T>) -> SketchSolid<T> {
         let size = old.vertices.iter().map(|v| v.at.re().norm()).fold(0.0, f64::max);
         let mut next = old.vertices.iter().map(|v| v.id.0).max().unwrap_or(0);
         let mut taken: Vec<PointId> = Vec::new();
@@ -110,7 +110,7 @@ impl<T: Real> Solid<T> {
     }
 }
 
-fn open_edges<T>(body: &Solid<T>) -> Vec<[PointId; 2]> {
+fn open_edges<T>(body: &SketchSolid<T>) -> Vec<[PointId; 2]> {
     let mut count = vec![[0u32; 2]; body.edges.len()];
     for &(e, forward) in body.faces.iter().flat_map(|f| f.loops.iter().flatten()) {
         count[e][usize::from(forward)] += 1;
@@ -120,7 +120,7 @@ fn open_edges<T>(body: &Solid<T>) -> Vec<[PointId; 2]> {
 }
 
 /// A facet for the search of crossings.
-struct Wall {
+struct CrossingFacet {
     normal: Vec3,
     at: Vec3,
     loops: Vec<Vec<u32>>,
@@ -129,14 +129,14 @@ struct Wall {
 }
 
 /// Whether any side may cross a facet, or an edge has no length.
-fn suspect<T: Real>(body: &Solid<T>) -> bool {
+fn suspect<T: Real>(body: &SketchSolid<T>) -> bool {
     let outline = body.outline();
     let points: Vec<Vec3> = outline.points.iter().map(|p| p.re()).collect();
     let [low, high] = bounds(points.iter().copied());
     let size = (high - low).norm();
     let tolerance = 1e-9 * size;
     let at = |v: u32| points[v as usize];
-    let mut walls: Vec<Wall> = Vec::new();
+    let mut walls: Vec<CrossingFacet> = Vec::new();
     let mut sides: Vec<(u32, u32)> = Vec::new();
     let mut put = |loops: Vec<Vec<u32>>| -> bool {
         let ring: Vec<Vec3> = loops[0].iter().map(|&v| at(v)).collect();
@@ -148,7 +148,7 @@ fn suspect<T: Real>(body: &Solid<T>) -> bool {
             }));
         }
         let [low, high] = bounds(loops.iter().flatten().map(|&v| at(v)));
-        walls.push(Wall { normal, at: ring[0], loops, low, high });
+        walls.push(CrossingFacet { normal, at: ring[0], loops, low, high });
         true
     };
     for (f, face) in body.faces.iter().enumerate() {
@@ -194,7 +194,7 @@ fn suspect<T: Real>(body: &Solid<T>) -> bool {
     found
 }
 
-fn own_side(wall: &Wall, a: u32, b: u32) -> bool {
+fn own_side(wall: &CrossingFacet, a: u32, b: u32) -> bool {
     wall.loops.iter().any(|c| {
         (0..c.len()).any(|k| {
             let pair = (c[k], c[(k + 1) % c.len()]);
@@ -216,7 +216,7 @@ fn flat(normal: Vec3, p: Vec3) -> [f64; 2] {
 }
 
 /// Whether a point of the plane is in a wall or on its border.
-fn covers(wall: &Wall, at: &dyn Fn(u32) -> Vec3, p: Vec3, tolerance: f64) -> bool {
+fn covers(wall: &CrossingFacet, at: &dyn Fn(u32) -> Vec3, p: Vec3, tolerance: f64) -> bool {
     let [x, y] = flat(wall.normal, p);
     let mut turns = 0;
     for c in &wall.loops {
@@ -237,7 +237,12 @@ fn covers(wall: &Wall, at: &dyn Fn(u32) -> Vec3, p: Vec3, tolerance: f64) -> boo
 }
 
 /// Whether a side in the plane of a wall runs through its inside.
-fn overlaps(wall: &Wall, at: &dyn Fn(u32) -> Vec3, [p, q]: [Vec3; 2], tolerance: f64) -> bool {
+fn overlaps(
+    wall: &CrossingFacet,
+    at: &dyn Fn(u32) -> Vec3,
+    [p, q]: [Vec3; 2],
+    tolerance: f64,
+) -> bool {
     let d = q - p;
     let length = d.norm();
     let u = d / length;
@@ -297,7 +302,7 @@ enum Shells {
 }
 
 /// The direction of the shells that hang together by edges.
-fn shells<T: Real>(body: &Solid<T>) -> Shells {
+fn shells<T: Real>(body: &SketchSolid<T>) -> Shells {
     let mut parts = UnionFind::new(body.faces.len());
     let mut first: BTreeMap<usize, usize> = BTreeMap::new();
     for (f, face) in body.faces.iter().enumerate() {
@@ -355,7 +360,7 @@ fn solid_angle(corners: &[Vec3; 3], p: Vec3) -> f64 {
 }
 
 /// A cycle of a plane face that crosses itself; in a section also two cycles that cross.
-fn crossed_cycle<T: Real>(body: &Solid<T>, between: bool) -> Option<Flaw> {
+fn crossed_cycle<T: Real>(body: &SketchSolid<T>, between: bool) -> Option<Flaw> {
     let outline = body.outline();
     let at = |v: u32| outline.points[v as usize].re();
     let [low, high] = bounds(outline.points.iter().map(|p| p.re()));

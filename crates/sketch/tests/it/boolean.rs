@@ -3,15 +3,15 @@
 use crate::common::*;
 use moldloft_sketch::*;
 
-fn run(s: &mut Session, text: &str) -> Vec<Reply> {
+fn run(s: &mut SketchSession, text: &str) -> Vec<CommandReply> {
     let replies = s.run_text(text);
-    let errors: Vec<&Reply> = replies.iter().filter(|r| r.is_error()).collect();
+    let errors: Vec<&CommandReply> = replies.iter().filter(|r| r.is_error()).collect();
     assert!(errors.is_empty(), "{text}: {errors:?}");
     replies
 }
 
-fn boxes(places: &[(&str, [f64; 3], [f64; 3])]) -> Session {
-    let mut s = Session::new();
+fn boxes(places: &[(&str, [f64; 3], [f64; 3])]) -> SketchSession {
+    let mut s = SketchSession::new();
     for &(name, size, at) in places {
         s.insert(with_faces(cuboid(size)));
         run(&mut s, &format!("RENAME A TO {name}; MOVE {name} {} {} {}", at[0], at[1], at[2]));
@@ -19,7 +19,7 @@ fn boxes(places: &[(&str, [f64; 3], [f64; 3])]) -> Session {
     s
 }
 
-fn check(s: &mut Session, name: &str, volume: f64, area: f64) {
+fn check(s: &mut SketchSession, name: &str, volume: f64, area: f64) {
     let o = s.objects().into_iter().find(|o| o.name == name).unwrap();
     assert!((o.volume.unwrap() - volume).abs() < 1e-9 * volume, "{:?} for {volume}", o.volume);
     assert!((o.area.unwrap() - area).abs() < 1e-9 * area, "{:?} for {area}", o.area);
@@ -76,14 +76,15 @@ fn touching_and_oblique_bodies() {
     check(&mut s, "U", 24.0, 2.0 * (12.0 + 8.0 + 6.0));
     assert_eq!(s.solid("U").unwrap().faces.len(), 6);
     // A pyramid through a plate: oblique lines, closed form by similar sections.
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     let mut pyramid = case_named("T8").object;
     pyramid.name = "PYR".into();
     s.insert(with_faces(pyramid));
     s.insert(with_faces(cuboid([6.0, 4.0, 2.5])));
     run(&mut s, "COMMON PYR A INTO F; CUT PYR A INTO TIP; UNION PYR A INTO ALL");
-    let volume =
-        |s: &mut Session, n: &str| s.objects().into_iter().find(|o| o.name == n).unwrap().volume;
+    let volume = |s: &mut SketchSession, n: &str| {
+        s.objects().into_iter().find(|o| o.name == n).unwrap().volume
+    };
     let close = |a: Option<f64>, b: f64| assert!((a.unwrap() - b).abs() < 1e-9, "{a:?} for {b}");
     close(volume(&mut s, "F"), 35.0);
     close(volume(&mut s, "TIP"), 5.0);
@@ -95,7 +96,7 @@ fn what_cannot_be_combined_is_refused() {
     let mut s = boxes(&[("L", [2.0, 3.0, 2.0], [0.0; 3]), ("R", [2.0, 3.0, 2.0], [9.0, 0.0, 0.0])]);
     let mut code = |line: &str, code: Option<u16>| {
         let before = s.objects().len();
-        let reply = s.run_line(line).into_iter().find(Reply::is_error);
+        let reply = s.run_line(line).into_iter().find(CommandReply::is_error);
         let reply = reply.unwrap_or_else(|| panic!("{line} was accepted"));
         assert_eq!(reply.code, code, "{line}: {}", reply.text);
         assert_eq!(s.objects().len(), before);

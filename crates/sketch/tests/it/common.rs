@@ -7,7 +7,7 @@ use moldloft_sketch::*;
 
 pub struct Case {
     pub id: String,
-    pub object: Object,
+    pub object: SketchObject,
     pub counts: [usize; 3],
     pub xyz: Vec<Vec3>,
     pub faces: Vec<Face>,
@@ -30,42 +30,46 @@ fn cycle(json: &Json) -> Vec<PointId> {
 }
 
 /// A drawing with points but no lines.
-pub fn drawn(axes: [f64; 3], points: &[(f64, f64)]) -> Object {
-    let mut object = Object::new("A", None);
+pub fn drawn(axes: [f64; 3], points: &[(f64, f64)]) -> SketchObject {
+    let mut object = SketchObject::new("A", None);
     let drawing = object.draw();
     drawing.projection = Projection { angle_deg: axes, scale: [1.0; 3] };
     for (k, &(u, v)) in points.iter().enumerate() {
-        drawing.points.insert(PointId(k as u32 + 1), Point { u, v });
+        drawing.points.insert(PointId(k as u32 + 1), DrawnPoint { u, v });
     }
     object
 }
 
-pub fn add_lines(object: &mut Object, kind: &str, pairs: &str) {
+pub fn add_lines(object: &mut SketchObject, kind: &str, pairs: &str) {
     let drawing = object.draw();
     for pair in pairs.split_whitespace() {
         let (p, q) = pair.split_once('-').unwrap();
         let [p, q] = [p, q].map(|x| PointId(x.parse().unwrap()));
         let free = drawing.letters.free(kind, drawing.section);
         let id = drawing.next_line();
-        let line = Line { p, q, free, source: Source::User, confidence: 1.0 };
+        let line = Line { p, q, free, source: LineTypeSource::User, confidence: 1.0 };
         drawing.lines.insert(id, line);
     }
 }
 
 /// `X 1 4 5.5`
-pub fn add_dimension(object: &mut Object, text: &str) {
+pub fn add_dimension(object: &mut SketchObject, text: &str) {
     let words: Vec<&str> = text.split_whitespace().collect();
     let point = |k: usize| PointId(words[k].parse().unwrap());
     object.add_dimension(Dimension {
         name: object.fresh_name("D"),
-        measure: Measure::Along { axis: Axis::of(words[0]).unwrap(), p: point(1), q: point(2) },
+        measure: MeasuredQuantity::Along {
+            axis: Axis::of(words[0]).unwrap(),
+            p: point(1),
+            q: point(2),
+        },
         value: Some(Expr::parse(words[3]).unwrap()),
-        role: Role::Driving,
+        role: DimensionRole::Driving,
         range: None,
     });
 }
 
-pub fn align(object: &mut Object, text: &str) {
+pub fn align(object: &mut SketchObject, text: &str) {
     let words: Vec<&str> = text.split_whitespace().collect();
     let point = |k: usize| PointId(words[k].parse().unwrap());
     object.draw().aligns.push(Align {
@@ -108,7 +112,7 @@ fn case(line: &str) -> Case {
         },
         None => Face { outer: cycle(f), holes: vec![] },
     };
-    let object = Object { name: "A".into(), ..object };
+    let object = SketchObject { name: "A".into(), ..object };
     let first = vector(&get("xyz").items()[0]);
     assert_eq!(first, Vec3::zero(), "the default reference serves every case");
     Case {
@@ -124,7 +128,7 @@ fn case(line: &str) -> Case {
 }
 
 /// Solves without derived dimensions.
-pub fn layout(object: &Object) -> (Planes, Layout<f64>) {
+pub fn layout(object: &SketchObject) -> (Planes, Layout<f64>) {
     let planes = Planes::of(&object.drawing);
     let guess = || {
         let reference = object.reference()?.point;
@@ -135,7 +139,7 @@ pub fn layout(object: &Object) -> (Planes, Layout<f64>) {
 }
 
 /// A box of points 1-4 below, 5-8 above, counter-clockwise from the origin.
-pub fn cuboid(size: [f64; 3]) -> Object {
+pub fn cuboid(size: [f64; 3]) -> SketchObject {
     let p = Projection::default();
     let mut points = Vec::new();
     for z in [0.0, size[2]] {
@@ -155,7 +159,7 @@ pub fn cuboid(size: [f64; 3]) -> Object {
 }
 
 /// Finds and stores the faces of the likeliest solid.
-pub fn with_faces(mut object: Object) -> Object {
+pub fn with_faces(mut object: SketchObject) -> SketchObject {
     let (planes, layout) = layout(&object);
     let positions = layout.positions(&planes).unwrap();
     let at = |p: PointId| planes.ids().binary_search(&p).unwrap();
@@ -170,7 +174,7 @@ pub fn with_faces(mut object: Object) -> Object {
     object
 }
 
-pub fn built(object: &Object) -> Solid<f64> {
+pub fn built(object: &SketchObject) -> SketchSolid<f64> {
     let (planes, layout) = layout(object);
     solid(object, &planes, &layout).unwrap()
 }
@@ -190,6 +194,6 @@ pub fn curve(name: &str, kind: curve::CurveKind, points: &[u32], size: &[&str]) 
     }
 }
 
-pub fn add_curve(object: &mut Object, c: curve::Curve) {
+pub fn add_curve(object: &mut SketchObject, c: curve::Curve) {
     object.curves.insert(c.name.to_ascii_lowercase(), c);
 }

@@ -33,7 +33,7 @@ fn every_case_types_itself() {
     for case in cases() {
         let mut drawing = (*case.object.drawing).clone();
         for line in drawing.lines.values_mut() {
-            (line.free, line.source) = (None, Source::Auto);
+            (line.free, line.source) = (None, LineTypeSource::Auto);
         }
         let proposed = drawing.type_all();
         for (id, truth) in &case.object.drawing.lines {
@@ -108,7 +108,7 @@ fn the_estimate_recovers_what_the_picture_shows() {
         }
         for (k, xyz) in case.xyz.iter().enumerate() {
             let [u, v] = drawing.projection.project(*xyz);
-            drawing.points.insert(PointId(k as u32 + 1), Point { u: u + 7.0, v: v - 3.0 });
+            drawing.points.insert(PointId(k as u32 + 1), DrawnPoint { u: u + 7.0, v: v - 3.0 });
         }
         let planes = Planes::of(&object.drawing);
         let estimate = Estimate::of(&object.drawing, &planes, PointId(1)).unwrap();
@@ -222,13 +222,13 @@ fn a_cross_section_types_itself() {
     assert_eq!(layout.positions(&planes).unwrap(), expected);
 }
 
-fn set(object: &mut Object, name: &str, value: &str) {
+fn set(object: &mut SketchObject, name: &str, value: &str) {
     object.dimensions.get_mut(name).unwrap().value = Some(Expr::parse(value).unwrap());
 }
 
 #[test]
 fn redimensioning_moves_the_far_side_and_never_flips() {
-    let planes_of = |object: &Object, axis: Axis| {
+    let planes_of = |object: &SketchObject, axis: Axis| {
         let (_, layout) = layout(object);
         let mut at: Vec<f64> =
             layout.coordinates[axis.index()].iter().map(|c| c.unwrap()).collect();
@@ -281,7 +281,7 @@ fn types_that_contradict_name_their_path() {
     assert_eq!((*line, *axis), (LineId(1), Axis::X));
     let path: Vec<String> = path.iter().map(|r| r.text(&object.drawing)).collect();
     assert_eq!(path, ["4-1 (Z)", "3-4 (Z)", "2-3 (Z)"]);
-    object.draw().points.insert(PointId(9), Point { u: 0.0, v: 0.0 });
+    object.draw().points.insert(PointId(9), DrawnPoint { u: 0.0, v: 0.0 });
     let faults = Planes::of(&object.drawing).faults(&object.drawing);
     assert!(faults.contains(&TypeFault::Loose { point: PointId(9) }));
 }
@@ -328,15 +328,15 @@ fn derivatives_by_dimensions_are_exact() {
 
 #[test]
 fn length_slope_angle_and_equal_take_the_place_of_axis_dimensions() {
-    let line = |o: &Object, p, q| o.drawing.line_between(PointId(p), PointId(q)).unwrap();
-    let with = |object: &mut Object, name: &str, measure: Measure, value: &str| {
+    let line = |o: &SketchObject, p, q| o.drawing.line_between(PointId(p), PointId(q)).unwrap();
+    let with = |object: &mut SketchObject, name: &str, measure: MeasuredQuantity, value: &str| {
         object.dimensions.insert(
             name.into(),
             Dimension {
                 name: name.into(),
                 measure,
                 value: Some(Expr::parse(value).unwrap()),
-                role: Role::Driving,
+                role: DimensionRole::Driving,
                 range: None,
             },
         );
@@ -345,10 +345,10 @@ fn length_slope_angle_and_equal_take_the_place_of_axis_dimensions() {
     let face = line(&dam, 2, 3);
     let (_, truth) = layout(&dam);
     for (name, measure, value) in [
-        ("length", Measure::Length(face), "90"),
-        ("slope", Measure::Slope(face), "0.75"),
-        ("angle", Measure::Angle(line(&dam, 1, 2), face), "atan(72/54)"),
-        ("equal", Measure::Equal(line(&dam, 4, 5), face), "90/16"),
+        ("length", MeasuredQuantity::Length(face), "90"),
+        ("slope", MeasuredQuantity::Slope(face), "0.75"),
+        ("angle", MeasuredQuantity::Angle(line(&dam, 1, 2), face), "atan(72/54)"),
+        ("equal", MeasuredQuantity::Equal(line(&dam, 4, 5), face), "90/16"),
     ] {
         let mut object = dam.clone();
         object.dimensions.shift_remove("d2");
@@ -363,7 +363,7 @@ fn length_slope_angle_and_equal_take_the_place_of_axis_dimensions() {
     // Derivative of the toe by the length of the face: L / run.
     let mut object = dam.clone();
     object.dimensions.shift_remove("d2");
-    with(&mut object, "length", Measure::Length(face), "90");
+    with(&mut object, "length", MeasuredQuantity::Length(face), "90");
     let planes = Planes::of(&object.drawing);
     let guess = || Estimate::of(&object.drawing, &planes, PointId(1));
     let overrides = [("length".to_owned(), Dual::<1>::seeded(90.0, 0))].into_iter().collect();
@@ -374,21 +374,21 @@ fn length_slope_angle_and_equal_take_the_place_of_axis_dimensions() {
     let mut object = dam.clone();
     object.dimensions.shift_remove("d2");
     object.dimensions.shift_remove("d4");
-    with(&mut object, "length", Measure::Length(face), "90");
-    with(&mut object, "slope", Measure::Slope(face), "0.75");
+    with(&mut object, "length", MeasuredQuantity::Length(face), "90");
+    with(&mut object, "slope", MeasuredQuantity::Slope(face), "0.75");
     let (planes, both) = layout(&object);
     let p = both.point(&planes, PointId(2)).unwrap() - both.point(&planes, PointId(3)).unwrap();
     assert!(both.complete() && (p.x - 54.0).abs() < 1e-8 && (p.z + 72.0).abs() < 1e-8);
     // One too many only has to agree.
     let mut object = dam.clone();
-    with(&mut object, "slope", Measure::Slope(face), "0.75");
+    with(&mut object, "slope", MeasuredQuantity::Slope(face), "0.75");
     assert!(matches!(layout(&object).1.faults[..], [DimensionFault::Redundant { .. }]));
-    with(&mut object, "slope", Measure::Slope(face), "0.8");
+    with(&mut object, "slope", MeasuredQuantity::Slope(face), "0.8");
     assert!(matches!(layout(&object).1.faults[..], [DimensionFault::Contradictory { .. }]));
     // Impossible: shorter than its rise.
     let mut object = dam;
     object.dimensions.shift_remove("d2");
-    with(&mut object, "length", Measure::Length(face), "60");
+    with(&mut object, "length", MeasuredQuantity::Length(face), "60");
     let (_, bad) = layout(&object);
     assert!(matches!(bad.faults[..], [DimensionFault::Unsolved { .. }]) && !bad.complete());
 }

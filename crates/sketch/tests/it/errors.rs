@@ -22,7 +22,7 @@ fn many_lines() -> String {
     text + "0\nEOF\n"
 }
 
-fn session() -> Session {
+fn session() -> SketchSession {
     let files = Shelf(BTreeMap::from([
         ("broken.json", "{\"format\": \"sketch\"".to_owned()),
         ("broken.dxf", "LINE\n".to_owned()),
@@ -30,10 +30,10 @@ fn session() -> Session {
         ("large.dxf", many_lines()),
         ("two.skt", "SKETCH P\nSKETCH Q\n".to_owned()),
     ]));
-    Session::with_files(Box::new(files))
+    SketchSession::with_files(Box::new(files))
 }
 
-fn image(s: &mut Session) -> (String, Option<String>) {
+fn image(s: &mut SketchSession) -> (String, Option<String>) {
     let text = s.names().iter().map(|n| script(s.object(n).unwrap())).collect();
     (text, s.active_object().map(|o| o.name.clone()))
 }
@@ -181,7 +181,7 @@ fn faults_of_the_text() {
         s.run_text(SQUARE);
         s.run_line("DIM W X 1 2 = 5 IN 1 9");
         let was = image(&mut s);
-        let reply = s.run_line(line).into_iter().find(Reply::is_error).expect(line);
+        let reply = s.run_line(line).into_iter().find(CommandReply::is_error).expect(line);
         assert!(reply.text.contains(says) && reply.next.is_some(), "{}", reply.text);
         assert_eq!(was, image(&mut s));
     }
@@ -194,9 +194,9 @@ fn a_refused_file_leaves_nothing() {
     s.run_line("SKETCH KEEP");
     let was = (image(&mut s), s.journal().to_vec());
     let replies = s.run_line("INPUT \"two.skt\" INTO R");
-    assert!(replies.iter().any(Reply::is_error));
+    assert!(replies.iter().any(CommandReply::is_error));
     assert_eq!((image(&mut s), s.journal().to_vec()), was);
-    assert!(s.run_line("UNDO; UNDO").iter().any(Reply::is_error), "one step only");
+    assert!(s.run_line("UNDO; UNDO").iter().any(CommandReply::is_error), "one step only");
 }
 
 /// The journal of any session makes its state again: questions, answers, steps back and files included.
@@ -207,10 +207,10 @@ fn journals_restore_sessions() {
         "RUN \"two.skt\"\nUSING P\nPOINT 1 1 1\nUNDO 2\nREDO",
         "SKETCH A 2D XY; IMPORT \"large.dxf\"; SET SKETCH83 ON; SHOW LABELS OFF",
     ];
-    let replay = |from: &Session| {
-        let mut s = Session::new();
+    let replay = |from: &SketchSession| {
+        let mut s = SketchSession::new();
         for line in from.journal() {
-            let bad = s.run_line(line).into_iter().find(Reply::is_error);
+            let bad = s.run_line(line).into_iter().find(CommandReply::is_error);
             assert!(bad.is_none(), "{line}: {bad:?}");
         }
         s
@@ -243,7 +243,7 @@ fn the_command_reference_is_documented() {
 #[test]
 fn the_tutorial_runs() {
     let docs = include_str!("../../../../docs/sketch.md");
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     let mut blocks = 0;
     for block in docs.split("```sketch\n").skip(1) {
         blocks += 1;
@@ -254,7 +254,7 @@ fn the_tutorial_runs() {
         }
     }
     assert!(blocks >= 6);
-    let volume = |s: &mut Session, name: &str| {
+    let volume = |s: &mut SketchSession, name: &str| {
         s.objects().into_iter().find(|o| o.name == name).and_then(|o| o.volume)
     };
     // 1.6 * 6 wide at the foot, 6 high, 4 long.
@@ -264,7 +264,7 @@ fn the_tutorial_runs() {
     assert!(left < whole && left > 0.5 * whole, "{left} of {whole}");
     // Each object is made again, bit for bit, by its own file; and the same script gives the same bits.
     let text: String = s.names().iter().map(|n| script(s.object(n).unwrap())).collect();
-    let mut again = Session::new();
+    let mut again = SketchSession::new();
     assert!(again.run_text(&text).iter().all(|r| !r.is_error()));
     assert_eq!(image(&mut s).0, image(&mut again).0);
     assert_eq!(s.objects_json(), again.objects_json());

@@ -5,7 +5,7 @@ use moldloft_sketch::*;
 use moldloft_testing::{Random, rounds};
 use std::f64::consts::PI;
 
-fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> Object {
+fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> SketchObject {
     let mut object = with_faces(cuboid(size));
     object.name = name.to_owned();
     object.reference = Some(Reference { point: PointId(1), at });
@@ -13,7 +13,7 @@ fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> Object {
 }
 
 /// A bar of diameter `d` along z, its axis at `at`, from z = `low` to `high`.
-fn bar(name: &str, d: f64, at: [f64; 2], [low, high]: [f64; 2]) -> Object {
+fn bar(name: &str, d: f64, at: [f64; 2], [low, high]: [f64; 2]) -> SketchObject {
     let r = d / 2.0;
     let mut object = block(name, [d, d, high - low], [at[0] - r, at[1] - r, low]);
     for (c, corner) in [("c1", [2, 1, 4]), ("c2", [6, 5, 8])] {
@@ -22,7 +22,7 @@ fn bar(name: &str, d: f64, at: [f64; 2], [low, high]: [f64; 2]) -> Object {
     object
 }
 
-fn measured(s: &mut Session, name: &str) -> Option<[f64; 2]> {
+fn measured(s: &mut SketchSession, name: &str) -> Option<[f64; 2]> {
     let o = s.objects().into_iter().find(|o| o.name == name).unwrap();
     Some([o.volume?, o.area?])
 }
@@ -86,7 +86,7 @@ fn by_cells(solid: &[[[f64; 2]; 3]], void: &[[[f64; 2]; 3]]) -> [f64; 2] {
 fn a_hole_that_wanders() {
     let mut random = Random::new(11);
     for _ in 0..rounds(2, 50) {
-        let mut s = Session::new();
+        let mut s = SketchSession::new();
         s.insert(block("A", [10.0, 8.0, 6.0], [0.0; 3]));
         s.insert(block("B", [2.0, 3.0, 8.0], [2.0, 2.0, -1.0]));
         s.run_line("CUT A B INTO C");
@@ -102,7 +102,7 @@ fn a_hole_that_wanders() {
             let hole = [[x, x + w], [y, y + d], [-1.0, 7.0]];
             let want = by_cells(&[[[0.0, 10.0], [0.0, 8.0], [0.0, 6.0]]], &[hole]);
             if want[0] == 0.0 {
-                assert!(replies.iter().any(Reply::is_error));
+                assert!(replies.iter().any(CommandReply::is_error));
                 continue;
             }
             near(measured(&mut s, "C"), want, &format!("hole at {x} {y} of {w} {d}"));
@@ -115,7 +115,7 @@ fn a_hole_that_wanders() {
 fn blocks_with_blocks() {
     let mut random = Random::new(5);
     for round in 0..rounds(4, 200) {
-        let mut s = Session::new();
+        let mut s = SketchSession::new();
         let mut boxes: Vec<[[f64; 2]; 3]> = Vec::new();
         let count = 2 + round % 4;
         for k in 0..count {
@@ -127,19 +127,19 @@ fn blocks_with_blocks() {
         s.run_line("COPY P0 TO U");
         for k in 1..count {
             let replies = s.run_line(&format!("UNION U P{k} INTO U"));
-            assert!(!replies.iter().any(Reply::is_error), "{boxes:?}: {replies:?}");
+            assert!(!replies.iter().any(CommandReply::is_error), "{boxes:?}: {replies:?}");
         }
         near(measured(&mut s, "U"), by_cells(&boxes, &[]), &format!("union {boxes:?}"));
         let replies = s.run_line("CUT U P0 INTO D");
         let want = by_cells(&boxes[1..], &boxes[..1]);
         if want[0] == 0.0 {
-            assert!(replies.iter().any(Reply::is_error));
+            assert!(replies.iter().any(CommandReply::is_error));
         } else {
             near(measured(&mut s, "D"), want, &format!("cut {boxes:?}"));
         }
         // The file makes the same.
         let text = script(s.object("U").unwrap());
-        let mut again = Session::new();
+        let mut again = SketchSession::new();
         assert!(again.run_text(&text).iter().all(|r| !r.is_error()), "{text}");
         assert_eq!(again.object("U"), s.object("U"));
     }
@@ -153,7 +153,7 @@ fn round_holes_and_notches() {
         let r = 0.5 + 1.5 * random.unit();
         // The axis at a distance from the side x = 0: inside or outside of the block.
         let x = (2.0 * random.unit() - 1.0) * 0.9 * r;
-        let mut s = Session::new();
+        let mut s = SketchSession::new();
         s.insert(block("A", [10.0, 8.0, 3.0], [0.0; 3]));
         s.insert(bar("B", 2.0 * r, [0.0, 4.0], [-1.0, 5.0]));
         s.run_text(&format!("USING B; VARIABLE Q {x}; MOVE B Q 0 0"));
@@ -188,13 +188,13 @@ fn round_holes_and_notches() {
 /// Bodies whose figures are known to many digits: crossing pipes, turned sections cut by planes.
 #[test]
 fn closed_forms_of_round_bodies() {
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     s.insert(bar("R", 4.0, [0.0; 2], [-5.0, 5.0]));
     s.insert(bar("S", 2.0, [0.0; 2], [-5.0, 5.0]));
     s.run_text(
         "ROTATE S X 90\nCOMMON R S INTO K\nCUT R S INTO P\nMOVE S 0.5 0 0\nCOMMON R S INTO O",
     );
-    let volume = |s: &mut Session, n: &str| measured(s, n).map(|m| m[0]);
+    let volume = |s: &mut SketchSession, n: &str| measured(s, n).map(|m| m[0]);
     let close = |got: Option<f64>, want: f64| {
         assert!((got.unwrap() - want).abs() < 1e-10 * want, "{got:?} for {want}");
     };
@@ -231,7 +231,7 @@ fn a_rhombus_through_all_angles() {
         LINE 1 2 TYPE X; LINE 2 3 TYPE F; LINE 3 4 TYPE F; LINE 4 1 TYPE F\n\
         DIM A LENGTH 1 = 5\nDIM E1 EQUAL 1 2\nDIM E2 EQUAL 2 3\nDIM E3 EQUAL 3 4\n\
         DIM AN ANGLE 1 4 = 70\nCONVERT\nGENERATE FACES";
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     s.run_text(text);
     let mut last = 70.0;
     for step in 0..rounds(30, 500) {
@@ -276,7 +276,7 @@ fn four_bars_keep_their_side() {
             20.0 * d[0],
             20.0 * d[1] - 2.0
         );
-        let mut s = Session::new();
+        let mut s = SketchSession::new();
         for reply in s.run_text(&text) {
             assert!(!reply.is_error(), "{text}: {}", reply.text);
         }
@@ -291,7 +291,7 @@ fn four_bars_keep_their_side() {
             let want = at(angle).unwrap().1;
             let reply = s.run_line(&format!("SET AN {angle}"));
             assert!(
-                !reply.iter().any(Reply::is_error),
+                !reply.iter().any(CommandReply::is_error),
                 "{g} {a} {b} {c} {start} {angle}: {reply:?}"
             );
             let got = s.objects()[0].points[2].1;
@@ -341,7 +341,7 @@ fn types_of_shaken_pictures() {
                     (p.u, p.v) = (scale * at[0] + shake(), scale * at[1] + shake());
                 }
                 drawing.lines.values_mut().for_each(|l| {
-                    (l.free, l.source) = (None, Source::Auto);
+                    (l.free, l.source) = (None, LineTypeSource::Auto);
                 });
                 drawing.type_all();
                 for (id, line) in &truth {

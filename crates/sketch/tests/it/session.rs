@@ -4,18 +4,18 @@ use crate::common::*;
 use moldloft_sketch::json::Json;
 use moldloft_sketch::*;
 
-fn run(s: &mut Session, text: &str) -> Vec<Reply> {
+fn run(s: &mut SketchSession, text: &str) -> Vec<CommandReply> {
     let replies = s.run_text(text);
-    let errors: Vec<&Reply> = replies.iter().filter(|r| r.is_error()).collect();
+    let errors: Vec<&CommandReply> = replies.iter().filter(|r| r.is_error()).collect();
     assert!(errors.is_empty(), "{text}: {errors:?}");
     replies
 }
 
 /// The error of a line, which must have changed nothing.
-fn refused(s: &mut Session, line: &str) -> Reply {
+fn refused(s: &mut SketchSession, line: &str) -> CommandReply {
     let before: Vec<String> =
         s.objects().iter().map(|o| script(s.object(&o.name).unwrap())).collect();
-    let reply = s.run_line(line).into_iter().find(Reply::is_error);
+    let reply = s.run_line(line).into_iter().find(CommandReply::is_error);
     let after: Vec<String> =
         s.objects().iter().map(|o| script(s.object(&o.name).unwrap())).collect();
     assert_eq!(before, after, "{line}");
@@ -24,7 +24,7 @@ fn refused(s: &mut Session, line: &str) -> Reply {
     reply
 }
 
-fn code(s: &mut Session, line: &str, code: u16) -> String {
+fn code(s: &mut SketchSession, line: &str, code: u16) -> String {
     let reply = refused(s, line);
     assert_eq!(reply.code, Some(code), "{line}: {}", reply.text);
     reply.text
@@ -34,13 +34,13 @@ fn close(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-6 * b.abs().max(1.0), "{a} for {b}");
 }
 
-fn with(object: Object) -> Session {
-    let mut s = Session::new();
+fn with(object: SketchObject) -> SketchSession {
+    let mut s = SketchSession::new();
     s.insert(object);
     s
 }
 
-fn volume(s: &mut Session, name: &str) -> f64 {
+fn volume(s: &mut SketchSession, name: &str) -> f64 {
     s.objects().into_iter().find(|o| o.name == name).unwrap().volume.unwrap()
 }
 
@@ -64,7 +64,7 @@ fn every_case_survives_its_file() {
             disk.extend(run(&mut s, line).into_iter().filter_map(|r| r.file));
         }
         assert_eq!(disk.len(), 2);
-        let mut t = Session::with_files(Box::new(Disk(disk)));
+        let mut t = SketchSession::with_files(Box::new(Disk(disk)));
         for line in ["INPUT a.skt", "DELETE A", "INPUT \"a.json\""] {
             run(&mut t, line);
             if let Some(read) = t.object("A") {
@@ -77,7 +77,7 @@ fn every_case_survives_its_file() {
         assert!(t.object("C").is_some() && t.object("A").is_none());
         assert_eq!(refused(&mut t, "INPUT nowhere.skt").code, Some(600));
         // The journal restores the session; so does a copy of it cut anywhere, up to there.
-        let mut again = Session::new();
+        let mut again = SketchSession::new();
         let journal = t.journal().join("\n");
         run(&mut again, &journal);
         assert_eq!(again.objects_json(), t.objects_json());
@@ -86,7 +86,7 @@ fn every_case_survives_its_file() {
 
 #[test]
 fn settings_and_curves_survive_the_file() {
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     run(
         &mut s,
         "SKETCH 'my part'\nSET UP Y; SET NAMES SEED; SET UNITS FT\nAXES CABINET\n\
@@ -104,11 +104,11 @@ fn settings_and_curves_survive_the_file() {
     let one = s.active_object().unwrap().clone();
     assert_eq!(one.curves.len(), 4);
     assert!(!one.display && one.units.as_deref() == Some("FT"));
-    let mut t = Session::new();
+    let mut t = SketchSession::new();
     run(&mut t, &script(&one));
     assert_eq!(t.active_object().unwrap(), &one);
     let twin = moldloft_sketch::json_format::to_json(&one).to_string();
-    let mut t = Session::new();
+    let mut t = SketchSession::new();
     run(&mut t, &moldloft_sketch::json_format::from_json(&twin).unwrap());
     assert_eq!(t.active_object().unwrap(), &one);
 }
@@ -123,7 +123,7 @@ fn edits_of_a_live_object() {
     run(&mut s, "SET D1 = 8");
     run(&mut s, "SET d1 1; DIM r X 1 2 6");
     let r = &s.object("A").unwrap().dimensions["r"];
-    assert_eq!(r.role, Role::Reference);
+    assert_eq!(r.role, DimensionRole::Reference);
     run(&mut s, "DELETE DIMENSION R");
     let text = code(&mut s, "DIM X 1 2 7", 396);
     assert!(text.contains("differs by 1") && text.contains("1>4>2"), "{text}");
@@ -153,7 +153,7 @@ fn edits_of_a_live_object() {
 /// T2 with extrusion.
 #[test]
 fn a_section_is_extruded() {
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     run(&mut s, "SKETCH DAM 2D XZ; AXES 0 90");
     let points = "2 0 330 2 328 61 259 58 259 118 150 121 149 231 97 328 97 379 -2 379";
     let n: Vec<&str> = points.split(' ').collect();
@@ -189,7 +189,7 @@ fn a_section_is_extruded() {
 
 #[test]
 fn a_section_is_revolved() {
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     run(
         &mut s,
         "SKETCH ROD 2D XZ; POINT 1 0 0; POINT 2 30 0; POINT 3 30 50; POINT 4 0 50; POLYLINE 1 2 3 4 CLOSE",
@@ -226,7 +226,7 @@ fn fillets_by_commands() {
     close(volume(&mut s, "A"), 240.0);
 }
 
-fn two_boxes() -> Session {
+fn two_boxes() -> SketchSession {
     let mut a = cuboid([4.0, 3.0, 2.0]);
     a.name = "A".into();
     let mut b = cuboid([3.0, 3.0, 2.0]);
@@ -327,7 +327,7 @@ fn ambiguous_and_by_hand() {
 }
 
 /// The first face may be reversed, its neighbours not once it is accepted (700).
-fn code_of_reverse(s: &mut Session) {
+fn code_of_reverse(s: &mut SketchSession) {
     run(s, "REVERSE; ACCEPT");
     for _ in 0..11 {
         let reply = s.run_line("REVERSE").pop().unwrap();
@@ -343,7 +343,7 @@ fn code_of_reverse(s: &mut Session) {
 /// T16 and every other error that a user can cause.
 #[test]
 fn errors_say_what_where_and_next() {
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     code(&mut s, "LIST POINTS", 112);
     code(&mut s, "USING WAL", 110);
     run(&mut s, "SKETCH WALL");
@@ -385,7 +385,7 @@ fn errors_say_what_where_and_next() {
     // The square closes, but bounds no solid.
     code(&mut s, "GENERATE FACES", 701);
     run(&mut s, "DIM L LENGTH 2 2");
-    assert_eq!(s.active_object().unwrap().dimensions["l"].role, Role::Reference);
+    assert_eq!(s.active_object().unwrap().dimensions["l"].role, DimensionRole::Reference);
     code(&mut s, "DIM M LENGTH 2 3", 396);
     run(&mut s, "UNSET D2");
     code(&mut s, "DIM M SLOPE 2 -7", 411);
@@ -428,7 +428,7 @@ fn errors_say_what_where_and_next() {
 /// T18.
 #[test]
 fn lines_may_be_written_freely() {
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     run(&mut s, "sketch wall ! comment\nAXES CAVALIER");
     run(&mut s, "POINT,1,0,0; point 2 at = 16 0 # and so on");
     run(&mut s, "LINE 1 FROM &");
@@ -509,7 +509,7 @@ fn a_dimension_without_value_asks() {
     let replies = run(&mut s, "DIM BACK X 2 1 = 6");
     assert!(replies.iter().any(|r| r.text.contains("as typed")), "{replies:?}");
     let d = &s.object("A").unwrap().dimensions["back"];
-    assert_eq!(d.measure, Measure::Along { axis: Axis::X, p: PointId(2), q: PointId(1) });
+    assert_eq!(d.measure, MeasuredQuantity::Along { axis: Axis::X, p: PointId(2), q: PointId(1) });
     assert_eq!(s.objects()[0].points[1].1[0], Some(-6.0));
     run(&mut s, "REVERSE BACK");
     assert_eq!(s.objects()[0].points[1].1[0], Some(6.0));
@@ -584,7 +584,7 @@ fn examples() {
             8,
         ),
     ] {
-        let mut s = Session::new();
+        let mut s = SketchSession::new();
         let replies = run(&mut s, text);
         assert!(replies.iter().all(|r| r.severity == moldloft_diag::Severity::Note), "{replies:?}");
         let o = s.objects().remove(0);
@@ -594,7 +594,7 @@ fn examples() {
         let report = o.solid.unwrap().mesh(1e-2).report();
         assert!(report.closed && report.manifold && report.outward == Some(true), "{name}");
     }
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     run(&mut s, include_str!("../../../../examples/sketch/dam.skt"));
     // The slope is kept by an expression.
     run(&mut s, "SET HEIGHT 60; SET CREST 20");
@@ -698,7 +698,7 @@ fn any_line_is_answered() {
         "\u{0}",
     ];
     let mut random = moldloft_testing::Random::new(18);
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     for round in 0..rounds {
         if round % 400 == 0 {
             s = with(cuboid([4.0, 3.0, 2.0]));

@@ -3,7 +3,7 @@
 use crate::common::*;
 use moldloft_mesh::measure;
 use moldloft_num::{Dual, Vec3};
-use moldloft_sketch::curve::{Curve, CurveFault, CurveKind, Piece, semi_axes, trace};
+use moldloft_sketch::curve::{Curve, CurveFault, CurveKind, SmoothPiece, semi_axes, trace};
 use moldloft_sketch::solid::UnbuiltReason;
 use moldloft_sketch::*;
 use std::f64::consts::PI;
@@ -17,7 +17,7 @@ fn near(a: Vec3, b: [f64; 3]) {
 }
 
 /// Closed, outward, and of the volume that the formulas give.
-fn check_mesh(solid: &Solid<f64>, accuracy: f64) {
+fn check_mesh(solid: &SketchSolid<f64>, accuracy: f64) {
     let mesh = solid.mesh(1e-4);
     let report = mesh.report();
     assert!(report.closed && report.manifold && report.oriented, "{report:?}");
@@ -220,7 +220,7 @@ fn closed_forms_of_the_curves() {
     let arc = |r| curve("A", CurveKind::Arc, &[1, 2, 3], &[r]);
     let t = traced(&arc("2"), &[[10.0, 0.0, 0.0], [0.0; 3], [5.0, 8.660_254_037_844_386, 0.0]])
         .unwrap();
-    let Piece::Conic { sweep, .. } = t.pieces[0] else { panic!("an arc is a conic") };
+    let SmoothPiece::Conic { sweep, .. } = t.pieces[0] else { panic!("an arc is a conic") };
     close(sweep, 2.0 * PI / 3.0, 1e-12);
     close(t.tangents.unwrap()[0].x, 3.464_102, 1e-6);
     near(t.tangents.unwrap()[1], [1.732_051, 3.0, 0.0]);
@@ -273,7 +273,7 @@ fn closed_forms_of_the_curves() {
     near(t.pieces[0].at(0.0), [4.0, 0.0, 0.0]);
     near(t.pieces[0].at(0.5), [1.464_466, 0.507_306, 0.0]);
     near(t.pieces[0].at(1.0), [1.0, 1.732_051, 0.0]);
-    let Piece::Conic { a, b, .. } = t.pieces[0] else { panic!("an ellipse is a conic") };
+    let SmoothPiece::Conic { a, b, .. } = t.pieces[0] else { panic!("an ellipse is a conic") };
     let [long, short] = semi_axes(a, b);
     close(long, 4.148_627, 1e-6);
     close(short, 1.669_999, 1e-6);
@@ -282,7 +282,7 @@ fn closed_forms_of_the_curves() {
     let t = traced(&ellipse, &[[9.0, 0.0, 0.0], [0.0; 3], [0.0, 4.0, 0.0]]).unwrap();
     near(t.centre.unwrap(), [5.0, 3.0, 0.0]);
     near(t.pieces[0].at(0.5), [1.464_466, 0.878_680, 0.0]);
-    let Piece::Conic { a, b, .. } = t.pieces[0] else { panic!("an ellipse is a conic") };
+    let SmoothPiece::Conic { a, b, .. } = t.pieces[0] else { panic!("an ellipse is a conic") };
     assert_eq!(semi_axes(a, b), [5.0, 3.0]);
     ellipse.semi = Some([Expr::number(50.0), Expr::number(3.0)]);
     let t = traced(&ellipse, &[[9.0, 0.0, 0.0], [0.0; 3], [0.0, 4.0, 0.0]]);
@@ -306,7 +306,7 @@ fn closed_forms_of_the_curves() {
     }
 }
 
-fn t_piece(t: &Result<curve::Traced<f64>, CurveFault>) -> Piece<f64> {
+fn t_piece(t: &Result<curve::Traced<f64>, CurveFault>) -> SmoothPiece<f64> {
     t.as_ref().unwrap().pieces[0]
 }
 

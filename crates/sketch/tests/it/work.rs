@@ -1,12 +1,12 @@
 //! What grows with the size of a drawing, by counts; the clocks are in `examples/timing.rs`.
 
 use moldloft_num::Vec3;
-use moldloft_sketch::{Planes, Session, faces, solid, solve};
+use moldloft_sketch::{Planes, SketchSession, faces, solid, solve};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// A stair of 249 steps, extruded: 1000 points, 498 dimensions.
-fn stair() -> Session {
+fn stair() -> SketchSession {
     let mut text = String::from("SKETCH STAIR 2D XZ\n");
     let mut corners = vec![(0, 0), (2490, 0)];
     for k in (0..249).rev() {
@@ -22,7 +22,7 @@ fn stair() -> Session {
         let (low, high, below) = (2 * k + 3, 2 * k + 4, if k == 0 { 2 } else { 2 * k + 1 });
         let _ = writeln!(text, "DIM W{k} X {high} {low} = 1\nDIM H{k} Z {below} {low} = 1");
     }
-    let mut s = Session::new();
+    let mut s = SketchSession::new();
     for reply in s.run_text(&(text + "EXTRUDE 5\n")) {
         assert!(!reply.is_error(), "{}", reply.text);
     }
@@ -43,7 +43,7 @@ fn a_dimension_of_a_thousand_points() {
     assert_eq!((body.vertices.len(), body.edges.len(), body.faces.len()), (1000, 1500, 502));
     s.run_line(&format!("SET W3 {width}"));
     let edited = s.objects().remove(0);
-    let mut fresh = Session::new();
+    let mut fresh = SketchSession::new();
     fresh.run_text(&moldloft_sketch::script(s.object("STAIR").unwrap()));
     let made = fresh.objects().remove(0);
     assert_eq!(edited.solid, made.solid);

@@ -4,7 +4,7 @@ use moldloft_num::{Jet, Real, find_root};
 
 /// A mean line, in units of its greatest height.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Mean<T> {
+pub enum MeanLine<T> {
     /// No camber.
     Flat,
     /// The camber comes with the ordinates of the thickness.
@@ -148,15 +148,15 @@ fn held<J: Real>(x: J) -> J {
     (square * 6.0 - square * square + 3.0) * (HOLD / 8.0)
 }
 
-impl<T: Real> Mean<T> {
+impl<T: Real> MeanLine<T> {
     /// No camber.
     pub fn flat() -> Self {
-        Mean::Flat
+        MeanLine::Flat
     }
 
     /// The four-digit line with its greatest height at x = `at` (NACA Report 460).
     pub fn parabolic(at: T) -> Self {
-        Mean::Parabolic { at }
+        MeanLine::Parabolic { at }
     }
 
     /// The five-digit line of a name: 210 to 250 with a straight tail, 221 to 251 reflexed (Jacobs
@@ -179,7 +179,7 @@ impl<T: Real> Mean<T> {
         let k = if reflexed { (3.0 * (r - at) * (r - at) - cube(r)) / cube(1.0 - r) } else { 0.0 };
         let top = r - (Self::fall(r, k).0 / 3.0).sqrt();
         let height = Self::cubics(r, k, top, 1.0);
-        Some(Mean::Cubic { r, k, scale: 1.0 / height })
+        Some(MeanLine::Cubic { r, k, scale: 1.0 / height })
     }
 
     fn cubics<J: Real>(r: f64, k: f64, x: J, scale: f64) -> J {
@@ -197,7 +197,7 @@ impl<T: Real> Mean<T> {
 
     /// The line of uniform load to x = `a` in [0, 1].
     pub fn uniform_load(a: T) -> Self {
-        Mean::Load(Load::new(a))
+        MeanLine::Load(Load::new(a))
     }
 
     /// The line of the 6A-series: that with a = 0.8, continued by its tangent from x = 0.87437 and
@@ -208,27 +208,27 @@ impl<T: Real> Mean<T> {
         let tilt = -(load.at(T::from(STRAIGHT)).re() + slope * (1.0 - STRAIGHT));
         let top = find_root(|x| load.slope(T::from(x)).re() + tilt, 0.2, 0.8).unwrap_or(0.5);
         let scale = 1.0 / (load.at(T::from(top)).re() + tilt * top);
-        Mean::Straightened { load, tilt, slope: slope + tilt, scale }
+        MeanLine::Straightened { load, tilt, slope: slope + tilt, scale }
     }
 
     /// Height and slope at `x`.
     pub fn at<J: Jet<T>>(&self, x: J) -> (J, J) {
         match self {
-            Mean::Flat | Mean::InOrdinates => (J::zero(), J::zero()),
-            Mean::Parabolic { at } => {
+            MeanLine::Flat | MeanLine::InOrdinates => (J::zero(), J::zero()),
+            MeanLine::Parabolic { at } => {
                 // With w the distance from the top in units of the way to that end.
                 let end = if x.re() < at.re() { *at } else { -*at + 1.0 };
                 let w = (x - J::fixed(*at)) / J::fixed(end);
                 (-(w * w) + 1.0, -(w * 2.0) / J::fixed(end))
             }
-            Mean::Cubic { r, k, scale } => {
+            MeanLine::Cubic { r, k, scale } => {
                 let way = x - *r;
                 let bent = way * way * (if x.re() < *r { 3.0 } else { 3.0 * k });
                 let (fall, _) = Self::fall(*r, *k);
                 (Self::cubics(*r, *k, x, *scale), (bent - fall) * *scale)
             }
-            Mean::Load(load) => load.both(x),
-            Mean::Straightened { load, tilt, slope, scale } => {
+            MeanLine::Load(load) => load.both(x),
+            MeanLine::Straightened { load, tilt, slope, scale } => {
                 if x.re() < STRAIGHT {
                     let (y, rate) = load.both(x);
                     ((y + x * *tilt) * *scale, (rate + *tilt) * *scale)
@@ -242,11 +242,11 @@ impl<T: Real> Mean<T> {
     /// The places x at which a second derivative may jump.
     pub fn breaks(&self) -> Vec<f64> {
         match self {
-            Mean::Flat | Mean::InOrdinates => Vec::new(),
-            Mean::Parabolic { at } => vec![at.re()],
-            Mean::Cubic { r, .. } => vec![*r],
-            Mean::Load(load) => vec![load.a.re()],
-            Mean::Straightened { load, .. } => vec![load.a.re(), STRAIGHT],
+            MeanLine::Flat | MeanLine::InOrdinates => Vec::new(),
+            MeanLine::Parabolic { at } => vec![at.re()],
+            MeanLine::Cubic { r, .. } => vec![*r],
+            MeanLine::Load(load) => vec![load.a.re()],
+            MeanLine::Straightened { load, .. } => vec![load.a.re(), STRAIGHT],
         }
     }
 }

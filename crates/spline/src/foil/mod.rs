@@ -19,7 +19,7 @@ mod thickness;
 
 pub use error::FoilError;
 pub use layout::{Layout, Metric, Offset};
-pub use mean::Mean;
+pub use mean::MeanLine;
 pub use station::Station;
 pub use thickness::Thickness;
 
@@ -75,7 +75,7 @@ impl<T: Real> Default for SectionSpec<'_, T> {
 #[derive(Clone)]
 pub struct Section<T: Real> {
     thickness: Thickness<T>,
-    mean: Mean<T>,
+    mean: MeanLine<T>,
 }
 
 impl<T: Real> Section<T> {
@@ -141,14 +141,16 @@ impl<T: Real> Section<T> {
         };
         let load = spec.load.unwrap_or(T::from(if spec.family == "66tmb" { 0.8 } else { 1.0 }));
         let mean = match if spec.mean.is_empty() { usual } else { spec.mean } {
-            "flat" => Mean::flat(),
+            "flat" => MeanLine::flat(),
             "parabolic" => {
                 let at = within("the place of the greatest camber", spec.camber_at, 0.01, 0.99)?;
-                Mean::parabolic(at)
+                MeanLine::parabolic(at)
             }
-            "a" => Mean::uniform_load(within("the extent of the load", load, 0.0, 1.0)?),
-            "a modified" => Mean::uniform_load_modified(),
-            name => Mean::cubic(name).ok_or_else(|| FoilError::Mean { name: name.to_string() })?,
+            "a" => MeanLine::uniform_load(within("the extent of the load", load, 0.0, 1.0)?),
+            "a modified" => MeanLine::uniform_load_modified(),
+            name => {
+                MeanLine::cubic(name).ok_or_else(|| FoilError::Mean { name: name.to_string() })?
+            }
         };
         Ok(Self { thickness, mean })
     }
@@ -161,13 +163,13 @@ impl<T: Real> Section<T> {
     /// # Errors
     /// [`FoilError::Ordinates`].
     pub fn of_ordinates(ordinates: &[Vec3<T>]) -> Result<Self, FoilError> {
-        Ok(Self { thickness: Thickness::of_ordinates(ordinates)?, mean: Mean::InOrdinates })
+        Ok(Self { thickness: Thickness::of_ordinates(ordinates)?, mean: MeanLine::InOrdinates })
     }
 
     /// The section that a curve of ordinates (x, half thickness, camber) gives, from nose to tail;
     /// its own parameter is then that of the sides.
     pub fn of_curve(curve: Arc<dyn moldloft_num::Curve<T>>) -> Self {
-        Self { thickness: Thickness::Curve(curve), mean: Mean::InOrdinates }
+        Self { thickness: Thickness::Curve(curve), mean: MeanLine::InOrdinates }
     }
 
     /// The same made ready to be evaluated at many places: one section of its own, not one of a loft.
@@ -194,7 +196,7 @@ impl<T: Real> Section<T> {
 
     /// True when the mean line has a slope of its own.
     pub fn has_slope(&self) -> bool {
-        !matches!(self.mean, Mean::InOrdinates)
+        !matches!(self.mean, MeanLine::InOrdinates)
     }
 
     /// True when thickness and camber vanish at the tail, to rounding.

@@ -140,7 +140,7 @@ fn the_mean_line_with_uniform_load_is_the_closed_form() {
     };
     let top = 0.067_943_4;
     assert!((per_lift(0.515_33) - top).abs() < 5e-8);
-    let line = Mean::uniform_load(a);
+    let line = MeanLine::uniform_load(a);
     assert!((line.at(0.515_33).0 - 1.0).abs() < 1e-9);
     for x in [0.001, 0.0125, 0.1, 0.3, 0.5, 0.7, 0.81, 0.95, 0.999] {
         assert!((line.at(x).0 - per_lift(x) / 0.067_943_4).abs() < 1e-6, "{x}");
@@ -155,15 +155,15 @@ fn the_mean_line_with_uniform_load_is_the_closed_form() {
 #[test]
 fn mean_lines_are_smooth_and_one_high() {
     let lines = [
-        Mean::parabolic(0.4),
-        Mean::cubic("210").unwrap(),
-        Mean::cubic("230").unwrap(),
-        Mean::cubic("231").unwrap(),
-        Mean::uniform_load(0.0),
-        Mean::uniform_load(0.5),
-        Mean::uniform_load(0.8),
-        Mean::uniform_load(1.0),
-        Mean::uniform_load_modified(),
+        MeanLine::parabolic(0.4),
+        MeanLine::cubic("210").unwrap(),
+        MeanLine::cubic("230").unwrap(),
+        MeanLine::cubic("231").unwrap(),
+        MeanLine::uniform_load(0.0),
+        MeanLine::uniform_load(0.5),
+        MeanLine::uniform_load(0.8),
+        MeanLine::uniform_load(1.0),
+        MeanLine::uniform_load_modified(),
     ];
     for line in lines {
         let top = (0..=10_000).map(|k| line.at(f64::from(k) / 1e4).0).fold(0.0, f64::max);
@@ -176,10 +176,11 @@ fn mean_lines_are_smooth_and_one_high() {
         }
     }
     // NACA 230: the published factor k1 = 15.957 makes it 0.0184 high for c_l = 0.3.
-    let Mean::Cubic { scale, .. } = Mean::<f64>::cubic("230").unwrap() else { panic!() };
+    let MeanLine::Cubic { scale, .. } = MeanLine::<f64>::cubic("230").unwrap() else { panic!() };
     assert!((15.957 / 6.0 / scale - 0.01838).abs() < 2e-5);
     // The 6A-series line: the tail falls by 0.24521 c_l per chord, less what turns its end to 0.
-    let Mean::Straightened { slope, tilt, .. } = Mean::<f64>::uniform_load_modified() else {
+    let MeanLine::Straightened { slope, tilt, .. } = MeanLine::<f64>::uniform_load_modified()
+    else {
         panic!("the modified line")
     };
     let per_lift = 0.067_943_4 * 0.979_48;

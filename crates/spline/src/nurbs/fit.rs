@@ -51,7 +51,7 @@ impl FitOptions {
 }
 
 /// A shape that can be sampled.
-pub struct Source<'a, const D: usize> {
+pub struct SampledShape<'a, const D: usize> {
     /// Positions on a grid of its parameters, the last one fastest.
     pub sample: &'a dyn Fn(&[Vec<f64>; D]) -> Vec<Vec3>,
     /// The parameters at which one formula ends and another begins.
@@ -100,7 +100,7 @@ impl std::error::Error for NotFitted {}
 /// # Errors
 /// [`NotFitted`].
 pub fn fit<const D: usize>(
-    source: &Source<'_, D>,
+    source: &SampledShape<'_, D>,
     options: &FitOptions,
 ) -> Result<Nurbs<D>, NotFitted> {
     if options.accuracy.is_nan() || options.accuracy <= 0.0 {
@@ -119,7 +119,7 @@ pub fn fit<const D: usize>(
 }
 
 struct Fitter<'a, 's, const D: usize> {
-    source: &'a Source<'s, D>,
+    source: &'a SampledShape<'s, D>,
     options: &'a FitOptions,
     /// Ends of the spans between joints, in the parameters of the NURBS.
     ends: [Vec<f64>; D],
@@ -128,7 +128,7 @@ struct Fitter<'a, 's, const D: usize> {
 }
 
 impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
-    fn new(source: &'a Source<'s, D>, options: &'a FitOptions) -> Result<Self, NotFitted> {
+    fn new(source: &'a SampledShape<'s, D>, options: &'a FitOptions) -> Result<Self, NotFitted> {
         let ends = std::array::from_fn(|d| {
             let pace = source.rational.paces[d];
             let mut all: Vec<f64> = source.joints[d].iter().map(|&t| pace.inverse(t)).collect();

@@ -16,7 +16,7 @@ mod data;
 mod edit;
 mod fit;
 
-pub use fit::{FitOptions, NotFitted, Source, fit};
+pub use fit::{FitOptions, NotFitted, SampledShape, fit};
 
 use moldloft_num::{Curve, Pace, Real, Solid, Surface, Vec3};
 
@@ -84,7 +84,10 @@ pub fn of_curve<T: Real>(
         curve.grid(ts, &mut out);
         out.into_iter().map(Vec3::re).collect()
     };
-    fit(&Source { sample: &sample, joints: [curve.joints()], rational: curve.rational() }, options)
+    fit(
+        &SampledShape { sample: &sample, joints: [curve.joints()], rational: curve.rational() },
+        options,
+    )
 }
 
 /// A surface as a NURBS.
@@ -101,7 +104,7 @@ pub fn of_surface<T: Real>(
         out.into_iter().map(Vec3::re).collect()
     };
     fit(
-        &Source { sample: &sample, joints: surface.joints(), rational: surface.rational() },
+        &SampledShape { sample: &sample, joints: surface.joints(), rational: surface.rational() },
         options,
     )
 }
@@ -120,5 +123,8 @@ pub fn of_solid<T: Real>(
         solid.grid(us, vs, ws, &mut out);
         out.into_iter().map(Vec3::re).collect()
     };
-    fit(&Source { sample: &sample, joints, rational: moldloft_num::Rational::none() }, options)
+    fit(
+        &SampledShape { sample: &sample, joints, rational: moldloft_num::Rational::none() },
+        options,
+    )
 }

@@ -108,7 +108,7 @@ pub enum FieldKind {
 
 /// An object, or one of its relatives `Variable` and `Formula`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Object {
+pub struct ObjectEntry {
     /// The entity word.
     pub entity: Span,
     /// The name.
@@ -127,7 +127,7 @@ pub enum ItemKind {
     /// `Rem …` or `# …`, without the line end.
     Comment,
     /// An object.
-    Object(Object),
+    Object(ObjectEntry),
     /// Text that could not be understood; reported.
     Unknown,
 }
@@ -195,7 +195,7 @@ impl ModelFile {
     }
 
     /// The objects in the order of the file.
-    pub fn objects(&self) -> impl Iterator<Item = Object> + '_ {
+    pub fn objects(&self) -> impl Iterator<Item = ObjectEntry> + '_ {
         self.items.iter().filter_map(|item| match item.kind {
             ItemKind::Object(object) => Some(object),
             _ => None,
@@ -222,7 +222,7 @@ impl ModelFile {
     }
 
     /// The attributes of an object: name and value.
-    pub fn attributes(&self, object: &Object) -> impl Iterator<Item = (&str, &str)> + '_ {
+    pub fn attributes(&self, object: &ObjectEntry) -> impl Iterator<Item = (&str, &str)> + '_ {
         self[object.fields].iter().filter_map(|field| match field.kind {
             FieldKind::Attribute { name, value } => Some((self.slice(name), self.slice(value))),
             _ => None,

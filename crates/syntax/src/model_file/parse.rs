@@ -26,7 +26,7 @@ pub fn parse(text: impl Into<Arc<str>>, file: FileId) -> (ModelFile, Vec<Diagnos
         numbers: Vec::new(),
         edited: Vec::new(),
     };
-    let mut parser = Parser {
+    let mut parser = ModelFileParser {
         text: &text,
         bytes: text.as_bytes(),
         file,
@@ -49,7 +49,7 @@ pub fn parse(text: impl Into<Arc<str>>, file: FileId) -> (ModelFile, Vec<Diagnos
     (parser.model, parser.diagnostics)
 }
 
-struct Parser<'a> {
+struct ModelFileParser<'a> {
     text: &'a str,
     bytes: &'a [u8],
     file: FileId,
@@ -71,7 +71,7 @@ struct OpenList {
     base: usize,
 }
 
-impl<'a> Parser<'a> {
+impl<'a> ModelFileParser<'a> {
     fn run(&mut self) {
         if self.text.starts_with('\u{feff}') {
             self.at = '\u{feff}'.len_utf8();
@@ -363,7 +363,7 @@ impl<'a> Parser<'a> {
         }
         let fields = self.take_fields(base);
         let span = if matches!(ended, End::Semicolon) { self.span(start) } else { span };
-        let object = Object { entity, name, fields, span, complete };
+        let object = ObjectEntry { entity, name, fields, span, complete };
         self.push_item(ItemKind::Object(object), span, after_gap);
     }
 

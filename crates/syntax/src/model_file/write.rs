@@ -6,7 +6,7 @@ impl ModelFile {
     /// The canonical text: one object a line, numbers in their shortest spelling, single empty lines and all comments
     /// kept, the order as it was. Objects for which `verbatim` holds, and those with faults, are written as they stand
     /// in the source (changed numbers included).
-    pub fn to_canonical(&self, mut verbatim: impl FnMut(&Object) -> bool) -> String {
+    pub fn to_canonical(&self, mut verbatim: impl FnMut(&ObjectEntry) -> bool) -> String {
         let mut out = String::with_capacity(self.text.len());
         self.write_header(&mut out);
         for item in &self.items {
@@ -33,7 +33,7 @@ impl ModelFile {
     }
 
     /// The canonical text of one object, without a line end.
-    pub fn object_text(&self, object: &Object) -> String {
+    pub fn object_text(&self, object: &ObjectEntry) -> String {
         let mut out = String::new();
         self.write_object(object, &mut out);
         out
@@ -80,7 +80,7 @@ impl ModelFile {
         }
     }
 
-    fn write_object(&self, object: &Object, out: &mut String) {
+    fn write_object(&self, object: &ObjectEntry, out: &mut String) {
         out.push_str(self.slice(object.entity));
         out.push(' ');
         out.push_str(self.slice(object.name));

@@ -4,7 +4,7 @@
 //! empty statements are dropped, numbers get a digit on both sides of their point, and parentheses are added where set
 //! operators group otherwise than numbers would. Line breaks inside a statement stay where the author put them.
 
-use super::parser::{Layout, Role, parse_marked};
+use super::parser::{Layout, TokenRole, parse_marked};
 use super::token::{Comment, Kind, Token};
 use moldloft_diag::{Diagnostic, FileId};
 use std::sync::Arc;
@@ -44,7 +44,7 @@ struct Writer<'a> {
     line: u32,
     at_line_start: bool,
     /// The last token written and its role.
-    last: Option<(Token, Role)>,
+    last: Option<(Token, TokenRole)>,
     /// Whether nothing but a trailing comment was written since the block (or the text) began.
     first_in_block: bool,
     next_comment: usize,
@@ -86,7 +86,7 @@ impl<'a> Writer<'a> {
             if token.kind == Kind::End {
                 break;
             }
-            if role == Role::Redundant {
+            if role == TokenRole::Redundant {
                 self.next_start += 1;
                 continue;
             }
@@ -143,7 +143,8 @@ impl<'a> Writer<'a> {
     fn inside_statement(&self) -> bool {
         !self.brackets.is_empty()
             || self.last.is_some_and(|(token, role)| {
-                !(token.kind == Kind::Semi || matches!(role, Role::BlockOpen | Role::BlockClose))
+                !(token.kind == Kind::Semi
+                    || matches!(role, TokenRole::BlockOpen | TokenRole::BlockClose))
             })
     }
 
@@ -173,7 +174,7 @@ impl<'a> Writer<'a> {
                 if !first_in_block {
                     self.empty_line(comment.start);
                 }
-                let closes = self.layout.roles[at] == Role::BlockClose;
+                let closes = self.layout.roles[at] == TokenRole::BlockClose;
                 let depth = starts.map_or(0, |depth| depth + u32::from(closes));
                 self.out.extend(std::iter::repeat_n(' ', depth as usize * INDENT));
                 self.at_line_start = false;
@@ -195,11 +196,11 @@ impl<'a> Writer<'a> {
     }
 
     /// Breaks the line before a token where one is due, and indents.
-    fn break_line(&mut self, at: usize, token: Token, role: Role) {
+    fn break_line(&mut self, at: usize, token: Token, role: TokenRole) {
         if let Some(depth) = self.start_of(at) {
             self.next_start += 1;
-            let opened = matches!(self.last, Some((_, Role::BlockOpen)));
-            if role == Role::BlockClose && opened && !self.at_line_start {
+            let opened = matches!(self.last, Some((_, TokenRole::BlockOpen)));
+            if role == TokenRole::BlockClose && opened && !self.at_line_start {
                 // `{}`
                 self.depth = depth;
                 return;
@@ -209,7 +210,7 @@ impl<'a> Writer<'a> {
             let after_head = self.last.is_some_and(|(last, _)| {
                 matches!(last.kind, Kind::RParen | Kind::Then | Kind::Else)
             });
-            if role != Role::BlockClose && token.kind != Kind::Else && !after_head {
+            if role != TokenRole::BlockClose && token.kind != Kind::Else && !after_head {
                 self.empty_line(token.start);
             }
             self.depth = depth;
@@ -218,13 +219,13 @@ impl<'a> Writer<'a> {
             return;
         }
         let keeps_line =
-            matches!(role, Role::BlockOpen) || matches!(token.kind, Kind::Else | Kind::Then);
+            matches!(role, TokenRole::BlockOpen) || matches!(token.kind, Kind::Else | Kind::Then);
         let closing = usize::from(closes(token, role));
         if self.at_line_start
             || (token.new_line && !keeps_line && may_break(token, role, self.last))
         {
             self.new_line();
-            if matches!(role, Role::BlockOpen) || token.kind == Kind::Else {
+            if matches!(role, TokenRole::BlockOpen) || token.kind == Kind::Else {
                 self.out.extend(std::iter::repeat_n(' ', self.depth as usize * INDENT));
                 self.at_line_start = false;
             } else {
@@ -235,7 +236,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn token(&mut self, token: Token, role: Role) {
+    fn token(&mut self, token: Token, role: TokenRole) {
         while self.open_at.last() == Some(&token.start) {
             self.open_at.pop();
             self.out.push('(');
@@ -259,37 +260,36 @@ impl<'a> Writer<'a> {
             self.brackets.pop();
         }
         self.last = Some((token, role));
-        self.first_in_block = role == Role::BlockOpen;
+        self.first_in_block = role == TokenRole::BlockOpen;
         self.source_end = token.end;
     }
 }
 
-fn opens(token: Token, role: Role) -> bool {
-    role != Role::BlockOpen
+fn opens(token: Token, role: TokenRole) -> bool {
+    role != TokenRole::BlockOpen
         && (matches!(token.kind, Kind::LParen | Kind::LBracket | Kind::LBrace)
-            || (token.kind == Kind::Pipe && role == Role::Open))
+            || (token.kind == Kind::Pipe && role == TokenRole::Open))
 }
 
-fn closes(token: Token, role: Role) -> bool {
-    role != Role::BlockClose
+fn closes(token: Token, role: TokenRole) -> bool {
+    role != TokenRole::BlockClose
         && (matches!(token.kind, Kind::RParen | Kind::RBracket | Kind::RBrace)
-            || (token.kind == Kind::Pipe && role == Role::Close))
+            || (token.kind == Kind::Pipe && role == TokenRole::Close))
 }
 
 /// Whether a line break of the author before this token stays.
-fn may_break(token: Token, role: Role, last: Option<(Token, Role)>) -> bool {
-    let after_prefix = matches!(last, Some((_, Role::Prefix)));
+fn may_break(token: Token, role: TokenRole, last: Option<(Token, TokenRole)>) -> bool {
+    let after_prefix = matches!(last, Some((_, TokenRole::Prefix)));
     let glued = matches!(token.kind, Kind::Semi | Kind::Comma | Kind::Ellipsis | Kind::MemberDot)
-        || matches!(role, Role::Applied | Role::Tight);
-    let after_tight =
-        matches!(last, Some((last, role)) if role == Role::Tight || last.kind == Kind::MemberDot);
+        || matches!(role, TokenRole::Applied | TokenRole::Tight);
+    let after_tight = matches!(last, Some((last, role)) if role == TokenRole::Tight || last.kind == Kind::MemberDot);
     !(after_prefix || glued || after_tight)
 }
 
 /// Whether a blank stands between two tokens of a line.
-fn blank_between(last: Option<(Token, Role)>, token: Token, role: Role) -> bool {
+fn blank_between(last: Option<(Token, TokenRole)>, token: Token, role: TokenRole) -> bool {
     let Some((last, last_role)) = last else { return false };
-    if matches!(last_role, Role::Prefix | Role::Open | Role::Applied)
+    if matches!(last_role, TokenRole::Prefix | TokenRole::Open | TokenRole::Applied)
         || last.kind == Kind::MemberDot
     {
         return false;
@@ -297,7 +297,7 @@ fn blank_between(last: Option<(Token, Role)>, token: Token, role: Role) -> bool 
     if matches!(last.kind, Kind::LParen | Kind::LBracket) {
         return false;
     }
-    if matches!(role, Role::Close | Role::Applied)
+    if matches!(role, TokenRole::Close | TokenRole::Applied)
         || matches!(token.kind, Kind::RParen | Kind::RBracket)
     {
         return false;
@@ -305,12 +305,12 @@ fn blank_between(last: Option<(Token, Role)>, token: Token, role: Role) -> bool 
     if matches!(token.kind, Kind::Semi | Kind::Comma | Kind::Ellipsis | Kind::MemberDot) {
         return false;
     }
-    if role == Role::BlockClose && last_role == Role::BlockOpen {
+    if role == TokenRole::BlockClose && last_role == TokenRole::BlockOpen {
         return false;
     }
     // The second half of `||` is tight to the first and has a blank after it.
-    let logical = last.kind == Kind::Pipe && last_role == Role::Tight;
-    !(role == Role::Tight || (last_role == Role::Tight && !logical))
+    let logical = last.kind == Kind::Pipe && last_role == TokenRole::Tight;
+    !(role == TokenRole::Tight || (last_role == TokenRole::Tight && !logical))
 }
 
 /// A number with a digit on both sides of its point and a small `e`.

@@ -19,7 +19,7 @@ mod polytope;
 mod round;
 mod tree;
 
-pub use round::{Profile, Round};
+pub use round::{Round, RoundProfile};
 
 use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
@@ -27,7 +27,7 @@ use polytope::{Level, Polytope};
 use round::Rounded;
 use std::cell::Cell;
 use std::collections::HashMap;
-use tree::{Containment, Divider, Piece, Side, Tangled, Tree};
+use tree::{BspTree, Containment, ConvexPiece, Divider, SideSurface, Tangled};
 
 /// How many cells a division may have, and primitives its set.
 const MOST: usize = 100_000;
@@ -80,11 +80,11 @@ pub fn faced<T: Real>(body: &Sides<'_, T>) -> Result<Set<T>, FieldError> {
             for n in 0..flats.len() {
                 if on(&planes[n]) {
                     let body = Polytope::polygon(end.to_vec());
-                    pieces.push(Piece { side: Side::Flat(n), body });
+                    pieces.push(ConvexPiece { side: SideSurface::Flat(n), body });
                 }
             }
         }
-        pieces.extend(round.wedges().map(|body| Piece { side: Side::Round(k), body }));
+        pieces.extend(round.wedges().map(|body| ConvexPiece { side: SideSurface::Round(k), body }));
     }
     planes.extend(rounds.iter().flat_map(Rounded::beside));
     let solid_angle = |p: Vec3| {
@@ -164,7 +164,7 @@ fn flats<T: Real>(
     body: &Sides<'_, T>,
     plain: &[Vec3],
     epsilon: f64,
-) -> Result<(Vec<Flat<T>>, Vec<Piece>), FieldError> {
+) -> Result<(Vec<Flat<T>>, Vec<ConvexPiece>), FieldError> {
     let corners = |t: &[u32; 3]| t.map(|v| plain[v as usize]);
     let level = |t: &[u32; 3]| {
         let [a, b, c] = corners(t);
@@ -203,7 +203,7 @@ fn flats<T: Real>(
         });
         pieces.extend(triangles.iter().map(|&k| {
             let body = Polytope::polygon(corners(&body.triangles[k]).to_vec());
-            Piece { side: Side::Flat(n), body }
+            ConvexPiece { side: SideSurface::Flat(n), body }
         }));
     };
     for group in groups {
@@ -242,7 +242,7 @@ fn mean_plane<T: Real>(body: &Sides<'_, T>, triangles: &[usize]) -> (Vec3<T>, Ve
 }
 
 /// Whether the half-spaces of the outermost faces bound a part of space.
-fn bounded(planes: &[Level], pieces: &[Piece], space: &Polytope, epsilon: f64) -> bool {
+fn bounded(planes: &[Level], pieces: &[ConvexPiece], space: &Polytope, epsilon: f64) -> bool {
     let mut hull = Some(space.clone());
     for level in planes {
         let front = pieces.iter().map(|p| level.range(p.body.points())[1]);
@@ -272,12 +272,12 @@ struct Assembly<'a, T: Real> {
 
 impl<T: Real> Assembly<'_, T> {
     /// The set of a division and how many primitives it names.
-    fn set(&self, tree: &Tree) -> Result<(Set<T>, usize), FieldError> {
+    fn set(&self, tree: &BspTree) -> Result<(Set<T>, usize), FieldError> {
         let (plane, parts) = match tree {
-            Tree::Air => return Ok((Set::nothing(), 0)),
-            Tree::Solid => return Ok((Set::everything(), 0)),
-            Tree::Round(k) => return Ok((self.rounds[*k].clone(), 2)),
-            Tree::Split { plane, parts } => (*plane, &**parts),
+            BspTree::Air => return Ok((Set::nothing(), 0)),
+            BspTree::Solid => return Ok((Set::everything(), 0)),
+            BspTree::Round(k) => return Ok((self.rounds[*k].clone(), 2)),
+            BspTree::Split { plane, parts } => (*plane, &**parts),
         };
         let (front, behind) = (&parts[0], &parts[1]);
         let (f, many_f) = self.set(front)?;
@@ -287,8 +287,8 @@ impl<T: Real> Assembly<'_, T> {
         }
         let half = || Set::new(&self.half_spaces[plane]);
         let rest = || Set::new(&-&self.half_spaces[plane]);
-        let within = |inner: &Tree, outer: &Tree| {
-            let trivial = matches!(inner, Tree::Air) || matches!(outer, Tree::Solid);
+        let within = |inner: &BspTree, outer: &BspTree| {
+            let trivial = matches!(inner, BspTree::Air) || matches!(outer, BspTree::Solid);
             trivial
                 || self.space.as_ref().is_some_and(|space| {
                     let (planes, epsilon) = (self.planes, self.epsilon);

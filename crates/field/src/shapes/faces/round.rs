@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A plane curve that a round side starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Profile<T> {
+pub enum RoundProfile<T> {
     /// `centre + a cos(s sweep) + b sin(s sweep)` for s in [0, 1]: part of an ellipse of conjugate
     /// half-diameters a and b.
     Conic {
@@ -32,7 +32,7 @@ pub struct Round<T> {
     /// The number of the side.
     pub side: u32,
     /// The near end.
-    pub profile: Profile<T>,
+    pub profile: RoundProfile<T>,
     /// From the near end to the far one: of the centre, or of a parabola's start.
     pub shift: Vec3<T>,
     /// The size of the far end: 1 for cylinders, 0 for a cone with its apex there.
@@ -43,18 +43,18 @@ impl<T: Real> Round<T> {
     /// The point that shift and scale refer to.
     fn origin(&self) -> Vec3<T> {
         match self.profile {
-            Profile::Conic { centre, .. } => centre,
-            Profile::Parabola([start, ..]) => start,
+            RoundProfile::Conic { centre, .. } => centre,
+            RoundProfile::Parabola([start, ..]) => start,
         }
     }
 
     fn at(&self, s: f64) -> Vec3 {
         match self.profile {
-            Profile::Conic { centre, a, b, sweep } => {
+            RoundProfile::Conic { centre, a, b, sweep } => {
                 let (sine, cosine) = libm::sincos(s * sweep.re());
                 centre.re() + a.re() * cosine + b.re() * sine
             }
-            Profile::Parabola([start, corner, end]) => {
+            RoundProfile::Parabola([start, corner, end]) => {
                 let two = start.re().lerp(corner.re(), s);
                 two.lerp(corner.re().lerp(end.re(), s), s)
             }
@@ -63,11 +63,11 @@ impl<T: Real> Round<T> {
 
     fn velocity(&self, s: f64) -> Vec3 {
         match self.profile {
-            Profile::Conic { a, b, sweep, .. } => {
+            RoundProfile::Conic { a, b, sweep, .. } => {
                 let (sine, cosine) = libm::sincos(s * sweep.re());
                 b.re() * cosine - a.re() * sine
             }
-            Profile::Parabola([start, corner, end]) => {
+            RoundProfile::Parabola([start, corner, end]) => {
                 (corner - start).re().lerp((end - corner).re(), s)
             }
         }
@@ -83,7 +83,7 @@ impl<T: Real> Round<T> {
     /// tangents meet, end.
     fn triangles(&self) -> Vec<[Vec3; 3]> {
         match self.profile {
-            Profile::Conic { centre, a, b, sweep } => {
+            RoundProfile::Conic { centre, a, b, sweep } => {
                 let turn = sweep.re().abs();
                 let n = (turn / FRAC_PI_2 - 1e-9).ceil().max(1.0);
                 let part = |k: f64| {
@@ -97,7 +97,7 @@ impl<T: Real> Round<T> {
                 };
                 (0..n as usize).map(|k| part(k as f64)).collect()
             }
-            Profile::Parabola(p) => vec![p.map(|p| p.re())],
+            RoundProfile::Parabola(p) => vec![p.map(|p| p.re())],
         }
     }
 
@@ -106,8 +106,10 @@ impl<T: Real> Round<T> {
     fn inside(&self) -> Result<(Primitive<T>, Option<Primitive<T>>), FieldError> {
         let origin = self.origin();
         let [u, v, w] = match self.profile {
-            Profile::Conic { a, b, .. } => [a, b, self.shift],
-            Profile::Parabola([start, corner, end]) => [corner - start, end - start, self.shift],
+            RoundProfile::Conic { a, b, .. } => [a, b, self.shift],
+            RoundProfile::Parabola([start, corner, end]) => {
+                [corner - start, end - start, self.shift]
+            }
         };
         let volume = u.cross(v).dot(w);
         let size = u.re().norm() * v.re().norm() * w.re().norm();
@@ -122,8 +124,10 @@ impl<T: Real> Round<T> {
         let steep = u.norm() * v.norm();
         let (f, measure) = match self.profile {
             // On the surface |gradient| of x² + y² - 1 is 2 / radius.
-            Profile::Conic { .. } => (x.power(2) + y.power(2) - scale.power(2), steep.sqrt() * 0.5),
-            Profile::Parabola(_) => {
+            RoundProfile::Conic { .. } => {
+                (x.power(2) + y.power(2) - scale.power(2), steep.sqrt() * 0.5)
+            }
+            RoundProfile::Parabola(_) => {
                 let start = &(&scale - &x) - &y;
                 (x.power(2) - start * y * T::from(4.0), steep.sqrt() * 0.25)
             }
@@ -259,24 +263,24 @@ impl Rounded {
 /// The sign of a sweep: the velocity is given without it.
 fn turn_sign(round: &Round<f64>) -> f64 {
     match round.profile {
-        Profile::Conic { sweep, .. } if sweep < 0.0 => -1.0,
+        RoundProfile::Conic { sweep, .. } if sweep < 0.0 => -1.0,
         _ => 1.0,
     }
 }
 
 fn turn(round: &Round<f64>) -> f64 {
     match round.profile {
-        Profile::Conic { sweep, .. } => sweep.abs(),
-        Profile::Parabola(_) => 0.0,
+        RoundProfile::Conic { sweep, .. } => sweep.abs(),
+        RoundProfile::Parabola(_) => 0.0,
     }
 }
 
 fn plain<T: Real>(round: &Round<T>) -> Round<f64> {
     let profile = match round.profile {
-        Profile::Conic { centre, a, b, sweep } => {
-            Profile::Conic { centre: centre.re(), a: a.re(), b: b.re(), sweep: sweep.re() }
+        RoundProfile::Conic { centre, a, b, sweep } => {
+            RoundProfile::Conic { centre: centre.re(), a: a.re(), b: b.re(), sweep: sweep.re() }
         }
-        Profile::Parabola(p) => Profile::Parabola(p.map(|p| p.re())),
+        RoundProfile::Parabola(p) => RoundProfile::Parabola(p.map(|p| p.re())),
     };
     Round { side: round.side, profile, shift: round.shift.re(), scale: round.scale.re() }
 }

@@ -4,7 +4,7 @@ use super::polytope::{Level, Polytope};
 
 /// What a piece of a body's surface lies on: a number of a plane or of a round side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum SideSurface {
     /// A plane.
     Flat(usize),
     /// A round side: the only surface of the body in its cell.
@@ -13,14 +13,14 @@ pub(super) enum Side {
 
 /// A convex piece that contains a piece of the surface.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
-    pub side: Side,
+pub(super) struct ConvexPiece {
+    pub side: SideSurface,
     pub body: Polytope,
 }
 
 /// The division of a convex cell.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Tree {
+pub(super) enum BspTree {
     Air,
     Solid,
     /// The cell's surface is that round side.
@@ -28,7 +28,7 @@ pub(super) enum Tree {
     /// In front of a plane and behind it.
     Split {
         plane: usize,
-        parts: Box<[Tree; 2]>,
+        parts: Box<[BspTree; 2]>,
     },
 }
 
@@ -57,15 +57,15 @@ pub(super) struct Divider<'a> {
 
 impl Divider<'_> {
     /// Divides a cell by the pieces in it.
-    pub fn divide(&mut self, cell: Polytope, pieces: Vec<Piece>) -> Result<Tree, Tangled> {
+    pub fn divide(&mut self, cell: Polytope, pieces: Vec<ConvexPiece>) -> Result<BspTree, Tangled> {
         self.cells = self.cells.checked_sub(1).ok_or(Tangled::Cells)?;
         let Some(first) = pieces.first() else {
-            return Ok(if (self.inside)(cell.middle()) { Tree::Solid } else { Tree::Air });
+            return Ok(if (self.inside)(cell.middle()) { BspTree::Solid } else { BspTree::Air });
         };
-        if let Side::Round(n) = first.side
+        if let SideSurface::Round(n) = first.side
             && pieces.iter().all(|p| p.side == first.side)
         {
-            return Ok(Tree::Round(n));
+            return Ok(BspTree::Round(n));
         }
         let (plane, split) = self.choose(&pieces)?;
         let level = self.planes[plane];
@@ -78,28 +78,32 @@ impl Divider<'_> {
             Some(cell) => {
                 let cut = |k: usize| {
                     let body = pieces[k].body.cut(&level, this.epsilon)?;
-                    Some(Piece { side: pieces[k].side, body })
+                    Some(ConvexPiece { side: pieces[k].side, body })
                 };
-                let inside: Vec<Piece> = which.into_iter().filter_map(cut).collect();
+                let inside: Vec<ConvexPiece> = which.into_iter().filter_map(cut).collect();
                 this.divide(cell, inside).map(Some)
             }
         };
         let front = part(level, front, self)?;
         let behind = part(level.turned(), behind, self)?;
         Ok(match (front, behind) {
-            (Some(front), Some(behind)) => Tree::Split { plane, parts: Box::new([front, behind]) },
+            (Some(front), Some(behind)) => {
+                BspTree::Split { plane, parts: Box::new([front, behind]) }
+            }
             // The plane bounds the cell and its pieces lie on the boundary: the sides differ.
-            (Some(front), None) => Tree::Split { plane, parts: Box::new([front, Tree::Air]) },
-            (None, Some(behind)) => Tree::Split { plane, parts: Box::new([Tree::Air, behind]) },
-            (None, None) => Tree::Air,
+            (Some(front), None) => BspTree::Split { plane, parts: Box::new([front, BspTree::Air]) },
+            (None, Some(behind)) => {
+                BspTree::Split { plane, parts: Box::new([BspTree::Air, behind]) }
+            }
+            (None, None) => BspTree::Air,
         })
     }
 
     /// The plane to divide by, and which pieces have a part in front of it and behind it.
-    fn choose(&self, pieces: &[Piece]) -> Result<(usize, [Vec<usize>; 2]), Tangled> {
+    fn choose(&self, pieces: &[ConvexPiece]) -> Result<(usize, [Vec<usize>; 2]), Tangled> {
         let mut wanted: Vec<usize> = Vec::new();
         for piece in pieces {
-            if let Side::Flat(k) = piece.side
+            if let SideSurface::Flat(k) = piece.side
                 && !wanted.contains(&k)
             {
                 wanted.push(k);
@@ -114,7 +118,7 @@ impl Divider<'_> {
             let level = self.planes[plane];
             let (mut front, mut behind, mut split) = (Vec::new(), Vec::new(), 0);
             for (k, piece) in pieces.iter().enumerate() {
-                if piece.side == Side::Flat(plane) {
+                if piece.side == SideSurface::Flat(plane) {
                     continue;
                 }
                 let [low, high] = level.range(piece.body.points());
@@ -155,21 +159,21 @@ pub(super) struct Containment<'a> {
 
 impl Containment<'_> {
     /// Whether `inner` lies within `outer`.
-    pub fn holds(&mut self, inner: &Tree, outer: &Tree, cell: &Polytope) -> bool {
+    pub fn holds(&mut self, inner: &BspTree, outer: &BspTree, cell: &Polytope) -> bool {
         if self.steps == 0 {
             return false;
         }
         self.steps -= 1;
         match (inner, outer) {
-            (Tree::Air, _) | (_, Tree::Solid) => true,
-            (Tree::Round(a), Tree::Round(b)) => a == b,
-            (Tree::Split { plane, parts }, _) => {
+            (BspTree::Air, _) | (_, BspTree::Solid) => true,
+            (BspTree::Round(a), BspTree::Round(b)) => a == b,
+            (BspTree::Split { plane, parts }, _) => {
                 self.both(*plane, cell, |this, side, part| this.holds(&parts[side], outer, part))
             }
-            (_, Tree::Split { plane, parts }) => {
+            (_, BspTree::Split { plane, parts }) => {
                 self.both(*plane, cell, |this, side, part| this.holds(inner, &parts[side], part))
             }
-            (_, Tree::Air) | (Tree::Solid, Tree::Round(_)) => false,
+            (_, BspTree::Air) | (BspTree::Solid, BspTree::Round(_)) => false,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::plane::{Frame, facet_winding};
 use super::pool::Pool;
-use super::{ArrangeError, Facet, Region};
+use super::{ArrangeError, ArrangedRegion, Facet};
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ pub(super) fn windings(
     facets: &[Facet],
     frames: &[Frame],
     sheets: &[Frame],
-    regions: &[Region],
+    regions: &[ArrangedRegion],
 ) -> Result<Vec<[Turns; 2]>, ArrangeError> {
     let mut wings: BTreeMap<(u32, u32), Vec<(f64, usize, bool)>> = BTreeMap::new();
     for (r, region) in regions.iter().enumerate() {
@@ -92,7 +92,7 @@ fn in_front(
     facets: &[Facet],
     frames: &[Frame],
     sheets: &[Frame],
-    region: &Region,
+    region: &ArrangedRegion,
 ) -> Result<Turns, ArrangeError> {
     let from = region.inner;
     let frame = &sheets[region.sheet];

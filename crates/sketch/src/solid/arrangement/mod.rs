@@ -104,7 +104,7 @@ pub enum ArrangeError {
 }
 
 /// A region between segments.
-struct Region {
+struct ArrangedRegion {
     sheet: usize,
     loops: regions::Loops,
     /// By operand, how often facets cover it, signed by the side of their normal.
@@ -371,7 +371,7 @@ fn all_regions(
     members: &[Vec<usize>],
     segments: &[BTreeSet<(u32, u32)>],
     chains: &Chains,
-) -> Result<(Vec<Region>, bool), ArrangeError> {
+) -> Result<(Vec<ArrangedRegion>, bool), ArrangeError> {
     let mut found = Vec::new();
     let mut cancelled = false;
     for (s, own) in members.iter().enumerate() {
@@ -399,7 +399,7 @@ fn all_regions(
             if turns == [0, 0] {
                 cancelled |= !covers.is_empty();
             } else {
-                found.push(Region { sheet: s, loops, turns, inner, covers });
+                found.push(ArrangedRegion { sheet: s, loops, turns, inner, covers });
             }
         }
         if found.len() > MAX_REGIONS {
@@ -416,7 +416,7 @@ fn join(
     facets: &[Facet],
     frames: &[Frame],
     sheets: &[Frame],
-    regions: &[Region],
+    regions: &[ArrangedRegion],
     kept: &[(usize, bool)],
 ) -> Vec<ArrangedFace> {
     // Plane pieces join within their sheet, others within their face.
@@ -525,7 +525,7 @@ fn join(
 }
 
 /// The facet that gives a region its surface: of the first operand if there is one.
-fn leader(facets: &[Facet], region: &Region) -> usize {
+fn leader(facets: &[Facet], region: &ArrangedRegion) -> usize {
     let key = |f: &&usize| (facets[**f].operand, facets[**f].tag);
     region.covers.iter().min_by_key(key).copied().unwrap_or(0)
 }

@@ -1,7 +1,7 @@
 //! The cells between candidate faces.
 
-use super::regions::{Region, Sheet};
-use super::wire::Wire;
+use super::regions::{SheetRegion, SpannedPlane};
+use super::wire::Wireframe;
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 
@@ -31,7 +31,7 @@ impl Cells {
         if wing.forward { [minus, plus] } else { [plus, minus] }
     }
 
-    pub fn build(wire: &Wire, sheets: &[Sheet], regions: &[Region]) -> Cells {
+    pub fn build(wire: &Wireframe, sheets: &[SpannedPlane], regions: &[SheetRegion]) -> Cells {
         let wings = wings(wire, sheets, regions);
         let mut shell = UnionFind::new(2 * regions.len());
         let mut part = UnionFind::new(regions.len());
@@ -97,7 +97,7 @@ impl Cells {
     }
 }
 
-fn wings(wire: &Wire, sheets: &[Sheet], regions: &[Region]) -> Vec<Vec<Wing>> {
+fn wings(wire: &Wireframe, sheets: &[SpannedPlane], regions: &[SheetRegion]) -> Vec<Vec<Wing>> {
     let mut wings: Vec<Vec<Wing>> = vec![Vec::new(); wire.edges.len()];
     let frames: Vec<[Vec3; 2]> = (wire.edges.iter())
         .map(|e| {
@@ -126,20 +126,20 @@ fn wings(wire: &Wire, sheets: &[Sheet], regions: &[Region]) -> Vec<Vec<Wing>> {
 }
 
 /// The signed triangles of a region, all from one corner.
-fn fan<'a>(wire: &'a Wire, region: &'a Region) -> impl Iterator<Item = [Vec3; 3]> + 'a {
+fn fan<'a>(wire: &'a Wireframe, region: &'a SheetRegion) -> impl Iterator<Item = [Vec3; 3]> + 'a {
     let apex = wire.vertices[wire.tail(region.loops[0][0])];
     (region.loops.iter().flatten())
         .map(move |&h| [apex, wire.vertices[wire.tail(h)], wire.vertices[wire.head(h)]])
 }
 
 /// The volume of the cone from `centre` over a region, positive when its normal points away.
-fn cone(wire: &Wire, region: &Region, centre: Vec3) -> f64 {
+fn cone(wire: &Wireframe, region: &SheetRegion, centre: Vec3) -> f64 {
     fan(wire, region).map(|[a, b, c]| (a - centre).dot((b - centre).cross(c - centre)) / 6.0).sum()
 }
 
 /// The solid angle of a region seen from `p`, positive from the side against its normal
 /// (van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983).
-fn solid_angle(wire: &Wire, region: &Region, p: Vec3) -> f64 {
+fn solid_angle(wire: &Wireframe, region: &SheetRegion, p: Vec3) -> f64 {
     fan(wire, region)
         .map(|corners| {
             let [a, b, c] = corners.map(|x| x - p);

@@ -6,8 +6,8 @@
 //! faces, then edges between faces of one plane, then less volume.
 
 use super::cells::Cells;
-use super::regions::Region;
-use super::wire::Wire;
+use super::regions::SheetRegion;
+use super::wire::Wireframe;
 use moldloft_num::union_find::UnionFind;
 
 /// At most so many answers are kept.
@@ -53,7 +53,11 @@ impl Around {
 }
 
 /// All labellings, best first, and whether the list is complete.
-pub(super) fn label(wire: &Wire, regions: &[Region], cells: &Cells) -> (Vec<Answer>, bool) {
+pub(super) fn label(
+    wire: &Wireframe,
+    regions: &[SheetRegion],
+    cells: &Cells,
+) -> (Vec<Answer>, bool) {
     let count = cells.volume.len();
     let mut edges: Vec<Around> = Vec::new();
     for (e, around) in cells.wings.iter().enumerate() {
@@ -84,7 +88,7 @@ pub(super) fn label(wire: &Wire, regions: &[Region], cells: &Cells) -> (Vec<Answ
             continue;
         }
         let members: Vec<usize> = (0..count).filter(|&c| groups.find(c) == group).collect();
-        let mut search = Search {
+        let mut search = LabelSearch {
             edges: &edges,
             of_cell: &of_cell,
             order: near_first(&members, &edges, &of_cell),
@@ -167,7 +171,7 @@ fn near_first(members: &[usize], edges: &[Around], of_cell: &[Vec<usize>]) -> Ve
     order
 }
 
-struct Search<'a> {
+struct LabelSearch<'a> {
     edges: &'a [Around],
     of_cell: &'a [Vec<usize>],
     order: Vec<usize>,
@@ -176,7 +180,7 @@ struct Search<'a> {
     steps: usize,
 }
 
-impl Search<'_> {
+impl LabelSearch<'_> {
     /// Depth first with unit propagation, without recursion.
     fn run(&mut self) {
         // Per decision: the cell, whether its second value was tried, what was set since.

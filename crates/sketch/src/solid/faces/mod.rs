@@ -16,8 +16,8 @@ mod wire;
 use cells::Cells;
 use moldloft_num::Vec3;
 use moldloft_num::union_find::UnionFind;
-use regions::{Half, Region, Sheet};
-use wire::Wire;
+use regions::{Half, SheetRegion, SpannedPlane};
+use wire::Wireframe;
 
 /// More edges than this, after cutting, are refused.
 pub const MAX_EDGES: usize = 20_000;
@@ -74,13 +74,13 @@ pub struct Fitted {
 /// Finds the solids of a wireframe. Vertices are numbered as given.
 pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
     let mut fitted = Fitted { complete: true, ..Fitted::default() };
-    let mut wire = Wire::new(positions, edges);
+    let mut wire = Wireframe::new(positions, edges);
     fitted.dangling = wire.prune();
     let drawn = wire.vertices.len();
     fitted.crossings = wire.vertices[positions.len()..].to_vec();
     let sheets = regions::sheets(&wire);
     let regions = loop {
-        let mut regions: Vec<Region> = (sheets.iter().enumerate())
+        let mut regions: Vec<SheetRegion> = (sheets.iter().enumerate())
             .flat_map(|(k, sheet)| regions::regions(&wire, k, sheet))
             .collect();
         if fitted.first_open.is_empty() {
@@ -126,11 +126,11 @@ pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
 /// a cross section. A closed figure inside another is a hole, one inside a hole is material again.
 /// Edges with a loose end are left out.
 pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Vec<Polygon> {
-    let mut wire = Wire::new(positions, edges);
+    let mut wire = Wireframe::new(positions, edges);
     wire.prune();
     let drawn = wire.vertices.len();
     let sheets = regions::sheets(&wire);
-    let mut regions: Vec<Region> = (sheets.iter().enumerate())
+    let mut regions: Vec<SheetRegion> = (sheets.iter().enumerate())
         .flat_map(|(k, sheet)| regions::regions(&wire, k, sheet))
         .collect();
     let mut figure = UnionFind::new(wire.vertices.len());
@@ -147,16 +147,16 @@ pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Vec<
     regions.retain(|_| *keep.next().unwrap_or(&true));
     let cells = Cells { side: vec![], volume: vec![], wings: vec![] };
     let build = Build { wire: &wire, sheets: &sheets, regions: &regions, cells: &cells, drawn };
-    let up = |r: &Region| sheets[r.sheet].normal.dot(normal) > 0.0;
+    let up = |r: &SheetRegion| sheets[r.sheet].normal.dot(normal) > 0.0;
     let mut faces: Vec<Polygon> = regions.iter().map(|r| build.polygon(&r.loops, up(r))).collect();
     faces.sort();
     faces
 }
 
 struct Build<'a> {
-    wire: &'a Wire,
-    sheets: &'a [Sheet],
-    regions: &'a [Region],
+    wire: &'a Wireframe,
+    sheets: &'a [SpannedPlane],
+    regions: &'a [SheetRegion],
     cells: &'a Cells,
     /// Vertices from here on were made by cutting.
     drawn: usize,

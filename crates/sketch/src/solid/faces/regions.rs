@@ -1,19 +1,19 @@
 //! Candidate faces: the regions into which edges divide the planes they span.
 
-use super::wire::Wire;
+use super::wire::Wireframe;
 use moldloft_num::{Real, Vec3};
 
 /// A plane that two edges with a common end span, with its own coordinates.
 #[derive(Clone, Debug)]
-pub(super) struct Sheet {
+pub(super) struct SpannedPlane {
     pub normal: Vec3,
     pub offset: f64,
     u: Vec3,
     v: Vec3,
 }
 
-impl Sheet {
-    fn spanned(point: Vec3, a: Vec3, b: Vec3) -> Option<Sheet> {
+impl SpannedPlane {
+    fn spanned(point: Vec3, a: Vec3, b: Vec3) -> Option<SpannedPlane> {
         let mut normal = a.normalized()?.cross(b.normalized()?);
         if normal.norm() < 1e-6 {
             return None;
@@ -25,7 +25,7 @@ impl Sheet {
             normal = -normal;
         }
         let u = normal.perpendicular();
-        Some(Sheet { normal, offset: normal.dot(point), u, v: normal.cross(u) })
+        Some(SpannedPlane { normal, offset: normal.dot(point), u, v: normal.cross(u) })
     }
 
     pub fn contains(&self, p: Vec3, tolerance: f64) -> bool {
@@ -38,12 +38,12 @@ impl Sheet {
 }
 
 /// The sheets of a wireframe's drawn edges.
-pub(super) fn sheets(wire: &Wire) -> Vec<Sheet> {
+pub(super) fn sheets(wire: &Wireframe) -> Vec<SpannedPlane> {
     let mut at: Vec<Vec<usize>> = vec![Vec::new(); wire.vertices.len()];
     for (k, e) in wire.edges.iter().enumerate() {
         e.ends.iter().for_each(|&v| at[v].push(k));
     }
-    let mut sheets: Vec<Sheet> = Vec::new();
+    let mut sheets: Vec<SpannedPlane> = Vec::new();
     let mut of_edge: Vec<Vec<usize>> = vec![Vec::new(); wire.edges.len()];
     for (v, edges) in at.iter().enumerate() {
         let p = wire.vertices[v];
@@ -56,7 +56,7 @@ pub(super) fn sheets(wire: &Wire) -> Vec<Sheet> {
                     let [x, y] = wire.edges[e].ends;
                     wire.vertices[if x == v { y } else { x }] - p
                 };
-                let Some(sheet) = Sheet::spanned(p, to(a), to(b)) else { continue };
+                let Some(sheet) = SpannedPlane::spanned(p, to(a), to(b)) else { continue };
                 for (e, edge) in wire.edges.iter().enumerate() {
                     let on = |v: usize| sheet.contains(wire.vertices[v], wire.tolerance);
                     if edge.ends.iter().all(|&v| on(v)) {
@@ -75,13 +75,13 @@ pub(super) type Half = (usize, bool);
 
 /// A candidate face: a region of a sheet, to the left of its loops seen against the normal.
 #[derive(Clone, Debug)]
-pub(super) struct Region {
+pub(super) struct SheetRegion {
     pub sheet: usize,
     /// The outer loop, then holes. Slits are run along both sides.
     pub loops: Vec<Vec<Half>>,
 }
 
-impl Wire {
+impl Wireframe {
     pub fn tail(&self, (edge, forward): Half) -> usize {
         self.edges[edge].ends[usize::from(!forward)]
     }
@@ -92,7 +92,7 @@ impl Wire {
 }
 
 /// Twice the area inside a loop, positive when counter-clockwise.
-fn area(wire: &Wire, sheet: &Sheet, cycle: &[Half]) -> f64 {
+fn area(wire: &Wireframe, sheet: &SpannedPlane, cycle: &[Half]) -> f64 {
     let Some(&first) = cycle.first() else { return 0.0 };
     let o = sheet.flat(wire.vertices[wire.tail(first)]);
     cycle
@@ -106,7 +106,12 @@ fn area(wire: &Wire, sheet: &Sheet, cycle: &[Half]) -> f64 {
 }
 
 /// Whether a point is inside a loop (even-odd), for points that are not on it.
-pub(super) fn encloses(wire: &Wire, sheet: &Sheet, cycle: &[Half], [x, y]: [f64; 2]) -> bool {
+pub(super) fn encloses(
+    wire: &Wireframe,
+    sheet: &SpannedPlane,
+    cycle: &[Half],
+    [x, y]: [f64; 2],
+) -> bool {
     let mut inside = false;
     for &h in cycle {
         let [ax, ay] = sheet.flat(wire.vertices[wire.tail(h)]);
@@ -119,7 +124,7 @@ pub(super) fn encloses(wire: &Wire, sheet: &Sheet, cycle: &[Half], [x, y]: [f64;
 }
 
 /// The loops of half-edges, each turning as far right as it can, with the region to its left.
-pub(super) fn walk(wire: &Wire, sheet: &Sheet, halves: &[Half]) -> Vec<Vec<Half>> {
+pub(super) fn walk(wire: &Wireframe, sheet: &SpannedPlane, halves: &[Half]) -> Vec<Vec<Half>> {
     let mut leaving: std::collections::BTreeMap<usize, Vec<(f64, usize)>> = Default::default();
     for (k, &h) in halves.iter().enumerate() {
         let a = sheet.flat(wire.vertices[wire.tail(h)]);
@@ -166,7 +171,11 @@ pub(super) fn walk(wire: &Wire, sheet: &Sheet, halves: &[Half]) -> Vec<Vec<Half>
 }
 
 /// Loops sorted into outer ones with their holes. Holes belong to the smallest loop around them.
-pub(super) fn nested(wire: &Wire, sheet: &Sheet, loops: Vec<Vec<Half>>) -> Vec<Vec<Vec<Half>>> {
+pub(super) fn nested(
+    wire: &Wireframe,
+    sheet: &SpannedPlane,
+    loops: Vec<Vec<Half>>,
+) -> Vec<Vec<Vec<Half>>> {
     let nothing = wire.tolerance * wire.tolerance;
     let (mut outer, mut inner) = (Vec::new(), Vec::new());
     for cycle in loops {
@@ -190,18 +199,21 @@ pub(super) fn nested(wire: &Wire, sheet: &Sheet, loops: Vec<Vec<Half>>) -> Vec<V
 }
 
 /// All candidate faces of a sheet.
-pub(super) fn regions(wire: &Wire, index: usize, sheet: &Sheet) -> Vec<Region> {
+pub(super) fn regions(wire: &Wireframe, index: usize, sheet: &SpannedPlane) -> Vec<SheetRegion> {
     let on = |v: usize| sheet.contains(wire.vertices[v], wire.tolerance);
     let halves: Vec<Half> = (0..wire.edges.len())
         .filter(|&e| wire.edges[e].ends.iter().all(|&v| on(v)))
         .flat_map(|e| [(e, true), (e, false)])
         .collect();
     let loops = walk(wire, sheet, &halves);
-    nested(wire, sheet, loops).into_iter().map(|loops| Region { sheet: index, loops }).collect()
+    nested(wire, sheet, loops)
+        .into_iter()
+        .map(|loops| SheetRegion { sheet: index, loops })
+        .collect()
 }
 
 /// Removes, repeatedly, regions with an edge that nothing else shares.
-pub(super) fn drop_unshared(wire: &Wire, regions: &mut Vec<Region>) {
+pub(super) fn drop_unshared(wire: &Wireframe, regions: &mut Vec<SheetRegion>) {
     loop {
         let mut wings = vec![0; wire.edges.len()];
         for region in regions.iter() {
@@ -216,8 +228,12 @@ pub(super) fn drop_unshared(wire: &Wire, regions: &mut Vec<Region>) {
 }
 
 /// Segments along which regions cross inside both: two such regions cannot both be faces whole.
-pub(super) fn cuts(wire: &Wire, sheets: &[Sheet], regions: &[Region]) -> Vec<[Vec3; 2]> {
-    let mut of_sheet: Vec<Vec<&Region>> = vec![Vec::new(); sheets.len()];
+pub(super) fn cuts(
+    wire: &Wireframe,
+    sheets: &[SpannedPlane],
+    regions: &[SheetRegion],
+) -> Vec<[Vec3; 2]> {
+    let mut of_sheet: Vec<Vec<&SheetRegion>> = vec![Vec::new(); sheets.len()];
     regions.iter().for_each(|r| of_sheet[r.sheet].push(r));
     let boxes: Vec<[Vec3; 2]> = of_sheet.iter().map(|own| bounds(wire, own)).collect();
     let mut found = Vec::new();
@@ -237,7 +253,7 @@ pub(super) fn cuts(wire: &Wire, sheets: &[Sheet], regions: &[Region]) -> Vec<[Ve
     found
 }
 
-fn bounds(wire: &Wire, regions: &[&Region]) -> [Vec3; 2] {
+fn bounds(wire: &Wireframe, regions: &[&SheetRegion]) -> [Vec3; 2] {
     let mut low: Vec3 = Vec3::of(f64::INFINITY, f64::INFINITY, f64::INFINITY);
     let mut high = -low;
     for &h in regions.iter().flat_map(|r| &r.loops[0]) {
@@ -249,7 +265,10 @@ fn bounds(wire: &Wire, regions: &[&Region]) -> [Vec3; 2] {
 }
 
 /// The parts of the common line of two sheets inside regions of both and on no edge.
-fn common_segments(wire: &Wire, pair: [(&Sheet, &Vec<&Region>); 2]) -> Vec<[Vec3; 2]> {
+fn common_segments(
+    wire: &Wireframe,
+    pair: [(&SpannedPlane, &Vec<&SheetRegion>); 2],
+) -> Vec<[Vec3; 2]> {
     let [(s, _), (t, _)] = pair;
     let Some(direction) = s.normal.cross(t.normal).normalized() else { return vec![] };
     let cos = s.normal.dot(t.normal);
@@ -300,7 +319,7 @@ fn common_segments(wire: &Wire, pair: [(&Sheet, &Vec<&Region>); 2]) -> Vec<[Vec3
             && !taken.iter().any(|i| i[0] - tol <= middle && middle <= i[1] + tol)
             && pair.iter().all(|(sheet, regions)| {
                 let p = sheet.flat(at);
-                let within = |r: &&Region| {
+                let within = |r: &&SheetRegion| {
                     let mut loops = r.loops.iter().map(|l| encloses(wire, sheet, l, p));
                     loops.next() == Some(true) && loops.all(|hole| !hole)
                 };

@@ -12,7 +12,7 @@ pub(super) struct Edge {
 }
 
 /// Vertices and edges that meet at vertices only.
-pub(super) struct Wire {
+pub(super) struct Wireframe {
     pub vertices: Vec<Vec3>,
     /// The input's vertices come first; `kept[k]` is the vertex that input vertex `k` became.
     pub kept: Vec<usize>,
@@ -27,9 +27,9 @@ fn key(a: usize, b: usize) -> (usize, usize) {
     (a.min(b), a.max(b))
 }
 
-impl Wire {
+impl Wireframe {
     /// Builds the wireframe; the tolerance is 1e-7 of the diagonal.
-    pub fn new(positions: &[Vec3], edges: &[[usize; 2]]) -> Wire {
+    pub fn new(positions: &[Vec3], edges: &[[usize; 2]]) -> Wireframe {
         let mut low: Vec3 = Vec3::of(f64::INFINITY, f64::INFINITY, f64::INFINITY);
         let mut high = -low;
         for p in positions {
@@ -38,7 +38,7 @@ impl Wire {
         }
         let diagonal = if positions.is_empty() { 1.0 } else { (high - low).norm() };
         let tolerance = (1e-7 * diagonal).max(f64::MIN_POSITIVE);
-        let mut wire = Wire {
+        let mut wire = Wireframe {
             vertices: Vec::new(),
             kept: Vec::new(),
             edges: Vec::new(),

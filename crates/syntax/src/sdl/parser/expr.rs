@@ -3,7 +3,7 @@
 use super::super::ast::*;
 use super::super::grouping::{Grouping, Step};
 use super::super::token::{self, Kind, Token};
-use super::{Parse, Parser, Reported, Role, close_list};
+use super::{Parse, Parser, Reported, TokenRole, close_list};
 use moldloft_diag::{Diagnostic, Span};
 
 impl Parser {
@@ -11,10 +11,10 @@ impl Parser {
         let mut left = self.and()?;
         loop {
             if self.kind() == Kind::Or {
-                self.next_as(Role::Infix);
+                self.next_as(TokenRole::Infix);
             } else if self.at_double_pipe() {
-                self.next_as(Role::Infix);
-                self.next_as(Role::Tight);
+                self.next_as(TokenRole::Infix);
+                self.next_as(TokenRole::Tight);
             } else {
                 return Ok(left);
             }
@@ -35,7 +35,7 @@ impl Parser {
     fn and(&mut self) -> Parse<ExprId> {
         let mut left = self.not()?;
         while matches!(self.kind(), Kind::And | Kind::AmpAmp) {
-            self.next_as(Role::Infix);
+            self.next_as(TokenRole::Infix);
             let right = self.not()?;
             left = self.binary(BinaryOp::And, left, right)?;
         }
@@ -45,7 +45,7 @@ impl Parser {
     fn not(&mut self) -> Parse<ExprId> {
         let first = self.at;
         while matches!(self.kind(), Kind::Not | Kind::Bang) {
-            let role = if self.kind() == Kind::Bang { Role::Prefix } else { Role::Plain };
+            let role = if self.kind() == Kind::Bang { TokenRole::Prefix } else { TokenRole::Plain };
             self.next_as(role);
         }
         let last = self.at;
@@ -71,7 +71,7 @@ impl Parser {
                 _ => return Ok(left),
             };
             count += 1;
-            let token = self.next_as(Role::Infix);
+            let token = self.next_as(TokenRole::Infix);
             if count == 2 {
                 let diagnostic =
                     Diagnostic::error("chained-comparison", "comparisons cannot be chained")
@@ -111,7 +111,11 @@ impl Parser {
                 BinaryOp::Union | BinaryOp::Intersection => has.set = true,
                 _ => has.other = true,
             }
-            let token = self.next_as(if op == BinaryOp::Caret { Role::Tight } else { Role::Infix });
+            let token = self.next_as(if op == BinaryOp::Caret {
+                TokenRole::Tight
+            } else {
+                TokenRole::Infix
+            });
             self.items.push(ChainItem::Infix(op, self.span(token)));
         }
         if let [ChainItem::Operand(only)] = self.items[base..] {
@@ -136,7 +140,7 @@ impl Parser {
                 self.items.push(ChainItem::Operand(number));
                 return Ok(());
             }
-            let token = self.next_as(Role::Prefix);
+            let token = self.next_as(TokenRole::Prefix);
             let op = if token.kind == Kind::Minus { UnaryOp::Minus } else { UnaryOp::Plus };
             has.other = true;
             self.items.push(ChainItem::Prefix(op, self.span(token)));
@@ -157,7 +161,7 @@ impl Parser {
         if sign.kind != Kind::Minus || number.kind != Kind::Number || !alone {
             return None;
         }
-        self.next_as(Role::Prefix);
+        self.next_as(TokenRole::Prefix);
         self.next();
         let span = Span::new(self.program.file, sign.start, number.end);
         let literal = &mut self.program.literals[number.payload as usize];
@@ -270,7 +274,7 @@ impl Parser {
     fn dot(&mut self) -> Parse<ExprId> {
         let mut left = self.cross()?;
         while self.kind() == Kind::Dot {
-            self.next_as(Role::Infix);
+            self.next_as(TokenRole::Infix);
             let right = self.signed(Self::cross)?;
             left = self.binary(BinaryOp::Dot, left, right)?;
         }
@@ -280,7 +284,7 @@ impl Parser {
     fn cross(&mut self) -> Parse<ExprId> {
         let mut left = self.postfix()?;
         while self.kind() == Kind::Cross {
-            self.next_as(Role::Infix);
+            self.next_as(TokenRole::Infix);
             let right = self.signed(Self::postfix)?;
             left = self.binary(BinaryOp::Cross, left, right)?;
         }
@@ -290,7 +294,7 @@ impl Parser {
     fn signed(&mut self, operand: fn(&mut Self) -> Parse<ExprId>) -> Parse<ExprId> {
         let first = self.at;
         while matches!(self.kind(), Kind::Plus | Kind::Minus) {
-            self.next_as(Role::Prefix);
+            self.next_as(TokenRole::Prefix);
         }
         let last = self.at;
         let number = self.tokens[last];
@@ -385,23 +389,23 @@ impl Parser {
     }
 
     fn parenthesised(&mut self) -> Parse<ExprId> {
-        let open = self.next_as(Role::Open);
+        let open = self.next_as(TokenRole::Open);
         let inner = self.expr()?;
-        self.mark(self.at, Role::Close);
+        self.mark(self.at, TokenRole::Close);
         self.expect_close(Kind::RParen, open, "`)` or an operator")?;
         self.push_above(ExprKind::Paren(inner), self.span_from(open.start), self.height(inner))
     }
 
     fn magnitude(&mut self) -> Parse<ExprId> {
-        let open = self.next_as(Role::Open);
+        let open = self.next_as(TokenRole::Open);
         let inner = self.expr()?;
-        self.mark(self.at, Role::Close);
+        self.mark(self.at, TokenRole::Close);
         self.expect_close(Kind::Pipe, open, "`|` or an operator")?;
         self.push_above(ExprKind::Magnitude(inner), self.span_from(open.start), self.height(inner))
     }
 
     fn list(&mut self) -> Parse<ExprId> {
-        let open = self.next_as(Role::Open);
+        let open = self.next_as(TokenRole::Open);
         let base = self.exprs.len();
         let mut below = 0;
         if self.kind() != Kind::RBrace {
@@ -414,7 +418,7 @@ impl Parser {
                 }
             }
         }
-        self.mark(self.at, Role::Close);
+        self.mark(self.at, TokenRole::Close);
         self.expect_close(Kind::RBrace, open, "`,` or `}`")?;
         let list = close_list(&mut self.exprs, base, &mut self.program.expr_lists);
         self.push_above(ExprKind::List(list), self.span_from(open.start), below)
@@ -426,7 +430,7 @@ impl Parser {
     }
 
     fn argument_list(&mut self) -> Parse<(List<Arg>, u16)> {
-        let open = self.next_as(Role::Applied);
+        let open = self.next_as(TokenRole::Applied);
         let base = self.args.len();
         let mut below = 0;
         let mut first_named: Option<Ident> = None;
@@ -466,7 +470,7 @@ impl Parser {
             return None;
         }
         self.next();
-        self.next_as(Role::Infix);
+        self.next_as(TokenRole::Infix);
         Some(Ident { symbol: token.symbol(), span: self.span(token) })
     }
 
@@ -490,7 +494,7 @@ impl Parser {
     }
 
     fn subscript_list(&mut self) -> Parse<(List<Subscript>, u16)> {
-        let open = self.next_as(Role::Applied);
+        let open = self.next_as(TokenRole::Applied);
         let base = self.subs.len();
         let mut below = 0;
         loop {
@@ -511,11 +515,11 @@ impl Parser {
         if self.kind() != Kind::Colon {
             return Ok((from.map_or(Subscript::Whole, Subscript::At), below));
         }
-        self.next_as(Role::Tight);
+        self.next_as(TokenRole::Tight);
         let to = self.subscript_part(&mut below)?;
         let mut step = None;
         if self.kind() == Kind::Colon {
-            self.next_as(Role::Tight);
+            self.next_as(TokenRole::Tight);
             let expr = self.expr()?;
             below = below.max(self.height(expr));
             step = Some(expr);

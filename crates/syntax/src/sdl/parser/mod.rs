@@ -61,7 +61,7 @@ pub(crate) fn parse_marked(text: Arc<str>, file: FileId) -> (Program, Vec<Diagno
 
 /// What a token is for, as far as its spacing depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Role {
+pub(crate) enum TokenRole {
     Plain,
     /// A sign or `!` before an operand.
     Prefix,
@@ -87,7 +87,7 @@ pub(crate) enum Role {
 pub(crate) struct Layout {
     pub tokens: Vec<Token>,
     pub comments: Vec<Comment>,
-    pub roles: Vec<Role>,
+    pub roles: Vec<TokenRole>,
     /// Tokens that start a line, and how deep it is indented; in the order of the text.
     pub starts: Vec<(u32, u32)>,
     /// Bytes before which a `(` is to be written.
@@ -138,7 +138,7 @@ impl Parser {
         let layout = marked.then(|| Layout {
             tokens: tokens.clone(),
             comments,
-            roles: vec![Role::Plain; tokens.len()],
+            roles: vec![TokenRole::Plain; tokens.len()],
             starts: Vec::new(),
             open_at: Vec::new(),
             close_at: Vec::new(),
@@ -362,13 +362,13 @@ impl Parser {
 
     // Layout.
 
-    fn mark(&mut self, at: usize, role: Role) {
+    fn mark(&mut self, at: usize, role: TokenRole) {
         if let Some(layout) = &mut self.layout {
             layout.roles[at] = role;
         }
     }
 
-    fn next_as(&mut self, role: Role) -> Token {
+    fn next_as(&mut self, role: TokenRole) -> Token {
         self.mark(self.at, role);
         self.next()
     }

@@ -17,7 +17,7 @@ impl Parser {
         let result =
             if word.kind == Kind::Function { Some(self.type_word("a result type")?) } else { None };
         let name = self.ident("the name of the routine")?;
-        self.mark(self.at, super::Role::Applied);
+        self.mark(self.at, super::TokenRole::Applied);
         let open = self.expect(Kind::LParen, "`(`")?;
         let formals = self.formals()?;
         self.expect_close(Kind::RParen, open, "`,` or `)`")?;
@@ -41,7 +41,7 @@ impl Parser {
                 let returned = self.eat(Kind::Returned);
                 let ty = self.type_word("a type")?;
                 let name = self.ident("the name of the argument")?;
-                self.mark(self.at, super::Role::Plain);
+                self.mark(self.at, super::TokenRole::Plain);
                 let multiple = self.eat(Kind::Ellipsis);
                 if let Some(before) = formals.last().filter(|formal| formal.multiple) {
                     let message = "only the last argument can be multiple";

@@ -2,7 +2,7 @@
 
 use super::super::ast::*;
 use super::super::token::{ASSERT, IN, Kind, PARAM};
-use super::{Parse, Parser, Reported, Role, close_list};
+use super::{Parse, Parser, Reported, TokenRole, close_list};
 use moldloft_diag::{Diagnostic, Span};
 
 impl Parser {
@@ -20,7 +20,7 @@ impl Parser {
                 }
                 Kind::Semi => {
                     self.start_line(depth);
-                    self.next_as(Role::Redundant);
+                    self.next_as(TokenRole::Redundant);
                 }
                 _ => {
                     self.start_line(depth);
@@ -179,11 +179,11 @@ impl Parser {
 
     /// `{ … }`.
     pub(super) fn block(&mut self, depth: u32) -> Parse<List<StmtId>> {
-        let open = self.next_as(Role::BlockOpen);
+        let open = self.next_as(TokenRole::BlockOpen);
         let list = self.statements(Some(self.span(open)), depth + 1);
         if self.kind() == Kind::RBrace {
             self.start_line(depth);
-            self.next_as(Role::BlockClose);
+            self.next_as(TokenRole::BlockClose);
         }
         Ok(list)
     }
@@ -260,14 +260,14 @@ impl Parser {
         let mut start = None;
         if self.kind() == Kind::Ident && self.peek(1).kind == Kind::Assign {
             let variable = self.ident("a variable")?;
-            self.next_as(Role::Infix);
+            self.next_as(TokenRole::Infix);
             let from = self.expr()?;
             if self.kind() == Kind::Colon {
-                self.next_as(Role::Tight);
+                self.next_as(TokenRole::Tight);
                 let to = self.expr()?;
                 let mut step = None;
                 if self.kind() == Kind::Colon {
-                    self.next_as(Role::Tight);
+                    self.next_as(TokenRole::Tight);
                     step = Some(self.expr()?);
                 }
                 self.expect_close(Kind::RParen, open, "`:` or `)`")?;
@@ -280,10 +280,10 @@ impl Parser {
         } else if self.kind() != Kind::Semi {
             start = Some(self.simple()?);
         }
-        self.mark(self.at, Role::HeadSemi);
+        self.mark(self.at, TokenRole::HeadSemi);
         self.expect(Kind::Semi, "`:` of a range or `;`")?;
         let condition = if self.kind() == Kind::Semi { None } else { Some(self.expr()?) };
-        self.mark(self.at, Role::HeadSemi);
+        self.mark(self.at, TokenRole::HeadSemi);
         self.expect(Kind::Semi, "an operator or `;`")?;
         let step = if self.kind() == Kind::RParen { None } else { Some(self.simple()?) };
         self.expect_close(Kind::RParen, open, "an operator or `)`")?;
@@ -336,7 +336,7 @@ impl Parser {
         let name = self.ident("the name of a variable")?;
         let mut dims = List::new(0, 0);
         if self.kind() == Kind::LBracket {
-            let open = self.next_as(Role::Applied);
+            let open = self.next_as(TokenRole::Applied);
             let base = self.exprs.len();
             loop {
                 let dim = self.expr()?;
@@ -355,7 +355,7 @@ impl Parser {
         }
         let mut value = None;
         if self.kind() == Kind::Assign {
-            self.next_as(Role::Infix);
+            self.next_as(TokenRole::Infix);
             value = Some(self.expr()?);
         }
         Ok(Declarator { name, dims, value })
@@ -366,7 +366,7 @@ impl Parser {
         let typed = self.kind() == Kind::TypeWord || self.peek(1).kind == Kind::Ident;
         let ty = if typed { Some(self.type_word("a type")?) } else { None };
         let name = self.ident("the name of the parameter")?;
-        self.mark(self.at, Role::Infix);
+        self.mark(self.at, TokenRole::Infix);
         self.expect(Kind::Assign, "`=` and the default value")?;
         let value = self.expr()?;
         let mut range = None;
@@ -417,7 +417,7 @@ impl Parser {
             _ => return self.call_statement(target, start),
         };
         self.check_target(target);
-        self.next_as(Role::Infix);
+        self.next_as(TokenRole::Infix);
         let value = self.expr()?;
         Ok(self.push_stmt(StmtKind::Assign { target, op, value }, self.span_from(start)))
     }
