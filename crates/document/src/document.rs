@@ -43,6 +43,8 @@ pub struct Document {
     pub(crate) applied: Applied,
     /// The solve sets of the last run.
     pub(crate) solved: Vec<SolveReport>,
+    /// The objects whose numbers solve sets find.
+    pub(crate) solved_objects: HashSet<String>,
     budget: Arc<Budget>,
     /// True when the last run was cancelled: what it did not come to is missing.
     cut_short: bool,
@@ -139,6 +141,7 @@ impl Document {
             nominal: None,
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },
             solved: Vec::new(),
+            solved_objects: HashSet::new(),
             budget: Arc::default(),
             cut_short: false,
             kept: Kept::default(),
@@ -211,6 +214,7 @@ impl Document {
         self.cut_short = self.run_diagnostics.iter().any(|d| d.id == "cancelled");
         self.plain = evaluation;
         self.solved.clear();
+        self.solved_objects.clear();
         if !self.plain.env.solves.is_empty() {
             self.solve();
         }
@@ -234,6 +238,13 @@ impl Document {
         report: bool,
     ) -> Applied {
         let mut found = Vec::new();
+        let both: HashSet<String>;
+        let seeded_objects = if self.solved_objects.is_empty() {
+            seeded_objects
+        } else {
+            both = seeded_objects.union(&self.solved_objects).cloned().collect();
+            &both
+        };
         evaluation.graph.set_budget(self.budget.clone());
         evaluation.graph.keep_in(self.kept.clone());
         let inputs = Inputs {

@@ -63,6 +63,8 @@ impl Document {
     /// Solves all sets of the run that was made, and runs the model with the solution.
     pub(crate) fn solve(&mut self) {
         let count = self.plain.env.solves.len();
+        let unknowns = self.plain.env.solves.iter().flat_map(|s| &s.unknowns);
+        self.solved_objects = unknowns.filter_map(|u| u.object.clone()).collect();
         let mut values: IndexMap<String, f64> = IndexMap::new();
         let mut reports: Vec<SolveReport> = Vec::new();
         for at in 0..count {
@@ -75,10 +77,8 @@ impl Document {
             reports.iter().filter_map(SolveReport::diagnostic).collect();
         found.extend(self.out_of_order(&reports, &values));
         for report in &mut reports {
-            let param = |name: &String| self.plain.env.params.iter().find(|p| p.name == *name);
-            let now = report.unknowns.iter().filter_map(param).map(|p| p.value);
-            report.values = now.collect();
             if let Some(solve) = self.plain.env.solves.iter().find(|s| *s.name == *report.name) {
+                report.values = solve.unknowns.iter().map(|u| u.value).collect();
                 report.residuals = solve.conditions.clone();
             }
         }
@@ -140,10 +140,9 @@ impl Document {
 
     fn solve_one(&mut self, at: usize, values: &mut IndexMap<String, f64>) -> SolveReport {
         let solve = &self.plain.env.solves[at];
-        let params: Vec<_> =
-            solve.unknowns.iter().map(|&n| self.plain.env.params[n].clone()).collect();
-        let names: Vec<String> = params.iter().map(|p| p.name.clone()).collect();
-        let starts: Vec<f64> = params.iter().map(|p| p.value).collect();
+        let unknowns = solve.unknowns.clone();
+        let names: Vec<String> = unknowns.iter().map(|u| u.name.clone()).collect();
+        let starts: Vec<f64> = unknowns.iter().map(|u| u.value).collect();
         let steps = solve.steps;
         let mut report = SolveReport {
             name: solve.name.to_string(),
@@ -214,7 +213,7 @@ impl Document {
             let mut bounded = false;
             for _ in 0..HALVINGS {
                 let next: Vec<f64> = (0..n)
-                    .map(|j| match params[j].range {
+                    .map(|j| match unknowns[j].range {
                         Some((low, high)) => (x[j] + share * step[j]).clamp(low, high),
                         None => x[j] + share * step[j],
                     })

@@ -34,6 +34,7 @@ mod solid;
 mod surface;
 mod third_derivatives;
 
+pub use search::{distance_from_curve, distance_from_surface, separation};
 pub use snake::edge;
 
 use moldloft_registry::Row;

@@ -6,3 +6,4 @@ pub(crate) mod elementary;
 pub mod files;
 pub(crate) mod format;
 mod grid_files;
+mod shape_measures;

@@ -1,6 +1,7 @@
 //! Runs a program: expressions.
 
 use crate::run::interpreter::{Interpreter, silent};
+use crate::source::env::SolveUnknown;
 use crate::source::fault_location;
 use crate::source::module::Module;
 use crate::source::scope::{Binding, Bound, Passed};
@@ -675,12 +676,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// An unknown of a solve set, or a number of its report.
     fn member_of_solve(&self, set: &str, word: &str) -> Option<Evaluated<T>> {
         let solve = self.env.solves.iter().find(|s| &*s.name == set)?;
-        let ends = |n: &&usize| {
-            let name = &self.env.params[**n].name;
-            name == word || name.rsplit('.').next() == Some(word)
-        };
-        if let Some(&number) = solve.unknowns.iter().find(ends) {
-            return Some(Ok(Value::Number(self.env.param_values[number])));
+        let named =
+            |u: &&SolveUnknown<T>| u.name == word || u.name.rsplit('.').next() == Some(word);
+        if let Some(unknown) = solve.unknowns.iter().find(named) {
+            return Some(Ok(Value::Number(unknown.value)));
         }
         let known = self.env.solved.get(set).copied();
         let later = || {
@@ -741,6 +740,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 None => given.positional.push(value),
                 Some(ident) => given.named.push((m.program.name(ident.symbol), value)),
             }
+        }
+        if let Some(measure) = self.shape_measure(&row.name, &given) {
+            return measure.map_err(|d| d.or_at(span));
         }
         let positional = given.positional.len();
         let (filled, _) = bind_arguments(&row, given, |_| Class::Any)

@@ -8,7 +8,7 @@ use crate::source::scope::{Binding, Bound};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::trace::Key;
-use moldloft_registry::{Given, Role, Scalar, bind_arguments};
+use moldloft_registry::{Class, Field, Given, Role, Row, Scalar, Value, bind_arguments};
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
 use std::sync::Arc;
@@ -92,6 +92,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return Err(diagnostic);
         }
         let positional = given.positional.len();
+        spread_last_vector(row, &mut given);
         let (mut filled, head) = bind_arguments(row, given, |key| self.run.class_of(key))
             .map_err(|fault| {
                 crate::source::fault_location::diagnostic(m, args, row, positional, &fault, span)
@@ -232,5 +233,19 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         self.env.scope.bind(name_id, name.span, Binding::Instance(family));
         Ok(full)
+    }
+}
+
+/// A vector given last in place of three coordinates: `AbsPoint M(0.5*(A + B))`, `RelPoint P(A, {1, 0, 2})`.
+fn spread_last_vector<T: Scalar>(row: &Row, given: &mut Given<T>) {
+    let Some(at) = given.positional.len().checked_sub(1) else { return };
+    let Some(Value::Vector(v)) = given.positional.last().cloned() else { return };
+    let Some([x, y, z]) = row.fields.get(at..at + 3) else { return };
+    let coordinate = |field: &Field, axis: char| {
+        field.class == Class::Number && !field.many && field.name.ends_with(axis)
+    };
+    if coordinate(x, 'x') && coordinate(y, 'y') && coordinate(z, 'z') {
+        given.positional.truncate(at);
+        given.positional.extend(v.to_array().map(Value::Number));
     }
 }

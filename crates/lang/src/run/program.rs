@@ -201,10 +201,10 @@ pub fn declared_at<T: Scalar>(
 }
 
 /// The literal of the text that a number of an object is.
-pub fn literal(
+pub fn literal<T: Scalar>(
     modules: &Modules,
-    env: &Environment<f64>,
-    object: &Object<f64>,
+    env: &Environment<T>,
+    object: &Object<T>,
     path: &NumberPath,
 ) -> Result<(usize, LiteralId), NotLiteral> {
     let Some(origin) = env.origins.get(object.origin as usize) else {

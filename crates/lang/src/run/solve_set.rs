@@ -1,22 +1,25 @@
 //! Solve sets in a run: their kind, and what a statement that declares one notes for the solver.
 
 use crate::run::interpreter::Interpreter;
-use crate::source::env::Solve;
+use crate::run::program;
+use crate::source::env::{Solve, SolveUnknown};
 use crate::source::fault_location;
 use crate::source::module::Module;
 use crate::source::scope::Binding;
+use crate::value::number_path::NumberPath;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Array, Build, CallError, Context, Kind, Row, Scalar, Value, many};
+use moldloft_registry::{Array, Build, CallError, Class, Context, Kind, Row, Scalar, Value, many};
 use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, List};
 use std::sync::Arc;
 
-/// Parameters that are found so that as many numbers become zero, by damped Newton steps from the
-/// values that they are given.
+/// Parameters and numbers of objects that are found so that as many other numbers become zero, by damped
+/// Newton steps from the values that they are given.
 ///
-/// The unknowns are parameters of the program, and what is built on them is built on the solution;
-/// their ranges bound the search. The conditions are numbers computed from them, each zero when it
+/// An unknown is a parameter of the program, or a number that is written where an object is declared: the
+/// `P21.y` of a point, the `b.t` of a bead. What is built on it is built on the solution; ranges of parameters and
+/// arguments bound the search. The text keeps the number from which the search begins. The conditions are numbers computed from them, each zero when it
 /// holds: `hull.volume - 100`. `s.x` is the solution of the unknown x, `s.residual` the largest
 /// condition left, `s.iterations` the number of steps.
 #[derive(Kind)]
@@ -27,7 +30,7 @@ use std::sync::Arc;
                AbsPoint B(0, 0, 0); Line l(A, B); SolveSet s({x, y}, {l.length - 5, A.x - 0.75*A.y});"
 )]
 pub struct SolveSet<T: Real> {
-    /// The parameters to find, by name.
+    /// What to find: parameters, and numbers of objects.
     #[field(min_items = 1)]
     unknowns: Vec<T>,
     /// As many numbers that become zero.
@@ -76,38 +79,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 _ => vec![expr],
             })
             .unwrap_or_default();
-        let mut unknowns: Vec<usize> = Vec::new();
+        let mut unknowns: Vec<SolveUnknown<T>> = Vec::new();
         for item in items {
-            let name = m.program.as_name(item).map(|symbol| m.names[symbol.0 as usize]);
-            let bound = name.and_then(|name| self.env.scope.lookup(name));
             let at = m.program[item].span;
-            let number = match bound.map(|b| &b.what) {
-                Some(Binding::Param(number)) => *number,
-                _ => {
-                    return Err(Diagnostic::error("not-an-unknown", "an unknown is a parameter")
-                        .at(at)
-                        .expected("the name of a parameter")
-                        .found(format!("`{}`", m.program.slice(at)))
-                        .help("declare it: param float x = 1 in [0, 5];"));
-                }
-            };
-            let param = &self.env.params[number];
-            if param.is_int {
-                return Err(Diagnostic::error("not-an-unknown", "an unknown varies continuously")
-                    .at(at)
-                    .expected("a parameter of type float")
-                    .found("an int"));
-            }
+            let unknown = self.unknown(m, item)?;
             let others = self.env.solves.iter().flat_map(|s| &s.unknowns);
-            if unknowns.iter().chain(others).any(|&n| n == number) {
+            if unknowns.iter().chain(others).any(|other| other.name == unknown.name) {
                 return Err(Diagnostic::error(
                     "not-an-unknown",
-                    format!("`{}` is an unknown already", param.name),
+                    format!("`{}` is an unknown already", unknown.name),
                 )
                 .at(at)
                 .help("an unknown belongs to one solve set, once"));
             }
-            unknowns.push(number);
+            unknowns.push(unknown);
         }
         let expr = fault_location::argument(m, &m.program[args], row, positional, 1);
         let at = expr.map_or(span, |expr| m.program[expr].span);
@@ -136,5 +121,69 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         self.env.solves.push(Solve { name: full.into(), span, unknowns, conditions, steps });
         Ok(())
+    }
+
+    /// The parameter, or the literal of an object, that an item of the list names.
+    fn unknown(&mut self, m: &Module, item: ExprId) -> Result<SolveUnknown<T>, Diagnostic> {
+        let at = m.program[item].span;
+        let name = m.program.as_name(item).map(|symbol| m.names[symbol.0 as usize]);
+        if let Some(Binding::Param(number)) =
+            name.and_then(|name| self.env.scope.lookup(name)).map(|b| &b.what)
+        {
+            let param = &self.env.params[*number];
+            if param.is_int {
+                return Err(Diagnostic::error("not-an-unknown", "an unknown varies continuously")
+                    .at(at)
+                    .expected("a parameter of type float")
+                    .found("an int"));
+            }
+            return Ok(SolveUnknown {
+                name: param.name.clone(),
+                value: self.env.param_values[*number],
+                range: param.range,
+                object: None,
+            });
+        }
+        let text: String = m.program.slice(at).chars().filter(|c| !c.is_whitespace()).collect();
+        let refused = |found: String| {
+            Diagnostic::error(
+                "not-an-unknown",
+                "an unknown is a parameter or a number of an object",
+            )
+            .at(at)
+            .expected("a parameter, or a number such as P21.y")
+            .found(found)
+            .help("declare it: param float x = 1 in [0, 5];")
+        };
+        // The object's own name may contain dots: the longest that is one wins.
+        let dots = text.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| k);
+        let owner = dots.map(|k| text.split_at(k)).find_map(|(o, p)| Some((self.run.find(o)?, p)));
+        let Some((key, path)) = owner else { return Err(refused(format!("`{text}`"))) };
+        let graph = self.run.graph();
+        let Some(object) = graph.get(key) else { return Err(refused(format!("`{text}`"))) };
+        let mut value = None;
+        let path = NumberPath::parse(&object.row, path).filter(|path| {
+            let keep = |x| {
+                value = Some(x);
+                x
+            };
+            path.change(&mut object.args.clone(), keep).is_some()
+        });
+        let (Some(path), Some(value)) = (path, value) else {
+            return Err(refused(format!("`{text}`, which is no number of {}", object.row.name)));
+        };
+        if program::literal(self.modules, self.env, object, &path).is_err() {
+            return Err(refused(format!("`{text}`, which is not a number of its own in the text"))
+                .help("make it a parameter, or name the parameters that it is computed from"));
+        }
+        let field = &object.row.fields[path.field];
+        if field.class == Class::Integer {
+            return Err(refused(format!("`{text}`, an integer")));
+        }
+        let range = match (field.min, field.max) {
+            (None, None) => None,
+            (low, high) => Some((low.unwrap_or(f64::MIN), high.unwrap_or(f64::MAX))),
+        };
+        Ok(SolveUnknown { name: text, value, range, object: Some(object.name.to_string()) })
     }
 }

@@ -87,6 +87,19 @@ impl SolveStatus {
     }
 }
 
+/// An unknown of a solve set: a parameter, or a number that is written in the declaration of an object.
+#[derive(Clone, Debug)]
+pub struct SolveUnknown<T> {
+    /// Its name: `beam`, or `P21.y`.
+    pub name: String,
+    /// Its value in this run.
+    pub value: T,
+    /// The range of a parameter or argument, where it has one.
+    pub range: Option<(f64, f64)>,
+    /// The object whose number it is; `None` for a parameter.
+    pub object: Option<String>,
+}
+
 /// A solve set as a run found it.
 #[derive(Clone, Debug)]
 pub struct Solve<T> {
@@ -94,8 +107,8 @@ pub struct Solve<T> {
     pub name: Arc<str>,
     /// The place of its declaration.
     pub span: Span,
-    /// Parameters, by their numbers.
-    pub unknowns: Vec<usize>,
+    /// What is found.
+    pub unknowns: Vec<SolveUnknown<T>>,
     /// What becomes zero.
     pub conditions: Vec<T>,
     /// The most steps.

@@ -124,7 +124,7 @@ pub(super) fn piercing<T: Real>(
 }
 
 /// The foot of a point on a curve. With `ends` a foot at an end is as good as any.
-fn foot<T: Real>(
+pub(super) fn foot<T: Real>(
     along: &Along<T>,
     point: Vec3<T>,
     ends: bool,

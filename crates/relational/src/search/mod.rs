@@ -5,6 +5,7 @@
 mod arguments;
 mod beads;
 mod cut;
+mod distances;
 mod equations;
 mod geodesic;
 mod int_point;
@@ -19,6 +20,7 @@ mod table;
 
 pub use arguments::Onto;
 pub use beads::{IntBead, IntRing, ProjBead, ProjRing, ProxBead, ProxRing, XYZBead, XYZRing};
+pub use distances::{distance_from_curve, distance_from_surface, separation};
 pub use geodesic::GeoSnake;
 pub use int_point::IntPoint;
 pub use intersect_snake::{IntCurve, IntSnake};
