@@ -27,12 +27,12 @@
 //! - [`shape`] and [`surface`]: curvature, torsion, combs, monotone pieces, inflections,
 //!   logarithmic curvature graphs, orthotomics; Gaussian and mean curvature, isophotes, highlight
 //!   and reflection lines, zebra, the metric of grids.
-//! - [`report()`]: all of it about one fairing, as data ([`Report`]) and as text. This is what the
+//! - [`report()`]: all of it about one fairing, as data ([`FairingReport`]) and as text. This is what the
 //!   command line prints: rows of a file are control points ([`Job::of_points`]), points moved
 //!   directly (the same, and the faired points are the result), or fitted first ([`interpolate`],
 //!   then [`Job::new`] with [`Fit::space`]). `deviation_certified`, `deviation_sampled`,
 //!   `jumps_before`, `jumps_after` and `gap` are [`Deviation::certified`], [`Deviation::sampled`],
-//!   [`Numbers::jumps`] of [`Report::before`] and [`Report::after`], and [`Certificate::gap`].
+//!   [`CurveStatistics::jumps`] of [`FairingReport::before`] and [`FairingReport::after`], and [`Certificate::gap`].
 //!   [`Network::report`] does the same for nets.
 //! - [`rows`]: the kinds `FairCurve`, `FairSnake`, `FairSurf`, `FairNet` and the functions `fair`, `jumps`,
 //!   `curvature` of the language, with derivatives ([`optimum_with`], [`replay_with`]).

@@ -2,7 +2,7 @@
 //!
 //! `text -> syntax tree -> run -> Graph`
 //!
-//! [`run::program::Program`] runs the text of a program, [`model_file::ModelFileSource`] that of a model
+//! [`run::program::RunContext`] runs the text of a program, [`model_file::ModelFileSource`] that of a model
 //! file; both declare objects in the graph of an [`Evaluation`] and leave behind what expressions may refer
 //! to afterwards. A run with seeded dual numbers gives exact derivatives of everything that a plain run
 //! computes.

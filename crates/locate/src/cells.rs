@@ -63,7 +63,7 @@ pub(crate) struct Bent {
     pub half: [f64; 2],
     /// The piece.
     pub piece: u32,
-    /// See [`Patch::open`].
+    /// See [`BezierPatch::open`].
     pub open: [[bool; 2]; 2],
 }
 

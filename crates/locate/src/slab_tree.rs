@@ -30,7 +30,7 @@ const STACK: usize = 2 * MOST_HALVINGS as usize + 2;
 ///
 /// A search looks at many plates for a moment each, so that the time goes to fetch them: this is one
 /// line of a processor's cache, in single precision with the bounds widened by its rounding. What else
-/// there is of a plate is a [`Place`] and a [`Turn`].
+/// there is of a plate is a [`SlabBox`] and a [`NormalVariation`].
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Slab {
@@ -41,7 +41,7 @@ struct Slab {
     bend: f32,
     /// The longer side.
     longest: f32,
-    /// A bound of how the normals change beside what [`Turn`] states.
+    /// A bound of how the normals change beside what [`NormalVariation`] states.
     rest: f32,
 }
 

@@ -12,26 +12,26 @@
 //!
 //! # For hosts
 //!
-//! [`Session`] is the whole command language. A host gives it lines and shows the replies:
+//! [`SketchSession`] is the whole command language. A host gives it lines and shows the replies:
 //!
-//! - `Session::with_files(files)`: `files` answers INPUT and RUN with texts ([`Files`]).
-//! - [`Session::run_line`] gives a list of [`Reply`]: severity, the code of 1983 if there is one, the
+//! - `SketchSession::with_files(files)`: `files` answers INPUT and RUN with texts ([`Files`]).
+//! - [`SketchSession::run_line`] gives a list of [`CommandReply`]: severity, the code of 1983 if there is one, the
 //!   text, the next step, and for SAVE and EXPORT a file (name and bytes) that the host writes, whole
 //!   or not at all. A refused command has changed nothing.
-//! - [`Session::journal`] is the list of commands that made the present state. The host appends its
+//! - [`SketchSession::journal`] is the list of commands that made the present state. The host appends its
 //!   new items to a journal file after each line; running them again restores the session.
-//! - [`Session::objects`] (data) and [`Session::objects_json`] (`{"objects": [...]}`, each with name,
+//! - [`SketchSession::objects`] (data) and [`SketchSession::objects_json`] (`{"objects": [...]}`, each with name,
 //!   state, points, lines, faces, volume, area, centroid, inertia, missing and loose dimensions) say
-//!   what came of it; each solid gives a mesh by [`Solid::mesh`].
-//! - [`Session::complete`] completes words for a prompt; [`Session::over`] reports that QUIT was given.
+//!   what came of it; each solid gives a mesh by [`SketchSolid::mesh`].
+//! - [`SketchSession::complete`] completes words for a prompt; [`SketchSession::over`] reports that QUIT was given.
 //!
 //! For derivatives, [`solve`] and [`solid()`] take any scalar: seed the values of dimensions by name.
 //!
 //! ```
 //! use moldloft_num::{Dual, Real};
-//! use moldloft_sketch::{Planes, Session, solid, solve};
+//! use moldloft_sketch::{Planes, SketchSession, solid, solve};
 //!
-//! let mut session = Session::new();
+//! let mut session = SketchSession::new();
 //! for reply in session.run_text(
 //!     "SKETCH SLAB 2D XZ
 //!      POINT 1 0 0; POINT 2 90 2; POINT 3 91 30; POINT 4 1 29

@@ -31,11 +31,11 @@ pub struct FitWithCorners<T> {
 ///
 /// # Example
 /// ```
-/// use moldloft_fair::{Spacing, interpolate_with_corners, shape};
+/// use moldloft_fair::{ParameterSpacing, interpolate_with_corners, shape};
 /// use moldloft_num::Vec3;
 /// let roof: Vec<Vec3<f64>> =
 ///     (-5..=5).map(|i: i32| Vec3::of(i.into(), -f64::from(i.abs()), 0.0)).collect();
-/// let sharp = interpolate_with_corners(3, &roof, Spacing::Chord, false, &[5]).unwrap();
+/// let sharp = interpolate_with_corners(3, &roof, ParameterSpacing::Chord, false, &[5]).unwrap();
 /// assert!(sharp.points[sharp.marks[0]].bits_eq(roof[5]));
 /// let near = shape::sample_at(&sharp.fit.space, &sharp.points, None, 0.45).point;
 /// assert!((near.y + 0.5).abs() < 1e-12);

@@ -298,14 +298,14 @@ impl Layout {
 ///
 /// # Example
 /// ```
-/// use moldloft_fair::{Data, DataOptions, End, Goal, Layout, Limit, Measure, Spacing, fair_data,
+/// use moldloft_fair::{Data, DataOptions, End, Goal, Layout, Limit, Measure, ParameterSpacing, fair_data,
 ///     parameters};
 /// use moldloft_num::Vec3;
 /// // A straight line at uneven stations, with one reading off by 0.01.
 /// let stations = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 8.5, 9.0];
 /// let off = |x: f64| if x == 4.0 { 0.01 } else { 0.0 };
 /// let points: Vec<_> = stations.map(|x| Vec3::of(x, 0.1 * x + off(x), 0.0)).to_vec();
-/// let at = parameters(&points, Spacing::Along(Vec3::of(1.0, 0.0, 0.0)), false).unwrap();
+/// let at = parameters(&points, ParameterSpacing::Along(Vec3::of(1.0, 0.0, 0.0)), false).unwrap();
 /// let data = Data {
 ///     limit: Limit::ball(points.len(), 0.02).unwrap(),
 ///     layout: Layout::new(3, &at, &[], false).unwrap(),

@@ -143,10 +143,10 @@ pub fn parameters_across<T: Real>(
 ///
 /// # Example
 /// ```
-/// use moldloft_fair::{Spacing, interpolate};
+/// use moldloft_fair::{ParameterSpacing, interpolate};
 /// use moldloft_num::Vec3;
 /// let points: Vec<_> = (0..9).map(|i| Vec3::of(i as f64, (i * i) as f64, 0.0)).collect();
-/// let fit = interpolate(3, &points, Spacing::Chord, false).unwrap();
+/// let fit = interpolate(3, &points, ParameterSpacing::Chord, false).unwrap();
 /// assert!(fit.largest < 1e-12);
 /// ```
 pub fn interpolate(

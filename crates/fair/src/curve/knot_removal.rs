@@ -90,7 +90,7 @@ pub struct KnotRemovalOptions {
     pub rule: Rule,
     /// What one step does.
     pub step: RemovalStep,
-    /// The measure that [`Step::Vertex`] lowers and that stops look at; one of squares.
+    /// The measure that [`RemovalStep::Vertex`] lowers and that stops look at; one of squares.
     pub measure: Measure,
     /// When to end.
     pub stops: Stops,

@@ -489,7 +489,7 @@ fn product<'a>(
 ///
 /// # Example
 /// ```
-/// use moldloft_fair::{End, Goal, GridData, Layout, Limit, Measure, Motion, Spacing, fair_grid,
+/// use moldloft_fair::{End, Goal, GridData, Layout, Limit, Measure, Motion, ParameterSpacing, fair_grid,
 ///     grid_parameters};
 /// use moldloft_num::Vec3;
 /// // A plane at uneven stations, with one reading off by 0.01.
@@ -497,7 +497,7 @@ fn product<'a>(
 /// let mut points: Vec<_> =
 ///     xs.iter().flat_map(|&x| zs.map(|z| Vec3::of(x, 0.2 * x + 0.1 * z, z))).collect();
 /// points[20].y += 0.01;
-/// let at = grid_parameters(&points, [7, 6], [Spacing::Chord; 2], [false; 2], Motion::Ball).unwrap();
+/// let at = grid_parameters(&points, [7, 6], [ParameterSpacing::Chord; 2], [false; 2], Motion::Ball).unwrap();
 /// let data = GridData {
 ///     limit: Limit::ball(points.len(), 0.02).unwrap(),
 ///     layouts: at.map(|at| Layout::new(3, &at, &[], false).unwrap()),

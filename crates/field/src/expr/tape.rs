@@ -3,7 +3,7 @@
 //! `Primitive, Set -> flat list of instructions -> value, gradient, range, bulk values`
 //!
 //! Equal parts become one instruction (value numbering), so sharing costs nothing and equality of
-//! expressions is equality of tapes. [`Tape::pruned`] keeps of a set what decides over a box.
+//! expressions is equality of tapes. [`ExprTape::pruned`] keeps of a set what decides over a box.
 
 use crate::expr::algebra::{Algebra, GradientRange, Unary};
 use crate::expr::interval::Interval;
@@ -46,7 +46,7 @@ pub(crate) struct ExprTape<T: Real> {
     pub(crate) code: Vec<Code<T>>,
     /// The leaf of each instruction, or [`NO_LEAF`].
     pub(crate) leaf: Vec<u32>,
-    /// Register of each instruction, for [`Tape::bulk`].
+    /// Register of each instruction, for [`ExprTape::bulk`].
     register: Vec<u32>,
     registers: usize,
     users: Arc<Vec<(Arc<dyn Oracle<T>>, Affine<T>)>>,
@@ -259,7 +259,7 @@ pub(crate) const CHUNK: usize = 64;
 
 type Chunk = [f64; CHUNK];
 
-/// Reusable room of [`Tape::bulk`].
+/// Reusable room of [`ExprTape::bulk`].
 #[derive(Default)]
 pub(crate) struct Room {
     #[expect(clippy::vec_box, reason = "chunks are exchanged by pointer")]
@@ -397,7 +397,7 @@ impl<T: Real> ExprTape<T> {
         self.code.iter().any(|c| matches!(c, Code::User(_)))
     }
 
-    /// As [`Tape::eval`] at many places, instruction by instruction: a column of values for each.
+    /// As [`ExprTape::eval`] at many places, instruction by instruction: a column of values for each.
     pub(crate) fn eval_many<A: Algebra<T>>(&self, at: &[A::At]) -> Vec<Vec<A>> {
         let mut columns: Vec<Vec<A>> = Vec::with_capacity(self.code.len());
         for code in &self.code {
@@ -437,7 +437,7 @@ impl<T: Real> ExprTape<T> {
     }
 }
 
-/// The work of [`Tape::bulk`]; a struct, for closures need not be inlined, and what is not inlined does
+/// The work of [`ExprTape::bulk`]; a struct, for closures need not be inlined, and what is not inlined does
 /// not get the wide registers.
 struct Bulk<'a> {
     tape: &'a ExprTape<f64>,
@@ -511,7 +511,7 @@ impl ExprTape<f64> {
         decided.then(|| self.reduced(self.code.len() as u32 - 1, decide))
     }
 
-    /// The values at many points: bit for bit those of [`Tape::eval`], in the widest registers at hand.
+    /// The values at many points: bit for bit those of [`ExprTape::eval`], in the widest registers at hand.
     pub(crate) fn bulk(&self, points: &[Vec3], out: &mut [f64], room: &mut Room) {
         assert_eq!(points.len(), out.len(), "one value per point");
         pulp::Arch::new().dispatch(Bulk { tape: self, points, out, room });

@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 ///
 /// # Example
 /// ```
-/// use moldloft_field::{Options, Primitive, Resolution, Set, crossing_faces, facet};
+/// use moldloft_field::{FacetOptions, Primitive, Resolution, Set, crossing_faces, facet};
 /// use moldloft_num::{Box3, Vec3};
 ///
 /// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);

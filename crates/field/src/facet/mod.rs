@@ -125,7 +125,7 @@ fn capped(set: &Set, over: &Box3) -> Result<Set, FieldError> {
 ///
 /// # Example
 /// ```
-/// use moldloft_field::{Options, Primitive, Resolution, Set, facet};
+/// use moldloft_field::{FacetOptions, Primitive, Resolution, Set, facet};
 /// use moldloft_num::{Box3, Vec3};
 ///
 /// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);

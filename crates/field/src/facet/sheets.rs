@@ -121,12 +121,12 @@ fn with_sheets(set: &Set, kept: &[&Primitive]) -> Set {
 ///
 /// # Example
 /// ```
-/// use moldloft_field::{Options, Primitive, Resolution, Set, facet_mixed};
+/// use moldloft_field::{FacetOptions, Primitive, Resolution, Set, facet_mixed};
 /// use moldloft_num::{Box3, Vec3};
 ///
 /// let ball = Primitive::sphere(Vec3::zero(), 1.0)?;
 /// let over = Box3 { low: Vec3::of(-2.0, -2.0, -2.0), high: Vec3::of(2.0, 2.0, 2.0) };
-/// let options = Options::new(Resolution::Depth(5));
+/// let options = FacetOptions::new(Resolution::Depth(5));
 /// let shell = facet_mixed(&Set::new(&ball.abs()), &over, &options)?;
 /// assert!(shell.solid.mesh.faces().is_empty());
 /// assert_eq!(shell.sheets.len(), 1);

@@ -60,7 +60,7 @@ pub(super) struct Fit {
     pub ends: [PieceEnd; 2],
     /// True after a seam.
     seam: bool,
-    /// See [`Piece::exact`].
+    /// See [`CutPiece`].
     exact: bool,
 }
 

@@ -165,8 +165,8 @@ impl Worked {
 /// Runs commands on objects.
 ///
 /// ```
-/// use moldloft_sketch::Session;
-/// let mut s = Session::new();
+/// use moldloft_sketch::SketchSession;
+/// let mut s = SketchSession::new();
 /// for line in ["SKETCH PLATE 2D XY", "POINT 1 0 0; POINT 2 4 0; POINT 3 4 3; POINT 4 0 3",
 ///              "POLYLINE 1 2 3 4 CLOSE", "DIM W X 1 2 = 40; DIM H Y 2 3 = 30", "GENERATE FACES"] {
 ///     assert!(s.run_line(line).iter().all(|r| !r.is_error()));

@@ -29,7 +29,7 @@ fn vector<T: Real>(
     Some(if from == Some(line.q) { -d } else { d })
 }
 
-/// What a derived measure comes to. An [`Measure::Equal`] is the ratio of the lengths.
+/// What a derived measure comes to. An [`MeasuredQuantity::Equal`] is the ratio of the lengths.
 pub fn value<T: Real>(
     object: &SketchObject,
     measure: &MeasuredQuantity,

@@ -17,7 +17,7 @@ pub struct Gradient {
     pub area: Vec<f64>,
     /// Of the centroid.
     pub centroid: Vec<Vec3>,
-    /// Of the vertices of [`crate::Solid`], in their order.
+    /// Of the vertices of [`crate::SketchSolid`], in their order.
     pub points: Vec<Vec<Vec3>>,
 }
 

@@ -91,7 +91,7 @@ pub struct SolidFace {
     pub ruled: bool,
     /// Directed edges, counter-clockwise from outside: outer cycle, then holes.
     pub loops: Vec<Vec<(usize, bool)>>,
-    /// For a round face that is not a ruled patch between its edges, its index in [`Solid::trims`].
+    /// For a round face that is not a ruled patch between its edges, its index in [`SketchSolid::trims`].
     pub trim: Option<usize>,
 }
 

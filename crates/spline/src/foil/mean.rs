@@ -14,7 +14,7 @@ pub enum MeanLine<T> {
         /// That place.
         at: T,
     },
-    /// Two cubics that meet at `r` (five-digit); see [`Mean::cubic`].
+    /// Two cubics that meet at `r` (five-digit); see [`MeanLine::cubic`].
     Cubic {
         /// Where they meet.
         r: f64,
