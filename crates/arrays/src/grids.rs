@@ -2,7 +2,7 @@
 
 use crate::value::{GridArg, Points, surface};
 use moldloft_grid::{
-    Blend, Edge, Elliptic, Faces, FailureCause, GridError, Hyperbolic, MarchBoundary, Method,
+    Blend, Elliptic, Faces, FailureCause, GridError, GridSide, Hyperbolic, MarchBoundary, Method,
     QualityMetric, Smoothed, Stop, Support, SurfaceGrid, Wall, elliptic_until, folded_cells,
     framed, hyperbolic_curve_until, hyperbolic_until, quality, transfinite, transfinite_block,
 };
@@ -163,8 +163,12 @@ fn fault_of_count(n: usize, field: FieldId) -> CallError {
 }
 
 /// The edges by the names of the language.
-const EDGES: [(&str, Edge); 4] =
-    [("i1", Edge::FirstI), ("im", Edge::LastI), ("j1", Edge::FirstJ), ("jn", Edge::LastJ)];
+const EDGES: [(&str, GridSide); 4] = [
+    ("i1", GridSide::FirstI),
+    ("im", GridSide::LastI),
+    ("j1", GridSide::FirstJ),
+    ("jn", GridSide::LastJ),
+];
 
 /// A grid smoothed by the elliptic equations
 /// a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0; its edges stay.

@@ -99,7 +99,7 @@ pub fn rows() -> Vec<Row> {
         masks::Interp,
         shape::List,
         shape::PointsOf,
-        shape::Join,
+        shape::Concatenation,
         shape::Stack,
         shape::Reverse,
         shape::Swap,

@@ -86,13 +86,13 @@ const SAME: f64 = 1e-12;
     example = "curve c = join(points({0, 0, 0}, {1, 0, 0}), points({1, 0, 0}, {1, 1, 0})); \
                assert c.d1 == 3; farray a = join(list(1, 2), list(3, 4)); assert a.d1 == 4;"
 )]
-pub struct Join<T: Scalar> {
+pub struct Concatenation<T: Scalar> {
     /// The curves, or farrays.
     #[field(variadic, min_items = 1)]
     parts: Vec<Value<T>>,
 }
 
-impl<T: Scalar> Build<T> for Join<T> {
+impl<T: Scalar> Build<T> for Concatenation<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let place = |k: usize| move |fault: CallError| fault.in_item(k).in_field(Self::PARTS);
         if matches!(self.parts[0], Value::Numbers(_)) {

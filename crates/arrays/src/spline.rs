@@ -109,21 +109,25 @@ fn condition<T>(name: EndCondition, slope: Vec3<T>) -> End<T> {
 
 /// What the parameter of a spline is.
 #[derive(Clone, Copy, PartialEq)]
-struct Basis {
+struct SplineParametrization {
     law: Parametrization,
     by_arclen: bool,
     breaks: bool,
 }
 
-fn basis(word: &str, field: FieldId) -> Result<Basis, CallError> {
-    let plain = |law| Basis { law, by_arclen: false, breaks: false };
+fn basis(word: &str, field: FieldId) -> Result<SplineParametrization, CallError> {
+    let plain = |law| SplineParametrization { law, by_arclen: false, breaks: false };
     Ok(match word.replace(' ', "").as_str() {
         "arc" | "chord" => plain(Parametrization::Chord),
         "index" => plain(Parametrization::Index),
         "centripetal" => plain(Parametrization::Centripetal),
-        "arclen" => Basis { by_arclen: true, ..plain(Parametrization::Chord) },
-        "arclen+breaks" => Basis { by_arclen: true, breaks: true, ..plain(Parametrization::Chord) },
-        "arc+breaks" | "chord+breaks" => Basis { breaks: true, ..plain(Parametrization::Chord) },
+        "arclen" => SplineParametrization { by_arclen: true, ..plain(Parametrization::Chord) },
+        "arclen+breaks" => {
+            SplineParametrization { by_arclen: true, breaks: true, ..plain(Parametrization::Chord) }
+        }
+        "arc+breaks" | "chord+breaks" => {
+            SplineParametrization { breaks: true, ..plain(Parametrization::Chord) }
+        }
         _ => {
             let expected = "\"arc\" (chords), \"index\", \"centripetal\", \"arclen\", \
                             \"arclen+breaks\" or \"arc+breaks\"";
@@ -275,7 +279,7 @@ fn shifted(error: InterpolationError, by: usize, fields: [FieldId; 2]) -> CallEr
 /// The indices, from 0, of the ends of the pieces.
 fn splits<T: Scalar>(
     points: &[Vec3<T>],
-    basis: Basis,
+    basis: SplineParametrization,
     periodic: bool,
     given: Option<Vec<usize>>,
 ) -> Result<Vec<usize>, CallError> {

@@ -3,7 +3,7 @@
 use crate::grids::fault;
 use crate::value::{Farray, GridArg, Points, surface};
 use moldloft_grid::{
-    EllipticVolume, Face, FaceWall, GridError, HexMesh, Hyperbolic, MarchBoundary, SurfaceGrid,
+    EllipticVolume, FaceWall, GridError, GridFace, HexMesh, Hyperbolic, MarchBoundary, SurfaceGrid,
     VolumeGrid, elliptic_volume_until, hyperbolic_curve_until,
 };
 use moldloft_num::{Real, Vec3};
@@ -129,7 +129,7 @@ impl<T: Scalar> Build<T> for EllipticBlock<T> {
         };
         let mut walls = Vec::new();
         for word in self.walls.split([' ', ',']).filter(|word| !word.is_empty()) {
-            let Some(face) = Face::ALL.into_iter().find(|face| face.word() == word) else {
+            let Some(face) = GridFace::ALL.into_iter().find(|face| face.word() == word) else {
                 return Err(CallError::new("unknown-word", format!("there is no face \"{word}\""))
                     .expected("\"i1\", \"in\", \"j1\", \"jn\", \"k1\" or \"kn\"")
                     .found(format!("\"{word}\""))
@@ -228,9 +228,9 @@ fn up<T: Real>() -> Vec3<T> {
     Vec3::of(0.0, 0.0, 1.0)
 }
 
-struct Flat;
+struct PlanarSupport;
 
-impl<T: Real> moldloft_grid::Support<T> for Flat {
+impl<T: Real> moldloft_grid::Support<T> for PlanarSupport {
     fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)> {
         points.iter().map(|p| (*p, up())).collect()
     }
@@ -245,12 +245,11 @@ fn marched<T: Scalar>(
 ) -> Result<Value<T>, CallError> {
     let heights = heights.row().map_err(|fault| fault.in_field(field))?;
     let options = Hyperbolic::new(heights).with_sides([ends; 4]);
-    let marched = hyperbolic_curve_until(curve, &Flat, &options, &context.budget).map_err(
-        |error| match error {
+    let marched = hyperbolic_curve_until(curve, &PlanarSupport, &options, &context.budget)
+        .map_err(|error| match error {
             GridError::Heights { .. } => fault(error, field),
             error => fault(error, s),
-        },
-    )?;
+        })?;
     let mut grids = marched.layers.into_iter().map(surface);
     Ok(grids.next().expect("one grid off a curve"))
 }

@@ -1,6 +1,6 @@
 //! Mirror images of boundary representations in coordinate planes, sewn to their originals there.
 
-use crate::{Brep, Edge, Face, SurfaceShape};
+use crate::{Brep, BrepEdge, BrepFace, SurfaceShape};
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 
@@ -19,7 +19,7 @@ fn image<const D: usize>(shape: &Nurbs<D>, axis: usize) -> Nurbs<D> {
 }
 
 /// True for a face in the plane on which the coordinate `axis` is zero.
-fn flat(face: &Face, axis: usize, near: f64) -> bool {
+fn flat(face: &BrepFace, axis: usize, near: f64) -> bool {
     match &face.surface {
         SurfaceShape::Plane { origin, normal, .. } => {
             origin[axis].abs() <= near && (normal[axis].abs() - 1.0).abs() < 1e-12
@@ -68,7 +68,7 @@ impl Brep {
             let ends = edge.ends.map(|v| twin[v]);
             let curve = image(&edge.curve, axis);
             other[e] = self.edges.len();
-            self.edges.push(Edge { ends, curve });
+            self.edges.push(BrepEdge { ends, curve });
         }
         for f in 0..self.faces.len() {
             let mut face = self.faces[f].clone();

@@ -24,9 +24,9 @@ pub struct Brep {
     /// Positions of the vertices.
     pub vertices: Vec<Vec3>,
     /// The edges.
-    pub edges: Vec<Edge>,
+    pub edges: Vec<BrepEdge>,
     /// The faces.
-    pub faces: Vec<Face>,
+    pub faces: Vec<BrepFace>,
     /// The parts.
     pub parts: Vec<Part>,
     /// A bound of the distances between edges, vertices and the surfaces that they lie on.
@@ -35,7 +35,7 @@ pub struct Brep {
 
 /// An edge from a vertex to a vertex.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Edge {
+pub struct BrepEdge {
     /// The vertices at its ends; one vertex twice for a closed edge.
     pub ends: [usize; 2],
     /// Its curve, from the first vertex at 0 to the second at 1.
@@ -44,7 +44,7 @@ pub struct Edge {
 
 /// A part of a surface.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Face {
+pub struct BrepFace {
     /// Its name.
     pub name: String,
     /// Its colour, sRGB.

@@ -18,7 +18,7 @@
 
 mod memory;
 
-use memory::{Fault, array, array_mut, called, copied, set_message, text_of, words};
+use memory::{StatusError, array, array_mut, called, copied, set_message, text_of, words};
 use moldloft_diag::render_all;
 use moldloft_document::{Document, registry};
 use moldloft_host::FileWorld;
@@ -87,9 +87,9 @@ pub extern "C" fn mlf_v1_from_text(
 }
 
 /// Hands a document without errors over.
-fn store(model: *mut *mut mlf_model, document: Document) -> Result<(), Fault> {
+fn store(model: *mut *mut mlf_model, document: Document) -> Result<(), StatusError> {
     if model.is_null() {
-        return Err(Fault::argument("the pointer for the model is null"));
+        return Err(StatusError::argument("the pointer for the model is null"));
     }
     sound(&document)?;
     let handle = Box::into_raw(Box::new(mlf_model(document)));
@@ -99,22 +99,22 @@ fn store(model: *mut *mut mlf_model, document: Document) -> Result<(), Fault> {
 }
 
 /// The errors of a document as a fault.
-fn sound(document: &Document) -> Result<(), Fault> {
+fn sound(document: &Document) -> Result<(), StatusError> {
     if !document.has_errors() {
         return Ok(());
     }
     let all = document.diagnostics();
-    Err(Fault::model(render_all(all.iter().filter(|d| d.is_error()), document.sources())))
+    Err(StatusError::model(render_all(all.iter().filter(|d| d.is_error()), document.sources())))
 }
 
-fn faults(document: &Document, all: &[moldloft_diag::Diagnostic]) -> Fault {
-    Fault::model(render_all(all.iter(), document.sources()))
+fn faults(document: &Document, all: &[moldloft_diag::Diagnostic]) -> StatusError {
+    StatusError::model(render_all(all.iter(), document.sources()))
 }
 
-fn document<'m>(model: *mut mlf_model) -> Result<&'m mut Document, Fault> {
+fn document<'m>(model: *mut mlf_model) -> Result<&'m mut Document, StatusError> {
     // SAFETY: a handle of `store`, used by one thread at a time and not yet freed, by the contract of the header.
     let model = unsafe { model.as_mut() };
-    model.map(|m| &mut m.0).ok_or_else(|| Fault::argument("the model is null"))
+    model.map(|m| &mut m.0).ok_or_else(|| StatusError::argument("the model is null"))
 }
 
 /// Frees a model; null does nothing.
@@ -180,13 +180,13 @@ pub extern "C" fn mlf_v1_derivative(
         let rows = document.derivatives(&[expression], &[by]);
         let rows = rows.map_err(|all| faults(document, &all))?;
         let value = rows.first().and_then(|row| row.first());
-        let value = value.ok_or_else(|| Fault::argument("no derivative"))?;
+        let value = value.ok_or_else(|| StatusError::argument("no derivative"))?;
         copied(&numbers(value)?, values, room, count)
     })
 }
 
 /// The numbers of a value.
-fn numbers(value: &Value<f64>) -> Result<Vec<f64>, Fault> {
+fn numbers(value: &Value<f64>) -> Result<Vec<f64>, StatusError> {
     Ok(match value {
         Value::Number(x) => vec![x + 0.0],
         Value::Vector(v) => v.to_array().to_vec(),
@@ -195,7 +195,7 @@ fn numbers(value: &Value<f64>) -> Result<Vec<f64>, Fault> {
         Value::Vectors(a) => a.iter().flat_map(|v| v.to_array()).collect(),
         other => {
             let class = other.class().with_article();
-            return Err(Fault::argument(&format!("expected numbers, found {class}")));
+            return Err(StatusError::argument(&format!("expected numbers, found {class}")));
         }
     })
 }
@@ -210,18 +210,20 @@ pub extern "C" fn mlf_v1_shape(
 ) -> i32 {
     called(|| {
         if shape.is_null() {
-            return Err(Fault::argument("the pointer for the shape is null"));
+            return Err(StatusError::argument("the pointer for the shape is null"));
         }
         let document = document(model)?;
         let name = text_of(name, length)?;
         let graph = document.graph();
         let object = graph.find(name).and_then(|key| graph.get(key));
         let found = match object.map(|o| o.value()) {
-            None => return Err(Fault::argument(&format!("unknown object `{name}`"))),
+            None => return Err(StatusError::argument(&format!("unknown object `{name}`"))),
             Some(Some(Value::Curve(curve))) => ShapeHandle::Curve(curve.clone()),
             Some(Some(Value::Surface(surface))) => ShapeHandle::Surface(surface.clone()),
             Some(_) => {
-                return Err(Fault::argument(&format!("`{name}` is neither a curve nor a surface")));
+                return Err(StatusError::argument(&format!(
+                    "`{name}` is neither a curve nor a surface"
+                )));
             }
         };
         // SAFETY: the caller gives a pointer to a place for a handle; it is not null.
@@ -239,10 +241,10 @@ pub extern "C" fn mlf_v1_shape_free(shape: *mut mlf_shape) {
     }
 }
 
-fn shape_of<'s>(shape: *const mlf_shape) -> Result<&'s ShapeHandle, Fault> {
+fn shape_of<'s>(shape: *const mlf_shape) -> Result<&'s ShapeHandle, StatusError> {
     // SAFETY: a handle of `mlf_v1_shape`, not yet freed, by the contract of the header.
     let shape = unsafe { shape.as_ref() };
-    shape.map(|s| &s.0).ok_or_else(|| Fault::argument("the shape is null"))
+    shape.map(|s| &s.0).ok_or_else(|| StatusError::argument("the shape is null"))
 }
 
 /// The number of parameters of a shape: 1 for a curve, 2 for a surface.

@@ -9,12 +9,12 @@ thread_local! {
 }
 
 /// Why a call failed.
-pub struct Fault {
+pub struct StatusError {
     code: i32,
     message: String,
 }
 
-impl Fault {
+impl StatusError {
     pub fn argument(message: &str) -> Self {
         Self { code: MLF_ARGUMENT, message: message.into() }
     }
@@ -25,11 +25,11 @@ impl Fault {
 }
 
 /// Runs a call: its code, its message kept for the thread.
-pub fn called(work: impl FnOnce() -> Result<(), Fault>) -> i32 {
+pub fn called(work: impl FnOnce() -> Result<(), StatusError>) -> i32 {
     let fault = match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => return MLF_OK,
         Ok(Err(fault)) => fault,
-        Err(_) => Fault { code: MLF_INTERNAL, message: "an error inside the library".into() },
+        Err(_) => StatusError { code: MLF_INTERNAL, message: "an error inside the library".into() },
     };
     set_message(fault.message);
     fault.code
@@ -51,7 +51,7 @@ pub fn words(buffer: *mut u8, size: usize) -> usize {
 }
 
 /// An array of the caller's, to read.
-pub fn array<'a, T>(start: *const T, count: usize) -> Result<&'a [T], Fault> {
+pub fn array<'a, T>(start: *const T, count: usize) -> Result<&'a [T], StatusError> {
     if count == 0 {
         return Ok(&[]);
     }
@@ -61,7 +61,7 @@ pub fn array<'a, T>(start: *const T, count: usize) -> Result<&'a [T], Fault> {
 }
 
 /// An array of the caller's, to write.
-pub fn array_mut<'a, T>(start: *mut T, count: usize) -> Result<&'a mut [T], Fault> {
+pub fn array_mut<'a, T>(start: *mut T, count: usize) -> Result<&'a mut [T], StatusError> {
     if count == 0 {
         return Ok(&mut []);
     }
@@ -70,21 +70,21 @@ pub fn array_mut<'a, T>(start: *mut T, count: usize) -> Result<&'a mut [T], Faul
     Ok(unsafe { std::slice::from_raw_parts_mut(start, count) })
 }
 
-fn check(start: *const u8, alignment: usize) -> Result<(), Fault> {
+fn check(start: *const u8, alignment: usize) -> Result<(), StatusError> {
     if start.is_null() {
-        return Err(Fault::argument("a pointer is null"));
+        return Err(StatusError::argument("a pointer is null"));
     }
     if start.align_offset(alignment) != 0 {
-        return Err(Fault::argument("a pointer is not aligned"));
+        return Err(StatusError::argument("a pointer is not aligned"));
     }
     Ok(())
 }
 
 /// A text of the caller's; blanks at its end, with which Fortran fills, are left out.
-pub fn text_of<'a>(start: *const u8, length: usize) -> Result<&'a str, Fault> {
+pub fn text_of<'a>(start: *const u8, length: usize) -> Result<&'a str, StatusError> {
     let bytes = array(start, length)?;
     let text = std::str::from_utf8(bytes);
-    let text = text.map_err(|_| Fault::argument("a text is not UTF-8"))?;
+    let text = text.map_err(|_| StatusError::argument("a text is not UTF-8"))?;
     Ok(text.trim_end_matches([' ', '\0']))
 }
 
@@ -94,11 +94,11 @@ pub fn copied<T: Copy>(
     out: *mut T,
     room: usize,
     count: *mut usize,
-) -> Result<(), Fault> {
+) -> Result<(), StatusError> {
     array_mut(count, 1)?[0] = all.len();
     if all.len() > room {
         let message = format!("room for {room} is too little: {} are needed", all.len());
-        return Err(Fault { code: MLF_BUFFER, message });
+        return Err(StatusError { code: MLF_BUFFER, message });
     }
     array_mut(out, all.len())?.copy_from_slice(all);
     Ok(())

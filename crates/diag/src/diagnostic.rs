@@ -55,7 +55,7 @@ pub struct Edit {
 
 /// The fields of a [`Diagnostic`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Body {
+pub struct DiagnosticFields {
     /// Stable name of the kind of fault, in kebab-case.
     pub id: Cow<'static, str>,
     /// How bad it is.
@@ -82,10 +82,10 @@ pub struct Body {
 
 /// One fault, warning or remark, as data.
 ///
-/// The fields ([`Body`]) are reached through `Deref`; they live on the heap so that `Result<T, Diagnostic>` stays
+/// The fields ([`DiagnosticFields`]) are reached through `Deref`; they live on the heap so that `Result<T, Diagnostic>` stays
 /// small.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Diagnostic(Box<Body>);
+pub struct Diagnostic(Box<DiagnosticFields>);
 
 impl Diagnostic {
     /// A diagnostic of any severity.
@@ -94,7 +94,7 @@ impl Diagnostic {
         id: impl Into<Cow<'static, str>>,
         message: impl Into<String>,
     ) -> Self {
-        Diagnostic(Box::new(Body {
+        Diagnostic(Box::new(DiagnosticFields {
             id: id.into(),
             severity,
             message: message.into(),
@@ -240,14 +240,14 @@ impl Diagnostic {
 }
 
 impl Deref for Diagnostic {
-    type Target = Body;
-    fn deref(&self) -> &Body {
+    type Target = DiagnosticFields;
+    fn deref(&self) -> &DiagnosticFields {
         &self.0
     }
 }
 
 impl DerefMut for Diagnostic {
-    fn deref_mut(&mut self) -> &mut Body {
+    fn deref_mut(&mut self) -> &mut DiagnosticFields {
         &mut self.0
     }
 }
@@ -265,7 +265,7 @@ impl fmt::Display for Diagnostic {
 
 impl std::error::Error for Diagnostic {}
 
-impl Body {
+impl DiagnosticFields {
     /// `expected X, found Y`, as far as both are known.
     pub fn expectation(&self) -> Option<String> {
         match (&self.expected, &self.found) {

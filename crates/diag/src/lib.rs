@@ -36,7 +36,7 @@ mod sources;
 mod span;
 
 pub use data::{DiagnosticData, EditData, LabelData};
-pub use diagnostic::{Body, Diagnostic, Edit, Label, Severity};
+pub use diagnostic::{Diagnostic, DiagnosticFields, Edit, Label, Severity};
 pub use nearest::{edit_distance, nearest};
 pub use render::{render, render_all};
 pub use sources::{Location, Sources};

@@ -12,7 +12,7 @@ use moldloft_syntax::sdl;
 
 /// The forms that a model can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum ModelFormat {
     /// A program.
     Sdl,
     /// A MultiSurf model file; the version is that of the header, 1.44 without one.
@@ -27,13 +27,13 @@ impl Document {
     ///
     /// # Example
     /// ```
-    /// use moldloft_document::{Document, Format, NoFiles, registry};
+    /// use moldloft_document::{Document, ModelFormat, NoFiles, registry};
     /// let text = "MultiSurf 0.35 /y\nAbsPoint P-1 14 1 0 0 3.6;\nEndModel\n";
     /// let model = Document::from_text(registry(), Box::new(NoFiles), "p.ms2", text);
-    /// let program = model.convert(Format::Sdl).unwrap();
+    /// let program = model.convert(ModelFormat::Sdl).unwrap();
     /// assert!(program.ends_with("AbsPoint P_x2d_1(0, 0, 3.6);\n"));
     /// ```
-    pub fn convert(&self, to: Format) -> Result<String, Vec<Diagnostic>> {
+    pub fn convert(&self, to: ModelFormat) -> Result<String, Vec<Diagnostic>> {
         let objects = self.graph();
         let all = self.text_diagnostics.iter().chain(&self.run_diagnostics);
         let errors: Vec<Diagnostic> =
@@ -42,19 +42,19 @@ impl Document {
             return Err(errors);
         }
         match (&self.source, to) {
-            (ObjectSource::ModelFile(source), Format::Sdl) => {
+            (ObjectSource::ModelFile(source), ModelFormat::Sdl) => {
                 Ok(to_program(source, self.registry(), &self.plain))
             }
-            (ObjectSource::ModelFile(source), Format::ModelFile) => {
+            (ObjectSource::ModelFile(source), ModelFormat::ModelFile) => {
                 let model = source.model();
                 Ok(model.to_canonical(|line| objects.find(model.slice(line.name)).is_none()))
             }
-            (ObjectSource::Program, Format::Sdl) => sdl::format(&self.text()),
-            (ObjectSource::Sketch(sketch), Format::Sdl) => {
+            (ObjectSource::Program, ModelFormat::Sdl) => sdl::format(&self.text()),
+            (ObjectSource::Sketch(sketch), ModelFormat::Sdl) => {
                 let base = sketch.path.rsplit(['/', '\\']).next().unwrap_or(&sketch.path);
                 Ok(format!("load {};\n", quoted(base)))
             }
-            (ObjectSource::Program | ObjectSource::Sketch(_), Format::ModelFile) => {
+            (ObjectSource::Program | ObjectSource::Sketch(_), ModelFormat::ModelFile) => {
                 to_model_file(self.modules.get(0), &self.plain)
             }
             (ObjectSource::None, _) => Ok(String::new()),

@@ -1,3 +1,5 @@
+//! A model under work: its text, its graph, the parameters that were set, and what a run found.
+
 use crate::degenerate;
 use crate::solve::SolveReport;
 use indexmap::IndexMap;

@@ -10,7 +10,7 @@ use moldloft_lang::source::scope::Binding;
 use moldloft_lang::value::variables::shape_text;
 use moldloft_registry::{Class, Row, Value};
 use moldloft_syntax::sdl::{
-    self, Arg, ChainItem, ExprId, ExprKind, Ident, List, Routine, RoutineId, StmtId, StmtKind,
+    self, Arg, ChainItem, ExprId, ExprKind, Ident, NodeList, Routine, RoutineId, StmtId, StmtKind,
     Subscript, Symbol,
 };
 use std::collections::HashSet;
@@ -73,11 +73,11 @@ impl Walk<'_> {
         self.name(ident.symbol, ident.span, declares);
     }
 
-    fn args(&mut self, args: List<Arg>) {
+    fn args(&mut self, args: NodeList<Arg>) {
         self.m.program[args].iter().for_each(|arg| self.expr(arg.value));
     }
 
-    fn exprs(&mut self, list: List<ExprId>) {
+    fn exprs(&mut self, list: NodeList<ExprId>) {
         self.m.program[list].iter().for_each(|&e| self.expr(e));
     }
 
@@ -121,7 +121,7 @@ impl Walk<'_> {
         }
     }
 
-    fn stmts(&mut self, list: List<StmtId>) {
+    fn stmts(&mut self, list: NodeList<StmtId>) {
         self.m.program[list].iter().for_each(|&s| self.stmt(s));
     }
 
@@ -214,7 +214,7 @@ struct Locals<'m> {
 }
 
 impl Locals<'_> {
-    fn stmts(&mut self, list: List<StmtId>) {
+    fn stmts(&mut self, list: NodeList<StmtId>) {
         self.m.program[list].iter().for_each(|&s| self.stmt(s));
     }
 

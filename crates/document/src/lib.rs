@@ -33,7 +33,7 @@ pub mod searches;
 mod set;
 mod solve;
 
-pub use convert::Format;
+pub use convert::ModelFormat;
 pub use document::{Document, Panelled};
 pub use editor::{Completion, CompletionKind};
 pub use measures::blocks::Blocked;

@@ -26,12 +26,12 @@ const MEETING: f64 = 1e-8;
 /// Shapes prepared for searches.
 #[derive(Default)]
 pub struct Searches {
-    kept: Mutex<Kept>,
+    kept: Mutex<SearchCache>,
 }
 
 /// By the name of the object, each with the shape that it was made from.
 #[derive(Default)]
-struct Kept {
+struct SearchCache {
     surfaces: HashMap<String, (SurfaceRef<f64>, Arc<NearestSurface>)>,
     curves: HashMap<String, (CurveRef<f64>, Arc<NearestCurve>)>,
     cuts: HashMap<String, (SurfaceRef<f64>, Arc<CutSurface>)>,
@@ -172,7 +172,7 @@ impl Searches {
         &self,
         name: &str,
         shape: &S,
-        of: fn(&mut Kept) -> &mut HashMap<String, (S, Arc<P>)>,
+        of: fn(&mut SearchCache) -> &mut HashMap<String, (S, Arc<P>)>,
         same: fn(&S, &S) -> bool,
         prepare: impl FnOnce(&S) -> P,
     ) -> Arc<P> {

@@ -31,14 +31,14 @@ pub struct WriteOptions {
 
 /// Why a model could not be written.
 #[derive(Clone, Debug)]
-pub enum Failure {
+pub enum ExportFailure {
     /// The format cannot hold it.
     Write(WriteError),
     /// The model is at fault, or the request.
     Model(Vec<Diagnostic>),
 }
 
-impl Failure {
+impl ExportFailure {
     /// The same as diagnostics, for the format of that name.
     pub fn diagnostics(self, format: &str) -> Vec<Diagnostic> {
         match self {
@@ -51,19 +51,19 @@ impl Failure {
     }
 }
 
-impl From<WriteError> for Failure {
+impl From<WriteError> for ExportFailure {
     fn from(error: WriteError) -> Self {
         Self::Write(error)
     }
 }
 
-impl From<Diagnostic> for Failure {
+impl From<Diagnostic> for ExportFailure {
     fn from(diagnostic: Diagnostic) -> Self {
         Self::Model(vec![diagnostic])
     }
 }
 
-impl From<Vec<Diagnostic>> for Failure {
+impl From<Vec<Diagnostic>> for ExportFailure {
     fn from(diagnostics: Vec<Diagnostic>) -> Self {
         Self::Model(diagnostics)
     }
@@ -156,7 +156,7 @@ fn encoded<T: ?Sized>(
         let message = format!("{} is not a format of {what}", format.name);
         return Err(vec![Diagnostic::error("unknown-format", message)]);
     };
-    let files = encode(value, &FileName(main)).map_err(Failure::from);
+    let files = encode(value, &FileName(main)).map_err(ExportFailure::from);
     files.map_err(|failure| failure.diagnostics(format.name))
 }
 
@@ -229,7 +229,7 @@ impl Export<'_> {
     ///
     /// # Errors
     /// Cells that cannot be made; what the format cannot hold.
-    pub fn write_volume(&mut self) -> Result<Vec<NamedFile>, Failure> {
+    pub fn write_volume(&mut self) -> Result<Vec<NamedFile>, ExportFailure> {
         let blocked = self.document.blocked()?;
         let Some(encode) = self.format.volume else { return Ok(Vec::new()) };
         Ok(encode(&blocked.blocks, &self.main)?)
@@ -245,7 +245,7 @@ impl Export<'_> {
     /// # Errors
     /// Panels that cannot be made; unknown tags; wires and points, when the format has no place for
     /// them.
-    pub fn panels(&mut self) -> Result<Panels, Failure> {
+    pub fn panels(&mut self) -> Result<Panels, ExportFailure> {
         let whole = self.document.panelled()?;
         let mut part = tagged(&whole.mesh, &self.options.tags)?;
         if self.options.whole {
@@ -274,8 +274,8 @@ impl Export<'_> {
     ///
     /// # Errors
     /// Panels that cannot be made.
-    pub fn surface_fields(&mut self) -> Result<Vec<vtk::PatchFields>, Failure> {
-        let field = |f: moldloft_fair::surface::Field| vtk::Field {
+    pub fn surface_fields(&mut self) -> Result<Vec<vtk::PatchFields>, ExportFailure> {
+        let field = |f: moldloft_fair::surface::PointField| vtk::VtkArray {
             name: f.name.into(),
             components: f.components,
             values: f.values,

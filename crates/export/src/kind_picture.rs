@@ -4,7 +4,7 @@ use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 use moldloft_mesh::{Mesh, MeshError, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Order, Plane, Solid, Vec3};
-use moldloft_picture::{Line, Look, Options, render};
+use moldloft_picture::{Options, PatchStyle, StyledPolyline, render};
 use moldloft_registry::Value;
 
 /// What the picture is about.
@@ -67,7 +67,7 @@ pub fn kind_picture(
         for object in objects.iter().filter(|o| (o.row.name == kind) == own) {
             let width = if own { 2.4 } else { 1.2 };
             let mut line = |points: Vec<Vec3>, width: f32| {
-                lines.push(Line { points, colour, width });
+                lines.push(StyledPolyline { points, colour, width });
             };
             match object.value() {
                 Some(Value::Point(p)) => {
@@ -76,7 +76,7 @@ pub fn kind_picture(
                         let Vec3 { x, y, .. } = p.xyz;
                         let turns = [Vec3::zero(), Vec3::of(x, 0.0, 0.0), Vec3::of(x, y, 0.0)];
                         let way = turns.into_iter().chain([p.xyz]).collect();
-                        lines.push(Line { points: way, colour: WAY, width: 1.0 });
+                        lines.push(StyledPolyline { points: way, colour: WAY, width: 1.0 });
                     }
                 }
                 Some(Value::Curve(c)) => {
@@ -97,7 +97,7 @@ pub fn kind_picture(
         for points in section.lines.iter().flat_map(|(_, lines)| lines) {
             let again = points.points.first().filter(|_| points.closed);
             let points = points.points.iter().chain(again).copied().collect();
-            lines.push(Line { points, colour: SUBJECT, width: 2.0 });
+            lines.push(StyledPolyline { points, colour: SUBJECT, width: 2.0 });
         }
     }
     let graph = document.graph();
@@ -108,7 +108,7 @@ pub fn kind_picture(
         object.is_some_and(|o| o.row.name == kind)
     };
     let patches = mesh.patches();
-    let look = |own: bool| Look { colour: SURFACES[usize::from(!own)], raised: own };
+    let look = |own: bool| PatchStyle { colour: SURFACES[usize::from(!own)], raised: own };
     let looks = patches.iter().map(|p| look(of_kind(&p.info.name))).collect();
     let options = Options { width, height, looks: Some(looks), ..Options::default() };
     render(&mesh, &lines, &options)

@@ -35,7 +35,7 @@ mod units;
 
 pub use brep::brep;
 pub use export::{
-    Export, Failure, FileName, WriteOptions, tagged, write, write_blocks, write_grids,
+    Export, ExportFailure, FileName, WriteOptions, tagged, write, write_blocks, write_grids,
 };
 pub use formats::{Encoder, FORMATS, Format, Holds, Lids, SymmetryPlanes, format_named};
 pub use kind_picture::kind_picture;

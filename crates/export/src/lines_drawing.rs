@@ -1,7 +1,7 @@
 //! The lines drawing: contours that the model names, and cuts at round coordinates along the axes for
 //! which it names none, laid out as body plan, waterlines and buttocks.
 
-use crate::{Failure, length_unit};
+use crate::{ExportFailure, length_unit};
 use moldloft_document::{ContourSection, Document};
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
@@ -16,8 +16,8 @@ use moldloft_registry::{Family, Value};
 pub(crate) fn lines_drawing(
     document: &mut Document,
     stem: &str,
-) -> Result<Vec<NamedFile>, Failure> {
-    let mut contours: Vec<drawing::Contour> =
+) -> Result<Vec<NamedFile>, ExportFailure> {
+    let mut contours: Vec<drawing::PlaneCut> =
         document.sections().into_iter().map(contour).collect();
     let panelled = document.panelled()?;
     let bounds = panelled.mesh.bounds();
@@ -44,14 +44,14 @@ pub(crate) fn lines_drawing(
     Ok(views.into_iter().map(sheet).collect())
 }
 
-fn contour(section: ContourSection) -> drawing::Contour {
+fn contour(section: ContourSection) -> drawing::PlaneCut {
     let lines = section.lines.iter().flat_map(|(_, lines)| lines);
     contour_of(section.axis, section.value, lines.map(points).collect())
 }
 
-fn contour_of(axis: usize, value: f64, lines: Vec<Vec<Vec3>>) -> drawing::Contour {
+fn contour_of(axis: usize, value: f64, lines: Vec<Vec<Vec3>>) -> drawing::PlaneCut {
     let plain = |line: Vec<Vec3>| line.into_iter().map(Vec3::to_array).collect();
-    drawing::Contour {
+    drawing::PlaneCut {
         name: moldloft_syntax::number::plain(value),
         axis,
         value,
@@ -67,7 +67,7 @@ pub(crate) fn points(line: &Contour) -> Vec<Vec3> {
 }
 
 /// Cuts of all shown surfaces with planes that the model does not name.
-fn cuts(document: &Document, axis: usize, values: &[f64]) -> Vec<drawing::Contour> {
+fn cuts(document: &Document, axis: usize, values: &[f64]) -> Vec<drawing::PlaneCut> {
     let mut lines = vec![Vec::new(); values.len()];
     for object in document.graph().objects().filter(|o| o.head.shown()) {
         let Some(Value::Surface(surface)) = object.value() else { continue };

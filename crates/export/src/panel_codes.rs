@@ -1,7 +1,7 @@
 //! Panels as panel codes want them: cut at the water where that is asked for, and a symmetry that the
 //! code has no flag for written out, the image with its original.
 
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::{PanelFileOptions, WriteError};
 use moldloft_mesh::{Mesh, MeshError};
 
@@ -10,7 +10,7 @@ impl Export<'_> {
     ///
     /// # Errors
     /// As [`Export::panels`]; more vertices than can be counted.
-    pub fn panels_of_code(&mut self) -> Result<(Mesh, PanelFileOptions), Failure> {
+    pub fn panels_of_code(&mut self) -> Result<(Mesh, PanelFileOptions), ExportFailure> {
         let symmetry = self.document.symmetry();
         let (mirror_x, mirror_y) = (symmetry.contains('x'), symmetry.contains('y'));
         let mut mesh: Mesh = self.panels()?.clone();

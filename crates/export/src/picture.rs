@@ -4,7 +4,7 @@ use crate::export::lines_and_points;
 use crate::lines_drawing::points;
 use moldloft_diag::Diagnostic;
 use moldloft_document::{ContourSection, Document};
-use moldloft_picture::{Line, Options, render};
+use moldloft_picture::{Options, StyledPolyline, render};
 
 /// Contours on pictures: dark grey, so that they show on every patch.
 const CONTOUR_COLOUR: [u8; 3] = [0x30, 0x36, 0x40];
@@ -25,9 +25,13 @@ pub fn picture(
     width: usize,
     height: usize,
 ) -> Result<Vec<u8>, Vec<Diagnostic>> {
-    let mut lines: Vec<Line> = document.sections().iter().flat_map(drawn).collect();
+    let mut lines: Vec<StyledPolyline> = document.sections().iter().flat_map(drawn).collect();
     let wires = lines_and_points(document).wires.into_iter();
-    lines.extend(wires.map(|(_, points)| Line { points, colour: WIRE_COLOUR, width: WIRE_WIDTH }));
+    lines.extend(wires.map(|(_, points)| StyledPolyline {
+        points,
+        colour: WIRE_COLOUR,
+        width: WIRE_WIDTH,
+    }));
     let symmetry = document.symmetry();
     let mirrors = ['x', 'y', 'z'].map(|axis| symmetry.contains(axis));
     let panelled = document.panelled().map_err(|d| vec![d])?;
@@ -36,9 +40,13 @@ pub fn picture(
         .map_err(|error| vec![Diagnostic::error("no-picture", error.to_string())])
 }
 
-fn drawn(section: &ContourSection) -> Vec<Line> {
+fn drawn(section: &ContourSection) -> Vec<StyledPolyline> {
     let lines = section.lines.iter().flat_map(|(_, lines)| lines);
     lines
-        .map(|line| Line { points: points(line), colour: CONTOUR_COLOUR, width: CONTOUR_WIDTH })
+        .map(|line| StyledPolyline {
+            points: points(line),
+            colour: CONTOUR_COLOUR,
+            width: CONTOUR_WIDTH,
+        })
         .collect()
 }

@@ -5,7 +5,7 @@
 //! curves) are exact, with the fewest control points. Knuckles at even parameters become edges
 //! between patches. Anything else is interpolated by cubics and halved until it is near enough.
 
-use crate::Failure;
+use crate::ExportFailure;
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 pub use moldloft_io::gdf::SplinePatch;
@@ -48,7 +48,7 @@ pub fn spline_patches(
     document: &mut Document,
     tolerance: Option<f64>,
     lids: bool,
-) -> Result<Vec<SplinePatch>, Failure> {
+) -> Result<Vec<SplinePatch>, ExportFailure> {
     let panelled = document.panelled()?;
     let mesh = &panelled.mesh;
     if !mesh.positions().iter().all(|p| p.is_finite()) {
@@ -77,7 +77,7 @@ pub fn spline_patches(
         let (Some(block), Some(Value::Surface(surface))) = (&patch.block, value) else {
             return cannot(&format!("`{name}` is not a surface of u and v"));
         };
-        let fit = Fit { name, surface: &**surface, size, allowed };
+        let fit = SurfaceFit { name, surface: &**surface, size, allowed };
         for mut part in fit.whole()? {
             if !block.reversed {
                 // Panels face the water along S_u x S_v: u is turned round.
@@ -99,13 +99,13 @@ pub fn spline_patches(
     Ok(out)
 }
 
-fn cannot<T>(why: &str) -> Result<T, Failure> {
+fn cannot<T>(why: &str) -> Result<T, ExportFailure> {
     let message = format!("cannot write gdf-high: {why}");
     Err(Diagnostic::error("cannot-write", message).into())
 }
 
 /// Refuses a patch of a half that reaches to both sides of its plane of symmetry.
-fn check_side(patch: &SplinePatch, axis: usize, size: f64) -> Result<(), Failure> {
+fn check_side(patch: &SplinePatch, axis: usize, size: f64) -> Result<(), ExportFailure> {
     let even: Vec<f64> = (0..17).map(|k| f64::from(k) / 8.0 - 1.0).collect();
     let side = patch.grid(&even, &even).into_iter().map(|p| p[axis]);
     let (low, high) = side.fold((0.0, 0.0), |(low, high), x| (x.min(low), x.max(high)));
@@ -125,16 +125,16 @@ type Form = (usize, usize);
 type Part = [[f64; 2]; 2];
 
 /// A surface that becomes patches.
-struct Fit<'s> {
+struct SurfaceFit<'s> {
     name: &'s str,
     surface: &'s dyn Surface<f64>,
     size: f64,
     allowed: f64,
 }
 
-impl Fit<'_> {
+impl SurfaceFit<'_> {
     /// The patches of the whole surface: one, or one between knuckles at even parameters.
-    fn whole(&self) -> Result<Vec<SplinePatch>, Failure> {
+    fn whole(&self) -> Result<Vec<SplinePatch>, ExportFailure> {
         let whole = [[0.0, 1.0]; 2];
         let exact = self.exact_forms(whole);
         let counts = [0, 1].map(|axis| match exact[axis] {
@@ -161,7 +161,7 @@ impl Fit<'_> {
         exact: [Option<Form>; 2],
         depth: usize,
         out: &mut Vec<SplinePatch>,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), ExportFailure> {
         let mut forms = exact;
         let mut best: Option<SplinePatch> = None;
         for spans in FIT_SPANS {

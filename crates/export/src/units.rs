@@ -1,7 +1,7 @@
 //! The model's unit of length, for what must be said in metres or millimetres.
 
 use moldloft_document::Document;
-use moldloft_lang::model_file::units::{self, Dimension};
+use moldloft_lang::model_file::units::{self, PhysicalDimension};
 
 /// Standard gravity in metres per second squared (ISO 80000-3).
 pub const GRAVITY: f64 = 9.80665;
@@ -9,7 +9,7 @@ pub const GRAVITY: f64 = 9.80665;
 /// The model's unit of length and its size in millimetres; metres when it names none that is known.
 pub fn length_unit(document: &Document) -> (String, f64) {
     let stated = units::parsed(&document.units()).unwrap_or_default();
-    let length = stated.into_iter().find(|u| u.1 == Dimension::Length);
+    let length = stated.into_iter().find(|u| u.1 == PhysicalDimension::Length);
     length.map_or(("m".into(), 1000.0), |(word, _, metres)| (word.into(), MILLIMETRES * metres))
 }
 

@@ -12,7 +12,7 @@
 //!   as control points are [`Space::floating`]; [`interpolate`] and [`least_squares`] make a spline
 //!   of data points.
 //! - [`Job`]: a curve to be faired, with what must be kept: [`Limit`] (balls, boxes, one direction,
-//!   one plane; per control point), `marks` (intended breaks), [`End`]s, weights.
+//!   one plane; per control point), `marks` (intended breaks), [`EndContinuity`]s, weights.
 //! - [`Jumps`]: how unfair each knot is, exactly; [`findings`] separates corners and wrong digits,
 //!   [`with_findings`] takes them into account.
 //! - [`knot_removal()`]: the faithful way, knots removed and re-inserted one by one, the worst first, with a
@@ -101,13 +101,13 @@ pub use curve::fit::{
     Fit, ParameterSpacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
     parameters_across, parameters_with,
 };
-pub use curve::job::{End, Job};
-pub use curve::jumps::Jumps;
+pub use curve::job::{EndContinuity, Job};
+pub use curve::jumps::KnotJumps;
 pub use curve::knot_removal::{
     KnotRemoval, KnotRemovalOptions, Move, RemovalStep, Rule, Stopped, Stops, knot_removal,
     knot_removal_from, replay, replay_from_with, replay_with, sweeps,
 };
-pub use curve::layout::Layout;
+pub use curve::layout::InterpolationSpace;
 pub use curve::limit::{Limit, Motion};
 pub use curve::multilevel::multilevel;
 pub use curve::shape_condition::ShapeCondition;
@@ -125,7 +125,7 @@ pub use net::grid::{
 };
 pub use net::network;
 pub use net::network::{Network, NetworkCurve, NetworkMode, NetworkReport};
-pub use net::patches::{Edge, PatchNet, Seam};
+pub use net::patches::{NetEdge, PatchNet, Seam};
 pub use optimum::certificate::{Certificate, ball_gap};
 pub use optimum::goal::Goal;
 pub use optimum::{Bound, Optimum, OptimumOptions, optimum, optimum_with};

@@ -1,6 +1,6 @@
 //! Measures of unfairness as sparse rows over control points.
 
-use crate::curve::jumps::Jumps;
+use crate::curve::jumps::KnotJumps;
 use crate::{FairError, Space, SparseRows};
 use moldloft_num::Vec3;
 
@@ -76,9 +76,9 @@ impl Measure {
             if actual < expected { Err(FairError::Degree { expected, actual }) } else { Ok(()) }
         };
         match self {
-            Measure::Jumps | Measure::JumpLengths => Ok(Jumps::of(space).rows),
+            Measure::Jumps | Measure::JumpLengths => Ok(KnotJumps::of(space).rows),
             // A polyline's second derivative is the jump of its first.
-            Measure::Second if actual == 1 => Ok(Jumps::of(space).rows),
+            Measure::Second if actual == 1 => Ok(KnotJumps::of(space).rows),
             Measure::Second => Ok(differences(space, 2)),
             Measure::Third => need(3).map(|()| differences(space, 3)),
             Measure::Bending => need(2).map(|()| integrated(space, 2)),

@@ -23,10 +23,10 @@ mod text;
 
 pub use design::{Edges, chamfer_edges, fillet_sets, round_edges};
 pub use error::FieldError;
-pub use expr::algebra::{Gradient, GradientRange, Hessian, Unary};
+pub use expr::algebra::{GradientRange, Hessian, Unary, ValueGradient};
 pub use expr::blend::{
-    Blend, CIRCULAR, check_rail, check_rails, fillet, liming, liming_on_rail, round, setback_rail,
-    transition, zhang,
+    CIRCULAR, SetBlend, check_rail, check_rails, fillet, liming, liming_on_rail, round,
+    setback_rail, transition, zhang,
 };
 pub use expr::form::Form;
 pub use expr::interval::Interval;
@@ -34,7 +34,7 @@ pub use expr::oracle::{Affine, Constant, Oracle};
 pub use expr::primitive::{Binary, Primitive};
 pub use expr::remap::twist;
 pub use facet::memo::FacetMemo;
-pub use facet::sheets::{Dot, FacetWire, Mixed, Sheet, facet_mixed, solid_part};
+pub use facet::sheets::{FacetWire, Mixed, Sheet, TriplePoint, facet_mixed, solid_part};
 pub use facet::shells::FacetShell;
 pub use facet::types::LeafIncidence;
 pub use facet::{FacetOptions, Facets, Resolution, Unresolved, crossing_faces, facet, refacet};
@@ -43,11 +43,11 @@ pub use measure::implicit_derivatives::{Lifted, Lifter};
 pub use measure::mass::{BracketedMass, IntegralOptions, bracket, mass, mass_of};
 pub use measure::moments::Moments;
 pub use query::bounds::bounds;
-pub use query::distance::{Distance, distance};
-pub use query::nearest::{CertifiedNearest, Contour, nearest};
+pub use query::distance::{SetDistance, distance};
+pub use query::nearest::{CertifiedNearest, SetContour, nearest};
 pub use query::ray::{Caster, Hit, Ray, roots};
 pub use query::ray_trace::{Light, RayTrace, ray_trace};
-pub use set::{Attributes, Leaf, Membership, Set};
+pub use set::{Leaf, Membership, Set, SetAttributes};
 pub use shapes::faces::{Round, RoundProfile, Sides, faced};
 pub use shapes::{Beside, Inside, Near, NotClosed, Tube};
 pub use text::{TextError, read_fidget, read_libfive};

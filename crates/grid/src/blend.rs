@@ -2,7 +2,7 @@
 //!
 //! Holds: the edges of the result are those given, to the bit.
 
-use crate::{Edge, GridError, SurfaceGrid};
+use crate::{GridError, GridSide, SurfaceGrid};
 use moldloft_num::{Real, Vec3};
 use rayon::prelude::*;
 
@@ -95,7 +95,7 @@ pub fn transfinite<T: Real>(
 ) -> Result<SurfaceGrid<T>, GridError> {
     grid.check_edges()?;
     let (m, n) = (grid.m, grid.n);
-    let [first_i, last_i, first_j, last_j] = Edge::ALL.map(|edge| grid.edge(edge));
+    let [first_i, last_i, first_j, last_j] = GridSide::ALL.map(|edge| grid.edge(edge));
     let size = [&first_i, &last_i, &first_j, &last_j]
         .into_iter()
         .flatten()
@@ -105,7 +105,7 @@ pub fn transfinite<T: Real>(
     let rise: Vec<T> = t1.iter().zip(&t2).map(|(a, b)| *b - *a).collect();
     let mut planes = [(); 3].map(|()| vec![T::zero(); m * n]);
     let [px, py, pz] = &mut planes;
-    let frame = Frame {
+    let frame = EdgeRows {
         first: split(&first_i),
         last: split(&last_i),
         low: split(&first_j),
@@ -138,7 +138,7 @@ pub fn transfinite<T: Real>(
 /// Rows of the grid from `first` on; a struct, for closures need not be inlined, and what is not
 /// inlined does not get the wide registers.
 struct Fill<'a, T> {
-    frame: &'a Frame<T>,
+    frame: &'a EdgeRows<T>,
     first: usize,
     planes: [&'a mut [T]; 3],
 }
@@ -162,7 +162,7 @@ impl<T: Real> pulp::NullaryFnOnce for Fill<'_, T> {
 }
 
 /// The edges of a grid as component rows, and their parameters.
-struct Frame<T> {
+struct EdgeRows<T> {
     /// s[1,] and s[m,]: along j.
     first: [Vec<T>; 3],
     last: [Vec<T>; 3],
@@ -179,7 +179,7 @@ fn split<T: Real>(points: &[Vec3<T>]) -> [Vec<T>; 3] {
     [0, 1, 2].map(|c| points.iter().map(|p| p[c]).collect())
 }
 
-impl<T: Real> Frame<T> {
+impl<T: Real> EdgeRows<T> {
     /// The parameters along i and along j of the points of row i.
     #[inline(always)]
     fn parameters(&self, i: usize, [along, across]: &mut [Vec<T>; 2]) {

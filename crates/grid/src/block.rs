@@ -30,7 +30,7 @@ pub fn transfinite_block<T: Real>(faces: &Faces<T>) -> Result<Vec<SurfaceGrid<T>
             return Err(GridError::FaceSizes { face: k + 1, expected, actual });
         }
     }
-    let block = Block { faces, size: [ni, nj, nk] };
+    let block = TransfiniteBlock { faces, size: [ni, nj, nk] };
     block.check_edges()?;
     let parameters = [block.parameters(0), block.parameters(1), block.parameters(2)];
     let means = [0, 1, 2].map(|axis| mean(&parameters[axis], block.size[axis]));
@@ -49,7 +49,7 @@ pub fn transfinite_block<T: Real>(faces: &Faces<T>) -> Result<Vec<SurfaceGrid<T>
     Ok((0..nk).map(layer).collect())
 }
 
-struct Block<'a, T> {
+struct TransfiniteBlock<'a, T> {
     faces: &'a Faces<T>,
     size: [usize; 3],
 }
@@ -61,7 +61,7 @@ const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 /// (slow) and the second (fast); none for an edge without length.
 type Edges<T> = [Option<Vec<T>>; 4];
 
-impl<T: Real> Block<'_, T> {
+impl<T: Real> TransfiniteBlock<'_, T> {
     /// The point of a face's own array.
     fn at_face(&self, axis: usize, end: usize, at: [usize; 3]) -> Vec3<T> {
         let [a, b] = OTHERS[axis];

@@ -1,7 +1,7 @@
 //! Control terms: how elliptic grids keep the spacing of their edges, or take one that is asked for.
 
 use crate::lines::Control;
-use crate::{Edge, SurfaceGrid, Wall};
+use crate::{GridSide, SurfaceGrid, Wall};
 use moldloft_num::{Real, Vec3};
 
 /// -r' . r'' / |r'|^2 at each point of a row, by central differences; zero at its ends and where it
@@ -23,7 +23,7 @@ fn along<T: Real>(points: &[Vec3<T>]) -> Vec<T> {
 /// opposite one.
 pub fn middlecoff<T: Real>(grid: &SurfaceGrid<T>) -> Control<T> {
     let (m, n) = (grid.m, grid.n);
-    let pair = |a: Edge, b: Edge| -> [Vec<T>; 2] {
+    let pair = |a: GridSide, b: GridSide| -> [Vec<T>; 2] {
         let (p, q) = (grid.edge(a), grid.edge(b));
         let still = |p: &[Vec3<T>]| p.iter().all(|x| x.re() == p[0].re());
         match (still(&p), still(&q)) {
@@ -33,8 +33,8 @@ pub fn middlecoff<T: Real>(grid: &SurfaceGrid<T>) -> Control<T> {
         }
     };
     // The rows of the grid run along j: "across" goes with i.
-    let [low, high] = pair(Edge::FirstJ, Edge::LastJ);
-    let [first, last] = pair(Edge::FirstI, Edge::LastI);
+    let [low, high] = pair(GridSide::FirstJ, GridSide::LastJ);
+    let [first, last] = pair(GridSide::FirstI, GridSide::LastI);
     let mix = |a: T, b: T, k: usize, n: usize| a + (b - a) * (k as f64 / (n - 1) as f64);
     Control {
         across: (0..m * n).map(|k| mix(low[k / n], high[k / n], k % n, n)).collect(),
@@ -55,7 +55,7 @@ const SHARE: f64 = 0.2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallReport {
     /// The edge.
-    pub edge: Edge,
+    pub edge: GridSide,
     /// The least and the greatest first cell, as shares of the one asked for.
     pub cells: [f64; 2],
     /// The largest deviation from the angle asked for, in radians.
@@ -157,7 +157,7 @@ pub fn wall_reports<T: Real>(grid: &SurfaceGrid<T>, walls: &[Wall<T>]) -> Vec<Wa
 }
 
 /// The first cell off each point of an edge, and its angle to the edge; of points without one, zeros.
-pub fn wall_cells<T: Real>(grid: &SurfaceGrid<T>, edge: Edge) -> Vec<[T; 2]> {
+pub fn wall_cells<T: Real>(grid: &SurfaceGrid<T>, edge: GridSide) -> Vec<[T; 2]> {
     let view = EdgeView { grid, edge };
     (0..view.count())
         .map(|k| view.cell(k).map_or([T::zero(); 2], |(length, angle)| [length, angle]))
@@ -167,17 +167,17 @@ pub fn wall_cells<T: Real>(grid: &SurfaceGrid<T>, edge: Edge) -> Vec<[T; 2]> {
 /// A grid seen from an edge: point k along it, d cells deep.
 struct EdgeView<'a, T> {
     grid: &'a SurfaceGrid<T>,
-    edge: Edge,
+    edge: GridSide,
 }
 
 impl<T: Real> EdgeView<'_, T> {
     /// True when the edge runs along i.
     fn along_i(&self) -> bool {
-        matches!(self.edge, Edge::FirstJ | Edge::LastJ)
+        matches!(self.edge, GridSide::FirstJ | GridSide::LastJ)
     }
 
     fn far(&self) -> bool {
-        matches!(self.edge, Edge::LastI | Edge::LastJ)
+        matches!(self.edge, GridSide::LastI | GridSide::LastJ)
     }
 
     fn count(&self) -> usize {

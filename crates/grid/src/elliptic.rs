@@ -5,7 +5,7 @@
 use crate::control::{WallReport, WallTerms, middlecoff, wall_reports};
 use crate::lines::{Change, Control, ZebraRows, larger, transposed_control};
 use crate::zebra::Banks;
-use crate::{Edge, GridError, SurfaceGrid};
+use crate::{GridError, GridSide, SurfaceGrid};
 use moldloft_budget::Budget;
 use moldloft_num::{Order, Real, Surface, Vec3};
 use rayon::prelude::*;
@@ -27,7 +27,7 @@ pub enum Method {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wall<T> {
     /// The edge.
-    pub edge: Edge,
+    pub edge: GridSide,
     /// The spacing off the wall: one for all points, or one of each.
     pub spacing: Vec<T>,
     /// The angle to the wall, in radians.

@@ -1,6 +1,6 @@
 //! What can be wrong with a grid, with the place.
 
-use crate::Edge;
+use crate::GridSide;
 use crate::marching::outcome::MarchFailure;
 use moldloft_budget::Spent;
 use std::fmt;
@@ -9,9 +9,9 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
     /// The edge that it is an end of.
-    pub edge: Edge,
+    pub edge: GridSide,
     /// The edge that should end there, too.
-    pub other: Edge,
+    pub other: GridSide,
     /// The indices of the corner, from 1.
     pub at: [usize; 2],
 }

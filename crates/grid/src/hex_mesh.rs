@@ -1,7 +1,7 @@
 //! Blocks joined to one mesh of hexahedra with named patches, and its quality by the rules of OpenFOAM's checkMesh.
 
 use crate::surface_grid::SAME;
-use crate::{Face, VolumeGrid};
+use crate::{GridFace, VolumeGrid};
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 
@@ -34,7 +34,7 @@ pub type FaceNames = [Option<(String, String)>; 6];
 const CORNERS: [[usize; 3]; 8] =
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
 
-/// The six faces of a hexahedron, outward, in the order of [`Face::ALL`].
+/// The six faces of a hexahedron, outward, in the order of [`GridFace::ALL`].
 pub const HEX_FACES: [[usize; 4]; 6] =
     [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]];
 
@@ -75,7 +75,7 @@ impl HexMesh {
                             let [a, b, c, d, e, f, g, h] = cell;
                             cell = [e, f, g, h, a, b, c, d];
                         }
-                        for (side, face) in Face::ALL.iter().enumerate() {
+                        for (side, face) in GridFace::ALL.iter().enumerate() {
                             let at = [i, j, k][face.axis];
                             let outer = if face.last { at + 1 == last[face.axis] } else { at == 0 };
                             if !outer {

@@ -37,8 +37,8 @@ pub use marching::{
     Support, hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,
 };
 pub use quality::{QualityMetric, folded_cells, quality};
-pub use surface_grid::{Edge, SurfaceGrid, framed};
+pub use surface_grid::{GridSide, SurfaceGrid, framed};
 pub use volume_elliptic::{
     EllipticVolume, FaceWall, FaceWallReport, SmoothedVolume, elliptic_volume_until,
 };
-pub use volume_grid::{Face, VolumeGrid};
+pub use volume_grid::{GridFace, VolumeGrid};

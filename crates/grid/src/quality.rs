@@ -67,7 +67,7 @@ pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: QualityMetric) -> Vec<T> 
     if grid.m < 2 || grid.n < 2 {
         return Vec::new();
     }
-    let cells = Cells { grid, m: grid.m - 1, n: grid.n - 1 };
+    let cells = GridCells { grid, m: grid.m - 1, n: grid.n - 1 };
     let each = |f: &dyn Fn(usize, usize) -> T| {
         (0..cells.m * cells.n).map(|k| f(k / cells.n, k % cells.n)).collect()
     };
@@ -120,7 +120,7 @@ pub fn folded_cells<T: Real>(grid: &SurfaceGrid<T>) -> Vec<[usize; 2]> {
     folded.map(|(k, _)| [k / n, k % n]).collect()
 }
 
-struct Cells<'a, T> {
+struct GridCells<'a, T> {
     grid: &'a SurfaceGrid<T>,
     m: usize,
     n: usize,
@@ -141,7 +141,7 @@ fn ratio<T: Real>(a: T, b: T) -> T {
     if most.re() == 0.0 { T::one() } else { most / least }
 }
 
-impl<T: Real> Cells<'_, T> {
+impl<T: Real> GridCells<'_, T> {
     /// The corners, counter-clockwise as seen from the side of r_i x r_j.
     fn corners(&self, i: usize, j: usize) -> [Vec3<T>; 4] {
         let s = self.grid;

@@ -17,7 +17,7 @@ pub struct SurfaceGrid<T> {
 
 /// An edge of a grid, by the index that is constant along it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edge {
+pub enum GridSide {
     /// s[1,]
     FirstI,
     /// s[m,]
@@ -28,18 +28,19 @@ pub enum Edge {
     LastJ,
 }
 
-impl Edge {
+impl GridSide {
     /// All four.
-    pub const ALL: [Edge; 4] = [Edge::FirstI, Edge::LastI, Edge::FirstJ, Edge::LastJ];
+    pub const ALL: [GridSide; 4] =
+        [GridSide::FirstI, GridSide::LastI, GridSide::FirstJ, GridSide::LastJ];
 }
 
-impl fmt::Display for Edge {
+impl fmt::Display for GridSide {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Edge::FirstI => "s[1,]",
-            Edge::LastI => "s[m,]",
-            Edge::FirstJ => "s[,1]",
-            Edge::LastJ => "s[,n]",
+            GridSide::FirstI => "s[1,]",
+            GridSide::LastI => "s[m,]",
+            GridSide::FirstJ => "s[,1]",
+            GridSide::LastJ => "s[,n]",
         })
     }
 }
@@ -99,22 +100,22 @@ impl<T: Real> SurfaceGrid<T> {
     }
 
     /// The points of an edge, in ascending index.
-    pub fn edge(&self, edge: Edge) -> Vec<Vec3<T>> {
+    pub fn edge(&self, edge: GridSide) -> Vec<Vec3<T>> {
         match edge {
-            Edge::FirstI => (0..self.n).map(|j| self.at(0, j)).collect(),
-            Edge::LastI => (0..self.n).map(|j| self.at(self.m - 1, j)).collect(),
-            Edge::FirstJ => (0..self.m).map(|i| self.at(i, 0)).collect(),
-            Edge::LastJ => (0..self.m).map(|i| self.at(i, self.n - 1)).collect(),
+            GridSide::FirstI => (0..self.n).map(|j| self.at(0, j)).collect(),
+            GridSide::LastI => (0..self.n).map(|j| self.at(self.m - 1, j)).collect(),
+            GridSide::FirstJ => (0..self.m).map(|i| self.at(i, 0)).collect(),
+            GridSide::LastJ => (0..self.m).map(|i| self.at(i, self.n - 1)).collect(),
         }
     }
 
     /// The indices, from 1, of point `k` of an edge.
-    fn place(&self, edge: Edge, k: usize) -> [usize; 2] {
+    fn place(&self, edge: GridSide, k: usize) -> [usize; 2] {
         match edge {
-            Edge::FirstI => [1, k + 1],
-            Edge::LastI => [self.m, k + 1],
-            Edge::FirstJ => [k + 1, 1],
-            Edge::LastJ => [k + 1, self.n],
+            GridSide::FirstI => [1, k + 1],
+            GridSide::LastI => [self.m, k + 1],
+            GridSide::FirstJ => [k + 1, 1],
+            GridSide::LastJ => [k + 1, self.n],
         }
     }
 
@@ -164,7 +165,7 @@ impl<T: Real> SurfaceGrid<T> {
     pub fn check_edges(&self) -> Result<(), GridError> {
         self.check_count(2)?;
         let mut size = 0.0f64;
-        for edge in Edge::ALL {
+        for edge in GridSide::ALL {
             let points = self.edge(edge);
             if let Some(k) = points.iter().position(|p| !p.is_finite()) {
                 return Err(GridError::NotFinite { at: self.place(edge, k) });
@@ -172,7 +173,7 @@ impl<T: Real> SurfaceGrid<T> {
             let first = points[0].re();
             size = points.iter().fold(size, |size, p| size.max(p.re().distance(first)));
         }
-        for edge in Edge::ALL {
+        for edge in GridSide::ALL {
             let points: Vec<Vec3> = self.edge(edge).iter().map(|p| p.re()).collect();
             let n = points.len();
             if n < 4 {
@@ -184,10 +185,10 @@ impl<T: Real> SurfaceGrid<T> {
                 let next = step(1).max(if n > 4 { step(2) } else { 0.0 });
                 if step(0) > LEAP * next && step(0) > SAME.sqrt() * size {
                     let other = match (edge, back) {
-                        (Edge::FirstI | Edge::LastI, false) => Edge::FirstJ,
-                        (Edge::FirstI | Edge::LastI, true) => Edge::LastJ,
-                        (_, false) => Edge::FirstI,
-                        (_, true) => Edge::LastI,
+                        (GridSide::FirstI | GridSide::LastI, false) => GridSide::FirstJ,
+                        (GridSide::FirstI | GridSide::LastI, true) => GridSide::LastJ,
+                        (_, false) => GridSide::FirstI,
+                        (_, true) => GridSide::LastI,
                     };
                     let at = self.place(edge, if back { n - 1 } else { 0 });
                     return Err(GridError::EdgesApart {
@@ -219,12 +220,12 @@ pub fn framed<T: Real>(edges: &[Vec<Vec3<T>>; 4]) -> Result<SurfaceGrid<T>, Grid
         size = size.max(p.re().distance(first_i[0].re()));
     }
     for (edge, k, other, l, at) in [
-        (Edge::FirstI, 0, Edge::FirstJ, 0, [1, 1]),
-        (Edge::FirstI, n - 1, Edge::LastJ, 0, [1, n]),
-        (Edge::LastI, 0, Edge::FirstJ, m - 1, [m, 1]),
-        (Edge::LastI, n - 1, Edge::LastJ, m - 1, [m, n]),
+        (GridSide::FirstI, 0, GridSide::FirstJ, 0, [1, 1]),
+        (GridSide::FirstI, n - 1, GridSide::LastJ, 0, [1, n]),
+        (GridSide::LastI, 0, GridSide::FirstJ, m - 1, [m, 1]),
+        (GridSide::LastI, n - 1, GridSide::LastJ, m - 1, [m, n]),
     ] {
-        let end = |edge: Edge, k: usize| edges[edge as usize][k].re();
+        let end = |edge: GridSide, k: usize| edges[edge as usize][k].re();
         let gap = end(edge, k).distance(end(other, l));
         // Written so that NaN is refused.
         if !(gap <= SAME * size) {

@@ -3,7 +3,7 @@
 //! Solves sum over l, m of g^lm r_lm + sum over l of g^ll p_l r_l = 0 (Thompson, Warsi and Mastin 1985) line by line, in
 //! four colours. Holds: faces stay to the bit; the same bits at any number of threads.
 
-use crate::{Face, GridError, VolumeGrid};
+use crate::{GridError, GridFace, VolumeGrid};
 use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWall<T> {
     /// The face.
-    pub face: Face,
+    pub face: GridFace,
     /// The first cell.
     pub spacing: T,
 }
@@ -36,7 +36,7 @@ pub struct EllipticVolume<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWallReport {
     /// The face.
-    pub face: Face,
+    pub face: GridFace,
     /// The least and the greatest first cell, as shares of the one asked for.
     pub cells: [f64; 2],
     /// The largest deviation from a right angle, in radians.
@@ -140,7 +140,7 @@ type EdgeControls<T> = [[Vec<T>; 4]; 3];
 
 fn edge_controls<T: Real>(grid: &VolumeGrid<T>) -> EdgeControls<T> {
     [0, 1, 2].map(|axis| {
-        let [a, b] = Face { axis, last: false }.others();
+        let [a, b] = GridFace { axis, last: false }.others();
         std::array::from_fn(|corner| {
             let mut at = [0; 3];
             at[a] = corner / 2 * (grid.size[a] - 1);
@@ -175,7 +175,7 @@ fn controls<T: Real>(
     let mut p = [T::zero(); 3];
     if let Some(base) = base {
         for axis in 0..3 {
-            let [a, b] = Face { axis, last: false }.others();
+            let [a, b] = GridFace { axis, last: false }.others();
             let share = |axis: usize| at[axis] as f64 / (size[axis] - 1) as f64;
             let (u, v) = (share(a), share(b));
             let weights = [(1.0 - u) * (1.0 - v), (1.0 - u) * v, u * (1.0 - v), u * v];
@@ -185,7 +185,7 @@ fn controls<T: Real>(
         }
     }
     for (wall, terms) in walls.iter().zip(terms) {
-        let Face { axis, last } = wall.face;
+        let GridFace { axis, last } = wall.face;
         let [a, b] = wall.face.others();
         let depth = if last { size[axis] - 1 - at[axis] } else { at[axis] };
         let fade = libm::exp(-FADE * depth as f64);
@@ -204,7 +204,7 @@ fn wall_step<T: Real>(
     wall: &FaceWall<T>,
     mut terms: Option<&mut Vec<[T; 3]>>,
 ) -> FaceWallReport {
-    let Face { axis, last } = wall.face;
+    let GridFace { axis, last } = wall.face;
     let [a, b] = wall.face.others();
     let (na, nb) = (grid.size[a], grid.size[b]);
     let depth = |d: usize| if last { grid.size[axis] - 1 - d } else { d };
@@ -257,7 +257,7 @@ fn pass<T: Real>(
     controls: &[[T; 3]],
     budget: &Budget,
 ) -> f64 {
-    let [a, b] = Face { axis, last: false }.others();
+    let [a, b] = GridFace { axis, last: false }.others();
     let (na, nb, n) = (grid.size[a], grid.size[b], grid.size[axis]);
     let lines: Vec<(usize, usize)> = (1..na - 1)
         .flat_map(|p| (1..nb - 1).map(move |q| (p, q)))

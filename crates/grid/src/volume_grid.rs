@@ -16,22 +16,22 @@ pub struct VolumeGrid<T> {
 
 /// A face of a volume grid, by the index that is constant on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Face {
+pub struct GridFace {
     /// 0 for i, 1 for j, 2 for k.
     pub axis: usize,
     /// True for the last value of the index.
     pub last: bool,
 }
 
-impl Face {
+impl GridFace {
     /// i = 1, i = ni, j = 1, j = nj, k = 1, k = nk.
-    pub const ALL: [Face; 6] = [
-        Face { axis: 0, last: false },
-        Face { axis: 0, last: true },
-        Face { axis: 1, last: false },
-        Face { axis: 1, last: true },
-        Face { axis: 2, last: false },
-        Face { axis: 2, last: true },
+    pub const ALL: [GridFace; 6] = [
+        GridFace { axis: 0, last: false },
+        GridFace { axis: 0, last: true },
+        GridFace { axis: 1, last: false },
+        GridFace { axis: 1, last: true },
+        GridFace { axis: 2, last: false },
+        GridFace { axis: 2, last: true },
     ];
 
     /// The word of the language: "i1", "in", "j1", "jn", "k1", "kn".
@@ -45,7 +45,7 @@ impl Face {
     }
 }
 
-impl fmt::Display for Face {
+impl fmt::Display for GridFace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.word())
     }
@@ -120,7 +120,7 @@ impl<T: Real> VolumeGrid<T> {
     }
 
     /// A face, by the other two indices in ascending order.
-    pub fn face(&self, face: Face) -> SurfaceGrid<T> {
+    pub fn face(&self, face: GridFace) -> SurfaceGrid<T> {
         let [a, b] = face.others();
         let fixed = if face.last { self.size[face.axis] - 1 } else { 0 };
         SurfaceGrid::from_fn(self.size[a], self.size[b], |p, q| {

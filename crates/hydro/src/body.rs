@@ -1,7 +1,7 @@
 //! A body: the cells of its skin, its open rims, and what is known of their distance to the surfaces.
 
 use crate::bernstein::halves;
-use crate::cell::{Cell, FitLimits, cells_of};
+use crate::cell::{FitLimits, PolynomialCell, cells_of};
 use crate::integrals::{Immersed, Wanted, immersed};
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Real, Surface, Vec3};
@@ -31,7 +31,7 @@ pub struct HullSide<'a, T: Real> {
 /// The skin of a body as polynomial cells.
 #[derive(Clone, Debug)]
 pub struct Body<T> {
-    cells: Vec<Arc<Cell<T>>>,
+    cells: Vec<Arc<PolynomialCell<T>>>,
     /// Control points of curves along which the skin is open.
     rims: Vec<Vec<Vec3<T>>>,
     size: f64,
@@ -93,7 +93,7 @@ impl<T: Real> Body<T> {
             }
             body.cells.extend(cells.into_iter().map(Arc::new));
         }
-        body.cells.extend(panels.into_iter().map(|p| Arc::new(Cell::of_panel(p))));
+        body.cells.extend(panels.into_iter().map(|p| Arc::new(PolynomialCell::of_panel(p))));
         Some(body)
     }
 
@@ -104,7 +104,7 @@ impl<T: Real> Body<T> {
         let panels = mesh.skin_faces().into_iter().map(|f| mesh.faces()[f].map(at));
         let rims = mesh.open_skin_edges().into_iter().map(|(_, e)| e.map(at).to_vec()).collect();
         let no_surface = Self { cells: Vec::new(), rims, size, accuracy };
-        let cells = panels.map(|p| Arc::new(Cell::of_panel(p))).collect();
+        let cells = panels.map(|p| Arc::new(PolynomialCell::of_panel(p))).collect();
         Self { cells, ..no_surface }
     }
 
@@ -128,7 +128,7 @@ impl<T: Real> Body<T> {
         self.cells.len()
     }
 
-    pub(crate) fn cells(&self) -> &[Arc<Cell<T>>] {
+    pub(crate) fn cells(&self) -> &[Arc<PolynomialCell<T>>] {
         &self.cells
     }
 
@@ -255,10 +255,11 @@ impl<T: Real> Body<T> {
     /// at which it is reached.
     pub fn lowest(&self, direction: Vec3<f64>) -> Option<T> {
         let along = |p: Vec3<T>| p.x * direction.x + p.y * direction.y + p.z * direction.z;
-        let least =
-            |c: &Cell<T>| c.net().iter().map(|&p| along(p).re()).fold(f64::INFINITY, f64::min);
+        let least = |c: &PolynomialCell<T>| {
+            c.net().iter().map(|&p| along(p).re()).fold(f64::INFINITY, f64::min)
+        };
         let mut best: Option<T> = None;
-        let mut stack: Vec<(f64, Arc<Cell<T>>)> =
+        let mut stack: Vec<(f64, Arc<PolynomialCell<T>>)> =
             self.cells.iter().map(|c| (least(c), c.clone())).collect();
         stack.sort_by(|a, b| b.0.total_cmp(&a.0));
         let near = 1e-14 * self.size;

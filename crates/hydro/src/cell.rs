@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 
 /// A polynomial patch, of which `reversed` has its normal against S_u x S_v.
 #[derive(Clone, Debug)]
-pub struct Cell<T> {
+pub struct PolynomialCell<T> {
     degree: [usize; 2],
     /// Control points, (i, j) at `[i * (degree[1] + 1) + j]`.
     net: Vec<Vec3<T>>,
@@ -36,7 +36,7 @@ const MOST_CELLS: usize = 6000;
 /// A cell is halved this often at most in one direction.
 const DEEPEST: u32 = 40;
 
-impl<T: Real> Cell<T> {
+impl<T: Real> PolynomialCell<T> {
     /// The bilinear cell of four corners, counter-clockwise seen from outside; a triangle repeats its last.
     pub fn of_panel([a, b, c, d]: [Vec3<T>; 4]) -> Self {
         Self {
@@ -68,8 +68,8 @@ impl<T: Real> Cell<T> {
     }
 
     /// The cell of real parts.
-    pub fn re(&self) -> Cell<f64> {
-        Cell {
+    pub fn re(&self) -> PolynomialCell<f64> {
+        PolynomialCell {
             degree: self.degree,
             net: self.net.iter().map(|p| p.re()).collect(),
             reversed: self.reversed,
@@ -79,7 +79,7 @@ impl<T: Real> Cell<T> {
     }
 
     /// The cell with numbers without derivatives.
-    pub fn lifted(cell: &Cell<f64>) -> Self {
+    pub fn lifted(cell: &PolynomialCell<f64>) -> Self {
         Self {
             degree: cell.degree,
             net: cell.net.iter().map(|&p| Vec3::lifted(p)).collect(),
@@ -166,7 +166,7 @@ pub(crate) fn cells_of<T: Real>(
     surface: &dyn Surface<T>,
     reversed: bool,
     limits: FitLimits,
-) -> Option<Vec<Cell<T>>> {
+) -> Option<Vec<PolynomialCell<T>>> {
     let ends = |mut breaks: Vec<f64>, joints: Vec<f64>| {
         breaks.extend(joints);
         breaks.retain(|t| *t > 0.0 && *t < 1.0);
@@ -268,7 +268,11 @@ fn moving_grid<T: Real>(surface: &dyn Surface<T>, us: &[T], vs: &[T]) -> Vec<Vec
 const PROBES: [f64; 3] = [0.071, 0.457, 0.893];
 
 /// The interpolation of a surface on [u0, u1] x [v0, v1] at Chebyshev points, of the lowest degree that keeps it.
-fn fit<T: Real>(surface: &dyn Surface<T>, frame: [T; 4], reversed: bool) -> Option<Cell<T>> {
+fn fit<T: Real>(
+    surface: &dyn Surface<T>,
+    frame: [T; 4],
+    reversed: bool,
+) -> Option<PolynomialCell<T>> {
     const N: usize = MOST_DEGREE + 1;
     let tables = tables();
     let [u0, u1, v0, v1] = frame.map(|t| t.re());
@@ -325,7 +329,7 @@ fn fit<T: Real>(surface: &dyn Surface<T>, frame: [T; 4], reversed: bool) -> Opti
     let to_bernstein = [&tables.synthesis[du], &tables.synthesis[dv]];
     let net = transformed(&kept, [du + 1, dv + 1], to_bernstein);
     let border = [v0 == 0.0, u1 == 1.0, v1 == 1.0, u0 == 0.0];
-    let cell = Cell { degree: [du, dv], net, reversed, border, fit };
+    let cell = PolynomialCell { degree: [du, dv], net, reversed, border, fit };
     // Between the points, where a kink that no joint declares would show.
     let mut off: f64 = 0.0;
     let (mut at, mut by) = (Vec::new(), Vec::new());
@@ -350,7 +354,7 @@ fn fit<T: Real>(surface: &dyn Surface<T>, frame: [T; 4], reversed: bool) -> Opti
             fit = [off, off];
         }
     }
-    Some(Cell { fit, ..cell })
+    Some(PolynomialCell { fit, ..cell })
 }
 
 /// The Chebyshev points, and the matrices from values there to Chebyshev and on to Bernstein coefficients.

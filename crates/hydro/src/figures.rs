@@ -3,7 +3,7 @@
 use crate::body::Body;
 use crate::integrals::Wanted;
 use crate::section::{section_area, waterline_extent};
-use crate::strip::Cut;
+use crate::strip::CoordinatePlane;
 use moldloft_mesh::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
 use moldloft_num::{Real, Vec3};
 
@@ -77,7 +77,7 @@ pub(crate) fn floating<T: Real>(
     }
     let lowest = body.lowest(Vec3::of(0.0, 0.0, 1.0));
     let draft = lowest.map_or(T::zero(), |low| (level - low).max(T::zero()));
-    let cut = Cut { axis: 2, level, epsilon: 1e-13 * body.size() };
+    let cut = CoordinatePlane { axis: 2, level, epsilon: 1e-13 * body.size() };
     let mut product_moment = T::zero();
     let waterplane = waterline_extent(&all.waterline, cut).map(|extent| {
         let plane = sums.plane.map(|p| p * count);

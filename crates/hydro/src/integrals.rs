@@ -6,9 +6,9 @@
 //! Every integral is computed by two rules; the finer is used, and the difference, which is about the error of the
 //! coarser, is its estimate. Cells are halved, the worst first, until the sum of the estimates is small.
 
-use crate::cell::Cell;
+use crate::cell::PolynomialCell;
 use crate::gauss::gauss;
-use crate::strip::{Cut, Line, Strip, Wet, strips};
+use crate::strip::{CoordinatePlane, Strip, StripLine, Wet, strips};
 use moldloft_num::{Real, Vec3};
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -136,27 +136,27 @@ const WORTH_A_THREAD: usize = 2048;
 
 /// A cell's share of the integrals.
 struct CellIntegrals<T> {
-    cell: Arc<Cell<T>>,
+    cell: Arc<PolynomialCell<T>>,
     sums: HydrostaticIntegrals<T>,
     errors: Errors,
     waterline: Vec<Strip<T>>,
 }
 
 /// A part that may be halved: the worst first, the earlier of two alike.
-struct Candidate(f64, usize);
+struct RefinementCandidate(f64, usize);
 
-impl PartialEq for Candidate {
+impl PartialEq for RefinementCandidate {
     fn eq(&self, o: &Self) -> bool {
         self.cmp(o) == Ordering::Equal
     }
 }
-impl Eq for Candidate {}
-impl PartialOrd for Candidate {
+impl Eq for RefinementCandidate {}
+impl PartialOrd for RefinementCandidate {
     fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
         Some(self.cmp(o))
     }
 }
-impl Ord for Candidate {
+impl Ord for RefinementCandidate {
     fn cmp(&self, o: &Self) -> Ordering {
         self.0.total_cmp(&o.0).then(o.1.cmp(&self.1))
     }
@@ -175,16 +175,16 @@ pub(crate) enum Wanted {
 
 /// The integrals below `level`, each to about `accuracy` of its size; `origin` is (x0, y0), `size` that of the body.
 pub(crate) fn immersed<T: Real>(
-    cells: &[Arc<Cell<T>>],
+    cells: &[Arc<PolynomialCell<T>>],
     level: T,
     origin: [T; 2],
     size: f64,
     accuracy: f64,
     wanted: Wanted,
 ) -> Immersed<T> {
-    let cut = Cut { axis: 2, level, epsilon: 1e-13 * size };
+    let cut = CoordinatePlane { axis: 2, level, epsilon: 1e-13 * size };
     let origin = Vec3::new(origin[0], origin[1], level);
-    let one = |cell: &Arc<Cell<T>>| part(cell, cut, origin);
+    let one = |cell: &Arc<PolynomialCell<T>>| part(cell, cut, origin);
     let mut parts: Vec<Option<CellIntegrals<T>>> = if cells.len() < WORTH_A_THREAD {
         cells.iter().map(|c| Some(one(c))).collect()
     } else {
@@ -220,14 +220,14 @@ pub(crate) fn immersed<T: Real>(
     }
     let count = if wanted == Wanted::Displacement { 2 } else { 6 };
     let worst = |e: &Errors| (0..count).map(|k| e[k] / scale[k]).fold(0.0, f64::max);
-    let mut heap: BinaryHeap<Candidate> = parts
+    let mut heap: BinaryHeap<RefinementCandidate> = parts
         .iter()
         .enumerate()
-        .filter_map(|(k, p)| Some(Candidate(worst(&p.as_ref()?.errors), k)))
+        .filter_map(|(k, p)| Some(RefinementCandidate(worst(&p.as_ref()?.errors), k)))
         .collect();
     let mut halved = 0;
     while halved < MOST_HALVED && worst(&errors) > accuracy {
-        let Some(Candidate(share, k)) = heap.pop() else { break };
+        let Some(RefinementCandidate(share, k)) = heap.pop() else { break };
         if share <= 1e-3 * accuracy / (parts.len() as f64) {
             break;
         }
@@ -245,7 +245,7 @@ pub(crate) fn immersed<T: Real>(
             for e in 0..6 {
                 errors[e] += new.errors[e];
             }
-            heap.push(Candidate(worst(&new.errors), parts.len()));
+            heap.push(RefinementCandidate(worst(&new.errors), parts.len()));
             parts.push(Some(new));
         }
         halved += 1;
@@ -268,7 +268,11 @@ pub(crate) fn immersed<T: Real>(
 /// Points of the rules on strips that are cut: along w, and across.
 const OUTER: [usize; 2] = [14, 10];
 
-fn part<T: Real>(cell: &Arc<Cell<T>>, cut: Cut<T>, origin: Vec3<T>) -> CellIntegrals<T> {
+fn part<T: Real>(
+    cell: &Arc<PolynomialCell<T>>,
+    cut: CoordinatePlane<T>,
+    origin: Vec3<T>,
+) -> CellIntegrals<T> {
     let mut found = Vec::new();
     let undecided = strips(cell, cut, &mut found);
     let (mut sums, mut errors) = (HydrostaticIntegrals::zero(), [0.0; 6]);
@@ -331,7 +335,7 @@ fn points_beside(degree: usize, coarser: usize, other_exact: bool) -> usize {
 /// The integrals over a strip by the finer (0) or the coarser (1) rule.
 fn integrated<T: Real>(
     strip: &Strip<T>,
-    cut: Cut<T>,
+    cut: CoordinatePlane<T>,
     origin: Vec3<T>,
     coarser: usize,
 ) -> HydrostaticIntegrals<T> {
@@ -346,7 +350,7 @@ fn integrated<T: Real>(
     };
     let length = strip.to - strip.from;
     let sign = strip.sign();
-    let mut line = Line::default();
+    let mut line = StripLine::default();
     for &(s, weight) in gauss(outer) {
         let (share, slope) = if strip.is_cut() {
             let half = std::f64::consts::FRAC_PI_2;

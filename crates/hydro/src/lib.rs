@@ -23,7 +23,7 @@ mod section;
 mod strip;
 
 pub use body::{Body, BodyMeasures, HullSide, USUAL_ACCURACY, surface_measures};
-pub use cell::Cell;
+pub use cell::PolynomialCell;
 pub use equilibrium::{Equilibrium, FloatError, Loading, Status, equilibrium};
 pub use figures::hydrostatics;
 pub use flotation::{Attitude, Flotation, Water, bottom, bounds, flotation};

@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::gauss::gauss;
-use crate::strip::{Cut, Line, Strip, strips};
+use crate::strip::{CoordinatePlane, Strip, StripLine, strips};
 use moldloft_num::{Real, Vec3};
 
 /// Points at which a function along a cut is looked at before its extreme or root is sought.
@@ -14,7 +14,7 @@ const POINTS: usize = 16;
 /// The immersed area of the section at x = `station`, of the modelled part, with its first moment of height about
 /// the water: the integrals of (z - level) dy and of (z - level)^2 / 2 dy along the cut of the skin.
 pub fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
-    let cut = Cut { axis: 0, level: station, epsilon: 1e-13 * body.size() };
+    let cut = CoordinatePlane { axis: 0, level: station, epsilon: 1e-13 * body.size() };
     let (mut area, mut moment) = (T::zero(), T::zero());
     let mut found = Vec::new();
     for cell in body.cells() {
@@ -30,7 +30,7 @@ pub fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
             let before = strip.wet == crate::strip::Wet::Before;
             let turn = if before { strip.sign() } else { -strip.sign() };
             for [a, b] in under_water(strip, cut, level) {
-                let (length, mut line) = (b - a, Line::default());
+                let (length, mut line) = (b - a, StripLine::default());
                 for &(s, weight) in gauss(POINTS) {
                     let half = std::f64::consts::FRAC_PI_2;
                     let (sine, cosine) = (libm::sin(half * s), libm::cos(half * s));
@@ -48,8 +48,8 @@ pub fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
 }
 
 /// The stretches of the outer parameter on which the cut runs below the level.
-fn under_water<T: Real>(strip: &Strip<T>, cut: Cut<T>, level: T) -> Vec<[T; 2]> {
-    let mut line = Line::default();
+fn under_water<T: Real>(strip: &Strip<T>, cut: CoordinatePlane<T>, level: T) -> Vec<[T; 2]> {
+    let mut line = StripLine::default();
     let mut height = |w: T| strip.cut_at(w, cut, &mut line).p.z - level;
     let place = |k: usize| {
         let s = k as f64 / LOOKS as f64;
@@ -88,7 +88,7 @@ fn under_water<T: Real>(strip: &Strip<T>, cut: Cut<T>, level: T) -> Vec<[T; 2]> 
             }
             let exact = {
                 let at = {
-                    let mut line = Line::default();
+                    let mut line = StripLine::default();
                     strip.cut_at(T::from(root), cut, &mut line)
                 };
                 let off = (at.p.z - level) / at.along.z;
@@ -112,9 +112,12 @@ fn under_water<T: Real>(strip: &Strip<T>, cut: Cut<T>, level: T) -> Vec<[T; 2]> 
 }
 
 /// The lowest and the highest x, then y, of the waterline.
-pub(crate) fn waterline_extent<T: Real>(strips: &[Strip<T>], cut: Cut<T>) -> Option<[T; 4]> {
+pub(crate) fn waterline_extent<T: Real>(
+    strips: &[Strip<T>],
+    cut: CoordinatePlane<T>,
+) -> Option<[T; 4]> {
     let mut best: [Option<(f64, T)>; 4] = [None; 4];
-    let mut line = Line::default();
+    let mut line = StripLine::default();
     for strip in strips {
         let (a, b) = (strip.from.re(), strip.to.re());
         let place = |k: usize| {

@@ -5,7 +5,7 @@
 //! and a root is the only one, for the cell's polynomial.
 
 use crate::bernstein::{bracketed, place_and_tangent, sign_changes, value_and_slope};
-use crate::cell::Cell;
+use crate::cell::PolynomialCell;
 use moldloft_num::{Real, Vec3};
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ pub(crate) enum Wet {
 /// A strip of a cell.
 #[derive(Clone, Debug)]
 pub(crate) struct Strip<T> {
-    pub cell: Arc<Cell<T>>,
+    pub cell: Arc<PolynomialCell<T>>,
     /// The parameter along its lines: 0 for u, 1 for v.
     pub inner: usize,
     /// The ends of the other parameter.
@@ -33,7 +33,7 @@ pub(crate) struct Strip<T> {
 
 /// The coordinate that a plane fixes, and its value.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cut<T> {
+pub(crate) struct CoordinatePlane<T> {
     pub axis: usize,
     pub level: T,
     /// A distance that counts as none.
@@ -48,7 +48,11 @@ const STEEP: f64 = 1e-2;
 const STEEP_TO: u32 = 6;
 
 /// The strips of the part of a cell below the plane, and the area of what could not be decided.
-pub(crate) fn strips<T: Real>(cell: &Arc<Cell<T>>, cut: Cut<T>, out: &mut Vec<Strip<T>>) -> f64 {
+pub(crate) fn strips<T: Real>(
+    cell: &Arc<PolynomialCell<T>>,
+    cut: CoordinatePlane<T>,
+    out: &mut Vec<Strip<T>>,
+) -> f64 {
     let mut undecided = 0.0;
     let mut stack = vec![(cell.clone(), 0u32)];
     while let Some((cell, depth)) = stack.pop() {
@@ -97,7 +101,11 @@ pub(crate) fn strips<T: Real>(cell: &Arc<Cell<T>>, cut: Cut<T>, out: &mut Vec<St
 
 /// The edges of a wet cell that lie in the plane, along which the waterline runs: the parameter across, and which part
 /// of its lines is wet then. Edges that are points do not count.
-fn edges_in_plane<T: Real>(cell: &Cell<T>, heights: &[f64], epsilon: f64) -> Vec<(usize, Wet)> {
+fn edges_in_plane<T: Real>(
+    cell: &PolynomialCell<T>,
+    heights: &[f64],
+    epsilon: f64,
+) -> Vec<(usize, Wet)> {
     let [du, dv] = cell.degree();
     let near = |k: usize| heights[k] >= -epsilon;
     if ![0, dv, du * (dv + 1), du * (dv + 1) + dv].into_iter().any(near) {
@@ -123,7 +131,7 @@ fn edges_in_plane<T: Real>(cell: &Cell<T>, heights: &[f64], epsilon: f64) -> Vec
         .collect()
 }
 
-fn heights<T: Real>(cell: &Cell<T>, cut: Cut<T>) -> Vec<f64> {
+fn heights<T: Real>(cell: &PolynomialCell<T>, cut: CoordinatePlane<T>) -> Vec<f64> {
     cell.net().iter().map(|p| p[cut.axis].re() - cut.level.re()).collect()
 }
 
@@ -156,10 +164,10 @@ fn ordered(heights: &[f64], [du, dv]: [usize; 2], least: f64) -> Option<usize> {
 
 /// The strips of a cell whose height is ordered along `inner`: between the roots on its two outer edges.
 fn cut_cell<T: Real>(
-    cell: &Arc<Cell<T>>,
+    cell: &Arc<PolynomialCell<T>>,
     inner: usize,
     heights: &[f64],
-    cut: Cut<T>,
+    cut: CoordinatePlane<T>,
     out: &mut Vec<Strip<T>>,
 ) {
     let [du, dv] = cell.degree();
@@ -213,7 +221,7 @@ fn cut_cell<T: Real>(
 
 /// A line of a strip: its control points, their derivatives by the outer parameter.
 #[derive(Debug, Default)]
-pub(crate) struct Line<T> {
+pub(crate) struct StripLine<T> {
     pub at: Vec<Vec3<T>>,
     pub by: Vec<Vec3<T>>,
 }
@@ -240,12 +248,12 @@ impl<T: Real> Strip<T> {
     }
 
     /// The line at `w`, and the inner parameter of the cut on it, 0 or 1 where rounding hides it.
-    pub fn line(&self, w: T, line: &mut Line<T>) {
+    pub fn line(&self, w: T, line: &mut StripLine<T>) {
         self.cell.line(self.inner, w, &mut line.at, &mut line.by);
     }
 
     /// The point of the cut on a line.
-    pub fn cut_on(&self, line: &Line<T>, cut: Cut<T>) -> CutPoint<T> {
+    pub fn cut_on(&self, line: &StripLine<T>, cut: CoordinatePlane<T>) -> CutPoint<T> {
         let row: Vec<f64> = line.at.iter().map(|p| p[cut.axis].re() - cut.level.re()).collect();
         let last = row[row.len() - 1];
         let (ends, rising) = ([row[0], last], self.wet == Wet::Before);
@@ -275,7 +283,7 @@ impl<T: Real> Strip<T> {
     }
 
     /// The point of the cut at the outer parameter `w`.
-    pub fn cut_at(&self, w: T, cut: Cut<T>, line: &mut Line<T>) -> CutPoint<T> {
+    pub fn cut_at(&self, w: T, cut: CoordinatePlane<T>, line: &mut StripLine<T>) -> CutPoint<T> {
         self.line(w, line);
         self.cut_on(line, cut)
     }

@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// A cut of the model with a plane of constant coordinate.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Contour {
+pub struct PlaneCut {
     /// Shown beside the line; may be empty.
     pub name: String,
     /// The coordinate that is constant: 0 for x (sections), 1 for y (buttocks), 2 for z.
@@ -103,7 +103,7 @@ const FOOT: f64 = 16.0;
 /// The sheet: the view's own contours as lines, the others' values as nothing; a grid of round
 /// numbers with labels, the centre line and z = 0 heavier, names on the lines, the
 /// scale in words and as a bar. Points that are not finite end a line.
-pub fn draw(view: View, contours: &[Contour], options: &DrawingOptions) -> Vec<u8> {
+pub fn draw(view: View, contours: &[PlaneCut], options: &DrawingOptions) -> Vec<u8> {
     let lines = projected(view, contours, options);
     let sheet = SheetLayout::around(&lines, options);
     let mut out = String::new();
@@ -121,7 +121,7 @@ pub fn draw(view: View, contours: &[Contour], options: &DrawingOptions) -> Vec<u
 }
 
 /// A line on the drawing plane, in model units.
-struct Line {
+struct DrawingLine {
     name: String,
     /// Where the name stands.
     label: Option<[f64; 2]>,
@@ -131,7 +131,7 @@ struct Line {
     points: Vec<[f64; 2]>,
 }
 
-fn projected(view: View, contours: &[Contour], options: &DrawingOptions) -> Vec<Line> {
+fn projected(view: View, contours: &[PlaneCut], options: &DrawingOptions) -> Vec<DrawingLine> {
     let shown = || contours.iter().filter(|c| c.axis == view.axis());
     let (low, high) = shown().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| {
         (low.min(c.value), high.max(c.value))
@@ -168,7 +168,7 @@ fn projected(view: View, contours: &[Contour], options: &DrawingOptions) -> Vec<
                 };
                 let (name, width) = (contour.name.clone(), contour.width_mm);
                 let lift_mm = if view == View::Waterlines { -0.6 } else { 0.8 };
-                lines.push(Line { name, label, lift_mm, width, points });
+                lines.push(DrawingLine { name, label, lift_mm, width, points });
             }
         }
     }
@@ -198,7 +198,7 @@ struct SheetLayout {
 }
 
 impl SheetLayout {
-    fn around(lines: &[Line], options: &DrawingOptions) -> Self {
+    fn around(lines: &[DrawingLine], options: &DrawingOptions) -> Self {
         let mut edges = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
         for [x, y] in lines.iter().flat_map(|l| &l.points) {
             edges = [edges[0].min(*x), edges[1].max(*x), edges[2].min(*y), edges[3].max(*y)];
@@ -311,7 +311,7 @@ impl SheetLayout {
         );
     }
 
-    fn line(&self, out: &mut String, line: &Line, options: &DrawingOptions) {
+    fn line(&self, out: &mut String, line: &DrawingLine, options: &DrawingOptions) {
         let width = line.width.unwrap_or(options.line_mm);
         out.push_str("<path d=\"");
         for (k, [x, y]) in line.points.iter().enumerate() {
@@ -326,7 +326,7 @@ impl SheetLayout {
 
     /// The name of a line on a white halo (a text of its own, as not every viewer knows
     /// `paint-order`), so it breaks the lines it stands on.
-    fn name(&self, out: &mut String, line: &Line) {
+    fn name(&self, out: &mut String, line: &DrawingLine) {
         let Some([x, y]) = line.label.filter(|_| !line.name.is_empty()) else { return };
         let (x, y, name) = (self.x(x), self.y(y) - line.lift_mm, xml(&line.name));
         for style in ["fill=\"#fff\" stroke=\"#fff\" stroke-width=\"0.6\"", "fill=\"#124\""] {
@@ -377,8 +377,8 @@ impl SheetLayout {
 mod tests {
     use super::*;
 
-    fn sections() -> Vec<Contour> {
-        let frame = |x: f64, b: f64| Contour {
+    fn sections() -> Vec<PlaneCut> {
+        let frame = |x: f64, b: f64| PlaneCut {
             name: format!("x={x}"),
             axis: 0,
             value: x,
@@ -425,11 +425,11 @@ mod tests {
     fn empty_and_broken_input_still_draws() {
         let nothing = draw(View::Buttocks, &[], &DrawingOptions::default());
         assert!(nothing.ends_with(b"</svg>\n"));
-        let broken = Contour {
+        let broken = PlaneCut {
             name: "<&>".into(),
             axis: 2,
             polylines: vec![vec![[0.0; 3], [1.0, f64::NAN, 0.0], [2.0, 0.0, 0.0], [3.0, 1.0, 0.0]]],
-            ..Contour::default()
+            ..PlaneCut::default()
         };
         let svg = draw(View::Waterlines, &[broken], &DrawingOptions::default());
         let svg = String::from_utf8(svg).unwrap();

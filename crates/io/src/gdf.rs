@@ -6,7 +6,7 @@
 //! plane of symmetry, `ISY` = 1 that y = 0 is, and only one half, or quarter, is listed.
 
 use crate::solver::{SolverPanels, title};
-use crate::text::{Line, pointed, put, quoted, real, utf8};
+use crate::text::{TextLine, pointed, put, quoted, real, utf8};
 use crate::{FilePosition, PanelFileOptions, ReadError, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Order, Vec3};
@@ -159,7 +159,7 @@ pub fn write_patches(patches: &[SplinePatch], header: &Header) -> Vec<u8> {
 pub fn read(bytes: &[u8]) -> Result<(Header, Mesh), ReadError> {
     let text = utf8(bytes, FORMAT)?;
     let mut lines =
-        (1..).zip(text.lines()).map(|(number, text)| Line { format: FORMAT, number, text });
+        (1..).zip(text.lines()).map(|(number, text)| TextLine { format: FORMAT, number, text });
     let mut line = |what: &str| {
         lines.next().ok_or_else(|| ReadError {
             format: FORMAT,

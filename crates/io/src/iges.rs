@@ -5,14 +5,14 @@
 
 use crate::WriteError;
 use crate::text::append;
-use moldloft_brep::{Brep, Coedge, Face, SurfaceShape};
+use moldloft_brep::{Brep, BrepFace, Coedge, SurfaceShape};
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 use std::collections::BTreeMap;
 
 /// What a file says besides its shapes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Header<'a> {
+pub struct IgesHeader<'a> {
     /// The name of the model.
     pub title: &'a str,
     /// The unit of length in metres.
@@ -25,7 +25,7 @@ pub struct Header<'a> {
 ///
 /// # Errors
 /// As [`crate::step::write`].
-pub fn write(brep: &Brep, header: &Header<'_>) -> Result<Vec<u8>, WriteError> {
+pub fn write(brep: &Brep, header: &IgesHeader<'_>) -> Result<Vec<u8>, WriteError> {
     crate::step::check(brep, "iges")?;
     let mut file = File::default();
     for part in &brep.parts {
@@ -180,7 +180,7 @@ impl File {
         self.add(128, 0, "00010000", style, &fields)
     }
 
-    fn face(&mut self, brep: &Brep, face: &Face) {
+    fn face(&mut self, brep: &Brep, face: &BrepFace) {
         let style = self.style(&face.name, face.colour, &face.layers);
         let plain =
             Style { name: 0, ..Style { colour: style.colour, level: style.level, name: 0 } };
@@ -238,7 +238,7 @@ impl File {
         self.add(102, 0, status, &Style::default(), &fields)
     }
 
-    fn finished(self, brep: &Brep, header: &Header<'_>) -> Vec<u8> {
+    fn finished(self, brep: &Brep, header: &IgesHeader<'_>) -> Vec<u8> {
         const UNITS: [(f64, usize, &str); 5] = [
             (1.0, 6, "M"),
             (1e-2, 10, "CM"),
@@ -323,12 +323,12 @@ fn doubly_closed(cycle: &[Coedge]) -> bool {
 }
 
 /// A frame of a plane: origin, two axes and their lengths.
-struct Flat {
+struct PlaneFrame {
     origin: Vec3,
     axes: [Vec3; 2],
 }
 
-impl Flat {
+impl PlaneFrame {
     /// A curve in the plane in the parameters of its rectangle.
     fn trace(&self, c: &Nurbs<1>) -> Nurbs<1> {
         let place = |&p: &Vec3| {
@@ -341,7 +341,13 @@ impl Flat {
 }
 
 /// The rectangle round the loops of a plane face.
-fn rectangle(brep: &Brep, face: &Face, origin: Vec3, normal: Vec3, axis: Vec3) -> (Nurbs<2>, Flat) {
+fn rectangle(
+    brep: &Brep,
+    face: &BrepFace,
+    origin: Vec3,
+    normal: Vec3,
+    axis: Vec3,
+) -> (Nurbs<2>, PlaneFrame) {
     let other = normal.cross(axis);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for side in face.loops.iter().flatten() {
@@ -366,11 +372,11 @@ fn rectangle(brep: &Brep, face: &Face, origin: Vec3, normal: Vec3, axis: Vec3) -
         exact: true,
         paces: [Pace::Even; 2],
     };
-    (surface, Flat { origin: corner, axes })
+    (surface, PlaneFrame { origin: corner, axes })
 }
 
 /// A side's curve in parameters, run as the loop runs.
-fn traced(side: &Coedge, curve: &Nurbs<1>, flat: Option<&Flat>) -> Option<Nurbs<1>> {
+fn traced(side: &Coedge, curve: &Nurbs<1>, flat: Option<&PlaneFrame>) -> Option<Nurbs<1>> {
     match flat {
         Some(flat) => Some(flat.trace(curve)),
         None => {
@@ -423,7 +429,7 @@ mod tests {
         let wire = Wire { name, colour: Some([255, 0, 51]), layers: vec!["keel".into()], curve };
         let part = Part { name: "part".into(), wires: vec![wire], ..Part::default() };
         let brep = Brep { parts: vec![part], ..Brep::default() };
-        let header = Header { title: "größe", metres: 0.001, version: "0" };
+        let header = IgesHeader { title: "größe", metres: 0.001, version: "0" };
         let text = String::from_utf8(write(&brep, &header).unwrap()).unwrap();
         assert!(text.lines().all(|line| line.len() == 80), "{text}");
         let count =

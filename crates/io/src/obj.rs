@@ -1,7 +1,7 @@
 //! Wavefront OBJ: vertices, faces, groups.
 
 use crate::error::check_positions;
-use crate::text::{Line, put, quoted, real, utf8, word};
+use crate::text::{TextLine, put, quoted, real, utf8, word};
 use crate::{FilePosition, LinesAndPoints, ReadError, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, is_triangle};
 use moldloft_num::Vec3;
@@ -83,7 +83,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ReadError> {
     let mut last = 0;
     for (number, text) in (1..).zip(text.lines()) {
         last = number;
-        let line = Line { format: FORMAT, number, text };
+        let line = TextLine { format: FORMAT, number, text };
         let mut words = text.split_whitespace();
         match words.next() {
             Some("v") => {
@@ -126,7 +126,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ReadError> {
 }
 
 /// The vertex of a reference such as `3`, `-1` or `3/1/2`.
-fn vertex(line: &Line<'_>, word: &str, count: usize) -> Result<u32, ReadError> {
+fn vertex(line: &TextLine<'_>, word: &str, count: usize) -> Result<u32, ReadError> {
     let index = line.integer(word.split('/').next(), "a vertex number")?;
     let zero_based = if index < 0 { index.saturating_add(count as i64) } else { index - 1 };
     match u32::try_from(zero_based) {

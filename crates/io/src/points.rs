@@ -73,7 +73,7 @@ pub fn read(bytes: &[u8]) -> Result<PointTable, ReadError> {
             }
             continue;
         }
-        let cells = Cells::of(line);
+        let cells = DelimitedLine::of(line);
         let titled = titles.iter().any(|(_, of_words)| *of_words);
         if table.rows.is_empty() && (cells.no_numbers() || !titled && cells.is_title()) {
             titles.push((raw.trim_end().to_owned(), !cells.no_numbers()));
@@ -113,18 +113,18 @@ fn error(line: usize, expected: impl Into<String>, found: impl Into<String>) -> 
 }
 
 /// The words of a line, empty ones between two delimiters included.
-struct Cells<'a> {
+struct DelimitedLine<'a> {
     words: Vec<&'a str>,
     delimiter: Option<char>,
     /// A comma, semicolon or tab ends the line.
     trailing: bool,
 }
 
-impl<'a> Cells<'a> {
+impl<'a> DelimitedLine<'a> {
     /// A run of blanks is one separator, and so is one comma, semicolon or tab with the blanks
     /// around it. A last one ends the line.
     fn of(line: &'a str) -> Self {
-        let mut cells = Cells { words: Vec::new(), delimiter: None, trailing: false };
+        let mut cells = DelimitedLine { words: Vec::new(), delimiter: None, trailing: false };
         let mut rest = line.trim();
         while !rest.is_empty() {
             let end = rest.find(|c: char| c.is_whitespace() || ",;".contains(c));

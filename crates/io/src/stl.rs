@@ -6,7 +6,7 @@
 //! precision, little endian) and two unused bytes (3D Systems 1989, Appendix).
 
 use crate::error::{check_positions, check_single};
-use crate::text::{Line, put, quoted, real, utf8, word};
+use crate::text::{TextLine, put, quoted, real, utf8, word};
 use crate::{FilePosition, ReadError, StructuredGrid, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::Vec3;
@@ -136,7 +136,7 @@ fn text(bytes: &[u8]) -> Result<Mesh, ReadError> {
     let mut last = 1;
     for (number, text) in (1..).zip(text.lines()) {
         last = number;
-        let line = Line { format: FORMAT, number, text };
+        let line = TextLine { format: FORMAT, number, text };
         let mut words = line.words();
         match words.next() {
             Some("vertex") => {
@@ -152,7 +152,7 @@ fn text(bytes: &[u8]) -> Result<Mesh, ReadError> {
         }
     }
     if corners.len() % 3 != 0 {
-        let line = Line { format: FORMAT, number: last, text: "" };
+        let line = TextLine { format: FORMAT, number: last, text: "" };
         return Err(line.error("three vertices in a loop", "the end of the file"));
     }
     built(corners, name, FilePosition::Line(last))

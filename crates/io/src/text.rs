@@ -77,13 +77,13 @@ pub(crate) fn append(out: &mut String, text: std::fmt::Arguments<'_>) {
 }
 
 /// One line of a number file, split at blanks and commas.
-pub(crate) struct Line<'a> {
+pub(crate) struct TextLine<'a> {
     pub format: &'static str,
     pub number: usize,
     pub text: &'a str,
 }
 
-impl<'a> Line<'a> {
+impl<'a> TextLine<'a> {
     pub fn words(&self) -> impl Iterator<Item = &'a str> + use<'a> {
         self.text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty())
     }

@@ -96,7 +96,7 @@ fn on_side(g: [f64; 2], [aa, ab, bb]: [f64; 3], by: [f64; 2], [s, t]: [f64; 2]) 
 
 /// A foot that may be the nearest.
 #[derive(Clone, Copy, Debug)]
-struct Foot {
+struct FootCandidate {
     /// Distance to the piece, and the most it can be from the surface.
     distance: f64,
     slack: f64,
@@ -129,7 +129,7 @@ struct Search<'a> {
     piece: &'a PolynomialPiece,
     /// Feet farther than this do not count.
     limit: f64,
-    feet: SmallVec<[Foot; 4]>,
+    feet: SmallVec<[FootCandidate; 4]>,
     slop: f64,
     boxes: u32,
 }
@@ -212,7 +212,7 @@ impl NearestSurface {
             return Nearest { at: foot.uv, xyz, distance: xyz.distance(p), status };
         }
         let limit = search.limit;
-        let mut feet: SmallVec<[(Foot, Vec3); 4]> = SmallVec::new();
+        let mut feet: SmallVec<[(FootCandidate, Vec3); 4]> = SmallVec::new();
         let mut settled = !search.feet.is_empty();
         for foot in search.feet.iter().filter(|f| f.distance - f.slack <= limit) {
             let mut foot = *foot;
@@ -241,13 +241,13 @@ impl NearestSurface {
             return Nearest { at: foot.at, xyz: foot.xyz, distance, status: LocateStatus::Ok };
         }
         // The least on the border of a box is a foot only where no neighbour has a nearer one.
-        let nearer = |a: &(Foot, Vec3)| {
+        let nearer = |a: &(FootCandidate, Vec3)| {
             feet.iter().any(|b| {
                 let near = b.1.distance(a.1) <= 1e-3 * tree.size;
                 near && !b.0.border && b.0.distance <= a.0.distance + 1e-15 * tree.size
             })
         };
-        let mut feet: SmallVec<[(Foot, Vec3); 4]> =
+        let mut feet: SmallVec<[(FootCandidate, Vec3); 4]> =
             feet.iter().filter(|a| !a.0.border || !nearer(a)).copied().collect();
         // In the order of the parameters; one that two cells share counts once.
         feet.sort_by(|(a, _), (b, _)| {
@@ -295,7 +295,7 @@ impl NearestSurface {
 }
 
 /// The status of a foot that no other is as near as.
-fn alone(foot: &Foot, exhausted: bool) -> LocateStatus {
+fn alone(foot: &FootCandidate, exhausted: bool) -> LocateStatus {
     if foot.flat || exhausted {
         LocateStatus::Tangent
     } else if foot.edge {
@@ -523,10 +523,11 @@ impl<'a> Search<'a> {
                     self.limit = limit;
                     self.feet.retain(|f| f.distance - f.slack <= limit);
                 }
-                let same =
-                    |f: &Foot| f.border == border && (0..2).all(|k| (f.uv[k] - uv[k]).abs() < 1e-9);
+                let same = |f: &FootCandidate| {
+                    f.border == border && (0..2).all(|k| (f.uv[k] - uv[k]).abs() < 1e-9)
+                };
                 if !self.feet.iter().any(same) && self.feet.len() < 64 {
-                    self.feet.push(Foot { distance, slack, uv, edge, border, flat });
+                    self.feet.push(FootCandidate { distance, slack, uv, edge, border, flat });
                 }
             }
         }

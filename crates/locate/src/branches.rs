@@ -197,7 +197,7 @@ impl CellPart {
 
 /// A node of a tree in a search.
 #[derive(Clone, Copy)]
-struct At<'a> {
+struct TreeNode<'a> {
     /// Of a fork, or of a cell with [`LEAF`] added.
     number: u32,
     bounds: &'a Box3,
@@ -238,15 +238,18 @@ impl CutSurface {
         Self { cells, parts, plates, forks, quick }
     }
 
-    fn root(&self) -> At<'_> {
-        At { number: if self.forks.is_empty() { LEAF } else { 0 }, bounds: &self.cells.tree.bounds }
+    fn root(&self) -> TreeNode<'_> {
+        TreeNode {
+            number: if self.forks.is_empty() { LEAF } else { 0 },
+            bounds: &self.cells.tree.bounds,
+        }
     }
 
     /// The children of a fork, the second one first.
     #[inline]
-    fn below(&self, fork: u32) -> [At<'_>; 2] {
+    fn below(&self, fork: u32) -> [TreeNode<'_>; 2] {
         let fork = &self.forks[fork as usize];
-        let child = |k: usize| At { number: fork.below[k], bounds: &fork.bounds[k] };
+        let child = |k: usize| TreeNode { number: fork.below[k], bounds: &fork.bounds[k] };
         [child(1), child(0)]
     }
 }

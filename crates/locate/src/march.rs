@@ -61,7 +61,7 @@ pub struct TracePoint {
 
 /// Why a branch ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum End {
+pub enum BranchEnd {
     /// Unknown `k` reached `value`: an edge.
     Edge {
         /// Which unknown.
@@ -83,13 +83,13 @@ pub struct Branch {
     /// Points along it; of a closed one the last is the first again.
     pub stations: Vec<TracePoint>,
     /// Why it ends, at its two ends.
-    pub ends: [End; 2],
+    pub ends: [BranchEnd; 2],
 }
 
 impl Branch {
     /// True when it comes back to its start.
     pub fn closed(&self) -> bool {
-        self.ends[0] == End::Closed
+        self.ends[0] == BranchEnd::Closed
     }
 }
 
@@ -481,13 +481,13 @@ impl<'a> Crossing<'a> {
     }
 
     /// One way from a station until an edge, the start, or a place of contact.
-    fn walk(&self, start: TracePoint, sign: f64) -> (Vec<TracePoint>, End) {
+    fn walk(&self, start: TracePoint, sign: f64) -> (Vec<TracePoint>, BranchEnd) {
         struct Walk<'a>(&'a Crossing<'a>, TracePoint, f64);
         impl pulp::WithSimd for Walk<'_> {
-            type Output = (Vec<TracePoint>, End);
+            type Output = (Vec<TracePoint>, BranchEnd);
 
             #[inline(always)]
-            fn with_simd<S: pulp::Simd>(self, simd: S) -> (Vec<TracePoint>, End) {
+            fn with_simd<S: pulp::Simd>(self, simd: S) -> (Vec<TracePoint>, BranchEnd) {
                 let Self(crossing, start, sign) = self;
                 crossing.walk_by(simd, start, sign)
             }
@@ -501,7 +501,7 @@ impl<'a> Crossing<'a> {
         simd: S,
         start: TracePoint,
         sign: f64,
-    ) -> (Vec<TracePoint>, End) {
+    ) -> (Vec<TracePoint>, BranchEnd) {
         let n = self.unknowns();
         let mut all = vec![start];
         let [first, longest, least] = STEPS.map(|share| share * self.size);
@@ -553,7 +553,7 @@ impl<'a> Crossing<'a> {
                 }
                 step *= 0.5;
                 if step < least {
-                    return (all, End::Tangent);
+                    return (all, BranchEnd::Tangent);
                 }
                 continue;
             };
@@ -562,7 +562,7 @@ impl<'a> Crossing<'a> {
                 let Some((station, end)) = self.edge_between(&last, &next) else {
                     step *= 0.5;
                     if step < least {
-                        return (all, End::Lost);
+                        return (all, BranchEnd::Lost);
                     }
                     continue;
                 };
@@ -572,7 +572,7 @@ impl<'a> Crossing<'a> {
                 let Some(beyond) = self.beyond_seam(&station, end) else { return (all, end) };
                 if all.len() > 2 && self.same_place(&beyond, &start) {
                     all.push(start);
-                    return (all, End::Closed);
+                    return (all, BranchEnd::Closed);
                 }
                 all.push(beyond);
                 since = 0;
@@ -582,7 +582,7 @@ impl<'a> Crossing<'a> {
                 // It leaves and comes back in between.
                 step *= 0.5;
                 if step < least {
-                    return (all, End::Lost);
+                    return (all, BranchEnd::Lost);
                 }
                 continue;
             }
@@ -600,7 +600,7 @@ impl<'a> Crossing<'a> {
                     let same = (0..n).all(|k| (last.q[k] - start.q[k]).abs() < 0.3);
                     if same {
                         all.push(start);
-                        return (all, End::Closed);
+                        return (all, BranchEnd::Closed);
                     }
                 }
             }
@@ -609,7 +609,7 @@ impl<'a> Crossing<'a> {
             since += 1;
             step = (step * (TURN / turn).clamp(0.5, 1.5)).min(longest);
         }
-        (all, End::Lost)
+        (all, BranchEnd::Lost)
     }
 
     /// The joints of the surfaces: numbers of unknowns and their values there.
@@ -678,8 +678,8 @@ impl<'a> Crossing<'a> {
     }
 
     /// Where a branch that comes to an edge goes on, if the edge is a seam.
-    fn beyond_seam(&self, at: &TracePoint, end: End) -> Option<TracePoint> {
-        let End::Edge { unknown, value } = end else { return None };
+    fn beyond_seam(&self, at: &TracePoint, end: BranchEnd) -> Option<TracePoint> {
+        let BranchEnd::Edge { unknown, value } = end else { return None };
         if !self.closed[unknown] {
             return None;
         }
@@ -699,9 +699,9 @@ impl<'a> Crossing<'a> {
     }
 
     /// The first edge between two stations, the second of which is outside.
-    fn edge_between(&self, a: &TracePoint, b: &TracePoint) -> Option<(TracePoint, End)> {
+    fn edge_between(&self, a: &TracePoint, b: &TracePoint) -> Option<(TracePoint, BranchEnd)> {
         let n = self.unknowns();
-        let mut best: Option<(f64, TracePoint, End)> = None;
+        let mut best: Option<(f64, TracePoint, BranchEnd)> = None;
         for unknown in 0..n {
             for value in [0.0, 1.0] {
                 let (p, q) = (a.q[unknown], b.q[unknown]);
@@ -725,7 +725,7 @@ impl<'a> Crossing<'a> {
                     continue;
                 }
                 if best.as_ref().is_none_or(|(s, ..)| share < *s) {
-                    best = Some((share, station, End::Edge { unknown, value }));
+                    best = Some((share, station, BranchEnd::Edge { unknown, value }));
                 }
             }
         }
@@ -746,14 +746,14 @@ impl<'a> Crossing<'a> {
         // Shapes that touch cross at such angles within the rounding of the place.
         let start = self.station(seed).filter(|_| self.direction(seed).norm() >= TANGENT)?;
         let (mut forward, end) = self.walk(start, 1.0);
-        if end == End::Closed {
-            return Some(Branch { stations: forward, ends: [End::Closed; 2] });
+        if end == BranchEnd::Closed {
+            return Some(Branch { stations: forward, ends: [BranchEnd::Closed; 2] });
         }
         let (mut stations, begin) = self.walk(start, -1.0);
         stations.reverse();
-        if begin == End::Closed {
+        if begin == BranchEnd::Closed {
             // The other way round it did not come past a narrow place, such as near a saddle.
-            return Some(Branch { stations, ends: [End::Closed; 2] });
+            return Some(Branch { stations, ends: [BranchEnd::Closed; 2] });
         }
         stations.extend(forward.drain(1..));
         Some(Branch { stations, ends: [begin, end] })

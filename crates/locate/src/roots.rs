@@ -72,12 +72,12 @@ impl Level<'_> {
 }
 
 /// The values of a level along a curve, as a curve on the x axis.
-struct Along<'a> {
+struct LevelProfile<'a> {
     curve: &'a dyn Curve<f64>,
     level: &'a Level<'a>,
 }
 
-impl Curve<f64> for Along<'_> {
+impl Curve<f64> for LevelProfile<'_> {
     fn jet(&self, t: f64, order: Order) -> CurveJet<f64> {
         self.level.along(self.curve.jet(t, order)).map(|g| Vec3::of(g, 0.0, 0.0))
     }
@@ -176,7 +176,7 @@ fn sine_to_level(curve: &dyn Curve<f64>, level: &Level<'_>, t: f64) -> f64 {
 /// All crossings of a curve and a level.
 pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level<'_>) -> Roots<1> {
     let size = size_of_curve(curve);
-    let along = Along { curve, level };
+    let along = LevelProfile { curve, level };
     let tree = CurveTree::new(&along);
     let value = |t: f64| level.along(curve.jet(t, Order::Second));
     let closed = curve.closed();

@@ -6,14 +6,14 @@ use std::collections::HashMap;
 
 /// The part of a panel below a level, at most six corners.
 #[derive(Clone, Copy)]
-pub(crate) struct Cut<T> {
+pub(crate) struct ClippedPanel<T> {
     points: [Vec3<T>; 6],
     /// Whether each corner lies on the level.
     wet: [bool; 6],
     len: usize,
 }
 
-impl<T: Real> Cut<T> {
+impl<T: Real> ClippedPanel<T> {
     fn push(&mut self, point: Vec3<T>, on_level: bool) {
         self.points[self.len] = point;
         self.wet[self.len] = on_level;
@@ -54,13 +54,13 @@ impl<T: Real> Cut<T> {
 /// The part of the panel below `z = level`, or `None` when no corner is strictly below it, so a
 /// panel that lies in the level counts as above. The real parts decide; corners made on the level
 /// have z equal to it. Panels that share a side are cut at the same point, to the bit.
-pub(crate) fn below<T: Real>(panel: &Panel<T>, level: T) -> Option<Cut<T>> {
+pub(crate) fn below<T: Real>(panel: &Panel<T>, level: T) -> Option<ClippedPanel<T>> {
     let corners = panel.corners();
     let c = level.re();
     if corners.iter().all(|p| p.z.re() >= c) {
         return None;
     }
-    let mut cut = Cut { points: [Vec3::zero(); 6], wet: [false; 6], len: 0 };
+    let mut cut = ClippedPanel { points: [Vec3::zero(); 6], wet: [false; 6], len: 0 };
     for (k, &p) in corners.iter().enumerate() {
         let q = corners[(k + 1) % corners.len()];
         let (pz, qz) = (p.z.re(), q.z.re());

@@ -203,12 +203,12 @@ struct ImmersedIntegrals<T> {
     plane: [T; 5],
     /// The waterplane area from the waterline (Green).
     green: T,
-    extent: Extent<T>,
+    extent: ImmersedExtent<T>,
 }
 
 /// Lowest and highest coordinates by real part.
 #[derive(Clone, Copy)]
-struct Extent<T> {
+struct ImmersedExtent<T> {
     lowest: Option<T>,
     waterline: Option<[T; 4]>,
 }
@@ -216,7 +216,7 @@ struct Extent<T> {
 impl<T: Real> ImmersedIntegrals<T> {
     fn zero() -> Self {
         let t = T::zero();
-        let extent = Extent { lowest: None, waterline: None };
+        let extent = ImmersedExtent { lowest: None, waterline: None };
         Self { forms: [t; 3], moment: Vec3::zero(), wetted: t, plane: [t; 5], green: t, extent }
     }
 
@@ -262,7 +262,7 @@ impl<T: Real> ImmersedIntegrals<T> {
     }
 }
 
-impl<T: Real> Extent<T> {
+impl<T: Real> ImmersedExtent<T> {
     fn reach_down(&mut self, z: T) {
         self.lowest = Some(self.lowest.map_or(z, |low| low.min(z)));
     }

@@ -53,8 +53,8 @@ pub use moldloft_syntax as syntax;
 
 pub use moldloft_diag::{Diagnostic, Severity, Sources, Span, render};
 pub use moldloft_document::{
-    Completion, CompletionKind, Document, Format as TextFormat, NoFiles, Panelled, Param, ReadText,
-    TextReadError, World, registry,
+    Completion, CompletionKind, Document, ModelFormat as TextFormat, NoFiles, Panelled, Param,
+    ReadText, TextReadError, World, registry,
 };
 pub use moldloft_export::{FORMATS, Format, NamedFile, WriteOptions, format_named, write};
 pub use moldloft_host::FileWorld;

@@ -33,12 +33,12 @@ pub(crate) fn border<T: Scalar>(object: &Object<T>) -> Option<&Arc<dyn Triangula
 pub(crate) fn line<T: Real>(border_curve: &BorderCurve<T>) -> Option<SurfaceRef<T>> {
     let curve = &border_curve.curve;
     let known = !curve.pieces().is_empty() || matches!(curve.trace(), Trace::Point(_));
-    known.then(|| SurfaceRef::new(Line(curve.clone()), curve.depth))
+    known.then(|| SurfaceRef::new(DegeneratePatch(curve.clone()), curve.depth))
 }
 
-struct Line<T: Real>(CurveRef<T>);
+struct DegeneratePatch<T: Real>(CurveRef<T>);
 
-impl<T: Real> Surface<T> for Line<T> {
+impl<T: Real> Surface<T> for DegeneratePatch<T> {
     fn jet(&self, u: T, _: T, order: Order) -> SurfJet<T> {
         let [p, d, dd]: CurveJet<T> = self.0.jet(u, order);
         SurfJet { p, u: d, uu: dd, ..SurfJet::default() }

@@ -88,7 +88,7 @@ impl Identities {
 
     /// Those of everything that the patches run along.
     pub fn new(graph: &Graph<f64>, drafts: &[Draft]) -> Self {
-        let mut finder = Finder::new(graph, drafts);
+        let mut finder = IdentityFinder::new(graph, drafts);
         finder.join_declared();
         for _ in 0..ROUNDS {
             finder.makes.clear();
@@ -164,7 +164,7 @@ impl Identities {
     }
 }
 
-struct Finder<'g> {
+struct IdentityFinder<'g> {
     graph: &'g Graph<f64>,
     found: Identities,
     /// What the patches run along, and the points in use, in the order of first use.
@@ -191,7 +191,7 @@ fn set(mut parts: Vec<Make>) -> Make {
     }
 }
 
-impl<'g> Finder<'g> {
+impl<'g> IdentityFinder<'g> {
     fn new(graph: &'g Graph<f64>, drafts: &[Draft]) -> Self {
         let mut roots = indexed();
         let mut points = indexed();

@@ -32,4 +32,4 @@ mod render;
 
 pub use camera::Camera;
 pub use palette::{PALETTE, patch_colour};
-pub use render::{Line, Look, Options, PictureError, encoded, render};
+pub use render::{Options, PatchStyle, PictureError, StyledPolyline, encoded, render};

@@ -5,7 +5,7 @@ use crate::palette::Gamma;
 
 /// A corner of a triangle: where it is seen and its light (linear).
 #[derive(Clone, Copy)]
-pub(crate) struct Corner {
+pub(crate) struct ShadedVertex {
     pub at: ScreenPoint,
     pub light: [f32; 3],
 }
@@ -49,7 +49,7 @@ impl Raster {
     }
 
     /// Fills a triangle, nearer samples winning.
-    pub fn triangle(&mut self, corners: [Corner; 3], sides: Option<PanelSides>) {
+    pub fn triangle(&mut self, corners: [ShadedVertex; 3], sides: Option<PanelSides>) {
         let [a, b, c] = corners.map(|c| c.at);
         let double_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
         if double_area == 0.0 || !double_area.is_finite() {

@@ -2,14 +2,14 @@
 
 use crate::camera::{Aimed, Camera, ScreenPoint};
 use crate::palette::{Gamma, patch_colour};
-use crate::raster::{Corner, PanelSides, Raster, length};
+use crate::raster::{PanelSides, Raster, ShadedVertex, length};
 use moldloft_mesh::{Mesh, Tag, is_triangle};
 use moldloft_num::{Box3, Vec3};
 use std::fmt;
 
 /// A polyline in the model, such as a contour or a curve.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct StyledPolyline {
     /// Its points.
     pub points: Vec<Vec3>,
     /// sRGB colour.
@@ -20,7 +20,7 @@ pub struct Line {
 
 /// How a patch looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Look {
+pub struct PatchStyle {
     /// sRGB colour.
     pub colour: [u8; 3],
     /// Draw it a little nearer than it is, so that it covers a surface that it lies in.
@@ -49,7 +49,7 @@ pub struct Options {
     /// Colours of the background, top and bottom.
     pub background: [[u8; 3]; 2],
     /// How the patches look, in their order, instead of their own colours.
-    pub looks: Option<Vec<Look>>,
+    pub looks: Option<Vec<PatchStyle>>,
 }
 
 impl Default for Options {
@@ -121,7 +121,11 @@ const RIM: [u8; 3] = [0x2b, 0x33, 0x3f];
 ///
 /// # Errors
 /// An impossible size, positions that are not finite.
-pub fn render(mesh: &Mesh, lines: &[Line], options: &Options) -> Result<Vec<u8>, PictureError> {
+pub fn render(
+    mesh: &Mesh,
+    lines: &[StyledPolyline],
+    options: &Options,
+) -> Result<Vec<u8>, PictureError> {
     let (width, height) = (options.width, options.height);
     let possible = 1..=PictureError::LARGEST;
     if !possible.contains(&width) || !possible.contains(&height) {
@@ -240,7 +244,7 @@ impl Painter<'_> {
                     let shared = normals[v].normalized().filter(|n| n.dot(normal) > 0.766);
                     let n = shared.filter(|_| self.options.smooth).unwrap_or(normal);
                     let at = if raised { self.raised(positions[v]) } else { seen[v] };
-                    Corner { at, light: self.light(base, n, normal, positions[v]) }
+                    ShadedVertex { at, light: self.light(base, n, normal, positions[v]) }
                 });
                 self.panel(raster, corners, is_triangle(face), outlines);
             }
@@ -263,7 +267,13 @@ impl Painter<'_> {
         ((sum / faces.len().max(1) as f32 - 4.5) / 3.0).clamp(0.0, 1.0)
     }
 
-    fn panel(&self, raster: &mut Raster, [a, b, c, d]: [Corner; 4], triangle: bool, outlines: f32) {
+    fn panel(
+        &self,
+        raster: &mut Raster,
+        [a, b, c, d]: [ShadedVertex; 4],
+        triangle: bool,
+        outlines: f32,
+    ) {
         // Lines closer than about 3 points would only darken the surface.
         let apart = (breadth([a.at, b.at, c.at, d.at]) - 4.0) / 10.0;
         let strength = 0.62 * outlines * apart.clamp(0.0, 1.0);

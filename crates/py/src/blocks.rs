@@ -1,7 +1,7 @@
 //! Volume meshes: arrays, their report, and the files they are written as.
 
 use crate::arrays;
-use crate::diagnostics::Diagnostic;
+use crate::diagnostics::PyDiagnostic;
 use crate::error::{model_error, plain_error};
 use moldloft::diag::Sources;
 use moldloft::document::Blocked;
@@ -18,11 +18,11 @@ type Side = (usize, usize, [usize; 3], [usize; 3]);
 #[pyclass(frozen, name = "Blocks", module = "moldloft._core")]
 pub struct PyBlocks {
     blocked: Arc<Blocked>,
-    problems: Vec<Diagnostic>,
+    problems: Vec<PyDiagnostic>,
 }
 
 impl PyBlocks {
-    pub fn new(blocked: Arc<Blocked>, problems: Vec<Diagnostic>) -> Self {
+    pub fn new(blocked: Arc<Blocked>, problems: Vec<PyDiagnostic>) -> Self {
         Self { blocked, problems }
     }
 }
@@ -41,7 +41,7 @@ impl PyBlocks {
         Ok(array)
     }
 
-    fn problems(&self) -> Vec<Diagnostic> {
+    fn problems(&self) -> Vec<PyDiagnostic> {
         self.problems.clone()
     }
 

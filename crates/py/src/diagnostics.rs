@@ -5,9 +5,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// A place in a text: lines and columns from 1, the end exclusive.
-#[pyclass(frozen, get_all, module = "moldloft")]
+#[pyclass(frozen, get_all, name = "Label", module = "moldloft")]
 #[derive(Clone)]
-pub struct Label {
+pub struct PyLabel {
     file: String,
     line: u32,
     column: u32,
@@ -16,14 +16,14 @@ pub struct Label {
     text: String,
 }
 
-impl From<LabelData> for Label {
+impl From<LabelData> for PyLabel {
     fn from(label: LabelData) -> Self {
         let LabelData { file, line, column, end_line, end_column, text } = label;
         Self { file, line, column, end_line, end_column, text }
     }
 }
 
-impl Label {
+impl PyLabel {
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         dict.set_item("file", &self.file)?;
@@ -37,14 +37,14 @@ impl Label {
 }
 
 /// One fault, warning or remark. `str()` gives it as the command prints it.
-#[pyclass(frozen, get_all, module = "moldloft")]
+#[pyclass(frozen, get_all, name = "Diagnostic", module = "moldloft")]
 #[derive(Clone)]
-pub struct Diagnostic {
+pub struct PyDiagnostic {
     id: String,
     severity: &'static str,
     message: String,
-    primary: Option<Label>,
-    secondary: Vec<Label>,
+    primary: Option<PyLabel>,
+    secondary: Vec<PyLabel>,
     expected: Option<String>,
     found: Option<String>,
     notes: Vec<String>,
@@ -53,14 +53,14 @@ pub struct Diagnostic {
     rendered: String,
 }
 
-impl From<DiagnosticData> for Diagnostic {
+impl From<DiagnosticData> for PyDiagnostic {
     fn from(data: DiagnosticData) -> Self {
         Self {
             id: data.id,
             severity: data.severity,
             message: data.message,
-            primary: data.primary.map(Label::from),
-            secondary: data.secondary.into_iter().map(Label::from).collect(),
+            primary: data.primary.map(PyLabel::from),
+            secondary: data.secondary.into_iter().map(PyLabel::from).collect(),
             expected: data.expected,
             found: data.found,
             notes: data.notes,
@@ -71,7 +71,7 @@ impl From<DiagnosticData> for Diagnostic {
     }
 }
 
-impl Diagnostic {
+impl PyDiagnostic {
     /// The text that the command prints.
     pub fn rendered(&self) -> &str {
         &self.rendered
@@ -79,14 +79,14 @@ impl Diagnostic {
 }
 
 #[pymethods]
-impl Diagnostic {
+impl PyDiagnostic {
     #[getter]
     fn is_error(&self) -> bool {
         self.severity == moldloft::diag::Severity::Error.word()
     }
 
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let labels = |labels: &[Label]| -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let labels = |labels: &[PyLabel]| -> PyResult<Vec<Bound<'py, PyDict>>> {
             labels.iter().map(|label| label.to_dict(py)).collect()
         };
         let dict = PyDict::new(py);

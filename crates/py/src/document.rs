@@ -2,7 +2,7 @@
 
 use crate::arrays;
 use crate::blocks::PyBlocks;
-use crate::diagnostics::Diagnostic;
+use crate::diagnostics::PyDiagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
 use crate::fair::Look;
 use crate::mesh::PyMesh;
@@ -12,7 +12,7 @@ use moldloft::budget::Budget;
 use moldloft::diag::Sources;
 use moldloft::document::searches::Searches;
 use moldloft::document::{
-    Document, FloatAnswer, FloatRequest, FlotationOptions, Format, Immersion,
+    Document, FloatAnswer, FloatRequest, FlotationOptions, Immersion, ModelFormat,
 };
 use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches};
 use moldloft::host::FileWorld;
@@ -169,14 +169,14 @@ impl PyDocument {
         interruptible(py, &budget, open).map(Self::new)
     }
 
-    fn diagnostics(&self, py: Python<'_>) -> Vec<Diagnostic> {
+    fn diagnostics(&self, py: Python<'_>) -> Vec<PyDiagnostic> {
         let document = self.lock(py);
         let sources = document.sources();
         document.diagnostics().iter().map(|d| d.to_data(sources).into()).collect()
     }
 
     /// What is remarkable about the value that `eval` gave last.
-    fn expression_remarks(&self, py: Python<'_>) -> Vec<Diagnostic> {
+    fn expression_remarks(&self, py: Python<'_>) -> Vec<PyDiagnostic> {
         let document = self.lock(py);
         let sources = document.sources();
         document.expression_remarks().iter().map(|d| d.to_data(sources).into()).collect()
@@ -198,8 +198,8 @@ impl PyDocument {
 
     fn convert(&self, py: Python<'_>, to: &str) -> PyResult<String> {
         let format = match to {
-            "sdl" => Format::Sdl,
-            "ms2" => Format::ModelFile,
+            "sdl" => ModelFormat::Sdl,
+            "ms2" => ModelFormat::ModelFile,
             _ => return Err(plain_error(format!("unknown form `{to}`; expected sdl or ms2"))),
         };
         self.long_checked(py, move |document| document.convert(format))
@@ -478,7 +478,7 @@ impl PyDocument {
     }
 
     /// Corners that lie on edges of other patches without being joined to them.
-    fn junctions(&self, py: Python<'_>) -> PyResult<Vec<Diagnostic>> {
+    fn junctions(&self, py: Python<'_>) -> PyResult<Vec<PyDiagnostic>> {
         let found = self.long_checked(py, |d| d.junctions().map_err(|e| vec![e]))?;
         let document = self.lock(py);
         let sources = document.sources();

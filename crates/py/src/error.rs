@@ -1,6 +1,6 @@
 //! The one place where faults of Rust become Python's exceptions.
 
-use crate::diagnostics::Diagnostic;
+use crate::diagnostics::PyDiagnostic;
 use moldloft::diag::Sources;
 use moldloft::io::{FilePosition, ReadError};
 use pyo3::prelude::*;
@@ -17,8 +17,8 @@ const UNKNOWN: [&str; 3] = ["unknown-name", "unknown-object", "unknown-parameter
 
 /// An exception that carries diagnostics and prints as they do.
 pub fn model_error(diagnostics: &[moldloft::diag::Diagnostic], sources: &Sources) -> PyErr {
-    let data: Vec<Diagnostic> = diagnostics.iter().map(|d| d.to_data(sources).into()).collect();
-    let text: Vec<&str> = data.iter().map(Diagnostic::rendered).collect();
+    let data: Vec<PyDiagnostic> = diagnostics.iter().map(|d| d.to_data(sources).into()).collect();
+    let text: Vec<&str> = data.iter().map(PyDiagnostic::rendered).collect();
     let text = text.join("\n");
     let mut errors = diagnostics.iter().filter(|d| d.is_error());
     if errors.all(|d| UNKNOWN.contains(&d.id.as_ref())) && !diagnostics.is_empty() {

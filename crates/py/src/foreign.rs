@@ -3,7 +3,7 @@
 use crate::work::visit_python;
 use moldloft::num::{Dual, Dual4, Real, Vec3};
 use moldloft::rows::{
-    Array, Body, CallError, Class, Context, Field, Foreign, Row, Unit, Value, Vectors,
+    Array, CallError, Class, Context, FieldSpec, Foreign, Implementation, Row, Unit, Value, Vectors,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -19,9 +19,9 @@ struct PythonFunction {
 
 /// The row of a function with the given names of arguments.
 pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny>) -> Row {
-    let fields: Vec<Field> = arguments
+    let fields: Vec<FieldSpec> = arguments
         .into_iter()
-        .map(|argument| Field {
+        .map(|argument| FieldSpec {
             // Names of a registry's fields live as long as the program; a user has few functions.
             name: Box::leak(argument.into_boxed_str()),
             help: "An argument of the Python function.",
@@ -35,7 +35,7 @@ pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny
             variadic: false,
         })
         .collect();
-    Row::new(name.clone(), Body::Foreign(Arc::new(PythonFunction { name, function })))
+    Row::new(name.clone(), Implementation::Foreign(Arc::new(PythonFunction { name, function })))
         .doc(doc)
         .fields(fields)
 }
@@ -71,7 +71,7 @@ pub fn shape_row(name: &str, object: &Bound<'_, PyAny>) -> Option<Row> {
     } else {
         ImplicitShape::Set(object.cast::<crate::implicit::PySet>().ok()?.get().inner.clone())
     };
-    let row = Row::new(name.to_owned(), Body::Foreign(Arc::new(shape)));
+    let row = Row::new(name.to_owned(), Implementation::Foreign(Arc::new(shape)));
     Some(row.doc("A field or set made in Python."))
 }
 

@@ -137,9 +137,9 @@ pub fn grid_with_fields<'py>(
         let planes = planes(&given.as_array());
         let count = planes.first().map_or(0, Vec::len);
         let values = (0..count).flat_map(|k| planes.iter().map(move |plane| plane[k])).collect();
-        vtk::Field { name: name.clone(), components: planes.len(), values }
+        vtk::VtkArray { name: name.clone(), components: planes.len(), values }
     };
-    let fields: Vec<vtk::Field> = fields.iter().map(field).collect();
+    let fields: Vec<vtk::VtkArray> = fields.iter().map(field).collect();
     let points = grid(&points)?;
     let bytes = unlocked(py, move || vtk::grid_with_fields(&points, &fields))?;
     let bytes = bytes.map_err(plain_error)?;

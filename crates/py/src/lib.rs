@@ -46,7 +46,7 @@ mod _core {
     #[pymodule_export]
     use crate::blocks::PyBlocks;
     #[pymodule_export]
-    use crate::diagnostics::{Diagnostic, Label};
+    use crate::diagnostics::{PyDiagnostic, PyLabel};
     #[pymodule_export]
     use crate::document::{PyDocument, format_text};
     #[pymodule_export]

@@ -124,7 +124,7 @@ pub fn brep<'py>(
     Ok(dict)
 }
 
-fn face<'py>(py: Python<'py>, face: &moldloft::brep::Face) -> PyResult<Bound<'py, PyDict>> {
+fn face<'py>(py: Python<'py>, face: &moldloft::brep::BrepFace) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("name", &face.name)?;
     dict.set_item("colour", face.colour)?;

@@ -1,6 +1,6 @@
 //! The registry as data.
 
-use moldloft::rows::{DefaultValue, Field, Row};
+use moldloft::rows::{DefaultValue, FieldSpec, Row};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -64,7 +64,7 @@ fn describe<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {
     Ok(dict)
 }
 
-fn argument<'py>(py: Python<'py>, field: &Field) -> PyResult<Bound<'py, PyDict>> {
+fn argument<'py>(py: Python<'py>, field: &FieldSpec) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("name", field.name)?;
     dict.set_item("class", field.class.name())?;

@@ -6,7 +6,7 @@ use crate::error::plain_error;
 use crate::work::interruptible_shared;
 use moldloft::document::searches::{CommonPoints, Meeting, NearestPoints, With};
 use moldloft::locate::branches::Branches;
-use moldloft::locate::march::{Branch, End};
+use moldloft::locate::march::{Branch, BranchEnd};
 use moldloft::locate::{LocateStatus, Nearest};
 use moldloft::num::{Plane, Vec3};
 use moldloft::rows::Value;
@@ -165,13 +165,13 @@ fn points_dict(py: Python<'_>, points: CommonPoints) -> PyResult<Bound<'_, PyDic
     Ok(dict)
 }
 
-fn end_name(end: End) -> &'static str {
+fn end_name(end: BranchEnd) -> &'static str {
     match end {
-        End::Edge { unknown: 0 | 1, .. } => "edge",
-        End::Edge { .. } => "other-edge",
-        End::Closed => "closed",
-        End::Tangent => "tangent",
-        End::Lost => "lost",
+        BranchEnd::Edge { unknown: 0 | 1, .. } => "edge",
+        BranchEnd::Edge { .. } => "other-edge",
+        BranchEnd::Closed => "closed",
+        BranchEnd::Tangent => "tangent",
+        BranchEnd::Lost => "lost",
     }
 }
 

@@ -9,7 +9,7 @@ use moldloft::host::{FileWorld, read_regular};
 use moldloft::lang::World;
 use moldloft::mesh::Mesh;
 use moldloft::num::Vec3;
-use moldloft::picture::{Camera, Line, Options, render};
+use moldloft::picture::{Camera, Options, StyledPolyline, render};
 use moldloft::sketch::{CommandReply, Files, SketchSession, SketchSolid, script};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -311,8 +311,8 @@ impl PySketch {
         let solid = self.solid(py, name)?;
         let png = py.detach(|| {
             let mesh = mesh_of(&solid, None);
-            let lines: Vec<Line> = (0..solid.edges.len())
-                .map(|e| Line {
+            let lines: Vec<StyledPolyline> = (0..solid.edges.len())
+                .map(|e| StyledPolyline {
                     points: solid.polyline(e, 24),
                     colour: EDGE_COLOUR,
                     width: EDGE_WIDTH,

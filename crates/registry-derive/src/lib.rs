@@ -142,7 +142,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         if o.min.is_some() || o.max.is_some() || min_items.to_string() != "0" {
             checks.push(k);
         }
-        infos.push(quote!(::moldloft_registry::Field {
+        infos.push(quote!(::moldloft_registry::FieldSpec {
             name: #text,
             help: #help,
             class: <#ty as ::moldloft_registry::FromValue<S>>::CLASS,
@@ -257,7 +257,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                     sweep: #sweep,
                     cheap: #cheap,
                     role: #role,
-                    body: ::moldloft_registry::Body::Native {
+                    body: ::moldloft_registry::Implementation::Native {
                         plain: #ident::<f64>::call,
                         dual: #ident::<::moldloft_registry::export::Dual4>::call,
                     },

@@ -1,7 +1,7 @@
 //! Arguments of a call bound to the fields of its row: order, defaults, counts, names and classes are checked here,
 //! so that the kinds need not.
 
-use crate::{Argument, Attributes, CallError, Class, Field, FieldId, Row, Value};
+use crate::{Argument, Attributes, CallError, Class, FieldId, FieldSpec, Row, Value};
 use moldloft_num::Real;
 use moldloft_num::trace::Key;
 
@@ -81,7 +81,7 @@ pub fn bind_arguments<T: Real>(
 }
 
 /// Makes one list of the arguments for a last field that takes any number of them.
-fn gather<T: Real>(fields: &[Field], positional: &mut Vec<Value<T>>) {
+fn gather<T: Real>(fields: &[FieldSpec], positional: &mut Vec<Value<T>>) {
     let Some(last) = fields.last().filter(|field| field.variadic) else { return };
     let at = fields.len() - 1;
     let several = positional.len() > fields.len();
@@ -106,7 +106,7 @@ fn lower(help: &str) -> String {
     }
 }
 
-fn expectation(field: &Field) -> String {
+fn expectation(field: &FieldSpec) -> String {
     if field.many {
         format!("a list {{...}} of {}s", field.class.name())
     } else {
@@ -127,7 +127,7 @@ fn unknown_argument(row: &Row, name: &str) -> CallError {
 }
 
 fn check<T: Real>(
-    field: &Field,
+    field: &FieldSpec,
     arg: &Value<T>,
     class_of: &impl Fn(Key) -> Class,
 ) -> Result<(), CallError> {
@@ -184,7 +184,7 @@ fn check<T: Real>(
     enough(field, length)
 }
 
-fn enough(field: &Field, length: usize) -> Result<(), CallError> {
+fn enough(field: &FieldSpec, length: usize) -> Result<(), CallError> {
     if length >= field.min_items {
         return Ok(());
     }
@@ -211,7 +211,7 @@ fn gives_items(item: Class, found: Class) -> bool {
 ///
 /// # Errors
 /// A [`CallError`] with its item.
-pub fn check_evaluated<T: Real>(field: &Field, value: &Value<T>) -> Result<(), CallError> {
+pub fn check_evaluated<T: Real>(field: &FieldSpec, value: &Value<T>) -> Result<(), CallError> {
     if field.many {
         let length = match value {
             Value::List(items) => items.len(),
@@ -234,7 +234,7 @@ pub fn check_evaluated<T: Real>(field: &Field, value: &Value<T>) -> Result<(), C
     }
 }
 
-fn range(field: &Field, x: f64) -> Result<(), CallError> {
+fn range(field: &FieldSpec, x: f64) -> Result<(), CallError> {
     if !x.is_finite() {
         return Err(CallError::new("not-finite", format!("`{}` is {x}, not a number", field.name))
             .expected("a finite number")

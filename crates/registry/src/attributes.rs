@@ -1,7 +1,7 @@
 //! Attributes that every object has besides its geometry: visibility, colour, orientation, divisions and their
 //! spacing. A change of them does not evaluate the object again.
 
-use crate::{CallError, Class, DefaultValue, Field, Unit, Value};
+use crate::{CallError, Class, DefaultValue, FieldSpec, Unit, Value};
 use moldloft_num::Real;
 use std::sync::Arc;
 
@@ -130,8 +130,8 @@ pub struct Attributes {
 /// The most panels along one parameter.
 const MOST_DIVISIONS: f64 = 1e6;
 
-const fn head(name: &'static str, help: &'static str, default: DefaultValue) -> Field {
-    Field {
+const fn head(name: &'static str, help: &'static str, default: DefaultValue) -> FieldSpec {
+    FieldSpec {
         name,
         help,
         class: Class::Integer,
@@ -146,7 +146,7 @@ const fn head(name: &'static str, help: &'static str, default: DefaultValue) -> 
 }
 
 /// The named arguments that every kind accepts besides its own.
-pub const ATTRIBUTES: [Field; 10] = [
+pub const ATTRIBUTES: [FieldSpec; 10] = [
     head("colour", "Colour index, 0 to 255.", DefaultValue::Unset),
     head("visible", "Shown when positive, hidden when 0 or negative.", DefaultValue::Number(1.0)),
     head("layer", "Layer, 0 to 255.", DefaultValue::Number(0.0)),
@@ -157,11 +157,11 @@ pub const ATTRIBUTES: [Field; 10] = [
         DefaultValue::Unset,
     ),
     head("subdivisions", "Steps in each division, or {in u, in v}.", DefaultValue::Unset),
-    Field {
+    FieldSpec {
         class: Class::Number,
         ..head("size", "Aimed length of panels, or {along u, along v}.", DefaultValue::Unset)
     },
-    Field {
+    FieldSpec {
         class: Class::Any,
         ..head(
             "spacing",
@@ -170,7 +170,7 @@ pub const ATTRIBUTES: [Field; 10] = [
             DefaultValue::Unset,
         )
     },
-    Field {
+    FieldSpec {
         class: Class::Text,
         many: true,
         ..head(
@@ -180,7 +180,7 @@ pub const ATTRIBUTES: [Field; 10] = [
         )
     },
     head("orientation", "1 reverses the normals of a surface's panels.", DefaultValue::Unset),
-    Field {
+    FieldSpec {
         class: Class::Text,
         ..head("attributes", "Attributes of a model file, kept as they are.", DefaultValue::Unset)
     },

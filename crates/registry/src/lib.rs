@@ -2,7 +2,7 @@
 //! `arguments -> Value`.
 //!
 //! An entity kind, an array intrinsic, an implicit primitive, a user's Python function: each is a
-//! [`Row`] with a name, documented [`Field`]s and a body. `Kind name(...)` in the language calls a
+//! [`Row`] with a name, documented [`FieldSpec`]s and a body. `Kind name(...)` in the language calls a
 //! row and keeps the result under a name; `f(...)` calls one and does not.
 //!
 //! `struct + #[derive(Kind)] -> Row -> { language, model files, Python, reference page }`
@@ -34,13 +34,13 @@ pub use kept::Kept;
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, MirrorArgument, many};
 pub use refs::{
-    CurveRef, FieldRef, Figures, Implicit, Point, ReparametrizationRef, SetRef, SolidRef,
+    CurveRef, FieldRef, Figures, ImplicitFunction, Point, ReparametrizationRef, SetRef, SolidRef,
     SurfaceRef,
 };
 pub use relabelled::relabelled;
 pub use row::{
-    Body, Build, CallRemark, Context, DefaultValue, Field, Foreign, Registry, Role, Row, Scalar,
-    Unit,
+    Build, CallRemark, Context, DefaultValue, FieldSpec, Foreign, Implementation, Registry, Role,
+    Row, Scalar, Unit,
 };
 pub use search_report::{Remark, SearchReport, SearchStatus};
 pub use sweep::{LocusRef, MovingCurve, MovingPoint, Sweep};

@@ -153,20 +153,20 @@ pub struct SurfaceRef<T: Real> {
 }
 
 /// An implicit function or a set that can tell whether another is the same.
-pub trait Implicit<T: Real>: Field<T> + Any {
+pub trait ImplicitFunction<T: Real>: Field<T> + Any {
     /// True when both are the same expression of the same bits under the same names.
     fn alike(&self, o: &Self) -> bool;
     /// A number by which those that are not alike mostly differ.
     fn fingerprint(&self) -> u64;
 }
 
-/// An [`Implicit`] whose type was forgotten.
+/// An [`ImplicitFunction`] whose type was forgotten.
 trait Erased<T: Real>: Field<T> + Any {
     fn alike_any(&self, o: &dyn Any) -> bool;
     fn print(&self) -> u64;
 }
 
-impl<T: Real, P: Implicit<T>> Erased<T> for P {
+impl<T: Real, P: ImplicitFunction<T>> Erased<T> for P {
     fn alike_any(&self, o: &dyn Any) -> bool {
         o.downcast_ref::<P>().is_some_and(|o| self.alike(o))
     }
@@ -373,12 +373,12 @@ macro_rules! implicit_ref {
 
         impl<T: Real> $name<T> {
             /// What it was made from, when that is a `P`.
-            pub fn get<P: Implicit<T>>(&self) -> Option<&P> {
+            pub fn get<P: ImplicitFunction<T>>(&self) -> Option<&P> {
                 let any: &dyn Any = &*self.shape;
                 any.downcast_ref()
             }
 
-            /// See [`Implicit::fingerprint`].
+            /// See [`ImplicitFunction::fingerprint`].
             pub fn fingerprint(&self) -> u64 {
                 self.shape.print()
             }
@@ -396,7 +396,7 @@ implicit_ref!(SetRef, "SetRef");
 
 impl<T: Real> FieldRef<T> {
     /// An implicit function without a name.
-    pub fn new(shape: impl Implicit<T>) -> Self {
+    pub fn new(shape: impl ImplicitFunction<T>) -> Self {
         Self { shape: Arc::new(shape), name: None }
     }
 
@@ -415,7 +415,7 @@ impl<T: Real> FieldRef<T> {
 
 impl<T: Real> SetRef<T> {
     /// A set.
-    pub fn new(shape: impl Implicit<T>) -> Self {
+    pub fn new(shape: impl ImplicitFunction<T>) -> Self {
         Self { shape: Arc::new(shape) }
     }
 

@@ -1,8 +1,8 @@
 //! Curves and surfaces whose parameter is redistributed by a law: the `relabel` of their heads.
 
 use crate::{
-    CallError, Class, CurveRef, DefaultValue, Field, FromValue, ReparametrizationRef, SurfaceRef,
-    Unit, Value,
+    CallError, Class, CurveRef, DefaultValue, FieldSpec, FromValue, ReparametrizationRef,
+    SurfaceRef, Unit, Value,
 };
 use moldloft_num::trace::{Edge, Edges, Mark, Piece, Trace};
 use moldloft_num::{
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The last argument of every kind of curve, and of every surface with a law of its own across its
 /// masters.
-pub const RELABEL_FIELD: Field = Field {
+pub const RELABEL_FIELD: FieldSpec = FieldSpec {
     name: "relabel",
     help: "Reparametrisation of t (surfaces: v). Default: none.",
     class: Class::Relabel,

@@ -22,8 +22,8 @@ pub trait Scalar: Real + FromValue<Self> {
 impl Scalar for f64 {
     fn call(row: &Row, args: &[Value<f64>], context: &Context) -> Result<Value<f64>, CallError> {
         match &row.body {
-            Body::Native { plain, .. } => plain(args, context),
-            Body::Foreign(f) => f.call_plain(args, context),
+            Implementation::Native { plain, .. } => plain(args, context),
+            Implementation::Foreign(f) => f.call_plain(args, context),
         }
     }
 }
@@ -35,8 +35,8 @@ impl Scalar for Dual4 {
         context: &Context,
     ) -> Result<Value<Dual4>, CallError> {
         match &row.body {
-            Body::Native { dual, .. } => dual(args, context),
-            Body::Foreign(f) => f.call_dual(args, context),
+            Implementation::Native { dual, .. } => dual(args, context),
+            Implementation::Foreign(f) => f.call_dual(args, context),
         }
     }
 }
@@ -135,7 +135,7 @@ impl DefaultValue {
 
 /// One argument of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Field {
+pub struct FieldSpec {
     /// Its name, as in a named argument.
     pub name: &'static str,
     /// A line of help.
@@ -180,7 +180,7 @@ type Call<T> = fn(&[Value<T>], &Context) -> Result<Value<T>, CallError>;
 
 /// How a row is computed.
 #[derive(Clone)]
-pub enum Body {
+pub enum Implementation {
     /// Rust code, for each scalar.
     Native {
         /// For `f64`.
@@ -220,7 +220,7 @@ pub struct Row {
     /// The class of its value.
     pub class: Class,
     /// Its arguments, in positional order.
-    pub fields: Cow<'static, [Field]>,
+    pub fields: Cow<'static, [FieldSpec]>,
     /// True for a kind of entity: it is declared under a name.
     pub kind: bool,
     /// The fields in the order of a model file's columns, by name, blank-separated; `relabel` may
@@ -236,12 +236,12 @@ pub struct Row {
     /// What a kind is besides its value.
     pub role: Role,
     /// How it is computed.
-    pub body: Body,
+    pub body: Implementation,
 }
 
 impl Row {
     /// A function of any value, without arguments or documentation.
-    pub fn new(name: impl Into<Cow<'static, str>>, body: Body) -> Self {
+    pub fn new(name: impl Into<Cow<'static, str>>, body: Implementation) -> Self {
         Self {
             name: name.into(),
             doc: Cow::Borrowed(""),
@@ -263,7 +263,7 @@ impl Row {
     }
 
     /// The same with arguments.
-    pub fn fields(self, fields: Vec<Field>) -> Self {
+    pub fn fields(self, fields: Vec<FieldSpec>) -> Self {
         Self { fields: fields.into(), ..self }
     }
 

@@ -5,13 +5,13 @@ use moldloft_registry::CurveRef;
 
 /// The map p -> to + M (p - from).
 #[derive(Clone, Copy, Debug)]
-pub struct Affine<T> {
+pub struct PivotTransform<T> {
     from: Vec3<T>,
     to: Vec3<T>,
     columns: [Vec3<T>; 3],
 }
 
-impl<T: Real> Affine<T> {
+impl<T: Real> PivotTransform<T> {
     /// Scaled along the axes by `scale`, with `from` going to `to`.
     pub fn scaled(from: Vec3<T>, to: Vec3<T>, scale: [T; 3]) -> Self {
         let o = T::zero();
@@ -46,7 +46,7 @@ pub struct Mapped<T: Real> {
     /// The curve.
     pub curve: CurveRef<T>,
     /// The map.
-    pub map: Affine<T>,
+    pub map: PivotTransform<T>,
 }
 
 impl<T: Real> Curve<T> for Mapped<T> {

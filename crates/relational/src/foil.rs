@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// The fields of a kind of foil.
 #[derive(Clone, Copy)]
-pub struct Fields {
+pub struct FoilFields {
     pub points: FieldId,
     pub family: FieldId,
     pub mean: FieldId,
@@ -71,12 +71,12 @@ macro_rules! foil_kind {
 
         impl<T: Real> $name<T> {
             /// What the section is laid between, and which section it is.
-            fn parts(self) -> (Vec<$Item>, crate::foil::Arguments<T>) {
+            fn parts(self) -> (Vec<$Item>, crate::foil::FoilArguments<T>) {
                 let metric: Option<moldloft_num::Vec3<T>> = None;
                 $(let metric: $Metric = metric.or(self.metric);)?
                 let metric_field = Self::$ITEMS;
                 $(let metric_field = { let _ = metric_field; Self::$METRIC };)?
-                let fields = crate::foil::Fields {
+                let fields = crate::foil::FoilFields {
                     points: Self::$ITEMS,
                     family: Self::FAMILY,
                     mean: Self::MEAN,
@@ -89,7 +89,7 @@ macro_rules! foil_kind {
                     ordinates: Self::ORDINATES,
                     metric: metric_field,
                 };
-                let arguments = crate::foil::Arguments {
+                let arguments = crate::foil::FoilArguments {
                     family: self.family,
                     mean: self.mean,
                     camber_at: self.camber_at,
@@ -112,7 +112,7 @@ pub(crate) use foil_kind;
 
 /// The arguments of a foil but its points.
 #[derive(Clone)]
-pub struct Arguments<T: Real> {
+pub struct FoilArguments<T: Real> {
     pub family: NamedOption,
     pub mean: Arc<str>,
     pub camber_at: T,
@@ -125,7 +125,7 @@ pub struct Arguments<T: Real> {
     pub ordinates: Option<Vec<Vec3<T>>>,
     pub metric: Option<Vec3<T>>,
     /// Where faults are reported.
-    pub fields: Fields,
+    pub fields: FoilFields,
 }
 
 /// The choice of a word of two.
@@ -141,7 +141,7 @@ fn either(word: &str, names: [&str; 2], field: FieldId) -> Result<bool, CallErro
     }
 }
 
-impl<T: Real> Arguments<T> {
+impl<T: Real> FoilArguments<T> {
     /// The foil between `points`, whether its section is closed, and how deep shapes are nested in
     /// it.
     pub fn profile(self, points: &[Vec3<T>]) -> Result<(Profile<T>, bool, u32), CallError> {
@@ -158,7 +158,7 @@ impl<T: Real> Arguments<T> {
     /// place make a foil without size.
     pub fn lifted<J: Jet<T>>(&self, points: &[Vec3<J>]) -> Result<Profile<J>, CallError> {
         let fixed = |v: Vec3<T>| v.map(J::fixed);
-        let arguments = Arguments::<J> {
+        let arguments = FoilArguments::<J> {
             family: self.family.clone(),
             mean: self.mean.clone(),
             camber_at: J::fixed(self.camber_at),
@@ -260,7 +260,7 @@ impl<T: Real, J: Jet<T>> Curve<J> for Fixed<T> {
 }
 
 /// The fault of a foil.
-fn of_foil(error: FoilError, fields: Fields) -> CallError {
+fn of_foil(error: FoilError, fields: FoilFields) -> CallError {
     let text = error.to_string();
     match error {
         FoilError::Family { name } => CallError::new("unknown-name", text)

@@ -1,6 +1,6 @@
 //! Numbers at the vertices of the scene's patches, for colours: curvatures, quality, derivatives.
 
-use crate::scene::{Item, ItemKind};
+use crate::scene::{SceneItem, SceneItemKind};
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 use moldloft_mesh::{
@@ -25,7 +25,7 @@ pub const FIELDS: [&str; 10] = [
 /// Numbers of one patch: how many for each vertex, and all of them.
 pub struct PatchNumbers<'s> {
     /// The patch.
-    pub item: &'s Item,
+    pub item: &'s SceneItem,
     /// Numbers a vertex.
     pub components: usize,
     /// In the order of the vertices.
@@ -38,7 +38,7 @@ pub struct PatchNumbers<'s> {
 /// An unknown field or parameter; a model without panels.
 pub fn field<'s>(
     document: &mut Document,
-    items: &'s [Item],
+    items: &'s [SceneItem],
     field: &str,
     by: Option<&str>,
 ) -> Result<Vec<PatchNumbers<'s>>, Vec<Diagnostic>> {
@@ -48,16 +48,16 @@ pub fn field<'s>(
     }
     let panelled = document.panelled().map_err(|d| vec![d])?;
     let mesh = &panelled.mesh;
-    let drawn = items.iter().filter(|i| i.kind == ItemKind::Patch);
+    let drawn = items.iter().filter(|i| i.kind == SceneItemKind::Patch);
     let drawn = drawn.filter_map(|i| Some((i, &mesh.patches()[i.patch?])));
-    let with_copies = |item: &'s Item, components: usize, mut values: Vec<f32>| {
+    let with_copies = |item: &'s SceneItem, components: usize, mut values: Vec<f32>| {
         for &copy in &item.connections.copies {
             let at = copy as usize * components;
             values.extend_from_within(at..at + components);
         }
         PatchNumbers { item, components, values }
     };
-    let global = |item: &Item, patch: &moldloft_mesh::Patch| -> Vec<u32> {
+    let global = |item: &SceneItem, patch: &moldloft_mesh::Patch| -> Vec<u32> {
         if let Some(block) = &patch.block {
             return block.vertices.clone();
         }
@@ -71,7 +71,7 @@ pub fn field<'s>(
         let panels =
             panels.map_err(|e| vec![Diagnostic::error("too-many-panels", e.to_string())])?;
         // The worst of the panels at each vertex.
-        let of_patch = |(item, patch): (&'s Item, &moldloft_mesh::Patch)| {
+        let of_patch = |(item, patch): (&'s SceneItem, &moldloft_mesh::Patch)| {
             let mut worst: HashMap<u32, f64> = HashMap::new();
             for index in patch.faces.clone() {
                 let Some(quality) = &panels[index] else { continue };
@@ -93,7 +93,7 @@ pub fn field<'s>(
         })?;
         let jacobian = document.jacobian(&[by.to_string()])?;
         let column = &jacobian[0];
-        let of_patch = |(item, patch): (&'s Item, &moldloft_mesh::Patch)| {
+        let of_patch = |(item, patch): (&'s SceneItem, &moldloft_mesh::Patch)| {
             let vertices = global(item, patch);
             let values = vertices.iter().flat_map(|&v| column[v as usize].to_array());
             with_copies(item, 3, values.map(|x| x as f32).collect())
@@ -109,7 +109,7 @@ pub fn field<'s>(
             Some((p.patch, (found.components, found.values)))
         })
         .collect();
-    let of_patch = |(item, patch): (&'s Item, &moldloft_mesh::Patch)| {
+    let of_patch = |(item, patch): (&'s SceneItem, &moldloft_mesh::Patch)| {
         let (components, values) = all.get(&patch.info.name)?;
         let wanted = item.positions.len() / 3 - item.connections.copies.len();
         (values.len() == wanted * components)

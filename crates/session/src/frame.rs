@@ -3,7 +3,7 @@
 //! `u32 magic, u32 version, u32 bytes of the head, u32 zero, head, zeros to a multiple of 8, arrays`,
 //! little endian. The head names each array by type, first byte (after the padding) and count.
 
-use crate::scene::Item;
+use crate::scene::SceneItem;
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -16,13 +16,13 @@ pub const VERSION: u32 = 1;
 
 /// A reply that is being made.
 #[derive(Default)]
-pub struct Frame {
+pub struct ReplyFrame {
     /// The facts.
     pub head: Map<String, Value>,
     arrays: Vec<u8>,
 }
 
-impl Frame {
+impl ReplyFrame {
     /// Adds a fact.
     pub fn put(&mut self, key: &str, value: impl Into<Value>) {
         self.head.insert(key.into(), value.into());
@@ -69,7 +69,7 @@ type Stamps = [u64; 3];
 
 /// What a viewer has.
 #[derive(Default)]
-pub struct Known {
+pub struct ViewerCache {
     items: HashMap<(u8, Arc<str>), Stamps>,
     /// Texts of other facts that were sent, by their names.
     facts: HashMap<&'static str, String>,
@@ -77,9 +77,9 @@ pub struct Known {
     stamps: HashMap<&'static str, u64>,
 }
 
-impl Known {
+impl ViewerCache {
     /// Adds a fact unless it was sent before.
-    pub fn fact(&mut self, frame: &mut Frame, key: &'static str, value: Value) {
+    pub fn fact(&mut self, frame: &mut ReplyFrame, key: &'static str, value: Value) {
         let text = value.to_string();
         if self.facts.get(key) != Some(&text) {
             self.facts.insert(key, text);
@@ -90,7 +90,7 @@ impl Known {
     /// Adds a fact whose stamp is not that of what was sent before.
     pub fn stamped(
         &mut self,
-        frame: &mut Frame,
+        frame: &mut ReplyFrame,
         key: &'static str,
         stamp: u64,
         value: impl FnOnce() -> Value,
@@ -101,7 +101,7 @@ impl Known {
     }
 
     /// Adds what differs from what the viewer has.
-    pub fn scene(&mut self, frame: &mut Frame, items: &[Item]) {
+    pub fn scene(&mut self, frame: &mut ReplyFrame, items: &[SceneItem]) {
         let mut changed = Vec::new();
         let mut now = HashMap::with_capacity(items.len());
         for item in items {
@@ -126,7 +126,7 @@ impl Known {
     }
 }
 
-fn sent(frame: &mut Frame, item: &Item, old: Option<&Stamps>) -> Value {
+fn sent(frame: &mut ReplyFrame, item: &SceneItem, old: Option<&Stamps>) -> Value {
     let is_new = |k: usize, stamp: u64| old.is_none_or(|o| o[k] != stamp);
     let mut parts = Vec::new();
     if is_new(1, item.stamp) || is_new(2, item.topology_stamp) {

@@ -39,5 +39,5 @@ pub use drag::round_to;
 pub use fields::FIELDS;
 pub use reply::Reply;
 pub use request::{Ask, Request};
-pub use scene::{Item, ItemKind, Scene};
+pub use scene::{Scene, SceneItem, SceneItemKind};
 pub use session::Session;

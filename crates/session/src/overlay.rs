@@ -1,6 +1,6 @@
 //! Foreign meshes and offsets laid over the model, and how far they are from it.
 
-use crate::frame::Frame;
+use crate::frame::ReplyFrame;
 use moldloft_budget::Budget;
 use moldloft_document::Document;
 use moldloft_document::searches::{NearestPoints, Searches};
@@ -58,7 +58,7 @@ impl Overlays {
 
     /// The overlays, each vertex with its distance from the nearest surface of the model: positive on the
     /// side of the surface's normal. Where the model is mirrored the nearer of a point and its image counts.
-    pub fn put(&self, document: &mut Document, frame: &mut Frame, shapes: bool) {
+    pub fn put(&self, document: &mut Document, frame: &mut ReplyFrame, shapes: bool) {
         let symmetry = document.symmetry();
         let mirrors: Vec<usize> =
             (0..3).filter(|&k| symmetry.contains(['x', 'y', 'z'][k])).collect();

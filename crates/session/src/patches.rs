@@ -26,7 +26,7 @@ pub struct Connections {
 
 /// What is drawn of panels at one state.
 #[derive(Clone)]
-pub struct Drawn {
+pub struct PatchBuffers {
     /// Positions.
     pub points: Vec<Vec3>,
     /// Unit normals, outward.
@@ -114,7 +114,7 @@ impl PreparedPatch {
     }
 
     /// What is drawn at these positions.
-    pub fn drawn(&mut self, points: &[Vec3]) -> Drawn {
+    pub fn drawn(&mut self, points: &[Vec3]) -> PatchBuffers {
         self.panels.drawn(points.to_vec())
     }
 }
@@ -140,7 +140,7 @@ impl Prepared {
     }
 
     /// What is drawn at these positions.
-    pub fn drawn(&mut self, mut points: Vec<Vec3>) -> Drawn {
+    pub fn drawn(&mut self, mut points: Vec<Vec3>) -> PatchBuffers {
         let turned = |f: &[u32; 4]| {
             let [a, b, c, d] = f.map(|v| points[v as usize]);
             (c - a).cross(d - b)
@@ -181,7 +181,7 @@ impl Prepared {
             let (edges, rim) = (self.known.edges.clone(), self.known.rim.clone());
             self.known = Arc::new(Connections { triangles, edges, rim, copies });
         }
-        Drawn { points, normals, connections: self.known.clone() }
+        PatchBuffers { points, normals, connections: self.known.clone() }
     }
 }
 

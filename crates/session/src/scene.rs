@@ -25,7 +25,7 @@ const FAR: f64 = 64.0;
 
 /// The kind of a thing that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ItemKind {
+pub enum SceneItemKind {
     /// Panels of a surface or a body.
     Patch,
     /// A curve or snake.
@@ -42,30 +42,30 @@ pub enum ItemKind {
     Frame,
 }
 
-impl ItemKind {
+impl SceneItemKind {
     /// The word for it.
     pub fn word(self) -> &'static str {
         match self {
-            ItemKind::Patch => "patch",
-            ItemKind::Curve => "curve",
-            ItemKind::Point => "point",
-            ItemKind::Wire => "wire",
-            ItemKind::Contour => "contour",
-            ItemKind::Grid => "grid",
-            ItemKind::Frame => "frame",
+            SceneItemKind::Patch => "patch",
+            SceneItemKind::Curve => "curve",
+            SceneItemKind::Point => "point",
+            SceneItemKind::Wire => "wire",
+            SceneItemKind::Contour => "contour",
+            SceneItemKind::Grid => "grid",
+            SceneItemKind::Frame => "frame",
         }
     }
 }
 
 /// A thing that is drawn.
 #[derive(Clone, Debug)]
-pub struct Item {
+pub struct SceneItem {
     /// Unique in the scene.
     pub name: Arc<str>,
     /// The object that it belongs to.
     pub object: Arc<str>,
     /// What it is.
-    pub kind: ItemKind,
+    pub kind: SceneItemKind,
     /// Its colour in pictures, sRGB.
     pub colour: [u8; 3],
     /// A number that its neighbours have not.
@@ -92,8 +92,8 @@ pub struct Item {
     clock: u64,
 }
 
-impl Item {
-    fn new(kind: ItemKind, name: &str, object: &str) -> Self {
+impl SceneItem {
+    fn new(kind: SceneItemKind, name: &str, object: &str) -> Self {
         Self {
             name: name.into(),
             object: object.into(),
@@ -190,7 +190,7 @@ impl KnownPatches {
 /// All that is drawn.
 #[derive(Default)]
 pub struct Scene {
-    items: Vec<Item>,
+    items: Vec<SceneItem>,
     /// The next stamp.
     clock: u64,
     /// The patches of a topology.
@@ -203,7 +203,7 @@ pub struct Scene {
 
 impl Scene {
     /// What is drawn, in the order of the model.
-    pub fn items(&self) -> &[Item] {
+    pub fn items(&self) -> &[SceneItem] {
         &self.items
     }
 
@@ -231,7 +231,7 @@ impl Scene {
             let reasons = reasons(document);
             for item in &self.items {
                 let key = (item.kind as u8, item.name.clone());
-                if seen.contains(&key) || item.kind == ItemKind::Contour && !self.contours {
+                if seen.contains(&key) || item.kind == SceneItemKind::Contour && !self.contours {
                     continue;
                 }
                 let mut item = item.clone();
@@ -249,7 +249,7 @@ impl Scene {
         self.items = made;
     }
 
-    fn patches(&mut self, document: &mut Document) -> Vec<Item> {
+    fn patches(&mut self, document: &mut Document) -> Vec<SceneItem> {
         let Ok(panelled) = document.panelled() else { return Vec::new() };
         let mesh = &panelled.mesh;
         let known = match self.known.take() {
@@ -268,7 +268,7 @@ impl Scene {
                 known_patch.points = points;
             }
             let owner = owner(document, &patch.info.name);
-            made.push(Item {
+            made.push(SceneItem {
                 name: known_patch.name.clone(),
                 colour: patch_colour(patch, k),
                 hue: known.hues.get(k).copied().unwrap_or(0),
@@ -277,7 +277,7 @@ impl Scene {
                 normals: known_patch.normals.clone(),
                 connections: known_patch.connections.clone(),
                 patch: Some(k),
-                ..Item::new(ItemKind::Patch, "", owner)
+                ..SceneItem::new(SceneItemKind::Patch, "", owner)
             });
         }
         made
@@ -287,41 +287,43 @@ impl Scene {
         &self,
         document: &Document,
         before: &FxHashMap<(KindKey, Arc<str>), usize>,
-        made: &mut Vec<Item>,
+        made: &mut Vec<SceneItem>,
     ) {
         for object in document.graph().objects() {
             let named = self.revealed.contains(&*object.name);
             if !object.head.shown() && !named {
                 continue;
             }
-            let new = |kind| Item::new(kind, &object.name, &object.name);
+            let new = |kind| SceneItem::new(kind, &object.name, &object.name);
             match object.value() {
                 Some(Value::Curve(curve)) => {
-                    let key = (ItemKind::Curve as u8, object.name.clone());
+                    let key = (SceneItemKind::Curve as u8, object.name.clone());
                     let old = before.get(&key).map(|&k| &self.items[k]);
                     let item =
                         match old.filter(|o| o.clock == object.changed_at && o.stale.is_empty()) {
                             Some(old) => old.clone(),
-                            None => new(ItemKind::Curve).lines(&[sampled(curve, object)]),
+                            None => new(SceneItemKind::Curve).lines(&[sampled(curve, object)]),
                         };
-                    made.push(Item { clock: object.changed_at, ..item });
+                    made.push(SceneItem { clock: object.changed_at, ..item });
                 }
                 Some(Value::Point(point)) if point.xyz.is_finite() => {
-                    made.push(new(ItemKind::Point).at(&[point.xyz]));
+                    made.push(new(SceneItemKind::Point).at(&[point.xyz]));
                 }
-                Some(Value::Solid(solid)) => made.push(faces(new(ItemKind::Patch), solid)),
+                Some(Value::Solid(solid)) => made.push(faces(new(SceneItemKind::Patch), solid)),
                 Some(Value::Body(body)) => {
                     if !body.wires.is_empty() {
-                        made.push(new(ItemKind::Wire).lines(&body.wires));
+                        made.push(new(SceneItemKind::Wire).lines(&body.wires));
                     }
                     for (k, dot) in body.dots.iter().enumerate() {
                         let name = format!("{}.{}", object.name, k + 1);
-                        made.push(Item::new(ItemKind::Point, &name, &object.name).at(&[*dot]));
+                        made.push(
+                            SceneItem::new(SceneItemKind::Point, &name, &object.name).at(&[*dot]),
+                        );
                     }
                 }
                 Some(Value::Frame(frame)) => {
                     let axes = frame.axes.map(|a| vec![frame.origin, frame.origin + a]);
-                    made.push(new(ItemKind::Frame).lines(&axes));
+                    made.push(new(SceneItemKind::Frame).lines(&axes));
                 }
                 _ => {}
             }
@@ -329,16 +331,16 @@ impl Scene {
     }
 }
 
-/// [`ItemKind`] as a key.
+/// [`SceneItemKind`] as a key.
 type KindKey = u8;
 
 /// Gives an item the stamps of what it was before where nothing differs.
-fn stamp(item: &mut Item, old: Option<&Item>, clock: &mut u64) {
+fn stamp(item: &mut SceneItem, old: Option<&SceneItem>, clock: &mut u64) {
     *clock += 1;
     let now = *clock;
     (item.head_stamp, item.stamp, item.topology_stamp) = (now, now, now);
     let Some(old) = old else { return };
-    let looks = |i: &Item| (i.colour, i.hue, i.stale.clone(), i.object.clone());
+    let looks = |i: &SceneItem| (i.colour, i.hue, i.stale.clone(), i.object.clone());
     if looks(item) == looks(old) {
         item.head_stamp = old.head_stamp;
     }
@@ -399,7 +401,7 @@ fn sampled(curve: &CurveRef<f64>, object: &Object<f64>) -> Vec<Vec3> {
 }
 
 /// The six faces of a solid.
-fn faces(item: Item, solid: &SolidRef<f64>) -> Item {
+fn faces(item: SceneItem, solid: &SolidRef<f64>) -> SceneItem {
     let along: Vec<f64> = (0..=SOLID_PANELS).map(|k| k as f64 / SOLID_PANELS as f64).collect();
     let n = along.len();
     let (mut points, mut panels) = (Vec::new(), Vec::new());
@@ -421,20 +423,21 @@ fn faces(item: Item, solid: &SolidRef<f64>) -> Item {
     let identity: Vec<u32> = (0..points.len() as u32).collect();
     let drawn = Prepared::new(panels, identity).drawn(points);
     let normals = Arc::new(flat(&drawn.normals));
-    Item { normals, connections: drawn.connections, ..item.at(&drawn.points) }
+    SceneItem { normals, connections: drawn.connections, ..item.at(&drawn.points) }
 }
 
-fn contour((k, section): (usize, &ContourSection)) -> Item {
+fn contour((k, section): (usize, &ContourSection)) -> SceneItem {
     let lines = section.lines.iter().flat_map(|(_, lines)| lines).map(|line| {
         let again = line.points.first().filter(|_| line.closed);
         line.points.iter().chain(again).copied().collect()
     });
     let name = format!("{} {k}", section.contours);
-    Item::new(ItemKind::Contour, &name, &section.contours).lines(&lines.collect::<Vec<_>>())
+    SceneItem::new(SceneItemKind::Contour, &name, &section.contours)
+        .lines(&lines.collect::<Vec<_>>())
 }
 
 /// Grids of points that a program computes.
-fn grids(document: &Document) -> Vec<Item> {
+fn grids(document: &Document) -> Vec<SceneItem> {
     let mut found = Vec::new();
     for (name, _, value) in document.variables() {
         let Value::Vectors(points) = value else { continue };
@@ -445,7 +448,7 @@ fn grids(document: &Document) -> Vec<Item> {
         let row = |i: usize| (0..n).map(|j| points.at(i * n + j)).collect();
         let column = |j: usize| (0..m).map(|i| points.at(i * n + j)).collect();
         let lines: Vec<Vec<Vec3>> = (0..m).map(row).chain((0..n).map(column)).collect();
-        found.push(Item::new(ItemKind::Grid, &name, &name).lines(&lines));
+        found.push(SceneItem::new(SceneItemKind::Grid, &name, &name).lines(&lines));
     }
     found
 }

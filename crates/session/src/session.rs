@@ -3,7 +3,7 @@
 use crate::drag::Drag;
 use crate::facts;
 use crate::fields::field;
-use crate::frame::{Frame, Known};
+use crate::frame::{ReplyFrame, ViewerCache};
 use crate::overlay::Overlays;
 use crate::request::{Ask, Request};
 use crate::scene::Scene;
@@ -54,7 +54,7 @@ pub struct Session {
 /// A viewer.
 #[derive(Default)]
 struct Tab {
-    known: Known,
+    known: ViewerCache,
     watched: Vec<String>,
 }
 
@@ -120,7 +120,7 @@ impl Session {
 
     /// The reply to a request.
     pub fn answer(&mut self, request: &str) -> Vec<u8> {
-        let mut frame = Frame::default();
+        let mut frame = ReplyFrame::default();
         let request: Request = match serde_json::from_str(request) {
             Ok(request) => request,
             Err(error) => {
@@ -130,12 +130,12 @@ impl Session {
         };
         let id = request.id;
         let run = AssertUnwindSafe(|| {
-            let mut frame = Frame::default();
+            let mut frame = ReplyFrame::default();
             self.reply(request, &mut frame);
             frame
         });
         let mut frame = catch_unwind(run).unwrap_or_else(|_| {
-            let mut frame = Frame::default();
+            let mut frame = ReplyFrame::default();
             frame.put("error", "this request made the engine fail: please report it");
             frame.put("internal", true);
             // What it knew of the viewers may be half done.
@@ -150,7 +150,7 @@ impl Session {
         frame.encoded()
     }
 
-    fn reply(&mut self, request: Request, frame: &mut Frame) {
+    fn reply(&mut self, request: Request, frame: &mut ReplyFrame) {
         let (tab, changes) = (request.tab, request.ask.changes());
         if let Ask::Close = request.ask {
             self.tabs.remove(&tab);
@@ -181,7 +181,7 @@ impl Session {
     }
 
     /// Adds what the viewer has not.
-    fn sync(&mut self, tab: u64, frame: &mut Frame) {
+    fn sync(&mut self, tab: u64, frame: &mut ReplyFrame) {
         if self.drawn != Some(self.rev) {
             self.scene.update(&mut self.document);
             self.drawn = Some(self.rev);
@@ -206,7 +206,7 @@ impl Session {
         known.fact(frame, "program", document.is_program().into());
     }
 
-    fn carry_out(&mut self, ask: Ask, tab: u64, frame: &mut Frame) -> Answer {
+    fn carry_out(&mut self, ask: Ask, tab: u64, frame: &mut ReplyFrame) -> Answer {
         match ask {
             Ask::Open | Ask::Sync | Ask::Close | Ask::Ping => {}
             Ask::Text { text } => self.take_text(text),
@@ -361,7 +361,7 @@ impl Session {
     }
 
     /// The watched numbers. They are asked for when the scene is there: it never waits for hydrostatics.
-    fn measure(&mut self, tab: u64, frame: &mut Frame) {
+    fn measure(&mut self, tab: u64, frame: &mut ReplyFrame) {
         let expressions = self.tabs.entry(tab).or_default().watched.clone();
         frame.put("watched", facts::values(&mut self.document, &expressions, None));
     }
@@ -382,7 +382,7 @@ impl Session {
     }
 
     /// What was set becomes edits of the text; the page makes them and sends the text back.
-    fn commit(&mut self, frame: &mut Frame) {
+    fn commit(&mut self, frame: &mut ReplyFrame) {
         let (_, kept) = self.document.write_params();
         self.kept = kept;
         let text = self.document.text();
@@ -390,14 +390,14 @@ impl Session {
         frame.put("kept", self.kept.clone());
     }
 
-    fn put_edits(&self, frame: &mut Frame, new: &str) {
+    fn put_edits(&self, frame: &mut ReplyFrame, new: &str) {
         let edit = difference(&self.text, new);
         let edits =
             edit.map(|(from, to, insert)| json!({"from": from, "to": to, "insert": insert}));
         frame.put("edits", edits.into_iter().collect::<Vec<_>>());
     }
 
-    fn drag_begin(&mut self, object: &str, at: &[f64], frame: &mut Frame) -> Answer {
+    fn drag_begin(&mut self, object: &str, at: &[f64], frame: &mut ReplyFrame) -> Answer {
         let (drag, handles) = Drag::begin(&mut self.document, object, at)?;
         let rows = handles.iter().map(|h| {
             json!({
@@ -414,7 +414,7 @@ impl Session {
         Ok(())
     }
 
-    fn combs(&mut self, names: &[String], frame: &mut Frame) {
+    fn combs(&mut self, names: &[String], frame: &mut ReplyFrame) {
         let graph = self.document.graph();
         let mut combs = Vec::new();
         for name in names {
@@ -448,7 +448,7 @@ impl Session {
         frame.put("combs", combs);
     }
 
-    fn section(&mut self, axis: usize, value: f64, frame: &mut Frame) -> Answer {
+    fn section(&mut self, axis: usize, value: f64, frame: &mut ReplyFrame) -> Answer {
         if axis > 2 {
             return Err("a section is across x, y or z: axis 0, 1 or 2".to_string().into());
         }
@@ -477,7 +477,7 @@ impl Session {
         Ok(())
     }
 
-    fn section_areas(&mut self, count: usize, frame: &mut Frame) -> Answer {
+    fn section_areas(&mut self, count: usize, frame: &mut ReplyFrame) -> Answer {
         let bounds = self.document.panelled()?.mesh.bounds();
         let (low, high) = (bounds.low.x, bounds.high.x);
         let steps = count.clamp(2, MOST_SECTIONS) - 1;
@@ -492,7 +492,7 @@ impl Session {
         Ok(())
     }
 
-    fn mesh(&mut self, frame: &mut Frame) -> Answer {
+    fn mesh(&mut self, frame: &mut ReplyFrame) -> Answer {
         let panelled = self.document.panelled()?;
         let mesh = &panelled.mesh;
         let mirrors: Vec<u8> = self
@@ -532,7 +532,7 @@ impl Session {
         Ok(())
     }
 
-    fn export(&mut self, format: &str, stem: &str, frame: &mut Frame) -> Answer {
+    fn export(&mut self, format: &str, stem: &str, frame: &mut ReplyFrame) -> Answer {
         let format = format_named(format)?;
         // A name from a page is a name, never a path.
         let letter = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };

@@ -2,32 +2,32 @@
 
 use crate::object::SketchObject;
 use crate::solid::operation::Operation;
-use crate::{Axis, Expr, PointId};
+use crate::{CoordinateAxis, DimensionExpr, PointId};
 use std::sync::Arc;
 
 /// A change of place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Placement {
     /// By a vector.
-    Move([Expr; 3]),
+    Move([DimensionExpr; 3]),
     /// About an axis through a point, right-handed, in degrees.
     Rotate {
         /// Direction of the axis.
-        axis: Axis,
+        axis: CoordinateAxis,
         /// A point of it.
-        through: [Expr; 3],
+        through: [DimensionExpr; 3],
         /// The angle.
-        angle: Expr,
+        angle: DimensionExpr,
     },
     /// In a plane perpendicular to an axis.
     Mirror {
         /// The axis.
-        axis: Axis,
+        axis: CoordinateAxis,
         /// The coordinate of the plane.
-        at: Expr,
+        at: DimensionExpr,
     },
     /// About the origin.
-    Scale(Expr),
+    Scale(DimensionExpr),
 }
 
 /// How a feature is made of its operands.
@@ -40,7 +40,7 @@ pub enum FeatureKind {
         /// The points.
         line: [PointId; 2],
         /// The angle.
-        angle: Expr,
+        angle: DimensionExpr,
     },
     /// One body in another place.
     Place(Placement),

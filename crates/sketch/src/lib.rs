@@ -73,27 +73,28 @@ pub mod solid;
 pub use command::{
     CommandError, CommandReply, Files, NullFiles, OutFile, SketchSession, Suggestion,
 };
-pub use dimension::expr::{Expr, FUNCTIONS, NoValue};
+pub use dimension::expr::{DimensionExpr, FUNCTIONS, NoValue};
 pub use dimension::layout::{
-    Count, DimensionFault, Layout, Loose, agree, chain, chain_text, solve,
+    Count, DimensionFault, DimensionLayout, Loose, agree, chain, chain_text, solve,
 };
 pub use dimension::solver::scale;
 pub use dimension::{Dimension, DimensionRole, MeasuredQuantity, Variable};
-pub use drawing::axis::{Axis, Free, Letters, Naming};
+pub use drawing::axis::{CoordinateAxis, Free, Letters, Naming};
 pub use drawing::estimate::{Estimate, FreeDepth, MAX_PLANES};
 pub use drawing::line_types::{DOUBTFUL, NAMING_TOLERANCE};
 pub use drawing::planes::{Planes, Reason, TypeFault, why};
 pub use drawing::projection::Projection;
 pub use drawing::{
-    Align, Drawing, DrawnPoint, FaceId, Hit, Line, LineId, LineTypeSource, PointId, Snap,
+    Align, Drawing, DrawingHit, DrawnLine, DrawnPoint, FaceId, LineId, LineTypeSource, PointId,
+    Snap,
 };
 pub use feature::{Feature, FeatureKind, FeatureOperand, Placement};
 pub use format::script::script;
 pub use format::{dxf, export, json, json_format};
 pub use moldloft_mesh::triangulate;
-pub use object::{Face, Reference, SketchObject};
+pub use object::{Reference, SketchFace, SketchObject};
 pub use solid::feature::{NoBody, body};
-pub use solid::gradient::{Gradient, Swept, gradient};
+pub use solid::gradient::{SolidGradient, Swept, gradient};
 pub use solid::mass::Mass;
 pub use solid::ruled_faces::RoundFace;
 pub use solid::{SketchSolid, curve, faces, merge, solid};

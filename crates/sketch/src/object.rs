@@ -1,22 +1,24 @@
 //! One named object: a drawing, its dimensions, faces and curves.
 
 use crate::feature::Feature;
-use crate::solid::curve::Curve;
-use crate::{Axis, Dimension, Drawing, FaceId, LineId, MeasuredQuantity, PointId, Variable};
+use crate::solid::curve::SketchCurve;
+use crate::{
+    CoordinateAxis, Dimension, Drawing, FaceId, LineId, MeasuredQuantity, PointId, Variable,
+};
 use indexmap::IndexMap;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A plane face: cycles of points, counter-clockwise seen from outside, holes clockwise.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Face {
+pub struct SketchFace {
     /// The outer cycle.
     pub outer: Vec<PointId>,
     /// The cycles of its holes.
     pub holes: Vec<Vec<PointId>>,
 }
 
-impl Face {
+impl SketchFace {
     /// The outer cycle, then the holes.
     pub fn loops(&self) -> impl Iterator<Item = &[PointId]> {
         std::iter::once(self.outer.as_slice()).chain(self.holes.iter().map(Vec::as_slice))
@@ -24,13 +26,13 @@ impl Face {
 
     /// The face seen from the other side.
     #[must_use]
-    pub fn reversed(&self) -> Face {
+    pub fn reversed(&self) -> SketchFace {
         let turn = |cycle: &Vec<PointId>| {
             let mut turned = cycle.clone();
             turned.reverse();
             turned
         };
-        Face { outer: turn(&self.outer), holes: self.holes.iter().map(turn).collect() }
+        SketchFace { outer: turn(&self.outer), holes: self.holes.iter().map(turn).collect() }
     }
 }
 
@@ -61,16 +63,16 @@ pub struct SketchObject {
     /// Variables by folded name, in order of entry.
     pub variables: IndexMap<String, Variable>,
     /// The accepted faces.
-    pub faces: BTreeMap<FaceId, Face>,
+    pub faces: BTreeMap<FaceId, SketchFace>,
     /// Curves by folded name, in order of entry.
-    pub curves: IndexMap<String, Curve>,
+    pub curves: IndexMap<String, SketchCurve>,
     /// What it is made of, when it is not a drawing.
     pub feature: Option<Arc<Feature>>,
 }
 
 impl SketchObject {
     /// An empty object of a name; a cross section perpendicular to `section` if given.
-    pub fn new(name: &str, section: Option<Axis>) -> SketchObject {
+    pub fn new(name: &str, section: Option<CoordinateAxis>) -> SketchObject {
         let drawing = Drawing {
             section,
             projection: section.map(crate::Projection::section).unwrap_or_default(),

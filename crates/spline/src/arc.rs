@@ -36,12 +36,12 @@ impl std::error::Error for ArcError {}
 /// An arc that its points make straight is a straight line at constant speed, and is approached
 /// smoothly, derivatives included: all formulas are entire functions of the squared half angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arc<T> {
-    form: Form<T>,
+pub struct CircularArc<T> {
+    form: ArcForm<T>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Form<T> {
+enum ArcForm<T> {
     /// From `from` to `to`; `bulge` is perpendicular to the chord, on the arc's side, as long as
     /// half the angle times the chord. With h half the angle, d the chord:
     /// C = P + sin(h t)/sin h (d cos(h (1-t)) + (bulge/h) sin(h (1-t))). `whole` is sin h / h.
@@ -53,7 +53,7 @@ enum Form<T> {
     Quarters { centre: Vec3<T>, spoke: Vec3<T>, side: Vec3<T>, quarters: f64 },
 }
 
-impl<T: Real> Arc<T> {
+impl<T: Real> CircularArc<T> {
     /// Type 1: from `p1` through `p2` to `p3`. Collinear points give the line from `p1` to `p3`.
     ///
     /// # Errors
@@ -62,9 +62,9 @@ impl<T: Real> Arc<T> {
     /// # Example
     /// ```
     /// use moldloft_num::{Curve, Order, Vec3};
-    /// use moldloft_spline::Arc;
+    /// use moldloft_spline::CircularArc;
     /// let [a, b, c] = [[1., 0.], [0., 1.], [-1., 0.]].map(|[x, y]| Vec3::of(x, y, 0.));
-    /// let arc = Arc::<f64>::through(a, b, c).unwrap();
+    /// let arc = CircularArc::<f64>::through(a, b, c).unwrap();
     /// assert!((arc.jet(0.25, Order::Zero)[0].x - 0.5f64.sqrt()).abs() < 1e-15);
     /// ```
     pub fn through(p1: Vec3<T>, p2: Vec3<T>, p3: Vec3<T>) -> Result<Self, ArcError> {
@@ -93,7 +93,7 @@ impl<T: Real> Arc<T> {
         let rate = angle_over_sine(normal.norm_sq(), cosine);
         let turn = normal.cross(a) * rate;
         let angle_sq = rate * rate * normal.norm_sq();
-        Ok(Self { form: Form::Sector { centre, spoke: a, turn, angle_sq } })
+        Ok(Self { form: ArcForm::Sector { centre, spoke: a, turn, angle_sq } })
     }
 
     /// Type 3: from `start`, tangent there to the line toward `toward`, to `end`.
@@ -174,7 +174,7 @@ impl<T: Real> Arc<T> {
 
     fn chord(from: Vec3<T>, to: Vec3<T>, bulge: Vec3<T>, half_sq: T) -> Self {
         let whole = sinc_of_sq(half_sq);
-        Self { form: Form::Chord { from, to, bulge, half_sq, whole } }
+        Self { form: ArcForm::Chord { from, to, bulge, half_sq, whole } }
     }
 
     fn quarters(
@@ -190,7 +190,7 @@ impl<T: Real> Arc<T> {
             return Err(ArcError::Collinear);
         }
         let side = side * (spoke.norm() / side.norm());
-        Ok(Self { form: Form::Quarters { centre, spoke, side, quarters } })
+        Ok(Self { form: ArcForm::Quarters { centre, spoke, side, quarters } })
     }
 
     /// The position at a parameter that may be a jet.
@@ -198,7 +198,7 @@ impl<T: Real> Arc<T> {
     pub fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
         let rest = -t + 1.0;
         match self.form {
-            Form::Chord { from, to, bulge, half_sq, whole } => {
+            ArcForm::Chord { from, to, bulge, half_sq, whole } => {
                 // A quotient, so that it is exactly 1 at the end.
                 let rise = t * sinc_of_sq((t * t).scaled(half_sq));
                 let rise = rise / J::fixed(whole);
@@ -209,7 +209,7 @@ impl<T: Real> Arc<T> {
                     + to.map(|x| along.scaled(x))
                     + bulge.map(|x| up.scaled(x))
             }
-            Form::Sector { centre, spoke, turn, angle_sq } => {
+            ArcForm::Sector { centre, spoke, turn, angle_sq } => {
                 let q = (t * t).scaled(angle_sq);
                 let (c, s) = (cos_of_sq(q), t * sinc_of_sq(q));
                 // Less than the spoke by 1 - c, so that the start is exact.
@@ -218,7 +218,7 @@ impl<T: Real> Arc<T> {
                     + spoke.map(|x| lost.scaled(x))
                     + turn.map(|x| s.scaled(x))
             }
-            Form::Quarters { centre, spoke, side, quarters } => {
+            ArcForm::Quarters { centre, spoke, side, quarters } => {
                 let turns = t * quarters;
                 let whole = turns.re().round();
                 let angle = (turns - whole) * FRAC_PI_2;
@@ -238,9 +238,9 @@ impl<T: Real> Arc<T> {
     pub fn angle(&self) -> T {
         let root = |q: T| if q.re() > 0.0 { q.sqrt() } else { T::zero() };
         match self.form {
-            Form::Chord { half_sq, .. } => root(half_sq) * 2.0,
-            Form::Sector { angle_sq, .. } => root(angle_sq),
-            Form::Quarters { quarters, .. } => T::from(quarters * FRAC_PI_2),
+            ArcForm::Chord { half_sq, .. } => root(half_sq) * 2.0,
+            ArcForm::Sector { angle_sq, .. } => root(angle_sq),
+            ArcForm::Quarters { quarters, .. } => T::from(quarters * FRAC_PI_2),
         }
     }
 }
@@ -265,7 +265,7 @@ fn finite<T: Real>(points: [Vec3<T>; 3]) -> Result<(), ArcError> {
     }
 }
 
-impl<T: Real> Curve<T> for Arc<T> {
+impl<T: Real> Curve<T> for CircularArc<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         curve_jet_of!(self, Self::at, t, order)
     }

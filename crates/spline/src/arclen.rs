@@ -49,9 +49,9 @@ fn pieces<T: Real>(curve: &dyn Curve<T>, a: T, b: T) -> Vec<T> {
 /// # Example
 /// ```
 /// use moldloft_num::Vec3;
-/// use moldloft_spline::{Arc, arclen};
+/// use moldloft_spline::{CircularArc, arclen};
 /// let p = [[1., 0., 0.], [0., 0., 0.], [0., 1., 0.]].map(Vec3::from);
-/// let circle = Arc::<f64>::circle(p[0], p[1], p[2]).unwrap();
+/// let circle = CircularArc::<f64>::circle(p[0], p[1], p[2]).unwrap();
 /// assert!((arclen(&circle, 0.25, 0.75, 1e-12) - std::f64::consts::PI).abs() < 1e-12);
 /// ```
 pub fn arclen<T: Real>(curve: &dyn Curve<T>, a: T, b: T, accuracy: f64) -> T {

@@ -115,11 +115,12 @@ pub fn geometric<T: Real>(start: T, end: T, first: T, n: usize) -> Result<T> {
     if cells == 1 {
         return uniform(start, end, n);
     }
-    let growth = Growth::solve(length / first, cells).ok_or(DistributionError::Unreachable {
-        spacings: [first.re(), 0.0],
-        length: length.re(),
-        cells,
-    })?;
+    let growth =
+        GeometricGrowth::solve(length / first, cells).ok_or(DistributionError::Unreachable {
+            spacings: [first.re(), 0.0],
+            length: length.re(),
+            cells,
+        })?;
     let mut all = fill(start, end, n, |i, _| {
         let share = growth.sum(i) * first / length;
         (share, -share + 1.0)
@@ -482,11 +483,11 @@ fn growth_sum<T: Real>(r: T, m: usize) -> T {
 }
 
 /// The growth of a geometric progression of cells.
-struct Growth<T> {
+struct GeometricGrowth<T> {
     r: T,
 }
 
-impl<T: Real> Growth<T> {
+impl<T: Real> GeometricGrowth<T> {
     /// The growth at which `cells` cells add up to `total` times the first.
     fn solve(total: T, cells: usize) -> Option<Self> {
         let sum = total.re();

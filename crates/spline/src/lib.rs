@@ -42,7 +42,7 @@ mod surface;
 mod surface_grid;
 mod tensor;
 
-pub use arc::{Arc, ArcError};
+pub use arc::{ArcError, CircularArc};
 pub use arclen::{BeyondEnd, arclen, curve_integral, inv_arclen};
 pub use basis::Basis;
 pub use by_arclen::ByArclen;

@@ -4,14 +4,14 @@ use moldloft_num::Vec3;
 use std::fmt::Debug;
 
 /// What has a distance from another of its type.
-pub trait Distance: Copy + Debug {
+pub trait AbsoluteDistance: Copy + Debug {
     /// The absolute distance.
     fn distance_to(self, other: Self) -> f64;
     /// The distance from zero.
     fn size(self) -> f64;
 }
 
-impl Distance for f64 {
+impl AbsoluteDistance for f64 {
     fn distance_to(self, other: f64) -> f64 {
         (self - other).abs()
     }
@@ -20,7 +20,7 @@ impl Distance for f64 {
     }
 }
 
-impl Distance for Vec3<f64> {
+impl AbsoluteDistance for Vec3<f64> {
     fn distance_to(self, other: Vec3<f64>) -> f64 {
         self.distance(other)
     }
@@ -34,7 +34,7 @@ impl Distance for Vec3<f64> {
 /// # Panics
 /// When it is not, or when one of the two is not a number.
 #[track_caller]
-pub fn close<T: Distance>(found: T, exact: T, accuracy: f64) {
+pub fn close<T: AbsoluteDistance>(found: T, exact: T, accuracy: f64) {
     let off = found.distance_to(exact);
     assert!(off <= accuracy, "found {found:?}, expected {exact:?}: off by {off:e} > {accuracy:e}");
 }
@@ -44,7 +44,7 @@ pub fn close<T: Distance>(found: T, exact: T, accuracy: f64) {
 /// # Panics
 /// When it is not, or when one of the two is not a number.
 #[track_caller]
-pub fn close_relative<T: Distance>(found: T, exact: T, accuracy: f64) {
+pub fn close_relative<T: AbsoluteDistance>(found: T, exact: T, accuracy: f64) {
     close(found, exact, accuracy * exact.size());
 }
 

@@ -14,7 +14,7 @@ mod compare;
 mod differences;
 mod random;
 
-pub use compare::{Distance, close, close_relative};
+pub use compare::{AbsoluteDistance, close, close_relative};
 pub use differences::{ridders, ridders_vector, ridders_vectors};
 pub use random::{Lcg, Random, Xorshift};
 

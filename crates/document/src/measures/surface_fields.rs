@@ -2,7 +2,7 @@
 
 use crate::Document;
 use moldloft_diag::Diagnostic;
-use moldloft_fair::surface::{self, Field, SurfaceAnalysis};
+use moldloft_fair::surface::{self, PointField, SurfaceAnalysis};
 use moldloft_num::Vec3;
 use rayon::prelude::*;
 
@@ -12,7 +12,7 @@ pub struct PatchAnalysis {
     /// The patch's name.
     pub patch: String,
     /// Curvatures, reflections and normals, and of a plane patch the metric of its grid.
-    pub fields: Vec<Field>,
+    pub fields: Vec<PointField>,
 }
 
 /// A patch is plane when no point is farther from its plane than this share of its extent.
@@ -52,7 +52,7 @@ impl Document {
     }
 }
 
-fn metric(grid: &[Vec3], nu: usize, nv: usize) -> Option<Field> {
+fn metric(grid: &[Vec3], nu: usize, nv: usize) -> Option<PointField> {
     let range = |f: fn(&Vec3) -> f64| {
         let all = grid.iter().map(f);
         let (low, high) =
@@ -64,5 +64,5 @@ fn metric(grid: &[Vec3], nu: usize, nv: usize) -> Option<Field> {
         return None;
     }
     let values = surface::eta_y(grid, nu, nv).ok()?;
-    Some(Field { name: "eta_y", components: 1, values })
+    Some(PointField { name: "eta_y", components: 1, values })
 }

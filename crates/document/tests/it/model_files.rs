@@ -1,7 +1,7 @@
 //! Model files: read, built, edited, converted to programs and back; and what is wrong with bad ones.
 
 use moldloft_diag::Severity;
-use moldloft_document::{Document, Format, NoFiles, ReadText, TextReadError, World, registry};
+use moldloft_document::{Document, ModelFormat, NoFiles, ReadText, TextReadError, World, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::{Attributes, Value};
 use std::f64::consts::PI;
@@ -174,22 +174,22 @@ fn parents_may_follow_their_children() {
     let mut document = open(text);
     assert!(document.diagnostics().is_empty(), "{:?}", document.diagnostics());
     assert_eq!(number(&mut document, "l(.5).x"), 1.0);
-    let program = document.convert(Format::Sdl).unwrap();
+    let program = document.convert(ModelFormat::Sdl).unwrap();
     assert!(!open_sdl(&program).has_errors());
 }
 
 #[test]
 fn table_2_there_and_back() {
     let document = open(HULL);
-    let program = document.convert(Format::Sdl).unwrap();
+    let program = document.convert(ModelFormat::Sdl).unwrap();
     let converted = open_sdl(&program);
     assert!(converted.diagnostics().is_empty(), "{program}\n{:?}", converted.diagnostics());
     assert!(program.contains("BCurve MC1({P11, P12, P13, P14}, degree = 2, divisions = 10);"));
     assert!(program.contains("# the hull of Table 2\n"));
     assert_eq!(converted.symmetry(), "y");
     assert_eq!(objects(&document), objects(&converted));
-    let back = converted.convert(Format::ModelFile).unwrap();
-    assert_eq!(back, document.convert(Format::ModelFile).unwrap());
+    let back = converted.convert(ModelFormat::ModelFile).unwrap();
+    assert_eq!(back, document.convert(ModelFormat::ModelFile).unwrap());
     assert_eq!(objects(&open(&back)), objects(&document));
 }
 
@@ -198,22 +198,22 @@ fn everything_there_and_back() {
     let document = open(EVERYTHING);
     let all = document.diagnostics();
     assert!(all.len() == 1 && all[0].severity == Severity::Warning, "{all:?}");
-    let program = document.convert(Format::Sdl).unwrap();
+    let program = document.convert(ModelFormat::Sdl).unwrap();
     let converted = open_sdl(&program);
     assert!(converted.diagnostics().is_empty(), "{program}\n{:?}", converted.diagnostics());
     assert_eq!(converted.symmetry(), "xy");
     assert_eq!(objects(&document), objects(&converted), "{program}");
-    let back = converted.convert(Format::ModelFile).unwrap();
+    let back = converted.convert(ModelFormat::ModelFile).unwrap();
     // Attributes, numbers and comments: all is as it was, down to the text.
-    assert_eq!(back, document.convert(Format::ModelFile).unwrap(), "{program}");
+    assert_eq!(back, document.convert(ModelFormat::ModelFile).unwrap(), "{program}");
     assert!(back.contains("SolveSet S1 3 1 / { P-1\n  P.2 } 0.50;"));
-    assert_eq!(open(&back).convert(Format::Sdl).unwrap(), program);
+    assert_eq!(open(&back).convert(ModelFormat::Sdl).unwrap(), program);
     let turned = program.replace("\"xy\"", "\"x\"").replace("\"m kg\"", "\"ft lb\"");
-    let file = open_sdl(&turned).convert(Format::ModelFile).unwrap();
+    let file = open_sdl(&turned).convert(ModelFormat::ModelFile).unwrap();
     assert!(file.contains("Units: ft lb\nSymmetry: x\n"), "{file}");
     assert_eq!(open(&file).symmetry(), "x");
     // The program is canonical but for long lines.
-    assert_eq!(converted.convert(Format::Sdl).unwrap(), program);
+    assert_eq!(converted.convert(ModelFormat::Sdl).unwrap(), program);
 }
 
 #[test]
@@ -230,10 +230,10 @@ fn any_name_may_stand_in_a_program() {
     text += &format!("BCurve c 11 1 8x4 / * 1 {{ {} }};\nEndModel;\n", names.join(" "));
     let mut document = open(&text);
     assert!(document.diagnostics().is_empty(), "{:?}", document.diagnostics());
-    let program = document.convert(Format::Sdl).unwrap();
+    let program = document.convert(ModelFormat::Sdl).unwrap();
     let converted = open_sdl(&program);
     assert!(converted.diagnostics().is_empty(), "{program}\n{:?}", converted.diagnostics());
-    assert_eq!(converted.convert(Format::ModelFile).unwrap(), text, "{program}");
+    assert_eq!(converted.convert(ModelFormat::ModelFile).unwrap(), text, "{program}");
     assert_eq!(
         number(&mut document, "a_x2d_b.x"),
         names.iter().position(|n| *n == "a-b").unwrap() as f64
@@ -250,8 +250,8 @@ fn angles_survive() {
             "MultiSurf 0.35\nAbsPoint A 14 1 1 0 0;\nAbsPoint B 14 1 0 0 0;\nAbsPoint C 14 1 0 0 1;\n\
              Line l 11 1 8 * A C;\nLine z 11 1 8 * B C;\nRevSurf r 10 1 8 1 8 1 0 * l z 0 {angle};\nEndModel;\n"
         );
-        let back = open_sdl(&open(&text).convert(Format::Sdl).unwrap());
-        assert_eq!(back.convert(Format::ModelFile).unwrap(), text);
+        let back = open_sdl(&open(&text).convert(ModelFormat::Sdl).unwrap());
+        assert_eq!(back.convert(ModelFormat::ModelFile).unwrap(), text);
     }
 }
 
@@ -261,7 +261,7 @@ fn programs_become_model_files() {
                    BCurve c({rib[1], rib[3], rib[5]}, degree = 2);\nMirrPoint m(rib[2], \"y=0\", layer = 3);\n";
     let document = open_sdl(program);
     assert!(!document.has_errors(), "{:?}", document.diagnostics());
-    let file = document.convert(Format::ModelFile).unwrap();
+    let file = document.convert(ModelFormat::ModelFile).unwrap();
     assert_eq!(
         file,
         "MultiSurf 1.44\nBeginModel;\nRem five ribs\nAbsPoint rib[1] 14 1 / 1 0.5 0;\nAbsPoint rib[2] 14 1 / 2 0.5 0;\n\
@@ -272,9 +272,9 @@ fn programs_become_model_files() {
 
     // What model files have no words for is named.
     let anonymous = open_sdl("AbsPoint A(0, 0, 0);\nLine l(A, {1, 2, 3});\n");
-    let errors = anonymous.convert(Format::ModelFile).unwrap_err();
+    let errors = anonymous.convert(ModelFormat::ModelFile).unwrap_err();
     assert_eq!((&*errors[0].id, errors[0].object.as_deref()), ("not-in-model-files", Some("l")));
-    let errors = open_sdl("AbsPoint A(0, 0);").convert(Format::ModelFile).unwrap_err();
+    let errors = open_sdl("AbsPoint A(0, 0);").convert(ModelFormat::ModelFile).unwrap_err();
     assert_eq!(errors.len(), 1);
 }
 
@@ -350,8 +350,8 @@ fn what_is_built_on_unknown_entities_is_told_once() {
     assert!(found[1].2.contains("a, b, c"));
     // It is converted all the same, and comes back as it was.
     let document = open(text);
-    let program = document.convert(Format::Sdl).unwrap();
-    assert_eq!(open_sdl(&program).convert(Format::ModelFile).unwrap(), text);
+    let program = document.convert(ModelFormat::Sdl).unwrap();
+    assert_eq!(open_sdl(&program).convert(ModelFormat::ModelFile).unwrap(), text);
 }
 
 struct Bytes(&'static [u8]);
@@ -414,7 +414,7 @@ fn damaged_files() {
             text.replace_range(range, &new);
         }
         let document = open(&text);
-        let Ok(program) = document.convert(Format::Sdl) else { continue };
+        let Ok(program) = document.convert(ModelFormat::Sdl) else { continue };
         converted += 1;
         let again = open_sdl(&program);
         let told = again.diagnostics();
@@ -423,11 +423,11 @@ fn damaged_files() {
         };
         let ours: Vec<_> = told.iter().filter(|d| d.is_error() && !built(d)).collect();
         assert!(ours.is_empty(), "{text}\n{program}\n{ours:#?}");
-        let back = again.convert(Format::ModelFile).unwrap();
+        let back = again.convert(ModelFormat::ModelFile).unwrap();
         let reread = open(&back);
         assert_eq!(objects(&reread), objects(&document), "{text}\n{back}");
-        let second = open_sdl(&reread.convert(Format::Sdl).unwrap());
-        assert_eq!(second.convert(Format::ModelFile).unwrap(), back);
+        let second = open_sdl(&reread.convert(ModelFormat::Sdl).unwrap());
+        assert_eq!(second.convert(ModelFormat::ModelFile).unwrap(), back);
     }
     assert!(converted > rounds / 8, "{converted} of {rounds}");
 }
@@ -489,7 +489,7 @@ fn variables_and_formulas_are_computed() {
     assert_eq!(refused[0].id, "not-a-literal");
     // The other form says the same.
     document.set(&[("beam".into(), 3.0)]).unwrap();
-    let program = document.convert(Format::Sdl).unwrap();
+    let program = document.convert(ModelFormat::Sdl).unwrap();
     assert!(program.contains("param float beam = 3 in [1, 5];\n"), "{program}");
     assert!(program.contains("float half = beam/2;\n"), "{program}");
     let mut converted = open_sdl(&program);

@@ -1,7 +1,7 @@
 //! Relabels: the published curve is C(t) = c(R(t)), and everything that asks it follows.
 
 use crate::common::{ids, number, open, sound, vector};
-use moldloft_document::{Document, Format, NoFiles, registry};
+use moldloft_document::{Document, ModelFormat, NoFiles, registry};
 use moldloft_num::Vec3;
 use std::f64::consts::PI;
 
@@ -219,15 +219,15 @@ fn model_files_have_the_column() {
     let half = 0.5 * 0.25 + 0.25;
     assert!(at("l(0.5)", &mut document).distance(Vec3::of(0.0, 0.0, 2.5)) < 1e-15);
     assert!((number(&mut document, "bend(0.5)") - half).abs() < 1e-16);
-    let program = document.convert(Format::Sdl).unwrap();
+    let program = document.convert(ModelFormat::Sdl).unwrap();
     assert!(program.contains("relabel = cosine"), "{program}");
     let mut converted = crate::common::sound(&program);
     for text in ["c(0.3)", "S(0.3, 0.2)", "T(0.3, 0.2)", "U(0.3, 0.2)", "k(0.2)"] {
         assert_eq!(at(text, &mut document), at(text, &mut converted), "{text}");
     }
     assert_ne!(at("T(0.3, 0.2)", &mut document), at("U(0.3, 0.2)", &mut document));
-    let back = converted.convert(Format::ModelFile).unwrap();
-    assert_eq!(back, open_file(&back).convert(Format::ModelFile).unwrap());
+    let back = converted.convert(ModelFormat::ModelFile).unwrap();
+    assert_eq!(back, open_file(&back).convert(ModelFormat::ModelFile).unwrap());
     assert!(back.contains("CLoftSurf T 10 1 8x1 8x1 0 / cosine 3 { c l };"), "{back}");
     // The law is a number of the model like any other.
     document.set(&[("bend.values[2]".into(), 0.5)]).unwrap();

@@ -1,8 +1,8 @@
 //! Sides of faces cut into runs between common vertices; runs that are one become one edge.
 
 use super::faces::{not_fitted, plane};
-use crate::Failure;
-use moldloft_brep::{Brep, Coedge, Edge, Face, SurfaceShape};
+use crate::ExportFailure;
+use moldloft_brep::{Brep, BrepEdge, BrepFace, Coedge, SurfaceShape};
 use moldloft_num::{Order, Rational, Vec3};
 use moldloft_panel::{FaceOutline, OutlineCurve, OutlineSide};
 use moldloft_picture::PALETTE;
@@ -111,14 +111,14 @@ impl<'a> Sewing<'a> {
         }
     }
 
-    pub fn finish(mut self) -> Result<Brep, Failure> {
+    pub fn finish(mut self) -> Result<Brep, ExportFailure> {
         for face in 0..self.outlines.len() {
             self.face(face)?;
         }
         Ok(self.brep)
     }
 
-    fn face(&mut self, face: usize) -> Result<(), Failure> {
+    fn face(&mut self, face: usize) -> Result<(), ExportFailure> {
         let outline = &self.outlines[face];
         let mut loops = Vec::new();
         for (l, cycle) in self.loops[face].clone().into_iter().enumerate() {
@@ -150,7 +150,7 @@ impl<'a> Sewing<'a> {
             loops.iter_mut().flatten().for_each(|side| side.trace = None);
         }
         self.brep.gap = self.brep.gap.max(surface.error);
-        self.brep.faces.push(Face {
+        self.brep.faces.push(BrepFace {
             name: outline.name.to_string(),
             colour: Some(PALETTE[(outline.colour & 15) as usize]),
             layers: outline.tags.iter().map(|t| t.to_string()).collect(),
@@ -180,7 +180,7 @@ impl<'a> Sewing<'a> {
     }
 
     /// The sides of edges that a side of an outline consists of, by increasing parameter.
-    fn side(&mut self, side: usize) -> Result<Vec<Coedge>, Failure> {
+    fn side(&mut self, side: usize) -> Result<Vec<Coedge>, ExportFailure> {
         let vertices = &self.sides[side].side.vertices;
         let mut runs = Vec::new();
         let mut from = 0;
@@ -196,7 +196,7 @@ impl<'a> Sewing<'a> {
     }
 
     /// The curve of a side, and its trace where it is a snake; made once.
-    fn curve(&mut self, side: usize) -> Result<(), Failure> {
+    fn curve(&mut self, side: usize) -> Result<(), ExportFailure> {
         if self.sides[side].curve.is_some() {
             return Ok(());
         }
@@ -218,7 +218,7 @@ impl<'a> Sewing<'a> {
     }
 
     /// The edge of a run, new or known.
-    fn edge(&mut self, run: &SideInterval) -> Result<Coedge, Failure> {
+    fn edge(&mut self, run: &SideInterval) -> Result<Coedge, ExportFailure> {
         self.curve(run.side)?;
         let sided = &self.sides[run.side];
         let surface = &self.surfaces[sided.face];
@@ -256,7 +256,7 @@ impl<'a> Sewing<'a> {
         let far = |k: usize, t: f64| curve.at([t]).distance(self.brep.vertices[ends[k]]);
         self.brep.gap = self.brep.gap.max(far(0, 0.0)).max(far(1, 1.0)).max(error);
         let edge = self.brep.edges.len();
-        self.brep.edges.push(Edge { ends, curve });
+        self.brep.edges.push(BrepEdge { ends, curve });
         self.edges.entry(key).or_default().push(edge);
         Ok(Coedge { edge, forward: true, trace: Some(trace), alike: true })
     }

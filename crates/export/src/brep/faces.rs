@@ -1,6 +1,6 @@
 //! The surfaces of faces as NURBS, each once, and planes among them.
 
-use crate::Failure;
+use crate::ExportFailure;
 use moldloft_brep::SurfaceShape;
 use moldloft_diag::Diagnostic;
 use moldloft_num::Vec3;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 const IN_PLANE: f64 = 1e-12;
 
 /// The NURBS of each outline's surface.
-pub fn all(outlines: &[FaceOutline], accuracy: f64) -> Result<Vec<Arc<Nurbs<2>>>, Failure> {
+pub fn all(outlines: &[FaceOutline], accuracy: f64) -> Result<Vec<Arc<Nurbs<2>>>, ExportFailure> {
     let options = FitOptions::within(accuracy);
     let mut made: Vec<Arc<Nurbs<2>>> = Vec::with_capacity(outlines.len());
     for (k, outline) in outlines.iter().enumerate() {
@@ -29,7 +29,7 @@ pub fn all(outlines: &[FaceOutline], accuracy: f64) -> Result<Vec<Arc<Nurbs<2>>>
 }
 
 /// The fault of a shape without a fit.
-pub fn not_fitted(name: &str, error: &NotFitted, accuracy: f64) -> Failure {
+pub fn not_fitted(name: &str, error: &NotFitted, accuracy: f64) -> ExportFailure {
     Diagnostic::error("not-fitted", format!("no B-spline comes within {accuracy:.2e} of `{name}`"))
         .found(error.to_string())
         .help("ask for less with a larger tolerance")

@@ -11,7 +11,7 @@ mod parents;
 mod polyhedra;
 mod wires;
 
-use crate::{Failure, length_unit};
+use crate::{ExportFailure, length_unit};
 use edges::Sewing;
 use moldloft_brep::{Brep, Part, Shell};
 use moldloft_diag::Diagnostic;
@@ -29,7 +29,11 @@ const SIDE: f64 = 1e-6;
 ///
 /// # Errors
 /// Panels that cannot be made; an accuracy that is not positive; surfaces that no fit comes near enough to.
-pub fn brep(document: &mut Document, accuracy: Option<f64>, stem: &str) -> Result<Brep, Failure> {
+pub fn brep(
+    document: &mut Document,
+    accuracy: Option<f64>,
+    stem: &str,
+) -> Result<Brep, ExportFailure> {
     let panelled = document.panelled();
     let size = match &panelled {
         Ok(p) if p.mesh.bounds().diagonal() > 0.0 => p.mesh.bounds().diagonal(),
@@ -69,7 +73,7 @@ pub fn brep(document: &mut Document, accuracy: Option<f64>, stem: &str) -> Resul
 
 /// Refuses faces of a half that reach to both sides of its plane of symmetry, or lie on both: their images would
 /// double them.
-fn check_side(brep: &Brep, axis: usize, letter: char, size: f64) -> Result<(), Failure> {
+fn check_side(brep: &Brep, axis: usize, letter: char, size: f64) -> Result<(), ExportFailure> {
     let (mut low, mut high) = (None, None);
     for face in &brep.faces {
         for side in face.loops.iter().flatten() {

@@ -1,7 +1,7 @@
 //! Bodies of triangles as faces: triangles that lie in one plane and hang together are one plane face.
 
-use crate::Failure;
-use moldloft_brep::{Brep, Coedge, Edge, Face, SurfaceShape};
+use crate::ExportFailure;
+use moldloft_brep::{Brep, BrepEdge, BrepFace, Coedge, SurfaceShape};
 use moldloft_diag::Diagnostic;
 use moldloft_mesh::Mesh;
 use moldloft_num::{Pace, Vec3};
@@ -19,7 +19,7 @@ const MOST_ALONE: usize = 64;
 ///
 /// # Errors
 /// A body with curved faces.
-pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Failure> {
+pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), ExportFailure> {
     let mut triangles: Vec<([u32; 3], usize)> = Vec::new();
     let prefix = format!("{name}.");
     for (p, patch) in mesh.patches().iter().enumerate() {
@@ -163,7 +163,7 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Fa
                 let [a, b] = ends.map(|v| base(v, brep, &mut vertices));
                 let edge = *edges.entry((a.min(b), a.max(b))).or_insert_with(|| {
                     let [p, q] = [a.min(b), a.max(b)].map(|v| brep.vertices[v]);
-                    brep.edges.push(Edge { ends: [a.min(b), a.max(b)], curve: segment(p, q) });
+                    brep.edges.push(BrepEdge { ends: [a.min(b), a.max(b)], curve: segment(p, q) });
                     brep.edges.len() - 1
                 });
                 sides.push(Coedge { edge, forward: a < b, trace: None, alike: true });
@@ -173,7 +173,7 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Fa
         let Some((_, first)) = loops.first() else { continue };
         let axis = (at(first[1]) - at(first[0])).normalized().unwrap_or_default();
         let axis = (axis - *normal * axis.dot(*normal)).normalized().unwrap_or_default();
-        brep.faces.push(Face {
+        brep.faces.push(BrepFace {
             name: patch.name.clone(),
             colour: patch.colour.map(|c| PALETTE[usize::from(c & 15)]),
             layers: patch.tags.clone(),

@@ -1,7 +1,7 @@
 //! Shown curves of models that show no surface.
 
 use super::faces::not_fitted;
-use crate::Failure;
+use crate::ExportFailure;
 use moldloft_brep::{Brep, Part, Wire};
 use moldloft_document::Document;
 use moldloft_picture::PALETTE;
@@ -9,7 +9,7 @@ use moldloft_registry::Value;
 use moldloft_spline::nurbs::{FitOptions, of_curve};
 
 /// Adds the shown curves as a part, when there are no faces.
-pub fn add(brep: &mut Brep, document: &Document, accuracy: f64) -> Result<(), Failure> {
+pub fn add(brep: &mut Brep, document: &Document, accuracy: f64) -> Result<(), ExportFailure> {
     if !brep.faces.is_empty() {
         return Ok(());
     }

@@ -1,7 +1,7 @@
 //! AQWA's geometry decks, always cut at the water: the code takes no panel across it.
 
 use super::Format;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::aqwa;
 use moldloft_io::vtk::NamedFile;
 
@@ -13,7 +13,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANEL_CODE
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     export.options.immersed = true;
     let (mesh, options) = export.panels_of_code()?;
     Ok(export.main_file(aqwa::write(&mesh, export.stem(), options)?))

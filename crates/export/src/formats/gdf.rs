@@ -1,7 +1,7 @@
 //! WAMIT's low-order panels.
 
 use super::Format;
-use crate::{Export, Failure, GRAVITY};
+use crate::{Export, ExportFailure, GRAVITY};
 use moldloft_io::gdf::{self, Header};
 use moldloft_io::vtk::NamedFile;
 
@@ -14,7 +14,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANEL_CODE
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let (mesh, options) = export.panels_of_code()?;
     let header = Header {
         title: export.stem().into(),

@@ -2,7 +2,7 @@
 
 use super::{Format, Holds, Lids, SymmetryPlanes};
 use crate::spline_patches::spline_patches;
-use crate::{Export, Failure, GRAVITY};
+use crate::{Export, ExportFailure, GRAVITY};
 use moldloft_io::gdf::{self, Header};
 use moldloft_io::vtk::NamedFile;
 
@@ -18,7 +18,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let (tolerance, lids) = (export.options.tolerance, export.options.lids);
     let patches = spline_patches(export.document, tolerance, lids)?;
     let symmetry = export.document.symmetry();

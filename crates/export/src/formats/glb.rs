@@ -1,7 +1,7 @@
 //! Panels with names and colours as binary glTF.
 
 use super::Format;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::gltf;
 use moldloft_io::vtk::NamedFile;
 use moldloft_picture::patch_colour;
@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let mesh = export.panels()?;
     let bytes = gltf::write(&mesh, export.stem(), export.metres(), patch_colour)?;
     Ok(export.main_file(bytes))

@@ -1,7 +1,7 @@
 //! HAMS's panels, and the lids that it reads from a file of their own.
 
 use super::{Format, Lids};
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{PanelFileOptions, hams};
 
@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANEL_CODE
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let (mesh, options) = export.panels_of_code()?;
     let hull = PanelFileOptions { lids: false, ..options };
     let mut files = export.main_file(hams::write(&mesh, hull)?);

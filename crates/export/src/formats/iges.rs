@@ -2,8 +2,8 @@
 
 use super::{Format, Holds};
 use crate::brep::{brep, metres};
-use crate::{Export, Failure};
-use moldloft_io::iges::{self, Header};
+use crate::{Export, ExportFailure};
+use moldloft_io::iges::{self, IgesHeader};
 use moldloft_io::vtk::NamedFile;
 
 pub const FORMAT: Format = Format {
@@ -18,10 +18,10 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let stem = export.stem().to_string();
     let brep = brep(export.document, export.options.tolerance, &stem)?;
     let metres = metres(export.document);
-    let header = Header { title: &stem, metres, version: env!("CARGO_PKG_VERSION") };
+    let header = IgesHeader { title: &stem, metres, version: env!("CARGO_PKG_VERSION") };
     Ok(export.main_file(iges::write(&brep, &header)?))
 }

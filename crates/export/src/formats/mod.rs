@@ -31,7 +31,7 @@ mod vtp;
 mod vts;
 
 use crate::export::FileName;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_diag::Diagnostic;
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{StructuredGrid, WriteError};
@@ -91,7 +91,7 @@ pub struct Format {
     /// The main file is text.
     pub text: bool,
     /// Makes the files. The main one is named [`Export::main`].
-    pub write: fn(&mut Export<'_>) -> Result<Vec<NamedFile>, Failure>,
+    pub write: fn(&mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure>,
     /// Makes the files of grids of points, where the format holds such.
     pub grids: Option<Encoder<[StructuredGrid]>>,
     /// Makes the files of the cells of solids, where the format holds such.

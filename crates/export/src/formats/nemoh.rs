@@ -1,7 +1,7 @@
 //! Nemoh's panels.
 
 use super::{Format, SymmetryPlanes};
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::nemoh;
 use moldloft_io::vtk::NamedFile;
 
@@ -16,7 +16,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANEL_CODE
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let (mesh, options) = export.panels_of_code()?;
     Ok(export.main_file(nemoh::write(&mesh, options)?))
 }

@@ -1,7 +1,7 @@
 //! Panels, wires and points as Wavefront OBJ.
 
 use super::{Format, Holds};
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::obj;
 use moldloft_io::vtk::NamedFile;
 
@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let (mesh, lines) = (export.panels()?, export.lines_and_points());
     Ok(export.main_file(obj::write_with(&mesh, &lines)?))
 }

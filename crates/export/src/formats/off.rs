@@ -1,7 +1,7 @@
 //! Panels as OFF, which programs of computational geometry read.
 
 use super::Format;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::off;
 use moldloft_io::vtk::NamedFile;
 
@@ -14,7 +14,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let mesh = export.panels()?;
     Ok(export.main_file(off::write(&mesh)?))
 }

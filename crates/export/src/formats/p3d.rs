@@ -2,7 +2,7 @@
 
 use super::{Format, Holds};
 use crate::export::FileName;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::plot3d::{self, Variant, write_mesh};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{StructuredGrid, WriteError};
@@ -18,7 +18,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let mesh = export.panels()?;
     Ok(export.main_file(write_mesh(&mesh, Variant::USUAL)?))
 }

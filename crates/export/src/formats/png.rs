@@ -2,7 +2,7 @@
 
 use super::{Format, Holds};
 use crate::picture::picture;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::vtk::NamedFile;
 use moldloft_picture::Options;
 
@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let Options { width, height, .. } = Options::default();
     let bytes = picture(export.document, width, height)?;
     Ok(export.main_file(bytes))

@@ -1,8 +1,8 @@
 //! The model as a program.
 
 use super::{Format, Holds};
-use crate::{Export, Failure};
-use moldloft_document::Format as Form;
+use crate::{Export, ExportFailure};
+use moldloft_document::ModelFormat as Form;
 use moldloft_io::vtk::NamedFile;
 
 pub const FORMAT: Format = Format {
@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let text = export.document.convert(Form::Sdl)?;
     Ok(export.main_file(text.into_bytes()))
 }

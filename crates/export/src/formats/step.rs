@@ -2,8 +2,8 @@
 
 use super::{Format, Holds};
 use crate::brep::{brep, metres};
-use crate::{Export, Failure};
-use moldloft_io::step::{self, Header, Protocol};
+use crate::{Export, ExportFailure};
+use moldloft_io::step::{self, Protocol, StepHeader};
 use moldloft_io::vtk::NamedFile;
 
 pub const FORMAT: Format = Format {
@@ -18,10 +18,10 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let stem = export.stem().to_string();
     let brep = brep(export.document, export.options.tolerance, &stem)?;
-    let header = Header {
+    let header = StepHeader {
         title: &stem,
         metres: metres(export.document),
         version: env!("CARGO_PKG_VERSION"),

@@ -2,7 +2,7 @@
 
 use super::Format;
 use crate::export::FileName;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{StructuredGrid, WriteError, stl};
 
@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let mesh = export.panels()?;
     Ok(export.main_file(stl::write(&mesh, export.stem())?))
 }

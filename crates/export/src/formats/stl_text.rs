@@ -1,7 +1,7 @@
 //! Triangles as text STL, a solid for each patch.
 
 use super::Format;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::stl;
 use moldloft_io::vtk::NamedFile;
 
@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let mesh = export.panels()?;
     Ok(export.main_file(stl::write_text(&mesh)?))
 }

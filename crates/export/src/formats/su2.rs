@@ -1,7 +1,7 @@
 //! Panels as SU2's format, a marker for each patch.
 
 use super::Format;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::su2;
 use moldloft_io::vtk::NamedFile;
 
@@ -14,7 +14,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let mesh = export.panels()?;
     Ok(export.main_file(su2::write(&mesh)?))
 }

@@ -2,7 +2,7 @@
 
 use super::{Format, Holds};
 use crate::lines_drawing::lines_drawing;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::vtk::NamedFile;
 
 pub const FORMAT: Format = Format {
@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let stem = export.stem().to_owned();
     lines_drawing(export.document, &stem)
 }

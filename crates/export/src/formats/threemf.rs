@@ -2,7 +2,7 @@
 
 use super::Format;
 use crate::units::threemf_unit;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::threemf;
 use moldloft_io::vtk::NamedFile;
 use moldloft_picture::patch_colour;
@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let mesh = export.panels()?;
     let unit = threemf_unit(export.metres());
     Ok(export.main_file(threemf::write(&mesh, export.stem(), unit, patch_colour)?))

@@ -1,7 +1,7 @@
 //! Panels, wires and points as VTK polygons, with the fields of surfaces.
 
 use super::{Format, Holds};
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::vtk::{self, NamedFile};
 
 pub const FORMAT: Format = Format {
@@ -14,7 +14,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let (mesh, lines) = (export.panels()?, export.lines_and_points());
     let fields = export.surface_fields()?;
     Ok(export.main_file(vtk::polydata_with(&mesh, &lines, &fields)?))

@@ -2,7 +2,7 @@
 
 use super::{Format, Holds};
 use crate::export::FileName;
-use crate::{Export, Failure};
+use crate::{Export, ExportFailure};
 use moldloft_io::vtk::{self, NamedFile};
 use moldloft_io::{StructuredGrid, WriteError};
 
@@ -16,7 +16,7 @@ pub const FORMAT: Format = Format {
     ..Format::PANELS
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let (mesh, fields) = (export.panels()?, export.surface_fields()?);
     Ok(export.main.renamed("vts", vtk::structured_files(&mesh, export.stem(), &fields)?))
 }

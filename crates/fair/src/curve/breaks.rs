@@ -1,6 +1,6 @@
 //! Corners that are meant, and single points that are wrong: both stand out among the jumps.
 
-use crate::{Job, Jumps};
+use crate::{Job, KnotJumps};
 use moldloft_num::Vec3;
 
 /// How many times the median a jump must be to stand out.
@@ -58,7 +58,7 @@ impl std::fmt::Display for Finding {
 pub fn findings(job: &Job) -> Vec<Finding> {
     let space = &job.space;
     let n = space.count();
-    let jumps = Jumps::of(space);
+    let jumps = KnotJumps::of(space);
     let rows = job.own_rows(&jumps.rows);
     let relative = job.relative(&job.points);
     let mut left: Vec<Vec3<f64>> = (0..rows.len()).map(|k| rows.apply(k, &relative)).collect();
@@ -127,7 +127,7 @@ pub fn findings(job: &Job) -> Vec<Finding> {
 /// The jumps that a wrong point or a corner at control point `k` makes, by jump row.
 fn pattern(
     job: &Job,
-    jumps: &Jumps,
+    jumps: &KnotJumps,
     listeners: &crate::SparseRows,
     k: usize,
     corner: bool,

@@ -107,7 +107,7 @@ impl Chain {
 }
 
 /// The unknowns of a chain, in the order of [`Fit::pieces`].
-struct Fit<'a> {
+struct ChainFit<'a> {
     parts: &'a [ChainElement],
     points: &'a [P<f64>],
     /// Point and part of each residual.
@@ -117,7 +117,7 @@ struct Fit<'a> {
 const ROUNDS: usize = 80;
 const LAWSON: usize = 60;
 
-impl Fit<'_> {
+impl ChainFit<'_> {
     fn first(&self) -> P<f64> {
         self.points[self.parts[0].between[0]]
     }
@@ -308,7 +308,7 @@ pub(crate) fn chain(
         .iter()
         .map(|&(i, _)| if radii[i].is_finite() { (radii[i] / size).max(1e-12) } else { 1.0 })
         .collect();
-    let fit = Fit { parts: &parts, points: &scaled, rows };
+    let fit = ChainFit { parts: &parts, points: &scaled, rows };
     let mut weights: Vec<f64> = allowed.iter().map(|a| 1.0 / (a * a)).collect();
     let largest = |x: &[f64]| {
         let all = fit.residuals(x);

@@ -3,21 +3,21 @@
 //!
 //! minimise E(x) subject to |x(t_i) - p_i| <= a_i
 //!
-//! Knots stand at the data ([`Layout`]), so the spline through them is the start and any tolerance
+//! Knots stand at the data ([`InterpolationSpace`]), so the spline through them is the start and any tolerance
 //! can be kept, 0 too. The distance at a datum's parameter is at least its distance from the curve:
 //! what is kept is a proof about the data. The least energy sits at the edge of what is allowed,
 //! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
 
 use crate::curve::exact::exact;
-use crate::curve::job::End;
+use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
-    Found, Goal, GoalVariation, RegularizationPath, check_single, moved, rounding,
+    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, moved, rounding,
 };
 use crate::optimum::{Bounded, DataLimits, Parts, kept};
 use crate::{
-    Certificate, Condition, FairError, FoundArc, Job, Layout, Limit, Measure, ShapeConstraints,
-    SparseRows, shape,
+    Certificate, Condition, FairError, FoundArc, InterpolationSpace, Job, Limit, Measure,
+    ShapeConstraints, SparseRows, shape,
 };
 use moldloft_num::{Real, Vec3};
 
@@ -29,9 +29,9 @@ pub struct Data {
     /// How far the curve may be from each, and in which directions it may leave them.
     pub limit: Limit,
     /// Where they are on the curve, and the splines.
-    pub layout: Layout,
+    pub layout: InterpolationSpace,
     /// What open ends keep of the curve through the data.
-    pub ends: [End; 2],
+    pub ends: [EndContinuity; 2],
 }
 
 /// What is wanted.
@@ -164,7 +164,7 @@ impl Data {
         }
         if !layout.space.is_closed() {
             for (end, c) in self.ends.into_iter().zip([0, n - 1]) {
-                frozen[c] |= end != End::Free && end != End::Points(0);
+                frozen[c] |= end != EndContinuity::Free && end != EndContinuity::Points(0);
             }
         }
         for &m in &layout.marks {
@@ -240,7 +240,7 @@ impl Data {
         }
         let n = self.layout.space.count();
         let [first, last] = self.ends.map(|e| match e {
-            End::Points(k) => k.min(n),
+            EndContinuity::Points(k) => k.min(n),
             e => e.kept(),
         });
         (1..first).chain((n - last.max(1)..n - 1).filter(move |&c| c >= first.max(1))).collect()
@@ -282,7 +282,7 @@ impl Data {
     }
 }
 
-impl Layout {
+impl InterpolationSpace {
     /// The control point that a mark is.
     pub fn control_of(&self, site: usize) -> usize {
         let (columns, factors) = self.rows.row(site);
@@ -298,7 +298,7 @@ impl Layout {
 ///
 /// # Example
 /// ```
-/// use moldloft_fair::{Data, DataOptions, End, Goal, Layout, Limit, Measure, ParameterSpacing, fair_data,
+/// use moldloft_fair::{Data, DataOptions, EndContinuity, Goal, InterpolationSpace, Limit, Measure, ParameterSpacing, fair_data,
 ///     parameters};
 /// use moldloft_num::Vec3;
 /// // A straight line at uneven stations, with one reading off by 0.01.
@@ -308,8 +308,8 @@ impl Layout {
 /// let at = parameters(&points, ParameterSpacing::Along(Vec3::of(1.0, 0.0, 0.0)), false).unwrap();
 /// let data = Data {
 ///     limit: Limit::ball(points.len(), 0.02).unwrap(),
-///     layout: Layout::new(3, &at, &[], false).unwrap(),
-///     ends: [End::Free; 2],
+///     layout: InterpolationSpace::new(3, &at, &[], false).unwrap(),
+///     ends: [EndContinuity::Free; 2],
 ///     points,
 /// };
 /// let options = DataOptions::of(Measure::Variation, Goal::Fairest);
@@ -430,7 +430,7 @@ impl Data {
         }
         // The curve through the data bends no more often than itself.
         let value = crate::measure::value(&third, parts.norm, &job.points);
-        let mut kept = self.fit(Found::unmoved(&job.points, value, false), job);
+        let mut kept = self.fit(GoalOptimum::unmoved(&job.points, value, false), job);
         kept.least = plain.least;
         kept.bends = bends;
         Ok(kept)
@@ -606,7 +606,7 @@ impl Data {
         Ok(fit)
     }
 
-    fn fit(&self, found: Found, job: &Job) -> DataFit {
+    fn fit(&self, found: GoalOptimum, job: &Job) -> DataFit {
         DataFit {
             residuals: self.residuals(&found.optimum.points),
             used: found.used,
@@ -627,7 +627,7 @@ impl Data {
         options: &DataOptions,
         job: &Job,
         parts: &mut Parts<'_>,
-    ) -> Result<Found, FairError> {
+    ) -> Result<GoalOptimum, FairError> {
         let pull = self.pull(parts);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
         let still = self.limit.radii.iter().all(|&r| r == 0.0);
@@ -635,7 +635,7 @@ impl Data {
         let conditioned = !options.conditions.is_empty() || !options.shape.is_empty();
         if !conditioned && (still || fair) {
             let value = crate::measure::value(&rows, norm, &job.points);
-            return Ok(Found::unmoved(&job.points, value, still));
+            return Ok(GoalOptimum::unmoved(&job.points, value, still));
         }
         let path = RegularizationPath {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),

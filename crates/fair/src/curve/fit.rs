@@ -1,7 +1,7 @@
 //! Splines through or near data points: the step before fairing.
 
 use crate::error::check_finite;
-use crate::optimum::problem::{self, Bounds, Problem};
+use crate::optimum::problem::{self, NormBounds, Problem};
 use crate::{FairError, Motion, RowNorm, Space, SparseRows};
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::KnotVector;
@@ -261,7 +261,7 @@ pub fn fit(
             offsets: (0..weighted.len()).map(off).collect(),
             measure: weighted.clone(),
             norm: RowNorm::Square,
-            bounds: Bounds::none(),
+            bounds: NormBounds::none(),
             frozen: frozen.clone(),
             conditions: Vec::new(),
             halves: Vec::new(),
@@ -342,7 +342,7 @@ pub(crate) fn values(space: &Space, parameters: &[f64]) -> SparseRows {
 /// A sum of squares without limits.
 fn squares(measure: SparseRows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Problem {
     let reach = vec![f64::INFINITY; frozen.len()];
-    let bounds = Bounds::none();
+    let bounds = NormBounds::none();
     let conditions = Vec::new();
     Problem {
         dimension: 3,

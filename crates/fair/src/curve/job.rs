@@ -6,7 +6,7 @@ use moldloft_num::Vec3;
 
 /// What an open end keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum EndContinuity {
     /// Nothing.
     Free,
     /// Its position.
@@ -19,14 +19,14 @@ pub enum End {
     Points(usize),
 }
 
-impl End {
+impl EndContinuity {
     /// The end condition called `name` in the language.
     pub fn named(name: &str) -> Option<Self> {
         Some(match name {
-            "free" => End::Free,
-            "position" => End::Position,
-            "tangent" => End::Tangent,
-            "curvature" => End::Curvature,
+            "free" => EndContinuity::Free,
+            "position" => EndContinuity::Position,
+            "tangent" => EndContinuity::Tangent,
+            "curvature" => EndContinuity::Curvature,
             _ => return None,
         })
     }
@@ -34,10 +34,10 @@ impl End {
     /// How many derivatives are kept, position included.
     pub(crate) fn kept(self) -> usize {
         match self {
-            End::Free | End::Points(_) => 0,
-            End::Position => 1,
-            End::Tangent => 2,
-            End::Curvature => 3,
+            EndContinuity::Free | EndContinuity::Points(_) => 0,
+            EndContinuity::Position => 1,
+            EndContinuity::Tangent => 2,
+            EndContinuity::Curvature => 3,
         }
     }
 
@@ -45,8 +45,8 @@ impl End {
     /// points fix k - 1 derivatives; on other knots `degree` points hold the end's whole germ.
     pub(crate) fn points(self, clamped: bool, degree: usize) -> usize {
         match self {
-            End::Free => 0,
-            End::Points(k) => k,
+            EndContinuity::Free => 0,
+            EndContinuity::Points(k) => k,
             kept if clamped => kept.kept(),
             _ => degree,
         }
@@ -68,7 +68,7 @@ pub struct Job {
     /// across them.
     pub marks: Vec<usize>,
     /// What the ends of an open curve keep.
-    pub ends: [End; 2],
+    pub ends: [EndContinuity; 2],
 }
 
 impl Job {
@@ -79,7 +79,7 @@ impl Job {
     /// [`FairError`] when the points are too few or not finite or the tolerance is not a distance.
     pub fn new(space: Space, points: Vec<Vec3<f64>>, tolerance: f64) -> Result<Self, FairError> {
         let limit = Limit::ball(points.len(), tolerance)?;
-        let ends = [End::Points(2), End::Points(2)];
+        let ends = [EndContinuity::Points(2), EndContinuity::Points(2)];
         let job = Self { space, points, weights: None, limit, marks: Vec::new(), ends };
         job.check()?;
         Ok(job)

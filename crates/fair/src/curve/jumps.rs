@@ -5,7 +5,7 @@ use moldloft_num::Vec3;
 
 /// One row per simple interior knot, and the control point whose step removes the knot.
 #[derive(Clone, Debug)]
-pub struct Jumps {
+pub struct KnotJumps {
     /// Row k times the control points is the jump vector, made free of the parameter's unit: the
     /// jump of the derivative of order `degree`, times the local span length to that power. On
     /// uniform cubics it is the fourth difference 1, -4, 6, -4, 1.
@@ -16,7 +16,7 @@ pub struct Jumps {
     pub moved: Vec<usize>,
 }
 
-impl Jumps {
+impl KnotJumps {
     /// The jumps of a space.
     ///
     /// Basis function s is a divided difference of the truncated power, so at a simple knot m its
@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn uniform_cubic_jumps_are_fourth_differences() {
         for space in [Space::floating(3, 9).unwrap(), Space::closed(3, 9).unwrap()] {
-            let jumps = Jumps::of(&space);
+            let jumps = KnotJumps::of(&space);
             for k in 0..jumps.rows.len() {
                 let (columns, factors) = jumps.rows.row(k);
                 assert_eq!(factors, [1.0, -4.0, 6.0, -4.0, 1.0]);
@@ -83,7 +83,7 @@ mod tests {
             let mut d: Vec<Vec3<f64>> = (0..8)
                 .map(|_| Vec3::of(random.centred(), random.centred(), random.centred()))
                 .collect();
-            let jumps = Jumps::of(&space);
+            let jumps = KnotJumps::of(&space);
             for k in 0..jumps.rows.len() {
                 // d[j] has the middle knot u[j + 2].
                 let j = jumps.moved[k];
@@ -118,7 +118,7 @@ mod tests {
             }
             knots.extend(vec![7.0; degree + 1]);
             let space = Space::open(KnotVector::new(degree, knots).unwrap()).unwrap();
-            let jumps = Jumps::of(&space);
+            let jumps = KnotJumps::of(&space);
             assert_eq!(jumps.rows.len(), if degree > 1 { 5 } else { 6 });
             for (k, &m) in jumps.knots.iter().enumerate() {
                 let (m, t) = (m as isize, space.knots()[m]);

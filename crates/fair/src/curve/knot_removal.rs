@@ -2,7 +2,7 @@
 
 use crate::indexed_heap::IndexedHeap;
 use crate::optimum::certificate::ball_gap;
-use crate::{FairError, Job, Jumps, Measure, RowNorm, SparseRows, shape};
+use crate::{FairError, Job, KnotJumps, Measure, RowNorm, SparseRows, shape};
 use moldloft_num::{Real, Vec3};
 
 /// Which knot comes next.
@@ -177,7 +177,7 @@ impl PointSteps {
                 }
             }
             RemovalStep::Knot => {
-                let jumps = Jumps::of(&job.space);
+                let jumps = KnotJumps::of(&job.space);
                 let jump_rows = job.own_rows(&jumps.rows);
                 let mut of_point = vec![usize::MAX; n];
                 for (k, &j) in jumps.moved.iter().enumerate() {

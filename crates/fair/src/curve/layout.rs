@@ -12,7 +12,7 @@ use moldloft_spline::KnotVector;
 /// Knots stand at the sites but for those next to the ends ("not a knot", de Boor 1978), so that
 /// polynomials are reproduced at any spacing. At a break the spline is continuous and no more.
 #[derive(Clone, Debug)]
-pub struct Layout {
+pub struct InterpolationSpace {
     /// The splines.
     pub space: Space,
     /// Parameters of the sites: those of the data, and of points that complete short pieces.
@@ -39,7 +39,7 @@ pub struct Layout {
 /// curve when the second is the length of the list.
 type Share = (usize, usize, f64);
 
-impl Layout {
+impl InterpolationSpace {
     /// The splines for data at rising parameters in [0, 1] (of a closed curve less than 1), with
     /// `breaks` among them. A closed curve with breaks begins and ends at the first of them.
     ///

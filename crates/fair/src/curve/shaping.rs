@@ -10,8 +10,8 @@ use crate::curve::chain::{Chain, ChainElement, chain};
 use crate::curve::monotone::runs_of;
 use crate::curve::shape_condition::ShapeCondition;
 use crate::interrogate::shape;
-use crate::optimum::HalfSpace;
-use crate::{Condition, Data, FairError, Layout, Motion, Space};
+use crate::optimum::ControlInequality;
+use crate::{Condition, Data, FairError, InterpolationSpace, Motion, Space};
 use moldloft_num::Vec3;
 
 /// An arc that was found.
@@ -85,7 +85,7 @@ const UNCOUNTED: f64 = 5e-4;
 
 /// Control points on a line.
 #[derive(Clone, Debug)]
-struct Line {
+struct CollinearPoints {
     points: Vec<usize>,
     /// A direction that is known.
     along: Option<Vec3<f64>>,
@@ -99,7 +99,7 @@ struct Line {
 pub struct ShapeConstraints {
     plane: Option<CurvePlane>,
     signs: Vec<Signed>,
-    lines: Vec<Line>,
+    lines: Vec<CollinearPoints>,
     /// Control points of arcs.
     fixed: Vec<(usize, Vec3<f64>)>,
     /// Whose these are, one by one.
@@ -372,7 +372,7 @@ impl ShapeConstraints {
         }
         if at != data.layout.at {
             let marks = data.layout.break_data();
-            data.layout = Layout::new(data.layout.space.degree(), &at, &marks, false)?;
+            data.layout = InterpolationSpace::new(data.layout.space.degree(), &at, &marks, false)?;
         }
         let mut found: Vec<Option<(Chain, Vec<f64>)>> = Vec::new();
         for (group, made) in chains.iter().zip(placed_at) {
@@ -404,7 +404,7 @@ impl ShapeConstraints {
                     let (owner, between, _, along) = group[0];
                     let ends = between.map(|k| data.layout.at[k]);
                     let points = self.taken(&data.layout.space, ends);
-                    self.lines.push(Line { points, along, through: None, owner });
+                    self.lines.push(CollinearPoints { points, along, through: None, owner });
                 }
                 Some(made) => {
                     let plane = plane.expect("arcs are those of plane curves");
@@ -562,7 +562,7 @@ impl ShapeConstraints {
             let piece = chain.pieces[k];
             let along = Some(plane.turned(piece.at(0.0).1));
             let (owner, through) = (run.0, Some(plane.up(piece.start)));
-            self.lines.push(Line { points, along, through, owner });
+            self.lines.push(CollinearPoints { points, along, through, owner });
         }
         Ok(())
     }
@@ -669,7 +669,7 @@ impl ShapeConstraints {
         all
     }
 
-    fn line(&self, line: &Line, control: &[Vec3<f64>]) -> Vec<Condition> {
+    fn line(&self, line: &CollinearPoints, control: &[Vec3<f64>]) -> Vec<Condition> {
         let mut out = Vec::new();
         {
             let [a, .., b] = line.points[..] else {
@@ -725,13 +725,13 @@ impl ShapeConstraints {
         data: &Data,
         frozen: &[bool],
         control: &[Vec3<f64>],
-    ) -> Vec<HalfSpace> {
+    ) -> Vec<ControlInequality> {
         let space = &data.layout.space;
-        let mut out: Vec<HalfSpace> = self
+        let mut out: Vec<ControlInequality> = self
             .signs
             .iter()
             .flat_map(|sign| self.linear(space, sign, control))
-            .map(|(half, _)| HalfSpace { most: half.most - self.margin, ..half })
+            .map(|(half, _)| ControlInequality { most: half.most - self.margin, ..half })
             .chain(self.beyond(data))
             .collect();
         out.retain(|h| h.entries.iter().any(|(c, _)| !frozen[*c]));
@@ -739,12 +739,12 @@ impl ShapeConstraints {
     }
 
     /// The half-spaces of limits and sides.
-    fn beyond(&self, data: &Data) -> Vec<HalfSpace> {
+    fn beyond(&self, data: &Data) -> Vec<ControlInequality> {
         let space = &data.layout.space;
         let mut out = Vec::new();
         let mut beyond = |rows: Vec<(usize, f64)>, d: Vec3<f64>, most: f64, owner: usize| {
             let entries = rows.into_iter().filter(|r| r.1 != 0.0).map(|(c, f)| (c, d * f));
-            out.push(HalfSpace { entries: entries.collect(), most, owner });
+            out.push(ControlInequality { entries: entries.collect(), most, owner });
         };
         for &(owner, d, most) in &self.limits {
             for span in space.spans() {
@@ -770,7 +770,12 @@ impl ShapeConstraints {
 
     /// The coefficients of a sign as half-spaces, and what they are now: lengths, negative where the
     /// sign is wrong.
-    fn linear(&self, space: &Space, sign: &Signed, control: &[Vec3<f64>]) -> Vec<(HalfSpace, f64)> {
+    fn linear(
+        &self,
+        space: &Space,
+        sign: &Signed,
+        control: &[Vec3<f64>],
+    ) -> Vec<(ControlInequality, f64)> {
         let plane = self.plane.expect("signs are those of plane curves");
         let columns: Vec<usize> = space.columns(sign.span).collect();
         let rows = space.bezier_of(sign.span);
@@ -793,7 +798,7 @@ impl ShapeConstraints {
             }
             let now = (factor * value + sign.slack) / size;
             let sum: f64 = entries.iter().map(|(c, f)| f.dot(control[*c])).sum();
-            Some((HalfSpace { entries, most: sum + now, owner: sign.owner }, now))
+            Some((ControlInequality { entries, most: sum + now, owner: sign.owner }, now))
         };
         all.into_iter().filter_map(half).collect()
     }

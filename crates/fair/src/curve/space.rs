@@ -281,7 +281,7 @@ impl Space {
     /// Calls `f` with each row of [`Space::bezier`], in order along the curve.
     pub(crate) fn each_bezier(&self, weights: Option<&[f64]>, mut f: impl FnMut(&[(usize, f64)])) {
         let p = self.degree;
-        let mut bezier = Bezier::default();
+        let mut bezier = BezierExtraction::default();
         let mut entries = vec![(0, 0.0); p + 1];
         let mut last: Option<isize> = None;
         for k in self.spans() {
@@ -309,7 +309,7 @@ impl Space {
 
     /// The Bézier points of span `k` over [`Space::columns`].
     pub(crate) fn bezier_of(&self, k: isize) -> Vec<Vec<f64>> {
-        Bezier::default().rows(self, k).to_vec()
+        BezierExtraction::default().rows(self, k).to_vec()
     }
 
     /// For each control point, by how much it can move at most when every Bézier point of the
@@ -357,12 +357,12 @@ impl Space {
 /// The Bézier points of a span over its control points. Spans with the same knots about them, as most
 /// have, share them.
 #[derive(Default)]
-pub(crate) struct Bezier {
+pub(crate) struct BezierExtraction {
     local: Vec<f64>,
     rows: Vec<Vec<f64>>,
 }
 
-impl Bezier {
+impl BezierExtraction {
     /// A row per Bézier point of span `k`, over [`Space::columns`].
     pub(crate) fn rows(&mut self, space: &Space, k: isize) -> &[Vec<f64>] {
         let p = space.degree;

@@ -119,12 +119,12 @@ struct NeighbourFit {
 
 /// A least squares fit of polynomials with an extra column, by Householder's QR through modified
 /// Gram and Schmidt, which columns this few allow.
-struct Columns<const C: usize> {
+struct ThinQr<const C: usize> {
     q: Vec<[f64; C]>,
     r: [[f64; C]; C],
 }
 
-impl<const C: usize> Columns<C> {
+impl<const C: usize> ThinQr<C> {
     fn new(mut a: Vec<[f64; C]>) -> Option<Self> {
         let mut r = [[0.0; C]; C];
         for j in 0..C {
@@ -209,7 +209,7 @@ fn seen(points: &[Vec3<f64>], i: usize, closed: bool) -> Option<NeighbourFit> {
     }
     let t: Vec<f64> = chord.iter().map(|c| (c - middle) / middle).collect();
     let powers = |x: f64| [1.0, x, x * x, x * x * x];
-    let columns = Columns::new(t.iter().map(|&x| powers(x)).collect())?;
+    let columns = ThinQr::new(t.iter().map(|&x| powers(x)).collect())?;
     let own: Vec<Vec3<f64>> = near.iter().map(|&j| points[j]).collect();
     let c = columns.solve(&own);
     let inside = 0 < place && place < m;
@@ -475,7 +475,7 @@ fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> 
             let half = 0.5 * chord[2 * HALF];
             let t: Vec<f64> = chord.iter().map(|c| (c - chord[HALF]) / half).collect();
             let row = |x: f64| [1.0, x, x * x, x * x * x, x.max(0.0)];
-            let columns = Columns::new(t.iter().map(|&x| row(x)).collect())?;
+            let columns = ThinQr::new(t.iter().map(|&x| row(x)).collect())?;
             let c = columns.solve(&near);
             let smooth = [c[0], c[1], c[2], c[3]];
             let squares: f64 = near

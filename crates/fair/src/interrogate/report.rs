@@ -1,7 +1,7 @@
 //! All about one fairing, as data: what the command line prints.
 
 use crate::{
-    Certificate, Data, DataFit, DataOptions, Deviation, FairError, Finding, Job, Jumps,
+    Certificate, Data, DataFit, DataOptions, Deviation, FairError, Finding, Job, KnotJumps,
     KnotRemoval, KnotRemovalOptions, Limit, Measure, Optimum, OptimumOptions, RowNorm, Stopped,
     ball_gap, deviation, fair_data, knot_removal, multilevel, optimum, shape, sweeps,
 };
@@ -81,7 +81,7 @@ pub fn numbers(
 ) -> Result<CurveStatistics, FairError> {
     let samples = shape::samples(&job.space, points, job.weights.as_deref(), SAMPLES);
     let curvatures = shape::curvatures(&samples);
-    let rows = job.own_rows(&Jumps::of(&job.space).rows);
+    let rows = job.own_rows(&KnotJumps::of(&job.space).rows);
     let relative = job.relative(points);
     let jumps = (0..rows.len()).map(|k| rows.apply(k, &relative).norm());
     Ok(CurveStatistics {
@@ -134,7 +134,7 @@ pub fn report(job: &Job, mode: &Mode) -> Result<FairingReport, FairError> {
         }
     };
     let (before, after) = (numbers(job, measure, &job.points)?, numbers(job, measure, &points)?);
-    let rows = job.own_rows(&Jumps::of(&job.space).rows);
+    let rows = job.own_rows(&KnotJumps::of(&job.space).rows);
     let jumps = [&job.points, &points].map(|p| {
         let relative = job.relative(p);
         (0..rows.len()).map(|k| rows.apply(k, &relative).norm()).collect()
@@ -178,7 +178,7 @@ pub fn data_report(
     };
     let numbers = |points: &[Vec3<f64>]| numbers(&job, options.measure, points);
     let (before, after) = (numbers(&job.points)?, numbers(&made.points)?);
-    let rows = Jumps::of(&job.space).rows;
+    let rows = KnotJumps::of(&job.space).rows;
     let jumps = [&job.points, &made.points]
         .map(|p| (0..rows.len()).map(|k| rows.apply(k, p).norm()).collect());
     let mut notes = Vec::new();

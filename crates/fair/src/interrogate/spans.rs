@@ -2,7 +2,7 @@
 //! is made once.
 
 use crate::Space;
-use crate::curve::space::Bezier;
+use crate::curve::space::BezierExtraction;
 use crate::interrogate::shape::Sample;
 use moldloft_num::{Order, Vec3};
 
@@ -35,7 +35,7 @@ pub(crate) fn each_span(
     // Of third derivatives the polynomials; below degree three there are none.
     let places: Vec<(f64, Vec<f64>)> =
         shares.map(|s| (s, p.checked_sub(3).map_or(Vec::new(), |d| bernstein(d, s)))).collect();
-    let mut bezier = Bezier::default();
+    let mut bezier = BezierExtraction::default();
     let mut own: Vec<(Vec3<f64>, f64)> = Vec::with_capacity(p + 1);
     let mut thirds = own.clone();
     for k in space.spans() {

@@ -4,7 +4,7 @@ use moldloft_num::{Order, Real, Surface, Vec3};
 
 /// Curvatures of a surface at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Curvatures {
+pub struct SurfaceCurvatures {
     /// K, the product of the principal curvatures.
     pub gaussian: f64,
     /// H, half their sum; its sign is that of bending towards the natural normal.
@@ -13,7 +13,7 @@ pub struct Curvatures {
     pub principal: [f64; 2],
 }
 
-impl Curvatures {
+impl SurfaceCurvatures {
     /// |k1| + |k2|: zero on planes only, where K is blind on cylinders and H on minimal surfaces.
     pub fn absolute(&self) -> f64 {
         self.principal[0].abs() + self.principal[1].abs()
@@ -28,7 +28,7 @@ pub struct SurfaceAnalysis {
     /// Unit normal along S_u x S_v.
     pub normal: Vec3<f64>,
     /// Curvatures.
-    pub curvatures: Curvatures,
+    pub curvatures: SurfaceCurvatures,
 }
 
 /// Looks at a surface at (`u`, `v`); `None` where it is singular.
@@ -51,7 +51,7 @@ pub fn look(surface: &dyn Surface<f64>, u: f64, v: f64) -> Option<SurfaceAnalysi
     Some(SurfaceAnalysis {
         point: s.p,
         normal,
-        curvatures: Curvatures { gaussian, mean, principal },
+        curvatures: SurfaceCurvatures { gaussian, mean, principal },
     })
 }
 
@@ -92,15 +92,15 @@ impl SurfaceAnalysis {
     /// The same seen from the other side: the normal turned round, and with it the signs of the mean
     /// and the principal curvatures.
     pub fn turned(&self) -> Self {
-        let Curvatures { gaussian, mean, principal: [k1, k2] } = self.curvatures;
-        let curvatures = Curvatures { gaussian, mean: -mean, principal: [-k2, -k1] };
+        let SurfaceCurvatures { gaussian, mean, principal: [k1, k2] } = self.curvatures;
+        let curvatures = SurfaceCurvatures { gaussian, mean: -mean, principal: [-k2, -k1] };
         Self { point: self.point, normal: -self.normal, curvatures }
     }
 }
 
 /// Numbers at the points of a mesh, for viewers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct PointField {
     /// The name that viewers show.
     pub name: &'static str,
     /// Numbers per point: 1, or 3 of a vector.
@@ -111,9 +111,9 @@ pub struct Field {
 
 /// What viewers show of a surface: curvatures, the isophotes of light along +z, zebra stripes of a
 /// view along +z round the x axis (eight to a turn), normals.
-pub fn fields(looks: &[Option<SurfaceAnalysis>]) -> Vec<Field> {
+pub fn fields(looks: &[Option<SurfaceAnalysis>]) -> Vec<PointField> {
     let (x, z) = (Vec3::of(1.0, 0.0, 0.0), Vec3::of(0.0, 0.0, 1.0));
-    let numbers = |name, of: &dyn Fn(&SurfaceAnalysis) -> f64| Field {
+    let numbers = |name, of: &dyn Fn(&SurfaceAnalysis) -> f64| PointField {
         name,
         components: 1,
         values: looks.iter().map(|l| l.as_ref().map_or(f64::NAN, of)).collect(),
@@ -127,7 +127,11 @@ pub fn fields(looks: &[Option<SurfaceAnalysis>]) -> Vec<Field> {
         numbers("smallest_curvature", &|l| l.curvatures.principal[1]),
         numbers("isophote", &|l| isophote(l, z)),
         numbers("zebra", &|l| zebra(l, z, x, 8.0)),
-        Field { name: "normal", components: 3, values: looks.iter().flat_map(normal).collect() },
+        PointField {
+            name: "normal",
+            components: 3,
+            values: looks.iter().flat_map(normal).collect(),
+        },
     ]
 }
 

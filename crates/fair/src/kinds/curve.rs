@@ -1,7 +1,7 @@
 //! `FairCurve`: the faired spline of points.
 
 use super::demands::{Demand, Demands};
-use super::shapes::{self, Ended};
+use super::shapes::{self, AnchoredSpline};
 use super::{ArgumentFields, GivenKnots, Intent, end, faithful, fault, measure, role};
 use crate::{FairError, ShapeCondition};
 use moldloft_num::{Order, Real, Vec3};
@@ -459,7 +459,7 @@ impl<T: Real> Build<T> for FairCurve<T> {
             // A free end leaves its point, and a closed curve has no ends.
             let kept = !intent.closed && (intent.end.kept() > 0 || self.tolerance.re() == 0.0);
             let ends = [first, last].map(|p| if kept { p.key } else { None });
-            return Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)));
+            return Ok(Value::Curve(CurveRef::new(AnchoredSpline { curve, ends }, 0)));
         }
         if let Some((what, field)) = near_only {
             let message = format!("`{what}` is for curves near their points");
@@ -483,6 +483,6 @@ impl<T: Real> Build<T> for FairCurve<T> {
         let kept = |at: usize| !intent.closed && (intent.end.kept() > 0 || joins[at].is_some());
         let end = |at: usize, p: &Point<T>| if kept(at) { p.key } else { None };
         let ends = [end(0, first), end(1, last)];
-        Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
+        Ok(Value::Curve(CurveRef::new(AnchoredSpline { curve, ends }, 0)))
     }
 }

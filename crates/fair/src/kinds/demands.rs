@@ -2,8 +2,8 @@
 
 use super::{ACCURACY, Intent};
 use crate::{
-    Condition, Data, DataOptions, FairError, Layout, Limit, ShapeCondition, fair_data_with,
-    parameters_across,
+    Condition, Data, DataOptions, FairError, InterpolationSpace, Limit, ShapeCondition,
+    fair_data_with, parameters_across,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::SplineWithKnotDerivatives;
@@ -76,7 +76,7 @@ impl<T: Real> Intent<T> {
         let data = Data {
             points: plain,
             limit: Limit::new(self.motion, tolerances.iter().map(|t| t.re()).collect())?,
-            layout: Layout::new(self.degree, &real, &marks, self.closed)?,
+            layout: InterpolationSpace::new(self.degree, &real, &marks, self.closed)?,
             ends: [self.end; 2],
         };
         let (data, shape) = data.shaped(&demands.shape)?;

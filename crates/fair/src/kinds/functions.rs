@@ -45,7 +45,7 @@ impl<T: Real> Build<T> for Fair<T> {
             role: PointRole::Control,
             measure: measure(&self.measure, Self::MEASURE)?,
             faithful: faithful(&self.mode, Self::MODE)?,
-            end: crate::End::Points(2),
+            end: crate::EndContinuity::Points(2),
             breaks: Vec::new(),
             joins: [None; 2],
             own: super::GivenKnots::default(),
@@ -99,7 +99,7 @@ impl<T: Real> Build<T> for Jumps<T> {
             degree: Self::POINTS,
             breaks: Self::POINTS,
         };
-        let jumps = crate::Jumps::of(&space.map_err(|e| fault(e, &places))?);
+        let jumps = crate::KnotJumps::of(&space.map_err(|e| fault(e, &places))?);
         let length = |k: usize| {
             let (columns, factors) = jumps.rows.row(k);
             let entries = columns.iter().zip(factors);

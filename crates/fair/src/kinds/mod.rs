@@ -12,9 +12,9 @@ mod surface;
 
 use crate::curve::condition::{end_jet, joined};
 use crate::{
-    Bound, Condition, End, FairError, Goal, Job, KnotRemovalOptions, Limit, Measure, Motion,
-    OptimumOptions, ParameterSpacing, Space, interpolate_with_corners, knot_removal, optimum_with,
-    replay_with,
+    Bound, Condition, EndContinuity, FairError, Goal, Job, KnotRemovalOptions, Limit, Measure,
+    Motion, OptimumOptions, ParameterSpacing, Space, interpolate_with_corners, knot_removal,
+    optimum_with, replay_with,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
@@ -55,7 +55,7 @@ pub(crate) struct Intent<T> {
     pub role: PointRole,
     pub measure: Measure,
     pub faithful: bool,
-    pub end: End,
+    pub end: EndContinuity,
     /// Intended breaks, from 1.
     pub breaks: Vec<usize>,
     /// First and second derivative of what the curve runs on from, at its start and end, by a
@@ -214,9 +214,9 @@ pub(crate) fn faithful(name: &str, field: FieldId) -> Result<bool, CallError> {
 }
 
 /// The end condition called `name`.
-pub(crate) fn end(name: &str, field: FieldId) -> Result<End, CallError> {
+pub(crate) fn end(name: &str, field: FieldId) -> Result<EndContinuity, CallError> {
     let all = ["free", "position", "tangent", "curvature"];
-    End::named(name).ok_or_else(|| unknown("end condition", name, &all, field))
+    EndContinuity::named(name).ok_or_else(|| unknown("end condition", name, &all, field))
 }
 
 /// A refusal as a fault at its argument.
@@ -312,11 +312,11 @@ impl<T: Real> Intent<T> {
         };
         // What an end keeps is counted in points: with tangents, two of them.
         let end = match self.end {
-            End::Points(k) => k,
+            EndContinuity::Points(k) => k,
             end => end.kept(),
         };
         let (breaks, own) = (self.breaks.clone(), self.own.clone());
-        let held = Self { end: End::Points(end), breaks, own, ..*self };
+        let held = Self { end: EndContinuity::Points(end), breaks, own, ..*self };
         held.within(&space, points, Bound::ControlPoints, indices(&self.breaks, n)?)
     }
 
@@ -339,7 +339,7 @@ impl<T: Real> Intent<T> {
         let (mut conditions, mut targets) = (Vec::new(), Vec::new());
         for (at, other) in self.joins.iter().enumerate() {
             let Some(other) = other else { continue };
-            job.ends[at] = End::Position;
+            job.ends[at] = EndContinuity::Position;
             let plain = other.map(|v| v.re());
             conditions.extend(Condition::join(space, &job.points, at == 1, plain)?);
             let aims = joined(end_jet(space, points, at == 1), *other)?;

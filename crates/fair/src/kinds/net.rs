@@ -1,10 +1,10 @@
 //! `FairNet` and `NetCurve`: networks of curves that share points.
 
-use super::shapes::{self, Ended};
+use super::shapes::{self, AnchoredSpline};
 use super::{ACCURACY, ArgumentFields, fault, measure};
 use crate::{
-    End, FairError, Layout, Limit, Motion, Network, NetworkCurve, ParameterSpacing, Space,
-    interpolate_with_corners, parameters_across,
+    EndContinuity, FairError, InterpolationSpace, Limit, Motion, Network, NetworkCurve,
+    ParameterSpacing, Space, interpolate_with_corners, parameters_across,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
@@ -207,7 +207,7 @@ impl<T: Real> Build<T> for FairNet<T> {
                     .in_item(k)
                     .in_field(Self::CURVES));
             }
-            let (marks, ends) = (marks_of(own), [End::Points(0); 2]);
+            let (marks, ends) = (marks_of(own), [EndContinuity::Points(0); 2]);
             let list: Vec<Vec3<T>> = own.iter().map(|&i| joined.points[i].xyz).collect();
             let at = if index {
                 None
@@ -262,7 +262,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             if let Some(at) = &ats[k] {
                 // At the parameters of the points given: the moved ones are near them.
                 let curve = through(degree, &points, at, &marks_of(own), *closed).map_err(about)?;
-                return Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)));
+                return Ok(Value::Curve(CurveRef::new(AnchoredSpline { curve, ends }, 0)));
             }
             let marks = marks_of(own);
             let sharp = interpolate_with_corners(
@@ -276,7 +276,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
                 CallError::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
             })?;
-            Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
+            Ok(Value::Curve(CurveRef::new(AnchoredSpline { curve, ends }, 0)))
         };
         let curves: Result<Vec<_>, CallError> =
             joined.curves.iter().enumerate().map(curve).collect();
@@ -293,7 +293,7 @@ fn through<T: Real>(
     closed: bool,
 ) -> Result<SplineWithKnotDerivatives<T>, FairError> {
     let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
-    let layout = Layout::new(degree, &real, breaks, closed)?;
+    let layout = InterpolationSpace::new(degree, &real, breaks, closed)?;
     let (control, knots) = layout.through_moving(points, at)?;
     let (knots, control) = layout.space.open_form(&knots, &control);
     SplineWithKnotDerivatives::new(degree, Some(knots), control, None)

@@ -1,8 +1,8 @@
 //! `FairPatches` and `NetSurf`: surfaces faired together with their common edges.
 
-use super::surface::{Grid, Rims, fitted, turned};
+use super::surface::{PointGrid, Rims, fitted, turned};
 use super::{ACCURACY, ArgumentFields, PointRole, fault, measure, role};
-use crate::{Bound, End, FairError, Limit, Network, PatchNet, Seam, Space};
+use crate::{Bound, EndContinuity, FairError, Limit, Network, PatchNet, Seam, Space};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Build, CallError, Class, Context, Kind, SurfaceRef, Value};
 use moldloft_spline::BSplineSurface;
@@ -31,7 +31,7 @@ use std::sync::Arc;
 pub struct FairPatches<T: Real> {
     /// Grids of points, each at least degree + 2 in each direction.
     #[field(min_items = 1)]
-    surfaces: Vec<Grid<T>>,
+    surfaces: Vec<PointGrid<T>>,
     /// Largest move of control points; 0 leaves all unchanged.
     #[field(min = 0)]
     tolerance: T,
@@ -66,9 +66,9 @@ impl<T: Real> Build<T> for FairPatches<T> {
             }
         };
         let keeps = match &*self.seams {
-            "position" => End::Position,
-            "tangent" => End::Tangent,
-            "curvature" => End::Curvature,
+            "position" => EndContinuity::Position,
+            "tangent" => EndContinuity::Tangent,
+            "curvature" => EndContinuity::Curvature,
             word => {
                 let known = ["position", "tangent", "curvature"];
                 return Err(super::unknown("way to keep a seam", word, &known, Self::SEAMS));
@@ -84,7 +84,7 @@ impl<T: Real> Build<T> for FairPatches<T> {
         let degree = self.degree;
         let mut sheets = Vec::new();
         let mut given: Vec<Vec3<T>> = Vec::new();
-        for (k, Grid(grid)) in self.surfaces.iter().enumerate() {
+        for (k, PointGrid(grid)) in self.surfaces.iter().enumerate() {
             let ArrayShape::Grid(m, n) = grid.shape else {
                 return Err(CallError::new("wrong-shape", "a surface needs a grid of points")
                     .expected("a grid [m, n] of vectors")
@@ -120,7 +120,7 @@ impl<T: Real> Build<T> for FairPatches<T> {
         for seam in &seams {
             for k in 0..2 {
                 let edge = seam.edges[k];
-                sheets[seam.sheets[k]].rims[edge.direction][edge.end] = End::Free;
+                sheets[seam.sheets[k]].rims[edge.direction][edge.end] = EndContinuity::Free;
             }
         }
         let solve = || -> Result<Vec<Vec<Vec3<T>>>, FairError> {

@@ -7,7 +7,7 @@ use moldloft_registry::SurfaceRef;
 use moldloft_spline::{BSplineCurve, SplineError};
 
 /// A spline curve of its own that begins and ends at point objects.
-pub(crate) struct Ended<C> {
+pub(crate) struct AnchoredSpline<C> {
     pub curve: C,
     pub ends: [Option<Key>; 2],
 }
@@ -32,7 +32,7 @@ pub(crate) fn rational<T: Real>(
     BSplineCurve::new(knots, places.into_iter().map(|i| points[i]).collect(), Some(each))
 }
 
-impl<T: Real, C: Curve<T>> Curve<T> for Ended<C> {
+impl<T: Real, C: Curve<T>> Curve<T> for AnchoredSpline<C> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         self.curve.jet(t, order)
     }

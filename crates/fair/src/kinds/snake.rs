@@ -86,7 +86,7 @@ impl<T: Real> Build<T> for FairSnake<T> {
             }
         }
         let end = match end(&self.ends, Self::ENDS)? {
-            crate::End::Free => crate::End::Position,
+            crate::EndContinuity::Free => crate::EndContinuity::Position,
             kept => kept,
         };
         let intent = Intent {

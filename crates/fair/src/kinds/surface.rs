@@ -5,8 +5,8 @@ use super::{
     ACCURACY, ArgumentFields, GivenKnots, PointRole, faithful, fault, indices, measure, role,
 };
 use crate::{
-    Bound, End, FairError, GridData, Layout, Limit, Motion, Network, ParameterSpacing, Space,
-    fair_grid_with, grid_parameters, interpolate_with_corners,
+    Bound, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Motion, Network,
+    ParameterSpacing, Space, fair_grid_with, grid_parameters, interpolate_with_corners,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
@@ -17,9 +17,9 @@ use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
 
 /// A grid of points.
-pub(super) struct Grid<T: Real>(pub Arc<Vectors<T>>);
+pub(super) struct PointGrid<T: Real>(pub Arc<Vectors<T>>);
 
-impl<T: Real> FromValue<T> for Grid<T> {
+impl<T: Real> FromValue<T> for PointGrid<T> {
     const CLASS: Class = Class::Vectors;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
@@ -46,7 +46,7 @@ impl<T: Real> FromValue<T> for Grid<T> {
 )]
 pub struct FairSurf<T: Real> {
     /// A grid of points, at least degree + 2 in each direction.
-    points: Grid<T>,
+    points: PointGrid<T>,
     /// Largest distance of each point from the surface (`as = "control"`, of the surface from the one
     /// with these control points); 0 leaves it unchanged.
     #[field(min = 0)]
@@ -166,23 +166,23 @@ impl<T: Real> FairSurf<T> {
 }
 
 /// What the rims keep, in the order of the edges of a surface.
-pub(super) struct Rims(pub [End; 4]);
+pub(super) struct Rims(pub [EndContinuity; 4]);
 
 impl<T: Real> FromValue<T> for Rims {
     const CLASS: Class = Class::Any;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let known = ["corners", "position", "tangent", "curvature"];
         let one = |word: &str| match word {
-            "corners" => Ok(End::Free),
+            "corners" => Ok(EndContinuity::Free),
             "free" => Err(super::unknown("way to keep a rim", word, &known, FairSurf::<f64>::RIMS)),
-            _ => End::named(word).ok_or_else(|| {
+            _ => EndContinuity::named(word).ok_or_else(|| {
                 super::unknown("way to keep a rim", word, &known, FairSurf::<f64>::RIMS)
             }),
         };
         let text = |value: &Value<T>| <Arc<str> as FromValue<T>>::from_value(value);
         match value {
             Value::List(items) if items.len() == 4 => {
-                let mut ends = [End::Free; 4];
+                let mut ends = [EndContinuity::Free; 4];
                 for (end, item) in ends.iter_mut().zip(items.iter()) {
                     *end = one(&text(item)?)?;
                 }
@@ -232,7 +232,7 @@ pub(super) fn turned<T: Real>(grid: &[Vec3<T>], m: usize) -> Vec<Vec3<T>> {
 
 impl<T: Real> Build<T> for FairSurf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let Grid(grid) = &self.points;
+        let PointGrid(grid) = &self.points;
         let ArrayShape::Grid(m, n) = grid.shape else {
             return Err(CallError::new("wrong-shape", "a surface needs a grid of points")
                 .expected("a grid [m, n] of vectors")
@@ -319,7 +319,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
             let at = grid_parameters(&points, [m, n], [spacing; 2], [false; 2], motion)?;
             let layout = |at: &[T], marks: &[usize]| {
                 let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
-                Layout::new(self.degree, &real, marks, false)
+                InterpolationSpace::new(self.degree, &real, marks, false)
             };
             let data = GridData {
                 limit: Limit::new(motion, vec![self.tolerance.re(); plain.len()])?,

@@ -5,12 +5,12 @@ use crate::{Condition, FairError, Network, Space};
 use moldloft_num::{GAUSS_4, Vec3};
 
 /// The basis functions of one direction at a parameter: control points, values and slopes.
-struct Line {
+struct BasisValues {
     columns: Vec<usize>,
     values: [Vec<f64>; 2],
 }
 
-impl Line {
+impl BasisValues {
     fn of(space: &Space, t: f64) -> Self {
         let (k, t) = space.locate(t);
         let basis = space.basis(k, t);
@@ -24,7 +24,7 @@ impl Line {
 struct ControlStencil(Vec<(usize, [f64; 3])>);
 
 impl ControlStencil {
-    fn of(u: &Line, v: &Line, count: usize, weights: Option<&[f64]>) -> Self {
+    fn of(u: &BasisValues, v: &BasisValues, count: usize, weights: Option<&[f64]>) -> Self {
         let mut all = Vec::with_capacity(u.columns.len() * v.columns.len());
         for (a, &i) in u.columns.iter().enumerate() {
             for (b, &j) in v.columns.iter().enumerate() {
@@ -66,7 +66,7 @@ impl Network {
         let (spaces, weights) = self.spaces()?;
         let line = |k: usize| {
             let (start, end) = spaces[k].domain();
-            Line::of(&spaces[k], start + (end - start) * at[k])
+            BasisValues::of(&spaces[k], start + (end - start) * at[k])
         };
         Ok(ControlStencil::of(&line(0), &line(1), spaces[1].count(), weights))
     }
@@ -151,7 +151,7 @@ impl Network {
                 let (a, b) = (space.knot(k), space.knot(k + 1));
                 for (x, w) in GAUSS_4 {
                     let t = 0.5 * (a + b) + 0.5 * (b - a) * x;
-                    out.push((0.5 * (b - a) * w, Line::of(space, t)));
+                    out.push((0.5 * (b - a) * w, BasisValues::of(space, t)));
                 }
             }
             out

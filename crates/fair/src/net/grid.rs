@@ -4,19 +4,19 @@
 //! minimise   sum over v of E(x(., v)) + sum over u of E(x(u, .))
 //! subject to |x(u_i, v_j) - p_ij| <= a_ij
 //!
-//! Knots stand at the data in both directions ([`Layout`]), so any tolerance can be kept. The sums
+//! Knots stand at the data in both directions ([`InterpolationSpace`]), so any tolerance can be kept. The sums
 //! run over the surface's curves through the data, each with the weight of the range that it stands
 //! for: integrals over the surface by the trapezoidal rule. Both directions count by the parameter
 //! from 0 to 1, hence by the measure of a curve of unit length.
 
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
-    Found, Goal, GoalVariation, RegularizationPath, check_single, moved, rounding,
+    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, moved, rounding,
 };
 use crate::optimum::{Bounded, DataLimits, Parts};
 use crate::{
-    Certificate, Condition, End, FairError, Layout, Limit, Measure, Motion, Network,
-    ParameterSpacing, RowNorm, SparseRows, parameters_across,
+    Certificate, Condition, EndContinuity, FairError, InterpolationSpace, Limit, Measure, Motion,
+    Network, ParameterSpacing, RowNorm, SparseRows, parameters_across,
 };
 use moldloft_num::{Real, Vec3};
 
@@ -28,10 +28,10 @@ pub struct GridData {
     /// How far the surface may be from each, and in which directions it may leave them.
     pub limit: Limit,
     /// Where they are on the surface, and the splines: along u and along v.
-    pub layouts: [Layout; 2],
+    pub layouts: [InterpolationSpace; 2],
     /// What rims keep of the surface through the data: at both ends of u, then of v. A free rim
     /// leaves only the corners where they are.
-    pub rims: [[End; 2]; 2],
+    pub rims: [[EndContinuity; 2]; 2],
 }
 
 /// A faired surface.
@@ -166,7 +166,7 @@ fn weights<T: Real>(sites: &[T], closed: bool) -> Vec<T> {
 }
 
 /// What makes a measure that counts by mean spans one by the unit parameter.
-fn unit(measure: Measure, layout: &Layout) -> f64 {
+fn unit(measure: Measure, layout: &InterpolationSpace) -> f64 {
     let order = match measure {
         Measure::Second | Measure::Bending => 2.0,
         Measure::Third | Measure::Variation => 3.0,
@@ -261,9 +261,10 @@ impl GridData {
     fn frozen(&self) -> Vec<bool> {
         let [u, v] = &self.layouts;
         let (nu, nv) = (u.space.count(), v.space.count());
-        let kept = |layout: &Layout, ends: [End; 2]| {
+        let kept = |layout: &InterpolationSpace, ends: [EndContinuity; 2]| {
             let n = layout.space.count();
-            let rows = |end: End| if layout.space.is_closed() { 0 } else { end.kept().min(n) };
+            let rows =
+                |end: EndContinuity| if layout.space.is_closed() { 0 } else { end.kept().min(n) };
             let mut all: Vec<bool> =
                 (0..n).map(|k| k < rows(ends[0]) || k + rows(ends[1]) >= n).collect();
             for &m in &layout.marks {
@@ -346,7 +347,7 @@ impl GridData {
         held.extend(conditions.iter().cloned());
         let largest = radii.iter().copied().fold(0.0, f64::max);
         let reach = if largest.is_finite() {
-            let each = |layout: &Layout| layout.reach(&vec![1.0; layout.sites.len()]);
+            let each = |layout: &InterpolationSpace| layout.reach(&vec![1.0; layout.sites.len()]);
             let (ru, rv) = (each(&self.layouts[0])?, each(&self.layouts[1])?);
             ru.iter().flat_map(|a| rv.iter().map(move |b| a * b * largest)).collect()
         } else {
@@ -405,12 +406,12 @@ impl GridData {
         conditioned: bool,
         parts: &mut Parts<'_>,
         pull: &SparseRows,
-    ) -> Result<Found, FairError> {
+    ) -> Result<GoalOptimum, FairError> {
         let (rows, norm, original) = (parts.measure.clone(), parts.norm, parts.points);
         let still = self.limit.radii.iter().all(|&r| r == 0.0) || parts.frozen.iter().all(|&f| f);
         if !conditioned && still {
             let value = crate::measure::value(&rows, norm, original);
-            return Ok(Found::unmoved(original, value, true));
+            return Ok(GoalOptimum::unmoved(original, value, true));
         }
         let path = RegularizationPath {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
@@ -454,7 +455,7 @@ impl GridData {
         Ok(())
     }
 
-    fn fit(&self, found: Found, original: Vec<Vec3<f64>>, before: f64) -> GridFit {
+    fn fit(&self, found: GoalOptimum, original: Vec<Vec3<f64>>, before: f64) -> GridFit {
         GridFit {
             residuals: self.residuals(&found.optimum.points),
             used: found.used,
@@ -489,7 +490,7 @@ fn product<'a>(
 ///
 /// # Example
 /// ```
-/// use moldloft_fair::{End, Goal, GridData, Layout, Limit, Measure, Motion, ParameterSpacing, fair_grid,
+/// use moldloft_fair::{EndContinuity, Goal, GridData, InterpolationSpace, Limit, Measure, Motion, ParameterSpacing, fair_grid,
 ///     grid_parameters};
 /// use moldloft_num::Vec3;
 /// // A plane at uneven stations, with one reading off by 0.01.
@@ -500,8 +501,8 @@ fn product<'a>(
 /// let at = grid_parameters(&points, [7, 6], [ParameterSpacing::Chord; 2], [false; 2], Motion::Ball).unwrap();
 /// let data = GridData {
 ///     limit: Limit::ball(points.len(), 0.02).unwrap(),
-///     layouts: at.map(|at| Layout::new(3, &at, &[], false).unwrap()),
-///     rims: [[End::Free; 2]; 2],
+///     layouts: at.map(|at| InterpolationSpace::new(3, &at, &[], false).unwrap()),
+///     rims: [[EndContinuity::Free; 2]; 2],
 ///     points,
 /// };
 /// let faired = fair_grid(&data, Measure::Variation, Goal::Fairest, &[], 1e-9).unwrap();

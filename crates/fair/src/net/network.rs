@@ -3,13 +3,13 @@
 
 use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
-use crate::net::patches::{Across, PlacedNet};
+use crate::net::patches::{PlacedNet, SeamCondition};
 use crate::optimum::certificate::gap;
-use crate::optimum::goal::{Found, Goal, GoalVariation, RegularizationPath, moved, rounding};
+use crate::optimum::goal::{Goal, GoalOptimum, GoalVariation, RegularizationPath, moved, rounding};
 use crate::optimum::{Bounded, Optimum, Parts};
 use crate::{
-    Bound, Certificate, Condition, End, FairError, Job, KnotRemovalOptions, Limit, Measure, Space,
-    SparseRows, knot_removal_from, replay_from_with,
+    Bound, Certificate, Condition, EndContinuity, FairError, Job, KnotRemovalOptions, Limit,
+    Measure, Space, SparseRows, knot_removal_from, replay_from_with,
 };
 use moldloft_num::{Real, Surface, Vec3};
 use moldloft_spline::BSplineSurface;
@@ -26,7 +26,7 @@ pub struct NetworkCurve {
     /// Its own places that are intended breaks.
     pub marks: Vec<usize>,
     /// What its ends keep when it is faired by itself.
-    pub ends: [End; 2],
+    pub ends: [EndContinuity; 2],
     /// Parameters of its points in [0, 1], for points that the curve passes through: measures are
     /// then those of divided differences. Without them the points are control points of its
     /// spline.
@@ -64,7 +64,7 @@ pub struct Network {
     pub(crate) patches: Vec<PlacedNet>,
     /// What holds across their seams, and how it hangs on the points given.
     pub(crate) seams: Vec<Condition>,
-    pub(crate) across: Vec<Across>,
+    pub(crate) across: Vec<SeamCondition>,
 }
 
 impl Network {
@@ -114,7 +114,7 @@ impl Network {
             weights: weights.as_ref().map(|w| own.iter().map(|&i| w[i]).collect()),
             points: own,
             marks: Vec::new(),
-            ends: [End::Points(2); 2],
+            ends: [EndContinuity::Points(2); 2],
             at: None,
         };
         let along_u = (0..nv).map(|j| strand(&spaces[0], (0..nu).map(|i| i * nv + j).collect()));
@@ -165,13 +165,13 @@ impl Network {
     ///
     /// # Errors
     /// [`FairError::Count`] when the network is not a net.
-    pub fn with_rims(mut self, rims: [[End; 2]; 2]) -> Result<Self, FairError> {
+    pub fn with_rims(mut self, rims: [[EndContinuity; 2]; 2]) -> Result<Self, FairError> {
         let Some([su, sv]) = &self.net else {
             return Err(FairError::Count { what: "directions of a net", expected: 2, actual: 0 });
         };
         let (nu, nv) = (su.count(), sv.count());
-        let rows = |space: &Space, [low, high]: [End; 2]| {
-            let of = |end: End| end.points(space.is_clamped(), space.degree());
+        let rows = |space: &Space, [low, high]: [EndContinuity; 2]| {
+            let of = |end: EndContinuity| end.points(space.is_clamped(), space.degree());
             let some = if space.is_closed() { [0, 0] } else { [of(low), of(high)] };
             some.map(|k| k.min(space.count()))
         };
@@ -388,7 +388,7 @@ impl Network {
         parts: &mut Parts<'_>,
         goal: Goal,
         conditioned: bool,
-    ) -> Result<(Found, SparseRows, Vec<usize>), FairError> {
+    ) -> Result<(GoalOptimum, SparseRows, Vec<usize>), FairError> {
         let (pull, owners) = self.pull(&parts.frozen);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
         let path = RegularizationPath {
@@ -510,7 +510,7 @@ impl Network {
             let fairest = parts.whole()?;
             let slope = rows.slope(&fairest.optimum.points);
             let forces = slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
-            let whole = Found { share: 1.0, weight: 0.0, ..found.clone() };
+            let whole = GoalOptimum { share: 1.0, weight: 0.0, ..found.clone() };
             let own = moving(forces, T::zero());
             let at = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, own)?;
             let mean = owners.len() as f64 / 3.0;
@@ -625,7 +625,7 @@ impl Network {
     ///
     /// # Errors
     /// [`FairError::TooLarge`] beyond that ([`Network::sweeps`] is for such nets); others as for
-    /// [`crate::optimum`]. [`Bound::Bezier`] is for nets only.
+    /// [`crate::optimum`]. [`Bound::BezierExtraction`] is for nets only.
     pub fn optimum(
         &self,
         measure: Measure,

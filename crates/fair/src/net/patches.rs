@@ -14,7 +14,7 @@
 
 use crate::curve::condition::AXES;
 use crate::optimum::Bend;
-use crate::{Condition, End, FairError, Limit, Network, Space};
+use crate::{Condition, EndContinuity, FairError, Limit, Network, Space};
 use moldloft_num::{Real, Vec3};
 
 /// The part of the size of a net within which points of two edges are the same.
@@ -32,7 +32,7 @@ pub struct PatchNet {
     /// How far control points may move.
     pub limit: Limit,
     /// What its rims keep, at both ends of u, then of v; see [`Network::with_rims`].
-    pub rims: [[End; 2]; 2],
+    pub rims: [[EndContinuity; 2]; 2],
     /// Knuckle lines along u and along v; see [`Network::with_breaks`].
     pub breaks: [Vec<usize>; 2],
 }
@@ -40,12 +40,12 @@ pub struct PatchNet {
 impl PatchNet {
     /// A sheet with free rims and without breaks.
     pub fn new(spaces: [Space; 2], points: Vec<Vec3<f64>>, limit: Limit) -> Self {
-        let (rims, breaks) = ([[End::Free; 2]; 2], [Vec::new(), Vec::new()]);
+        let (rims, breaks) = ([[EndContinuity::Free; 2]; 2], [Vec::new(), Vec::new()]);
         Self { spaces, points, weights: None, limit, rims, breaks }
     }
 
     /// The places of the row of points that is `depth` rows away from an edge, along the edge.
-    fn row(&self, edge: Edge, depth: usize) -> Vec<usize> {
+    fn row(&self, edge: NetEdge, depth: usize) -> Vec<usize> {
         let [nu, nv] = self.spaces.each_ref().map(Space::count);
         let from = |n: usize| if edge.end == 0 { depth } else { n - 1 - depth };
         match edge.direction {
@@ -54,14 +54,14 @@ impl PatchNet {
         }
     }
 
-    fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
-        let all = (0..4).map(|k| Edge { direction: k / 2, end: k % 2 });
+    fn edges(&self) -> impl Iterator<Item = NetEdge> + '_ {
+        let all = (0..4).map(|k| NetEdge { direction: k / 2, end: k % 2 });
         all.filter(|e| !self.spaces[e.direction].is_closed())
     }
 
     /// How the derivatives by the parameter across an edge hang on rows of points counted from it,
     /// in the direction into the sheet.
-    fn across(&self, edge: Edge) -> [Vec<f64>; 2] {
+    fn across(&self, edge: NetEdge) -> [Vec<f64>; 2] {
         let space = &self.spaces[edge.direction];
         let (start, end) = space.domain();
         let (k, t) = space.locate(if edge.end == 0 { start } else { end });
@@ -81,7 +81,7 @@ impl PatchNet {
 
 /// An edge of a net: where a parameter begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Edge {
+pub struct NetEdge {
     /// The parameter that is constant on it: 0 for u, 1 for v.
     pub direction: usize,
     /// 0 where it begins, 1 where it ends.
@@ -94,17 +94,17 @@ pub struct Seam {
     /// Numbers of the surfaces, from 0.
     pub sheets: [usize; 2],
     /// Which edge of each.
-    pub edges: [Edge; 2],
+    pub edges: [NetEdge; 2],
     /// Whether the second runs against the first.
     pub reversed: bool,
-    /// What is continuous: [`End::Position`], [`End::Tangent`] or [`End::Curvature`].
-    pub keeps: End,
+    /// What is continuous: [`EndContinuity::Position`], [`EndContinuity::Tangent`] or [`EndContinuity::Curvature`].
+    pub keeps: EndContinuity,
 }
 
 impl Seam {
     /// The edges that sheets share: those whose control points are the same.
-    pub fn found(sheets: &[PatchNet], keeps: End) -> Vec<Seam> {
-        let mut all: Vec<(usize, Edge, Vec<Vec3<f64>>)> = Vec::new();
+    pub fn found(sheets: &[PatchNet], keeps: EndContinuity) -> Vec<Seam> {
+        let mut all: Vec<(usize, NetEdge, Vec<Vec3<f64>>)> = Vec::new();
         for (k, sheet) in sheets.iter().enumerate() {
             for edge in sheet.edges() {
                 let row = sheet.row(edge, 0).into_iter().map(|i| sheet.points[i]).collect();
@@ -152,15 +152,15 @@ pub(crate) struct PlacedNet {
 
 /// What holds across one seam.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Across {
+pub(crate) struct SeamCondition {
     /// SparseRows of places along the seam, from it into each sheet: for each control point on the seam.
     rows: [Vec<Vec<usize>>; 2],
     /// Derivatives into each sheet by those rows.
     factors: [[Vec<f64>; 2]; 2],
-    keeps: End,
+    keeps: EndContinuity,
 }
 
-impl Across {
+impl SeamCondition {
     /// D and D' (into the sheet) of one side at control point `j`.
     fn slopes<T: Real>(&self, side: usize, j: usize, points: &[Vec3<T>]) -> [Vec3<T>; 2] {
         [0, 1].map(|order| {
@@ -355,7 +355,7 @@ impl Network {
                 (along, factors)
             };
             let ((a, fa), (b, fb)) = (side(0), side(1));
-            let across = Across { rows: [a, b], factors: [fa, fb], keeps: seam.keeps };
+            let across = SeamCondition { rows: [a, b], factors: [fa, fb], keeps: seam.keeps };
             network.seams.extend(across.conditions(&network.points)?);
             network.across.push(across);
         }
@@ -441,7 +441,7 @@ fn check(sheets: &[PatchNet], seam: &Seam) -> Result<(), String> {
             return Err("of rational surfaces only the position of a seam can be kept".to_owned());
         }
     }
-    let along = |(sheet, edge): (&PatchNet, Edge)| sheet.spaces[1 - edge.direction].clone();
+    let along = |(sheet, edge): (&PatchNet, NetEdge)| sheet.spaces[1 - edge.direction].clone();
     let (near, far) = (along(a), along(b));
     if near.count() != far.count() {
         return Err(format!(
@@ -462,7 +462,7 @@ fn check(sheets: &[PatchNet], seam: &Seam) -> Result<(), String> {
     if near.degree() != far.degree() || knots[0].len() != knots[1].len() || apart {
         return Err("the edges have not the same degree and knots".to_owned());
     }
-    let row = |(sheet, edge): (&PatchNet, Edge)| sheet.row(edge, 0);
+    let row = |(sheet, edge): (&PatchNet, NetEdge)| sheet.row(edge, 0);
     let mut others = row(b);
     if seam.reversed {
         others.reverse();

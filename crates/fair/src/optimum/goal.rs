@@ -119,7 +119,7 @@ pub(crate) struct RegularizationPath<'a, E, S> {
 
 /// Where the way ended.
 #[derive(Clone)]
-pub(crate) struct Found {
+pub(crate) struct GoalOptimum {
     pub optimum: Optimum,
     /// How far the result is on the straight way from the original to the optimum of the weight.
     pub share: f64,
@@ -130,7 +130,7 @@ pub(crate) struct Found {
     pub between: bool,
 }
 
-impl Found {
+impl GoalOptimum {
     /// The original itself; the gap is 0 where nothing may move.
     pub fn unmoved(points: &[Vec3<f64>], value: f64, still: bool) -> Self {
         let certificate = Certificate { value, gap: if still { 0.0 } else { value } };
@@ -145,12 +145,12 @@ where
     S: Fn(&[Vec3<f64>]) -> f64,
 {
     /// The original, which measures `begin` where the fairest measures `least`.
-    fn left_as_it_is(&self, fairest: Optimum, begin: f64, least: f64) -> Found {
+    fn left_as_it_is(&self, fairest: Optimum, begin: f64, least: f64) -> GoalOptimum {
         let gap = begin - least + fairest.certificate.gap;
         let certificate = Certificate { value: begin, gap };
         let points = self.original.to_vec();
         let optimum = Optimum { points, certificate, active: 0, ..fairest };
-        Found { optimum, share: 0.0, used: 0.0, least, weight: 0.0, between: false }
+        GoalOptimum { optimum, share: 0.0, used: 0.0, least, weight: 0.0, between: false }
     }
 
     /// The optimum of a goal. The sum of squares falls and the measure rises with the weight, both
@@ -161,7 +161,7 @@ where
         norm: RowNorm,
         conditioned: bool,
         mut solve: impl FnMut(f64) -> Result<Optimum, FairError>,
-    ) -> Result<Found, FairError> {
+    ) -> Result<GoalOptimum, FairError> {
         let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
         let begin = (self.energy)(self.original);
         if !conditioned && (begin <= self.noise || goal == Goal::Closest) {
@@ -169,7 +169,7 @@ where
             let certificate = Certificate { value: begin, gap: begin };
             let points = self.original.to_vec();
             let optimum = Optimum { points, certificate, iterations: 0, active: 0 };
-            return Ok(Found {
+            return Ok(GoalOptimum {
                 optimum,
                 share: 0.0,
                 used: 0.0,
@@ -195,7 +195,7 @@ where
             let used = (self.squares)(&optimum.points) / mean;
             let value = (self.energy)(&optimum.points);
             let certificate = Certificate { value, ..optimum.certificate };
-            Ok(Found {
+            Ok(GoalOptimum {
                 optimum: Optimum { certificate, ..optimum },
                 share: 1.0,
                 used,
@@ -347,7 +347,7 @@ where
 ///
 /// # Errors
 /// [`FairError::Goal`].
-pub(crate) fn check_single(found: &Found, begin: f64) -> Result<(), FairError> {
+pub(crate) fn check_single(found: &GoalOptimum, begin: f64) -> Result<(), FairError> {
     if found.weight == 0.0 && found.share > 0.0 && found.least <= NOTHING * begin {
         return Err(FairError::Goal(
             "more than one result within the tolerance measures nothing, so derivatives of the one \
@@ -386,7 +386,7 @@ pub(crate) fn moved<T: Real>(
     parts: &Parts<'_>,
     solved: &Solved,
     goal: Goal,
-    found: &Found,
+    found: &GoalOptimum,
     pull: &SparseRows,
     moving: GoalVariation<'_, T>,
 ) -> Result<Vec<Vec3<T>>, FairError> {

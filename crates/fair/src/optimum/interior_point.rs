@@ -5,7 +5,7 @@
 
 use crate::optimum::band::Band;
 use crate::optimum::problem::{Active, CertifiedSolution, NONE, Problem, UnknownOrder};
-use crate::optimum::second_order_cone::{Cone, Pair, V, axpy, dot};
+use crate::optimum::second_order_cone::{ConeScaling, Pair, V, axpy, dot};
 use crate::{FairError, RowNorm, SparseRows};
 use moldloft_num::Real;
 
@@ -32,7 +32,7 @@ const POLISHED: usize = 1000;
 const KEPT: usize = 1 << 24;
 
 /// A condition over unknowns.
-pub(crate) struct Linear<const D: usize> {
+pub(crate) struct LinearConstraint<const D: usize> {
     pub entries: Vec<(usize, V<D>)>,
     pub value: f64,
 }
@@ -74,11 +74,11 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
     pub limit_rows: SparseRows,
     offsets: Vec<V<D>>,
     reach: Vec<f64>,
-    pub conditions: Vec<Linear<D>>,
+    pub conditions: Vec<LinearConstraint<D>>,
     halves: Vec<Half<D>>,
     pub x: Vec<V<D>>,
     /// Cones of the limits, then those of the lengths.
-    pub cones: Vec<Cone<D>>,
+    pub cones: Vec<ConeScaling<D>>,
     pub nu: Vec<f64>,
     /// Set once the solution is polished.
     pub active: Option<Active>,
@@ -87,7 +87,7 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
 }
 
 /// What a Newton step changes.
-struct Direction<const D: usize> {
+struct NewtonDirection<const D: usize> {
     x: Vec<V<D>>,
     /// What the complementarity of each cone should become.
     goals: Vec<Pair<D>>,
@@ -99,7 +99,7 @@ struct Direction<const D: usize> {
     nu: Vec<f64>,
 }
 
-impl<const D: usize> Direction<D> {
+impl<const D: usize> NewtonDirection<D> {
     fn zero(unknowns: usize, cones: usize, halves: usize) -> Self {
         let none = vec![(0.0, [0.0; D]); cones];
         Self {
@@ -183,7 +183,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
                 reach[at as usize] = r;
             }
         }
-        let condition = |c: &crate::optimum::problem::Condition| Linear {
+        let condition = |c: &crate::optimum::problem::EqualityConstraint| LinearConstraint {
             entries: c
                 .entries
                 .iter()
@@ -192,7 +192,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
                 .collect(),
             value: c.value,
         };
-        let half = |h: &crate::optimum::problem::HalfSpace| Half {
+        let half = |h: &crate::optimum::problem::InequalityConstraint| Half {
             entries: h
                 .entries
                 .iter()
@@ -328,8 +328,8 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         band: &Band,
         dense: &Schur,
         mu: f64,
-        before: Option<&Direction<D>>,
-        out: &mut Direction<D>,
+        before: Option<&NewtonDirection<D>>,
+        out: &mut NewtonDirection<D>,
     ) {
         let limits = self.limits();
         out.x.fill([0.0; D]);
@@ -382,7 +382,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
     }
 
     /// The longest step along `d` that keeps all cones, at most 2.
-    fn longest(&self, d: &Direction<D>) -> f64 {
+    fn longest(&self, d: &NewtonDirection<D>) -> f64 {
         let each = self.cones.iter().zip(&d.u).zip(&d.y);
         let step = each.fold(2.0, |step, ((cone, &du), &dy)| cone.longest(du, dy, step));
         let least = |step: f64, (now, by): (f64, f64)| {
@@ -400,7 +400,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         cones + self.halves.iter().map(|h| h.slack * h.force).sum::<f64>()
     }
 
-    fn step(&mut self, d: &Direction<D>, by: f64) {
+    fn step(&mut self, d: &NewtonDirection<D>, by: f64) {
         for (x, dx) in self.x.iter_mut().zip(&d.x) {
             axpy(x, by, *dx);
         }
@@ -500,7 +500,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
 
     /// By how much each condition is missed, relative to what the limits let it vary.
     fn misses(&self) -> Vec<f64> {
-        let of = |c: &Linear<D>| {
+        let of = |c: &LinearConstraint<D>| {
             let most = |(i, f): &(usize, V<D>)| dot(*f, *f).sqrt() * self.reach[*i].min(1e300);
             let scale: f64 = c.entries.iter().map(most).sum();
             let off = (met(c, &self.x) - c.value).abs();
@@ -531,7 +531,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             if self.p.norm == RowNorm::Length {
                 let t = 0.5 * (mu + (mu * mu + 4.0 * dot(e, e)).sqrt());
                 z = e.map(|c| c / t);
-                lengths.push(Cone::new((t, e), (1.0, z.map(|c| -c))));
+                lengths.push(ConeScaling::new((t, e), (1.0, z.map(|c| -c))));
             }
             spread(&self.measure, k, z, &mut slope);
         }
@@ -541,7 +541,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             let offset: V<D> = cut(&self.p.bounds.offset(k));
             for c in 0..self.groups() {
                 let inner = self.part(c, offset);
-                self.cones.push(Cone::new((radius, inner), (force, [0.0; D])));
+                self.cones.push(ConeScaling::new((radius, inner), (force, [0.0; D])));
             }
         }
         self.cones.extend(lengths);
@@ -601,7 +601,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             }
         }
         let narrow = |p: Pair<3>| (p.0, cut(&p.1));
-        let cones = solution.cones.iter().map(|&(u, y)| Cone::new(narrow(u), narrow(y)));
+        let cones = solution.cones.iter().map(|&(u, y)| ConeScaling::new(narrow(u), narrow(y)));
         let centred = solution.active.is_none();
         self.cones = cones.map(|c| if centred { c.centred() } else { c }).collect();
         let mut band = self.band()?;
@@ -660,7 +660,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
 }
 
 /// The left side of a condition.
-fn met<const D: usize>(condition: &Linear<D>, x: &[V<D>]) -> f64 {
+fn met<const D: usize>(condition: &LinearConstraint<D>, x: &[V<D>]) -> f64 {
     condition.entries.iter().map(|(i, factor)| dot(*factor, x[*i])).sum()
 }
 
@@ -675,7 +675,7 @@ pub(crate) struct Schur {
 
 impl Schur {
     pub fn new<const D: usize>(state: &InteriorPointState<D>, band: &Band) -> Self {
-        let row = |c: &Linear<D>| {
+        let row = |c: &LinearConstraint<D>| {
             let mut by_point = vec![[0.0; D]; state.x.len()];
             for (i, factor) in &c.entries {
                 axpy(&mut by_point[*i], 1.0, *factor);
@@ -767,15 +767,15 @@ pub(crate) fn solve<const D: usize>(
         return Ok(state.solution(iterations));
     }
     let mut band = state.band()?;
-    let mut best: Option<(f64, Vec<V<D>>, Vec<Cone<D>>, Vec<f64>)> = None;
+    let mut best: Option<(f64, Vec<V<D>>, Vec<ConeScaling<D>>, Vec<f64>)> = None;
     let (cones, halves) = (state.cones.len(), state.halves.len());
-    let mut affine = Direction::zero(state.unknowns(), cones, halves);
-    let mut corrected = Direction::zero(state.unknowns(), cones, halves);
+    let mut affine = NewtonDirection::zero(state.unknowns(), cones, halves);
+    let mut corrected = NewtonDirection::zero(state.unknowns(), cones, halves);
     let mut idle = 0;
     let mut shows = SHOWS;
     while iterations < MOST_ITERATIONS {
         iterations += 1;
-        state.cones.iter_mut().for_each(Cone::scale);
+        state.cones.iter_mut().for_each(ConeScaling::scale);
         state.assemble(&mut band);
         band.factor();
         let dense = Schur::new(&state, &band);

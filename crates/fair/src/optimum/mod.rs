@@ -9,10 +9,10 @@ pub(crate) mod problem;
 mod second_order_cone;
 
 use crate::curve::condition::{AXES, across};
-use crate::curve::job::End;
+use crate::curve::job::EndContinuity;
 use crate::{Certificate, Condition, FairError, Job, Limit, Measure, Motion, RowNorm, SparseRows};
 use moldloft_num::{Order, Real, Vec3};
-use problem::{Bounds, Problem, V};
+use problem::{NormBounds, Problem, V};
 
 /// What the tolerance is a bound on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,12 +59,12 @@ pub struct Optimum {
 }
 
 /// The frame that points move in: the directions that matter.
-pub(crate) struct Frame {
+pub(crate) struct MotionAxes {
     pub axes: Vec<Vec3<f64>>,
     pub separate: bool,
 }
 
-impl Frame {
+impl MotionAxes {
     /// The frame of a motion; coordinates in which nothing varies are left out.
     pub fn of(motion: Motion, points: &[Vec3<f64>], conditions: &[Condition]) -> Self {
         let axes: Vec<Vec3<f64>> = match motion {
@@ -137,7 +137,7 @@ pub fn optimum_with<T: Real>(
 
 /// An optimum with all that its derivatives need.
 pub(crate) struct Solved {
-    pub frame: Frame,
+    pub frame: MotionAxes,
     pub problem: Problem,
     pub optimum: Optimum,
     pub solution: problem::CertifiedSolution,
@@ -157,7 +157,7 @@ impl Solved {
 
 /// A half-space that control points stay in: the sum of factor . point is at most `most`.
 #[derive(Clone, Debug)]
-pub(crate) struct HalfSpace {
+pub(crate) struct ControlInequality {
     pub entries: Vec<(usize, Vec3<f64>)>,
     pub most: f64,
     /// Which of the caller's shape conditions asks for it.
@@ -205,7 +205,7 @@ pub(crate) struct Parts<'a> {
     /// How many of the conditions are not the caller's.
     pub own: usize,
     pub bounded: Bounded,
-    pub halves: Vec<HalfSpace>,
+    pub halves: Vec<ControlInequality>,
     /// A pull towards the data, beside the measure: rows that measure displacements.
     pub pull: Option<SparseRows>,
     pub accuracy: f64,
@@ -252,7 +252,7 @@ impl<'a> Parts<'a> {
 
     /// The optimum.
     pub fn solve(&self) -> Result<Optimum, FairError> {
-        let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
+        let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
         Ok(self.solved(&frame, &problem)?.0)
     }
@@ -278,7 +278,7 @@ impl<'a> Parts<'a> {
         targets: &[T],
         bends: &[Bend<T>],
     ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
-        let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
+        let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
         let (optimum, solution) = self.solved(&frame, &problem)?;
         let solved = Solved { frame, problem, optimum, solution };
@@ -288,7 +288,7 @@ impl<'a> Parts<'a> {
 
     /// The optimum with all that its derivatives need.
     pub fn whole(&self) -> Result<Solved, FairError> {
-        let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
+        let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
         let (optimum, solution) = self.solved(&frame, &problem)?;
         Ok(Solved { frame, problem, optimum, solution })
@@ -400,7 +400,7 @@ impl<'a> Parts<'a> {
 
     fn solved(
         &self,
-        frame: &Frame,
+        frame: &MotionAxes,
         problem: &Problem,
     ) -> Result<(Optimum, problem::CertifiedSolution), FairError> {
         // Gaps below the rounding of the measure are no gaps.
@@ -453,14 +453,14 @@ impl<'a> Parts<'a> {
         Ok((Optimum { points, certificate, iterations, active }, solution))
     }
 
-    fn moved(&self, frame: &Frame, x: &[V]) -> Vec<Vec3<f64>> {
+    fn moved(&self, frame: &MotionAxes, x: &[V]) -> Vec<Vec3<f64>> {
         let zero = |v: &V| v.iter().all(|&c| c == 0.0);
         let place = |(&p, v): (&Vec3<f64>, &V)| if zero(v) { p } else { p + frame.up(*v) };
         self.points.iter().zip(x).map(place).collect()
     }
 
     /// The problem in the frame of its motion.
-    pub fn problem(&self, frame: &Frame) -> Problem {
+    pub fn problem(&self, frame: &MotionAxes) -> Problem {
         let (n, radii, frozen) = (self.points.len(), &self.limit.radii, &self.frozen);
         let rows = &self.measure;
         let mut offsets: Vec<V> =
@@ -473,7 +473,7 @@ impl<'a> Parts<'a> {
         }
         let corner = if frame.separate { (frame.axes.len() as f64).sqrt() } else { 1.0 };
         let mut reach: Vec<f64> = radii.iter().map(|r| r * corner).collect();
-        let mut bounds = Bounds { separate: frame.separate, ..Bounds::none() };
+        let mut bounds = NormBounds { separate: frame.separate, ..NormBounds::none() };
         match &self.bounded {
             Bounded::ControlPoints => {
                 for i in (0..n).filter(|&i| !frozen[i] && radii[i].is_finite()) {
@@ -514,7 +514,7 @@ impl<'a> Parts<'a> {
             .iter()
             .map(|c| {
                 let free = c.entries.iter().filter(|(i, _)| !frozen[*i]);
-                problem::Condition {
+                problem::EqualityConstraint {
                     entries: free.map(|(i, f)| (*i, frame.down(*f))).collect(),
                     value: c.value - c.at(self.points),
                 }
@@ -538,7 +538,7 @@ impl<'a> Parts<'a> {
                 let sum: f64 = h.entries.iter().map(|(i, f)| f.dot(self.points[*i])).sum();
                 let size = |v: &V| v.iter().map(|c| c * c).sum::<f64>().sqrt();
                 let scale = mean * entries.iter().map(|(_, f)| size(f)).sum::<f64>();
-                problem::HalfSpace { entries, room: h.most - sum, scale }
+                problem::InequalityConstraint { entries, room: h.most - sum, scale }
             })
             .collect();
         Problem {
@@ -595,7 +595,7 @@ pub(crate) fn kept(job: &Job) -> (Vec<bool>, Vec<Condition>) {
                     c.value = c.at(&job.points);
                 }
                 conditions.extend(three);
-                freer.ends[at] = End::Free;
+                freer.ends[at] = EndContinuity::Free;
             }
         }
     }

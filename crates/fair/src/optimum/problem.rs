@@ -20,7 +20,7 @@ use moldloft_num::Real;
 pub(crate) type V = [f64; 3];
 
 /// A limit |o_k + Q_k x| <= radius, of all coordinates together or of each by itself.
-pub(crate) struct Bounds {
+pub(crate) struct NormBounds {
     pub rows: SparseRows,
     /// Each row is a single point, each point has at most one row.
     pub direct: bool,
@@ -31,7 +31,7 @@ pub(crate) struct Bounds {
     pub separate: bool,
 }
 
-impl Bounds {
+impl NormBounds {
     /// No limits.
     pub fn none() -> Self {
         let (rows, radii, offsets) = (SparseRows::new(), Vec::new(), Vec::new());
@@ -46,14 +46,14 @@ impl Bounds {
 
 /// One linear condition: the sum of factor . x[point] equals `value`.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Condition {
+pub(crate) struct EqualityConstraint {
     pub entries: Vec<(usize, V)>,
     pub value: f64,
 }
 
 /// A half-space: the sum of factor . x[point] is at most `room`.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct HalfSpace {
+pub(crate) struct InequalityConstraint {
     pub entries: Vec<(usize, V)>,
     pub room: f64,
     /// What it varies by when points move by their tolerances.
@@ -69,11 +69,11 @@ pub(crate) struct Problem {
     pub norm: RowNorm,
     /// SparseRows times the original points.
     pub offsets: Vec<V>,
-    pub bounds: Bounds,
+    pub bounds: NormBounds,
     /// Points that do not move.
     pub frozen: Vec<bool>,
-    pub conditions: Vec<Condition>,
-    pub halves: Vec<HalfSpace>,
+    pub conditions: Vec<EqualityConstraint>,
+    pub halves: Vec<InequalityConstraint>,
     /// By how much each point can move at most, for the certificate.
     pub reach: Vec<f64>,
 }
@@ -164,7 +164,7 @@ fn order(p: &Problem) -> (Vec<u32>, usize, usize) {
                 .max()
                 .unwrap_or(0)
         };
-        let half = |h: &HalfSpace| {
+        let half = |h: &InequalityConstraint| {
             let used = || h.entries.iter().map(|(i, _)| place[*i]).filter(|&i| i != NONE);
             match (used().max(), used().min()) {
                 (Some(a), Some(b)) => (a - b) as usize,

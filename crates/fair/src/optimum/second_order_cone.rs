@@ -24,7 +24,7 @@ pub(crate) fn axpy<const D: usize>(y: &mut V<D>, a: f64, x: V<D>) {
 
 /// Slack, dual and their scaling point (Nesterov and Todd 1997).
 #[derive(Clone, Debug)]
-pub(crate) struct Cone<const D: usize> {
+pub(crate) struct ConeScaling<const D: usize> {
     pub u: Pair<D>,
     pub y: Pair<D>,
     /// The scaling W = eta [w0, w1'; w1, I + w1 w1' / (1 + w0)].
@@ -52,7 +52,7 @@ fn product<const D: usize>(a: Pair<D>, b: Pair<D>) -> Pair<D> {
     (a.0 * b.0 + dot(a.1, b.1), rest)
 }
 
-impl<const D: usize> Cone<D> {
+impl<const D: usize> ConeScaling<D> {
     pub fn new(u: Pair<D>, y: Pair<D>) -> Self {
         let mut cone = Self { u, y, w: (1.0, [0.0; D]), eta: 1.0, middle: u, inside: [1.0; 2] };
         cone.scale();
@@ -244,7 +244,7 @@ mod tests {
         let mut random = Lcg::new(9);
         for inside in [1.0, 1e-2, 1e-6] {
             for _ in 0..50 {
-                let cone = Cone::new(some(&mut random, inside), some(&mut random, inside));
+                let cone = ConeScaling::new(some(&mut random, inside), some(&mut random, inside));
                 let (a, b) = (cone.map(cone.y), cone.unmap(cone.u));
                 let size = a.0.abs();
                 assert!((a.0 - b.0).abs() < 1e-6 * size, "{a:?} {b:?}");
@@ -261,7 +261,7 @@ mod tests {
     fn changes_solve_the_linearised_complementarity() {
         let mut random = Lcg::new(2);
         for free in [false, true] {
-            let cone = Cone::new(some(&mut random, 0.5), some(&mut random, 0.3));
+            let cone = ConeScaling::new(some(&mut random, 0.5), some(&mut random, 0.3));
             let before = (some(&mut random, -0.5), some(&mut random, 0.0));
             let goal = cone.goal(Some((0.01, &before.0, &before.1)));
             let de = [0.3, -0.2, 0.1];

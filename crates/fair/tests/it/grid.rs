@@ -35,8 +35,8 @@ fn spaced(
     let at = grid_parameters(points, shape, spacing, [false; 2], motion).unwrap();
     GridData {
         limit: Limit::new(motion, vec![tolerance; points.len()]).unwrap(),
-        layouts: at.map(|at| Layout::new(3, &at, &[], false).unwrap()),
-        rims: [[End::Free; 2]; 2],
+        layouts: at.map(|at| InterpolationSpace::new(3, &at, &[], false).unwrap()),
+        rims: [[EndContinuity::Free; 2]; 2],
         points: points.to_vec(),
     }
 }
@@ -123,7 +123,10 @@ fn rims_and_fixed_points_stay() {
     let mut points = offsets(&xs, &zs, |x, z| (1.0 - x * x) * (1.0 - z * z));
     points.iter_mut().for_each(|p| p.y += 0.01 * random.centred());
     let mut data = data(&points, [9, 8], 0.01, Motion::Ball);
-    data.rims = [[End::Curvature, End::Free], [End::Position, End::Tangent]];
+    data.rims = [
+        [EndContinuity::Curvature, EndContinuity::Free],
+        [EndContinuity::Position, EndContinuity::Tangent],
+    ];
     data.limit.radii[8 * 4 + 3] = 0.0;
     let made = fair_grid(&data, Measure::Variation, Goal::Fairest, &[], 1e-9).unwrap();
     let same = |i: usize, j: usize| made.points[8 * i + j] == made.original[8 * i + j];

@@ -2,7 +2,7 @@
 
 use crate::fixtures::*;
 use moldloft_fair::{
-    Bound, Edge, End, FairError, Limit, Measure, Network, PatchNet, Seam, Space, rows,
+    Bound, EndContinuity, FairError, Limit, Measure, NetEdge, Network, PatchNet, Seam, Space, rows,
 };
 use moldloft_num::{Dual4, Order, Real, Surface, Vec3};
 use moldloft_registry::{
@@ -63,12 +63,14 @@ fn forms(s: &dyn Surface<f64>, u: f64, v: f64) -> (Vec3<f64>, [f64; 3]) {
 #[test]
 fn tangents_and_curvature_run_on_across_a_seam() {
     let sheets = sheets(4e-3, 2e-2);
-    for (keeps, planes, bends) in
-        [(End::Position, false, false), (End::Tangent, true, false), (End::Curvature, true, true)]
-    {
+    for (keeps, planes, bends) in [
+        (EndContinuity::Position, false, false),
+        (EndContinuity::Tangent, true, false),
+        (EndContinuity::Curvature, true, true),
+    ] {
         let seams = Seam::found(&sheets, keeps);
         assert_eq!(seams.len(), 1);
-        let wanted = [Edge { direction: 0, end: 1 }, Edge { direction: 0, end: 0 }];
+        let wanted = [NetEdge { direction: 0, end: 1 }, NetEdge { direction: 0, end: 0 }];
         assert_eq!((seams[0].edges, seams[0].reversed), (wanted, false));
         let network = Network::joined(&sheets, &seams).unwrap();
         assert_eq!(network.points.len(), 80 + 56 - 8);
@@ -107,7 +109,7 @@ fn tangents_and_curvature_run_on_across_a_seam() {
         let bezier = network.optimum(Measure::Third, Bound::Bezier, vec![], 1e-9).unwrap();
         assert!(bezier.certificate.value < best.certificate.value);
         assert!(network.certified(&bezier.points) <= 2e-2 + 1e-12);
-        assert_eq!(network.passes(1, 1).is_ok(), keeps == End::Position);
+        assert_eq!(network.passes(1, 1).is_ok(), keeps == EndContinuity::Position);
     }
 }
 
@@ -116,7 +118,7 @@ fn tangents_and_curvature_run_on_across_a_seam() {
 fn seams_are_found_wherever_they_are() {
     let straight = sheets(4e-3, 2e-2);
     let value = |sheets: &[PatchNet]| {
-        let seams = Seam::found(sheets, End::Curvature);
+        let seams = Seam::found(sheets, EndContinuity::Curvature);
         let network = Network::joined(sheets, &seams).unwrap();
         let best = network.optimum(Measure::Second, Bound::ControlPoints, vec![], 1e-11).unwrap();
         (seams, best.certificate.value)
@@ -133,7 +135,7 @@ fn seams_are_found_wherever_they_are() {
             .collect();
         turned[1].spaces.reverse();
         let (seams, got) = value(&turned);
-        assert_eq!(seams[0].edges[1], Edge { direction: 1, end: 1 });
+        assert_eq!(seams[0].edges[1], NetEdge { direction: 1, end: 1 });
         assert_eq!(seams[0].reversed, down);
         assert!((got / wanted - 1.0).abs() < 1e-8, "{got} {wanted}");
     }
@@ -145,21 +147,21 @@ fn seams_are_found_wherever_they_are() {
         .collect();
     three.push(PatchNet { points: far, ..straight[0].clone() });
     // Its first row is not the last of the second: nothing to join there.
-    assert_eq!(Seam::found(&three, End::Curvature).len(), 1);
+    assert_eq!(Seam::found(&three, EndContinuity::Curvature).len(), 1);
 }
 
 #[test]
 fn what_cannot_be_joined_is_refused() {
     let sheets = sheets(4e-3, 2e-2);
-    let seam = Seam::found(&sheets, End::Curvature)[0];
+    let seam = Seam::found(&sheets, EndContinuity::Curvature)[0];
     let said = |sheets: &[PatchNet], seam: Seam| match Network::joined(sheets, &[seam]) {
         Err(FairError::Seam { number: 0, why }) => why,
         other => panic!("{other:?}"),
     };
     assert!(said(&sheets, Seam { sheets: [0, 2], ..seam }).contains("no surface 3"));
-    let wrong = Seam { edges: [Edge { direction: 0, end: 0 }, seam.edges[1]], ..seam };
+    let wrong = Seam { edges: [NetEdge { direction: 0, end: 0 }, seam.edges[1]], ..seam };
     assert!(said(&sheets, wrong).contains("apart"));
-    let across = Seam { edges: [Edge { direction: 1, end: 0 }, seam.edges[1]], ..seam };
+    let across = Seam { edges: [NetEdge { direction: 1, end: 0 }, seam.edges[1]], ..seam };
     assert!(said(&sheets, across).contains("10 control points, the other 8"));
     let mut low = sheets.clone();
     low[1].spaces[1] = Space::clamped(4, 8).unwrap();
@@ -167,7 +169,7 @@ fn what_cannot_be_joined_is_refused() {
     let mut rational = sheets.clone();
     rational[0].weights = Some(vec![1.0; 80]);
     assert!(said(&rational, seam).contains("rational"));
-    assert!(Network::joined(&rational, &[Seam { keeps: End::Position, ..seam }]).is_ok());
+    assert!(Network::joined(&rational, &[Seam { keeps: EndContinuity::Position, ..seam }]).is_ok());
     // A sheet that runs back over the other.
     let mut back = sheets.clone();
     let points = &sheets[0].points;

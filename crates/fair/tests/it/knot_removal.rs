@@ -80,7 +80,7 @@ fn faithful(job: &Job, steps: usize) -> KnotRemoval {
 fn the_inputs_are_those_of_the_table() {
     for row in rows() {
         let (f, job) = (&row.fixture, job(&row.fixture));
-        let largest = Jumps::of(&job.space).lengths(&f.points).into_iter().fold(0.0, f64::max);
+        let largest = KnotJumps::of(&job.space).lengths(&f.points).into_iter().fold(0.0, f64::max);
         near(f.name, largest, row.input[0], 1e-6);
         near(f.name, job.value(Measure::Jumps, &f.points).unwrap(), row.input[1], 1e-6);
         near(f.name, job.value(Measure::Second, &f.points).unwrap(), row.input[2], 1e-6);
@@ -175,7 +175,7 @@ fn a_free_step_removes_its_knot() {
         knot_removal(&job, &KnotRemovalOptions { log: true, ..KnotRemovalOptions::faithful(1) })
             .unwrap();
     let moved = result.log[0].index as usize;
-    let jumps = Jumps::of(&job.space);
+    let jumps = KnotJumps::of(&job.space);
     let row = jumps.moved.iter().position(|&m| m == moved).unwrap();
     let jump = jumps.rows.apply(row, &f.points).norm();
     assert!(jumps.rows.apply(row, &result.points).norm() < 1e-15);

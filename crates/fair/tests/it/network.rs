@@ -156,7 +156,7 @@ fn a_network_moves_shared_points_once() {
         points,
         weights: None,
         marks: vec![],
-        ends: [End::Points(2); 2],
+        ends: [EndContinuity::Points(2); 2],
     };
     let mut strands: Vec<_> = (0..NV)
         .step_by(4)
@@ -260,7 +260,10 @@ fn surfaces_keep_conditions() {
         assert!(matches!(solve(far), Err(FairError::Contradiction { .. })));
     }
     let web = Network::new(vec![Vec3::zero(); 3], vec![], Limit::ball(3, 1.0).unwrap()).unwrap();
-    assert!(web.area_condition().is_err() && web.clone().with_rims([[End::Free; 2]; 2]).is_err());
+    assert!(
+        web.area_condition().is_err()
+            && web.clone().with_rims([[EndContinuity::Free; 2]; 2]).is_err()
+    );
 }
 
 /// Offsets of a hull at half stations and uneven waterlines, read to a centimetre: nearer to the
@@ -301,7 +304,7 @@ fn uneven_stations_and_waterlines() {
                     points: own,
                     weights: None,
                     marks: Vec::new(),
-                    ends: [End::Points(0); 2],
+                    ends: [EndContinuity::Points(0); 2],
                     at: (!index).then_some(at),
                 }
             };
@@ -351,7 +354,7 @@ fn the_budget_of_a_network_goes_by_its_fairest() {
             points: own,
             weights: None,
             marks: Vec::new(),
-            ends: [End::Points(0); 2],
+            ends: [EndContinuity::Points(0); 2],
             at: Some(at),
         };
         let rows = (0..m).map(|i| {

@@ -38,7 +38,7 @@ fn the_optimum_row_of_the_table() {
         near(f.name, best(&job, Measure::Jumps).certificate.value, squares, 1e-3);
         let few = best(&job, Measure::JumpLengths);
         near(f.name, few.certificate.value, lengths, 1e-3);
-        let jumps = Jumps::of(&job.space).lengths(&few.points);
+        let jumps = KnotJumps::of(&job.space).lengths(&few.points);
         let largest = jumps.iter().copied().fold(0.0, f64::max);
         let kept = jumps.iter().filter(|&&j| j > 1e-3 * largest).count();
         assert!(kept.abs_diff(corners) <= 1, "{} {kept}", f.name);
@@ -250,8 +250,12 @@ fn no_contradiction_passes() {
 fn ends_are_kept_as_asked() {
     let f = f2b();
     let mut last = 0.0;
-    for (end, kept) in [(End::Free, 0), (End::Position, 1), (End::Tangent, 2), (End::Curvature, 3)]
-    {
+    for (end, kept) in [
+        (EndContinuity::Free, 0),
+        (EndContinuity::Position, 1),
+        (EndContinuity::Tangent, 2),
+        (EndContinuity::Curvature, 3),
+    ] {
         let mut job = job(&f);
         job.ends = [end, end];
         let result = best(&job, Measure::Second);
@@ -396,7 +400,7 @@ fn a_seam_gets_continuous_curvature_at_either_end() {
     let space = Space::clamped(3, f.points.len()).unwrap();
     for at_end in [false, true] {
         let mut job = Job::new(space.clone(), f.points.clone(), 2e-3).unwrap();
-        job.ends = [End::Free, End::Free];
+        job.ends = [EndContinuity::Free, EndContinuity::Free];
         let n = f.points.len();
         let (p, inner) =
             if at_end { (f.points[n - 1], f.points[n - 2]) } else { (f.points[0], f.points[1]) };

@@ -131,8 +131,8 @@ pub fn data_of(points: &[Vec3<f64>], tolerance: f64, spacing: ParameterSpacing) 
     let at = parameters(points, spacing, false).unwrap();
     Data {
         limit: Limit::ball(points.len(), tolerance).unwrap(),
-        layout: Layout::new(3, &at, &[], false).unwrap(),
-        ends: [End::Free; 2],
+        layout: InterpolationSpace::new(3, &at, &[], false).unwrap(),
+        ends: [EndContinuity::Free; 2],
         points: points.to_vec(),
     }
 }

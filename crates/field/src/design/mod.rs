@@ -101,12 +101,12 @@ impl<T: Real> Set<T> {
 pub type Edges<'a> = Option<&'a [[String; 2]]>;
 
 /// Which of the chosen edges were met.
-struct Choice<'a> {
+struct EdgeSelection<'a> {
     edges: Edges<'a>,
     met: Vec<bool>,
 }
 
-impl<'a> Choice<'a> {
+impl<'a> EdgeSelection<'a> {
     fn new(edges: Edges<'a>) -> Self {
         Self { edges, met: vec![false; edges.map_or(0, <[_]>::len)] }
     }
@@ -161,7 +161,7 @@ pub fn fillet_sets<T: Real>(
     lambda: T,
     edges: Edges,
 ) -> Result<Set<T>, FieldError> {
-    let mut choice = Choice::new(edges);
+    let mut choice = EdgeSelection::new(edges);
     let both = a.clone() | b.clone();
     let over = crate::kinds::region::around(&both.re()).ok().flatten();
     let mut out = both;
@@ -196,7 +196,7 @@ fn edges_cut<T: Real>(
     name: &str,
     cut: impl Fn(&Primitive<T>, &Primitive<T>) -> Result<Set<T>, FieldError>,
 ) -> Result<Set<T>, FieldError> {
-    let mut choice = Choice::new(edges);
+    let mut choice = EdgeSelection::new(edges);
     let over = crate::kinds::region::around(&set.re()).ok().flatten();
     let mut out = Set::nothing();
     for piece in set.pieces()? {

@@ -280,21 +280,21 @@ impl<T: Real> Algebra<T> for T {
 
 /// A value with its gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Gradient<T> {
+pub struct ValueGradient<T> {
     /// The value.
     pub value: T,
     /// The derivatives by x, y and z.
     pub slope: Vec3<T>,
 }
 
-impl<T: Real> Gradient<T> {
+impl<T: Real> ValueGradient<T> {
     #[inline(always)]
     fn chained(self, value: T, d1: T) -> Self {
         Self { value, slope: self.slope * d1 }
     }
 }
 
-impl<T: Real> Algebra<T> for Gradient<T> {
+impl<T: Real> Algebra<T> for ValueGradient<T> {
     type At = Vec3<T>;
     #[inline(always)]
     fn real(x: T) -> Self {

@@ -97,7 +97,7 @@ pub const CIRCULAR: f64 = 2.0 / 3.0;
 
 /// A blend with the sets that it makes.
 #[derive(Clone, Debug)]
-pub struct Blend<T: Real = f64> {
+pub struct SetBlend<T: Real = f64> {
     /// The surface of the blend.
     pub primitive: Primitive<T>,
     /// Where it is used: the rail's solid side; for transitions beyond both rails.
@@ -106,7 +106,7 @@ pub struct Blend<T: Real = f64> {
     pub set: Set<T>,
 }
 
-impl<T: Real> Blend<T> {
+impl<T: Real> SetBlend<T> {
     /// Degree of the blend's polynomial.
     pub fn degree(&self) -> u32 {
         self.primitive.degree()
@@ -149,11 +149,11 @@ pub fn fillet<T: Real>(
     [l1, l2]: [&Primitive<T>; 2],
     setbacks: [T; 2],
     lambda: T,
-) -> Result<Blend<T>, FieldError> {
+) -> Result<SetBlend<T>, FieldError> {
     let [rail, primitive] = filleted([l1, l2], setbacks, lambda)?;
     let patch = Set::new(&primitive) & Set::new(&rail);
     let set = Set::new(l1) | Set::new(l2) | patch.clone();
-    Ok(Blend { primitive, patch, set })
+    Ok(SetBlend { primitive, patch, set })
 }
 
 /// The intersection of two bodies with their edge rounded, of setback `width` on both: the fillet of
@@ -165,10 +165,10 @@ pub fn round<T: Real>(
     [l1, l2]: [&Primitive<T>; 2],
     setbacks: [T; 2],
     lambda: T,
-) -> Result<Blend<T>, FieldError> {
+) -> Result<SetBlend<T>, FieldError> {
     let hollow = fillet([&-l1, &-l2], setbacks, lambda)?;
     let patch = hollow.patch.complement();
-    Ok(Blend { primitive: -hollow.primitive, patch, set: hollow.set.complement() })
+    Ok(SetBlend { primitive: -hollow.primitive, patch, set: hollow.set.complement() })
 }
 
 /// The body `l1` up to the rail `l3`, the body `l2` up to the rail `l4`, and Zhang's transition between:
@@ -181,12 +181,12 @@ pub fn transition<T: Real>(
     [l3, l4]: [&Primitive<T>; 2],
     lambda: T,
     contact: u32,
-) -> Result<Blend<T>, FieldError> {
+) -> Result<SetBlend<T>, FieldError> {
     let primitive = zhang([l1, l2], [l3, l4], lambda, contact)?;
     let [s3, s4] = [l3, l4].map(Set::new);
     let patch = &(&Set::new(&primitive) - &s3) - &s4;
     let ends = (Set::new(l1) & s3) | (Set::new(l2) & s4);
-    Ok(Blend { primitive, set: ends | patch.clone(), patch })
+    Ok(SetBlend { primitive, set: ends | patch.clone(), patch })
 }
 
 /// Boxes are halved this often along each axis, at most.

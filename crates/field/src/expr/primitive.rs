@@ -1,6 +1,6 @@
 //! Primitives: expressions of planes and reals, immutable and shared.
 
-use crate::expr::algebra::{Gradient, Hessian, Unary};
+use crate::expr::algebra::{Hessian, Unary, ValueGradient};
 use crate::expr::form::Form;
 use crate::expr::interval::Interval;
 use crate::expr::oracle::{Affine, Oracle};
@@ -376,8 +376,8 @@ impl<T: Real> Primitive<T> {
     }
 
     /// The value and the exact gradient at a point.
-    pub fn gradient(&self, p: Vec3<T>) -> Gradient<T> {
-        self.tape().eval::<Gradient<T>>(&p, &mut Vec::new())
+    pub fn gradient(&self, p: Vec3<T>) -> ValueGradient<T> {
+        self.tape().eval::<ValueGradient<T>>(&p, &mut Vec::new())
     }
 
     /// The value, the exact gradient and the exact second derivatives at a point.

@@ -18,7 +18,7 @@ pub(crate) const NO_LEAF: u32 = u32::MAX;
 
 /// One instruction; operands are positions of earlier ones.
 #[derive(Clone, Copy)]
-pub(crate) enum Code<T> {
+pub(crate) enum ExprInstruction<T> {
     Real(T),
     Plane(Vec3<T>, T),
     User(u32),
@@ -43,7 +43,7 @@ pub(crate) enum Code<T> {
 
 /// A compiled expression; its value is that of the last instruction.
 pub(crate) struct ExprTape<T: Real> {
-    pub(crate) code: Vec<Code<T>>,
+    pub(crate) code: Vec<ExprInstruction<T>>,
     /// The leaf of each instruction, or [`NO_LEAF`].
     pub(crate) leaf: Vec<u32>,
     /// Register of each instruction, for [`ExprTape::bulk`].
@@ -75,7 +75,7 @@ type NumberKey = (u8, u32, u32, [u64; 4]);
 
 /// Builds a tape; equal instructions are one.
 pub(crate) struct Builder<T: Real> {
-    code: Vec<Code<T>>,
+    code: Vec<ExprInstruction<T>>,
     leaf: Vec<u32>,
     known: HashMap<NumberKey, u32>,
     nodes: HashMap<*const PrimitiveNode<T>, u32>,
@@ -93,7 +93,7 @@ impl<T: Real> Builder<T> {
         }
     }
 
-    pub(crate) fn push(&mut self, code: Code<T>) -> u32 {
+    pub(crate) fn push(&mut self, code: ExprInstruction<T>) -> u32 {
         if let Some(key) = key(&code) {
             if let Some(&at) = self.known.get(&key) {
                 return at;
@@ -121,31 +121,31 @@ impl<T: Real> Builder<T> {
             };
             let nodes = &self.nodes;
             let code = match &node.0.op {
-                Op::Real(c) => Code::Real(*c),
-                Op::Plane { normal, offset } => Code::Plane(*normal, *offset),
+                Op::Real(c) => ExprInstruction::Real(*c),
+                Op::Plane { normal, offset } => ExprInstruction::Plane(*normal, *offset),
                 Op::User { oracle, map } => {
                     self.users.push((oracle.clone(), *map));
-                    Code::User(self.users.len() as u32 - 1)
+                    ExprInstruction::User(self.users.len() as u32 - 1)
                 }
-                Op::Unary(f, a) => Code::Unary(*f, of(a, nodes)),
-                Op::Over(a, c) => Code::OverReal(of(a, nodes), *c),
-                Op::Power(a, n) => Code::Power(of(a, nodes), *n),
+                Op::Unary(f, a) => ExprInstruction::Unary(*f, of(a, nodes)),
+                Op::Over(a, c) => ExprInstruction::OverReal(of(a, nodes), *c),
+                Op::Power(a, n) => ExprInstruction::Power(of(a, nodes), *n),
                 Op::Binary(f, a, b) => {
                     let (i, j) = (of(a, nodes), of(b, nodes));
                     match (f, constant(a), constant(b)) {
-                        (Binary::Add, _, Some(c)) => Code::PlusReal(i, c),
-                        (Binary::Add, Some(c), _) => Code::PlusReal(j, c),
-                        (Binary::Sub, _, Some(c)) => Code::PlusReal(i, -c),
-                        (Binary::Mul, _, Some(c)) => Code::TimesReal(i, c),
-                        (Binary::Mul, Some(c), _) => Code::TimesReal(j, c),
-                        (Binary::Add, ..) => Code::Add(i, j),
-                        (Binary::Sub, ..) => Code::Sub(i, j),
-                        (Binary::Mul, ..) => Code::Mul(i, j),
-                        (Binary::Min, ..) => Code::Min(i, j),
-                        (Binary::Max, ..) => Code::Max(i, j),
-                        (Binary::Atan2, ..) => Code::Atan2(i, j),
-                        (Binary::Div, ..) => Code::Div(i, j),
-                        (Binary::Mod, ..) => Code::Mod(i, j),
+                        (Binary::Add, _, Some(c)) => ExprInstruction::PlusReal(i, c),
+                        (Binary::Add, Some(c), _) => ExprInstruction::PlusReal(j, c),
+                        (Binary::Sub, _, Some(c)) => ExprInstruction::PlusReal(i, -c),
+                        (Binary::Mul, _, Some(c)) => ExprInstruction::TimesReal(i, c),
+                        (Binary::Mul, Some(c), _) => ExprInstruction::TimesReal(j, c),
+                        (Binary::Add, ..) => ExprInstruction::Add(i, j),
+                        (Binary::Sub, ..) => ExprInstruction::Sub(i, j),
+                        (Binary::Mul, ..) => ExprInstruction::Mul(i, j),
+                        (Binary::Min, ..) => ExprInstruction::Min(i, j),
+                        (Binary::Max, ..) => ExprInstruction::Max(i, j),
+                        (Binary::Atan2, ..) => ExprInstruction::Atan2(i, j),
+                        (Binary::Div, ..) => ExprInstruction::Div(i, j),
+                        (Binary::Mod, ..) => ExprInstruction::Mod(i, j),
                     }
                 }
             };
@@ -172,80 +172,83 @@ impl<T: Real> Builder<T> {
 }
 
 /// The identity of an instruction; `None` when its numbers carry derivatives.
-fn key<T: Real>(code: &Code<T>) -> Option<NumberKey> {
+fn key<T: Real>(code: &ExprInstruction<T>) -> Option<NumberKey> {
     let bits = |c: T| c.is_constant().then(|| c.re().to_bits());
     Some(match *code {
-        Code::Real(c) => (0, 0, 0, [bits(c)?, 0, 0, 0]),
-        Code::Plane(n, d) => (1, 0, 0, [bits(n.x)?, bits(n.y)?, bits(n.z)?, bits(d)?]),
-        Code::User(_) => return None,
-        Code::Unary(f, a) => (2, a, f as u32, [0; 4]),
-        Code::PlusReal(a, c) => (3, a, 0, [bits(c)?, 0, 0, 0]),
-        Code::TimesReal(a, c) => (4, a, 0, [bits(c)?, 0, 0, 0]),
-        Code::OverReal(a, c) => (5, a, 0, [bits(c)?, 0, 0, 0]),
-        Code::Power(a, n) => (6, a, n, [0; 4]),
-        Code::Add(a, b) => (7, a, b, [0; 4]),
-        Code::Sub(a, b) => (8, a, b, [0; 4]),
-        Code::Mul(a, b) => (9, a, b, [0; 4]),
-        Code::Min(a, b) => (10, a, b, [0; 4]),
-        Code::Max(a, b) => (11, a, b, [0; 4]),
-        Code::Atan2(a, b) => (12, a, b, [0; 4]),
-        Code::Union(a, b) => (13, a, b, [0; 4]),
-        Code::Common(a, b) => (14, a, b, [0; 4]),
-        Code::Div(a, b) => (15, a, b, [0; 4]),
-        Code::Mod(a, b) => (16, a, b, [0; 4]),
+        ExprInstruction::Real(c) => (0, 0, 0, [bits(c)?, 0, 0, 0]),
+        ExprInstruction::Plane(n, d) => (1, 0, 0, [bits(n.x)?, bits(n.y)?, bits(n.z)?, bits(d)?]),
+        ExprInstruction::User(_) => return None,
+        ExprInstruction::Unary(f, a) => (2, a, f as u32, [0; 4]),
+        ExprInstruction::PlusReal(a, c) => (3, a, 0, [bits(c)?, 0, 0, 0]),
+        ExprInstruction::TimesReal(a, c) => (4, a, 0, [bits(c)?, 0, 0, 0]),
+        ExprInstruction::OverReal(a, c) => (5, a, 0, [bits(c)?, 0, 0, 0]),
+        ExprInstruction::Power(a, n) => (6, a, n, [0; 4]),
+        ExprInstruction::Add(a, b) => (7, a, b, [0; 4]),
+        ExprInstruction::Sub(a, b) => (8, a, b, [0; 4]),
+        ExprInstruction::Mul(a, b) => (9, a, b, [0; 4]),
+        ExprInstruction::Min(a, b) => (10, a, b, [0; 4]),
+        ExprInstruction::Max(a, b) => (11, a, b, [0; 4]),
+        ExprInstruction::Atan2(a, b) => (12, a, b, [0; 4]),
+        ExprInstruction::Union(a, b) => (13, a, b, [0; 4]),
+        ExprInstruction::Common(a, b) => (14, a, b, [0; 4]),
+        ExprInstruction::Div(a, b) => (15, a, b, [0; 4]),
+        ExprInstruction::Mod(a, b) => (16, a, b, [0; 4]),
     })
 }
 
-impl<T> Code<T> {
+impl<T> ExprInstruction<T> {
     pub(crate) fn operands(&self) -> [Option<u32>; 2] {
         match *self {
-            Code::Real(_) | Code::Plane(..) | Code::User(_) => [None, None],
-            Code::Unary(_, a)
-            | Code::PlusReal(a, _)
-            | Code::TimesReal(a, _)
-            | Code::OverReal(a, _)
-            | Code::Power(a, _) => [Some(a), None],
-            Code::Add(a, b)
-            | Code::Sub(a, b)
-            | Code::Mul(a, b)
-            | Code::Min(a, b)
-            | Code::Max(a, b)
-            | Code::Union(a, b)
-            | Code::Common(a, b)
-            | Code::Div(a, b)
-            | Code::Mod(a, b)
-            | Code::Atan2(a, b) => [Some(a), Some(b)],
+            ExprInstruction::Real(_) | ExprInstruction::Plane(..) | ExprInstruction::User(_) => {
+                [None, None]
+            }
+            ExprInstruction::Unary(_, a)
+            | ExprInstruction::PlusReal(a, _)
+            | ExprInstruction::TimesReal(a, _)
+            | ExprInstruction::OverReal(a, _)
+            | ExprInstruction::Power(a, _) => [Some(a), None],
+            ExprInstruction::Add(a, b)
+            | ExprInstruction::Sub(a, b)
+            | ExprInstruction::Mul(a, b)
+            | ExprInstruction::Min(a, b)
+            | ExprInstruction::Max(a, b)
+            | ExprInstruction::Union(a, b)
+            | ExprInstruction::Common(a, b)
+            | ExprInstruction::Div(a, b)
+            | ExprInstruction::Mod(a, b)
+            | ExprInstruction::Atan2(a, b) => [Some(a), Some(b)],
         }
     }
 
     /// The operands of a minimum or maximum.
     fn choice(&self) -> Option<(u32, u32)> {
         match *self {
-            Code::Min(a, b) | Code::Max(a, b) | Code::Union(a, b) | Code::Common(a, b) => {
-                Some((a, b))
-            }
+            ExprInstruction::Min(a, b)
+            | ExprInstruction::Max(a, b)
+            | ExprInstruction::Union(a, b)
+            | ExprInstruction::Common(a, b) => Some((a, b)),
             _ => None,
         }
     }
 
     fn renumbered(mut self, of: impl Fn(u32) -> u32) -> Self {
         match &mut self {
-            Code::Real(_) | Code::Plane(..) | Code::User(_) => {}
-            Code::Unary(_, a)
-            | Code::PlusReal(a, _)
-            | Code::TimesReal(a, _)
-            | Code::OverReal(a, _)
-            | Code::Power(a, _) => *a = of(*a),
-            Code::Add(a, b)
-            | Code::Sub(a, b)
-            | Code::Mul(a, b)
-            | Code::Min(a, b)
-            | Code::Max(a, b)
-            | Code::Union(a, b)
-            | Code::Common(a, b)
-            | Code::Div(a, b)
-            | Code::Mod(a, b)
-            | Code::Atan2(a, b) => {
+            ExprInstruction::Real(_) | ExprInstruction::Plane(..) | ExprInstruction::User(_) => {}
+            ExprInstruction::Unary(_, a)
+            | ExprInstruction::PlusReal(a, _)
+            | ExprInstruction::TimesReal(a, _)
+            | ExprInstruction::OverReal(a, _)
+            | ExprInstruction::Power(a, _) => *a = of(*a),
+            ExprInstruction::Add(a, b)
+            | ExprInstruction::Sub(a, b)
+            | ExprInstruction::Mul(a, b)
+            | ExprInstruction::Min(a, b)
+            | ExprInstruction::Max(a, b)
+            | ExprInstruction::Union(a, b)
+            | ExprInstruction::Common(a, b)
+            | ExprInstruction::Div(a, b)
+            | ExprInstruction::Mod(a, b)
+            | ExprInstruction::Atan2(a, b) => {
                 *a = of(*a);
                 *b = of(*b);
             }
@@ -282,7 +285,7 @@ impl<T: Real> ExprTape<T> {
     }
 
     fn with(
-        code: Vec<Code<T>>,
+        code: Vec<ExprInstruction<T>>,
         leaf: Vec<u32>,
         users: Arc<Vec<(Arc<dyn Oracle<T>>, Affine<T>)>>,
     ) -> Self {
@@ -348,7 +351,7 @@ impl<T: Real> ExprTape<T> {
     pub(crate) fn same(&self, o: &Self) -> bool {
         self.code.len() == o.code.len()
             && self.code.iter().zip(&o.code).all(|(a, b)| match (a, b) {
-                (Code::User(i), Code::User(j)) => {
+                (ExprInstruction::User(i), ExprInstruction::User(j)) => {
                     let ((f, m), (g, n)) = (&self.users[*i as usize], &o.users[*j as usize]);
                     Arc::ptr_eq(f, g) && m == n
                 }
@@ -357,27 +360,32 @@ impl<T: Real> ExprTape<T> {
     }
 
     #[inline(always)]
-    fn step<A: Algebra<T>>(&self, code: &Code<T>, at: &A::At, of: impl Fn(u32) -> A) -> A {
+    fn step<A: Algebra<T>>(
+        &self,
+        code: &ExprInstruction<T>,
+        at: &A::At,
+        of: impl Fn(u32) -> A,
+    ) -> A {
         match *code {
-            Code::Real(c) => A::real(c),
-            Code::Plane(n, d) => A::plane(n, d, at),
-            Code::User(k) => {
+            ExprInstruction::Real(c) => A::real(c),
+            ExprInstruction::Plane(n, d) => A::plane(n, d, at),
+            ExprInstruction::User(k) => {
                 let (oracle, map) = &self.users[k as usize];
                 A::user(&**oracle, map, at)
             }
-            Code::Unary(f, a) => of(a).unary(f),
-            Code::PlusReal(a, c) => of(a).plus_real(c),
-            Code::TimesReal(a, c) => of(a).times_real(c),
-            Code::OverReal(a, c) => of(a).over_real(c),
-            Code::Power(a, n) => of(a).power(n),
-            Code::Add(a, b) => of(a).sum(of(b)),
-            Code::Sub(a, b) => of(a).difference(of(b)),
-            Code::Mul(a, b) => of(a).times(of(b)),
-            Code::Min(a, b) | Code::Union(a, b) => of(a).smaller(of(b)),
-            Code::Max(a, b) | Code::Common(a, b) => of(a).larger(of(b)),
-            Code::Atan2(a, b) => of(a).angle(of(b)),
-            Code::Div(a, b) => of(a).quotient(of(b)),
-            Code::Mod(a, b) => of(a).remainder(of(b)),
+            ExprInstruction::Unary(f, a) => of(a).unary(f),
+            ExprInstruction::PlusReal(a, c) => of(a).plus_real(c),
+            ExprInstruction::TimesReal(a, c) => of(a).times_real(c),
+            ExprInstruction::OverReal(a, c) => of(a).over_real(c),
+            ExprInstruction::Power(a, n) => of(a).power(n),
+            ExprInstruction::Add(a, b) => of(a).sum(of(b)),
+            ExprInstruction::Sub(a, b) => of(a).difference(of(b)),
+            ExprInstruction::Mul(a, b) => of(a).times(of(b)),
+            ExprInstruction::Min(a, b) | ExprInstruction::Union(a, b) => of(a).smaller(of(b)),
+            ExprInstruction::Max(a, b) | ExprInstruction::Common(a, b) => of(a).larger(of(b)),
+            ExprInstruction::Atan2(a, b) => of(a).angle(of(b)),
+            ExprInstruction::Div(a, b) => of(a).quotient(of(b)),
+            ExprInstruction::Mod(a, b) => of(a).remainder(of(b)),
         }
     }
 
@@ -394,7 +402,7 @@ impl<T: Real> ExprTape<T> {
 
     /// True when it asks primitives from outside, which are better asked many at once.
     pub(crate) fn has_users(&self) -> bool {
-        self.code.iter().any(|c| matches!(c, Code::User(_)))
+        self.code.iter().any(|c| matches!(c, ExprInstruction::User(_)))
     }
 
     /// As [`ExprTape::eval`] at many places, instruction by instruction: a column of values for each.
@@ -403,7 +411,7 @@ impl<T: Real> ExprTape<T> {
         for code in &self.code {
             let mut column = Vec::with_capacity(at.len());
             match code {
-                Code::User(k) => {
+                ExprInstruction::User(k) => {
                     let (oracle, map) = &self.users[*k as usize];
                     A::users(&**oracle, map, at, &mut column);
                 }
@@ -428,8 +436,8 @@ impl<T: Real> ExprTape<T> {
         let mut k = self.code.len() - 1;
         while self.leaf[k] == NO_LEAF {
             k = match self.code[k] {
-                Code::Union(a, b) => (if of(b) < of(a) { b } else { a }) as usize,
-                Code::Common(a, b) => (if of(b) > of(a) { b } else { a }) as usize,
+                ExprInstruction::Union(a, b) => (if of(b) < of(a) { b } else { a }) as usize,
+                ExprInstruction::Common(a, b) => (if of(b) > of(a) { b } else { a }) as usize,
                 _ => break,
             };
         }
@@ -495,14 +503,14 @@ impl ExprTape<f64> {
             let (x, y) = (ranges[a as usize], ranges[b as usize]);
             let (a_smaller, b_smaller) = (x.high < y.low, y.high < x.low);
             match self.code[k] {
-                Code::Min(..) | Code::Union(..) if a_smaller => Some(a),
-                Code::Min(..) | Code::Union(..) if b_smaller => Some(b),
-                Code::Max(..) | Code::Common(..) if a_smaller => Some(b),
-                Code::Max(..) | Code::Common(..) if b_smaller => Some(a),
-                Code::Union(..) if y.low > 0.0 => Some(a),
-                Code::Union(..) if x.low > 0.0 => Some(b),
-                Code::Common(..) if y.high < 0.0 => Some(a),
-                Code::Common(..) if x.high < 0.0 => Some(b),
+                ExprInstruction::Min(..) | ExprInstruction::Union(..) if a_smaller => Some(a),
+                ExprInstruction::Min(..) | ExprInstruction::Union(..) if b_smaller => Some(b),
+                ExprInstruction::Max(..) | ExprInstruction::Common(..) if a_smaller => Some(b),
+                ExprInstruction::Max(..) | ExprInstruction::Common(..) if b_smaller => Some(a),
+                ExprInstruction::Union(..) if y.low > 0.0 => Some(a),
+                ExprInstruction::Union(..) if x.low > 0.0 => Some(b),
+                ExprInstruction::Common(..) if y.high < 0.0 => Some(a),
+                ExprInstruction::Common(..) if x.high < 0.0 => Some(b),
                 _ => None,
             }
         };
@@ -541,7 +549,7 @@ impl ExprTape<f64> {
     #[inline(always)]
     fn bulk_step(
         &self,
-        code: &Code<f64>,
+        code: &ExprInstruction<f64>,
         xyz: [&Chunk; 3],
         count: usize,
         registers: &[Box<Chunk>],
@@ -561,8 +569,8 @@ impl ExprTape<f64> {
             }
         }
         match *code {
-            Code::Real(c) => out.fill(c),
-            Code::Plane(n, d) => {
+            ExprInstruction::Real(c) => out.fill(c),
+            ExprInstruction::Plane(n, d) => {
                 let [x, y, z] = xyz;
                 let weights = [n.x, n.y, n.z].map(|w| w != 0.0);
                 // Terms of weight zero add nothing, not even rounding.
@@ -580,7 +588,7 @@ impl ExprTape<f64> {
                     }
                 }
             }
-            Code::User(k) => {
+            ExprInstruction::User(k) => {
                 let (oracle, map) = &self.users[k as usize];
                 let mut points = [Vec3::zero(); CHUNK];
                 for (k, p) in points[..count].iter_mut().enumerate() {
@@ -588,7 +596,7 @@ impl ExprTape<f64> {
                 }
                 oracle.values(&points[..count], &mut out[..count]);
             }
-            Code::Unary(f, a) => match f {
+            ExprInstruction::Unary(f, a) => match f {
                 Unary::Neg => one(out, of(a), |a| -a),
                 Unary::Abs => one(out, of(a), f64::abs),
                 Unary::Sign => one(out, of(a), |a| if a > 0.0 { 1.0 } else { -1.0 }),
@@ -600,23 +608,23 @@ impl ExprTape<f64> {
                     }
                 }
             },
-            Code::PlusReal(a, c) => one(out, of(a), |a| a + c),
-            Code::TimesReal(a, c) => one(out, of(a), |a| a * c),
-            Code::OverReal(a, c) => one(out, of(a), |a| a / c),
-            Code::Power(a, 2) => one(out, of(a), |a| a * a),
-            Code::Power(a, n) => one(out, of(a), |a| crate::expr::algebra::power(a, n)),
-            Code::Add(a, b) => two(out, of(a), of(b), |a, b| a + b),
-            Code::Sub(a, b) => two(out, of(a), of(b), |a, b| a - b),
-            Code::Mul(a, b) => two(out, of(a), of(b), |a, b| a * b),
-            Code::Min(a, b) | Code::Union(a, b) => {
+            ExprInstruction::PlusReal(a, c) => one(out, of(a), |a| a + c),
+            ExprInstruction::TimesReal(a, c) => one(out, of(a), |a| a * c),
+            ExprInstruction::OverReal(a, c) => one(out, of(a), |a| a / c),
+            ExprInstruction::Power(a, 2) => one(out, of(a), |a| a * a),
+            ExprInstruction::Power(a, n) => one(out, of(a), |a| crate::expr::algebra::power(a, n)),
+            ExprInstruction::Add(a, b) => two(out, of(a), of(b), |a, b| a + b),
+            ExprInstruction::Sub(a, b) => two(out, of(a), of(b), |a, b| a - b),
+            ExprInstruction::Mul(a, b) => two(out, of(a), of(b), |a, b| a * b),
+            ExprInstruction::Min(a, b) | ExprInstruction::Union(a, b) => {
                 two(out, of(a), of(b), |a, b| if b < a { b } else { a })
             }
-            Code::Max(a, b) | Code::Common(a, b) => {
+            ExprInstruction::Max(a, b) | ExprInstruction::Common(a, b) => {
                 two(out, of(a), of(b), |a, b| if b > a { b } else { a })
             }
-            Code::Div(a, b) => two(out, of(a), of(b), |a, b| a / b),
-            Code::Mod(a, b) => two(out, of(a), of(b), crate::expr::algebra::remainder),
-            Code::Atan2(a, b) => {
+            ExprInstruction::Div(a, b) => two(out, of(a), of(b), |a, b| a / b),
+            ExprInstruction::Mod(a, b) => two(out, of(a), of(b), crate::expr::algebra::remainder),
+            ExprInstruction::Atan2(a, b) => {
                 for ((o, a), b) in out[..count].iter_mut().zip(of(a)).zip(of(b)) {
                     *o = libm::atan2(*a, *b);
                 }

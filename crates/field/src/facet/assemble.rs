@@ -11,7 +11,7 @@
 
 use super::cell::{face_edges, start_corner};
 use super::grid::Grid;
-use super::types::{Block, Crossing, SIDE, Several};
+use super::types::{EdgeCrossing, FacetBlock, SIDE, Several};
 use super::vertex::{PlacedVertex, Solver, Surfaces};
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
@@ -67,7 +67,7 @@ struct AssemblyPart {
 pub(super) struct Assembly<'a> {
     pub(super) grid: &'a Grid,
     pub(super) leaves: &'a [Leaf],
-    pub(super) blocks: &'a [(Arc<ExprTape<f64>>, Arc<Block>)],
+    pub(super) blocks: &'a [(Arc<ExprTape<f64>>, Arc<FacetBlock>)],
     at: FxHashMap<[u32; 3], usize>,
     base: Vec<u32>,
     /// How many vertices the blocks have.
@@ -83,7 +83,7 @@ impl<'a> Assembly<'a> {
     pub(super) fn new(
         grid: &'a Grid,
         leaves: &'a [Leaf],
-        blocks: &'a [(Arc<ExprTape<f64>>, Arc<Block>)],
+        blocks: &'a [(Arc<ExprTape<f64>>, Arc<FacetBlock>)],
     ) -> Self {
         let mut base = Vec::with_capacity(blocks.len());
         let mut count = 0u32;
@@ -203,7 +203,12 @@ impl<'a> Assembly<'a> {
     }
 
     /// The crossing of the edge along `axis` from lattice position `at`.
-    pub(super) fn crossing(&self, near: usize, at: [usize; 3], axis: usize) -> Option<&Crossing> {
+    pub(super) fn crossing(
+        &self,
+        near: usize,
+        at: [usize; 3],
+        axis: usize,
+    ) -> Option<&EdgeCrossing> {
         let (block, local) = self.block_of(near, at)?;
         let key = (local.map(|x| x as u8), axis as u8);
         let list = &self.blocks[block].1.crossings;
@@ -215,7 +220,7 @@ impl<'a> Assembly<'a> {
     fn polygon(
         &self,
         block: usize,
-        crossing: &Crossing,
+        crossing: &EdgeCrossing,
         solver: &mut Solver,
         part: &mut AssemblyPart,
     ) {

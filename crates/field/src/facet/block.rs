@@ -3,7 +3,7 @@
 use super::cell::{case, face_edges, start_corner};
 use super::grid::Grid;
 use super::place_vertices::{PieceVertices, VertexPlacer};
-use super::types::{Block, CellVertex, Crossing, Ring, SIDE, Several, cell_index};
+use super::types::{CellVertex, EdgeCrossing, FacetBlock, Ring, SIDE, Several, cell_index};
 use super::unresolved::Quiet;
 use super::vertex::{PlacedVertex, Solver, Surfaces};
 use crate::expr::tape::{ExprTape, Room};
@@ -38,7 +38,7 @@ pub(super) fn compute(
     tape: &Arc<ExprTape<f64>>,
     leaves: &[Leaf],
     scratch: &mut Scratch,
-) -> Result<Block, Vec3> {
+) -> Result<FacetBlock, Vec3> {
     let base = at.map(|b| b as usize * SIDE);
     let corner = |c: [usize; 3]| grid.corner([0, 1, 2].map(|k| base[k] + c[k]));
     let Scratch { points, values, room, registers, solver, taylor } = scratch;
@@ -71,7 +71,7 @@ pub(super) fn compute(
                         continue;
                     }
                     crossing_at[3 * here + axis] = edges.len() as u32;
-                    edges.push(Edge::new([points[here], points[there]], [f0, f1]));
+                    edges.push(EdgeBracket::new([points[here], points[there]], [f0, f1]));
                     places.push((c.map(|x| x as u8), axis as u8, f0 <= 0.0));
                 }
             }
@@ -79,13 +79,13 @@ pub(super) fn compute(
     }
     let found = cross(tape, &mut edges, room);
     let deciding = tape.winners(&found, registers);
-    let mut crossings: Vec<Crossing> = places
+    let mut crossings: Vec<EdgeCrossing> = places
         .into_iter()
         .zip(found.into_iter().zip(deciding))
-        .map(|((at, axis, outward), (point, leaf))| Crossing { at, axis, outward, leaf, point })
+        .map(|((at, axis, outward), (point, leaf))| EdgeCrossing { at, axis, outward, leaf, point })
         .collect();
 
-    let mut block = Block {
+    let mut block = FacetBlock {
         at,
         signs: Box::new([0; SIDE * SIDE * SIDE]),
         joins: Box::new([0; SIDE * SIDE * SIDE]),
@@ -203,7 +203,7 @@ pub(super) fn compute(
 /// one point: then the solids only touch. `ring` are the crossings round the face, `first` says that
 /// its first corner is solid.
 fn touching(
-    ring: [&Crossing; 4],
+    ring: [&EdgeCrossing; 4],
     first: bool,
     face: usize,
     cell: &Box3,
@@ -237,7 +237,7 @@ fn touching(
 const NEAR: f64 = 1e-13;
 
 /// An edge on which the set changes sign, and the part of it where that is.
-struct Edge {
+struct EdgeBracket {
     ends: [Vec3; 2],
     /// The part, as shares of the edge, and the values at its ends; that of an end that stays is halved.
     part: [f64; 2],
@@ -250,7 +250,7 @@ struct Edge {
     at: f64,
 }
 
-impl Edge {
+impl EdgeBracket {
     fn new(ends: [Vec3; 2], values: [f64; 2]) -> Self {
         let small = NEAR * values[0].abs().max(values[1].abs());
         Self { ends, part: [0.0, 1.0], values, stayed: -1, small, at: 0.0 }
@@ -289,7 +289,7 @@ impl Edge {
 
 /// Where the set changes sign on each edge; all edges are searched at once, because values at many points are
 /// cheaper than at one.
-fn cross(tape: &ExprTape<f64>, edges: &mut [Edge], room: &mut Room) -> Vec<Vec3> {
+fn cross(tape: &ExprTape<f64>, edges: &mut [EdgeBracket], room: &mut Room) -> Vec<Vec3> {
     let mut open: Vec<u32> = (0..edges.len() as u32).collect();
     let (mut points, mut values) = (Vec::new(), Vec::new());
     for step in 0..80 {
@@ -307,5 +307,5 @@ fn cross(tape: &ExprTape<f64>, edges: &mut [Edge], room: &mut Room) -> Vec<Vec3>
         let edge = &mut edges[k as usize];
         edge.at = 0.5 * (edge.part[0] + edge.part[1]);
     }
-    edges.iter().map(Edge::point).collect()
+    edges.iter().map(EdgeBracket::point).collect()
 }

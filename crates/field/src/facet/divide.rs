@@ -2,7 +2,7 @@
 
 use super::block::{Scratch, compute};
 use super::grid::Grid;
-use super::types::{Block, FacetOptions, Reuse, SIDE};
+use super::types::{FacetBlock, FacetOptions, Reuse, SIDE};
 use crate::FieldError;
 use crate::expr::interval::Interval;
 use crate::expr::tape::ExprTape;
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The blocks that the surface may pass through, in a fixed order, with their pruned tapes.
 pub(super) struct Divided {
-    pub(super) blocks: Vec<(Arc<ExprTape<f64>>, Arc<Block>)>,
+    pub(super) blocks: Vec<(Arc<ExprTape<f64>>, Arc<FacetBlock>)>,
     /// How many blocks were computed; the others were taken over.
     pub(super) computed: usize,
 }
@@ -115,7 +115,7 @@ impl Division<'_> {
         at: [usize; 3],
         tape: Arc<ExprTape<f64>>,
         scratch: &mut Scratch,
-    ) -> Result<Option<(Arc<ExprTape<f64>>, Arc<Block>)>, FieldError> {
+    ) -> Result<Option<(Arc<ExprTape<f64>>, Arc<FacetBlock>)>, FieldError> {
         let at = at.map(|x| x as u32);
         if let Some(old) = self.reuse.and_then(|reuse| reuse.get(at, &tape)) {
             return Ok(Some((tape, old)));

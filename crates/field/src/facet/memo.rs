@@ -8,7 +8,7 @@ use moldloft_num::Box3;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-struct Entry {
+struct MemoEntry {
     set: Set,
     over: Box3,
     resolution: Resolution,
@@ -22,7 +22,7 @@ const MOST_CELLS: usize = 1_500_000;
 
 /// The facets that a model made last.
 #[derive(Default)]
-pub struct FacetMemo(Mutex<VecDeque<Entry>>);
+pub struct FacetMemo(Mutex<VecDeque<MemoEntry>>);
 
 fn same_box(a: &Box3, b: &Box3) -> bool {
     a.low.bits_eq(b.low) && a.high.bits_eq(b.high)
@@ -42,7 +42,7 @@ impl FacetMemo {
         let mut before = None;
         {
             let entries = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            let alike = |k: &&Entry| {
+            let alike = |k: &&MemoEntry| {
                 let same = k.resolution == options.resolution && k.sharp == options.sharp;
                 same && same_box(&k.over, over)
             };
@@ -56,14 +56,14 @@ impl FacetMemo {
         }
         let facets = Arc::new(refacet(set, over, options, before.as_deref())?);
         let mut entries = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        entries.push_back(Entry {
+        entries.push_back(MemoEntry {
             set: set.clone(),
             over: *over,
             resolution: options.resolution,
             sharp: options.sharp,
             facets: facets.clone(),
         });
-        let cells = |all: &VecDeque<Entry>| all.iter().map(|k| k.facets.cells).sum::<usize>();
+        let cells = |all: &VecDeque<MemoEntry>| all.iter().map(|k| k.facets.cells).sum::<usize>();
         while entries.len() > MOST || entries.len() > 1 && cells(&entries) > MOST_CELLS {
             entries.pop_front();
         }

@@ -32,7 +32,7 @@ pub(crate) mod vertex;
 use crate::error::solid_box;
 use crate::expr::form::Form;
 use crate::expr::tape::ExprTape;
-use crate::set::{Attributes, Leaf};
+use crate::set::{Leaf, SetAttributes};
 use crate::{FieldError, Set};
 pub use crossing::crossing_faces;
 use grid::Grid;
@@ -41,7 +41,7 @@ use moldloft_num::{Box3, Vec3};
 use refine::{RefinementRule, Tapes, refine};
 use smallvec::SmallVec;
 use std::sync::Arc;
-use types::Block;
+use types::FacetBlock;
 use types::Reuse;
 pub use types::{FacetOptions, Resolution, Unresolved};
 
@@ -85,7 +85,7 @@ pub struct Facets {
 #[derive(Clone)]
 struct Memory {
     grid: Grid,
-    blocks: Arc<Vec<(Arc<ExprTape<f64>>, Arc<Block>)>>,
+    blocks: Arc<Vec<(Arc<ExprTape<f64>>, Arc<FacetBlock>)>>,
 }
 
 impl std::fmt::Debug for Memory {
@@ -98,7 +98,7 @@ impl std::fmt::Debug for Memory {
 /// that dividing it five times does not help.
 const TURN: f64 = 0.939_692_620_785_908_4;
 
-/// At this [`Resolution::Level`] the thinnest side of a box has one cell.
+/// At this [`Resolution::HessePlane`] the thinnest side of a box has one cell.
 const LEVEL_OF_SIDE: i32 = 5;
 
 /// The names of the box's faces.
@@ -110,7 +110,8 @@ fn capped(set: &Set, over: &Box3) -> Result<Set, FieldError> {
     let mut capped = set.clone();
     for name in CAPS {
         if let Some(leaf) = caps.next() {
-            let attributes = Attributes { name: Some(name.to_owned()), ..Attributes::default() };
+            let attributes =
+                SetAttributes { name: Some(name.to_owned()), ..SetAttributes::default() };
             capped = capped & Set::new(&leaf.primitive).with(attributes);
         }
     }

@@ -3,7 +3,7 @@
 
 use super::cell::faces_of;
 use super::split::split;
-use super::types::{Crossing, Ring, Split};
+use super::types::{EdgeCrossing, Ring, Split};
 use super::vertex::{PlacedVertex, Solver, Surfaces};
 use crate::expr::form::Form;
 use crate::expr::tape::{ExprTape, NO_LEAF};
@@ -190,8 +190,8 @@ impl VertexPlacer<'_> {
     /// Where two surfaces meet on a side of the cell, between two crossings.
     pub(super) fn change(
         &mut self,
-        p: &Crossing,
-        q: &Crossing,
+        p: &EdgeCrossing,
+        q: &EdgeCrossing,
         side: &Box3,
     ) -> Option<PlacedVertex> {
         let both = [p.leaf.min(q.leaf), p.leaf.max(q.leaf)];
@@ -275,7 +275,7 @@ fn mean(edges: &Ring, of: &[u32]) -> Vec3 {
 pub(super) fn nearest(edges: &Ring) -> (PlacedVertex, Surfaces) {
     let leaves: Surfaces = edges.iter().map(|e| e.1.leaf).collect();
     let middle = mean(edges, &leaves);
-    let far = |e: &&(usize, &Crossing)| e.1.point.distance(middle);
+    let far = |e: &&(usize, &EdgeCrossing)| e.1.point.distance(middle);
     let (point, leaf) = edges
         .iter()
         .min_by(|a, b| far(a).total_cmp(&far(b)))

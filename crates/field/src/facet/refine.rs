@@ -9,7 +9,7 @@
 use super::assemble::Assembled;
 use super::crossing::crossings;
 use super::grid::Grid;
-use super::types::Block;
+use super::types::FacetBlock;
 use super::vertex::{Solver, Surfaces};
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
@@ -58,7 +58,7 @@ pub(super) struct Tapes<'a> {
 impl<'a> Tapes<'a> {
     pub(super) fn new(
         grid: &'a Grid,
-        blocks: &'a [(Arc<ExprTape<f64>>, Arc<Block>)],
+        blocks: &'a [(Arc<ExprTape<f64>>, Arc<FacetBlock>)],
         whole: &'a ExprTape<f64>,
     ) -> Self {
         Self { grid, at: blocks.iter().map(|(tape, b)| (b.at, &**tape)).collect(), whole }

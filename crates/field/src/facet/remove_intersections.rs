@@ -10,7 +10,7 @@ use super::cell::start_corner;
 use super::crossing::crossings;
 use super::grid::Grid;
 use super::place_vertices::{VertexPlacer, nearest};
-use super::types::{Block, Ring};
+use super::types::{FacetBlock, Ring};
 use super::vertex::{PlacedVertex, Solver, Surfaces};
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
@@ -44,7 +44,7 @@ pub(super) fn crossing(
 pub(super) fn assembled(
     grid: &Grid,
     leaves: &[Leaf],
-    blocks: &[(Arc<ExprTape<f64>>, Arc<Block>)],
+    blocks: &[(Arc<ExprTape<f64>>, Arc<FacetBlock>)],
     sharp: bool,
 ) -> Assembled {
     let mut assembly = Assembly::new(grid, leaves, blocks);

@@ -7,7 +7,7 @@
 //! solid. Likewise a wire is the edge between two sheets, and a point the corner of three.
 
 use crate::facet::padded_bounds::padded_bounds;
-use crate::facet::types::{Flat, LeafIncidence};
+use crate::facet::types::{LeafIncidence, TriangleView};
 use crate::facet::{FacetOptions, Facets, facet, facet_within};
 use crate::{FieldError, Leaf, Primitive, Set};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
@@ -42,7 +42,7 @@ pub struct FacetWire {
 
 /// A point where three sheets meet.
 #[derive(Clone, Debug)]
-pub struct Dot {
+pub struct TriplePoint {
     /// Where it is.
     pub point: Vec3,
     /// The numbers of its three leaves.
@@ -53,8 +53,8 @@ pub struct Dot {
 
 impl Sheet {
     /// Its triangles with what they and their corners are on.
-    pub(crate) fn flat(&self) -> Flat<'_> {
-        Flat {
+    pub(crate) fn flat(&self) -> TriangleView<'_> {
+        TriangleView {
             positions: self.mesh.positions(),
             faces: self.mesh.faces(),
             patches: vec![(self.own as u32, 0..self.mesh.faces().len())],
@@ -85,7 +85,7 @@ pub struct Mixed {
     /// The wires, in the order of their leaves.
     pub wires: Vec<FacetWire>,
     /// The points where three sheets meet.
-    pub points: Vec<Dot>,
+    pub points: Vec<TriplePoint>,
     /// The leaves of the set, by which the others are numbered.
     pub leaves: Vec<Leaf>,
 }
@@ -194,7 +194,7 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &FacetOptions) -> Result<Mix
                     for v in corners(&facets, three) {
                         let (point, on) =
                             (facets.mesh.positions()[v as usize], lying_on(&facets, &[v]));
-                        points.push(Dot { point, leaves: [a, b, c], on });
+                        points.push(TriplePoint { point, leaves: [a, b, c], on });
                     }
                 }
             }

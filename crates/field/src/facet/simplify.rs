@@ -23,25 +23,25 @@ const TURN: f64 = 0.8;
 const TRIES: usize = 4;
 
 /// A vertex that may go into another, at the error that this makes.
-struct Candidate {
+struct EdgeCollapse {
     error: f64,
     from: u32,
     into: u32,
     stamp: u32,
 }
 
-impl PartialEq for Candidate {
+impl PartialEq for EdgeCollapse {
     fn eq(&self, o: &Self) -> bool {
         self.cmp(o) == Ordering::Equal
     }
 }
-impl Eq for Candidate {}
-impl PartialOrd for Candidate {
+impl Eq for EdgeCollapse {}
+impl PartialOrd for EdgeCollapse {
     fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
         Some(self.cmp(o))
     }
 }
-impl Ord for Candidate {
+impl Ord for EdgeCollapse {
     /// The cheapest first; of equal ones that of the lowest vertex.
     fn cmp(&self, o: &Self) -> Ordering {
         let places = (o.from, o.into).cmp(&(self.from, self.into));
@@ -164,14 +164,14 @@ impl Simplifier<'_> {
     }
 
     /// The cheapest way for a vertex to go.
-    fn candidate(&self, v: u32) -> Option<Candidate> {
+    fn candidate(&self, v: u32) -> Option<EdgeCollapse> {
         if self.stars[v as usize].is_empty() {
             return None;
         }
-        let mut best: Option<Candidate> = None;
+        let mut best: Option<EdgeCollapse> = None;
         for w in self.ring(v) {
             if let Some(error) = self.error(v, w) {
-                let one = Candidate { error, from: v, into: w, stamp: self.stamps[v as usize] };
+                let one = EdgeCollapse { error, from: v, into: w, stamp: self.stamps[v as usize] };
                 if best.as_ref().is_none_or(|b| one > *b) {
                     best = Some(one);
                 }

@@ -7,7 +7,7 @@
 //! corners; the cut through A and C, or B and D, has them. Parts are cut again while they have no common point.
 
 use super::place_vertices::VertexPlacer;
-use super::types::{Crossing, Ring, Split};
+use super::types::{EdgeCrossing, Ring, Split};
 use super::vertex::{PlacedVertex, Surfaces};
 use moldloft_num::Vec3;
 use smallvec::SmallVec;
@@ -88,7 +88,7 @@ fn runs_of(placement: &mut VertexPlacer, ring: &Ring) -> Vec<CrossingRun> {
                 runs.push(run);
             }
             Some(leaf) => {
-                let hidden = |p: &Crossing| Crossing { leaf, ..*p };
+                let hidden = |p: &EdgeCrossing| EdgeCrossing { leaf, ..*p };
                 let first = placement.change(p.1, &hidden(q.1), &side);
                 let second = placement.change(&hidden(p.1), q.1, &side);
                 run.change = first.map(|c| c.point);

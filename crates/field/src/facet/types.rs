@@ -48,7 +48,7 @@ impl FacetOptions {
 pub(super) const SIDE: usize = 8;
 /// Where the surface crosses an edge of the grid.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Crossing {
+pub(super) struct EdgeCrossing {
     /// Lattice position of the edge's start, within the block.
     pub(super) at: [u8; 3],
     /// Axis of the edge.
@@ -92,7 +92,7 @@ pub struct Unresolved {
 
 /// What a block contributes.
 #[derive(Clone, Debug)]
-pub(super) struct Block {
+pub(super) struct FacetBlock {
     /// Position in blocks.
     pub(super) at: [u32; 3],
     /// Signs of every cell's corners.
@@ -105,7 +105,7 @@ pub(super) struct Block {
     /// The pieces of surface that have several vertices, in the order of cells.
     pub(super) splits: Vec<Several>,
     /// Crossings of the edges that start in the block, its far faces excepted.
-    pub(super) crossings: Vec<Crossing>,
+    pub(super) crossings: Vec<EdgeCrossing>,
     /// How many cells the surface passes through.
     pub(super) active: usize,
     /// What the corners of its cells do not show.
@@ -125,7 +125,7 @@ pub(super) struct Several {
 }
 
 /// The crossings of a piece of surface, with their edges.
-pub(super) type Ring<'c> = SmallVec<[(usize, &'c Crossing); 12]>;
+pub(super) type Ring<'c> = SmallVec<[(usize, &'c EdgeCrossing); 12]>;
 
 /// The vertices of a piece of surface and how they hang together.
 #[derive(Clone, Debug)]
@@ -179,7 +179,7 @@ impl Several {
     }
 }
 
-impl Block {
+impl FacetBlock {
     /// True when the surface cuts off the first corner of the ambiguous face on a cell's low side.
     pub(super) fn first_apart(&self, cell: [usize; 3], axis: usize) -> bool {
         let k = cell_index(cell);
@@ -251,19 +251,19 @@ impl Block {
 
 /// Blocks of an earlier division by position.
 pub(super) struct Reuse<'a> {
-    pub(super) blocks: FxHashMap<[u32; 3], &'a (Arc<ExprTape<f64>>, Arc<Block>)>,
+    pub(super) blocks: FxHashMap<[u32; 3], &'a (Arc<ExprTape<f64>>, Arc<FacetBlock>)>,
 }
 
 impl Reuse<'_> {
     /// The old block, if the set was the same there.
-    pub(super) fn get(&self, at: [u32; 3], tape: &ExprTape<f64>) -> Option<Arc<Block>> {
+    pub(super) fn get(&self, at: [u32; 3], tape: &ExprTape<f64>) -> Option<Arc<FacetBlock>> {
         let (old, block) = self.blocks.get(&at)?;
         (old.leaf == tape.leaf && old.same(tape)).then(|| block.clone())
     }
 }
 
 /// Triangles as they are given.
-pub(crate) struct Flat<'a> {
+pub(crate) struct TriangleView<'a> {
     pub positions: &'a [Vec3],
     pub faces: &'a [[u32; 4]],
     /// Numbers of leaves, ascending ranges of faces.

@@ -8,7 +8,7 @@ use super::block::CORNERS;
 use super::types::{SIDE, Unresolved};
 use crate::expr::interval::Interval;
 use crate::expr::second_order::HessianRange;
-use crate::expr::tape::{Code, ExprTape, NO_LEAF};
+use crate::expr::tape::{ExprInstruction, ExprTape, NO_LEAF};
 use crate::measure::taylor::{self, Combination, TaylorRoom};
 use moldloft_num::{Box3, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -27,8 +27,8 @@ const ROUNDING: f64 = 1e-12;
 fn joins(tape: &ExprTape<f64>) -> (bool, bool) {
     let (mut unions, mut common) = (false, false);
     for code in &tape.code {
-        unions |= matches!(code, Code::Union(..));
-        common |= matches!(code, Code::Common(..));
+        unions |= matches!(code, ExprInstruction::Union(..));
+        common |= matches!(code, ExprInstruction::Common(..));
     }
     (unions, common)
 }

@@ -1,7 +1,7 @@
 //! Where the vertex of a piece of surface in a cell goes: onto all the primitives that the piece
 //! shows, and into the cell.
 
-use crate::expr::algebra::Gradient;
+use crate::expr::algebra::ValueGradient;
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
@@ -14,7 +14,7 @@ pub(crate) type Surfaces = SmallVec<[u32; 3]>;
 /// Reusable room.
 #[derive(Default)]
 pub(crate) struct Solver {
-    values: Vec<Gradient<f64>>,
+    values: Vec<ValueGradient<f64>>,
     plain: Vec<f64>,
 }
 
@@ -34,8 +34,8 @@ const STEPS: usize = 30;
 
 impl Solver {
     /// The value and gradient of a leaf.
-    pub(crate) fn gradient(&mut self, tape: &ExprTape<f64>, p: Vec3) -> Gradient<f64> {
-        tape.eval::<Gradient<f64>>(&p, &mut self.values)
+    pub(crate) fn gradient(&mut self, tape: &ExprTape<f64>, p: Vec3) -> ValueGradient<f64> {
+        tape.eval::<ValueGradient<f64>>(&p, &mut self.values)
     }
 
     /// The value of a leaf.

@@ -2,7 +2,9 @@
 
 use super::read::{NamedField, fault, field, set};
 use super::region::corners;
-use crate::{Blend, FieldError, Primitive, check_rail, check_rails, liming, liming_on_rail, zhang};
+use crate::{
+    FieldError, Primitive, SetBlend, check_rail, check_rails, liming, liming_on_rail, zhang,
+};
 use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Point, Value};
 
@@ -188,7 +190,7 @@ macro_rules! corner_blend {
 
 /// The blend with its parts named: the bodies as they are called, the blend as its function is.
 fn finished<T: Real>(
-    blend: Blend<T>,
+    blend: SetBlend<T>,
     bodies: [&NamedField<T>; 2],
     word: &str,
 ) -> Result<Value<T>, CallError> {

@@ -7,9 +7,9 @@ use moldloft_registry::{Build, CallError, Class, Context, FieldId, FromValue, Ki
 use std::sync::Arc;
 
 /// A field or a set.
-pub struct Any<T: Real>(Value<T>);
+pub struct FieldOrSet<T: Real>(Value<T>);
 
-impl<T: Real> FromValue<T> for Any<T> {
+impl<T: Real> FromValue<T> for FieldOrSet<T> {
     const CLASS: Class = Class::Set;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
@@ -19,7 +19,7 @@ impl<T: Real> FromValue<T> for Any<T> {
     }
 }
 
-impl<T: Real> Any<T> {
+impl<T: Real> FieldOrSet<T> {
     fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Result<Value<T>, CallError> {
         match (&self.0, set_of(&self.0), primitive_of(&self.0)) {
             (Value::Set(_), Some(s), _) => Ok(set_value(s.remapped(coordinates))),
@@ -53,7 +53,7 @@ fn edges(text: Option<&Arc<str>>, place: FieldId) -> Result<Option<Vec<[String; 
 )]
 pub struct Remapped<T: Real> {
     /// What is moved.
-    shape: Any<T>,
+    shape: FieldOrSet<T>,
     /// What takes the place of x.
     x: NamedField<T>,
     /// What takes the place of y.
@@ -78,7 +78,7 @@ impl<T: Real> Build<T> for Remapped<T> {
 )]
 pub struct Twisted<T: Real> {
     /// What is twisted.
-    shape: Any<T>,
+    shape: FieldOrSet<T>,
     /// The angle by which each unit of z is turned.
     #[field(angle)]
     rate: T,

@@ -2,10 +2,10 @@
 
 use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Field, Real, Vec3};
-use moldloft_registry::{CallError, Class, FieldRef, FromValue, Implicit, SetRef, Value};
+use moldloft_registry::{CallError, Class, FieldRef, FromValue, ImplicitFunction, SetRef, Value};
 use std::sync::Arc;
 
-impl<T: Real> Implicit<T> for Primitive<T> {
+impl<T: Real> ImplicitFunction<T> for Primitive<T> {
     fn alike(&self, o: &Self) -> bool {
         self.same(o)
     }
@@ -29,7 +29,7 @@ impl<T: Real> Field<T> for Set<T> {
     }
 }
 
-impl<T: Real> Implicit<T> for Set<T> {
+impl<T: Real> ImplicitFunction<T> for Set<T> {
     fn alike(&self, o: &Self) -> bool {
         self.same(o)
     }

@@ -1,7 +1,7 @@
 //! Sets as rows of the registry.
 
 use super::read::{NamedField, SetArgument, set, set_value};
-use crate::{Attributes, Set};
+use crate::{Set, SetAttributes};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Point, Value};
 use std::sync::Arc;
@@ -219,7 +219,7 @@ impl<T: Real> Build<T> for Attributed<T> {
         };
         let parts = self.tags.as_deref().unwrap_or_default().split(';');
         let tags = parts.filter(|p| !p.trim().is_empty()).map(pair).collect::<Result<_, _>>()?;
-        Ok(set_value(self.set.0.with(Attributes {
+        Ok(set_value(self.set.0.with(SetAttributes {
             given: self.name.is_some(),
             name: text(self.name),
             colour: self.colour.map(|c| c as u8),

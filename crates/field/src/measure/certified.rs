@@ -9,7 +9,7 @@ use super::moments::{Moments, POWERS};
 use super::taylor::{self, Combination, TaylorRoom, frame};
 use crate::error::solid_box;
 use crate::expr::interval::{Interval, sides};
-use crate::expr::tape::{Code, ExprTape};
+use crate::expr::tape::{ExprInstruction, ExprTape};
 use crate::facet::sheets::solid_part;
 use crate::set::Leaf;
 use crate::{FieldError, Primitive, Set};
@@ -130,8 +130,13 @@ impl Work<'_> {
         // Cells that are divided whatever their bounds need none, but for bodies of planes, which they end.
         let divided = self.last.is_some_and(|last| depth < last);
         let planes = || {
-            let of = |code: &Code<f64>| {
-                matches!(code, Code::Plane(..) | Code::Union(..) | Code::Common(..))
+            let of = |code: &ExprInstruction<f64>| {
+                matches!(
+                    code,
+                    ExprInstruction::Plane(..)
+                        | ExprInstruction::Union(..)
+                        | ExprInstruction::Common(..)
+                )
             };
             tape.code.iter().all(of)
         };

@@ -17,9 +17,9 @@ use super::moments::{Moments, POWERS};
 use super::moved::moved;
 use crate::expr::algebra::Algebra;
 use crate::facet::sheets::FacetWire;
-use crate::facet::types::Flat;
+use crate::facet::types::TriangleView;
 use crate::set::Leaf;
-use crate::{Gradient, Hessian, Primitive};
+use crate::{Hessian, Primitive, ValueGradient};
 use moldloft_num::{Box3, Real, Vec3};
 use rayon::prelude::*;
 
@@ -78,8 +78,8 @@ fn middle(
 
 impl<'a> Curved<'a> {
     /// Of triangles, closed or open.
-    pub fn new(flat: &Flat<'a>) -> Self {
-        let Flat { positions, faces, .. } = *flat;
+    pub fn new(flat: &TriangleView<'a>) -> Self {
+        let TriangleView { positions, faces, .. } = *flat;
         let mut leaves = vec![0; faces.len()];
         for (leaf, range) in &flat.patches {
             leaves[range.clone()].fill(*leaf);
@@ -220,7 +220,7 @@ impl<'a> Curved<'a> {
         about: Vec3,
     ) -> Moments<T> {
         let size = self.size();
-        let each = |_: u32, jet: Option<&Gradient<T>>, x: Vec3<T>, area: Vec3<T>| {
+        let each = |_: u32, jet: Option<&ValueGradient<T>>, x: Vec3<T>, area: Vec3<T>| {
             let x = x - Vec3::lifted(about);
             let flux = x.dot(area);
             let mut layer = T::zero();

@@ -11,7 +11,7 @@ use super::moments::Moments;
 use crate::expr::interval::Interval;
 use crate::facet::memo::FacetMemo;
 use crate::facet::sheets::solid_part;
-use crate::facet::types::Flat;
+use crate::facet::types::TriangleView;
 use crate::facet::{FacetOptions, Facets, Resolution};
 use crate::{FieldError, Lifter, Primitive, Set};
 use moldloft_budget::Budget;
@@ -282,9 +282,9 @@ impl Facets {
     }
 
     /// The triangles with the leaves that they and their corners are on.
-    pub(crate) fn flat(&self) -> Flat<'_> {
+    pub(crate) fn flat(&self) -> TriangleView<'_> {
         let ranges = self.mesh.patches().iter().zip(&self.patch_leaves);
-        Flat {
+        TriangleView {
             positions: self.mesh.positions(),
             faces: self.mesh.faces(),
             patches: ranges.map(|(p, &leaf)| (leaf as u32, p.faces.clone())).collect(),

@@ -1,6 +1,6 @@
 //! Points on surfaces, moved as the surfaces move: the implicit function theorem at a point.
 
-use crate::{Gradient, Primitive};
+use crate::{Primitive, ValueGradient};
 use moldloft_num::{Real, Vec3};
 use smallvec::SmallVec;
 
@@ -18,7 +18,7 @@ pub(crate) fn moved<T: Real>(
             .iter()
             .filter_map(|&leaf| {
                 let tape = primitives[leaf as usize].as_ref()?.tape();
-                let g = tape.eval::<Gradient<T>>(&p, &mut values);
+                let g = tape.eval::<ValueGradient<T>>(&p, &mut values);
                 Some((g.slope, g.value))
             })
             .collect();

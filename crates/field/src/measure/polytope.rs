@@ -8,12 +8,12 @@ use smallvec::SmallVec;
 
 /// The plane `normal . x + offset <= 0` is the inside.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cut<T: Real> {
+pub(super) struct CuttingPlane<T: Real> {
     pub normal: Vec3<T>,
     pub offset: T,
 }
 
-impl<T: Real> Cut<T> {
+impl<T: Real> CuttingPlane<T> {
     fn at(&self, p: Vec3<T>) -> T {
         self.normal.dot(p) + self.offset
     }
@@ -25,7 +25,7 @@ pub(super) const WALL: i8 = i8::MIN;
 /// A face: its corners, counter-clockwise from outside, and whose it is: leaf k as k + 1 where the piece is
 /// inside of its plane, as -k - 1 where it is outside.
 #[derive(Clone, Debug)]
-pub(super) struct Face<T: Real> {
+pub(super) struct PolytopeFace<T: Real> {
     pub corners: SmallVec<[Vec3<T>; 8]>,
     pub owner: i8,
 }
@@ -33,7 +33,7 @@ pub(super) struct Face<T: Real> {
 /// A convex piece.
 #[derive(Clone, Debug)]
 pub(super) struct CellPolytope<T: Real> {
-    pub faces: SmallVec<[Face<T>; 8]>,
+    pub faces: SmallVec<[PolytopeFace<T>; 8]>,
 }
 
 impl<T: Real> CellPolytope<T> {
@@ -55,14 +55,14 @@ impl<T: Real> CellPolytope<T> {
                 if side < 0.0 {
                     corners.reverse();
                 }
-                faces.push(Face { corners, owner: WALL });
+                faces.push(PolytopeFace { corners, owner: WALL });
             }
         }
         Self { faces }
     }
 
     /// On which sides of a plane its corners are: -1 all inside or on it, 1 all outside or on it, 0 both.
-    fn side(&self, cut: &Cut<T>) -> i8 {
+    fn side(&self, cut: &CuttingPlane<T>) -> i8 {
         let (mut inside, mut outside) = (false, false);
         for p in self.faces.iter().flat_map(|f| &f.corners) {
             let d = cut.at(*p).re();
@@ -77,7 +77,7 @@ impl<T: Real> CellPolytope<T> {
     }
 
     /// The parts inside and outside of a plane that belongs to `leaf`.
-    pub fn split(&self, cut: &Cut<T>, leaf: usize) -> [Option<Self>; 2] {
+    pub fn split(&self, cut: &CuttingPlane<T>, leaf: usize) -> [Option<Self>; 2] {
         match self.side(cut) {
             -1 => [Some(self.clone()), None],
             1 => [None, Some(self.clone())],
@@ -85,10 +85,10 @@ impl<T: Real> CellPolytope<T> {
         }
     }
 
-    fn clipped(&self, cut: &Cut<T>, leaf: usize, outside: bool) -> Option<Self> {
+    fn clipped(&self, cut: &CuttingPlane<T>, leaf: usize, outside: bool) -> Option<Self> {
         let sign = if outside { -1.0 } else { 1.0 };
         let owner = if outside { -(leaf as i8) - 1 } else { leaf as i8 + 1 };
-        let mut faces: SmallVec<[Face<T>; 8]> = SmallVec::new();
+        let mut faces: SmallVec<[PolytopeFace<T>; 8]> = SmallVec::new();
         let mut rim: SmallVec<[Vec3<T>; 12]> = SmallVec::new();
         for face in &self.faces {
             let n = face.corners.len();
@@ -109,7 +109,7 @@ impl<T: Real> CellPolytope<T> {
                 }
             }
             if corners.len() >= 3 {
-                faces.push(Face { corners, owner: face.owner });
+                faces.push(PolytopeFace { corners, owner: face.owner });
             }
         }
         if faces.is_empty() {
@@ -136,7 +136,7 @@ impl<T: Real> CellPolytope<T> {
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let corners: SmallVec<[Vec3<T>; 8]> = order.iter().map(|o| rim[o.1]).collect();
         if corners.len() >= 3 {
-            faces.push(Face { corners, owner });
+            faces.push(PolytopeFace { corners, owner });
         }
         Some(Self { faces })
     }
@@ -201,10 +201,10 @@ mod tests {
         assert!((m[0] - 8.0 * 0.5 * 0.7 * 0.9).abs() < 1e-15);
         assert!((m[4] - m[0] * 0.25 / 3.0).abs() < 1e-15 && m[7].abs() < 1e-15);
         let cuts = [
-            Cut { normal: Vec3::of(1.0, 2.0, -0.5), offset: 0.1 },
-            Cut { normal: Vec3::of(-0.3, 0.4, 1.0), offset: -0.2 },
-            Cut { normal: Vec3::of(0.0, 1.0, 0.0), offset: 0.0 },
-            Cut { normal: Vec3::of(1.0, 1.0, 1.0), offset: -2.1 },
+            CuttingPlane { normal: Vec3::of(1.0, 2.0, -0.5), offset: 0.1 },
+            CuttingPlane { normal: Vec3::of(-0.3, 0.4, 1.0), offset: -0.2 },
+            CuttingPlane { normal: Vec3::of(0.0, 1.0, 0.0), offset: 0.0 },
+            CuttingPlane { normal: Vec3::of(1.0, 1.0, 1.0), offset: -2.1 },
         ];
         let mut parts = vec![whole];
         for (k, cut) in cuts.iter().enumerate() {

@@ -4,11 +4,11 @@
 //! monotone in its leaves, so that with the remainders at their upper ends it is less, and at their lower ends
 //! more, than it is: both are parted by planes, and integrated exactly.
 
-use super::polytope::{CellPolytope, Cut, SECOND};
+use super::polytope::{CellPolytope, CuttingPlane, SECOND};
 use crate::expr::algebra::GradientRange;
 use crate::expr::interval::Interval;
 use crate::expr::second_order::{HessianRange, PAIRS};
-use crate::expr::tape::{Code, ExprTape, NO_LEAF, RangeRoom};
+use crate::expr::tape::{ExprInstruction, ExprTape, NO_LEAF, RangeRoom};
 use crate::{Hessian, Primitive};
 use moldloft_num::{Real, Vec3};
 use smallvec::SmallVec;
@@ -55,13 +55,17 @@ impl Combination {
                     out.leaves.push((at, tape.leaf[k]));
                     CombinationNode::Leaf(out.leaves.len() as u8 - 1)
                 }
-                Code::Union(a, b) | Code::Common(a, b) if !ready => {
+                ExprInstruction::Union(a, b) | ExprInstruction::Common(a, b) if !ready => {
                     stack.push((at, true));
                     stack.extend([(b, false), (a, false)]);
                     continue;
                 }
-                Code::Union(a, b) => CombinationNode::Or(number[a as usize], number[b as usize]),
-                Code::Common(a, b) => CombinationNode::And(number[a as usize], number[b as usize]),
+                ExprInstruction::Union(a, b) => {
+                    CombinationNode::Or(number[a as usize], number[b as usize])
+                }
+                ExprInstruction::Common(a, b) => {
+                    CombinationNode::And(number[a as usize], number[b as usize])
+                }
                 _ => return None,
             };
             if out.nodes.len() == usize::from(u8::MAX) {
@@ -89,7 +93,7 @@ impl Combination {
     fn solid_parts<T: Real>(
         &self,
         piece: CellPolytope<T>,
-        cuts: &[Option<Cut<T>>],
+        cuts: &[Option<CuttingPlane<T>>],
         signs: Signs,
         from: usize,
         take: &mut dyn FnMut(&CellPolytope<T>),
@@ -115,7 +119,7 @@ impl Combination {
 
 /// A leaf in a box: its value and gradient in the middle, and the range of what is left.
 #[derive(Clone, Copy, Debug)]
-struct Form {
+struct TaylorModel {
     value: Interval,
     slope: Vec3,
     rest: Interval,
@@ -193,13 +197,13 @@ pub(crate) fn bounds(
         let rest = usable(second).meet(usable(first)).meet(usable(plainly));
         let slack = ROUNDING * (spread + value.magnitude());
         let rest = Interval { low: rest.low - slack, high: rest.high + slack };
-        Form { value, slope, rest }
+        TaylorModel { value, slope, rest }
     };
-    let forms: SmallVec<[Form; 6]> = combination.leaves.iter().map(|l| form(l.0)).collect();
+    let forms: SmallVec<[TaylorModel; 6]> = combination.leaves.iter().map(|l| form(l.0)).collect();
     let whole = CellPolytope::<f64>::of_box(half);
     let integrate = |least: bool| {
         let mut signs = [0; MOST_LEAVES];
-        let cuts: SmallVec<[Option<Cut<f64>>; 6]> = forms
+        let cuts: SmallVec<[Option<CuttingPlane<f64>>; 6]> = forms
             .iter()
             .enumerate()
             .map(|(k, f)| {
@@ -212,7 +216,7 @@ pub(crate) fn bounds(
                     signs[k] = if least { 1 } else { -1 };
                     return None;
                 }
-                Some(Cut { normal: f.slope, offset })
+                Some(CuttingPlane { normal: f.slope, offset })
             })
             .collect();
         let mut sum = [0.0; 10];
@@ -241,11 +245,11 @@ pub(crate) fn best<T: Real>(
         .iter()
         .map(|l| Some(primitive(l.1)?.hessian(Vec3::lifted(centre))))
         .collect();
-    let cuts: SmallVec<[Option<Cut<T>>; 6]> = jets
+    let cuts: SmallVec<[Option<CuttingPlane<T>>; 6]> = jets
         .iter()
         .map(|jet| {
             let jet = jet.as_ref()?;
-            Some(Cut { normal: jet.slope, offset: jet.value })
+            Some(CuttingPlane { normal: jet.slope, offset: jet.value })
         })
         .collect();
     let mut sum = [T::zero(); 10];

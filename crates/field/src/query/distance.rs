@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// The distance of two sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distance {
+pub struct SetDistance {
     /// The distance of the two points; 0 where the sets overlap or touch.
     pub distance: f64,
     /// Proved: no two points of the sets in the box are nearer.
@@ -164,7 +164,7 @@ pub fn distance(
     b: &Set,
     over: &Box3,
     accuracy: f64,
-) -> Result<Option<Distance>, FieldError> {
+) -> Result<Option<SetDistance>, FieldError> {
     crate::error::positive("accuracy", accuracy)?;
     let over = crate::error::solid_box(*over)?;
     let near = 1e-9 * over.diagonal();
@@ -202,7 +202,7 @@ pub fn distance(
             && (distance >= found - accuracy || seen >= MOST)
         {
             let at_least = distance.min(found);
-            return Ok(Some(Distance { distance: found, at_least, first: p, second: q }));
+            return Ok(Some(SetDistance { distance: found, at_least, first: p, second: q }));
         }
         seen += 1;
         if seen > 10 * MOST {
@@ -250,7 +250,7 @@ pub fn distance(
             }
         }
     }
-    Ok(best.map(|(distance, [p, q])| Distance {
+    Ok(best.map(|(distance, [p, q])| SetDistance {
         distance,
         at_least: (distance - accuracy).max(proved).min(distance),
         first: p,

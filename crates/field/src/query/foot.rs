@@ -1,7 +1,7 @@
 //! Derivatives of points that a search found: one Newton step in numbers that carry them.
 
 use crate::measure::moved::moved_by;
-use crate::{Gradient, Primitive, Ray, Set};
+use crate::{Primitive, Ray, Set, ValueGradient};
 use moldloft_num::solve_dense;
 use moldloft_num::{Real, Vec3};
 
@@ -10,7 +10,7 @@ fn active<T: Real>(set: &Set<T>, at: Vec3, tolerance: f64) -> Vec<Primitive<T>> 
     let mut found: Vec<Primitive<T>> = Vec::new();
     for leaf in set.leaves() {
         let f = leaf.primitive.of_sheet();
-        let Gradient { value, slope } = f.gradient(Vec3::lifted(at));
+        let ValueGradient { value, slope } = f.gradient(Vec3::lifted(at));
         let near = value.re().abs() <= tolerance * slope.re().norm();
         // Two of the same tangent plane determine no edge.
         let new = || {

@@ -4,7 +4,7 @@ use crate::expr::interval::{Interval, sides};
 use crate::expr::tape::{ExprTape, NO_LEAF, RangeRoom};
 use crate::facet::Facets;
 use crate::facet::vertex::Solver;
-use crate::{FieldError, Gradient, Primitive, Set};
+use crate::{FieldError, Primitive, Set, ValueGradient};
 use moldloft_num::{Box3, Plane, Vec3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -210,7 +210,7 @@ fn surface_point(
     let mut q = start;
     // First onto the surface, then alternately along it towards p and back.
     for _ in 0..40 {
-        let Gradient { value, slope } = f.gradient(q);
+        let ValueGradient { value, slope } = f.gradient(q);
         let size = slope.norm_sq();
         if size == 0.0 {
             return None;
@@ -225,7 +225,7 @@ fn surface_point(
         }
     }
     for _ in 0..4 {
-        let Gradient { value, slope } = f.gradient(q);
+        let ValueGradient { value, slope } = f.gradient(q);
         q -= slope * (value / slope.norm_sq());
     }
     let size = 1.0 + q.norm();
@@ -261,7 +261,7 @@ fn edge_point(
 
 /// A contour of a set in a plane.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Contour {
+pub struct SetContour {
     /// Its points, in the plane and on the surface; the first is not repeated when it is closed.
     pub points: Vec<Vec3>,
     /// True when it ends where it began.
@@ -274,7 +274,7 @@ impl Facets {
     ///
     /// # Errors
     /// A plane whose normal has no direction.
-    pub fn section(&self, plane: &Plane<f64>) -> Result<Vec<Contour>, FieldError> {
+    pub fn section(&self, plane: &Plane<f64>) -> Result<Vec<SetContour>, FieldError> {
         let plane = Plane::new(plane.point, plane.normal)
             .ok_or(FieldError::Degenerate { what: "normal of the plane" })?;
         let lines = moldloft_mesh::section(&self.mesh, &plane);
@@ -301,7 +301,7 @@ impl Facets {
         };
         Ok(lines
             .into_iter()
-            .map(|line| Contour {
+            .map(|line| SetContour {
                 points: line.points.into_iter().map(place).collect(),
                 closed: line.closed,
             })

@@ -6,7 +6,7 @@
 //! secants.
 
 use crate::expr::interval::Interval;
-use crate::expr::tape::{Code, ExprTape, NO_LEAF};
+use crate::expr::tape::{ExprInstruction, ExprTape, NO_LEAF};
 use crate::{Leaf, Membership, Primitive, Set};
 use moldloft_num::{Real, Vec3, find_root};
 use smallvec::SmallVec;
@@ -70,28 +70,28 @@ fn polynomial(tape: &ExprTape<f64>, ray: &Ray) -> Option<Polynomial> {
     for code in &tape.code {
         let of = |a: u32| &values[a as usize];
         let value = match *code {
-            Code::Real(c) => SmallVec::from_slice(&[c]),
-            Code::Plane(n, d) => {
+            ExprInstruction::Real(c) => SmallVec::from_slice(&[c]),
+            ExprInstruction::Plane(n, d) => {
                 SmallVec::from_slice(&[n.dot(ray.start) + d, n.dot(ray.direction)])
             }
-            Code::Unary(crate::Unary::Neg, a) => of(a).iter().map(|x| -x).collect(),
-            Code::PlusReal(a, c) => {
+            ExprInstruction::Unary(crate::Unary::Neg, a) => of(a).iter().map(|x| -x).collect(),
+            ExprInstruction::PlusReal(a, c) => {
                 let mut p = of(a).clone();
                 p[0] += c;
                 p
             }
-            Code::TimesReal(a, c) => of(a).iter().map(|x| x * c).collect(),
-            Code::OverReal(a, c) => of(a).iter().map(|x| x / c).collect(),
-            Code::Power(a, n) => {
+            ExprInstruction::TimesReal(a, c) => of(a).iter().map(|x| x * c).collect(),
+            ExprInstruction::OverReal(a, c) => of(a).iter().map(|x| x / c).collect(),
+            ExprInstruction::Power(a, n) => {
                 let mut p = SmallVec::from_slice(&[1.0]);
                 for _ in 0..n {
                     p = product(&p, of(a))?;
                 }
                 p
             }
-            Code::Add(a, b) => zip(of(a), of(b), 1.0),
-            Code::Sub(a, b) => zip(of(a), of(b), -1.0),
-            Code::Mul(a, b) => product(of(a), of(b))?,
+            ExprInstruction::Add(a, b) => zip(of(a), of(b), 1.0),
+            ExprInstruction::Sub(a, b) => zip(of(a), of(b), -1.0),
+            ExprInstruction::Mul(a, b) => product(of(a), of(b))?,
             _ => return None,
         };
         values.push(value);

@@ -3,7 +3,7 @@
 use crate::expr::algebra::Unary;
 use crate::expr::interval::Interval;
 use crate::expr::primitive::{Binary, Op};
-use crate::expr::tape::{Builder, Code, ExprTape, NO_LEAF};
+use crate::expr::tape::{Builder, ExprInstruction, ExprTape, NO_LEAF};
 use crate::{Affine, FieldError, Primitive};
 use moldloft_num::{Box3, Real, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet, FxHasher};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// What a handle to a set says of it; its leaves inherit what they do not say themselves.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Attributes {
+pub struct SetAttributes {
     /// Name.
     pub name: Option<String>,
     /// True for a name that was asked for: it stays when the set is declared under another.
@@ -29,7 +29,7 @@ pub struct Attributes {
     pub tags: BTreeMap<String, String>,
 }
 
-impl Attributes {
+impl SetAttributes {
     /// These, and where they are silent those of `outer`.
     pub fn or(&self, outer: &Self) -> Self {
         Self {
@@ -58,7 +58,7 @@ pub enum Membership {
     Air,
 }
 
-enum Kind<T: Real> {
+enum SetNodeKind<T: Real> {
     Everything,
     Nothing,
     Leaf(Primitive<T>),
@@ -67,7 +67,7 @@ enum Kind<T: Real> {
 }
 
 struct SetNode<T: Real> {
-    kind: Kind<T>,
+    kind: SetNodeKind<T>,
     /// Two operands of unions and intersections.
     operands: Vec<Set<T>>,
     /// By which different sets mostly differ; attributes do not count.
@@ -106,7 +106,7 @@ impl<T: Real> Drop for SetNode<T> {
 /// ```
 pub struct Set<T: Real = f64> {
     node: Arc<SetNode<T>>,
-    attributes: Option<Arc<Attributes>>,
+    attributes: Option<Arc<SetAttributes>>,
 }
 
 impl<T: Real> Clone for Set<T> {
@@ -121,7 +121,7 @@ pub struct Leaf<T: Real = f64> {
     /// The primitive, as it stands in the set: negated where a complement reached it.
     pub primitive: Primitive<T>,
     /// Its own attributes, completed by those of the sets around it.
-    pub attributes: Attributes,
+    pub attributes: SetAttributes,
 }
 
 /// A compiled set.
@@ -134,10 +134,10 @@ pub(crate) struct Compiled<T: Real> {
 }
 
 impl<T: Real> Set<T> {
-    fn of(kind: Kind<T>, operands: Vec<Set<T>>) -> Self {
+    fn of(kind: SetNodeKind<T>, operands: Vec<Set<T>>) -> Self {
         let mut h = FxHasher::default();
         std::mem::discriminant(&kind).hash(&mut h);
-        if let Kind::Leaf(p) = &kind {
+        if let SetNodeKind::Leaf(p) = &kind {
             p.0.fingerprint.hash(&mut h);
         }
         operands.iter().for_each(|o| o.node.fingerprint.hash(&mut h));
@@ -152,12 +152,12 @@ impl<T: Real> Set<T> {
 
     /// All of space.
     pub fn everything() -> Self {
-        Self::of(Kind::Everything, Vec::new())
+        Self::of(SetNodeKind::Everything, Vec::new())
     }
 
     /// No point.
     pub fn nothing() -> Self {
-        Self::of(Kind::Nothing, Vec::new())
+        Self::of(SetNodeKind::Nothing, Vec::new())
     }
 
     /// The points where `primitive` is not positive. Constants give everything or nothing, a minimum
@@ -174,8 +174,8 @@ impl<T: Real> Set<T> {
             Op::Real(_) => Self::everything(),
             Op::Binary(Binary::Min, a, b) => Self::new(a) | Self::new(b),
             Op::Binary(Binary::Max, a, b) => Self::new(a) & Self::new(b),
-            _ if negated => return Self::of(Kind::Leaf(-p), Vec::new()),
-            _ => return Self::of(Kind::Leaf(p.clone()), Vec::new()),
+            _ if negated => return Self::of(SetNodeKind::Leaf(-p), Vec::new()),
+            _ => return Self::of(SetNodeKind::Leaf(p.clone()), Vec::new()),
         };
         if negated { -set } else { set }
     }
@@ -273,7 +273,7 @@ impl<T: Real> Set<T> {
     /// The primitive, when the set is one.
     pub fn primitive(&self) -> Option<&Primitive<T>> {
         match &self.node.kind {
-            Kind::Leaf(p) => Some(p),
+            SetNodeKind::Leaf(p) => Some(p),
             _ => None,
         }
     }
@@ -291,27 +291,27 @@ impl<T: Real> Set<T> {
 
     /// True for a union.
     pub(crate) fn is_union(&self) -> bool {
-        matches!(self.node.kind, Kind::Union)
+        matches!(self.node.kind, SetNodeKind::Union)
     }
 
     /// A primitive as it is, without looking for unions in it.
     pub(crate) fn of_leaf(p: &Primitive<T>) -> Self {
-        Self::of(Kind::Leaf(p.clone()), Vec::new())
+        Self::of(SetNodeKind::Leaf(p.clone()), Vec::new())
     }
 
     /// Two sets joined as they are.
     pub(crate) fn of_two(union: bool, a: Self, b: Self) -> Self {
-        Self::of(if union { Kind::Union } else { Kind::Intersection }, vec![a, b])
+        Self::of(if union { SetNodeKind::Union } else { SetNodeKind::Intersection }, vec![a, b])
     }
 
     /// True for the whole of space, known as such.
     pub fn is_everything(&self) -> bool {
-        matches!(self.node.kind, Kind::Everything)
+        matches!(self.node.kind, SetNodeKind::Everything)
     }
 
     /// True for the empty set, known as such.
     pub fn is_nothing(&self) -> bool {
-        matches!(self.node.kind, Kind::Nothing)
+        matches!(self.node.kind, SetNodeKind::Nothing)
     }
 
     /// The two operands of a union or intersection.
@@ -320,7 +320,7 @@ impl<T: Real> Set<T> {
     }
 
     /// The same set with these attributes, completed by those it has.
-    pub fn with(&self, attributes: Attributes) -> Self {
+    pub fn with(&self, attributes: SetAttributes) -> Self {
         let attributes = match &self.attributes {
             Some(old) => attributes.or(old),
             None => attributes,
@@ -329,7 +329,7 @@ impl<T: Real> Set<T> {
     }
 
     /// The same set, its own attributes completed by those of a set around it.
-    pub(crate) fn within(&self, outer: Attributes) -> Self {
+    pub(crate) fn within(&self, outer: SetAttributes) -> Self {
         let attributes = match &self.attributes {
             Some(own) => own.or(&outer),
             None => outer,
@@ -339,13 +339,13 @@ impl<T: Real> Set<T> {
 
     /// The same set under a name.
     pub fn named(&self, name: &str) -> Self {
-        self.with(Attributes { name: Some(name.to_owned()), ..Attributes::default() })
+        self.with(SetAttributes { name: Some(name.to_owned()), ..SetAttributes::default() })
     }
 
     /// The set with names for those of its primitives that have none.
     pub(crate) fn with_names(&self, name: &dyn Fn(&Primitive<T>) -> Option<String>) -> Self {
         let leaf = |p: &Primitive<T>| {
-            let set = Self::of(Kind::Leaf(p.clone()), Vec::new());
+            let set = Self::of(SetNodeKind::Leaf(p.clone()), Vec::new());
             match name(p) {
                 Some(name) => set.named(&name),
                 None => set,
@@ -366,7 +366,7 @@ impl<T: Real> Set<T> {
     }
 
     /// What this handle says of the set.
-    pub fn attributes(&self) -> Option<&Attributes> {
+    pub fn attributes(&self) -> Option<&SetAttributes> {
         self.attributes.as_deref()
     }
 
@@ -379,31 +379,31 @@ impl<T: Real> Set<T> {
     fn alike(&self, o: &Self) -> bool {
         self.is(o)
             || match (&self.node.kind, &o.node.kind) {
-                (Kind::Leaf(a), Kind::Leaf(b)) => a.same(b),
+                (SetNodeKind::Leaf(a), SetNodeKind::Leaf(b)) => a.same(b),
                 _ => false,
             }
     }
 
     fn opposite(&self, o: &Self) -> bool {
         match (&self.node.kind, &o.node.kind) {
-            (Kind::Leaf(a), Kind::Leaf(b)) => (-a).same(b) || a.same(&-b),
+            (SetNodeKind::Leaf(a), SetNodeKind::Leaf(b)) => (-a).same(b) || a.same(&-b),
             _ => false,
         }
     }
 
     fn join(self, o: Self) -> Self {
         match (&self.node.kind, &o.node.kind) {
-            (Kind::Everything, _) | (_, Kind::Nothing) => self,
-            (Kind::Nothing, _) | (_, Kind::Everything) => o,
-            _ => Self::of(Kind::Union, vec![self, o]),
+            (SetNodeKind::Everything, _) | (_, SetNodeKind::Nothing) => self,
+            (SetNodeKind::Nothing, _) | (_, SetNodeKind::Everything) => o,
+            _ => Self::of(SetNodeKind::Union, vec![self, o]),
         }
     }
 
     fn cut(self, o: Self) -> Self {
         match (&self.node.kind, &o.node.kind) {
-            (Kind::Nothing, _) | (_, Kind::Everything) => self,
-            (Kind::Everything, _) | (_, Kind::Nothing) => o,
-            _ => Self::of(Kind::Intersection, vec![self, o]),
+            (SetNodeKind::Nothing, _) | (_, SetNodeKind::Everything) => self,
+            (SetNodeKind::Everything, _) | (_, SetNodeKind::Nothing) => o,
+            _ => Self::of(SetNodeKind::Intersection, vec![self, o]),
         }
     }
 
@@ -423,11 +423,11 @@ impl<T: Real> Set<T> {
                 continue;
             }
             let made = match (&set.node.kind, ready) {
-                (Kind::Everything, _) if turned => Set::nothing(),
-                (Kind::Nothing, _) if turned => Set::everything(),
-                (Kind::Everything, _) => Set::everything(),
-                (Kind::Nothing, _) => Set::nothing(),
-                (Kind::Leaf(p), _) => leaf(p),
+                (SetNodeKind::Everything, _) if turned => Set::nothing(),
+                (SetNodeKind::Nothing, _) if turned => Set::everything(),
+                (SetNodeKind::Everything, _) => Set::everything(),
+                (SetNodeKind::Nothing, _) => Set::nothing(),
+                (SetNodeKind::Leaf(p), _) => leaf(p),
                 (_, false) => {
                     stack.push((set, true));
                     stack.extend(set.node.operands.iter().rev().map(|o| (o, false)));
@@ -436,7 +436,7 @@ impl<T: Real> Set<T> {
                 (kind, true) => {
                     let right = out.pop().unwrap_or_else(Set::nothing);
                     let left = out.pop().unwrap_or_else(Set::nothing);
-                    combine(matches!(kind, Kind::Union) != turned, left, right)
+                    combine(matches!(kind, SetNodeKind::Union) != turned, left, right)
                 }
             };
             let made = match &set.attributes {
@@ -458,14 +458,14 @@ impl<T: Real> Set<T> {
     /// The set with leaves replaced where `new` has something else for them.
     pub(crate) fn replaced(&self, new: &dyn Fn(&Primitive<T>) -> Option<Self>) -> Self {
         let leaf = |p: &Primitive<T>| {
-            new(p).unwrap_or_else(|| Self::of(Kind::Leaf(p.clone()), Vec::new()))
+            new(p).unwrap_or_else(|| Self::of(SetNodeKind::Leaf(p.clone()), Vec::new()))
         };
         self.rebuilt(&leaf, false, &Self::combined)
     }
 
     /// Everything that is not in the set.
     pub fn complement(&self) -> Self {
-        self.rebuilt(&|p| Self::of(Kind::Leaf(-p), Vec::new()), true, &Self::combined)
+        self.rebuilt(&|p| Self::of(SetNodeKind::Leaf(-p), Vec::new()), true, &Self::combined)
     }
 
     /// What `leaf` makes of the primitives, joined up the tree: unions with `true`. A part that occurs many times is
@@ -486,9 +486,9 @@ impl<T: Real> Set<T> {
                 continue;
             }
             let made = match (&set.node.kind, ready) {
-                (Kind::Everything, _) => everything.clone(),
-                (Kind::Nothing, _) => nothing.clone(),
-                (Kind::Leaf(p), _) => leaf(p),
+                (SetNodeKind::Everything, _) => everything.clone(),
+                (SetNodeKind::Nothing, _) => nothing.clone(),
+                (SetNodeKind::Leaf(p), _) => leaf(p),
                 (_, false) => {
                     stack.push((set, true));
                     stack.extend(set.node.operands.iter().rev().map(|o| (o, false)));
@@ -497,7 +497,7 @@ impl<T: Real> Set<T> {
                 (kind, true) => {
                     let b = out.pop().unwrap_or_else(|| nothing.clone());
                     let a = out.pop().unwrap_or_else(|| nothing.clone());
-                    join(matches!(kind, Kind::Union), a, b)
+                    join(matches!(kind, SetNodeKind::Union), a, b)
                 }
             };
             if set.is_shared() {
@@ -514,7 +514,7 @@ impl<T: Real> Set<T> {
         if let Some(plain) = any.downcast_ref::<Set<f64>>() {
             return plain.clone();
         }
-        self.rebuilt(&|p| Set::of(Kind::Leaf(p.re()), Vec::new()), false, &Set::combined)
+        self.rebuilt(&|p| Set::of(SetNodeKind::Leaf(p.re()), Vec::new()), false, &Set::combined)
     }
 
     /// The set with its coordinates replaced; see [`Primitive::remapped`].
@@ -531,7 +531,7 @@ impl<T: Real> Set<T> {
         // One trial decides: a map has an inverse or not, whatever the primitive.
         Primitive::real(T::zero()).mapped(world_from)?;
         let move_leaf = |p: &Primitive<T>| match p.mapped(world_from) {
-            Ok(p) => Self::of(Kind::Leaf(p), Vec::new()),
+            Ok(p) => Self::of(SetNodeKind::Leaf(p), Vec::new()),
             Err(_) => Self::nothing(),
         };
         Ok(self.rebuilt(&move_leaf, false, &Self::combined))
@@ -548,8 +548,8 @@ impl<T: Real> Set<T> {
                 return if union { Self::everything() } else { Self::nothing() };
             }
             let absorbs = |whole: &Self, part: &Self| {
-                let other = matches!(part.node.kind, Kind::Union) != union
-                    && matches!(part.node.kind, Kind::Union | Kind::Intersection);
+                let other = matches!(part.node.kind, SetNodeKind::Union) != union
+                    && matches!(part.node.kind, SetNodeKind::Union | SetNodeKind::Intersection);
                 other && part.operands().iter().any(|o| o.alike(whole))
             };
             if absorbs(&a, &b) {
@@ -560,7 +560,7 @@ impl<T: Real> Set<T> {
                 Self::combined(union, a, b)
             }
         };
-        self.rebuilt(&|p| Self::of(Kind::Leaf(p.clone()), Vec::new()), false, &combine)
+        self.rebuilt(&|p| Self::of(SetNodeKind::Leaf(p.clone()), Vec::new()), false, &combine)
     }
 
     /// The primitives in order of their first appearance, with the attributes that reach them.
@@ -597,11 +597,12 @@ impl<T: Real> Set<T> {
         let mut values: Vec<u32> = Vec::new();
         let mut places = Vec::new();
         // A node under the same attributes has one value, and attributes under the same outer ones are the same.
-        let mut known: FxHashMap<(*const SetNode<T>, *const Attributes), u32> =
+        let mut known: FxHashMap<(*const SetNode<T>, *const SetAttributes), u32> =
             FxHashMap::default();
-        type Inherited = FxHashMap<(*const Attributes, *const Attributes), Arc<Attributes>>;
+        type Inherited =
+            FxHashMap<(*const SetAttributes, *const SetAttributes), Arc<SetAttributes>>;
         let mut inherited = Inherited::default();
-        let none = Arc::new(Attributes::default());
+        let none = Arc::new(SetAttributes::default());
         let mut stack = vec![(self, false, none)];
         while let Some((set, ready, outer)) = stack.pop() {
             let here = match &set.attributes {
@@ -619,9 +620,9 @@ impl<T: Real> Set<T> {
             }
             let at = match (&set.node.kind, ready) {
                 // The ranges that svLis gives to the two constant sets.
-                (Kind::Everything, _) => builder.push(Code::Real(T::from(-1.0))),
-                (Kind::Nothing, _) => builder.push(Code::Real(T::one())),
-                (Kind::Leaf(p), _) => {
+                (SetNodeKind::Everything, _) => builder.push(ExprInstruction::Real(T::from(-1.0))),
+                (SetNodeKind::Nothing, _) => builder.push(ExprInstruction::Real(T::one())),
+                (SetNodeKind::Leaf(p), _) => {
                     let at = builder.primitive(p);
                     builder.mark(at, leaves.len() as u32);
                     places.push(builder.leaf_of(at));
@@ -639,8 +640,8 @@ impl<T: Real> Set<T> {
                     let b = values.pop().unwrap_or(0);
                     let a = values.pop().unwrap_or(0);
                     builder.push(match kind {
-                        Kind::Union => Code::Union(a, b),
-                        _ => Code::Common(a, b),
+                        SetNodeKind::Union => ExprInstruction::Union(a, b),
+                        _ => ExprInstruction::Common(a, b),
                     })
                 }
             };
@@ -697,7 +698,7 @@ impl<T: Real> Set<T> {
 impl Set<f64> {
     /// The same set among numbers with derivatives, on no parameter of which it depends.
     pub fn constant<S: Real>(&self) -> Set<S> {
-        let leaf = |p: &Primitive| Set::of(Kind::Leaf(p.constant()), Vec::new());
+        let leaf = |p: &Primitive| Set::of(SetNodeKind::Leaf(p.constant()), Vec::new());
         self.rebuilt(&leaf, false, &Set::combined)
     }
 
@@ -720,7 +721,7 @@ impl Set<f64> {
             } else if range.high < 0.0 {
                 Self::everything()
             } else {
-                Self::of(Kind::Leaf(p.clone()), Vec::new())
+                Self::of(SetNodeKind::Leaf(p.clone()), Vec::new())
             }
         };
         self.rebuilt(&leaf, false, &Self::combined)
@@ -730,8 +731,8 @@ impl Set<f64> {
 impl<T: Real> std::fmt::Debug for Set<T> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match &self.node.kind {
-            Kind::Everything => write!(f, "everything"),
-            Kind::Nothing => write!(f, "nothing"),
+            SetNodeKind::Everything => write!(f, "everything"),
+            SetNodeKind::Nothing => write!(f, "nothing"),
             _ => write!(f, "set of {} primitives", self.contents()),
         }
     }

@@ -18,7 +18,7 @@ pub use foreign::{read_fidget, read_libfive};
 use crate::expr::algebra::Unary;
 use crate::expr::form::Form;
 use crate::expr::primitive::{Binary, Op};
-use crate::{Attributes, FieldError, Primitive, Set};
+use crate::{FieldError, Primitive, Set, SetAttributes};
 use moldloft_num::{Axis, Plane, Vec3};
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -187,7 +187,7 @@ fn quoted(text: &str) -> String {
     out
 }
 
-fn attribute_text(a: &Attributes) -> String {
+fn attribute_text(a: &SetAttributes) -> String {
     let mut out = String::from(" with");
     if let Some(name) = &a.name {
         let _ = write!(out, " {} {}", if a.given { "given" } else { "name" }, quoted(name));
@@ -493,7 +493,7 @@ fn read_node(w: &mut Words, nodes: &[ParsedShape]) -> Result<ParsedShape, TextEr
             minor: w.number()?,
             change: w.number()?,
         },
-        other => return wrong(line, format!("there is no form `{other}`")),
+        other => return wrong(line, format!("unknown primitive `{other}`")),
     };
     Ok(ParsedShape::Field(made.remembered(form)))
 }
@@ -507,7 +507,7 @@ fn with_attributes(w: &mut Words, set: Set) -> Result<ParsedShape, TextError> {
         "with" => {}
         other => return wrong(line, format!("expected `with`, found `{other}`")),
     }
-    let mut a = Attributes::default();
+    let mut a = SetAttributes::default();
     while !w.done() {
         match &*w.next("an attribute")?.to_owned() {
             key @ ("name" | "given") => {

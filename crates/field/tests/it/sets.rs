@@ -1,6 +1,6 @@
 //! Sets: operators as logic, winners, pruning, regularisation, attributes.
 
-use moldloft_field::{Attributes, FieldError, Membership, Primitive, Set};
+use moldloft_field::{FieldError, Membership, Primitive, Set, SetAttributes};
 use moldloft_num::{Axis, Box3, Vec3};
 
 fn v(x: f64, y: f64, z: f64) -> Vec3 {
@@ -97,24 +97,25 @@ fn constants_and_repetitions_simplify() {
 
 #[test]
 fn attributes_come_from_the_nearest_handle() {
-    let red = Attributes { colour: Some(4), ..Attributes::default() };
+    let red = SetAttributes { colour: Some(4), ..SetAttributes::default() };
     let a = ball(0.0, 1.0).named("a");
     let both = (&a | &ball(3.0, 1.0)).with(red).named("both");
     let leaves = both.leaves();
     let said = |k: usize| (leaves[k].attributes.name.as_deref(), leaves[k].attributes.colour);
     assert_eq!((said(0), said(1)), ((Some("a"), Some(4)), (Some("both"), Some(4))));
     // The geometry is shared, the handles differ.
-    let blue = a.with(Attributes { colour: Some(1), ..Attributes::default() });
+    let blue = a.with(SetAttributes { colour: Some(1), ..SetAttributes::default() });
     assert!(blue.is(&a) && a.attributes().unwrap().colour.is_none());
     assert_eq!((-both).leaves()[0].attributes.name.as_deref(), Some("a"));
 }
 
 #[test]
 fn a_name_that_was_asked_for_is_told_from_others() {
-    let asked = Attributes { name: Some("hull".into()), given: true, ..Attributes::default() };
+    let asked =
+        SetAttributes { name: Some("hull".into()), given: true, ..SetAttributes::default() };
     let a = ball(0.0, 1.0).named("field").with(asked);
     assert!(a.attributes().is_some_and(|a| a.given && a.name.as_deref() == Some("hull")));
-    let b = a.with(Attributes { colour: Some(3), ..Attributes::default() });
+    let b = a.with(SetAttributes { colour: Some(3), ..SetAttributes::default() });
     assert!(b.attributes().is_some_and(|b| b.given && b.colour == Some(3)));
     assert!(ball(0.0, 1.0).named("field").attributes().is_some_and(|a| !a.given));
 }

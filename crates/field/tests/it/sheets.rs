@@ -105,7 +105,7 @@ fn two_spheres_meet_in_a_circle_and_three_sheets_in_points() {
     let m = mixed(&(&(&a & &b) & &Set::new(&plane.abs())));
     assert!(m.wires.is_empty() && m.sheets.is_empty());
     assert_eq!(m.points.len(), 2);
-    for moldloft_field::Dot { point: p, leaves, .. } in &m.points {
+    for moldloft_field::TriplePoint { point: p, leaves, .. } in &m.points {
         assert_eq!(*leaves, [0, 1, 2]);
         for f in [&ball(), &other, &plane] {
             assert!(f.value(*p).abs() < 1e-11);

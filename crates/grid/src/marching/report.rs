@@ -4,7 +4,7 @@ use super::front::{Front, MarchOutcome};
 use super::outcome::{FailureCause, MarchReport, StopReason};
 use super::settings::Hyperbolic;
 use crate::surface_grid::SAME;
-use crate::{Corner, Edge, GridError};
+use crate::{Corner, GridError, GridSide};
 use moldloft_num::{Real, Vec3};
 
 /// The least scaled Jacobian of the cells of a layer, with the cell, and the greatest skewness.
@@ -134,7 +134,7 @@ pub(super) fn check_seam<T: Real>(
     for (a, b, at) in pairs {
         let gap = a.distance(*b);
         if gap > SAME * size {
-            let corner = Corner { edge: Edge::FirstI, other: Edge::LastI, at: *at };
+            let corner = Corner { edge: GridSide::FirstI, other: GridSide::LastI, at: *at };
             return Err(GridError::EdgesApart { corner, gap });
         }
     }

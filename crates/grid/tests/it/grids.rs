@@ -61,7 +61,7 @@ fn edges_stay_to_the_bit_and_cubic_blending_joins_smoothly() {
     });
     for blend in [Blend::Arc, Blend::Linear, Blend::Hermite, Blend::Soni2] {
         let grid = transfinite(&emptied(&wavy), blend).unwrap();
-        for edge in Edge::ALL {
+        for edge in GridSide::ALL {
             assert_eq!(grid.edge(edge), wavy.edge(edge));
         }
         assert!(grid.points().all(|p| p.is_finite()));
@@ -95,7 +95,7 @@ fn leaps_are_found_with_corner_and_gap() {
     }
     let error = transfinite(&gap, Blend::Arc).unwrap_err();
     let GridError::EdgesApart { corner, gap } = error else { panic!("{error}") };
-    assert_eq!((corner.edge, corner.at), (Edge::LastJ, [1, 9]));
+    assert_eq!((corner.edge, corner.at), (GridSide::LastJ, [1, 9]));
     assert!((gap - 33f64.hypot(0.0)).abs() < 2.0);
     // An edge that was never set.
     let mut unset = square.clone();
@@ -127,7 +127,7 @@ fn leaps_are_found_with_corner_and_gap() {
     let GridError::EdgesApart { corner, gap } = error else { panic!("{error}") };
     assert_eq!(
         (corner.edge, corner.other, corner.at, gap),
-        (Edge::LastI, Edge::LastJ, [4, 5], 0.25)
+        (GridSide::LastI, GridSide::LastJ, [4, 5], 0.25)
     );
 }
 
@@ -223,7 +223,7 @@ fn sorenson_gives_walls_their_spacing_and_right_angles() {
         let bump = 0.15 * libm::exp(-(u - 1.5) * (u - 1.5) * 8.0);
         Vec3::of(u, bump + (1.0 - bump) * v, 0.0)
     });
-    let wall = Wall { edge: Edge::FirstJ, spacing: vec![0.02], angle: FRAC_PI_2 };
+    let wall = Wall { edge: GridSide::FirstJ, spacing: vec![0.02], angle: FRAC_PI_2 };
     let options = |method: Method, walls: Vec<Wall<f64>>| Elliptic {
         method,
         sweeps: 1500,
@@ -264,7 +264,7 @@ fn two_walls_converge() {
     });
     let first = start.at(0, 1).distance(start.at(0, 0));
     let wall = |edge| Wall { edge, spacing: vec![first], angle: FRAC_PI_2 };
-    let walls = vec![wall(Edge::FirstJ), wall(Edge::LastJ)];
+    let walls = vec![wall(GridSide::FirstJ), wall(GridSide::LastJ)];
     let options = Elliptic {
         method: Method::Sorenson,
         sweeps: 4000,
@@ -412,7 +412,11 @@ fn derivatives_flow_through_sweeps() {
             sweeps: 60,
             tolerance: 0.0,
             omega: 1.1,
-            walls: vec![Wall { edge: Edge::FirstJ, spacing: vec![h * 0.1], angle: T::from(1.4) }],
+            walls: vec![Wall {
+                edge: GridSide::FirstJ,
+                spacing: vec![h * 0.1],
+                angle: T::from(1.4),
+            }],
             on: None,
         };
         elliptic(&grid, &options).unwrap().grid

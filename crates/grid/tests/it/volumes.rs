@@ -111,7 +111,7 @@ fn volume_walls_are_met() {
         let low = 0.15 * (PI * x).sin() * (PI * y).sin();
         Vec3::of(x, y, low + (1.0 - low) * v[k])
     });
-    let wall = FaceWall { face: Face { axis: 2, last: false }, spacing: s };
+    let wall = FaceWall { face: GridFace { axis: 2, last: false }, spacing: s };
     let mut options = EllipticVolume {
         keep_spacing: true,
         sweeps: 1500,
@@ -133,7 +133,7 @@ fn volume_walls_are_met() {
         }
     }
     assert!(worst[0] < 1e-5 && worst[1] < 1e-5, "{worst:?}");
-    for face in Face::ALL {
+    for face in GridFace::ALL {
         assert_eq!(done.grid.face(face), start.face(face));
     }
     options.walls.clear();

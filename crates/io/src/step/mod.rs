@@ -15,7 +15,7 @@ pub(crate) use shape::check;
 
 /// What a file says besides its shapes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Header<'a> {
+pub struct StepHeader<'a> {
     /// The name of the model.
     pub title: &'a str,
     /// The unit of length in metres.
@@ -69,10 +69,10 @@ impl Protocol {
 /// # Errors
 /// A model without faces and wires; numbers that are not finite; degrees above 25, weights that are not positive,
 /// knots repeated more than the degree: readers drop such entities without a word.
-pub fn write(brep: &Brep, header: &Header<'_>) -> Result<Vec<u8>, WriteError> {
+pub fn write(brep: &Brep, header: &StepHeader<'_>) -> Result<Vec<u8>, WriteError> {
     check(brep, "step")?;
     let mut file = Part21::default();
-    let context = Context::new(&mut file, header, brep);
+    let context = RepresentationContext::new(&mut file, header, brep);
     let mut shapes = Shapes::new(brep, context.flat);
     let mut products = Vec::new();
     for part in &brep.parts {
@@ -87,7 +87,7 @@ pub fn write(brep: &Brep, header: &Header<'_>) -> Result<Vec<u8>, WriteError> {
 }
 
 /// What all representations refer to.
-struct Context {
+struct RepresentationContext {
     product: usize,
     definition: usize,
     /// The contexts of space and of parameters.
@@ -105,14 +105,14 @@ struct Product {
 }
 
 /// What a part consists of.
-pub(crate) struct Items {
+pub(crate) struct RepresentationItems {
     /// Solids, models of shells, or curves.
     pub items: Vec<usize>,
     pub kind: &'static str,
 }
 
-impl Context {
-    fn new(file: &mut Part21, header: &Header<'_>, brep: &Brep) -> Self {
+impl RepresentationContext {
+    fn new(file: &mut Part21, header: &StepHeader<'_>, brep: &Brep) -> Self {
         let [_, words, short, year] = header.protocol.words();
         let application = file.add(format!("APPLICATION_CONTEXT({})", text(words)));
         file.add(format!(
@@ -140,7 +140,13 @@ impl Context {
         Self { product, definition, space, flat, length, axis }
     }
 
-    fn product(&self, file: &mut Part21, name: &str, items: &Items, brep: &Brep) -> Product {
+    fn product(
+        &self,
+        file: &mut Part21,
+        name: &str,
+        items: &RepresentationItems,
+        brep: &Brep,
+    ) -> Product {
         let all: Vec<usize> = [self.axis].into_iter().chain(items.items.iter().copied()).collect();
         // Sets of curves have no axis.
         let all =

@@ -1,6 +1,6 @@
 //! The clear text of ISO 10303-21: entities by number, strings, reals.
 
-use super::Header;
+use super::StepHeader;
 use crate::text::append;
 
 /// The data section as it grows.
@@ -19,7 +19,7 @@ impl Part21 {
     }
 
     /// The file.
-    pub fn finished(self, header: &Header<'_>, error: f64, exact: bool) -> Vec<u8> {
+    pub fn finished(self, header: &StepHeader<'_>, error: f64, exact: bool) -> Vec<u8> {
         let [schema, ..] = header.protocol.words();
         let about = if exact {
             "surfaces exact but for rounding".to_string()

@@ -1,9 +1,9 @@
 //! Curves, surfaces, edges, faces, shells and their styles as entities.
 
-use super::Items;
+use super::RepresentationItems;
 use super::part21::{Part21, joined, list, real, reals, text};
 use crate::WriteError;
-use moldloft_brep::{Brep, Face, Part, Shell, SurfaceShape, Wire};
+use moldloft_brep::{Brep, BrepFace, Part, Shell, SurfaceShape, Wire};
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 use std::collections::BTreeMap;
@@ -201,7 +201,7 @@ impl<'a> Shapes<'a> {
     }
 
     /// The items of a part.
-    pub fn part(&mut self, file: &mut Part21, part: &Part) -> Items {
+    pub fn part(&mut self, file: &mut Part21, part: &Part) -> RepresentationItems {
         let (mut solids, mut shells) = (Vec::new(), Vec::new());
         for shell in &part.shells {
             let number = self.shell(file, shell);
@@ -218,14 +218,20 @@ impl<'a> Shapes<'a> {
             let kind = "MANIFOLD_SURFACE_SHAPE_REPRESENTATION";
             // Solids beside open shells of one part: their shells are written as such.
             let items = [model].into_iter().chain(solids).collect();
-            return Items { items, kind };
+            return RepresentationItems { items, kind };
         }
         if !solids.is_empty() {
-            return Items { items: solids, kind: "ADVANCED_BREP_SHAPE_REPRESENTATION" };
+            return RepresentationItems {
+                items: solids,
+                kind: "ADVANCED_BREP_SHAPE_REPRESENTATION",
+            };
         }
         let wires: Vec<usize> = part.wires.iter().map(|w| self.wire(file, w)).collect();
         let set = file.add(format!("GEOMETRIC_CURVE_SET({name},{})", list(&wires)));
-        Items { items: vec![set], kind: "GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION" }
+        RepresentationItems {
+            items: vec![set],
+            kind: "GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION",
+        }
     }
 
     fn wire(&mut self, file: &mut Part21, wire: &Wire) -> usize {
@@ -337,7 +343,7 @@ impl<'a> Shapes<'a> {
         })
     }
 
-    fn style(&mut self, file: &mut Part21, face: &Face, number: usize) {
+    fn style(&mut self, file: &mut Part21, face: &BrepFace, number: usize) {
         for layer in &face.layers {
             self.layers.entry(layer.clone()).or_default().push(number);
         }

@@ -1,6 +1,6 @@
 //! Structured patches and grids of points as VTK structured grids.
 
-use super::xml::{Appended, Field, NamedFile, PatchFields, array, point_data, strings};
+use super::xml::{Appended, NamedFile, PatchFields, VtkArray, array, point_data, strings};
 use crate::error::check_positions;
 use crate::plot3d::structured_patches;
 use crate::text::{put, word, xml};
@@ -15,7 +15,7 @@ pub(super) fn structured(
     size: [usize; 3],
     vertices: impl Iterator<Item = u32>,
     label: Option<(&str, &str)>,
-    fields: &[Field],
+    fields: &[VtkArray],
 ) -> Vec<u8> {
     let points = vertices.flat_map(|v| positions[v as usize].to_array());
     let mut data = Appended::default();
@@ -55,15 +55,15 @@ pub fn structured_files(
         let own = fields.iter().filter(|f| f.patch == name).flat_map(|f| &f.fields);
         let fit = own.filter(|f| f.values.len() == f.components * b.vertices.len());
         // Ours run along v first.
-        let turned = |f: &Field| {
+        let turned = |f: &VtkArray| {
             let one = |(i, j): (usize, usize)| {
                 let at = (i * b.nv + j) * f.components;
                 f.values[at..at + f.components].iter().copied()
             };
             let places = (0..b.nv).flat_map(|j| (0..b.nu).map(move |i| (i, j)));
-            Field { values: places.flat_map(one).collect(), ..f.clone() }
+            VtkArray { values: places.flat_map(one).collect(), ..f.clone() }
         };
-        let own: Vec<Field> = fit.map(turned).collect();
+        let own: Vec<VtkArray> = fit.map(turned).collect();
         let size = [b.nu, b.nv, 1];
         let bytes = structured(mesh.positions(), size, vertices, Some(("patch_name", name)), &own);
         (name.to_string(), bytes)
@@ -91,7 +91,10 @@ pub fn grid_files(blocks: &[StructuredGrid], stem: &str) -> Result<Vec<NamedFile
 ///
 /// # Errors
 /// Coordinates that are not finite; fields that are not of the grid.
-pub fn grid_with_fields(block: &StructuredGrid, fields: &[Field]) -> Result<Vec<u8>, WriteError> {
+pub fn grid_with_fields(
+    block: &StructuredGrid,
+    fields: &[VtkArray],
+) -> Result<Vec<u8>, WriteError> {
     StructuredGrid::check(std::slice::from_ref(block), f64::MAX)?;
     if fields.iter().any(|f| f.values.len() != f.components * block.count()) {
         return Err(WriteError::CannotHold { format: "VTK", what: "a field of another size" });
@@ -99,7 +102,7 @@ pub fn grid_with_fields(block: &StructuredGrid, fields: &[Field]) -> Result<Vec<
     Ok(of_points(block, None, fields))
 }
 
-fn of_points(block: &StructuredGrid, label: Option<(&str, &str)>, fields: &[Field]) -> Vec<u8> {
+fn of_points(block: &StructuredGrid, label: Option<(&str, &str)>, fields: &[VtkArray]) -> Vec<u8> {
     let points: Vec<Vec3> = block.points().collect();
     structured(&points, block.size, 0..points.len() as u32, label, fields)
 }

@@ -1,6 +1,6 @@
 //! Panels as VTK polygons, with points, polylines and the fields of patches.
 
-use super::xml::{Appended, Field, PatchFields, array, point_data, strings};
+use super::xml::{Appended, PatchFields, VtkArray, array, point_data, strings};
 use crate::error::check_positions;
 use crate::text::xml;
 use crate::{LinesAndPoints, WriteError};
@@ -9,9 +9,9 @@ use moldloft_num::Vec3;
 
 /// The fields of patches as fields of the mesh's vertices. A vertex of several patches has the mean
 /// of their numbers; one of none that has the field, NaN.
-fn by_vertex(mesh: &Mesh, fields: &[PatchFields]) -> Vec<Field> {
+fn by_vertex(mesh: &Mesh, fields: &[PatchFields]) -> Vec<VtkArray> {
     let count = mesh.positions().len();
-    let mut out: Vec<(Field, Vec<u32>)> = Vec::new();
+    let mut out: Vec<(VtkArray, Vec<u32>)> = Vec::new();
     for own in fields {
         let patch = mesh.patches().iter().find(|p| p.info.name == own.patch);
         let Some(block) = patch.and_then(|p| p.block.as_ref()) else { continue };
@@ -23,7 +23,7 @@ fn by_vertex(mesh: &Mesh, fields: &[PatchFields]) -> Vec<Field> {
             let at = out.iter().position(|(f, _)| f.name == field.name && f.components == parts);
             let at = at.unwrap_or_else(|| {
                 let (name, values) = (field.name.clone(), vec![0.0; parts * count]);
-                out.push((Field { name, components: parts, values }, vec![0; count]));
+                out.push((VtkArray { name, components: parts, values }, vec![0; count]));
                 out.len() - 1
             });
             let (sum, times) = &mut out[at];
@@ -44,7 +44,7 @@ fn by_vertex(mesh: &Mesh, fields: &[PatchFields]) -> Vec<Field> {
             }
         }
     }
-    let mean = |(mut field, times): (Field, Vec<u32>)| {
+    let mean = |(mut field, times): (VtkArray, Vec<u32>)| {
         for (values, &n) in field.values.chunks_mut(field.components).zip(&times) {
             values.iter_mut().for_each(|x| *x = if n == 0 { f64::NAN } else { *x / f64::from(n) });
         }

@@ -12,7 +12,7 @@ mod xml;
 pub use grid::{grid_files, grid_with_fields, structured_files};
 pub use mesh::{polydata, polydata_with};
 pub use volume::{block_files, unstructured};
-pub use xml::{Field, NamedFile, PatchFields};
+pub use xml::{NamedFile, PatchFields, VtkArray};
 
 #[cfg(test)]
 mod tests;

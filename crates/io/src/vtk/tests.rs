@@ -54,8 +54,11 @@ fn fields_of_patches_are_point_arrays() {
     b.add_block(PatchInfo::new("aft"), 2, 3, (3..9).collect(), true).unwrap();
     let positions = (0..9).map(|k| Vec3::of((k / 3) as f64, (k % 3) as f64, 0.0)).collect();
     let mesh = Mesh::new(b.build().into(), positions).unwrap();
-    let field =
-        |name: &str, components, values: Vec<f64>| Field { name: name.into(), components, values };
+    let field = |name: &str, components, values: Vec<f64>| VtkArray {
+        name: name.into(),
+        components,
+        values,
+    };
     let of = |patch: &str, fields| PatchFields { patch: patch.into(), fields };
     let fore = field("bend", 1, (0..6).map(f64::from).collect());
     let aft = field("bend", 1, vec![13.0, f64::NAN, 15.0, 1.0, 1.0, 1.0]);

@@ -71,7 +71,7 @@ pub(super) fn strings<'a>(name: &str, values: impl ExactSizeIterator<Item = &'a 
 
 /// Numbers at points.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct VtkArray {
     /// The name of the array.
     pub name: String,
     /// Numbers per point.
@@ -86,7 +86,7 @@ pub struct PatchFields {
     /// The patch's name.
     pub patch: String,
     /// Its fields.
-    pub fields: Vec<Field>,
+    pub fields: Vec<VtkArray>,
 }
 
 /// The `PointData` element of arrays already added.

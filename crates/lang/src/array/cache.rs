@@ -1,8 +1,8 @@
 //! Runs a program: expressions by the recipes of their earlier executions.
 
-use crate::array::lanes::{Lanes, not_finite};
+use crate::array::lanes::{TapeArray, not_finite};
 use crate::array::lower::TapeBuilder;
-use crate::array::recipe::{Course, Entry, Key, Kind, Read, Recipe, Recorder, Slot};
+use crate::array::recipe::{Course, Entry, ExprKey, LeafKind, Read, Recipe, Recorder, Slot};
 use crate::functions::elementary::{self, Elementary};
 use crate::run::interpreter::{DEEPEST, Interpreter};
 use crate::source::module::Module;
@@ -30,7 +30,7 @@ enum RecipeOutcome<T: Real> {
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// Executes the expression by its recipe, if it has one that fits.
-    pub fn by_recipe(&mut self, m: &Module, key: Key) -> Course<T> {
+    pub fn by_recipe(&mut self, m: &Module, key: ExprKey) -> Course<T> {
         if self.arrays.plain_operators {
             return Course::Tree { read: Vec::new(), record: None };
         }
@@ -74,9 +74,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// Keeps what was recorded, or gives the expression up.
     pub fn keep_recipe(
         &mut self,
-        key: Key,
+        key: ExprKey,
         misfits: u8,
-        lanes: Option<Lanes>,
+        lanes: Option<TapeArray>,
         work: &mut TapeBuilder<T>,
     ) {
         let slot = match (work.recorder.take(), lanes) {
@@ -108,7 +108,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.arrays.recipes.insert(key, slot);
     }
 
-    fn follow(&mut self, m: &Module, key: Key, recipe: &mut Recipe<T>) -> RecipeOutcome<T> {
+    fn follow(&mut self, m: &Module, key: ExprKey, recipe: &mut Recipe<T>) -> RecipeOutcome<T> {
         let Recipe { entries, functions, exponents, depth, tape, calls, lanes, values, .. } =
             recipe;
         let base = self.usage.depth;
@@ -141,7 +141,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         }
                     };
                     match value {
-                        Ok(value) if Kind::of(&value) == Some(kind) => value,
+                        Ok(value) if LeafKind::of(&value) == Some(kind) => value,
                         other => {
                             let mut all = so_far(values);
                             let found = match other {
@@ -217,8 +217,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     pub fn filled_in_place(
         &mut self,
         m: &Module,
-        key: Key,
-        lanes: &Lanes,
+        key: ExprKey,
+        lanes: &TapeArray,
         fill: impl FnOnce(&mut [Vec<T>]) -> bool,
     ) -> Option<Value<T>> {
         let (of, target) = self.arrays.assigning?;

@@ -9,12 +9,12 @@ use std::sync::Arc;
 
 /// A row or grid that a tape computes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lanes {
+pub(crate) struct TapeArray {
     pub shape: ArrayShape,
     pub(super) what: What,
 }
 
-impl Lanes {
+impl TapeArray {
     /// The results of a tape that make up its elements.
     pub fn roots(&self) -> SmallVec<[Src; 3]> {
         match self.what {

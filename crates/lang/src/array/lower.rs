@@ -4,8 +4,8 @@
 //! needed. Kinds and shapes are compared when an operator is met, so faults come in the order of the
 //! text and before any element is touched; what has no array in it is computed at once.
 
-use crate::array::lanes::{Calls, Lanes, What, not_finite};
-use crate::array::recipe::{Course, Key, Kind, Recorder};
+use crate::array::lanes::{Calls, TapeArray, What, not_finite};
+use crate::array::recipe::{Course, ExprKey, LeafKind, Recorder};
 use crate::functions::elementary;
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
@@ -16,9 +16,9 @@ use crate::value::variables::{self, shape_text};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_elementwise::{Cell, Code, Origin, Src, Tape};
 use moldloft_num::Real;
-use moldloft_registry::{ArrayShape, Body, Scalar, Value};
+use moldloft_registry::{ArrayShape, Implementation, Scalar, Value};
 use moldloft_syntax::sdl::{
-    Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, List, Step, Symbol, UnaryOp,
+    Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, NodeList, Step, Symbol, UnaryOp,
 };
 use smallvec::SmallVec;
 use std::collections::VecDeque;
@@ -27,7 +27,7 @@ use std::collections::VecDeque;
 #[derive(Clone, Debug)]
 pub(crate) enum LoweredOperand<T: Real> {
     Value(Value<T>, Cell),
-    Lanes(Lanes),
+    Lanes(TapeArray),
 }
 
 type Operated<T> = Result<LoweredOperand<T>, Diagnostic>;
@@ -63,7 +63,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         id: ExprId,
         tree: impl Fn(&mut Self, &mut TapeBuilder<T>) -> Operated<T>,
     ) -> Result<Value<T>, Diagnostic> {
-        let key = Key::of(m, id);
+        let key = ExprKey::of(m, id);
         let (read, record) = match self.by_recipe(m, key) {
             Course::Done(value) => return value,
             Course::Tree { read, record } => (read, record),
@@ -110,7 +110,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The elements of rows of a tape.
     fn computed(
         &mut self,
-        lanes: &Lanes,
+        lanes: &TapeArray,
         work: &mut TapeBuilder<T>,
     ) -> Result<Value<T>, Diagnostic> {
         let (roots, count) = (lanes.roots(), lanes.shape.count());
@@ -148,7 +148,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 (if read { self.read(value, m.program[id].span)? } else { value }, object)
             }
         };
-        let kind = Kind::of(&value).filter(|_| !object);
+        let kind = LeafKind::of(&value).filter(|_| !object);
         let depth = self.usage.depth;
         let cell = work.noted(|r| r.leaf(m, (id, read), depth, kind));
         Ok(LoweredOperand::Value(value, cell))
@@ -251,15 +251,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let operand = self.operated(m, base, work)?;
                 let c = axis(m.program.name(name)).expect("checked by the caller");
                 match operand {
-                    LoweredOperand::Lanes(Lanes { shape, what: What::Vector(v) }) => {
-                        Ok(LoweredOperand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
+                    LoweredOperand::Lanes(TapeArray { shape, what: What::Vector(v) }) => {
+                        Ok(LoweredOperand::Lanes(TapeArray { shape, what: What::Number(v[c]) }))
                     }
                     LoweredOperand::Value(value @ Value::Vectors(_), cell)
                         if !self.arrays.plain_operators =>
                     {
                         match work.lanes(&value, cell, true) {
-                            Some(Lanes { shape, what: What::Vector(v) }) => {
-                                Ok(LoweredOperand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
+                            Some(TapeArray { shape, what: What::Vector(v) }) => {
+                                Ok(LoweredOperand::Lanes(TapeArray {
+                                    shape,
+                                    what: What::Number(v[c]),
+                                }))
                             }
                             _ => {
                                 work.give_up();
@@ -332,7 +335,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn chained(
         &mut self,
         m: &Module,
-        items: List<ChainItem>,
+        items: NodeList<ChainItem>,
         work: &mut TapeBuilder<T>,
     ) -> Operated<T> {
         let mut operands = Vec::new();
@@ -387,7 +390,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn braces(
         &mut self,
         m: &Module,
-        items: List<ExprId>,
+        items: NodeList<ExprId>,
         work: &mut TapeBuilder<T>,
     ) -> Operated<T> {
         let mut values = Vec::with_capacity(items.len());
@@ -400,7 +403,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             });
         }
         if values.len() == 3 && !self.arrays.plain_operators && !work.tape.is_long() {
-            let lanes: Vec<Lanes> = values
+            let lanes: Vec<TapeArray> = values
                 .iter()
                 .filter_map(|value| match value {
                     LoweredOperand::Lanes(lanes) => Some(*lanes),
@@ -408,14 +411,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 })
                 .collect();
             if let [
-                Lanes { shape, what: What::Number(x) },
-                Lanes { shape: s, what: What::Number(y) },
-                Lanes { shape: t, what: What::Number(z) },
+                TapeArray { shape, what: What::Number(x) },
+                TapeArray { shape: s, what: What::Number(y) },
+                TapeArray { shape: t, what: What::Number(z) },
             ] = lanes[..]
                 && shape == s
                 && shape == t
             {
-                return Ok(LoweredOperand::Lanes(Lanes { shape, what: What::Vector([x, y, z]) }));
+                return Ok(LoweredOperand::Lanes(TapeArray {
+                    shape,
+                    what: What::Vector([x, y, z]),
+                }));
             }
         }
         let cells: Vec<Cell> = values.iter().map(LoweredOperand::cell).collect();
@@ -536,14 +542,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &self,
         m: &Module,
         callee: ExprId,
-        args: List<Arg>,
+        args: NodeList<Arg>,
     ) -> Option<(&'static str, elementary::Elementary<T>)> {
         if args.len() > 2 {
             return None;
         }
         let symbol = m.program.as_name(callee)?;
         let row = m.rows[symbol.0 as usize].as_ref()?;
-        if !matches!(row.body, Body::Native { .. }) {
+        if !matches!(row.body, Implementation::Native { .. }) {
             return None;
         }
         let (name, function) = elementary::elementary::<T>(&row.name)?;
@@ -597,7 +603,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 };
                 debug_assert_eq!(work.tape.checks(), work.calls.len() + 1);
                 work.calls.push((span, name));
-                return Ok(LoweredOperand::Lanes(Lanes {
+                return Ok(LoweredOperand::Lanes(TapeArray {
                     shape: shapes[0],
                     what: What::Number(src),
                 }));
@@ -740,16 +746,16 @@ impl<T: Real> TapeBuilder<T> {
     }
 
     /// An array as rows of the tape.
-    fn lanes(&mut self, value: &Value<T>, cell: Cell, wanted: bool) -> Option<Lanes> {
+    fn lanes(&mut self, value: &Value<T>, cell: Cell, wanted: bool) -> Option<TapeArray> {
         if !wanted || self.tape.is_long() {
             return None;
         }
         Some(match value {
             Value::Numbers(a) => {
-                Lanes { shape: a.shape, what: What::Number(self.tape.numbers(a, cell)) }
+                TapeArray { shape: a.shape, what: What::Number(self.tape.numbers(a, cell)) }
             }
             Value::Vectors(a) => {
-                Lanes { shape: a.shape, what: What::Vector(self.tape.vectors(a, cell)) }
+                TapeArray { shape: a.shape, what: What::Vector(self.tape.vectors(a, cell)) }
             }
             _ => return None,
         })
@@ -785,15 +791,15 @@ impl<T: Real> TapeBuilder<T> {
         }
     }
 
-    fn mapped(&mut self, lanes: Lanes, code: Code) -> Lanes {
+    fn mapped(&mut self, lanes: TapeArray, code: Code) -> TapeArray {
         let what = match lanes.what {
             What::Number(a) => What::Number(self.tape.op1(code, a)),
             What::Vector(v) => What::Vector(v.map(|a| self.tape.op1(code, a))),
         };
-        Lanes { what, ..lanes }
+        TapeArray { what, ..lanes }
     }
 
-    fn magnitude(&mut self, lanes: Lanes) -> Lanes {
+    fn magnitude(&mut self, lanes: TapeArray) -> TapeArray {
         let what = match lanes.what {
             What::Number(a) => What::Number(self.tape.op1(Code::Abs, a)),
             What::Vector(v) => {
@@ -801,7 +807,7 @@ impl<T: Real> TapeBuilder<T> {
                 What::Number(self.tape.op1(Code::Sqrt, square))
             }
         };
-        Lanes { what, ..lanes }
+        TapeArray { what, ..lanes }
     }
 
     fn dot(&mut self, a: [Src; 3], b: [Src; 3]) -> Src {
@@ -813,7 +819,7 @@ impl<T: Real> TapeBuilder<T> {
 
     /// `a op b` where at least one is an array and the shapes agree; `None` where the operator is
     /// not defined.
-    fn binary(&mut self, op: BinaryOp, a: Loose<T>, b: Loose<T>) -> Option<Lanes> {
+    fn binary(&mut self, op: BinaryOp, a: Loose<T>, b: Loose<T>) -> Option<TapeArray> {
         use Loosely::{Number, Vector};
         let shape = a.0.or(b.0)?;
         let code = match op {
@@ -880,6 +886,6 @@ impl<T: Real> TapeBuilder<T> {
             }
             _ => return None,
         };
-        Some(Lanes { shape, what })
+        Some(TapeArray { shape, what })
     }
 }

@@ -1,6 +1,6 @@
 //! What a run keeps for its array expressions: memory, tapes, recipes.
 
-use crate::array::recipe::{Key, Slots};
+use crate::array::recipe::{ExprKey, Slots};
 use moldloft_elementwise::Tape;
 use moldloft_num::Real;
 use moldloft_registry::Value;
@@ -16,7 +16,7 @@ pub(crate) struct ArrayMachine<T: Real> {
     /// What is known of expressions that are executed again.
     pub recipes: Slots<T>,
     /// The expression that is assigned to a whole variable, and its target.
-    pub assigning: Option<(Key, ExprId)>,
+    pub assigning: Option<(ExprKey, ExprId)>,
     /// True to apply operators one after the other.
     pub plain_operators: bool,
 }

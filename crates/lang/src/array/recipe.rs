@@ -9,7 +9,7 @@
 //! (another shape, another exponent, a fault) sends the leaves that were read already through the tree, so
 //! that a recipe changes no value and no message, and nothing is read twice.
 
-use crate::array::lanes::{Calls, Lanes};
+use crate::array::lanes::{Calls, TapeArray};
 use crate::functions::elementary::Elementary;
 use crate::source::module::Module;
 use moldloft_diag::Diagnostic;
@@ -36,19 +36,19 @@ pub(crate) enum Slot<T: Real> {
 }
 
 /// Slots by expression.
-pub(crate) type Slots<T> = HashMap<Key, Slot<T>, BuildHasherDefault<KeyHasher>>;
+pub(crate) type Slots<T> = HashMap<ExprKey, Slot<T>, BuildHasherDefault<KeyHasher>>;
 
 /// An expression of all files of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Key(u64);
+pub(crate) struct ExprKey(u64);
 
-impl Key {
+impl ExprKey {
     pub fn of(m: &Module, expr: ExprId) -> Self {
         Self(u64::from(m.program.file().0) << 32 | u64::from(expr.0))
     }
 }
 
-impl Hash for Key {
+impl Hash for ExprKey {
     fn hash<H: Hasher>(&self, hasher: &mut H) {
         hasher.write_u64(self.0);
     }
@@ -73,7 +73,7 @@ impl Hasher for KeyHasher {
 
 /// What a leaf must be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum LeafKind {
     Number,
     Vector,
     Point,
@@ -81,15 +81,15 @@ pub(crate) enum Kind {
     Vectors(ArrayShape),
 }
 
-impl Kind {
+impl LeafKind {
     /// `None` of what no tape takes.
     pub fn of<T: Real>(value: &Value<T>) -> Option<Self> {
         Some(match value {
-            Value::Number(_) => Kind::Number,
-            Value::Vector(_) => Kind::Vector,
-            Value::Point(_) => Kind::Point,
-            Value::Numbers(a) => Kind::Numbers(a.shape),
-            Value::Vectors(a) => Kind::Vectors(a.shape),
+            Value::Number(_) => LeafKind::Number,
+            Value::Vector(_) => LeafKind::Vector,
+            Value::Point(_) => LeafKind::Point,
+            Value::Numbers(a) => LeafKind::Numbers(a.shape),
+            Value::Vectors(a) => LeafKind::Vectors(a.shape),
             _ => return None,
         })
     }
@@ -104,7 +104,7 @@ pub(super) enum Entry<T> {
     Leaf {
         expr: ExprId,
         depth: u32,
-        kind: Kind,
+        kind: LeafKind,
         read: bool,
     },
     /// A variable that another leaf is, too.
@@ -176,7 +176,7 @@ impl<T: Real> Recorder<T> {
         m: &Module,
         (expr, read): (ExprId, bool),
         depth: u32,
-        kind: Option<Kind>,
+        kind: Option<LeafKind>,
     ) -> Cell {
         let Some(kind) = kind else {
             self.given_up = true;
@@ -274,7 +274,7 @@ pub(crate) struct Recipe<T: Real> {
     pub(super) depth: u32,
     pub(super) tape: Tape<T>,
     pub(super) calls: Calls,
-    pub(super) lanes: Lanes,
+    pub(super) lanes: TapeArray,
     pub(super) misfits: u8,
     /// Memory for the values of the entries.
     pub(super) values: Vec<Value<T>>,

@@ -2,7 +2,7 @@
 //! files of the run, how fine it is asked for.
 
 use crate::functions::files::{OpenMode, STANDARD_OUTPUT};
-use crate::functions::format::{self, Item};
+use crate::functions::format::{self, FormatArgument};
 use crate::functions::grid_files::{GridFormat, RowFormat};
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
@@ -14,7 +14,7 @@ use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Row, Scalar, Value, Vectors};
 use moldloft_syntax::number;
-use moldloft_syntax::sdl::{Arg, ExprId, List, Symbol, Type};
+use moldloft_syntax::sdl::{Arg, ExprId, NodeList, Symbol, Type};
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -276,7 +276,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &mut self,
         m: &Module,
         symbol: Symbol,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         span: Span,
     ) -> Option<Evaluated<T>> {
         let name = m.program.name(symbol);
@@ -288,7 +288,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &mut self,
         m: &Module,
         builtin: &Builtin,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         span: Span,
     ) -> Evaluated<T> {
         if let Some(named) = m.program[args].iter().find_map(|a| a.name) {
@@ -654,11 +654,11 @@ fn unwritable<T: Real>(value: &Value<T>) -> Diagnostic {
 }
 
 /// The numbers and texts of a value one by one.
-fn flatten<T: Real>(value: &Value<T>, out: &mut Vec<Item>) -> Result<(), Diagnostic> {
-    let number = |x: T| Item::Number(x.re() + 0.0);
+fn flatten<T: Real>(value: &Value<T>, out: &mut Vec<FormatArgument>) -> Result<(), Diagnostic> {
+    let number = |x: T| FormatArgument::Number(x.re() + 0.0);
     match value {
         Value::Number(x) => out.push(number(*x)),
-        Value::Text(text) => out.push(Item::Text(text.to_string())),
+        Value::Text(text) => out.push(FormatArgument::Text(text.to_string())),
         Value::Vector(v) => out.extend(v.to_array().map(number)),
         Value::Point(p) => out.extend(p.xyz.to_array().map(number)),
         Value::Numbers(a) => out.extend(a.items.iter().map(|&x| number(x))),

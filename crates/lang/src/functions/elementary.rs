@@ -4,13 +4,14 @@ use crate::value::variables::Called as _;
 use moldloft_num::Real;
 use moldloft_registry::export::field_id;
 use moldloft_registry::{
-    Array, ArrayShape, Body, CallError, Class, Context, DefaultValue, Field, Row, Unit, Value,
+    Array, ArrayShape, CallError, Class, Context, DefaultValue, FieldSpec, Implementation, Row,
+    Unit, Value,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
 
-const fn argument(name: &'static str, help: &'static str) -> Field {
-    Field {
+const fn argument(name: &'static str, help: &'static str) -> FieldSpec {
+    FieldSpec {
         name,
         help,
         class: Class::Any,
@@ -178,10 +179,13 @@ fn along_axis<T: Real>(
 
 macro_rules! row {
     ($name:literal, $doc:literal, $fields:expr, $example:literal, $body:ident) => {
-        Row::new($name, Body::Native { plain: $body::<f64>, dual: $body::<moldloft_num::Dual4> })
-            .doc($doc)
-            .fields($fields)
-            .example($example)
+        Row::new(
+            $name,
+            Implementation::Native { plain: $body::<f64>, dual: $body::<moldloft_num::Dual4> },
+        )
+        .doc($doc)
+        .fields($fields)
+        .example($example)
     };
 }
 
@@ -194,7 +198,7 @@ pub(crate) enum Elementary<T> {
 
 /// True for functions that take no longer than finding their remembered values.
 pub(crate) fn is_quick(row: &Row) -> bool {
-    row.cheap && matches!(row.body, Body::Native { .. })
+    row.cheap && matches!(row.body, Implementation::Native { .. })
 }
 
 /// The value of an elementary function.
@@ -291,17 +295,17 @@ elementary! {
     }
 }
 
-fn optional(name: &'static str) -> Field {
-    Field { default: Some(DefaultValue::Unset), ..argument(name, "Another number.") }
+fn optional(name: &'static str) -> FieldSpec {
+    FieldSpec { default: Some(DefaultValue::Unset), ..argument(name, "Another number.") }
 }
 
-fn several() -> Vec<Field> {
+fn several() -> Vec<FieldSpec> {
     vec![
         argument("a", "A number, vector or row of numbers."),
         optional("b"),
         optional("c"),
         optional("d"),
-        Field {
+        FieldSpec {
             default: Some(DefaultValue::Unset),
             ..argument("axis", "1 or 2: reduces numbers [m,n] along that index to a row.")
         },
@@ -382,7 +386,7 @@ pub fn rows() -> Vec<Row> {
         "The mean of the numbers of an array.",
         vec![
             argument("a", "A row or grid of numbers."),
-            Field {
+            FieldSpec {
                 default: Some(DefaultValue::Unset),
                 ..argument("axis", "1 or 2: the means along that index, a row.")
             },

@@ -34,7 +34,7 @@ pub fn predeclared(name: &str) -> Option<f64> {
 
 /// What a run has opened and written.
 #[derive(Debug, Default)]
-pub struct Files {
+pub struct RunFiles {
     open: BTreeMap<u32, OpenFile>,
     written: IndexMap<String, Vec<u8>>,
     /// Files that the host makes CGNS of, and the names of their blocks.
@@ -103,7 +103,7 @@ fn inside(path: &str) -> Result<String, Diagnostic> {
     Ok(parts.join("/"))
 }
 
-impl Files {
+impl RunFiles {
     /// Opens a file; `unit` when the program chose one.
     pub fn open(
         &mut self,

@@ -4,7 +4,7 @@ use moldloft_diag::Diagnostic;
 
 /// What a format is given.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Item {
+pub(crate) enum FormatArgument {
     Number(f64),
     Text(String),
 }
@@ -16,7 +16,7 @@ const WIDEST: usize = 1_000;
 ///
 /// # Errors
 /// For directives that do not exist, or items that do not fit them.
-pub(crate) fn format(pattern: &str, items: &[Item]) -> Result<String, Diagnostic> {
+pub(crate) fn format(pattern: &str, items: &[FormatArgument]) -> Result<String, Diagnostic> {
     let pieces = parse(pattern)?;
     let mut out = String::new();
     let mut items = items.iter().peekable();
@@ -127,7 +127,7 @@ fn parse(pattern: &str) -> Result<Vec<FormatPiece>, Diagnostic> {
 }
 
 impl Directive {
-    fn spell(self, item: &Item) -> Result<String, Diagnostic> {
+    fn spell(self, item: &FormatArgument) -> Result<String, Diagnostic> {
         let wrong = |expected: &str, found: String| {
             Diagnostic::error("wrong-format", format!("%{} takes {expected}", self.letter))
                 .expected(expected.to_string())
@@ -135,25 +135,27 @@ impl Directive {
         };
         let digits = self.precision.unwrap_or(6);
         let body = match (self.letter, item) {
-            ('s', Item::Text(text)) => match self.precision {
+            ('s', FormatArgument::Text(text)) => match self.precision {
                 Some(p) => text.chars().take(p).collect(),
                 None => text.clone(),
             },
-            ('s', Item::Number(x)) => moldloft_syntax::number::plain(*x),
-            (_, Item::Text(text)) => return Err(wrong("a number", format!("the text \"{text}\""))),
-            ('d' | 'i', Item::Number(x)) => {
+            ('s', FormatArgument::Number(x)) => moldloft_syntax::number::plain(*x),
+            (_, FormatArgument::Text(text)) => {
+                return Err(wrong("a number", format!("the text \"{text}\"")));
+            }
+            ('d' | 'i', FormatArgument::Number(x)) => {
                 if x.fract() != 0.0 || x.abs() > 9e15 {
                     return Err(wrong("a whole number", x.to_string()));
                 }
                 format!("{x:.0}")
             }
-            ('f', Item::Number(x)) => format!("{x:.digits$}"),
-            ('e' | 'E', Item::Number(x)) => exponential(*x, digits),
-            (_, Item::Number(x)) => general(*x, digits),
+            ('f', FormatArgument::Number(x)) => format!("{x:.digits$}"),
+            ('e' | 'E', FormatArgument::Number(x)) => exponential(*x, digits),
+            (_, FormatArgument::Number(x)) => general(*x, digits),
         };
         let body = match (self.letter, item) {
             ('s', _) => body,
-            (letter, Item::Number(x)) => {
+            (letter, FormatArgument::Number(x)) => {
                 // A zero that rounding made negative is a zero.
                 let zero = !body.bytes().any(|b| (b'1'..=b'9').contains(&b)) && x.is_finite();
                 let body = if zero { body.trim_start_matches('-').to_string() } else { body };
@@ -228,7 +230,7 @@ mod tests {
     use super::*;
 
     fn one(pattern: &str, x: f64) -> String {
-        format(pattern, &[Item::Number(x)]).unwrap()
+        format(pattern, &[FormatArgument::Number(x)]).unwrap()
     }
 
     #[test]
@@ -246,24 +248,31 @@ mod tests {
         assert_eq!(one("%.1f", -0.04), "0.0");
         assert_eq!(one("%s %%", 0.1), "0.1 %");
         assert_eq!(one("%G", 1e300), "1E+300");
-        let items = [Item::Number(1.0), Item::Number(2.0), Item::Number(3.0)];
+        let items =
+            [FormatArgument::Number(1.0), FormatArgument::Number(2.0), FormatArgument::Number(3.0)];
         assert_eq!(format("%g ", &items).unwrap(), "1 2 3 ");
         assert_eq!(format("%g, %g; ", &items).unwrap(), "1, 2; 3, ");
         assert_eq!(
-            format("%5s|%-5.2s|", &[Item::Text("ab".into()), Item::Text("abc".into())]).unwrap(),
+            format(
+                "%5s|%-5.2s|",
+                &[FormatArgument::Text("ab".into()), FormatArgument::Text("abc".into())]
+            )
+            .unwrap(),
             "   ab|ab   |"
         );
     }
 
     #[test]
     fn faults() {
-        let id = |pattern: &str, items: &[Item]| format(pattern, items).unwrap_err().id.to_string();
-        assert_eq!(id("%q", &[Item::Number(1.0)]), "wrong-format");
+        let id = |pattern: &str, items: &[FormatArgument]| {
+            format(pattern, items).unwrap_err().id.to_string()
+        };
+        assert_eq!(id("%q", &[FormatArgument::Number(1.0)]), "wrong-format");
         assert_eq!(id("%", &[]), "wrong-format");
-        assert_eq!(id("%d", &[Item::Number(1.5)]), "wrong-format");
-        assert_eq!(id("%f", &[Item::Text("x".into())]), "wrong-format");
-        assert_eq!(id("%9999f", &[Item::Number(1.0)]), "wrong-format");
+        assert_eq!(id("%d", &[FormatArgument::Number(1.5)]), "wrong-format");
+        assert_eq!(id("%f", &[FormatArgument::Text("x".into())]), "wrong-format");
+        assert_eq!(id("%9999f", &[FormatArgument::Number(1.0)]), "wrong-format");
         assert_eq!(id("%f", &[]), "missing-argument");
-        assert_eq!(id("no", &[Item::Number(1.0)]), "too-many-arguments");
+        assert_eq!(id("no", &[FormatArgument::Number(1.0)]), "too-many-arguments");
     }
 }

@@ -2,7 +2,7 @@
 
 use moldloft_diag::Span;
 use moldloft_registry::Class;
-use moldloft_syntax::model_file::{Field as Written, FieldKind, NumberId};
+use moldloft_syntax::model_file::{EntryField as Written, FieldKind, NumberId};
 
 /// A part of a head: its name, its numbers and where they stand.
 pub(super) type Part = (&'static str, Vec<NumberId>, Span);

@@ -3,11 +3,11 @@
 use crate::model_file::names::{bare, words};
 use crate::model_file::{Outcome, Producer, Sorted, Trouble, wrong};
 use crate::source::env::Param;
-use crate::source::scope::{Binding, Bound};
+use crate::source::scope::{Binding, ScopedBinding};
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
-use moldloft_syntax::model_file::{Field as Written, FieldKind, ObjectEntry as Line};
+use moldloft_syntax::model_file::{EntryField as Written, FieldKind, ObjectEntry as Line};
 
 impl<T: Scalar> Producer<'_, '_, T> {
     /// The value of a `Variable` or `Formula`.
@@ -112,7 +112,8 @@ impl<T: Scalar> Producer<'_, '_, T> {
                 ),
                 _ => continue,
             };
-            self.env.scope.globals[name.0 as usize] = Some(Bound { span: Span::UNKNOWN, what });
+            self.env.scope.globals[name.0 as usize] =
+                Some(ScopedBinding { span: Span::UNKNOWN, what });
         }
         let mut told = Vec::new();
         let loader = crate::source::module::Loader {

@@ -31,10 +31,11 @@ use moldloft_diag::{Diagnostic, FileId, Sources, Span};
 use moldloft_model::{Applied, Declaration, Extent, Object, Run};
 use moldloft_num::trace::Key;
 use moldloft_registry::{
-    Attributes, CallError, Class, Field, Given, Registry, Row, Scalar, Unit, Value, bind_arguments,
+    Attributes, CallError, Class, FieldSpec, Given, Registry, Row, Scalar, Unit, Value,
+    bind_arguments,
 };
 use moldloft_syntax::model_file::{
-    self, Field as Written, FieldKind, Fields, ModelFile, NumberId, ObjectEntry as Line,
+    self, EntryField as Written, FieldKind, Fields, ModelFile, NumberId, ObjectEntry as Line,
 };
 use names::{degrees, is_layer, is_real, our_word, system_name, words};
 use std::collections::{HashMap, HashSet};
@@ -755,7 +756,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
 
     /// The number of a variable or formula.
     /// The value of a column.
-    fn value(&mut self, field: &Field, written: &Written) -> Result<Value<T>, Trouble> {
+    fn value(&mut self, field: &FieldSpec, written: &Written) -> Result<Value<T>, Trouble> {
         if !field.many {
             return self.single(field, written);
         }
@@ -771,7 +772,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         }
     }
 
-    fn list(&mut self, field: &Field, items: Fields) -> Result<Value<T>, Trouble> {
+    fn list(&mut self, field: &FieldSpec, items: Fields) -> Result<Value<T>, Trouble> {
         let source = self.source;
         let mut values = Vec::with_capacity(items.len());
         let mut trouble = None;
@@ -785,7 +786,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         trouble.map_or_else(|| Ok(Value::list(values)), Err)
     }
 
-    fn single(&mut self, field: &Field, written: &Written) -> Result<Value<T>, Trouble> {
+    fn single(&mut self, field: &FieldSpec, written: &Written) -> Result<Value<T>, Trouble> {
         let text = self.source.written(written);
         let unexpected = |id, message: String| {
             Diagnostic::error(id, message)
@@ -849,7 +850,12 @@ impl<T: Scalar> Producer<'_, '_, T> {
         }
     }
 
-    fn word(&mut self, field: &Field, written: &Written, text: &str) -> Result<Value<T>, Trouble> {
+    fn word(
+        &mut self,
+        field: &FieldSpec,
+        written: &Written,
+        text: &str,
+    ) -> Result<Value<T>, Trouble> {
         if field.class == Class::Text {
             return Ok(Value::text(text));
         }

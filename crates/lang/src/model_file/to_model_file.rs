@@ -7,7 +7,7 @@ use crate::source::env::Evaluation;
 use crate::source::module::Module;
 use moldloft_diag::Diagnostic;
 use moldloft_model::Object;
-use moldloft_registry::{Attributes, Class, Field, Role, Value};
+use moldloft_registry::{Attributes, Class, FieldSpec, Role, Value};
 use std::fmt::Write;
 
 /// The version of model files made from programs that do not come from one.
@@ -288,7 +288,7 @@ impl<'a> ToModelFile<'a> {
     }
 
     /// The argument as a column, or what it is when no column can hold that.
-    fn value(&self, field: &Field, value: &Value<f64>) -> Result<String, &'static str> {
+    fn value(&self, field: &FieldSpec, value: &Value<f64>) -> Result<String, &'static str> {
         let list = |items: Vec<String>| {
             let items: Vec<String> = items.into_iter().map(|item| item + " ").collect();
             format!("{{ {}}}", items.concat())
@@ -318,7 +318,7 @@ impl<'a> ToModelFile<'a> {
         }
     }
 
-    fn word(&self, field: &Field, text: &str) -> String {
+    fn word(&self, field: &FieldSpec, text: &str) -> String {
         let name = format!("*{}", text.trim_start_matches('*').replace(' ', "").to_uppercase());
         if field.class != Class::Text && system_name(&name).is_some() {
             return name;

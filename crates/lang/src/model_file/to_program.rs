@@ -5,8 +5,10 @@ use crate::model_file::names::{bare, identifier, is_real, system_name};
 use crate::model_file::{ModelFileSource, Sorted};
 use crate::source::env::Evaluation;
 use moldloft_diag::Diagnostic;
-use moldloft_registry::{Attributes, Class, Field, PanelAttributes, Registry, Spacing, Unit};
-use moldloft_syntax::model_file::{Field as Written, FieldKind, ItemKind, ObjectEntry as Line};
+use moldloft_registry::{Attributes, Class, FieldSpec, PanelAttributes, Registry, Spacing, Unit};
+use moldloft_syntax::model_file::{
+    EntryField as Written, FieldKind, ItemKind, ObjectEntry as Line,
+};
 use moldloft_syntax::number;
 use std::fmt::Write;
 
@@ -266,7 +268,7 @@ impl ToProgram<'_> {
         Some(format!("float {} = {text};\n", identifier(name)))
     }
 
-    fn value(&self, field: &Field, written: &Written) -> String {
+    fn value(&self, field: &FieldSpec, written: &Written) -> String {
         let model = self.source.model();
         let text = model.slice(written.span);
         let angle = field.unit == Unit::Angle;

@@ -2,7 +2,7 @@
 
 /// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
+pub enum PhysicalDimension {
     /// In metres.
     Length,
     /// In kilograms.
@@ -15,32 +15,32 @@ pub enum Dimension {
 
 /// The units that are known: word, dimension, size in metres, kilograms, newtons or radians. Exact by definition
 /// (BIPM 2019, The International System of Units; NIST SP 811, appendix B), but for the angle.
-pub const UNITS: [(&str, Dimension, f64); 21] = [
-    ("m", Dimension::Length, 1.0),
-    ("cm", Dimension::Length, 0.01),
-    ("mm", Dimension::Length, 0.001),
-    ("km", Dimension::Length, 1000.0),
-    ("ft", Dimension::Length, 0.3048),
-    ("in", Dimension::Length, 0.0254),
-    ("yd", Dimension::Length, 0.9144),
-    ("kg", Dimension::Mass, 1.0),
-    ("t", Dimension::Mass, 1000.0),
-    ("g", Dimension::Mass, 0.001),
-    ("lb", Dimension::Mass, 0.453_592_37),
-    ("slug", Dimension::Mass, 14.593_902_937_206_364),
-    ("LT", Dimension::Mass, 1_016.046_908_8),
-    ("N", Dimension::Force, 1.0),
-    ("kN", Dimension::Force, 1e3),
-    ("MN", Dimension::Force, 1e6),
-    ("lbf", Dimension::Force, 4.448_221_615_260_5),
-    ("kgf", Dimension::Force, 9.806_65),
-    ("tf", Dimension::Force, 9_806.65),
-    ("rad", Dimension::Angle, 1.0),
-    ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
+pub const UNITS: [(&str, PhysicalDimension, f64); 21] = [
+    ("m", PhysicalDimension::Length, 1.0),
+    ("cm", PhysicalDimension::Length, 0.01),
+    ("mm", PhysicalDimension::Length, 0.001),
+    ("km", PhysicalDimension::Length, 1000.0),
+    ("ft", PhysicalDimension::Length, 0.3048),
+    ("in", PhysicalDimension::Length, 0.0254),
+    ("yd", PhysicalDimension::Length, 0.9144),
+    ("kg", PhysicalDimension::Mass, 1.0),
+    ("t", PhysicalDimension::Mass, 1000.0),
+    ("g", PhysicalDimension::Mass, 0.001),
+    ("lb", PhysicalDimension::Mass, 0.453_592_37),
+    ("slug", PhysicalDimension::Mass, 14.593_902_937_206_364),
+    ("LT", PhysicalDimension::Mass, 1_016.046_908_8),
+    ("N", PhysicalDimension::Force, 1.0),
+    ("kN", PhysicalDimension::Force, 1e3),
+    ("MN", PhysicalDimension::Force, 1e6),
+    ("lbf", PhysicalDimension::Force, 4.448_221_615_260_5),
+    ("kgf", PhysicalDimension::Force, 9.806_65),
+    ("tf", PhysicalDimension::Force, 9_806.65),
+    ("rad", PhysicalDimension::Angle, 1.0),
+    ("deg", PhysicalDimension::Angle, std::f64::consts::PI / 180.0),
 ];
 
 /// The unit of that word; letters may be of either case where that is unambiguous.
-pub fn unit(word: &str) -> Option<(&'static str, Dimension, f64)> {
+pub fn unit(word: &str) -> Option<(&'static str, PhysicalDimension, f64)> {
     let same = UNITS.into_iter().find(|u| u.0 == word);
     same.or_else(|| UNITS.into_iter().find(|u| u.0.eq_ignore_ascii_case(word)))
 }
@@ -49,8 +49,8 @@ pub fn unit(word: &str) -> Option<(&'static str, Dimension, f64)> {
 ///
 /// # Errors
 /// The word that is not a unit, or the second of a dimension.
-pub fn parsed(text: &str) -> Result<Vec<(&'static str, Dimension, f64)>, String> {
-    let mut found: Vec<(&'static str, Dimension, f64)> = Vec::new();
+pub fn parsed(text: &str) -> Result<Vec<(&'static str, PhysicalDimension, f64)>, String> {
+    let mut found: Vec<(&'static str, PhysicalDimension, f64)> = Vec::new();
     for word in text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty()) {
         // Time is in seconds everywhere.
         if matches!(word, "s" | "sec") {

@@ -10,12 +10,12 @@
 
 use crate::run::interpreter::{Flow, Interpreter, silent};
 use crate::source::module::{Module, Name};
-use crate::source::scope::{Binding, Bound, Scope};
+use crate::source::scope::{Binding, Scope, ScopedBinding};
 use crate::value::variables;
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
-use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, Ident, List, StmtKind};
+use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, Ident, NodeList, StmtKind};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &mut self,
         m: &Module,
         name: Ident,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         span: Span,
     ) -> Result<(), Diagnostic> {
         let given: Vec<Arg> = m.program[args].to_vec();
@@ -77,7 +77,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             };
             let name = m.names[ident.symbol.0 as usize];
             names.insert(name);
-            globals.push((name, Bound { span: ident.span, what }));
+            globals.push((name, ScopedBinding { span: ident.span, what }));
         }
         let name_id = m.names[name.symbol.0 as usize];
         let (full, turn) = self.full_name(m, name)?;

@@ -4,7 +4,7 @@ use crate::run::interpreter::{Interpreter, silent};
 use crate::source::env::SolveUnknown;
 use crate::source::fault_location;
 use crate::source::module::Module;
-use crate::source::scope::{Binding, Bound, Passed};
+use crate::source::scope::{Binding, Passed, ScopedBinding};
 use crate::value::ops;
 use crate::value::subarray::{ArraySection, Place, Selection};
 use crate::value::variables;
@@ -16,7 +16,7 @@ use moldloft_registry::{
     Array, Class, CurveRef, Given, Role, Scalar, SurfaceRef, Value, Vectors, bind_arguments, many,
 };
 use moldloft_syntax::number;
-use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, List, Subscript, Symbol, UnaryOp};
+use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, NodeList, Subscript, Symbol, UnaryOp};
 use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
@@ -324,7 +324,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         m: &Module,
         id: ExprId,
         base: ExprId,
-        subs: List<Subscript>,
+        subs: NodeList<Subscript>,
     ) -> Evaluated<T> {
         if let Some(text) = self.spelled(m, id)? {
             if let Some(value) = self.spelled_value(&text) {
@@ -386,7 +386,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         m: &Module,
         place: Place,
         base: ExprId,
-        subs: List<Subscript>,
+        subs: NodeList<Subscript>,
     ) -> Result<Place, Diagnostic> {
         let Some(Binding::Variable { value, .. }) = self.env.scope.root(&place).map(|b| &b.what)
         else {
@@ -458,7 +458,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         base: ExprId,
         extents: &[usize],
         shape: &str,
-        subs: List<Subscript>,
+        subs: NodeList<Subscript>,
     ) -> Result<ArraySection, Diagnostic> {
         if extents.len() != subs.len() {
             return Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
@@ -611,7 +611,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         let value = self.read(value, m.program[base].span)?;
         if let Some(member) = crate::value::member::of_value(&value, &word) {
-            let vector = |b: &Bound<T>| {
+            let vector = |b: &ScopedBinding<T>| {
                 matches!(
                     &b.what,
                     Binding::Variable { value: Value::Vector(_) | Value::Vectors(_), .. }
@@ -703,7 +703,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         })
     }
 
-    fn call(&mut self, m: &Module, callee: ExprId, args: List<Arg>, span: Span) -> Evaluated<T> {
+    fn call(
+        &mut self,
+        m: &Module,
+        callee: ExprId,
+        args: NodeList<Arg>,
+        span: Span,
+    ) -> Evaluated<T> {
         let Some(symbol) = m.program.as_name(callee) else {
             let value = self.operand(m, callee)?;
             return self.call_value(m, value, args, m.program[callee].span);
@@ -788,7 +794,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &mut self,
         m: &Module,
         value: Value<T>,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         span: Span,
     ) -> Evaluated<T> {
         let mut given = Vec::new();

@@ -1,12 +1,12 @@
 //! Runs a program: statements.
 
 use crate::array::machine::ArrayMachine;
-use crate::array::recipe::Key as ExprKey;
+use crate::array::recipe::ExprKey;
 use crate::run::read_log::ReadLog;
 use crate::run::usage::{self, Usage};
 use crate::source::env::{Environment, Param, Seed};
 use crate::source::module::{Loader, Module, Modules, Name, RoutineAt};
-use crate::source::scope::{Binding, Bound};
+use crate::source::scope::{Binding, ScopedBinding};
 use crate::value::initialised::Known;
 use crate::value::subarray::Place;
 use crate::value::variables::Called as _;
@@ -19,7 +19,7 @@ use moldloft_num::trace::Key;
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{
-    AssignOp, Declarator, ExprId, ExprKind, Ident, List, StmtId, StmtKind, Symbol, Type,
+    AssignOp, Declarator, ExprId, ExprKind, Ident, NodeList, StmtId, StmtKind, Symbol, Type,
 };
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -315,7 +315,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     }
 
     /// The value that a variable has now, read through references.
-    pub fn peek(&self, bound: &Bound<T>) -> Option<Value<T>> {
+    pub fn peek(&self, bound: &ScopedBinding<T>) -> Option<Value<T>> {
         match &bound.what {
             Binding::Variable { value, .. } => Some(value.clone()),
             Binding::Reference(place) => match &self.env.scope.root(place)?.what {
@@ -327,7 +327,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
     }
 
-    pub fn statements(&mut self, m: &Module, list: List<StmtId>) -> Flow<T> {
+    pub fn statements(&mut self, m: &Module, list: NodeList<StmtId>) -> Flow<T> {
         for &stmt in &m.program[list] {
             match self.statement(m, stmt) {
                 Flow::Next => {}
@@ -574,7 +574,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let name = m.names[item.name.symbol.0 as usize];
         self.check_free(name, item.name.span, true)?;
         if global && !self.env.scope.frame().global {
-            self.env.scope.globals[name.0 as usize] = Some(Bound { span: item.name.span, what });
+            self.env.scope.globals[name.0 as usize] =
+                Some(ScopedBinding { span: item.name.span, what });
         } else {
             self.env.scope.bind(name, item.name.span, what);
         }
@@ -783,7 +784,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         if place.frame.is_none() && self.run.extent() == Extent::Edit {
             return Err(Diagnostic::error(
                 "misplaced-assignment",
-                format!("an expression from outside does not change `{text}`"),
+                format!("`{text}` is not assigned here: the expression is not part of the program"),
             )
             .expected("an expression that reads the program's variables")
             .help("put the statement into the program"));

@@ -4,13 +4,13 @@ use crate::run::inserted::{Content, inserted_file};
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::env::DeclarationOrigin;
 use crate::source::module::{Module, RoutineAt};
-use crate::source::scope::{Binding, Bound};
+use crate::source::scope::{Binding, ScopedBinding};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::trace::Key;
-use moldloft_registry::{Class, Field, Given, Role, Row, Scalar, Value, bind_arguments};
+use moldloft_registry::{Class, FieldSpec, Given, Role, Row, Scalar, Value, bind_arguments};
 use moldloft_syntax::number;
-use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
+use moldloft_syntax::sdl::{Arg, Ident, NodeList, StmtId};
 use std::sync::Arc;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
@@ -20,7 +20,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         id: StmtId,
         kind: Ident,
         name: Ident,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         span: Span,
     ) -> Result<(), Diagnostic> {
         if self.env.scope.is_given(m.names[name.symbol.0 as usize]) {
@@ -39,7 +39,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         id: StmtId,
         kind: Ident,
         name: Ident,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         span: Span,
     ) -> Result<(), Diagnostic> {
         let name_id = m.names[name.symbol.0 as usize];
@@ -152,7 +152,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let text = m.program.slice(diagnostic.span());
         let symbol = m.program.symbol(text).filter(|_| diagnostic.id == "wrong-class");
         match symbol.and_then(|symbol| self.env.scope.lookup(m.names[symbol.0 as usize])) {
-            Some(Bound { span, what: Binding::Object(_) }) => {
+            Some(ScopedBinding { span, what: Binding::Object(_) }) => {
                 diagnostic.note_at(*span, format!("`{text}` is declared here"))
             }
             _ => diagnostic,
@@ -207,7 +207,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         m: &Module,
         routine: RoutineAt,
         name: Ident,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         span: Span,
     ) -> Result<(), Diagnostic> {
         let full = self.instance_name(m, name)?;
@@ -241,7 +241,7 @@ fn spread_last_vector<T: Scalar>(row: &Row, given: &mut Given<T>) {
     let Some(at) = given.positional.len().checked_sub(1) else { return };
     let Some(Value::Vector(v)) = given.positional.last().cloned() else { return };
     let Some([x, y, z]) = row.fields.get(at..at + 3) else { return };
-    let coordinate = |field: &Field, axis: char| {
+    let coordinate = |field: &FieldSpec, axis: char| {
         field.class == Class::Number && !field.many && field.name.ends_with(axis)
     };
     if coordinate(x, 'x') && coordinate(y, 'y') && coordinate(z, 'z') {

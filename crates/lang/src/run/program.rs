@@ -8,7 +8,7 @@ use crate::run::sketches::Site;
 use crate::source::env::{Environment, Evaluation};
 use crate::source::fault_location;
 use crate::source::module::{Convert, Loader, Module, Modules};
-use crate::source::scope::{Binding, Bound};
+use crate::source::scope::{Binding, ScopedBinding};
 use crate::source::sketch_file::SketchFile;
 use crate::source::world::World;
 use crate::value::number_path::NumberPath;
@@ -255,13 +255,13 @@ fn bind_objects<T: Scalar>(
         if known.is_none()
             && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
         {
-            *known = Some(Bound { span: Span::UNKNOWN, what: Binding::Object(key) });
+            *known = Some(ScopedBinding { span: Span::UNKNOWN, what: Binding::Object(key) });
         } else if known.is_none()
             && let Some(&x) = env.numbers.get(&**text)
         {
             let ty = Type::Float;
             let what = Binding::variable(ty, Value::Number(x));
-            *known = Some(Bound { span: Span::UNKNOWN, what });
+            *known = Some(ScopedBinding { span: Span::UNKNOWN, what });
         }
     }
 }

@@ -2,12 +2,12 @@
 
 use crate::run::interpreter::{Flow, Interpreter, silent};
 use crate::source::module::{Module, RoutineAt};
-use crate::source::scope::{Binding, Bound, Frame, Multiple, Passed};
+use crate::source::scope::{Binding, CallFrame, Multiple, Passed, ScopedBinding};
 use crate::value::subarray::Place;
 use crate::value::variables;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
-use moldloft_syntax::sdl::{Arg, ExprId, Formal, List, Type};
+use moldloft_syntax::sdl::{Arg, ExprId, Formal, NodeList, Type};
 use std::sync::Arc;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
@@ -16,7 +16,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &mut self,
         m: &Module,
         at: RoutineAt,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         instance: Option<Arc<str>>,
         span: Span,
     ) -> Result<Option<Value<T>>, Diagnostic> {
@@ -28,7 +28,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let ordered = self.order_arguments(m, &callee, &name, &formals, &given, span)?;
 
         let prefix = instance.clone().unwrap_or_else(|| self.env.scope.frame().prefix.clone());
-        let mut frame = Frame::new(false, prefix);
+        let mut frame = CallFrame::new(false, prefix);
         if instance.is_none() {
             frame.loops = self.env.scope.frame().loops.clone();
         }
@@ -66,7 +66,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     value => Binding::variable(formal.ty.0, value),
                 }
             };
-            frame.locals.push((local, Bound { span: formal.name.span, what }));
+            frame.locals.push((local, ScopedBinding { span: formal.name.span, what }));
         }
         for (k, (place, at)) in returned.iter().enumerate() {
             if let Some((_, first)) = returned[..k].iter().find(|(p, _)| p.meets(place)) {

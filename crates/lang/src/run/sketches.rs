@@ -3,7 +3,7 @@
 use crate::run::interpreter::Interpreter;
 use crate::source::env::{DeclarationOrigin, Param};
 use crate::source::module::Module;
-use crate::source::scope::{Binding, Bound};
+use crate::source::scope::{Binding, ScopedBinding};
 use crate::source::sketch_file::{Drawn, SketchFile};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_mesh::Mesh;
@@ -12,8 +12,10 @@ use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
 use moldloft_registry::{Given, Scalar, Value, bind_arguments};
 use moldloft_sketch::curve::{SmoothPiece, Traced};
-use moldloft_sketch::{Axis, DimensionFault, NoBody, PointId, RoundFace, SketchSolid, solve};
-use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
+use moldloft_sketch::{
+    CoordinateAxis, DimensionFault, NoBody, PointId, RoundFace, SketchSolid, solve,
+};
+use moldloft_syntax::sdl::{Arg, Ident, NodeList, StmtId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -74,7 +76,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 self.env.scope.make_room(self.modules.name_count());
                 if self.env.scope.lookup(name).is_none() {
                     let what = Binding::Instance(prefix.as_str().into());
-                    self.env.scope.globals[name.0 as usize] = Some(Bound { span: site.span, what });
+                    self.env.scope.globals[name.0 as usize] =
+                        Some(ScopedBinding { span: site.span, what });
                 }
             }
         }
@@ -117,7 +120,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         m: &Module,
         id: StmtId,
         name: Ident,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         span: Span,
     ) -> Result<(), Diagnostic> {
         if self.run.extent() == Extent::Edit {
@@ -188,8 +191,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         }
         if !layout.complete() && !object.drawing.points.is_empty() {
-            let missing = |a: Axis| (a, layout.counts[a.index()].missing);
-            let missing: Vec<String> = (Axis::ALL.map(missing).iter())
+            let missing = |a: CoordinateAxis| (a, layout.counts[a.index()].missing);
+            let missing: Vec<String> = (CoordinateAxis::ALL.map(missing).iter())
                 .filter(|m| m.1 > 0)
                 .map(|(a, n)| format!("{a}: {n}"))
                 .collect();

@@ -11,7 +11,7 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{Array, Build, CallError, Class, Context, Kind, Row, Scalar, Value, many};
-use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, List};
+use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, NodeList};
 use std::sync::Arc;
 
 /// Parameters and numbers of objects that are found so that as many other numbers become zero, by damped
@@ -59,7 +59,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     pub fn solve_set(
         &mut self,
         m: &Module,
-        args: List<Arg>,
+        args: NodeList<Arg>,
         row: &Row,
         positional: usize,
         filled: &mut [Value<T>],

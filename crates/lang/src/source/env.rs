@@ -1,6 +1,6 @@
 //! What a run leaves behind: the names, parameters, solve sets and printed lines that expressions refer to afterwards.
 
-use crate::functions::files::Files;
+use crate::functions::files::RunFiles;
 use crate::source::scope::Scope;
 use indexmap::IndexMap;
 use moldloft_diag::Span;
@@ -137,7 +137,7 @@ pub struct Environment<T: Scalar> {
     /// The lines printed.
     pub printed: Vec<String>,
     /// Files that were opened, and what was written.
-    pub files: Files,
+    pub files: RunFiles,
     /// Loaded sketches by the name that their parts begin with.
     pub sketches: Vec<String>,
     /// Numbers and objects of sketches by full name, as spelled and in small letters.
@@ -158,7 +158,7 @@ impl<T: Scalar> Default for Environment<T> {
             solves: Vec::new(),
             solved: IndexMap::new(),
             printed: Vec::new(),
-            files: Files::default(),
+            files: RunFiles::default(),
             sketches: Vec::new(),
             sketch_members: HashMap::new(),
             stopped: false,

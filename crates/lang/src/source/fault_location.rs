@@ -3,7 +3,7 @@
 use crate::source::module::Module;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Argument, CallError, Row};
-use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, List};
+use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, NodeList};
 
 /// The fault as a diagnostic without a place.
 pub fn unplaced(fault: &CallError) -> Diagnostic {
@@ -23,7 +23,7 @@ pub fn unplaced(fault: &CallError) -> Diagnostic {
 /// The fault of a call, at the argument that it is about; `whole` when that is unknown.
 pub fn diagnostic(
     m: &Module,
-    args: List<Arg>,
+    args: NodeList<Arg>,
     row: &Row,
     positional: usize,
     fault: &CallError,
@@ -34,7 +34,7 @@ pub fn diagnostic(
 
 fn span(
     m: &Module,
-    args: List<Arg>,
+    args: NodeList<Arg>,
     row: &Row,
     positional: usize,
     fault: &CallError,

@@ -76,7 +76,7 @@ pub enum Passed<T: Scalar> {
 
 /// A binding and where it was made.
 #[derive(Clone, Debug)]
-pub struct Bound<T: Scalar> {
+pub struct ScopedBinding<T: Scalar> {
     /// The place of the declaration.
     pub span: Span,
     /// The meaning of the name.
@@ -85,9 +85,9 @@ pub struct Bound<T: Scalar> {
 
 /// The variables of a routine's call, or of the file level of a load.
 #[derive(Debug)]
-pub struct Frame<T: Scalar> {
+pub struct CallFrame<T: Scalar> {
     /// The variables, in the order of their declaration.
-    pub locals: Vec<(Name, Bound<T>)>,
+    pub locals: Vec<(Name, ScopedBinding<T>)>,
     /// True at file level, where names are global.
     pub global: bool,
     /// Goes before the names of objects: "fore." in the call `leg fore(...)`.
@@ -107,14 +107,14 @@ pub struct LoopIteration {
     pub id: u64,
 }
 
-impl<T: Scalar> Frame<T> {
+impl<T: Scalar> CallFrame<T> {
     /// A frame without variables.
     pub fn new(global: bool, prefix: Arc<str>) -> Self {
         Self { locals: Vec::new(), global, prefix, loops: Vec::new(), called: None }
     }
 
     /// The variable of that name.
-    pub fn local(&self, name: Name) -> Option<&Bound<T>> {
+    pub fn local(&self, name: Name) -> Option<&ScopedBinding<T>> {
         self.locals.iter().find(|(n, _)| *n == name).map(|(_, bound)| bound)
     }
 }
@@ -123,11 +123,11 @@ impl<T: Scalar> Frame<T> {
 #[derive(Debug)]
 pub struct Scope<T: Scalar> {
     /// What names mean at file level, by their numbers.
-    pub globals: Vec<Option<Bound<T>>>,
+    pub globals: Vec<Option<ScopedBinding<T>>>,
     /// Subroutines and functions.
     pub routines: HashMap<Name, RoutineAt>,
     /// The calls under way; the first is the file itself.
-    pub frames: Vec<Frame<T>>,
+    pub frames: Vec<CallFrame<T>>,
     /// The modules that were run.
     pub executed: HashSet<usize>,
     /// Sketch files that were brought in.
@@ -151,7 +151,7 @@ impl<T: Scalar> Scope<T> {
         Self {
             globals,
             routines: HashMap::new(),
-            frames: vec![Frame::new(true, prefix)],
+            frames: vec![CallFrame::new(true, prefix)],
             executed: HashSet::new(),
             sketches_done: HashSet::new(),
             given: HashSet::new(),
@@ -171,18 +171,18 @@ impl<T: Scalar> Scope<T> {
     }
 
     /// The innermost frame.
-    pub fn frame(&self) -> &Frame<T> {
+    pub fn frame(&self) -> &CallFrame<T> {
         self.frames.last().expect("there is always a frame")
     }
 
     /// The innermost frame, to change.
-    pub fn frame_mut(&mut self) -> &mut Frame<T> {
+    pub fn frame_mut(&mut self) -> &mut CallFrame<T> {
         self.frames.last_mut().expect("there is always a frame")
     }
 
     /// Gives a name a meaning in the innermost frame.
     pub fn bind(&mut self, name: Name, span: Span, what: Binding<T>) {
-        let bound = Bound { span, what };
+        let bound = ScopedBinding { span, what };
         if self.frame().global {
             let at = name.0 as usize;
             if at >= self.globals.len() {
@@ -199,22 +199,22 @@ impl<T: Scalar> Scope<T> {
     }
 
     /// What a name means at file level.
-    pub fn global(&self, name: Name) -> Option<&Bound<T>> {
+    pub fn global(&self, name: Name) -> Option<&ScopedBinding<T>> {
         self.globals.get(name.0 as usize)?.as_ref()
     }
 
     /// What a name means here.
-    pub fn lookup(&self, name: Name) -> Option<&Bound<T>> {
+    pub fn lookup(&self, name: Name) -> Option<&ScopedBinding<T>> {
         self.frame().local(name).or_else(|| self.global(name))
     }
 
     /// What a name means in the innermost frame alone.
-    pub fn own(&self, name: Name) -> Option<&Bound<T>> {
+    pub fn own(&self, name: Name) -> Option<&ScopedBinding<T>> {
         if self.frame().global { self.global(name) } else { self.frame().local(name) }
     }
 
     /// The variable that a place is in.
-    pub fn root(&self, place: &Place) -> Option<&Bound<T>> {
+    pub fn root(&self, place: &Place) -> Option<&ScopedBinding<T>> {
         match place.frame {
             None => self.global(place.name),
             Some(frame) => self.frames.get(frame as usize)?.local(place.name),
@@ -222,7 +222,7 @@ impl<T: Scalar> Scope<T> {
     }
 
     /// The variable that a place is in, to change.
-    pub fn root_mut(&mut self, place: &Place) -> Option<&mut Bound<T>> {
+    pub fn root_mut(&mut self, place: &Place) -> Option<&mut ScopedBinding<T>> {
         match place.frame {
             None => self.globals.get_mut(place.name.0 as usize)?.as_mut(),
             Some(frame) => {

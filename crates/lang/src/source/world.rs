@@ -1,3 +1,5 @@
+//! Where texts come from: files of the host, or none.
+
 use std::sync::Arc;
 
 /// What the outside world lets a run see. The core opens no files: the host does, inside the

@@ -30,7 +30,7 @@ struct MeasuredSection<T> {
 }
 
 /// Lines that follow each other.
-struct Chain<T> {
+struct LineChain<T> {
     points: Vec<Vec3>,
     from: Vec3<T>,
     to: Vec3<T>,
@@ -265,13 +265,13 @@ fn mirrored<T: Real>(piece: &ContourPiece<T>, axis: usize) -> ContourPiece<T> {
 }
 
 /// Lines end to end, as far as they meet within `near`.
-fn chained<T: Real>(pieces: Vec<ContourPiece<T>>, near: f64) -> Vec<Chain<T>> {
+fn chained<T: Real>(pieces: Vec<ContourPiece<T>>, near: f64) -> Vec<LineChain<T>> {
     let mut left: Vec<Option<ContourPiece<T>>> = pieces.into_iter().map(Some).collect();
     let mut chains = Vec::new();
     for k in 0..left.len() {
         let Some(first) = left[k].take() else { continue };
         let ContourPiece { points, from, to, swept, .. } = first;
-        let mut chain = Chain { points, from, to, swept };
+        let mut chain = LineChain { points, from, to, swept };
         // At its end, and when nothing follows there, turned about at its other.
         for _ in 0..2 {
             while chain.to.re().distance(chain.from.re()) > near || chain.points.len() < 3 {

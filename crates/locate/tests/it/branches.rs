@@ -2,7 +2,7 @@
 
 use crate::common::{Cylinder, Random, Sphere, bumpy};
 use moldloft_locate::branches::{Branches, CutSurface};
-use moldloft_locate::march::{Branch, Crossing, End, Other};
+use moldloft_locate::march::{Branch, BranchEnd, Crossing, Other};
 use moldloft_num::{Box3, Jet, Order, Plane, Surface, SurfaceFormula, Vec3};
 use moldloft_spline::{BSplineSurface, KnotVector};
 
@@ -74,7 +74,7 @@ fn sound(crossing: &Crossing<'_>, found: &Branches) {
             assert_eq!(first, last);
         } else {
             for (s, end) in [(first, branch.ends[0]), (last, branch.ends[1])] {
-                if let End::Edge { unknown, value } = end {
+                if let BranchEnd::Edge { unknown, value } = end {
                     assert_eq!(s.q[unknown], value);
                 }
             }
@@ -119,7 +119,9 @@ fn a_plane_cuts_a_cylinder_across_its_seam_along_it_or_not_at_all() {
     for normal in [v(1.0, 0.0, 0.3), v(-1.0, 0.0, 0.3)] {
         let found = with_plane(&s, plane(v(0.0, 0.0, 3.0), normal));
         assert_eq!(count(&found), [0, 1, 0], "{found:?}");
-        assert!(found.branches[0].ends.iter().all(|e| matches!(e, End::Edge { unknown: 1, .. })));
+        assert!(
+            found.branches[0].ends.iter().all(|e| matches!(e, BranchEnd::Edge { unknown: 1, .. }))
+        );
     }
     // Along: two lines; through the seam too; touching; missing.
     let along = |x: f64| with_plane(&s, plane(v(x, 0.0, 0.0), v(1.0, 0.0, 0.0)));
@@ -176,7 +178,8 @@ fn waves_are_cut_in_islands() {
     let half = flat(v(-0.1, -0.1, 0.1), v(0.6, 0.0, 0.0), v(0.0, 1.2, 0.0));
     let found = of_two(&s, &half);
     assert_eq!(count(&found), [5, 3, 0]);
-    let on_edge = |b: &&Branch| b.ends.iter().all(|e| *e == End::Edge { unknown: 2, value: 1.0 });
+    let on_edge =
+        |b: &&Branch| b.ends.iter().all(|e| *e == BranchEnd::Edge { unknown: 2, value: 1.0 });
     assert_eq!(found.branches.iter().filter(|b| !b.closed()).filter(on_edge).count(), 3);
     // Just under the tops: 13 small islands, larger than what is promised.
     let z = 0.2 - 0.2 * 0.5 * (5.0 * std::f64::consts::PI * 0.02).powi(2);
@@ -237,7 +240,7 @@ fn branches_run_on_over_creases() {
         assert_eq!(count(&found), [0, 1, 0]);
         let branch = &found.branches[0];
         assert!((length(branch) - exact).abs() < 1e-9, "{}", length(branch));
-        assert!(branch.ends.iter().all(|end| matches!(end, End::Edge { .. })));
+        assert!(branch.ends.iter().all(|end| matches!(end, BranchEnd::Edge { .. })));
     }
     // A closed branch round a pyramid without its top.
     let tent = {

@@ -66,14 +66,14 @@ struct Rectangle {
 }
 
 /// The faces of all blocks, panel by panel.
-struct Faces<'a> {
+struct BlockFaces<'a> {
     blocks: &'a [HexBlock],
     /// Panels with three or four corners by their corners, in ascending order.
     by_corners: HashMap<[u32; 4], Vec<Place>>,
     taken: HashSet<Place>,
 }
 
-impl<'a> Faces<'a> {
+impl<'a> BlockFaces<'a> {
     fn new(blocks: &'a [HexBlock]) -> Self {
         let mut faces = Self { blocks, by_corners: HashMap::new(), taken: HashSet::new() };
         for place in faces.places() {
@@ -190,7 +190,7 @@ impl<'a> Faces<'a> {
 /// Panels are one by the identity of their vertices. Where more than two have the same, none of
 /// them meets another: such a place is not an interface.
 pub fn find(blocks: &[HexBlock]) -> (Vec<Interface>, Vec<Boundary>) {
-    let mut faces = Faces::new(blocks);
+    let mut faces = BlockFaces::new(blocks);
     let mut found = Vec::new();
     for own in faces.places() {
         if faces.taken.contains(&own) {
@@ -241,7 +241,7 @@ fn interface(
 }
 
 /// Rectangles of the panels that no interface has.
-fn boundaries(faces: &mut Faces) -> Vec<Boundary> {
+fn boundaries(faces: &mut BlockFaces) -> Vec<Boundary> {
     let mut found = Vec::new();
     for own @ (block, face, [a, b]) in faces.places() {
         if faces.taken.contains(&own) {

@@ -69,8 +69,11 @@ fn the_nearer_surface_wins_from_both_sides() {
 
 #[test]
 fn same_input_same_bytes() {
-    let line =
-        Line { points: vec![Vec3::zero(), Vec3::of(1.0, 1.0, 0.2)], colour: [0; 3], width: 1.5 };
+    let line = StyledPolyline {
+        points: vec![Vec3::zero(), Vec3::of(1.0, 1.0, 0.2)],
+        colour: [0; 3],
+        width: 1.5,
+    };
     let options = Options {
         mirrors: [false, true, false],
         edges: true,
@@ -100,7 +103,8 @@ fn impossible_requests_are_refused() {
 fn nothing_and_a_single_point_are_pictures_too() {
     let none = Mesh::new(TopologyBuilder::new().build().into(), vec![]).unwrap();
     assert!(render(&none, &[], &small()).is_ok());
-    let line = Line { points: vec![Vec3::zero(), Vec3::zero()], colour: [0; 3], width: 2.0 };
+    let line =
+        StyledPolyline { points: vec![Vec3::zero(), Vec3::zero()], colour: [0; 3], width: 2.0 };
     for view_angle_deg in [None, Some(20.0)] {
         let camera = Camera { view_angle_deg, ..Camera::default() };
         let line = std::slice::from_ref(&line);

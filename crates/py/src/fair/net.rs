@@ -6,8 +6,8 @@ use super::solve::{bound, contradiction, end, get, goal, motion};
 use super::spline::spacing;
 use crate::arrays;
 use moldloft::fair::{
-    Condition, End, FairError, GridData, Layout, Limit, Measure, Network, NetworkCurve,
-    NetworkMode, NetworkReport, ParameterSpacing, PatchNet, Seam, Space, fair_grid,
+    Condition, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Measure, Network,
+    NetworkCurve, NetworkMode, NetworkReport, ParameterSpacing, PatchNet, Seam, Space, fair_grid,
     grid_parameters, grid_spacing, parameters_across,
 };
 use moldloft::num::Vec3;
@@ -160,7 +160,7 @@ impl Net {
             grid_parameters(&points, shape, spaced, closed, limit.motion).map_err(fair_error)?;
         let marks: (Vec<usize>, Vec<usize>) = get(&options, "marks")?;
         let layout = |d: usize, marks: &[usize]| {
-            Layout::new(degrees[d], &at[d], marks, closed[d]).map_err(fair_error)
+            InterpolationSpace::new(degrees[d], &at[d], marks, closed[d]).map_err(fair_error)
         };
         let layouts = [layout(0, &marks.0)?, layout(1, &marks.1)?];
         let rims = rims(&get::<[String; 4]>(&options, "rims")?)?;
@@ -243,7 +243,7 @@ impl Net {
         let seams = Seam::found(&sheets, end(keeps)?);
         for seam in &seams {
             for (k, edge) in seam.sheets.into_iter().zip(seam.edges) {
-                sheets[k].rims[edge.direction][edge.end] = End::Free;
+                sheets[k].rims[edge.direction][edge.end] = EndContinuity::Free;
             }
         }
         let network = Network::joined(&sheets, &seams).map_err(fair_error)?;
@@ -260,9 +260,9 @@ impl Net {
 }
 
 /// What the four rims keep: at both ends of u, then of v.
-fn rims(words: &[String; 4]) -> PyResult<[[End; 2]; 2]> {
+fn rims(words: &[String; 4]) -> PyResult<[[EndContinuity; 2]; 2]> {
     let rim = |k: usize| match words[k].as_str() {
-        "corners" => Ok(End::Free),
+        "corners" => Ok(EndContinuity::Free),
         word => end(word),
     };
     Ok([[rim(0)?, rim(1)?], [rim(2)?, rim(3)?]])
@@ -309,7 +309,7 @@ impl Web {
                 points: own.clone(),
                 weights: None,
                 marks: marks.clone(),
-                ends: [End::Points(1); 2],
+                ends: [EndContinuity::Points(1); 2],
                 at: match spaced {
                     ParameterSpacing::Uniform => None,
                     spaced => {

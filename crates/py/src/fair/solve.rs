@@ -3,10 +3,10 @@
 use super::arguments::{certificate, fair_error, measure, refused};
 use super::spline::{Spline, spacing, told};
 use moldloft::fair::{
-    Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, End, FairError, FairingReport,
-    Goal, Job, KnotRemovalOptions, Layout, Limit, Mode, Motion, OptimumOptions, RemovalStep, Rule,
-    ShapeCondition, Space, Stops, data_report, knot_removal, merged, parameters_across, report,
-    shape,
+    Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, EndContinuity, FairError,
+    FairingReport, Goal, InterpolationSpace, Job, KnotRemovalOptions, Limit, Mode, Motion,
+    OptimumOptions, RemovalStep, Rule, ShapeCondition, Space, Stops, data_report, knot_removal,
+    merged, parameters_across, report, shape,
 };
 use moldloft::num::{Order, Vec3};
 use numpy::ToPyArray;
@@ -34,11 +34,11 @@ pub fn motion(word: &str, direction: [f64; 3]) -> PyResult<Motion> {
     })
 }
 
-pub fn end(word: &str) -> PyResult<End> {
+pub fn end(word: &str) -> PyResult<EndContinuity> {
     if let Some(count) = word.strip_prefix("points:").and_then(|n| n.parse().ok()) {
-        return Ok(End::Points(count));
+        return Ok(EndContinuity::Points(count));
     }
-    End::named(word).ok_or_else(|| {
+    EndContinuity::named(word).ok_or_else(|| {
         refused(format!(
             "unknown end condition `{word}`; expected one of: free, position, tangent, curvature"
         ))
@@ -281,7 +281,7 @@ pub fn data<'py>(
         wanted.iter().map(|w| w.renumbered(|k| one.of.get(k).copied().unwrap_or(k))).collect();
     let data = Data {
         limit,
-        layout: Layout::new(degree, &at, &breaks, closed).map_err(fair_error)?,
+        layout: InterpolationSpace::new(degree, &at, &breaks, closed).map_err(fair_error)?,
         ends: [end(&ends.0)?, end(&ends.1)?],
         points: one.points.clone(),
     };

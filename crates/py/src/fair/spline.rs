@@ -5,7 +5,7 @@ use super::solve;
 use crate::arrays;
 use moldloft::fair::shape::{self, Sample};
 use moldloft::fair::{
-    Finding, Job, Jumps, ParameterSpacing, Space, fit, fit_rational, interpolate_with_corners,
+    Finding, Job, KnotJumps, ParameterSpacing, Space, fit, fit_rational, interpolate_with_corners,
     least_squares, parameters, surface,
 };
 use moldloft::num::Vec3;
@@ -319,7 +319,7 @@ impl Spline {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)> {
         let job = self.job()?;
-        let jumps = Jumps::of(&self.space);
+        let jumps = KnotJumps::of(&self.space);
         let own = job.own_rows(&jumps.rows);
         let relative = job.relative(&self.points);
         let vectors: Vec<Vec3> = (0..own.len()).map(|k| own.apply(k, &relative)).collect();

@@ -3,7 +3,7 @@
 use super::oracle::Slots;
 use crate::arrays;
 use crate::error::plain_error;
-use moldloft::field::{Attributes, FieldError};
+use moldloft::field::{FieldError, SetAttributes};
 use moldloft::num::{Box3, Vec3};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -33,7 +33,7 @@ pub fn finished<R>(py: Python<'_>, slots: &Slots, outcome: Result<R, FieldError>
 }
 
 /// Attributes as data.
-pub fn attributes<'py>(py: Python<'py>, a: &Attributes) -> PyResult<Bound<'py, PyDict>> {
+pub fn attributes<'py>(py: Python<'py>, a: &SetAttributes) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("name", &a.name)?;
     dict.set_item("colour", a.colour)?;

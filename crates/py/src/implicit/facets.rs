@@ -6,7 +6,7 @@ use moldloft::field::{Facets, Pieces, crossing_faces};
 use moldloft::io::{LinesAndPoints, obj, ply, stl, threemf, vtk};
 use moldloft::mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
 use moldloft::num::{Box3, Plane, Vec3};
-use moldloft::picture::{Line, Options, patch_colour, render};
+use moldloft::picture::{Options, StyledPolyline, patch_colour, render};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -243,12 +243,12 @@ impl PyFacets {
         width: usize,
         height: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let line = |(_, points): &(String, Vec<Vec3>)| Line {
+        let line = |(_, points): &(String, Vec<Vec3>)| StyledPolyline {
             points: points.clone(),
             colour: [0x30, 0x36, 0x40],
             width: 3.0,
         };
-        let lines: Vec<Line> = self.loose.wires.iter().map(line).collect();
+        let lines: Vec<StyledPolyline> = self.loose.wires.iter().map(line).collect();
         let options = Options { width, height, edges: false, ..Options::default() };
         let png = py.detach(|| render(&self.mesh, &lines, &options)).map_err(plain_error)?;
         Ok(PyBytes::new(py, &png))

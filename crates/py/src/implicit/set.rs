@@ -8,8 +8,8 @@ use crate::error::plain_error;
 use crate::work::interruptible;
 use moldloft::budget::Budget;
 use moldloft::field::{
-    Affine, Attributes, BracketedMass, Caster, FacetOptions, FieldError, IntegralOptions, Light,
-    Membership, Pieces, Ray, RayTrace, Resolution, Set, facet_mixed,
+    Affine, BracketedMass, Caster, FacetOptions, FieldError, IntegralOptions, Light, Membership,
+    Pieces, Ray, RayTrace, Resolution, Set, SetAttributes, facet_mixed,
 };
 use moldloft::num::{Box3, Vec3};
 use numpy::{PyArray1, PyReadonlyArray2};
@@ -243,7 +243,7 @@ impl PySet {
         tolerance: Option<f64>,
         tags: std::collections::BTreeMap<String, String>,
     ) -> Self {
-        self.from(self.inner.with(Attributes {
+        self.from(self.inner.with(SetAttributes {
             given: name.is_some(),
             name,
             colour,
@@ -463,7 +463,7 @@ impl PySet {
             let accuracy = accuracy.unwrap_or(1e-5 * over.diagonal());
             moldloft::field::distance(set, &other, &over, accuracy)
         })?;
-        let row = |g: moldloft::field::Distance| {
+        let row = |g: moldloft::field::SetDistance| {
             (g.distance, g.at_least, g.first.to_array(), g.second.to_array())
         };
         Ok(found.map(row))

@@ -36,7 +36,7 @@ pub struct Arc<T: Real> {
 impl<T: Real> Build<T> for Arc<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { p1, p2, p3, r#type } = self;
-        let arc = moldloft_spline::Arc::of_type(r#type, [p1.xyz, p2.xyz, p3.xyz]);
+        let arc = moldloft_spline::CircularArc::of_type(r#type, [p1.xyz, p2.xyz, p3.xyz]);
         let arc = arc.ok_or_else(|| {
             CallError::new("out-of-range", format!("unknown arc type {}", r#type))
                 .expected("a type from 1 to 6")

@@ -66,7 +66,7 @@ impl<T: Real> Build<T> for Join<T> {
                 .help("move one of them, or state a larger `tolerance`")
                 .in_field(Self::SECOND));
         }
-        let shape = Edge { first: first.clone() };
+        let shape = JoinedEdge { first: first.clone() };
         let nesting = context.nesting.max(first.depth).max(second.depth);
         let mut edge = match &first.surface {
             Some(surface) => CurveRef::snake(shape, (**surface).clone(), nesting),
@@ -99,11 +99,11 @@ fn whole<T: Real>(edge: &CurveRef<T>, field: FieldId) -> Result<(), CallError> {
 }
 
 /// The first edge.
-struct Edge<T: Real> {
+struct JoinedEdge<T: Real> {
     first: CurveRef<T>,
 }
 
-impl<T: Real> Curve<T> for Edge<T> {
+impl<T: Real> Curve<T> for JoinedEdge<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         self.first.jet(t, order)
     }

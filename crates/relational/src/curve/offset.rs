@@ -35,7 +35,7 @@ impl<T: Real> Build<T> for OffsetCurve<T> {
         let mut ends = vec![0.0];
         ends.extend(curve.breaks());
         ends.push(1.0);
-        let shape = Beside { curve, distance, normal: plane.normal, ends };
+        let shape = ParallelCurve { curve, distance, normal: plane.normal, ends };
         // How fast the offset moves on, in units of the curve's own speed: at most 0 at a cusp.
         let mut worst = (f64::INFINITY, 0.0);
         for span in shape.ends.windows(2) {
@@ -71,7 +71,7 @@ impl<T: Real> Build<T> for OffsetCurve<T> {
     }
 }
 
-struct Beside<T: Real> {
+struct ParallelCurve<T: Real> {
     curve: CurveRef<T>,
     distance: T,
     normal: Vec3<T>,
@@ -79,7 +79,7 @@ struct Beside<T: Real> {
     ends: Vec<f64>,
 }
 
-impl<T: Real> Beside<T> {
+impl<T: Real> ParallelCurve<T> {
     /// The unit vector sideways of a direction, and its derivative along the rate of that.
     fn sideways(&self, d: Vec3<T>, rate: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
         let (a, b) = (d.cross(self.normal), rate.cross(self.normal));
@@ -127,7 +127,7 @@ impl<T: Real> Beside<T> {
     }
 }
 
-impl<T: Real> Curve<T> for Beside<T> {
+impl<T: Real> Curve<T> for ParallelCurve<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         let of_curve = if order == Order::Zero { Order::First } else { Order::Second };
         let [p, d, dd] = self.curve.jet(t, of_curve);

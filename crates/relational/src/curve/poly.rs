@@ -85,7 +85,7 @@ fn chain<T: Real>(
         check_joint(&curves, k, surface.is_some(), context.tolerance, pieces)?;
     }
     let trace = trace(&curves, &ends);
-    let shape = Chain { curves, ends, trace };
+    let shape = CompositeCurve { curves, ends, trace };
     Ok(Value::Curve(match surface {
         Some(surface) => CurveRef::snake(shape, surface, context.nesting),
         None => CurveRef::new(shape, context.nesting),
@@ -199,13 +199,13 @@ fn trace<T: Real>(curves: &[CurveRef<T>], ends: &[T]) -> Trace<T> {
     Trace::Pieces(all)
 }
 
-struct Chain<T: Real> {
+struct CompositeCurve<T: Real> {
     curves: Vec<CurveRef<T>>,
     ends: Vec<T>,
     trace: Trace<T>,
 }
 
-impl<T: Real> Chain<T> {
+impl<T: Real> CompositeCurve<T> {
     /// The piece in charge at `t`, the parameter in it, and that one's rate.
     fn local(&self, t: T) -> (&CurveRef<T>, T, T) {
         let inner = &self.ends[1..self.ends.len() - 1];
@@ -219,7 +219,7 @@ fn sped<T: Real>(jet: CurveJet<T>, rate: T) -> CurveJet<T> {
     [jet[0], jet[1] * rate, jet[2] * (rate * rate)]
 }
 
-impl<T: Real> Curve<T> for Chain<T> {
+impl<T: Real> Curve<T> for CompositeCurve<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         let (curve, s, rate) = self.local(t);
         sped(curve.jet(s, order), rate)

@@ -1,7 +1,7 @@
 //! Copies of curves: moved to new ends, scaled, turned.
 
 use super::Ended;
-use crate::affine::{Affine, Mapped};
+use crate::affine::{Mapped, PivotTransform};
 use moldloft_num::{Axis, Curve, CurveJet, Order, Real, Reparametrization, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 use std::sync::Arc;
@@ -116,7 +116,7 @@ impl<T: Real> Build<T> for CopyCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, from, to, sx, sy, sz } = self;
         let nesting = curve.depth;
-        let map = Affine::scaled(from.xyz, to.xyz, [sx, sy, sz]);
+        let map = PivotTransform::scaled(from.xyz, to.xyz, [sx, sy, sz]);
         Ok(Value::Curve(CurveRef::new(Mapped { curve, map }, nesting)))
     }
 }
@@ -142,7 +142,7 @@ pub struct RotatCurve<T: Real> {
 impl<T: Real> Build<T> for RotatCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let nesting = self.curve.depth;
-        let map = Affine::turned(self.line, self.angle);
+        let map = PivotTransform::turned(self.line, self.angle);
         Ok(Value::Curve(CurveRef::new(Mapped { curve: self.curve, map }, nesting)))
     }
 }

@@ -1,6 +1,6 @@
 //! Points off surfaces, on tangents, turned, copied, blended, and centroids.
 
-use crate::affine::Affine;
+use crate::affine::PivotTransform;
 use crate::arguments::{Bead, Magnet};
 use crate::normal::normal;
 use moldloft_num::{Axis, Order, Real, Vec3};
@@ -134,7 +134,7 @@ pub struct CopyPoint<T: Real> {
 impl<T: Real> Build<T> for CopyPoint<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { point, from, to, sx, sy, sz } = self;
-        image(Affine::scaled(from.xyz, to.xyz, [sx, sy, sz]).point(point.xyz), &point)
+        image(PivotTransform::scaled(from.xyz, to.xyz, [sx, sy, sz]).point(point.xyz), &point)
     }
 }
 

@@ -153,7 +153,7 @@ pub(super) struct Both<T: Real> {
 }
 
 /// Both shapes at a place of the cut: where it is, unit tangent, derivatives by the length.
-pub(super) struct Along<T> {
+pub(super) struct CutJet<T> {
     pub x: Vec3<T>,
     pub tangent: Vec3<T>,
     /// Of u and v.
@@ -276,7 +276,7 @@ impl<T: Real> Both<T> {
 
     /// Derivatives by the length at a place, in the direction of `d`: with N = n1 x n2 for normals
     /// that are no unit vectors, T = N / |N| and T' = (N' - T (T . N')) / |N|.
-    pub fn along(&self, [u, v, p, r]: [T; 4], d: Vec3, order: Order) -> Option<Along<T>> {
+    pub fn along(&self, [u, v, p, r]: [T; 4], d: Vec3, order: Order) -> Option<CutJet<T>> {
         let j = self.first.jet(u, v, order);
         let k = match &self.second {
             Second::Surface(surface) => Some(surface.jet(p, r, order)),
@@ -305,7 +305,7 @@ impl<T: Real> Both<T> {
         };
         let rate = in_plane(&j, tangent)?;
         let mut found =
-            Along { x: j.p, tangent, rate, bend: [T::zero(); 2], curvature: Vec3::zero() };
+            CutJet { x: j.p, tangent, rate, bend: [T::zero(); 2], curvature: Vec3::zero() };
         if order != Order::Second {
             return Some(found);
         }

@@ -1,12 +1,12 @@
 //! Snakes along which a surface meets a plane or another surface.
 
 use super::arguments::{Onto, Target};
-use super::cut::{Along, Both, Cut, Second};
+use super::cut::{Both, Cut, CutJet, Second};
 use super::outcome::no_intersection;
 use super::pieces::{PieceEnd, at_seam, fitted, laid};
 use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, refined, solve};
-use moldloft_locate::march::{Branch, Crossing, End, Other, TracePoint, Unknowns};
+use moldloft_locate::march::{Branch, BranchEnd, Crossing, Other, TracePoint, Unknowns};
 use moldloft_locate::{LocateReport, LocateStatus, PlainSurface};
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, slope_scale};
@@ -93,17 +93,19 @@ impl<T: Real> Build<T> for IntCurve<T> {
 
 /// The fields that an intersection may fail for.
 #[derive(Clone, Copy)]
-struct Fields {
+struct IntersectionFields {
     target: FieldId,
     ends: [FieldId; 2],
 }
 
 impl<T: Real> IntSnake<T> {
-    const FIELDS: Fields = Fields { target: Self::TARGET, ends: [Self::START, Self::END] };
+    const FIELDS: IntersectionFields =
+        IntersectionFields { target: Self::TARGET, ends: [Self::START, Self::END] };
 }
 
 impl<T: Real> IntCurve<T> {
-    const FIELDS: Fields = Fields { target: Self::TARGET, ends: [Self::START, Self::END] };
+    const FIELDS: IntersectionFields =
+        IntersectionFields { target: Self::TARGET, ends: [Self::START, Self::END] };
 }
 
 /// A cut that is not known as a curve on its surface.
@@ -130,7 +132,7 @@ fn cut<T: Real>(
     target: Target<T>,
     [start, end]: [Option<Magnet<T>>; 2],
     point: Option<Point<T>>,
-    fields: Fields,
+    fields: IntersectionFields,
     context: &Context,
 ) -> Result<(Cut<T>, SearchReport), CallError> {
     let (other, second_start) = match target {
@@ -257,7 +259,7 @@ fn traced<T: Real>(
     second: Second<T>,
     second_start: Option<[f64; 2]>,
     ends: [Option<Magnet<T>>; 2],
-    fields: Fields,
+    fields: IntersectionFields,
     context: &Context,
 ) -> Result<(Cut<T>, SearchReport), CallError> {
     let first = &onto.surface;
@@ -352,7 +354,7 @@ fn set_up<T: Real>(
     crossing: &Crossing<'_>,
     mut branch: Branch,
     onto: &Onto<T>,
-    (ends, fields): (&[Option<Magnet<T>>; 2], Fields),
+    (ends, fields): (&[Option<Magnet<T>>; 2], IntersectionFields),
     context: &Context,
 ) -> Result<Cut<T>, CallError> {
     // Stations of the given ends.
@@ -460,7 +462,7 @@ fn set_up<T: Real>(
     }
     for (k, end) in branch.ends.iter().enumerate() {
         let given = places[k].is_some();
-        if !given && matches!(end, End::Tangent | End::Lost) {
+        if !given && matches!(end, BranchEnd::Tangent | BranchEnd::Lost) {
             return Err(lost("a place where they are tangent").in_field(fields.target));
         }
     }
@@ -478,7 +480,7 @@ fn set_up<T: Real>(
             return None;
         }
         match branch.ends[k] {
-            End::Edge { unknown, value } => at_joint(&station.q, (unknown, value)),
+            BranchEnd::Edge { unknown, value } => at_joint(&station.q, (unknown, value)),
             _ => Some(Vec3::lifted(station.x)),
         }
     };
@@ -503,7 +505,7 @@ fn set_up<T: Real>(
         pieces.push(piece);
     }
     let (Some(head), Some(tail)) = (pieces.first(), pieces.last()) else { return Err(failed()) };
-    let at_end = |k: usize, order: Order| -> Option<Along<T>> {
+    let at_end = |k: usize, order: Order| -> Option<CutJet<T>> {
         let (piece, stop, y) =
             if k == 0 { (head, stops[0], -1.0) } else { (tail, stops[stops.len() - 1], 1.0) };
         let q = both.unknowns(&piece.guide, stop.station.q, T::from(y))?;

@@ -53,7 +53,7 @@ fn cubic(a: &TracePoint, b: &TracePoint) -> Guide {
 }
 
 /// A stretch with a cubic near it, in plain numbers.
-pub(super) struct Fit {
+pub(super) struct PieceFit {
     guide: Guide,
     /// The unknowns at the nodes.
     at: [Unknowns; NODES],
@@ -75,7 +75,7 @@ fn speed<T: Real>([c, d, dd]: [Vec3; 3], x: Vec3<T>, tangent: Vec3<T>) -> T {
 /// The matrix of [`to_powers`].
 type Matrix = [[f64; NODES]; NODES];
 
-impl Fit {
+impl PieceFit {
     /// The stretch between two stops, and whether its speed and its places are polynomials.
     fn new(
         crossing: &Crossing<'_>,
@@ -143,9 +143,9 @@ fn powers(matrix: &Matrix, at: &[Unknowns; NODES]) -> [Unknowns; NODES] {
 
 /// The stretches between the stops, halved until the speed of each is a polynomial; `None` where
 /// they cannot be followed.
-pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<Fit>> {
+pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<PieceFit>> {
     let matrix = to_powers();
-    let mut all: Vec<Fit> = Vec::with_capacity(stops.len());
+    let mut all: Vec<PieceFit> = Vec::with_capacity(stops.len());
     let mut seam = false;
     for pair in stops.windows(2) {
         // Nothing lies between the two stations at a seam or a crease.
@@ -157,7 +157,7 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
         let mut a = pair[0];
         let mut open = vec![(pair[1], 0)];
         while let Some((b, halvings)) = open.pop() {
-            let (fit, good) = Fit::new(crossing, &matrix, &a, &b)?;
+            let (fit, good) = PieceFit::new(crossing, &matrix, &a, &b)?;
             let middle = || {
                 let [c, d, _] = on_guide(&fit.guide, 0.0);
                 let guess = guess(&powers(&matrix, &fit.at), 0.0);
@@ -171,7 +171,7 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
             match (!good && halvings < MOST_HALVINGS).then(middle).flatten() {
                 Some(m) => open.extend([(b, halvings + 1), (m, halvings + 1)]),
                 None => {
-                    all.push(Fit { seam, ..fit });
+                    all.push(PieceFit { seam, ..fit });
                     (a, seam) = (b, false);
                 }
             }
@@ -184,7 +184,7 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[PieceEnd]) -> Option<Vec<
 /// one when the model's parameters change. `joint` gives it.
 pub(super) fn laid<T: Real>(
     both: &Both<T>,
-    fit: &Fit,
+    fit: &PieceFit,
     begin: T,
     joint: impl Fn(&Unknowns, (usize, f64)) -> Option<Vec3<T>>,
 ) -> Option<CutPiece<T>> {

@@ -48,17 +48,17 @@ impl<T: Real> Build<T> for ContactSnake<T> {
         let trace = edge_trace(&fillet, if side == 1 { 0 } else { 2 });
         let surface = curve.surface.as_deref().cloned().expect("a contact lies on a surface");
         let nesting = context.nesting.max(curve.depth);
-        Ok(Value::Curve(CurveRef::snake(Contact { curve, trace }, surface, nesting)))
+        Ok(Value::Curve(CurveRef::snake(ContactCurve { curve, trace }, surface, nesting)))
     }
 }
 
 /// The curve along which a fillet touches, as its edge.
-struct Contact<T: Real> {
+struct ContactCurve<T: Real> {
     curve: CurveRef<T>,
     trace: Trace<T>,
 }
 
-impl<T: Real> Curve<T> for Contact<T> {
+impl<T: Real> Curve<T> for ContactCurve<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         self.curve.jet(t, order)
     }

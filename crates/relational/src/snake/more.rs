@@ -61,7 +61,7 @@ impl<T: Real> Build<T> for ArcSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2, m3, r#type } = self;
         let (surface, places) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
-        let Some(arc) = moldloft_spline::Arc::of_type(r#type, places) else {
+        let Some(arc) = moldloft_spline::CircularArc::of_type(r#type, places) else {
             return Err(CallError::new("out-of-range", format!("unknown arc type {}", r#type))
                 .expected("a type from 1 to 6")
                 .found(r#type.to_string())

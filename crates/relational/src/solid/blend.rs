@@ -58,13 +58,13 @@ impl<T: Real> Build<T> for BlendSolid<T> {
                 .in_item(k)
                 .in_field(Self::TURNS));
         }
-        let solid = Blend { surfaces, turns: given.map(|t| Turn(t as u8)) };
+        let solid = CoonsSolid { surfaces, turns: given.map(|t| Turn(t as u8)) };
         solid.check()?;
         Ok(Value::Solid(SolidRef::new(solid, context.nesting)))
     }
 }
 
-struct Blend<T: Real> {
+struct CoonsSolid<T: Real> {
     surfaces: [SurfaceRef<T>; 6],
     turns: [Turn; 6],
 }
@@ -84,7 +84,7 @@ const MEETING: f64 = 1e-9;
 /// The parameters at which edges are compared.
 const TRIALS: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
 
-impl<T: Real> Blend<T> {
+impl<T: Real> CoonsSolid<T> {
     /// The position on face 0..6, turned so, at two of the three parameters.
     fn turned<J: Jet<T>>(&self, face: usize, turn: Turn, at: [J; 3]) -> Vec3<J> {
         let [a, b] = others(face / 2);
@@ -176,7 +176,7 @@ fn shares<J: Real>(t: J) -> [J; 2] {
     [-t + 1.0, t]
 }
 
-impl<T: Real> SolidFormula for Blend<T> {
+impl<T: Real> SolidFormula for CoonsSolid<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J, w: J) -> Vec3<J> {

@@ -32,7 +32,8 @@ pub struct RuledSolid<T: Real> {
 impl<T: Real> Build<T> for RuledSolid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let knots = KnotVector::clamped_uniform(1, 2).expect("two knots at each end");
-        let solid = Loft { layers: vec![self.s1, self.s2], across: Across::Blend(knots) };
+        let solid =
+            LoftedSolid { layers: vec![self.s1, self.s2], across: LoftMethod::Blend(knots) };
         Ok(Value::Solid(SolidRef::new(solid, context.nesting)))
     }
 }
@@ -66,7 +67,7 @@ impl<T: Real> Build<T> for BLoftSolid<T> {
         let count = several(&self.surfaces, Self::SURFACES)?;
         let knots = KnotVector::clamped_uniform(self.degree.min(count - 1), count)
             .map_err(|error| faults::of_spline(error.into(), Self::SURFACES, Self::DEGREE))?;
-        let solid = Loft { layers: self.surfaces, across: Across::Blend(knots) };
+        let solid = LoftedSolid { layers: self.surfaces, across: LoftMethod::Blend(knots) };
         Ok(Value::Solid(SolidRef::new(solid, context.nesting)))
     }
 }
@@ -108,7 +109,7 @@ impl<T: Real> Build<T> for CLoftSolid<T> {
                 .expected("\"notaknot\", \"natural\", \"bessel\" or \"quadratic\"")
                 .in_field(Self::ENDS));
         }
-        let solid = Loft { layers: surfaces, across: Across::Spline(ends) };
+        let solid = LoftedSolid { layers: surfaces, across: LoftMethod::Spline(ends) };
         for (u, v) in TRIALS.iter().flat_map(|&u| TRIALS.map(|v| (u, v))) {
             let points = solid.column(T::from(u), T::from(v));
             if let Err(error) = solid.spline(ends, &points)
@@ -136,19 +137,19 @@ fn several<T: Real>(surfaces: &[SurfaceRef<T>], field: FieldId) -> Result<usize,
         .in_field(field))
 }
 
-enum Across {
+enum LoftMethod {
     Blend(KnotVector),
     Spline(EndRule),
 }
 
-struct Loft<T: Real> {
+struct LoftedSolid<T: Real> {
     layers: Vec<SurfaceRef<T>>,
-    across: Across,
+    across: LoftMethod,
 }
 
 type Points<S> = SmallVec<[Vec3<S>; 6]>;
 
-impl<T: Real> Loft<T> {
+impl<T: Real> LoftedSolid<T> {
     fn column<J: Jet<T>>(&self, u: J, v: J) -> Points<J> {
         self.layers.iter().map(|surface| surface.at(u, v)).collect()
     }
@@ -164,14 +165,14 @@ impl<T: Real> Loft<T> {
     /// The points at `ws` of one line along w.
     fn line<S: Real>(&self, points: &[Vec3<S>], ws: &[S], mut out: impl FnMut(Vec3<S>)) {
         match &self.across {
-            Across::Blend(knots) => {
+            LoftMethod::Blend(knots) => {
                 for &w in ws {
                     let basis = knots.basis(w, Order::Zero);
                     let shares = basis.rows[0].iter().zip(&points[basis.first..]);
                     out(shares.fold(Vec3::zero(), |sum, (&b, &p)| sum + p * b));
                 }
             }
-            Across::Spline(ends) => match self.spline(*ends, points) {
+            LoftMethod::Spline(ends) => match self.spline(*ends, points) {
                 Ok(spline) => ws.iter().for_each(|&w| out(spline.jet(w, Order::Zero)[0])),
                 // All surfaces meet here, as far as was tried.
                 Err(_) => ws.iter().for_each(|_| out(points[0])),
@@ -180,7 +181,7 @@ impl<T: Real> Loft<T> {
     }
 }
 
-impl<T: Real> SolidFormula for Loft<T> {
+impl<T: Real> SolidFormula for LoftedSolid<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J, w: J) -> Vec3<J> {
@@ -218,8 +219,8 @@ impl<T: Real> SolidFormula for Loft<T> {
         faces.layers = Some(Layers {
             surfaces: self.layers.iter().map(|s| (s.key, edges_of(s))).collect(),
             law: match &self.across {
-                Across::Blend(knots) => LayerLaw::Blend(knots.degree()),
-                Across::Spline(ends) => LayerLaw::Spline(*ends as usize),
+                LoftMethod::Blend(knots) => LayerLaw::Blend(knots.degree()),
+                LoftMethod::Spline(ends) => LayerLaw::Spline(*ends as usize),
             },
         });
         faces

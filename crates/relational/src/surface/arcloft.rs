@@ -5,7 +5,7 @@ use super::masters::Masters;
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Real};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
-use moldloft_spline::{Arc, ArcError};
+use moldloft_spline::{ArcError, CircularArc};
 
 /// Circular arcs by three curves: at each u the arc of the type, as for `Arc`, whose three points are
 /// those of the curves at u.
@@ -75,7 +75,7 @@ impl<T: Real> ArcLoft<T> {
             // An end in a point.
             return None;
         }
-        match Arc::of_type(self.kind, [p, q, r])? {
+        match CircularArc::of_type(self.kind, [p, q, r])? {
             Err(ArcError::AtCentre) => Some(("a point is at the centre", "points off the centre")),
             Err(ArcError::Collinear) => {
                 Some(("the three points are in line", "points that span a plane"))
@@ -100,15 +100,15 @@ impl<T: Real> ArcLoft<T> {
 
 impl<T: Real> Column for ArcLoft<T> {
     type Scalar = T;
-    type Across<S: Real> = Arc<S>;
+    type Across<S: Real> = CircularArc<S>;
 
-    fn across<J: Jet<T>>(&self, u: J) -> Option<Arc<J>> {
+    fn across<J: Jet<T>>(&self, u: J) -> Option<CircularArc<J>> {
         let points = self.masters.at(u);
         let [p, q, r] = [points[0], points[1], points[2]];
-        match Arc::of_type(self.kind, [p, q, r])? {
+        match CircularArc::of_type(self.kind, [p, q, r])? {
             Ok(arc) => Some(arc),
             // An end in a point.
-            Err(_) => Arc::through(p, (p + r) * J::from(0.5), r).ok(),
+            Err(_) => CircularArc::through(p, (p + r) * J::from(0.5), r).ok(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! B-spline lofts: attracted by their master curves.
 
-use super::linear::Blend;
+use super::linear::LinearLoft;
 use super::masters::Masters;
 use crate::faults;
 use moldloft_num::Real;
@@ -36,6 +36,6 @@ impl<T: Real> Build<T> for BLoftSurf<T> {
         let masters = Masters::new(curves, Self::CURVES)?;
         let knots = KnotVector::clamped_uniform(degree.min(count - 1), count)
             .map_err(|error| faults::of_spline(error.into(), Self::CURVES, Self::DEGREE))?;
-        Ok(Value::Surface(SurfaceRef::new(Blend { masters, knots }, context.nesting)))
+        Ok(Value::Surface(SurfaceRef::new(LinearLoft { masters, knots }, context.nesting)))
     }
 }

@@ -30,7 +30,7 @@ pub struct BlendSurf<T: Real> {
 
 impl<T: Real> Build<T> for BlendSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let boundary = Boundary::new(self.curves, Self::CURVES)?;
+        let boundary = CoonsBoundary::new(self.curves, Self::CURVES)?;
         let patch = CoonsPatch { boundary, lift: None };
         Ok(Value::Surface(SurfaceRef::new(patch, context.nesting)))
     }
@@ -57,7 +57,7 @@ pub struct BlendCenter<T: Real> {
 
 impl<T: Real> Build<T> for BlendCenter<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let boundary = Boundary::new(self.curves, Self::CURVES)?;
+        let boundary = CoonsBoundary::new(self.curves, Self::CURVES)?;
         let half = T::from(0.5);
         let lift = Some((self.centre.xyz - boundary.coons(half, half)) * T::from(16.0));
         let patch = CoonsPatch { boundary, lift };
@@ -66,7 +66,7 @@ impl<T: Real> Build<T> for BlendCenter<T> {
 }
 
 /// Three or four curves round a patch, which meet.
-pub struct Boundary<T: Real> {
+pub struct CoonsBoundary<T: Real> {
     pub curves: Vec<CurveRef<T>>,
     /// The positions at (0, 0), (1, 0), (1, 1), (0, 1).
     pub corners: [Vec3<T>; 4],
@@ -76,7 +76,7 @@ pub struct Boundary<T: Real> {
 /// panels take as one place.
 const MEETING: f64 = 1e-9;
 
-impl<T: Real> Boundary<T> {
+impl<T: Real> CoonsBoundary<T> {
     /// # Errors
     /// `wrong-length` and `open-corner`, in field `field`.
     pub fn new(curves: Vec<CurveRef<T>>, field: FieldId) -> Result<Self, CallError> {
@@ -146,7 +146,7 @@ impl<T: Real> Boundary<T> {
 }
 
 struct CoonsPatch<T: Real> {
-    boundary: Boundary<T>,
+    boundary: CoonsBoundary<T>,
     /// 16 times the way from the middle of the Coons patch to the centre.
     lift: Option<Vec3<T>>,
 }

@@ -2,7 +2,7 @@
 
 use super::column::{Bezier, Column, Columns};
 use super::masters::{Points, along};
-use super::ribbon::{Along, ribbon, unit};
+use super::ribbon::{SnakePoint, ribbon, unit};
 use crate::arguments::Snake;
 use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Jet, Real, Vec3};
@@ -121,7 +121,7 @@ struct Fillet<T: Real> {
 
 impl<T: Real> FilletSide<T> {
     /// The unit direction along increasing v, zero where there is none.
-    fn direction<J: Jet<T>>(&self, at: &Along<J>, chord: Vec3<J>) -> Vec3<J> {
+    fn direction<J: Jet<T>>(&self, at: &SnakePoint<J>, chord: Vec3<J>) -> Vec3<J> {
         let raw = match self.direction {
             Direction::Perpendicular => at.normal.cross(at.along),
             Direction::Chord => chord - at.normal * at.normal.dot(chord),
@@ -137,7 +137,7 @@ impl<T: Real> Fillet<T> {
     }
 
     /// The points, chord and directions at a plain parameter.
-    fn plain(&self, u: f64) -> ([Along<T>; 2], Vec3<f64>, [Vec3<f64>; 2]) {
+    fn plain(&self, u: f64) -> ([SnakePoint<T>; 2], Vec3<f64>, [Vec3<f64>; 2]) {
         let ends = [0, 1].map(|k| ribbon(&self.sides[k].snake, T::from(u)));
         let chord = ends[1].p - ends[0].p;
         let directions = [0, 1].map(|k| self.sides[k].direction(&ends[k], chord).re());

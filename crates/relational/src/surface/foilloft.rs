@@ -2,7 +2,7 @@
 
 use super::column::{Column, Columns};
 use super::masters::Masters;
-use crate::foil::{Arguments, foil_kind};
+use crate::foil::{FoilArguments, foil_kind};
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Real};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
@@ -58,7 +58,7 @@ impl<T: Real> Build<T> for FoilLoftSurf<T> {
 
 struct FoilLoft<T: Real> {
     masters: Masters<T>,
-    section: Arguments<T>,
+    section: FoilArguments<T>,
     half: bool,
     /// True when the tail is drawn to its curves.
     closed: bool,

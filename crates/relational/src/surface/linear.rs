@@ -7,13 +7,13 @@ use moldloft_num::{Order, Rational, Real, SurfJet, Surface, Uni1, Vec3};
 use moldloft_spline::{Basis, KnotVector};
 
 /// Masters blended by the basis functions of a clamped knot vector.
-pub struct Blend<T: Real> {
+pub struct LinearLoft<T: Real> {
     pub masters: Masters<T>,
     /// As many control points as masters, on [0, 1].
     pub knots: KnotVector,
 }
 
-impl<T: Real> Blend<T> {
+impl<T: Real> LinearLoft<T> {
     /// The jet from basis functions; `times` multiplies a coordinate with a basis function, which
     /// is a plain number wherever v is.
     fn combine<S: Real>(
@@ -87,7 +87,7 @@ fn blend(planes: &[Plane], q: impl Fn(usize) -> f64, n: usize, out: &mut Plane) 
     }
 }
 
-impl<T: Real> Surface<T> for Blend<T> {
+impl<T: Real> Surface<T> for LinearLoft<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
         if v.is_constant() {
             let basis = self.knots.basis(v.re(), order);

@@ -7,7 +7,7 @@ use moldloft_registry::{
 };
 
 /// An affine map: p goes to `to` + A (p - `from`).
-enum Linear<T: Real> {
+enum AffineTransform<T: Real> {
     /// A turn about an axis, with the cosine and sine of its angle.
     Turn(Axis<T>, T, T),
     /// A shift and a stretch along the three axes.
@@ -16,34 +16,36 @@ enum Linear<T: Real> {
     Reflection(MirrorArgument<T>),
 }
 
-impl<T: Real> Linear<T> {
+impl<T: Real> AffineTransform<T> {
     fn point(&self, p: Vec3<T>) -> Vec3<T> {
         match self {
-            Linear::Turn(axis, c, s) => axis.turned(p, *c, *s),
-            Linear::Stretch { from, to, .. } => *to + self.direction(p - *from),
-            Linear::Reflection(mirror) => mirror.image(p),
+            AffineTransform::Turn(axis, c, s) => axis.turned(p, *c, *s),
+            AffineTransform::Stretch { from, to, .. } => *to + self.direction(p - *from),
+            AffineTransform::Reflection(mirror) => mirror.image(p),
         }
     }
 
     fn direction(&self, d: Vec3<T>) -> Vec3<T> {
         match self {
-            Linear::Turn(axis, c, s) => {
+            AffineTransform::Turn(axis, c, s) => {
                 Axis { point: Vec3::zero(), direction: axis.direction }.turned(d, *c, *s)
             }
-            Linear::Stretch { factors: f, .. } => Vec3::new(d.x * f.x, d.y * f.y, d.z * f.z),
-            Linear::Reflection(mirror) => mirror.direction(d, false),
+            AffineTransform::Stretch { factors: f, .. } => {
+                Vec3::new(d.x * f.x, d.y * f.y, d.z * f.z)
+            }
+            AffineTransform::Reflection(mirror) => mirror.direction(d, false),
         }
     }
 
     /// The image of a unit normal: A n x A m = det(A) A^-T (n x m).
     fn normal(&self, n: Vec3<T>) -> Vec3<T> {
         match self {
-            Linear::Turn(..) => self.direction(n),
-            Linear::Stretch { factors: f, .. } => {
+            AffineTransform::Turn(..) => self.direction(n),
+            AffineTransform::Stretch { factors: f, .. } => {
                 let m = Vec3::new(n.x * f.y * f.z, n.y * f.z * f.x, n.z * f.x * f.y);
                 m.normalized().unwrap_or_default()
             }
-            Linear::Reflection(mirror) => {
+            AffineTransform::Reflection(mirror) => {
                 let turned = mirror.direction(n, false);
                 if mirror.reverses() { -turned } else { turned }
             }
@@ -53,16 +55,16 @@ impl<T: Real> Linear<T> {
     /// True when the map turns the natural normal round.
     fn reverses(&self) -> bool {
         match self {
-            Linear::Turn(..) => false,
-            Linear::Stretch { factors: f, .. } => f.x.re() * f.y.re() * f.z.re() < 0.0,
-            Linear::Reflection(mirror) => mirror.reverses(),
+            AffineTransform::Turn(..) => false,
+            AffineTransform::Stretch { factors: f, .. } => f.x.re() * f.y.re() * f.z.re() < 0.0,
+            AffineTransform::Reflection(mirror) => mirror.reverses(),
         }
     }
 }
 
 struct Image<T: Real> {
     surface: SurfaceRef<T>,
-    map: Linear<T>,
+    map: AffineTransform<T>,
 }
 
 impl<T: Real> Surface<T> for Image<T> {
@@ -137,7 +139,7 @@ pub struct MirrSurf<T: Real> {
 
 impl<T: Real> Build<T> for MirrSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let image = Image { surface: self.surface, map: Linear::Reflection(self.mirror) };
+        let image = Image { surface: self.surface, map: AffineTransform::Reflection(self.mirror) };
         Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
     }
 }
@@ -166,7 +168,7 @@ pub struct RotatSurf<T: Real> {
 impl<T: Real> Build<T> for RotatSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let (c, s) = super::revolved::cos_sin(self.angle);
-        let image = Image { surface: self.surface, map: Linear::Turn(self.line, c, s) };
+        let image = Image { surface: self.surface, map: AffineTransform::Turn(self.line, c, s) };
         Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
     }
 }
@@ -212,7 +214,7 @@ impl<T: Real> Build<T> for CopySurf<T> {
                 .found(format!("{zeros} factors of 0"))
                 .in_field(Self::SX));
         }
-        let map = Linear::Stretch { from: from.xyz, to: to.xyz, factors };
+        let map = AffineTransform::Stretch { from: from.xyz, to: to.xyz, factors };
         let image = Image { surface, map };
         Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
     }
@@ -248,16 +250,16 @@ impl<T: Real> Build<T> for ProjSurf<T> {
             .found("a line or point")
             .in_field(Self::MIRROR));
         }
-        Ok(Value::Surface(SurfaceRef::new(Foot { surface, mirror }, context.nesting)))
+        Ok(Value::Surface(SurfaceRef::new(ProjectedSurface { surface, mirror }, context.nesting)))
     }
 }
 
-struct Foot<T: Real> {
+struct ProjectedSurface<T: Real> {
     surface: SurfaceRef<T>,
     mirror: MirrorArgument<T>,
 }
 
-impl<T: Real> Surface<T> for Foot<T> {
+impl<T: Real> Surface<T> for ProjectedSurface<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
         let jet = self.surface.jet(u, v, order);
         let flat = |d| self.mirror.direction(d, true);

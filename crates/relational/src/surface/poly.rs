@@ -50,7 +50,10 @@ impl<T: Real> Build<T> for PolySurf<T> {
             sides.check_seam(k, context.tolerance)?;
         }
         let edges = sides.edges(&ends);
-        Ok(Value::Surface(SurfaceRef::new(Join { sides, ends, edges }, context.nesting)))
+        Ok(Value::Surface(SurfaceRef::new(
+            CompositeSurface { sides, ends, edges },
+            context.nesting,
+        )))
     }
 }
 
@@ -174,14 +177,14 @@ impl<T: Real> PiecewiseSurface<T> {
     }
 }
 
-struct Join<T: Real> {
+struct CompositeSurface<T: Real> {
     sides: PiecewiseSurface<T>,
     /// The parameters at which pieces begin and end, 0 and 1 included.
     ends: Vec<T>,
     edges: Edges<T>,
 }
 
-impl<T: Real> Join<T> {
+impl<T: Real> CompositeSurface<T> {
     /// The piece in charge at `t`, the parameter in it, and that one's rate.
     fn local(&self, t: T) -> (usize, T, T) {
         let inner = &self.ends[1..self.ends.len() - 1];
@@ -191,7 +194,7 @@ impl<T: Real> Join<T> {
     }
 }
 
-impl<T: Real> Surface<T> for Join<T> {
+impl<T: Real> Surface<T> for CompositeSurface<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
         let (k, s, rate) = self.local(if self.sides.by_u { u } else { v });
         let surface = &self.sides.surfaces[k];

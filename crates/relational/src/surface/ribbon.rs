@@ -6,7 +6,7 @@ use moldloft_num::{Jet, Order, Real, Vec3, lift_curve};
 
 /// A point of a snake with the tangent plane of its surface.
 #[derive(Clone, Copy)]
-pub struct Along<J> {
+pub struct SnakePoint<J> {
     /// The place (u, v, 0) on the surface.
     pub place: Vec3<J>,
     /// The position.
@@ -20,12 +20,12 @@ pub struct Along<J> {
 }
 
 /// The tangent plane at parameter `t` of a snake.
-pub fn ribbon<T: Real, J: Jet<T>>(snake: &Snake<T>, t: J) -> Along<J> {
+pub fn ribbon<T: Real, J: Jet<T>>(snake: &Snake<T>, t: J) -> SnakePoint<J> {
     let path = |t: T, order: Order| snake.path(t, order);
     let place = lift_curve(&path(t.value(), J::ORDER), t);
     let step = tangent(path, || snake.curve.breaks(), t);
     let [su, sv] = tangents(&*snake.surface, place.x, place.y);
-    Along {
+    SnakePoint {
         place,
         p: snake.surface.at(place.x, place.y),
         along: su * step.x + sv * step.y,
@@ -39,7 +39,7 @@ pub fn unit<J: Real>(v: Vec3<J>) -> Vec3<J> {
     v.normalized().unwrap_or_default()
 }
 
-impl<J: Real> Along<J> {
+impl<J: Real> SnakePoint<J> {
     /// The normal curvature of the surface in the direction of a tangent vector, times the square
     /// of its length; positive where the surface bends towards its normal.
     pub fn bend<T: Real>(&self, snake: &Snake<T>, d: Vec3<J>) -> J

@@ -17,7 +17,7 @@ use moldloft_registry::export::StaticRow;
 use moldloft_registry::{
     Build, CallError, Context, CurveRef, Kind, Point, Scalar, SurfaceRef, Value,
 };
-use moldloft_spline::{Arc, BSplineCurve};
+use moldloft_spline::{BSplineCurve, CircularArc};
 use std::sync;
 
 /// A fillet that a rolling ball leaves between two surfaces: circular arcs from where the ball touches
@@ -191,7 +191,7 @@ impl<T: Real> Ball<T> {
     /// Where the ball of `radius` touches at stations along its way, without jumps at seams: beyond
     /// one, parameters run on past 0 or 1.
     fn stations(&self) -> Vec<[f64; 4]> {
-        let second = Beside { ball: self, k: 1 };
+        let second = BallCentreSurface { ball: self, k: 1 };
         let second: &dyn Surface<T> = &second;
         let second = PlainSurface(second);
         let mut last: Option<[f64; 2]> = None;
@@ -225,12 +225,12 @@ impl<T: Real> Ball<T> {
 }
 
 /// The surface that the centre of the ball of `radius` lies on, for surface `k`.
-struct Beside<'b, T: Real> {
+struct BallCentreSurface<'b, T: Real> {
     ball: &'b Ball<T>,
     k: usize,
 }
 
-impl<T: Real> SurfaceFormula for Beside<'_, T> {
+impl<T: Real> SurfaceFormula for BallCentreSurface<'_, T> {
     type Scalar = T;
     fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
         self.ball.centre(self.k, J::fixed(self.ball.radius), [u, v])
@@ -371,7 +371,7 @@ impl<T: Real> Rolled<T> {
         let [first, last] = [0.0, 1.0].map(|u| self.across(T::from(u)));
         let (Some(first), Some(last)) = (first, last) else { return false };
         let along = |u: f64| self.ball.spine.jet(T::from(u), Order::First)[1].re();
-        let place = |arc: &Arc<T>, v: f64| arc.at(T::from(v)).re();
+        let place = |arc: &CircularArc<T>, v: f64| arc.at(T::from(v)).re();
         let size = self.ball.radius.re() + place(&first, 0.0).norm();
         let meets = |v: f64| place(&first, v).distance(place(&last, v)) <= 1e-9 * size;
         [0.0, 0.5, 1.0].into_iter().all(meets) && along(0.0).dot(along(1.0)) > 0.0
@@ -388,11 +388,11 @@ impl<T: Real> Rolled<T> {
         Some([within(round[0], [a, b]), within(round[1], [c, d])])
     }
 
-    fn across<J: Jet<T>>(&self, u: J) -> Option<Arc<J>> {
+    fn across<J: Jet<T>>(&self, u: J) -> Option<CircularArc<J>> {
         let places = self.places(u)?;
         let centre = self.ball.centre(0, self.ball.radius(u), places[0]);
         let [first, second] = [0, 1].map(|k| self.ball.surfaces[k].at(places[k][0], places[k][1]));
-        Arc::about(first, centre, second).ok()
+        CircularArc::about(first, centre, second).ok()
     }
 
     fn breaks(&self) -> Vec<f64> {
@@ -411,9 +411,9 @@ struct Rolling<T: Real>(sync::Arc<Rolled<T>>);
 
 impl<T: Real> Column for Rolling<T> {
     type Scalar = T;
-    type Across<S: Real> = Arc<S>;
+    type Across<S: Real> = CircularArc<S>;
 
-    fn across<J: Jet<T>>(&self, u: J) -> Option<Arc<J>> {
+    fn across<J: Jet<T>>(&self, u: J) -> Option<CircularArc<J>> {
         self.0.across(u)
     }
 

@@ -1,6 +1,6 @@
 //! Ruled surfaces between two curves.
 
-use super::linear::Blend;
+use super::linear::LinearLoft;
 use super::masters::Masters;
 use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
@@ -25,6 +25,6 @@ impl<T: Real> Build<T> for RuledSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let masters = Masters::new(vec![self.c1, self.c2], Self::C1)?;
         let knots = KnotVector::clamped_uniform(1, 2).expect("two knots at each end");
-        Ok(Value::Surface(SurfaceRef::new(Blend { masters, knots }, context.nesting)))
+        Ok(Value::Surface(SurfaceRef::new(LinearLoft { masters, knots }, context.nesting)))
     }
 }

@@ -22,14 +22,14 @@ pub struct Pairing {
 #[derive(Clone, Copy)]
 struct RulingCandidate {
     w: f64,
-    kind: Kind,
+    kind: RulingKind,
     /// The length of the best way there, and the candidate of the level before that it comes from.
     cost: f64,
     from: usize,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum RulingKind {
     /// The first and the last pair, which are there in any case.
     End,
     Root,
@@ -79,12 +79,13 @@ pub fn pair<T: Real>(curves: [&CurveRef<T>; 2]) -> Result<Pairing, CallError> {
         return Ok(Pairing { phases: vec![([0.0; 2], Phase::Flat)], stations });
     }
     let mut crossed = None;
-    let mut levels = vec![vec![RulingCandidate { w: 0.0, kind: Kind::End, cost: 0.0, from: 0 }]];
+    let mut levels =
+        vec![vec![RulingCandidate { w: 0.0, kind: RulingKind::End, cost: 0.0, from: 0 }]];
     for level in 1..=2 * STEPS {
         let mut nodes = if level < 2 * STEPS {
             search.candidates(level, &mut crossed)
         } else {
-            vec![RulingCandidate { w: 0.0, kind: Kind::End, cost: 0.0, from: 0 }]
+            vec![RulingCandidate { w: 0.0, kind: RulingKind::End, cost: 0.0, from: 0 }]
         };
         connect(&levels[level - 1], &mut nodes);
         if nodes.is_empty() {
@@ -97,7 +98,7 @@ pub fn pair<T: Real>(curves: [&CurveRef<T>; 2]) -> Result<Pairing, CallError> {
         way.push(levels[level][way[way.len() - 1].from]);
     }
     way.reverse();
-    if !way.iter().any(|n| n.kind == Kind::Root) {
+    if !way.iter().any(|n| n.kind == RulingKind::Root) {
         return Err(search.broken(0, crossed));
     }
     Ok(search.phases(&way))
@@ -117,7 +118,7 @@ fn connect(before: &[RulingCandidate], nodes: &mut Vec<RulingCandidate>) {
                 continue;
             }
             // Fans cost their length, corners of the way a little.
-            let fan = f64::from(u8::from(matches!(node.kind, Kind::Low | Kind::High)));
+            let fan = f64::from(u8::from(matches!(node.kind, RulingKind::Low | RulingKind::High)));
             let turn = f64::from(u8::from(node.kind != from.kind));
             let cost = from.cost + fan + 0.25 * turn + 0.01 * (step / RISE).powi(2);
             if cost < node.cost {
@@ -148,8 +149,8 @@ impl<T: Real> RulingSearch<'_, T> {
         let u = level as f64 * RISE;
         let (first, last) = (level.saturating_sub(STEPS), level.min(STEPS));
         let reach = u.min(1.0 - u);
-        let node = |w: f64, kind: Kind| RulingCandidate { w, kind, cost: 0.0, from: 0 };
-        let mut nodes = vec![node(-reach, Kind::Low)];
+        let node = |w: f64, kind: RulingKind| RulingCandidate { w, kind, cost: 0.0, from: 0 };
+        let mut nodes = vec![node(-reach, RulingKind::Low)];
         let value = |i: usize| determinant(self.places[0][i], self.places[1][level - i]).0;
         for i in first..last {
             let (a, b) = (value(i), value(i + 1));
@@ -159,13 +160,13 @@ impl<T: Real> RulingSearch<'_, T> {
                 let Ok(s) = find_root(at, s(i), s(i + 1)) else { continue };
                 let t = 2.0 * u - s;
                 if self.at(s, t).1 {
-                    nodes.push(node(0.5 * (s - t), Kind::Root));
+                    nodes.push(node(0.5 * (s - t), RulingKind::Root));
                 } else {
                     *crossed = Some([s, t]);
                 }
             }
         }
-        nodes.push(node(reach, Kind::High));
+        nodes.push(node(reach, RulingKind::High));
         nodes
     }
 
@@ -205,10 +206,10 @@ impl<T: Real> RulingSearch<'_, T> {
         let phase_of = |level: usize, node: &RulingCandidate| {
             let early = 2 * level <= 2 * STEPS;
             match (node.kind, early) {
-                (Kind::Low, true) => Phase::Fan { first: true, end: 0.0 },
-                (Kind::Low, false) => Phase::Fan { first: false, end: 1.0 },
-                (Kind::High, true) => Phase::Fan { first: false, end: 0.0 },
-                (Kind::High, false) => Phase::Fan { first: true, end: 1.0 },
+                (RulingKind::Low, true) => Phase::Fan { first: true, end: 0.0 },
+                (RulingKind::Low, false) => Phase::Fan { first: false, end: 1.0 },
+                (RulingKind::High, true) => Phase::Fan { first: false, end: 0.0 },
+                (RulingKind::High, false) => Phase::Fan { first: true, end: 1.0 },
                 _ => Phase::Rulings,
             }
         };

@@ -67,13 +67,13 @@ impl<T: Real> Build<T> for SubSurf<T> {
         let shape = match <[Side<T>; 2]>::try_from(sides) {
             Ok(ends) => {
                 let corners = [Vec3::zero(); 4];
-                SubPatch { surface, layout: Layout::Between(ends), corners }
+                SubPatch { surface, layout: SideLayout::Between(ends), corners }
             }
             Err(sides) => {
                 check_corners(&sides, Self::SIDES)?;
                 let (south, north) = (&sides[0], &sides[2]);
                 let corners = [end(south, 0.0), end(south, 1.0), end(north, 0.0), end(north, 1.0)];
-                SubPatch { surface, layout: Layout::Round(sides), corners }
+                SubPatch { surface, layout: SideLayout::Round(sides), corners }
             }
         };
         shape.check_folds()?;
@@ -84,7 +84,7 @@ impl<T: Real> Build<T> for SubSurf<T> {
 /// The sides of a patch and where they lie.
 // A patch has one of them: a box would save nothing.
 #[allow(clippy::large_enum_variant)]
-enum Layout<T: Real> {
+enum SideLayout<T: Real> {
     /// Edges v = 0 and v = 1.
     Between([Side<T>; 2]),
     /// Edges v = 0, u = 1, v = 1 and, unless it is a point, u = 0.
@@ -93,7 +93,7 @@ enum Layout<T: Real> {
 
 struct SubPatch<T: Real> {
     surface: SurfaceRef<T>,
-    layout: Layout<T>,
+    layout: SideLayout<T>,
     /// The ends of the edges v = 0 and v = 1, first those of the one.
     corners: [Vec3<T>; 4],
 }
@@ -133,16 +133,16 @@ impl<T: Real> SubPatch<T> {
     /// The places on the edges v = 0 and v = 1.
     fn along_u<J: Jet<T>>(&self, u: J) -> [Vec3<J>; 2] {
         match &self.layout {
-            Layout::Between([first, last]) => [place(first, u), place(last, u)],
-            Layout::Round(sides) => [place(&sides[0], u), place(&sides[2], u)],
+            SideLayout::Between([first, last]) => [place(first, u), place(last, u)],
+            SideLayout::Round(sides) => [place(&sides[0], u), place(&sides[2], u)],
         }
     }
 
     /// The places on the edges u = 0 and u = 1, of a patch that has sides there.
     fn along_v<J: Jet<T>>(&self, v: J) -> [Vec3<J>; 2] {
         match &self.layout {
-            Layout::Between(_) => [Vec3::zero(); 2],
-            Layout::Round(sides) => {
+            SideLayout::Between(_) => [Vec3::zero(); 2],
+            SideLayout::Round(sides) => {
                 let west = match sides.get(3) {
                     Some(west) => place(west, v),
                     None => self.corners[0].map(J::fixed),
@@ -162,7 +162,7 @@ impl<T: Real> SubPatch<T> {
     ) -> Vec3<J> {
         let (a, b) = (-u + 1.0, -v + 1.0);
         let across = south * b + north * v;
-        if matches!(self.layout, Layout::Between(_)) {
+        if matches!(self.layout, SideLayout::Between(_)) {
             return across;
         }
         let [p, q, r, s] = self.corners.map(|p| p.map(J::fixed));
@@ -184,7 +184,7 @@ impl<T: Real> SubPatch<T> {
     /// True when both sides end where they begin: at one point object, or at the seam of a closed
     /// surface that both run round.
     fn is_closed(&self) -> bool {
-        let Layout::Between(sides) = &self.layout else { return false };
+        let SideLayout::Between(sides) = &self.layout else { return false };
         let round = seam::joined_sides(&self.surface);
         let spans = sides.each_ref().map(|side| [0.0, 1.0].map(|t| end(side, t).re().to_array()));
         let way = |k: usize, a: usize| spans[k][1][a] - spans[k][0][a];
@@ -317,8 +317,10 @@ impl<T: Real> Surface<T> for SubPatch<T> {
             all
         };
         match &self.layout {
-            Layout::Between([a, b]) => [merged(Some(a), Some(b)), Vec::new()],
-            Layout::Round(s) => [merged(Some(&s[0]), Some(&s[2])), merged(Some(&s[1]), s.get(3))],
+            SideLayout::Between([a, b]) => [merged(Some(a), Some(b)), Vec::new()],
+            SideLayout::Round(s) => {
+                [merged(Some(&s[0]), Some(&s[2])), merged(Some(&s[1]), s.get(3))]
+            }
         }
     }
 
@@ -341,7 +343,7 @@ impl<T: Real> Surface<T> for SubPatch<T> {
 
     /// A side that is not given: the surface and the points that it lies straight between.
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
-        let Layout::Between([first, last]) = &self.layout else { return Vec::new() };
+        let SideLayout::Between([first, last]) = &self.layout else { return Vec::new() };
         if k.is_multiple_of(2) {
             return Vec::new();
         }
@@ -351,7 +353,7 @@ impl<T: Real> Surface<T> for SubPatch<T> {
 
     fn edges(&self) -> Edges<T> {
         match &self.layout {
-            Layout::Between([first, last]) => {
+            SideLayout::Between([first, last]) => {
                 let ([a, b], [d, c]) = (ends(first), ends(last));
                 let across = |p: Option<Key>, q: Option<Key>, end: f64| {
                     let pole = p.is_some() && p == q;
@@ -363,7 +365,7 @@ impl<T: Real> Surface<T> for SubPatch<T> {
                     corners: [a, b, c, d],
                 }
             }
-            Layout::Round(sides) => {
+            SideLayout::Round(sides) => {
                 let known: Vec<Option<Key>> = corners::of(sides.len())
                     .iter()
                     .map(|&[(a, s), (b, t)]| ends(&sides[a])[s].or(ends(&sides[b])[t]))

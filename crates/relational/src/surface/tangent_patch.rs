@@ -1,7 +1,7 @@
 //! Patches between four curves that are tangent to the surfaces of their neighbours.
 
-use super::coons::Boundary;
-use super::ribbon::{Along, ribbon, unit};
+use super::coons::CoonsBoundary;
+use super::ribbon::{SnakePoint, ribbon, unit};
 use crate::arguments::Snake;
 use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Real, SurfaceFormula, Uni1, Vec3};
@@ -58,14 +58,14 @@ impl<T: Real> Build<T> for TanBoundary<T> {
             Some(Snake { curve: curve.clone(), surface })
         };
         let snakes: Vec<_> = sides.iter().enumerate().map(|(k, c)| snake(k, c)).collect();
-        let boundary = Boundary::new(sides, Self::SIDES)?;
+        let boundary = CoonsBoundary::new(sides, Self::SIDES)?;
         let patch = TangentPatch::new(boundary, snakes)?;
         Ok(Value::Surface(SurfaceRef::new(patch, context.nesting)))
     }
 }
 
 /// The slope across an edge.
-enum Across<T: Real> {
+enum CrossDerivative<T: Real> {
     /// That of the bilinear patch.
     Free,
     /// In the tangent plane of the snake's surface: components along the snake and perpendicular to
@@ -74,9 +74,9 @@ enum Across<T: Real> {
 }
 
 struct TangentPatch<T: Real> {
-    boundary: Boundary<T>,
+    boundary: CoonsBoundary<T>,
     /// Of the four edges v = 0, u = 1, v = 1, u = 0.
-    across: [Across<T>; 4],
+    across: [CrossDerivative<T>; 4],
     /// The derivatives of the sides at their ends.
     leaving: [[Vec3<T>; 2]; 4],
     /// By v along edge u = const, and by u along edge v = const, at the corners (0, 0), (1, 0), (1, 1)
@@ -85,7 +85,7 @@ struct TangentPatch<T: Real> {
 }
 
 /// Unit vectors along a snake and perpendicular to it in the tangent plane.
-fn basis<J: Real>(at: &Along<J>) -> [Vec3<J>; 2] {
+fn basis<J: Real>(at: &SnakePoint<J>) -> [Vec3<J>; 2] {
     let along = unit(at.along);
     [along, at.normal.cross(along)]
 }
@@ -95,9 +95,9 @@ const NEIGHBOURS: [([usize; 2], bool); 4] =
     [([3, 1], true), ([0, 2], false), ([3, 1], false), ([0, 2], true)];
 
 impl<T: Real> TangentPatch<T> {
-    fn new(boundary: Boundary<T>, snakes: Vec<Option<Snake<T>>>) -> Result<Self, CallError> {
+    fn new(boundary: CoonsBoundary<T>, snakes: Vec<Option<Snake<T>>>) -> Result<Self, CallError> {
         let zero = Vec3::zero();
-        let free = || Across::Free;
+        let free = || CrossDerivative::Free;
         let leaving = [0, 1, 2, 3].map(|k| {
             let at = |end: f64| boundary.side(k, Uni1::parameter(T::from(end)));
             [at(0.0), at(1.0)].map(|p: Vec3<Uni1<T>>| p.map(|x| x.t))
@@ -107,7 +107,7 @@ impl<T: Real> TangentPatch<T> {
         for (k, snake) in snakes.into_iter().enumerate() {
             if let Some(snake) = snake {
                 let ends = patch.components(k, &snake)?;
-                patch.across[k] = Across::Tangent(snake, ends);
+                patch.across[k] = CrossDerivative::Tangent(snake, ends);
             }
         }
         let slope =
@@ -176,13 +176,13 @@ impl<T: Real> TangentPatch<T> {
     /// The slope across edge `k` at `t`: S_v on edges 0 and 2, S_u on 1 and 3.
     fn slope<J: Jet<T>>(&self, k: usize, t: J) -> Vec3<J> {
         match &self.across[k] {
-            Across::Tangent(snake, [from, to]) => {
+            CrossDerivative::Tangent(snake, [from, to]) => {
                 let [e, f] = basis(&ribbon(snake, t));
                 let rest = -t + 1.0;
                 let part = |c: usize| rest.scaled(from[c]) + t.scaled(to[c]);
                 e * part(0) + f * part(1)
             }
-            Across::Free => {
+            CrossDerivative::Free => {
                 let (neighbours, at_begin) = NEIGHBOURS[k];
                 let end = usize::from(!at_begin);
                 let [a, b] = neighbours.map(|n| self.leaving[n][end].map(J::fixed));

@@ -1,8 +1,8 @@
 //! The arguments of a command, taken one after another.
 
 use super::CommandError;
-use super::words::{CommandToken, Kind, UNITS, feet_and_inches};
-use crate::{Axis, Expr, LineId, PointId};
+use super::words::{CommandToken, CommandTokenKind, UNITS, feet_and_inches};
+use crate::{CoordinateAxis, DimensionExpr, LineId, PointId};
 
 /// Labels up to this are accepted.
 pub const MAX_LABEL: u32 = 1_000_000;
@@ -52,7 +52,7 @@ impl<'a> Args<'a> {
     pub fn at(&self, keyword: &str) -> bool {
         self.peek().is_some_and(|t| {
             let word = t.text.to_ascii_uppercase();
-            t.kind == Kind::Word
+            t.kind == CommandTokenKind::Word
                 && (word == keyword || (word.len() >= 3 && keyword.starts_with(&word)))
         })
     }
@@ -68,9 +68,9 @@ impl<'a> Args<'a> {
 
     /// Passes a short keyword such as TO or AS, in full.
     pub fn take_short(&mut self, keyword: &str) -> bool {
-        let found = self
-            .peek()
-            .is_some_and(|t| t.kind == Kind::Word && t.text.eq_ignore_ascii_case(keyword));
+        let found = self.peek().is_some_and(|t| {
+            t.kind == CommandTokenKind::Word && t.text.eq_ignore_ascii_case(keyword)
+        });
         if found {
             self.skip();
         }
@@ -84,13 +84,13 @@ impl<'a> Args<'a> {
 
     /// Whether the token after `k` others is a number.
     pub fn number_at(&self, k: usize) -> bool {
-        matches!(self.tokens.get(k).map(|t| &t.kind), Some(Kind::Number(..)))
+        matches!(self.tokens.get(k).map(|t| &t.kind), Some(CommandTokenKind::Number(..)))
     }
 
     /// The plain number after `k` others.
     pub fn number_of(&self, k: usize) -> Option<f64> {
         match self.tokens.get(k).map(|t| &t.kind) {
-            Some(Kind::Number(x, None)) => Some(*x),
+            Some(CommandTokenKind::Number(x, None)) => Some(*x),
             _ => None,
         }
     }
@@ -98,7 +98,7 @@ impl<'a> Args<'a> {
     /// A name in letters or quotes.
     pub fn name(&mut self, what: &str) -> Result<String, CommandError> {
         match self.peek() {
-            Some(t) if t.kind == Kind::Word || t.kind == Kind::Text => {
+            Some(t) if t.kind == CommandTokenKind::Word || t.kind == CommandTokenKind::Text => {
                 self.skip();
                 Ok(t.text.clone())
             }
@@ -109,7 +109,9 @@ impl<'a> Args<'a> {
     /// A plain number.
     pub fn number(&mut self, what: &str) -> Result<f64, CommandError> {
         match self.peek().map(|t| &t.kind) {
-            Some(Kind::Number(x, unit)) if unit.as_deref().is_none_or(|u| u == "DEG") => {
+            Some(CommandTokenKind::Number(x, unit))
+                if unit.as_deref().is_none_or(|u| u == "DEG") =>
+            {
                 self.skip();
                 Ok(*x)
             }
@@ -119,7 +121,7 @@ impl<'a> Args<'a> {
 
     /// Whether a number is next.
     pub fn at_number(&self) -> bool {
-        matches!(self.peek().map(|t| &t.kind), Some(Kind::Number(..)))
+        matches!(self.peek().map(|t| &t.kind), Some(CommandTokenKind::Number(..)))
     }
 
     fn label(&mut self, what: &str) -> Result<u32, CommandError> {
@@ -148,16 +150,16 @@ impl<'a> Args<'a> {
     }
 
     /// An axis, if one is next.
-    pub fn axis(&mut self) -> Option<Axis> {
-        let token = self.peek().filter(|t| t.kind == Kind::Word)?;
-        let axis = Axis::of(&token.text)?;
+    pub fn axis(&mut self) -> Option<CoordinateAxis> {
+        let token = self.peek().filter(|t| t.kind == CommandTokenKind::Word)?;
+        let axis = CoordinateAxis::of(&token.text)?;
         self.skip();
         Some(axis)
     }
 
     /// A value: a number with an optional unit, a name, or an expression in quotes. Lengths with a
     /// unit are converted to `unit`, the unit of the object.
-    pub fn value(&mut self, unit: Option<&str>) -> Result<Expr, CommandError> {
+    pub fn value(&mut self, unit: Option<&str>) -> Result<DimensionExpr, CommandError> {
         let Some(token) = self.peek() else { return Err(self.wants("a value")) };
         let size = |name: &str| UNITS.iter().find(|u| u.0 == name).map(|u| u.1);
         let convert = |x: f64, from: &str| -> Result<f64, CommandError> {
@@ -172,11 +174,11 @@ impl<'a> Args<'a> {
             }
         };
         let expr = match &token.kind {
-            Kind::Number(x, None) => Expr::number(*x),
-            Kind::Number(x, Some(u)) => Expr::number(convert(*x, u)?),
-            Kind::Text | Kind::Word => match feet_and_inches(&token.text) {
-                Some(feet) => Expr::number(convert(feet, "FT")?),
-                None => Expr::parse(&token.text).map_err(|why| {
+            CommandTokenKind::Number(x, None) => DimensionExpr::number(*x),
+            CommandTokenKind::Number(x, Some(u)) => DimensionExpr::number(convert(*x, u)?),
+            CommandTokenKind::Text | CommandTokenKind::Word => match feet_and_inches(&token.text) {
+                Some(feet) => DimensionExpr::number(convert(feet, "FT")?),
+                None => DimensionExpr::parse(&token.text).map_err(|why| {
                     CommandError::text(
                         format!("in `{}`: {why}", token.text),
                         "write a number or an expression like \"2*W1+0.5\"",
@@ -190,8 +192,9 @@ impl<'a> Args<'a> {
 
     /// `IN lo hi`, if it is next.
     pub fn range(&mut self) -> Result<Option<[f64; 2]>, CommandError> {
-        let is_in =
-            self.peek().is_some_and(|t| t.kind == Kind::Word && t.text.eq_ignore_ascii_case("IN"));
+        let is_in = self
+            .peek()
+            .is_some_and(|t| t.kind == CommandTokenKind::Word && t.text.eq_ignore_ascii_case("IN"));
         if !is_in {
             return Ok(None);
         }

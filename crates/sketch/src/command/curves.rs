@@ -4,7 +4,7 @@ use super::CommandError;
 use super::args::Args;
 use super::draw::{require_line, require_point};
 use super::session::{CommandReply, SketchSession};
-use crate::solid::curve::{Curve, CurveFault, CurveKind, trace};
+use crate::solid::curve::{CurveFault, CurveKind, SketchCurve, trace};
 use crate::solid::{UnbuiltCurve, UnbuiltReason};
 use crate::{PointId, SketchObject};
 use moldloft_syntax::number::plain;
@@ -90,7 +90,7 @@ impl SketchSession {
         } else if args.take("SEMI") {
             semi = Some([args.value(unit)?, args.value(unit)?]);
         }
-        let mut curve = Curve {
+        let mut curve = SketchCurve {
             name: name.unwrap_or_else(|| object.fresh_name("C")),
             kind,
             points,
@@ -107,7 +107,7 @@ impl SketchSession {
             let at = |p: PointId| layout.point(&view.planes, p);
             let (a, m, b) = (at(curve.points[0]), at(curve.points[1]), at(curve.points[2]));
             if let (Some(a), Some(m), Some(b)) = (a, m, b) {
-                let length = |x: f64| crate::Expr::number(x);
+                let length = |x: f64| crate::DimensionExpr::number(x);
                 curve.semi = Some([length(a.distance(m)), length(b.distance(m))]);
             }
             curve.replaces = false;
@@ -166,7 +166,7 @@ impl SketchSession {
             return Err(args.wants(&format!("{least} points")));
         }
         let name = name.unwrap_or_else(|| object.fresh_name("C"));
-        let mut curve = Curve {
+        let mut curve = SketchCurve {
             name,
             kind,
             points,
@@ -180,7 +180,7 @@ impl SketchSession {
         self.add_curve(curve)
     }
 
-    fn options(&mut self, args: &mut Args, curve: &mut Curve) -> Result<(), CommandError> {
+    fn options(&mut self, args: &mut Args, curve: &mut SketchCurve) -> Result<(), CommandError> {
         loop {
             if args.take("STEPS") {
                 let n = args.count("a number of chords")?;
@@ -200,7 +200,7 @@ impl SketchSession {
         }
     }
 
-    fn add_curve(&mut self, curve: Curve) -> Result<(), CommandError> {
+    fn add_curve(&mut self, curve: SketchCurve) -> Result<(), CommandError> {
         let mut object: SketchObject = self.active()?.clone();
         let (view, layout) = self.laid_out(&object);
         let at = |p: PointId| layout.point(&view.planes, p);

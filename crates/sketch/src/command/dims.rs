@@ -8,8 +8,8 @@ use super::session::{CommandReply, SketchSession};
 use super::words::UNITS;
 use crate::dimension::layout::agree;
 use crate::{
-    Axis, Dimension, DimensionFault, DimensionRole, Expr, MeasuredQuantity, Naming, PointId,
-    Reference, SketchObject, Variable, chain, chain_text,
+    CoordinateAxis, Dimension, DimensionExpr, DimensionFault, DimensionRole, MeasuredQuantity,
+    Naming, PointId, Reference, SketchObject, Variable, chain, chain_text,
 };
 use moldloft_syntax::number::plain;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ impl SketchSession {
     pub(super) fn dimension(&mut self, args: &mut Args) -> Result<(), CommandError> {
         const KINDS: [&str; 4] = ["LENGTH", "SLOPE", "ANGLE", "EQUAL"];
         let kind = |a: &Args| KINDS.into_iter().find(|k| a.at(k));
-        let axis_next = args.peek().is_some_and(|t| Axis::of(&t.text).is_some());
+        let axis_next = args.peek().is_some_and(|t| CoordinateAxis::of(&t.text).is_some());
         let named = !args.at_number() && !axis_next && kind(args).is_none();
         let name = if named { Some(self.new_name(args)?) } else { None };
         let object = self.active()?.clone();
@@ -78,10 +78,10 @@ impl SketchSession {
     pub(super) fn add_along(
         &mut self,
         name: String,
-        axis: Axis,
+        axis: CoordinateAxis,
         p: PointId,
         q: PointId,
-        value: Expr,
+        value: DimensionExpr,
         range: Option<[f64; 2]>,
     ) -> Result<(), CommandError> {
         let object = self.active()?.clone();
@@ -178,7 +178,7 @@ impl SketchSession {
             return self.measured(&object, name, measure);
         }
         let value = if kind == "EQUAL" && (args.len() == 0 || args.tokens_at(0, "IN")) {
-            Expr::number(1.0)
+            DimensionExpr::number(1.0)
         } else {
             args.value(object.units.as_deref())?
         };
@@ -232,7 +232,7 @@ impl SketchSession {
         &mut self,
         object: &SketchObject,
         name: String,
-        axis: Axis,
+        axis: CoordinateAxis,
         (p, q): (PointId, PointId),
     ) -> Result<(), CommandError> {
         let (view, layout) = self.laid_out(object);
@@ -268,9 +268,9 @@ impl SketchSession {
         &mut self,
         object: &SketchObject,
         name: &str,
-        axis: Axis,
+        axis: CoordinateAxis,
         (p, q): (PointId, PointId),
-        value: &Expr,
+        value: &DimensionExpr,
     ) {
         /// Smaller gaps, as a part of the drawing, say nothing.
         const CLEAR: f64 = 0.02;
@@ -329,11 +329,11 @@ impl SketchSession {
         let object = self.active_arc()?;
         let worked = self.worked(&object);
         let layout = &worked.layout;
-        let part = |a: Axis| {
+        let part = |a: CoordinateAxis| {
             let c = layout.counts[a.index()];
             format!("{a} {}/{}", c.given, c.required)
         };
-        let mut text = Axis::ALL.map(part).join(" ");
+        let mut text = CoordinateAxis::ALL.map(part).join(" ");
         if layout.complete() && !object.drawing.points.is_empty() {
             text.push_str(": complete");
         }
@@ -537,7 +537,7 @@ impl SketchSession {
         match (object.drawing.section, given[..].len()) {
             (_, 3) => at.copy_from_slice(&given),
             (Some(normal), 2) => {
-                let plane = Axis::ALL.into_iter().filter(|a| *a != normal);
+                let plane = CoordinateAxis::ALL.into_iter().filter(|a| *a != normal);
                 plane.zip(&given).for_each(|(a, x)| at[a.index()] = *x);
             }
             _ => return Err(args.wants("three coordinates")),
@@ -590,7 +590,8 @@ impl SketchSession {
             return Err(dimension_fault(fault));
         }
         if !layout.complete() {
-            let missing = Axis::ALL.map(|a| format!("{a}: {}", layout.counts[a.index()].missing));
+            let missing =
+                CoordinateAxis::ALL.map(|a| format!("{a}: {}", layout.counts[a.index()].missing));
             let lines = self.loose_lines(&object, &view, &layout);
             let text =
                 format!("dimensions are missing, {}; {}", missing.join(", "), lines.join("; "));
@@ -610,7 +611,7 @@ impl SketchSession {
 fn along(
     object: &SketchObject,
     values: &std::collections::BTreeMap<String, f64>,
-    axis: Axis,
+    axis: CoordinateAxis,
     way: &[PointId],
     names: &[String],
 ) -> Option<f64> {
@@ -628,8 +629,12 @@ fn along(
 }
 
 /// Refuses a plain number outside its range.
-fn in_range(name: &str, value: Option<&Expr>, range: Option<[f64; 2]>) -> Result<(), CommandError> {
-    match (value.and_then(Expr::literal), range) {
+fn in_range(
+    name: &str,
+    value: Option<&DimensionExpr>,
+    range: Option<[f64; 2]>,
+) -> Result<(), CommandError> {
+    match (value.and_then(DimensionExpr::literal), range) {
         (Some(x), Some([low, high])) if !(low..=high).contains(&x) => {
             let (low, high) = (plain(low), plain(high));
             Err(CommandError::text(

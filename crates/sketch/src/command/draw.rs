@@ -3,18 +3,18 @@
 use super::CommandError;
 use super::args::Args;
 use super::session::{CommandReply, MAX_POINTS, SketchSession};
-use super::words::Kind;
+use super::words::CommandTokenKind;
 use crate::{
-    Align, Axis, Drawing, DrawnPoint, FaceId, Free, Line, LineId, LineTypeSource, Naming, PointId,
-    Projection, SketchObject,
+    Align, CoordinateAxis, Drawing, DrawnLine, DrawnPoint, FaceId, Free, LineId, LineTypeSource,
+    Naming, PointId, Projection, SketchObject,
 };
 
 impl SketchSession {
     pub(super) fn sketch(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let shape = |t: &str| ["2D", "3D"].iter().any(|d| t.eq_ignore_ascii_case(d));
-        let named = args
-            .peek()
-            .is_some_and(|t| matches!(t.kind, Kind::Word | Kind::Text) && !shape(&t.text));
+        let named = args.peek().is_some_and(|t| {
+            matches!(t.kind, CommandTokenKind::Word | CommandTokenKind::Text) && !shape(&t.text)
+        });
         let name = if named { args.name("a name")? } else { "NONAME".to_owned() };
         if name.is_empty() || name.chars().count() > 32 {
             let text =
@@ -24,15 +24,15 @@ impl SketchSession {
         let section = if args.take_short("2D") {
             let plane = args.peek().map(|t| t.text.to_ascii_uppercase());
             let normal = match plane.as_deref() {
-                Some("XY") => Some(Axis::Z),
-                Some("XZ") => Some(Axis::Y),
-                Some("YZ") => Some(Axis::X),
+                Some("XY") => Some(CoordinateAxis::Z),
+                Some("XZ") => Some(CoordinateAxis::Y),
+                Some("YZ") => Some(CoordinateAxis::X),
                 _ => None,
             };
             if normal.is_some() {
                 args.skip();
             }
-            Some(normal.unwrap_or(Axis::Y))
+            Some(normal.unwrap_or(CoordinateAxis::Y))
         } else {
             args.take_short("3D");
             None
@@ -107,8 +107,8 @@ impl SketchSession {
 
     pub(super) fn line(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let from = |a: &Args| a.second().is_some_and(|t| t.text.eq_ignore_ascii_case("FROM"));
-        let three =
-            args.len() >= 3 && args.second().is_some_and(|t| matches!(t.kind, Kind::Number(..)));
+        let three = args.len() >= 3
+            && args.second().is_some_and(|t| matches!(t.kind, CommandTokenKind::Number(..)));
         let labelled = from(args) || three && !args.tokens_at(2, "TYPE") && args.number_at(2);
         let id = if labelled { Some(args.line()?) } else { None };
         args.take("FROM");
@@ -133,7 +133,8 @@ impl SketchSession {
             ));
         }
         let drawing = &object.drawing;
-        let mut line = Line { p, q, free: None, source: LineTypeSource::Auto, confidence: 0.0 };
+        let mut line =
+            DrawnLine { p, q, free: None, source: LineTypeSource::Auto, confidence: 0.0 };
         let mut by_slope = true;
         if args.take("TYPE") {
             by_slope = false;
@@ -187,7 +188,7 @@ impl SketchSession {
         for w in points.windows(2) {
             if w[0] != w[1] && drawing.line_between(w[0], w[1]).is_none() {
                 let id = drawing.next_line();
-                let line = Line {
+                let line = DrawnLine {
                     p: w[0],
                     q: w[1],
                     free: None,
@@ -221,8 +222,8 @@ impl SketchSession {
         let (m, second) = (drawing.next_point(), drawing.next_line());
         let mix = |x: f64, y: f64| x + (y - x) * part;
         drawing.points.insert(m, DrawnPoint { u: mix(a.u, b.u), v: mix(a.v, b.v) });
-        drawing.lines.insert(id, Line { q: m, ..line });
-        drawing.lines.insert(second, Line { p: m, ..line });
+        drawing.lines.insert(id, DrawnLine { q: m, ..line });
+        drawing.lines.insert(second, DrawnLine { p: m, ..line });
         for face in object.faces.values_mut() {
             for cycle in std::iter::once(&mut face.outer).chain(&mut face.holes) {
                 let n = cycle.len();
@@ -369,9 +370,9 @@ impl SketchSession {
             let third = if args.at_number() { Some(args.number("an angle")?) } else { None };
             projection.angle_deg = match (third, object.drawing.section) {
                 (Some(c), _) => [a, b, c],
-                (None, Some(Axis::X)) => [projection.angle_deg[0], a, b],
-                (None, Some(Axis::Y)) => [a, projection.angle_deg[1], b],
-                (None, Some(Axis::Z)) => [a, b, projection.angle_deg[2]],
+                (None, Some(CoordinateAxis::X)) => [projection.angle_deg[0], a, b],
+                (None, Some(CoordinateAxis::Y)) => [a, projection.angle_deg[1], b],
+                (None, Some(CoordinateAxis::Z)) => [a, b, projection.angle_deg[2]],
                 (None, None) => return Err(args.wants("the angle of Z")),
             };
         } else if args.take("AUTO") {
@@ -407,9 +408,11 @@ impl SketchSession {
                 "give positive scales and degrees",
             ));
         }
-        let shown: Vec<Axis> =
-            Axis::ALL.into_iter().filter(|a| object.drawing.section != Some(*a)).collect();
-        let apart = |a: &Axis, b: &Axis| {
+        let shown: Vec<CoordinateAxis> = CoordinateAxis::ALL
+            .into_iter()
+            .filter(|a| object.drawing.section != Some(*a))
+            .collect();
+        let apart = |a: &CoordinateAxis, b: &CoordinateAxis| {
             let (p, q) = (projection.unit(*a), projection.unit(*b));
             (p[0] * q[1] - p[1] * q[0]).abs() > 1e-9
         };
@@ -468,7 +471,7 @@ impl SketchSession {
         args.end()?;
         for id in lines {
             let line = require_line(object, id)?;
-            let typed = Line { free, source: LineTypeSource::User, confidence: 1.0, ..line };
+            let typed = DrawnLine { free, source: LineTypeSource::User, confidence: 1.0, ..line };
             object.draw().lines.insert(id, typed);
         }
         Ok(())
@@ -539,7 +542,7 @@ pub(super) fn require_point(object: &SketchObject, p: PointId) -> Result<(), Com
 }
 
 /// The line must exist.
-pub(super) fn require_line(object: &SketchObject, id: LineId) -> Result<Line, CommandError> {
+pub(super) fn require_line(object: &SketchObject, id: LineId) -> Result<DrawnLine, CommandError> {
     object.drawing.lines.get(&id).copied().ok_or_else(|| {
         let (code, text) = if object.drawing.lines.is_empty() {
             (102, format!("object {} has no lines", object.name))
@@ -551,7 +554,11 @@ pub(super) fn require_line(object: &SketchObject, id: LineId) -> Result<Line, Co
 }
 
 /// `SET UP`, `SET NAMES`: what the letters mean.
-pub(super) fn set_letters(drawing: &mut Drawing, up: Option<Axis>, naming: Option<Naming>) {
+pub(super) fn set_letters(
+    drawing: &mut Drawing,
+    up: Option<CoordinateAxis>,
+    naming: Option<Naming>,
+) {
     drawing.letters.up = up.unwrap_or(drawing.letters.up);
     drawing.letters.naming = naming.unwrap_or(drawing.letters.naming);
 }

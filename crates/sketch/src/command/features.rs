@@ -4,12 +4,12 @@ use super::CommandError;
 use super::args::Args;
 use super::session::{CommandReply, SketchSession};
 use crate::SketchObject;
-use crate::dimension::expr::Expr;
+use crate::dimension::expr::DimensionExpr;
 use crate::feature::{Feature, FeatureKind, FeatureOperand, Placement};
 use crate::solid::combine::CombineError;
 use crate::solid::feature::{NoBody, body};
 use crate::solid::operation::Operation;
-use crate::solid::validity::Flaw;
+use crate::solid::validity::SolidDefect;
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
 
@@ -129,7 +129,7 @@ impl SketchSession {
         let angle = if args.len() > 0 && !args.tokens_at(0, "INTO") {
             args.value(None)?
         } else {
-            Expr::number(360.0)
+            DimensionExpr::number(360.0)
         };
         let target = self.target(args, &object.name)?;
         args.end()?;
@@ -189,7 +189,7 @@ impl SketchSession {
         } else if args.take("MIRROR") {
             let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
             let given = args.len() > 0 && !args.tokens_at(0, "INTO");
-            let at = if given { args.value(units.as_deref())? } else { Expr::number(0.0) };
+            let at = if given { args.value(units.as_deref())? } else { DimensionExpr::number(0.0) };
             (Placement::Mirror { axis, at }, 2)
         } else {
             return Err(args.wants("LINEAR, POLAR or MIRROR"));
@@ -211,9 +211,13 @@ impl SketchSession {
     }
 
     /// `THROUGH x y z`, the origin when it is not there.
-    fn through(&self, args: &mut Args, units: Option<&str>) -> Result<[Expr; 3], CommandError> {
+    fn through(
+        &self,
+        args: &mut Args,
+        units: Option<&str>,
+    ) -> Result<[DimensionExpr; 3], CommandError> {
         if !args.take("THROUGH") {
-            return Ok([0.0; 3].map(Expr::number));
+            return Ok([0.0; 3].map(DimensionExpr::number));
         }
         Ok([args.value(units)?, args.value(units)?, args.value(units)?])
     }
@@ -243,7 +247,11 @@ impl SketchSession {
                 let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
                 if verb == "MIRROR" {
                     let given = args.len() > 0 && !args.at("FEATURE") && !args.tokens_at(0, "INTO");
-                    let at = if given { args.value(units.as_deref())? } else { Expr::number(0.0) };
+                    let at = if given {
+                        args.value(units.as_deref())?
+                    } else {
+                        DimensionExpr::number(0.0)
+                    };
                     Placement::Mirror { axis, at }
                 } else {
                     let angle = args.value(None)?;
@@ -282,7 +290,7 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             format!("{name} has no faces or is not fully dimensioned"),
             "CONVERT says what is missing; then GENERATE FACES",
         ),
-        NoBody::Flaw(Flaw::Open(edges)) => {
+        NoBody::Flaw(SolidDefect::Open(edges)) => {
             let list: Vec<String> =
                 edges.iter().take(12).map(|[p, q]| format!("{p}-{q}")).collect();
             CommandError::new(
@@ -294,7 +302,7 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
                 "GENERATE FACES finds all faces; or give the missing one with FACE",
             )
         }
-        NoBody::Flaw(Flaw::Crossed { face, sides: [a, b], at }) => {
+        NoBody::Flaw(SolidDefect::Crossed { face, sides: [a, b], at }) => {
             let face = face.map_or_else(|| "a face".to_owned(), |f| format!("face {f}"));
             CommandError::new(
                 701,
@@ -309,8 +317,8 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
                 "a dimension has moved lines past each other: UNDO, or change it",
             )
         }
-        NoBody::Flaw(Flaw::Unresolved(e)) | NoBody::Combine(e) => combine_error(name, e),
-        NoBody::Flaw(Flaw::NotFinite) => CommandError::new(
+        NoBody::Flaw(SolidDefect::Unresolved(e)) | NoBody::Combine(e) => combine_error(name, e),
+        NoBody::Flaw(SolidDefect::NotFinite) => CommandError::new(
             300,
             format!("{name} has coordinates that are not finite"),
             "CHECK the dimensions",

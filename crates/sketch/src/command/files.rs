@@ -3,7 +3,7 @@
 use super::CommandError;
 use super::args::Args;
 use super::session::{CommandReply, SketchSession};
-use super::words::Kind;
+use super::words::CommandTokenKind;
 use crate::format::json::Json;
 use crate::format::json_format::{ObjectData, from_json, object_data, to_json};
 pub(super) use crate::format::script::measure_text;
@@ -121,7 +121,8 @@ impl SketchSession {
         args.end()?;
         let text = self.read(&file)?;
         if !file.to_ascii_lowercase().ends_with(".dxf") {
-            let words = [crate::command::words::CommandToken { kind: Kind::Text, text: file }];
+            let words =
+                [crate::command::words::CommandToken { kind: CommandTokenKind::Text, text: file }];
             return self.input(&mut Args::new(&words, ""), true);
         }
         let strokes = crate::format::dxf::dxf_lines(&text).map_err(|why| {
@@ -266,9 +267,9 @@ impl SketchSession {
                 format!("formats are {}", FORMATS.join(", ")),
             ));
         }
-        let named = args
-            .peek()
-            .is_some_and(|t| self.object(&t.text).is_some() && !matches!(t.kind, Kind::Number(..)));
+        let named = args.peek().is_some_and(|t| {
+            self.object(&t.text).is_some() && !matches!(t.kind, CommandTokenKind::Number(..))
+        });
         if named {
             self.take_object(args)?;
         }
@@ -310,7 +311,7 @@ impl SketchSession {
                 let worked = self.worked(&object);
                 let solid = worked.body().map_err(|why| super::features::no_body(&object, why))?;
                 let size = solid.vertices.iter().map(|v| v.at.norm()).fold(0.0, f64::max);
-                let mesh = export::Facets::of(&solid.mesh(1e-3 * size));
+                let mesh = export::IndexedTriangles::of(&solid.mesh(1e-3 * size));
                 match format.as_str() {
                     "STL" => export::stl(&mesh, &object.name).into_bytes(),
                     "OBJ" => export::obj(&mesh, &object.name).into_bytes(),

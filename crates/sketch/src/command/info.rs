@@ -4,10 +4,10 @@ use super::args::Args;
 use super::dims::{dimension_fault, rounded};
 use super::draw::require_point;
 use super::session::{CommandReply, DrawingCache, SketchSession};
-use super::{CommandError, words::Kind};
+use super::{CommandError, words::CommandTokenKind};
 use crate::{
-    Axis, DOUBTFUL, DimensionRole, Layout, MeasuredQuantity, Planes, PointId, Projection,
-    SketchObject, TypeFault, chain, chain_text,
+    CoordinateAxis, DOUBTFUL, DimensionLayout, DimensionRole, MeasuredQuantity, Planes, PointId,
+    Projection, SketchObject, TypeFault, chain, chain_text,
 };
 use moldloft_syntax::number::plain;
 
@@ -108,7 +108,7 @@ impl SketchSession {
         &self,
         object: &SketchObject,
         view: &DrawingCache,
-        layout: &Layout<f64>,
+        layout: &DimensionLayout<f64>,
     ) -> Vec<String> {
         (layout.loose.iter().zip(suggestions(object, view, layout)))
             .map(|(loose, suggested)| {
@@ -237,8 +237,8 @@ impl SketchSession {
         let planes = &view.planes;
         if let Some(axis) = args
             .peek()
-            .filter(|t| t.kind == Kind::Word && args.number_at(1))
-            .and_then(|t| Axis::of(&t.text))
+            .filter(|t| t.kind == CommandTokenKind::Word && args.number_at(1))
+            .and_then(|t| CoordinateAxis::of(&t.text))
         {
             args.skip();
             let (p, q) = (args.point()?, args.point()?);
@@ -267,7 +267,7 @@ impl SketchSession {
             args.end()?;
             require_point(&object, p)?;
             let reference = object.reference().map_or(p, |r| r.point);
-            for axis in Axis::ALL {
+            for axis in CoordinateAxis::ALL {
                 let text = match (
                     layout.coordinate(planes, axis, p),
                     chain(&object, planes, axis, reference, p),
@@ -356,7 +356,7 @@ impl SketchSession {
         args.end()?;
         let object = self.active()?.clone();
         let (view, layout) = self.laid_out(&object);
-        for axis in Axis::ALL.into_iter().filter(|a| only.is_none_or(|o| o == *a)) {
+        for axis in CoordinateAxis::ALL.into_iter().filter(|a| only.is_none_or(|o| o == *a)) {
             let mut rows: Vec<(Option<f64>, String)> = (0..view.planes.counts()[axis.index()])
                 .map(|k| {
                     let points: Vec<String> =
@@ -409,7 +409,7 @@ impl SketchSession {
         let mut rows = Vec::new();
         if on("POINTS") {
             for p in object.drawing.points.keys() {
-                let at = Axis::ALL
+                let at = CoordinateAxis::ALL
                     .map(|a| layout.coordinate(&view.planes, a, *p).map_or("?".to_owned(), plain));
                 let drawn = object.drawing.points[p];
                 rows.push(format!(
@@ -648,7 +648,7 @@ impl SketchSession {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Suggestion {
     /// Its axis.
-    pub axis: Axis,
+    pub axis: CoordinateAxis,
     /// From.
     pub p: PointId,
     /// To, on the positive side.
@@ -663,7 +663,7 @@ pub struct Suggestion {
 pub(super) fn suggestions(
     object: &SketchObject,
     view: &DrawingCache,
-    layout: &Layout<f64>,
+    layout: &DimensionLayout<f64>,
 ) -> Vec<Option<Suggestion>> {
     let planes = &view.planes;
     let estimate = view.estimate();

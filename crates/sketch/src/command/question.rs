@@ -1,15 +1,15 @@
 //! What the program asks, until it is answered.
 
-use crate::object::Face;
-use crate::{Axis, PointId};
+use crate::object::SketchFace;
+use crate::{CoordinateAxis, PointId};
 
 /// A question that waits for ACCEPT, REJECT, REVERSE, REPEAT, YES or NO.
 #[derive(Clone, Debug)]
 pub(crate) enum Question {
     /// Is the estimated value right?
-    Dimension { name: String, axis: Axis, p: PointId, q: PointId, value: f64 },
+    Dimension { name: String, axis: CoordinateAxis, p: PointId, q: PointId, value: f64 },
     /// Is this candidate a face?
-    Face { object: String, left: Vec<Vec<Vec<PointId>>>, taken: Vec<Face> },
+    Face { object: String, left: Vec<Vec<Vec<PointId>>>, taken: Vec<SketchFace> },
     /// Which of several solids?
-    Solid { object: String, faces: Vec<Vec<Face>> },
+    Solid { object: String, faces: Vec<Vec<SketchFace>> },
 }

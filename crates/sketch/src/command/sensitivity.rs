@@ -1,7 +1,7 @@
 //! Derivatives and sweeps of the objects of a session.
 
 use super::SketchSession;
-use crate::{DimensionFault, Estimate, Gradient, Planes, Swept, gradient, solid, solve};
+use crate::{DimensionFault, Estimate, Planes, SolidGradient, Swept, gradient, solid, solve};
 use std::collections::BTreeMap;
 
 impl SketchSession {
@@ -38,7 +38,7 @@ impl SketchSession {
     ///
     /// # Errors
     /// As there, or the name of an object that there is none of.
-    pub fn gradient(&self, object: &str, by: &[String]) -> Result<Gradient, String> {
+    pub fn gradient(&self, object: &str, by: &[String]) -> Result<SolidGradient, String> {
         let object = self.object(object).ok_or(object)?;
         gradient(object, &Planes::of(&object.drawing), by)
     }

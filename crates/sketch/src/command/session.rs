@@ -6,7 +6,7 @@ use super::words::{self, Command};
 use super::{CommandError, verbs};
 use crate::solid::feature::{NoBody, body};
 use crate::solid::{SketchSolid, solid};
-use crate::{Estimate, Layout, Planes, PointId, SketchObject, solve};
+use crate::{DimensionLayout, Estimate, Planes, PointId, SketchObject, solve};
 use indexmap::IndexMap;
 use moldloft_diag::Severity;
 use moldloft_num::Real;
@@ -145,7 +145,7 @@ impl DrawingCache {
 pub(crate) struct Worked {
     pub object: Arc<SketchObject>,
     pub view: Arc<DrawingCache>,
-    pub layout: Layout<f64>,
+    pub layout: DimensionLayout<f64>,
     body: std::sync::OnceLock<Result<SketchSolid<f64>, NoBody>>,
 }
 
@@ -602,7 +602,9 @@ impl SketchSession {
 
     /// Takes an object's name if one is next, and makes it active.
     pub(crate) fn take_object(&mut self, args: &mut Args) -> Result<(), CommandError> {
-        if let Some(token) = args.peek().filter(|t| !matches!(t.kind, words::Kind::Number(..))) {
+        if let Some(token) =
+            args.peek().filter(|t| !matches!(t.kind, words::CommandTokenKind::Number(..)))
+        {
             let key = token.text.to_lowercase();
             if self.state.objects.contains_key(&key) {
                 args.skip();
@@ -650,7 +652,10 @@ impl SketchSession {
     }
 
     /// Planes and layout of an object.
-    pub(crate) fn laid_out(&mut self, object: &SketchObject) -> (Arc<DrawingCache>, Layout<f64>) {
+    pub(crate) fn laid_out(
+        &mut self,
+        object: &SketchObject,
+    ) -> (Arc<DrawingCache>, DimensionLayout<f64>) {
         let view = self.view(object);
         let layout = lay_out(object, &view, &BTreeMap::new());
         (view, layout)
@@ -739,7 +744,7 @@ pub(crate) fn lay_out<T: Real>(
     object: &SketchObject,
     view: &DrawingCache,
     overrides: &BTreeMap<String, T>,
-) -> Layout<T> {
+) -> DimensionLayout<T> {
     solve(object, &view.planes, overrides, &|| view.estimate().cloned())
 }
 

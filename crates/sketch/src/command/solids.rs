@@ -6,9 +6,9 @@ use super::draw::require_point;
 use super::info::{Suggestion, suggestions};
 use super::question::Question;
 use super::session::{CommandReply, MAX_POINTS, SketchSession};
-use crate::solid::faces::{Fit, Fitted, Polygon, fit, fit_plane};
+use crate::solid::faces::{Fitted, Polygon, WireframeFit, fit, fit_plane};
 use crate::solid::merge::{self, Placed};
-use crate::{Axis, Expr, Face, FaceId, PointId, SketchObject};
+use crate::{CoordinateAxis, DimensionExpr, FaceId, PointId, SketchFace, SketchObject};
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
 use std::collections::BTreeMap;
@@ -57,16 +57,16 @@ impl SketchSession {
             Some(normal) => {
                 let mut n = Vec3::zero();
                 match normal {
-                    Axis::X => n.x = 1.0,
+                    CoordinateAxis::X => n.x = 1.0,
                     // X to the right and Z up is seen against Y.
-                    Axis::Y => n.y = -1.0,
-                    Axis::Z => n.z = 1.0,
+                    CoordinateAxis::Y => n.y = -1.0,
+                    CoordinateAxis::Z => n.z = 1.0,
                 }
                 let polygons = fit_plane(&positions, &edges, n);
                 let fits = if polygons.is_empty() {
                     vec![]
                 } else {
-                    vec![Fit {
+                    vec![WireframeFit {
                         faces: polygons.clone(),
                         internal: vec![],
                         branching: vec![],
@@ -213,7 +213,7 @@ impl SketchSession {
         self.report_validity()
     }
 
-    fn take_fit(&mut self, ids: &[PointId], fit: &Fit) -> Result<(), CommandError> {
+    fn take_fit(&mut self, ids: &[PointId], fit: &WireframeFit) -> Result<(), CommandError> {
         let object = self.active_mut()?;
         let faces = fit.faces.iter().map(|p| face_of(p, ids));
         object.faces = (1..).map(FaceId).zip(faces).collect();
@@ -260,7 +260,7 @@ impl SketchSession {
                     pair == (p, q) || pair == (q, p)
                 })
             };
-            taken.iter().flat_map(Face::loops).filter(|c| has(c)).count()
+            taken.iter().flat_map(SketchFace::loops).filter(|c| has(c)).count()
         };
         let full = |c: &Vec<PointId>| (0..c.len()).any(|k| uses(c[k], c[(k + 1) % c.len()]) >= 2);
         while left.first().is_some_and(|loops| loops.iter().any(full)) {
@@ -322,7 +322,7 @@ impl SketchSession {
             out.add_dimension(crate::Dimension {
                 name: name.clone(),
                 measure: crate::MeasuredQuantity::Along { axis: s.axis, p: s.p, q: s.q },
-                value: Some(Expr::number(s.value)),
+                value: Some(DimensionExpr::number(s.value)),
                 role: crate::DimensionRole::Driving,
                 range: None,
             });
@@ -354,7 +354,7 @@ impl SketchSession {
     pub(super) fn answer(&mut self, verb: &str) -> Result<(), CommandError> {
         match (self.question.take(), verb) {
             (Some(Question::Dimension { name, axis, p, q, value }), "YES" | "ACCEPT") => {
-                self.add_along(name, axis, p, q, Expr::number(value), None)
+                self.add_along(name, axis, p, q, DimensionExpr::number(value), None)
             }
             (Some(Question::Dimension { .. } | Question::Solid { .. }), "NO" | "REJECT") => Ok(()),
             (Some(Question::Face { object, mut left, mut taken }), _) => {
@@ -441,12 +441,12 @@ impl SketchSession {
         }
         let mut cycles = cycles.into_iter();
         let outer = cycles.next().unwrap_or_default();
-        self.active_mut()?.faces.insert(id, Face { outer, holes: cycles.collect() });
+        self.active_mut()?.faces.insert(id, SketchFace { outer, holes: cycles.collect() });
         self.report_validity()
     }
 
     pub(super) fn extrude(&mut self, args: &mut Args) -> Result<(), CommandError> {
-        let axis_next = args.peek().is_some_and(|t| Axis::of(&t.text).is_some());
+        let axis_next = args.peek().is_some_and(|t| CoordinateAxis::of(&t.text).is_some());
         if !axis_next && !args.at_number() && args.len() > 1 {
             if let Some(token) = args.peek() {
                 self.known(&token.text)?;
@@ -704,16 +704,19 @@ impl SketchSession {
 }
 
 pub(super) fn faces_word() -> super::words::CommandToken {
-    super::words::CommandToken { kind: super::words::Kind::Word, text: "FACES".to_owned() }
+    super::words::CommandToken {
+        kind: super::words::CommandTokenKind::Word,
+        text: "FACES".to_owned(),
+    }
 }
 
-fn face_of(polygon: &Polygon, ids: &[PointId]) -> Face {
+fn face_of(polygon: &Polygon, ids: &[PointId]) -> SketchFace {
     // Vertices beyond the points were refused before.
     let cycle = |c: &Vec<usize>| c.iter().filter_map(|k| ids.get(*k).copied()).collect();
-    Face { outer: cycle(&polygon.outer), holes: polygon.holes.iter().map(cycle).collect() }
+    SketchFace { outer: cycle(&polygon.outer), holes: polygon.holes.iter().map(cycle).collect() }
 }
 
-fn runs(face: &Face, p: PointId, q: PointId) -> bool {
+fn runs(face: &SketchFace, p: PointId, q: PointId) -> bool {
     face.loops().any(|c| (0..c.len()).any(|k| (c[k], c[(k + 1) % c.len()]) == (p, q)))
 }
 
@@ -722,15 +725,15 @@ fn pairs(loops: &[Vec<PointId>]) -> impl Iterator<Item = (PointId, PointId)> {
 }
 
 /// Whether a candidate shares an edge with a face.
-fn touches(face: &Face, loops: &[Vec<PointId>]) -> bool {
+fn touches(face: &SketchFace, loops: &[Vec<PointId>]) -> bool {
     pairs(loops).any(|(p, q)| runs(face, p, q) || runs(face, q, p))
 }
 
 /// A candidate turned so that it agrees with accepted neighbours.
-fn oriented(loops: Vec<Vec<PointId>>, taken: &[Face]) -> Face {
+fn oriented(loops: Vec<Vec<PointId>>, taken: &[SketchFace]) -> SketchFace {
     let clash = pairs(&loops).any(|(p, q)| taken.iter().any(|f| runs(f, p, q)));
     let mut cycles = loops.into_iter();
-    let face = Face { outer: cycles.next().unwrap_or_default(), holes: cycles.collect() };
+    let face = SketchFace { outer: cycles.next().unwrap_or_default(), holes: cycles.collect() };
     if clash { face.reversed() } else { face }
 }
 

@@ -4,7 +4,7 @@ use super::CommandError;
 
 /// What a token is.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Kind {
+pub enum CommandTokenKind {
     /// A word: a letter, then letters, digits, `_`, `.`.
     Word,
     /// A number with an optional unit in capitals.
@@ -17,7 +17,7 @@ pub enum Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandToken {
     /// What it is.
-    pub kind: Kind,
+    pub kind: CommandTokenKind,
     /// As written, without quotes.
     pub text: String,
 }
@@ -99,7 +99,7 @@ pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
                 match close {
                     Some(j) => {
                         let text = line[at + 1..chars[j].0].to_owned();
-                        tokens.push(CommandToken { kind: Kind::Text, text });
+                        tokens.push(CommandToken { kind: CommandTokenKind::Text, text });
                         k = j + 1;
                     }
                     None => {
@@ -131,11 +131,14 @@ fn token(text: &str, longest: Option<usize>) -> Result<CommandToken, CommandErro
     let first = text.chars().next().unwrap_or(' ');
     if ["2D", "3D"].iter().any(|d| text.eq_ignore_ascii_case(d)) || text.eq_ignore_ascii_case("3MF")
     {
-        return Ok(CommandToken { kind: Kind::Word, text: text.to_owned() });
+        return Ok(CommandToken { kind: CommandTokenKind::Word, text: text.to_owned() });
     }
     if first.is_ascii_digit() || "+-.".contains(first) {
         let (value, unit) = number(text)?;
-        return Ok(CommandToken { kind: Kind::Number(value, unit), text: text.to_owned() });
+        return Ok(CommandToken {
+            kind: CommandTokenKind::Number(value, unit),
+            text: text.to_owned(),
+        });
     }
     if !first.is_alphabetic() && first != '_' {
         let next = "put names in letters, digits, `_` and `.`, anything else in quotation marks";
@@ -148,7 +151,7 @@ fn token(text: &str, longest: Option<usize>) -> Result<CommandToken, CommandErro
         return Err(CommandError::text(format!("{what} in {text}"), next));
     }
     let text = text.chars().take(longest.unwrap_or(usize::MAX)).collect();
-    Ok(CommandToken { kind: Kind::Word, text })
+    Ok(CommandToken { kind: CommandTokenKind::Word, text })
 }
 
 /// A number with an optional unit; the errors are those that LSUCMD caught.

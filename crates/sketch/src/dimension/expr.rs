@@ -27,14 +27,14 @@ enum ExprOp {
 /// language. It is parsed once and evaluated over any scalar.
 ///
 /// ```
-/// use moldloft_sketch::Expr;
-/// let e = Expr::parse("2*W1 + 0.5").unwrap();
+/// use moldloft_sketch::DimensionExpr;
+/// let e = DimensionExpr::parse("2*W1 + 0.5").unwrap();
 /// assert_eq!(e.eval(&|name| (name == "w1").then_some(3.0)), Ok(6.5));
 /// assert_eq!(e.names().collect::<Vec<_>>(), ["w1"]);
-/// assert!(Expr::parse("2*").is_err());
+/// assert!(DimensionExpr::parse("2*").is_err());
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Expr {
+pub struct DimensionExpr {
     text: String,
     ops: Vec<ExprOp>,
 }
@@ -46,17 +46,20 @@ pub struct NoValue {
     pub name: String,
 }
 
-impl Expr {
+impl DimensionExpr {
     /// A plain number.
-    pub fn number(value: f64) -> Expr {
-        Expr { text: moldloft_syntax::number::plain(value), ops: vec![ExprOp::Number(value)] }
+    pub fn number(value: f64) -> DimensionExpr {
+        DimensionExpr {
+            text: moldloft_syntax::number::plain(value),
+            ops: vec![ExprOp::Number(value)],
+        }
     }
 
     /// Parses a text.
     ///
     /// # Errors
     /// Says what is not understood.
-    pub fn parse(text: &str) -> Result<Expr, String> {
+    pub fn parse(text: &str) -> Result<DimensionExpr, String> {
         let text = text.trim();
         let (program, root, diagnostics) = sdl::parse_expr(text, FileId(0));
         if let Some(d) = diagnostics.first() {
@@ -64,7 +67,7 @@ impl Expr {
         }
         let mut ops = Vec::new();
         compile(&program, root, &mut ops)?;
-        Ok(Expr { text: text.to_owned(), ops })
+        Ok(DimensionExpr { text: text.to_owned(), ops })
     }
 
     /// As written.
@@ -90,7 +93,7 @@ impl Expr {
     }
 
     /// The same with every name changed by `rename` (given and giving lower case).
-    pub fn renamed(&self, rename: &dyn Fn(&str) -> Option<String>) -> Expr {
+    pub fn renamed(&self, rename: &dyn Fn(&str) -> Option<String>) -> DimensionExpr {
         let mut names: Vec<&str> = self.names().filter(|n| rename(n).is_some()).collect();
         names.sort_unstable();
         names.dedup();
@@ -112,7 +115,7 @@ impl Expr {
                 out.push(c);
             }
         }
-        Expr::parse(&out).unwrap_or_else(|_| self.clone())
+        DimensionExpr::parse(&out).unwrap_or_else(|_| self.clone())
     }
 
     /// The value, with names looked up in lower case.
@@ -267,7 +270,7 @@ fn binary(op: BinaryOp) -> Result<ExprOp, String> {
     }
 }
 
-impl fmt::Display for Expr {
+impl fmt::Display for DimensionExpr {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
     }
@@ -285,7 +288,7 @@ mod tests {
                 "b.w" => Some(5.0),
                 _ => None,
             };
-            Expr::parse(text).map(|e| e.eval::<f64>(&names))
+            DimensionExpr::parse(text).map(|e| e.eval::<f64>(&names))
         };
         for (text, expected) in [
             ("-A^2", -4.0),
@@ -307,9 +310,9 @@ mod tests {
         for bad in ["", "1 +", "foo(1)", "sin(1,2)", "{1,2}", "a < b", "\"x\"", "not a"] {
             assert!(value(bad).is_err(), "{bad}");
         }
-        let renamed = Expr::parse("W1 + w10*2").unwrap();
+        let renamed = DimensionExpr::parse("W1 + w10*2").unwrap();
         let renamed = renamed.renamed(&|n| (n == "w1").then(|| "a.w1".to_owned()));
         assert_eq!(renamed.text(), "a.w1 + w10*2");
-        assert_eq!(Expr::parse("-3").unwrap().literal(), Some(-3.0));
+        assert_eq!(DimensionExpr::parse("-3").unwrap().literal(), Some(-3.0));
     }
 }

@@ -10,7 +10,7 @@ use crate::dimension::{Dimension, DimensionRole, MeasuredQuantity};
 use crate::drawing::estimate::Estimate;
 use crate::drawing::planes::Planes;
 use crate::object::SketchObject;
-use crate::{Axis, PointId};
+use crate::{CoordinateAxis, PointId};
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, VecDeque};
@@ -75,7 +75,7 @@ pub enum DimensionFault {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loose {
     /// The axis.
-    pub axis: Axis,
+    pub axis: CoordinateAxis,
     /// The planes.
     pub planes: Vec<usize>,
     /// Their points.
@@ -95,7 +95,7 @@ pub struct Count {
 
 /// Where everything is.
 #[derive(Clone, Debug)]
-pub struct Layout<T> {
+pub struct DimensionLayout<T> {
     /// The coordinate of each plane of each axis, as far as determined.
     pub coordinates: [Vec<Option<T>>; 3],
     /// The account of each axis.
@@ -108,29 +108,36 @@ pub struct Layout<T> {
     pub values: BTreeMap<String, T>,
 }
 
-impl<T: Real> Layout<T> {
+impl<T: Real> DimensionLayout<T> {
     /// Whether every point is determined.
     pub fn complete(&self) -> bool {
         self.counts.iter().all(|c| c.missing == 0)
     }
 
     /// The coordinate of a point on an axis.
-    pub fn coordinate(&self, planes: &Planes, axis: Axis, point: PointId) -> Option<T> {
+    pub fn coordinate(&self, planes: &Planes, axis: CoordinateAxis, point: PointId) -> Option<T> {
         self.coordinates[axis.index()].get(planes.plane(axis, point)?).copied().flatten()
     }
 
     /// Where a point is.
     pub fn point(&self, planes: &Planes, point: PointId) -> Option<Vec3<T>> {
-        let [x, y, z] = Axis::ALL.map(|a| self.coordinate(planes, a, point));
+        let [x, y, z] = CoordinateAxis::ALL.map(|a| self.coordinate(planes, a, point));
         Some(Vec3::new(x?, y?, z?))
     }
 
     /// All positions, in the order of [`Planes::ids`]; `None` when one is undetermined.
     pub fn positions(&self, planes: &Planes) -> Option<Vec<Vec3<T>>> {
-        let at =
-            |axis: Axis, k: usize| self.coordinates[axis.index()][planes.classes(axis)[k] as usize];
+        let at = |axis: CoordinateAxis, k: usize| {
+            self.coordinates[axis.index()][planes.classes(axis)[k] as usize]
+        };
         (0..planes.ids().len())
-            .map(|k| Some(Vec3::new(at(Axis::X, k)?, at(Axis::Y, k)?, at(Axis::Z, k)?)))
+            .map(|k| {
+                Some(Vec3::new(
+                    at(CoordinateAxis::X, k)?,
+                    at(CoordinateAxis::Y, k)?,
+                    at(CoordinateAxis::Z, k)?,
+                ))
+            })
             .collect()
     }
 
@@ -152,15 +159,15 @@ impl<T: Real> Layout<T> {
 }
 
 /// The dimension graph of one axis: planes and the ground.
-struct Graph {
+struct DimensionGraph {
     /// Per node: (other node, dimension, whether the other node is its far end).
     next: Vec<Vec<(usize, usize, bool)>>,
     sets: UnionFind,
 }
 
-impl Graph {
-    fn new(nodes: usize) -> Graph {
-        Graph { next: vec![Vec::new(); nodes], sets: UnionFind::new(nodes) }
+impl DimensionGraph {
+    fn new(nodes: usize) -> DimensionGraph {
+        DimensionGraph { next: vec![Vec::new(); nodes], sets: UnionFind::new(nodes) }
     }
 
     fn join(&mut self, a: usize, b: usize, dimension: usize) {
@@ -196,7 +203,7 @@ impl Graph {
 const REFERENCE: usize = usize::MAX;
 
 /// The two nodes that a dimension joins on its axis, from and to; the ground is node `planes`.
-fn ends(planes: &Planes, measure: &MeasuredQuantity) -> Option<(Axis, usize, usize)> {
+fn ends(planes: &Planes, measure: &MeasuredQuantity) -> Option<(CoordinateAxis, usize, usize)> {
     match *measure {
         MeasuredQuantity::Along { axis, p, q } => {
             Some((axis, planes.plane(axis, p)?, planes.plane(axis, q)?))
@@ -213,7 +220,7 @@ fn ends(planes: &Planes, measure: &MeasuredQuantity) -> Option<(Axis, usize, usi
 pub fn chain(
     object: &SketchObject,
     planes: &Planes,
-    axis: Axis,
+    axis: CoordinateAxis,
     p: PointId,
     q: PointId,
 ) -> Option<(Vec<PointId>, Vec<String>)> {
@@ -261,10 +268,10 @@ pub fn chain_text(points: &[PointId]) -> String {
 }
 
 /// The forests of driving dimensions, and the dimensions that close loops in them.
-fn graphs(object: &SketchObject, planes: &Planes) -> ([Graph; 3], Vec<usize>) {
-    let mut graphs = planes.counts().map(|n| Graph::new(n + 1));
+fn graphs(object: &SketchObject, planes: &Planes) -> ([DimensionGraph; 3], Vec<usize>) {
+    let mut graphs = planes.counts().map(|n| DimensionGraph::new(n + 1));
     if let Some(r) = object.reference() {
-        for axis in Axis::ALL {
+        for axis in CoordinateAxis::ALL {
             if let Some(plane) = planes.plane(axis, r.point) {
                 graphs[axis.index()].join(planes.counts()[axis.index()], plane, REFERENCE);
             }
@@ -293,7 +300,7 @@ pub fn solve<T: Real>(
     planes: &Planes,
     overrides: &BTreeMap<String, T>,
     estimate: &dyn Fn() -> Option<Estimate>,
-) -> Layout<T> {
+) -> DimensionLayout<T> {
     let (values, mut faults) = evaluate(object, overrides);
     let (graphs, closing) = graphs(object, planes);
     let value = |k: usize| -> Option<T> {
@@ -301,9 +308,9 @@ pub fn solve<T: Real>(
         values.get(key).copied()
     };
     let mut coordinates = planes.counts().map(|n| vec![None; n]);
-    let mut floating: Vec<(Axis, Vec<(usize, T)>)> = Vec::new();
+    let mut floating: Vec<(CoordinateAxis, Vec<(usize, T)>)> = Vec::new();
     let mut counts = [Count::default(); 3];
-    for axis in Axis::ALL {
+    for axis in CoordinateAxis::ALL {
         let k = axis.index();
         let (graph, ground) = (&graphs[k], planes.counts()[k]);
         let mut offset: Vec<Option<T>> = vec![None; ground + 1];
@@ -348,7 +355,8 @@ pub fn solve<T: Real>(
         .filter(|d| d.role == DimensionRole::Driving && d.value.is_some())
         .filter(|d| ends(planes, &d.measure).is_none())
         .collect();
-    let mut layout = Layout { coordinates, counts, loose: Vec::new(), faults: Vec::new(), values };
+    let mut layout =
+        DimensionLayout { coordinates, counts, loose: Vec::new(), faults: Vec::new(), values };
     if !derived.is_empty() {
         faults.extend(solve_derived(
             object,
@@ -512,7 +520,7 @@ fn evaluate<T: Real>(
 pub fn chain_expression(
     object: &SketchObject,
     planes: &Planes,
-    axis: Axis,
+    axis: CoordinateAxis,
     p: PointId,
     q: PointId,
 ) -> Option<String> {

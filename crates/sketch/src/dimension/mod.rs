@@ -7,7 +7,7 @@ pub(crate) mod expr;
 pub(crate) mod layout;
 pub(crate) mod solver;
 
-use crate::{Axis, Expr, LineId, PointId};
+use crate::{CoordinateAxis, DimensionExpr, LineId, PointId};
 
 /// The quantity that a dimension fixes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub enum MeasuredQuantity {
     /// `coordinate(q) - coordinate(p)` on an axis. The sign never changes by itself.
     Along {
         /// The axis.
-        axis: Axis,
+        axis: CoordinateAxis,
         /// From.
         p: PointId,
         /// To.
@@ -24,7 +24,7 @@ pub enum MeasuredQuantity {
     /// The coordinate of a point (and so of its plane).
     Datum {
         /// The axis.
-        axis: Axis,
+        axis: CoordinateAxis,
         /// The point.
         point: PointId,
     },
@@ -55,7 +55,7 @@ pub struct Dimension {
     /// The quantity.
     pub measure: MeasuredQuantity,
     /// Its value, in model units or degrees; `None` when it was unset.
-    pub value: Option<Expr>,
+    pub value: Option<DimensionExpr>,
     /// Driving or measuring.
     pub role: DimensionRole,
     /// The values that make sense, for sliders and studies.
@@ -68,7 +68,7 @@ pub struct Variable {
     /// As the user wrote it.
     pub name: String,
     /// Its value.
-    pub value: Expr,
+    pub value: DimensionExpr,
     /// The values that make sense.
     pub range: Option<[f64; 2]>,
 }

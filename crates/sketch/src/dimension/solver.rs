@@ -7,15 +7,15 @@
 //! So the same text gives the same branch, whatever values were set before. Derivatives come from one
 //! more step in the scalar itself (implicit function theorem).
 
-use crate::dimension::layout::{DimensionFault, Layout};
+use crate::dimension::layout::{DimensionFault, DimensionLayout};
 use crate::dimension::{Dimension, MeasuredQuantity};
 use crate::drawing::estimate::Estimate;
 use crate::drawing::planes::Planes;
 use crate::object::SketchObject;
-use crate::{Axis, LineId, PointId};
+use crate::{CoordinateAxis, LineId, PointId};
 use moldloft_num::{Dual, Real, Vec3, determinant, solve_dense};
 
-type Floating<T> = Vec<(Axis, Vec<(usize, T)>)>;
+type Floating<T> = Vec<(CoordinateAxis, Vec<(usize, T)>)>;
 
 /// The ends of a line; for an angle, away from the common point.
 fn vector<T: Real>(
@@ -41,7 +41,8 @@ pub fn value<T: Real>(
         MeasuredQuantity::Slope(l) => {
             let d = vector(object, l, None, at)?;
             let up = object.drawing.letters.up.index();
-            let run = Axis::ALL.into_iter().map(Axis::index).filter(|&k| k != up);
+            let run =
+                CoordinateAxis::ALL.into_iter().map(CoordinateAxis::index).filter(|&k| k != up);
             let square = run.fold(T::zero(), |s, k| s + d[k] * d[k]);
             let rise = d[up].abs();
             (rise.re() > 0.0).then(|| square.sqrt() / rise)
@@ -76,7 +77,7 @@ fn points(object: &SketchObject, measure: &MeasuredQuantity) -> Vec<PointId> {
 pub(crate) fn solve_derived<T: Real>(
     object: &SketchObject,
     planes: &Planes,
-    layout: &mut Layout<T>,
+    layout: &mut DimensionLayout<T>,
     floating: &mut Floating<T>,
     dimensions: &[&Dimension],
     estimate: &dyn Fn() -> Option<Estimate>,
@@ -93,7 +94,7 @@ pub(crate) fn solve_derived<T: Real>(
         let reads = |d: &Dimension| {
             let mut parts: Vec<usize> = points(object, &d.measure)
                 .into_iter()
-                .flat_map(|p| Axis::ALL.map(|a| (a, planes.plane(a, p))))
+                .flat_map(|p| CoordinateAxis::ALL.map(|a| (a, planes.plane(a, p))))
                 .filter_map(|(a, plane)| {
                     let has = |part: &Vec<(usize, T)>| part.iter().any(|n| Some(n.0) == plane);
                     floating.iter().position(|(axis, part)| *axis == a && has(part))
@@ -120,7 +121,7 @@ pub(crate) fn solve_derived<T: Real>(
         let tried_whole = whole.is_some();
         let Some((equations, unknowns)) = whole.or_else(|| block(&table)) else { break };
         let chosen: Vec<&Dimension> = equations.iter().map(|&k| left[k]).collect();
-        let start = |part: &(Axis, Vec<(usize, T)>)| {
+        let start = |part: &(CoordinateAxis, Vec<(usize, T)>)| {
             let (axis, nodes) = part;
             let at = guess.as_ref().map_or(0.0, |e| {
                 let (mut sum, n) = (0.0, nodes.len() as f64);
@@ -201,7 +202,7 @@ fn block(table: &[Vec<usize>]) -> Option<(Vec<usize>, Vec<usize>)> {
 pub fn scale<T: Real>(
     object: &SketchObject,
     planes: &Planes,
-    layout: &Layout<T>,
+    layout: &DimensionLayout<T>,
     estimate: &Estimate,
 ) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
@@ -235,7 +236,7 @@ pub fn scale<T: Real>(
 fn check<T: Real>(
     object: &SketchObject,
     planes: &Planes,
-    layout: &Layout<T>,
+    layout: &DimensionLayout<T>,
     d: &Dimension,
 ) -> Option<DimensionFault> {
     let asked = layout.values.get(&d.name.to_ascii_lowercase())?.re();
@@ -257,7 +258,7 @@ const MOST_TOGETHER: usize = 60;
 struct System<'a, T> {
     object: &'a SketchObject,
     planes: &'a Planes,
-    layout: &'a Layout<T>,
+    layout: &'a DimensionLayout<T>,
     floating: &'a Floating<T>,
     unknowns: &'a [usize],
     dimensions: &'a [&'a Dimension],
@@ -275,7 +276,7 @@ struct ContinuationPoint {
 impl<T: Real> System<'_, T> {
     /// The points of the lines at `x` over the scalar `S`, into which `lift` takes the known numbers.
     fn at<S: Real>(&self, x: &[S], lift: &dyn Fn(T) -> S, p: PointId) -> Option<Vec3<S>> {
-        let coordinate = |axis: Axis| -> Option<S> {
+        let coordinate = |axis: CoordinateAxis| -> Option<S> {
             let plane = self.planes.plane(axis, p)?;
             if let Some(known) = self.layout.coordinates[axis.index()][plane] {
                 return Some(lift(known));
@@ -287,7 +288,7 @@ impl<T: Real> System<'_, T> {
             })
         };
         // An undetermined coordinate that the measure does not depend on counts as zero.
-        let [x, y, z] = Axis::ALL.map(|a| coordinate(a).unwrap_or_default());
+        let [x, y, z] = CoordinateAxis::ALL.map(|a| coordinate(a).unwrap_or_default());
         Some(Vec3::new(x, y, z))
     }
 
@@ -296,7 +297,7 @@ impl<T: Real> System<'_, T> {
         &self,
         [a, b]: [LineId; 2],
         at: &dyn Fn(PointId) -> Option<Vec3<S>>,
-    ) -> Option<([Vec3<S>; 2], Option<Axis>)> {
+    ) -> Option<([Vec3<S>; 2], Option<CoordinateAxis>)> {
         let lines = &self.object.drawing.lines;
         let (la, lb) = (lines.get(&a)?, lines.get(&b)?);
         let common = [la.p, la.q].into_iter().find(|p| [lb.p, lb.q].contains(p));

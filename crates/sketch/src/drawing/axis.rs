@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A coordinate axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Axis {
+pub enum CoordinateAxis {
     /// First.
     X,
     /// Second.
@@ -13,9 +13,9 @@ pub enum Axis {
     Z,
 }
 
-impl Axis {
+impl CoordinateAxis {
     /// All, in order.
-    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+    pub const ALL: [CoordinateAxis; 3] = [CoordinateAxis::X, CoordinateAxis::Y, CoordinateAxis::Z];
 
     /// 0, 1 or 2.
     pub fn index(self) -> usize {
@@ -28,12 +28,12 @@ impl Axis {
     }
 
     /// The axis of a letter, in either case.
-    pub fn of(text: &str) -> Option<Axis> {
-        Axis::ALL.into_iter().find(|a| a.letter().eq_ignore_ascii_case(text))
+    pub fn of(text: &str) -> Option<CoordinateAxis> {
+        CoordinateAxis::ALL.into_iter().find(|a| a.letter().eq_ignore_ascii_case(text))
     }
 }
 
-impl fmt::Display for Axis {
+impl fmt::Display for CoordinateAxis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.letter())
     }
@@ -51,40 +51,41 @@ impl Free {
     pub const OBLIQUE: Free = Free(7);
 
     /// One axis only: a principal line.
-    pub fn along(axis: Axis) -> Free {
+    pub fn along(axis: CoordinateAxis) -> Free {
         Free(1 << axis.index())
     }
 
     /// The axes perpendicular to `axis`.
-    pub fn across(axis: Axis) -> Free {
+    pub fn across(axis: CoordinateAxis) -> Free {
         Free(7 & !(1 << axis.index()))
     }
 
     /// The set of the axes for which `test` holds; `None` when it is empty.
-    pub fn those(mut test: impl FnMut(Axis) -> bool) -> Option<Free> {
-        let bits = Axis::ALL.into_iter().filter(|&a| test(a)).map(|a| 1 << a.index()).sum();
+    pub fn those(mut test: impl FnMut(CoordinateAxis) -> bool) -> Option<Free> {
+        let bits =
+            CoordinateAxis::ALL.into_iter().filter(|&a| test(a)).map(|a| 1 << a.index()).sum();
         (bits != 0).then_some(Free(bits))
     }
 
     /// Whether the ends may differ along `axis`.
-    pub fn contains(self, axis: Axis) -> bool {
+    pub fn contains(self, axis: CoordinateAxis) -> bool {
         self.0 >> axis.index() & 1 == 1
     }
 
     /// The axes in order.
-    pub fn axes(self) -> impl Iterator<Item = Axis> {
-        Axis::ALL.into_iter().filter(move |&a| self.contains(a))
+    pub fn axes(self) -> impl Iterator<Item = CoordinateAxis> {
+        CoordinateAxis::ALL.into_iter().filter(move |&a| self.contains(a))
     }
 
     /// The axis of a principal line.
-    pub fn single(self) -> Option<Axis> {
+    pub fn single(self) -> Option<CoordinateAxis> {
         let mut axes = self.axes();
         axes.next().filter(|_| axes.next().is_none())
     }
 
     /// The set with two axes exchanged.
-    pub fn swapped(self, a: Axis, b: Axis) -> Free {
-        let other = |x: Axis| {
+    pub fn swapped(self, a: CoordinateAxis, b: CoordinateAxis) -> Free {
+        let other = |x: CoordinateAxis| {
             if x == a {
                 b
             } else if x == b {
@@ -94,7 +95,7 @@ impl Free {
             }
         };
         Free(
-            Axis::ALL
+            CoordinateAxis::ALL
                 .into_iter()
                 .filter(|&x| self.contains(other(x)))
                 .map(|x| 1 << x.index())
@@ -122,21 +123,21 @@ pub enum Naming {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Letters {
     /// The axis that points up.
-    pub up: Axis,
+    pub up: CoordinateAxis,
     /// Which convention.
     pub naming: Naming,
 }
 
 impl Default for Letters {
     fn default() -> Self {
-        Letters { up: Axis::Z, naming: Naming::Standard }
+        Letters { up: CoordinateAxis::Z, naming: Naming::Standard }
     }
 }
 
 impl Letters {
     /// H, P, F with the axis that each keeps constant.
-    fn table(self) -> [(&'static str, Axis); 3] {
-        use Axis::{X, Y, Z};
+    fn table(self) -> [(&'static str, CoordinateAxis); 3] {
+        use CoordinateAxis::{X, Y, Z};
         match (self.naming, self.up) {
             (Naming::Seed, _) => [("H", Z), ("P", Y), ("F", X)],
             (_, Z) => [("H", Z), ("P", X), ("F", Y)],
@@ -147,7 +148,7 @@ impl Letters {
 
     /// The set a spelling stands for, in either case. In a section (perpendicular to `section`) F is
     /// any line that is not parallel to its axes.
-    pub fn free(self, text: &str, section: Option<Axis>) -> Option<Free> {
+    pub fn free(self, text: &str, section: Option<CoordinateAxis>) -> Option<Free> {
         let text = text.to_ascii_uppercase();
         if let ("F", Some(normal)) = (text.as_str(), section) {
             return Some(Free::across(normal));
@@ -162,7 +163,7 @@ impl Letters {
     }
 
     /// The letter shown for a set.
-    pub fn letter(self, free: Free, section: Option<Axis>) -> &'static str {
+    pub fn letter(self, free: Free, section: Option<CoordinateAxis>) -> &'static str {
         match section {
             Some(normal) if free == Free::across(normal) => "F",
             _ => (self.table().into_iter())
@@ -179,7 +180,7 @@ mod tests {
     #[test]
     fn letters_are_spellings_of_sets() {
         let standard = Letters::default();
-        let y_up = Letters { up: Axis::Y, ..standard };
+        let y_up = Letters { up: CoordinateAxis::Y, ..standard };
         let seed = Letters { naming: Naming::Seed, ..standard };
         for (letters, h, p, f) in
             [(standard, "XY", "YZ", "XZ"), (y_up, "XZ", "YZ", "XY"), (seed, "XY", "XZ", "YZ")]
@@ -191,10 +192,13 @@ mod tests {
                 assert!(letters.letter(free, None).eq_ignore_ascii_case(letter));
             }
         }
-        assert_eq!(standard.free("F", Some(Axis::Z)).unwrap().spelling(), "XY");
+        assert_eq!(standard.free("F", Some(CoordinateAxis::Z)).unwrap().spelling(), "XY");
         assert_eq!(standard.free("Q", None), None);
         assert_eq!(Free::OBLIQUE.axes().count(), 3);
-        assert_eq!(Free::across(Axis::X).swapped(Axis::X, Axis::Y), Free::across(Axis::Y));
-        assert_eq!(Free::along(Axis::Y).single(), Some(Axis::Y));
+        assert_eq!(
+            Free::across(CoordinateAxis::X).swapped(CoordinateAxis::X, CoordinateAxis::Y),
+            Free::across(CoordinateAxis::Y)
+        );
+        assert_eq!(Free::along(CoordinateAxis::Y).single(), Some(CoordinateAxis::Y));
     }
 }

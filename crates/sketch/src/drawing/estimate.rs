@@ -6,7 +6,7 @@
 //! the exact number of depths that the picture leaves open.
 
 use crate::drawing::planes::Planes;
-use crate::{Axis, Drawing, PointId};
+use crate::{CoordinateAxis, Drawing, PointId};
 use moldloft_num::Vec3;
 
 /// More planes than this are not estimated (the work grows with the cube).
@@ -16,7 +16,7 @@ pub const MAX_PLANES: usize = 1500;
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeDepth {
     /// The planes with their relative motion.
-    pub planes: Vec<(Axis, usize, f64)>,
+    pub planes: Vec<(CoordinateAxis, usize, f64)>,
     /// The points in them that move.
     pub points: Vec<PointId>,
 }
@@ -38,10 +38,10 @@ impl Estimate {
             return None;
         }
         // Columns: planes other than the reference's, then where the origin was drawn.
-        let zero = Axis::ALL.map(|a| planes.plane(a, reference));
+        let zero = CoordinateAxis::ALL.map(|a| planes.plane(a, reference));
         let mut column = [const { Vec::new() }; 3];
         let mut owner = Vec::new();
-        for axis in Axis::ALL {
+        for axis in CoordinateAxis::ALL {
             let k = axis.index();
             for plane in 0..counts[k] {
                 let free = zero[k] != Some(plane);
@@ -59,7 +59,7 @@ impl Estimate {
             for (screen, at) in [drawn.u, drawn.v].into_iter().enumerate() {
                 let mut row: [(usize, f64); 4] = [(n - 2 + screen, 1.0); 4];
                 let mut used = 1;
-                for axis in Axis::ALL {
+                for axis in CoordinateAxis::ALL {
                     let plane = planes.classes(axis)[k] as usize;
                     if let Some(c) = column[axis.index()][plane] {
                         row[used] = (c, drawing.projection.unit(axis)[screen]);
@@ -80,7 +80,7 @@ impl Estimate {
             coordinates[axis.index()][plane] = solution[c];
         }
         let depths = null.into_iter().map(|z| {
-            let moving: Vec<(Axis, usize, f64)> = (owner.iter().zip(&z))
+            let moving: Vec<(CoordinateAxis, usize, f64)> = (owner.iter().zip(&z))
                 .filter(|(_, m)| m.abs() > 1e-7)
                 .map(|(&(axis, plane), &m)| (axis, plane, m))
                 .collect();
@@ -94,12 +94,12 @@ impl Estimate {
     }
 
     /// The estimated position of a plane.
-    pub fn plane(&self, axis: Axis, plane: usize) -> f64 {
+    pub fn plane(&self, axis: CoordinateAxis, plane: usize) -> f64 {
         self.coordinates[axis.index()].get(plane).copied().unwrap_or(0.0)
     }
 
     /// Whether the picture shows the distance between two planes of an axis: no open depth changes it.
-    pub fn determines(&self, axis: Axis, a: usize, b: usize) -> bool {
+    pub fn determines(&self, axis: CoordinateAxis, a: usize, b: usize) -> bool {
         let motion = |depth: &FreeDepth, plane: usize| {
             let own = depth.planes.iter().find(|m| m.0 == axis && m.1 == plane);
             own.map_or(0.0, |m| m.2)
@@ -110,7 +110,7 @@ impl Estimate {
     /// The estimated position of a point.
     pub fn point(&self, planes: &Planes, point: PointId) -> Vec3 {
         let at = |axis| planes.plane(axis, point).map_or(0.0, |p| self.plane(axis, p));
-        Vec3::new(at(Axis::X), at(Axis::Y), at(Axis::Z))
+        Vec3::new(at(CoordinateAxis::X), at(CoordinateAxis::Y), at(CoordinateAxis::Z))
     }
 
     /// The greatest distance between estimated planes of an axis.

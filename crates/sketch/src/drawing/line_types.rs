@@ -1,7 +1,7 @@
 //! Types of lines from their slopes, and from planes that their ends share.
 
 use crate::drawing::planes::Planes;
-use crate::{Axis, Drawing, Free, Line, LineId, LineTypeSource};
+use crate::{CoordinateAxis, Drawing, DrawnLine, Free, LineId, LineTypeSource};
 
 /// How far a line may lean off an axis and still be named after it: 5 % of the slope (manual, p. 10).
 pub const NAMING_TOLERANCE: f64 = 0.05;
@@ -14,9 +14,9 @@ impl Drawing {
     ///
     /// The axis with the smallest lean, if that is within 5 %. In a cross section every other line is
     /// inclined; in a pictorial nothing is said about it.
-    pub fn slope_type(&self, line: &Line) -> Option<(Free, f64)> {
+    pub fn slope_type(&self, line: &DrawnLine) -> Option<(Free, f64)> {
         let stroke = self.stroke(line);
-        let axes = Axis::ALL.into_iter().filter(|&a| self.section != Some(a));
+        let axes = CoordinateAxis::ALL.into_iter().filter(|&a| self.section != Some(a));
         let best = axes
             .map(|axis| (axis, self.projection.lean(stroke, axis)))
             .min_by(|a, b| a.1.total_cmp(&b.1));
@@ -36,7 +36,7 @@ impl Drawing {
             Some((free, confidence)) => (Some(free), confidence),
             None => (None, 0.0),
         };
-        self.lines.insert(id, Line { free, confidence, source: LineTypeSource::Auto, ..line });
+        self.lines.insert(id, DrawnLine { free, confidence, source: LineTypeSource::Auto, ..line });
     }
 
     /// Types every line that the user has not typed: by its stroke and those parallel to it in space,
@@ -59,7 +59,8 @@ impl Drawing {
                 (None, None) => None,
             };
             let confidence = if free.is_some() { verdict.share } else { 0.0 };
-            self.lines.insert(id, Line { free, confidence, source: LineTypeSource::Auto, ..line });
+            self.lines
+                .insert(id, DrawnLine { free, confidence, source: LineTypeSource::Auto, ..line });
         }
         loop {
             let planes = Planes::of(self);
@@ -71,7 +72,7 @@ impl Drawing {
                 }
                 let free = Free::those(|a| !planes.same(a, line.p, line.q));
                 if let Some(free) = free.filter(|&f| f != Free::OBLIQUE) {
-                    let inferred = Line {
+                    let inferred = DrawnLine {
                         free: Some(free),
                         source: LineTypeSource::Inferred,
                         confidence: share(id),

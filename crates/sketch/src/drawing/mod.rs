@@ -7,7 +7,7 @@ mod noise;
 pub(crate) mod planes;
 pub(crate) mod projection;
 
-use axis::{Axis, Free, Letters};
+use axis::{CoordinateAxis, Free, Letters};
 use projection::Projection;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -71,7 +71,7 @@ impl LineTypeSource {
 
 /// A line between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct DrawnLine {
     /// Where it starts.
     pub p: PointId,
     /// End.
@@ -88,7 +88,7 @@ pub struct Line {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Align {
     /// The axis whose coordinate they share.
-    pub axis: Axis,
+    pub axis: CoordinateAxis,
     /// One point.
     pub p: PointId,
     /// The other.
@@ -97,7 +97,7 @@ pub struct Align {
 
 /// A part of a drawing near a place on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Hit {
+pub enum DrawingHit {
     /// A point.
     Point(PointId),
     /// A line, at a part of its length.
@@ -115,16 +115,16 @@ pub struct Snap {
     /// The place.
     pub at: [f64; 2],
     /// What is there, or the point whose extension it is on.
-    pub hit: Option<Hit>,
+    pub hit: Option<DrawingHit>,
     /// The axis of the extension.
-    pub axis: Option<Axis>,
+    pub axis: Option<CoordinateAxis>,
 }
 
 /// The flat picture of one object.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
     /// For a cross section, the axis it is perpendicular to.
-    pub section: Option<Axis>,
+    pub section: Option<CoordinateAxis>,
     /// How the axes were drawn.
     pub projection: Projection,
     /// What H, P and F mean.
@@ -132,7 +132,7 @@ pub struct Drawing {
     /// The points by label.
     pub points: BTreeMap<PointId, DrawnPoint>,
     /// The lines by label.
-    pub lines: BTreeMap<LineId, Line>,
+    pub lines: BTreeMap<LineId, DrawnLine>,
     /// Points in common planes beyond what lines say.
     pub aligns: Vec<Align>,
 }
@@ -150,12 +150,12 @@ impl Drawing {
 
     /// The line between two points, in either direction.
     pub fn line_between(&self, a: PointId, b: PointId) -> Option<LineId> {
-        let same = |l: &Line| (l.p == a && l.q == b) || (l.p == b && l.q == a);
+        let same = |l: &DrawnLine| (l.p == a && l.q == b) || (l.p == b && l.q == a);
         self.lines.iter().find(|(_, l)| same(l)).map(|(id, _)| *id)
     }
 
     /// The drawn vector of a line, from its start to its end.
-    pub fn stroke(&self, line: &Line) -> [f64; 2] {
+    pub fn stroke(&self, line: &DrawnLine) -> [f64; 2] {
         let at = |id| self.points.get(&id).map_or([0.0; 2], |p| [p.u, p.v]);
         let (a, b) = (at(line.p), at(line.q));
         [b[0] - a[0], b[1] - a[1]]
@@ -214,13 +214,13 @@ impl Drawing {
 
     /// The nearest point within `reach` of a place on the page, else the nearest line and the part of
     /// its length.
-    pub fn hit(&self, [u, v]: [f64; 2], reach: f64) -> Option<Hit> {
+    pub fn hit(&self, [u, v]: [f64; 2], reach: f64) -> Option<DrawingHit> {
         let square = reach * reach;
-        let mut best: Option<(f64, Hit)> = None;
+        let mut best: Option<(f64, DrawingHit)> = None;
         for (&id, p) in &self.points {
             let d = (p.u - u) * (p.u - u) + (p.v - v) * (p.v - v);
             if d <= square && best.as_ref().is_none_or(|b| d < b.0) {
-                best = Some((d, Hit::Point(id)));
+                best = Some((d, DrawingHit::Point(id)));
             }
         }
         if let Some((_, hit)) = best {
@@ -239,7 +239,7 @@ impl Drawing {
             let (x, y) = (a.u + du * part - u, a.v + dv * part - v);
             let d = x * x + y * y;
             if d <= square && best.as_ref().is_none_or(|b| d < b.0) {
-                best = Some((d, Hit::Line { line: id, part }));
+                best = Some((d, DrawingHit::Line { line: id, part }));
             }
         }
         best.map(|b| b.1)
@@ -249,21 +249,25 @@ impl Drawing {
     /// of an axis through a point.
     pub fn snap(&self, at: [f64; 2], reach: f64) -> Option<Snap> {
         match self.hit(at, reach) {
-            Some(Hit::Point(point)) => {
+            Some(DrawingHit::Point(point)) => {
                 let p = self.points[&point];
-                return Some(Snap { at: [p.u, p.v], hit: Some(Hit::Point(point)), axis: None });
+                return Some(Snap {
+                    at: [p.u, p.v],
+                    hit: Some(DrawingHit::Point(point)),
+                    axis: None,
+                });
             }
-            Some(Hit::Line { line, part }) => {
+            Some(DrawingHit::Line { line, part }) => {
                 let l = self.lines[&line];
                 let (a, b) = (self.points[&l.p], self.points[&l.q]);
                 let at = [a.u + (b.u - a.u) * part, a.v + (b.v - a.v) * part];
-                return Some(Snap { at, hit: Some(Hit::Line { line, part }), axis: None });
+                return Some(Snap { at, hit: Some(DrawingHit::Line { line, part }), axis: None });
             }
             None => {}
         }
         let mut best: Option<(f64, Snap)> = None;
         for (&id, p) in &self.points {
-            for axis in Axis::ALL.into_iter().filter(|a| self.section != Some(*a)) {
+            for axis in CoordinateAxis::ALL.into_iter().filter(|a| self.section != Some(*a)) {
                 let [c, s] = self.projection.unit(axis);
                 let length = c * c + s * s;
                 if length == 0.0 {
@@ -273,7 +277,8 @@ impl Drawing {
                 let foot = [p.u + c * along, p.v + s * along];
                 let d = (foot[0] - at[0]).powi(2) + (foot[1] - at[1]).powi(2);
                 if d <= reach * reach && best.as_ref().is_none_or(|b| d < b.0) {
-                    let snap = Snap { at: foot, hit: Some(Hit::Point(id)), axis: Some(axis) };
+                    let snap =
+                        Snap { at: foot, hit: Some(DrawingHit::Point(id)), axis: Some(axis) };
                     best = Some((d, snap));
                 }
             }

@@ -4,7 +4,7 @@
 //! whatever its length, so short lines tell little and long ones much. Lines that are parallel in space,
 //! because two lines of one axis join their ends, are judged together: m of them tell √m times as much.
 
-use crate::{Axis, Drawing, LineId, PointId};
+use crate::{CoordinateAxis, Drawing, LineId, PointId};
 use moldloft_num::Real;
 use moldloft_num::union_find::UnionFind;
 use std::collections::BTreeMap;
@@ -22,7 +22,7 @@ const DIRECTIONS: usize = 720;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Verdict {
     /// The likeliest axis, `None` when it is likelier inclined.
-    pub axis: Option<Axis>,
+    pub axis: Option<CoordinateAxis>,
     /// The share of that answer.
     pub share: f64,
 }
@@ -46,7 +46,7 @@ impl Drawing {
             })
             .filter(|s| s.length > 0.0)
             .collect();
-        let axes: Vec<(Axis, [f64; 2])> = (Axis::ALL.into_iter())
+        let axes: Vec<(CoordinateAxis, [f64; 2])> = (CoordinateAxis::ALL.into_iter())
             .filter(|a| self.section != Some(*a))
             .filter_map(|a| {
                 let [x, y] = self.projection.unit(a);
@@ -62,7 +62,7 @@ impl Drawing {
             s.ends.iter().for_each(|&p| at.entry(p).or_default().push(k));
         }
         // The end of a sure line from a point, by axis and sense.
-        let leads = |p: PointId| -> Vec<(Axis, bool, PointId, usize)> {
+        let leads = |p: PointId| -> Vec<(CoordinateAxis, bool, PointId, usize)> {
             (at.get(&p).into_iter().flatten())
                 .filter_map(|&k| {
                     let axis = alone[k].axis.filter(|_| alone[k].share >= SURE)?;
@@ -106,7 +106,7 @@ impl Drawing {
     }
 
     /// The standard deviation of a coordinate of an end, from how far lines near an axis miss it.
-    fn pen_noise(&self, strokes: &[Stroke], axes: &[(Axis, [f64; 2])]) -> f64 {
+    fn pen_noise(&self, strokes: &[Stroke], axes: &[(CoordinateAxis, [f64; 2])]) -> f64 {
         let size = strokes.iter().map(|s| s.length).fold(0.0, f64::max);
         let mut off: Vec<f64> = (strokes.iter())
             .filter_map(|s| {
@@ -122,7 +122,7 @@ impl Drawing {
 }
 
 /// The likeliest direction of parallel strokes.
-fn judge(strokes: &[&Stroke], axes: &[(Axis, [f64; 2])], sigma: f64) -> Verdict {
+fn judge(strokes: &[&Stroke], axes: &[(CoordinateAxis, [f64; 2])], sigma: f64) -> Verdict {
     let spread = 2.0 * 2.0 * sigma * sigma;
     // The logarithm of the likelihood that all run in a direction.
     let fits = |[x, y]: [f64; 2]| -> f64 {

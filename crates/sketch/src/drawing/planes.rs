@@ -4,7 +4,7 @@
 //! common Z plane, and so on. The planes of an axis are the classes of this relation; N planes need
 //! N - 1 dimensions and one reference value (manual, pp. 5-8; routines DETPNS, SETPLS, PLNTES).
 
-use crate::{Align, Axis, Drawing, Free, LineId, PointId};
+use crate::{Align, CoordinateAxis, Drawing, Free, LineId, PointId};
 use moldloft_num::union_find::UnionFind;
 use std::collections::VecDeque;
 
@@ -38,7 +38,7 @@ pub enum TypeFault {
         /// The line that would have no length.
         line: LineId,
         /// The axis along which it should run.
-        axis: Axis,
+        axis: CoordinateAxis,
         /// What ties its ends there.
         path: Vec<Reason>,
     },
@@ -87,7 +87,7 @@ impl Planes {
         let index = |p: PointId| ids.binary_search(&p).ok();
         let mut class = [const { Vec::new() }; 3];
         let mut count = [0; 3];
-        for axis in Axis::ALL {
+        for axis in CoordinateAxis::ALL {
             let mut sets = UnionFind::new(ids.len());
             let mut join = |a: usize, b: usize| sets.join(a, b);
             for line in drawing.lines.values() {
@@ -125,12 +125,12 @@ impl Planes {
     }
 
     /// Dimensions needed on an axis: one less than its planes.
-    pub fn required(&self, axis: Axis) -> usize {
+    pub fn required(&self, axis: CoordinateAxis) -> usize {
         self.count[axis.index()].saturating_sub(1)
     }
 
     /// The plane of a point on an axis.
-    pub fn plane(&self, axis: Axis, point: PointId) -> Option<usize> {
+    pub fn plane(&self, axis: CoordinateAxis, point: PointId) -> Option<usize> {
         let k = self.ids.binary_search(&point).ok()?;
         Some(self.class[axis.index()][k] as usize)
     }
@@ -141,18 +141,18 @@ impl Planes {
     }
 
     /// The plane of each point on an axis.
-    pub fn classes(&self, axis: Axis) -> &[u32] {
+    pub fn classes(&self, axis: CoordinateAxis) -> &[u32] {
         &self.class[axis.index()]
     }
 
     /// The points of a plane.
-    pub fn members(&self, axis: Axis, plane: usize) -> Vec<PointId> {
+    pub fn members(&self, axis: CoordinateAxis, plane: usize) -> Vec<PointId> {
         let classes = self.class[axis.index()].iter();
         classes.zip(&self.ids).filter(|(c, _)| **c as usize == plane).map(|(_, p)| *p).collect()
     }
 
     /// Whether two points share a plane.
-    pub fn same(&self, axis: Axis, p: PointId, q: PointId) -> bool {
+    pub fn same(&self, axis: CoordinateAxis, p: PointId, q: PointId) -> bool {
         self.plane(axis, p).is_some() && self.plane(axis, p) == self.plane(axis, q)
     }
 
@@ -165,15 +165,15 @@ impl Planes {
                 faults.push(TypeFault::Untyped { line: id });
                 continue;
             };
-            let tied = |a: &Axis| self.same(*a, line.p, line.q);
+            let tied = |a: &CoordinateAxis| self.same(*a, line.p, line.q);
             match Free::those(|a| !tied(&a)) {
                 None => {
-                    let axis = named.axes().next().unwrap_or(Axis::X);
+                    let axis = named.axes().next().unwrap_or(CoordinateAxis::X);
                     let path = why(drawing, axis, line.p, line.q).unwrap_or_default();
                     faults.push(TypeFault::Contradiction { line: id, axis, path });
                 }
                 Some(really) if really != named => {
-                    let axis = named.axes().find(tied).unwrap_or(Axis::X);
+                    let axis = named.axes().find(tied).unwrap_or(CoordinateAxis::X);
                     let path = why(drawing, axis, line.p, line.q).unwrap_or_default();
                     later.push(TypeFault::Degraded { line: id, named, really, path });
                 }
@@ -199,7 +199,7 @@ impl Planes {
 }
 
 /// The shortest chain of reasons for which two points share a coordinate; `None` when they do not.
-pub fn why(drawing: &Drawing, axis: Axis, p: PointId, q: PointId) -> Option<Vec<Reason>> {
+pub fn why(drawing: &Drawing, axis: CoordinateAxis, p: PointId, q: PointId) -> Option<Vec<Reason>> {
     if p == q || (drawing.section == Some(axis) && drawing.points.contains_key(&p)) {
         let alone = if p == q { vec![] } else { vec![Reason::Section] };
         return drawing.points.contains_key(&q).then_some(alone);

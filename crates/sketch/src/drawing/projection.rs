@@ -1,6 +1,6 @@
 //! The observation transformation: how space was drawn on the page.
 
-use crate::Axis;
+use crate::CoordinateAxis;
 use moldloft_num::{Real, Vec3};
 
 /// The screen directions of the three axes, in degrees counter-clockwise from screen right, and the
@@ -60,18 +60,18 @@ impl Projection {
 
     /// The axes of a cross section perpendicular to `normal`: the first of the two others to the
     /// right, the second up. The normal is drawn at 45°, for what is extruded later.
-    pub fn section(normal: Axis) -> Projection {
+    pub fn section(normal: CoordinateAxis) -> Projection {
         let mut angle_deg = [0.0, 90.0, 90.0];
         match normal {
-            Axis::X => angle_deg = [225.0, 0.0, 90.0],
-            Axis::Y => angle_deg[1] = 45.0,
-            Axis::Z => angle_deg = [0.0, 90.0, 225.0],
+            CoordinateAxis::X => angle_deg = [225.0, 0.0, 90.0],
+            CoordinateAxis::Y => angle_deg[1] = 45.0,
+            CoordinateAxis::Z => angle_deg = [0.0, 90.0, 225.0],
         }
         Projection { angle_deg, scale: [1.0; 3] }
     }
 
     /// Screen vector of a unit along `axis`.
-    pub fn unit(&self, axis: Axis) -> [f64; 2] {
+    pub fn unit(&self, axis: CoordinateAxis) -> [f64; 2] {
         let k = axis.index();
         let [c, s] = direction(self.angle_deg[k]);
         [self.scale[k] * c, self.scale[k] * s]
@@ -80,7 +80,7 @@ impl Projection {
     /// Where a point of space is drawn.
     pub fn project(&self, p: Vec3) -> [f64; 2] {
         let mut at = [0.0; 2];
-        for axis in Axis::ALL {
+        for axis in CoordinateAxis::ALL {
             let [c, s] = self.unit(axis);
             at[0] += c * p[axis.index()];
             at[1] += s * p[axis.index()];
@@ -90,15 +90,15 @@ impl Projection {
 
     /// The sight vector: what is drawn as a point, seen from the side that `up` points to. Two points
     /// are drawn at the same spot iff their difference is parallel to it.
-    pub fn sight(&self, up: Axis) -> Vec3 {
-        let [a, b, c] = Axis::ALL.map(|axis| self.unit(axis));
+    pub fn sight(&self, up: CoordinateAxis) -> Vec3 {
+        let [a, b, c] = CoordinateAxis::ALL.map(|axis| self.unit(axis));
         let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
         let n = Vec3::new(cross(b, c), cross(c, a), cross(a, b));
         if n[up.index()] < 0.0 { -n } else { n }
     }
 
     /// How far a drawn vector leans off an axis: |d × a| / |d · a|; infinite when perpendicular.
-    pub fn lean(&self, d: [f64; 2], axis: Axis) -> f64 {
+    pub fn lean(&self, d: [f64; 2], axis: CoordinateAxis) -> f64 {
         let [c, s] = direction(self.angle_deg[axis.index()]);
         let along = (d[0] * c + d[1] * s).abs();
         let off = (d[0] * s - d[1] * c).abs();
@@ -165,8 +165,11 @@ mod tests {
     fn the_sight_vector_is_drawn_as_a_point() {
         for name in Projection::PRESETS {
             let p = Projection::preset(name).unwrap();
-            let [u, v] = p.project(p.sight(Axis::Z));
-            assert!(u.abs() < 1e-12 && v.abs() < 1e-12 && p.sight(Axis::Z).z > 0.0, "{name}");
+            let [u, v] = p.project(p.sight(CoordinateAxis::Z));
+            assert!(
+                u.abs() < 1e-12 && v.abs() < 1e-12 && p.sight(CoordinateAxis::Z).z > 0.0,
+                "{name}"
+            );
         }
         let iso = Projection::preset("iso").unwrap();
         let (a, b) = (iso.project(Vec3::of(1.0, 0.0, 1.0)), iso.project(Vec3::of(0.0, 1.0, 0.0)));
@@ -177,10 +180,10 @@ mod tests {
 
     #[test]
     fn leaning_is_a_slope_even_for_a_vertical_axis() {
-        let p = Projection::section(Axis::Y);
-        assert_eq!(p.lean([0.0, 3.0], Axis::Z), 0.0);
-        assert_eq!(p.lean([1.0, 20.0], Axis::Z), 0.05);
-        assert_eq!(p.lean([0.0, 3.0], Axis::X), f64::INFINITY);
+        let p = Projection::section(CoordinateAxis::Y);
+        assert_eq!(p.lean([0.0, 3.0], CoordinateAxis::Z), 0.0);
+        assert_eq!(p.lean([1.0, 20.0], CoordinateAxis::Z), 0.05);
+        assert_eq!(p.lean([0.0, 3.0], CoordinateAxis::X), f64::INFINITY);
         assert!(Projection::cluster(&[[1.0, 0.0], [0.0, 1.0]]).is_none());
     }
 }

@@ -32,16 +32,16 @@ impl<T: Real> Build<T> for CubicChain<T> {
         }
         let ends = [self.points.first(), self.points.last()].map(|p| p.and_then(|p| p.key));
         let points = self.points.into_iter().map(|p| p.xyz).collect();
-        Ok(Value::Curve(CurveRef::new(Chain { points, ends }, 0)))
+        Ok(Value::Curve(CurveRef::new(PiecewiseBezier { points, ends }, 0)))
     }
 }
 
-struct Chain<T> {
+struct PiecewiseBezier<T> {
     points: Vec<Vec3<T>>,
     ends: [Option<Key>; 2],
 }
 
-impl<T: Real> CurveFormula for Chain<T> {
+impl<T: Real> CurveFormula for PiecewiseBezier<T> {
     type Scalar = T;
     fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
         let n = (self.points.len() - 1) / 3;

@@ -1,6 +1,6 @@
 //! The kinds that sketches bring into a model: what no other kind can say.
 //!
-//! A loaded sketch also declares points (`AbsPoint`) and lines (`Line`); see `lang`.
+//! A loaded sketch also declares points (`AbsPoint`) and lines (`DrawnLine`); see `lang`.
 
 mod arc;
 mod body;

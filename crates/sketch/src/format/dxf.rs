@@ -1,6 +1,6 @@
 //! Drawings of other programs as sketches.
 
-use crate::{Drawing, DrawnPoint, Line, LineTypeSource, PointId};
+use crate::{Drawing, DrawnLine, DrawnPoint, LineTypeSource, PointId};
 
 /// A straight stroke on the page.
 pub type Stroke = [[f64; 2]; 2];
@@ -108,7 +108,8 @@ pub fn draw(drawing: &mut Drawing, strokes: &[Stroke], tolerance: f64) -> (usize
             let id = crate::LineId(next_line);
             next_line += 1;
             lines += 1;
-            let line = Line { p, q, free: None, source: LineTypeSource::Auto, confidence: 0.0 };
+            let line =
+                DrawnLine { p, q, free: None, source: LineTypeSource::Auto, confidence: 0.0 };
             drawing.lines.insert(id, line);
             drawing.type_by_slope(id);
         }

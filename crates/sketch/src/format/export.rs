@@ -9,19 +9,19 @@ use std::fmt::Write;
 
 /// A triangle mesh as plain arrays.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Facets {
+pub struct IndexedTriangles {
     /// Vertices.
     pub vertices: Vec<Vec3>,
     /// Triangles, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
 }
 
-impl Facets {
+impl IndexedTriangles {
     /// The triangles of a mesh, vertices that nothing uses left out.
-    pub fn of(mesh: &Mesh<f64>) -> Facets {
+    pub fn of(mesh: &Mesh<f64>) -> IndexedTriangles {
         let mut number = vec![u32::MAX; mesh.positions().len()];
-        let mut out = Facets::default();
-        let mut vertex = |v: u32, out: &mut Facets| {
+        let mut out = IndexedTriangles::default();
+        let mut vertex = |v: u32, out: &mut IndexedTriangles| {
             let own = &mut number[v as usize];
             if *own == u32::MAX {
                 *own = out.vertices.len() as u32;
@@ -49,7 +49,7 @@ fn words(p: Vec3) -> String {
 }
 
 /// ASCII STL.
-pub fn stl(mesh: &Facets, name: &str) -> String {
+pub fn stl(mesh: &IndexedTriangles, name: &str) -> String {
     let mut out = format!("solid {name}\n");
     for &t in &mesh.triangles {
         let [a, b, c] = mesh.corners(t);
@@ -65,7 +65,7 @@ pub fn stl(mesh: &Facets, name: &str) -> String {
 }
 
 /// Wavefront OBJ.
-pub fn obj(mesh: &Facets, name: &str) -> String {
+pub fn obj(mesh: &IndexedTriangles, name: &str) -> String {
     let mut out = format!("o {name}\n");
     for &p in &mesh.vertices {
         let _ = writeln!(out, "v {}", words(p));
@@ -77,7 +77,7 @@ pub fn obj(mesh: &Facets, name: &str) -> String {
 }
 
 /// glTF 2.0 with its buffer inside; y is up there, so (x, y, z) becomes (x, z, -y).
-pub fn gltf(mesh: &Facets, name: &str) -> String {
+pub fn gltf(mesh: &IndexedTriangles, name: &str) -> String {
     let mut bytes: Vec<u8> = Vec::new();
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for p in &mesh.vertices {
@@ -157,7 +157,7 @@ fn base64(bytes: &[u8]) -> String {
 }
 
 /// 3MF: a ZIP archive (entries stored as they are) with one mesh.
-pub fn three_mf(mesh: &Facets, unit: Option<&str>) -> Vec<u8> {
+pub fn three_mf(mesh: &IndexedTriangles, unit: Option<&str>) -> Vec<u8> {
     let unit = match unit {
         Some("CM") => "centimeter",
         Some("M") => "meter",
@@ -235,7 +235,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 /// DXF (release 12): facets as 3DFACE, edges as LINE on a layer of their own.
-pub fn dxf(mesh: &Facets, solid: &SketchSolid<f64>, tolerance: f64) -> String {
+pub fn dxf(mesh: &IndexedTriangles, solid: &SketchSolid<f64>, tolerance: f64) -> String {
     let mut out = String::from("0\nSECTION\n2\nENTITIES\n");
     let point = |out: &mut String, k: u32, p: Vec3| {
         let [x, y, z] = p.to_array().map(plain);

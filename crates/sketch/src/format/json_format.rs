@@ -3,7 +3,8 @@
 use crate::format::json::Json;
 use crate::format::script::measure_text;
 use crate::{
-    Axis, Face, FaceId, Layout, LineId, Loose, Mass, Planes, PointId, SketchObject, SketchSolid,
+    CoordinateAxis, DimensionLayout, FaceId, LineId, Loose, Mass, Planes, PointId, SketchFace,
+    SketchObject, SketchSolid,
 };
 use moldloft_num::Vec3;
 
@@ -19,7 +20,7 @@ pub struct ObjectData {
     /// Lines: label, ends, type (`X`, `XY`, `O`, or empty while unknown).
     pub lines: Vec<(LineId, PointId, PointId, &'static str)>,
     /// Faces before curves are built in.
-    pub faces: Vec<(FaceId, Face)>,
+    pub faces: Vec<(FaceId, SketchFace)>,
     /// Enclosed volume, of a solid.
     pub volume: Option<f64>,
     /// Area of all faces.
@@ -42,11 +43,11 @@ pub struct ObjectData {
 pub fn object_data(
     object: &SketchObject,
     planes: &Planes,
-    layout: &Layout<f64>,
+    layout: &DimensionLayout<f64>,
     solid: Option<SketchSolid<f64>>,
 ) -> ObjectData {
     let mut points: Vec<(PointId, [Option<f64>; 3])> = (planes.ids().iter())
-        .map(|&p| (p, Axis::ALL.map(|a| layout.coordinate(planes, a, p))))
+        .map(|&p| (p, CoordinateAxis::ALL.map(|a| layout.coordinate(planes, a, p))))
         .collect();
     if let Some(solid) = &solid {
         let new = solid.vertices.iter().filter(|v| !object.drawing.points.contains_key(&v.id));
@@ -101,7 +102,8 @@ impl ObjectData {
             let holes = Json::list(f.holes.iter().map(|h| labels(h)));
             Json::map([("id", id.0.into()), ("outer", labels(&f.outer)), ("holes", holes)])
         });
-        let missing = Axis::ALL.map(|a| (a.letter(), Json::from(self.missing[a.index()])));
+        let missing =
+            CoordinateAxis::ALL.map(|a| (a.letter(), Json::from(self.missing[a.index()])));
         let loose = self
             .loose
             .iter()
@@ -162,7 +164,7 @@ pub fn to_json(object: &SketchObject) -> Json {
         ("units", object.units.as_deref().into()),
         ("axes", Json::list(d.projection.angle_deg.map(Json::from))),
         ("scale", Json::list(d.projection.scale.map(Json::from))),
-        ("section", d.section.map(Axis::letter).into()),
+        ("section", d.section.map(CoordinateAxis::letter).into()),
         ("points", Json::list(points)),
         ("lines", Json::list(lines)),
         ("script", Json::list(script.lines().map(Json::from))),

@@ -1,8 +1,10 @@
 //! An object as the commands that make it: the file format.
 
 use crate::feature::{Feature, FeatureKind, Placement};
-use crate::solid::curve::{Curve, CurveKind};
-use crate::{Axis, DimensionRole, Expr, LineTypeSource, MeasuredQuantity, SketchObject};
+use crate::solid::curve::{CurveKind, SketchCurve};
+use crate::{
+    CoordinateAxis, DimensionExpr, DimensionRole, LineTypeSource, MeasuredQuantity, SketchObject,
+};
 use moldloft_syntax::number::plain;
 use std::fmt::Write;
 
@@ -52,8 +54,8 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
     }
     let parts: Vec<String> = feature.operands.iter().map(|o| quoted(&o.object.name)).collect();
     let parts = parts.join(" ");
-    let value = |e: &Expr| quoted(e.text());
-    let vector = |v: &[Expr; 3]| v.each_ref().map(value).join(" ");
+    let value = |e: &DimensionExpr| quoted(e.text());
+    let vector = |v: &[DimensionExpr; 3]| v.each_ref().map(value).join(" ");
     let place = |p: &Placement| match p {
         Placement::Move(by) => vector(by),
         Placement::Rotate { axis, through, angle } => {
@@ -115,13 +117,13 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
     }
     let drawing = &object.drawing;
     let section = match drawing.section {
-        Some(Axis::X) => " 2D YZ",
-        Some(Axis::Y) => " 2D XZ",
-        Some(Axis::Z) => " 2D XY",
+        Some(CoordinateAxis::X) => " 2D YZ",
+        Some(CoordinateAxis::Y) => " 2D XZ",
+        Some(CoordinateAxis::Z) => " 2D XY",
         None => "",
     };
     writeln!(out, "SKETCH {}{section}", quoted(&object.name))?;
-    if drawing.letters.up != Axis::Z {
+    if drawing.letters.up != CoordinateAxis::Z {
         writeln!(out, "SET UP {}", drawing.letters.up)?;
     }
     if drawing.letters.naming == crate::Naming::Seed {
@@ -185,7 +187,7 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
     writeln!(out, "END")
 }
 
-fn curve_text(c: &Curve) -> String {
+fn curve_text(c: &SketchCurve) -> String {
     let points: Vec<String> = c.points.iter().map(ToString::to_string).collect();
     let mut text = match (c.kind, &points[..]) {
         (CurveKind::EllipticalArc, [a, m, b]) => {

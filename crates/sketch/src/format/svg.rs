@@ -3,7 +3,7 @@
 
 use crate::command::Picture;
 use crate::format::json_format::ObjectData;
-use crate::{Axis, MeasuredQuantity, Projection, SketchObject, SketchSolid};
+use crate::{CoordinateAxis, MeasuredQuantity, Projection, SketchObject, SketchSolid};
 use moldloft_num::{Real, Vec3};
 use moldloft_syntax::number::plain;
 use std::collections::BTreeMap;
@@ -24,12 +24,12 @@ fn colour(free: Option<crate::Free>) -> &'static str {
     }
 }
 
-fn axis_colour(axis: Axis) -> &'static str {
+fn axis_colour(axis: CoordinateAxis) -> &'static str {
     colour(Some(crate::Free::along(axis)))
 }
 
 /// Elements on the page, v up, before they are put on paper.
-enum Item {
+enum SvgElement {
     Stroke { from: [f64; 2], to: [f64; 2], colour: &'static str, width: f64, dashed: bool },
     Area { loops: Vec<Vec<[f64; 2]>>, fill: String },
     Text { at: [f64; 2], shift: [f64; 2], text: String, colour: &'static str },
@@ -75,15 +75,15 @@ pub(crate) fn svg(
     paper(&items, window)
 }
 
-fn around(items: &[Item]) -> Option<[f64; 4]> {
+fn around(items: &[SvgElement]) -> Option<[f64; 4]> {
     let mut b = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
     let mut take =
         |p: &[f64; 2]| b = [b[0].min(p[0]), b[1].min(p[1]), b[2].max(p[0]), b[3].max(p[1])];
     for item in items {
         match item {
-            Item::Stroke { from, to, .. } => [from, to].into_iter().for_each(&mut take),
-            Item::Area { loops, .. } => loops.iter().flatten().for_each(&mut take),
-            Item::Text { .. } => {}
+            SvgElement::Stroke { from, to, .. } => [from, to].into_iter().for_each(&mut take),
+            SvgElement::Area { loops, .. } => loops.iter().flatten().for_each(&mut take),
+            SvgElement::Text { .. } => {}
         }
     }
     (b[0] <= b[2] && b[1] <= b[3]).then(|| {
@@ -98,14 +98,14 @@ fn sketch(
     data: &ObjectData,
     picture: &Picture,
     page: [f64; 4],
-    items: &mut Vec<Item>,
+    items: &mut Vec<SvgElement>,
 ) {
     let d = &object.drawing;
     let size = (page[2] - page[0]).max(page[3] - page[1]);
     let at = |p: crate::PointId| d.points.get(&p).map_or([0.0; 2], |p| [p.u, p.v]);
     if let Some(face) = picture.face.and_then(|id| object.faces.get(&id)) {
         let loops = face.loops().map(|c| c.iter().map(|p| at(*p)).collect()).collect();
-        items.push(Item::Area { loops, fill: "#fd8".into() });
+        items.push(SvgElement::Area { loops, fill: "#fd8".into() });
     }
     if picture.planes {
         planes(object, data, size, items);
@@ -113,19 +113,24 @@ fn sketch(
     for line in d.lines.values() {
         let colour = if picture.types { colour(line.free) } else { "#333" };
         let (from, to) = (at(line.p), at(line.q));
-        items.push(Item::Stroke { from, to, colour, width: 1.8, dashed: false });
+        items.push(SvgElement::Stroke { from, to, colour, width: 1.8, dashed: false });
     }
     if picture.labels {
         for (id, p) in &d.points {
             let text = id.to_string();
-            items.push(Item::Text { at: [p.u, p.v], shift: [4.0, -4.0], text, colour: "#000" });
+            items.push(SvgElement::Text {
+                at: [p.u, p.v],
+                shift: [4.0, -4.0],
+                text,
+                colour: "#000",
+            });
         }
     }
 }
 
 /// A witness line for each dimensioning plane, from its first point (X-, Y-, Z-planes along Z, X, Y, so
 /// that each runs inside its plane), and the dimensions between them.
-fn planes(object: &SketchObject, data: &ObjectData, size: f64, items: &mut Vec<Item>) {
+fn planes(object: &SketchObject, data: &ObjectData, size: f64, items: &mut Vec<SvgElement>) {
     let d = &object.drawing;
     let derived = crate::Planes::of(d);
     let middle = {
@@ -134,13 +139,15 @@ fn planes(object: &SketchObject, data: &ObjectData, size: f64, items: &mut Vec<I
         [sum[0] / n, sum[1] / n]
     };
     let known: BTreeMap<crate::PointId, [Option<f64>; 3]> = data.points.iter().copied().collect();
-    for axis in Axis::ALL.into_iter().filter(|a| d.section != Some(*a)) {
+    for axis in CoordinateAxis::ALL.into_iter().filter(|a| d.section != Some(*a)) {
         let inside = match (axis, d.section) {
-            (Axis::X, Some(Axis::Z)) => Axis::Y,
-            (Axis::Y, Some(Axis::X)) => Axis::Z,
-            (Axis::Z, Some(Axis::Y)) | (Axis::Y, None | Some(_)) => Axis::X,
-            (Axis::X, _) => Axis::Z,
-            (Axis::Z, _) => Axis::Y,
+            (CoordinateAxis::X, Some(CoordinateAxis::Z)) => CoordinateAxis::Y,
+            (CoordinateAxis::Y, Some(CoordinateAxis::X)) => CoordinateAxis::Z,
+            (CoordinateAxis::Z, Some(CoordinateAxis::Y)) | (CoordinateAxis::Y, None | Some(_)) => {
+                CoordinateAxis::X
+            }
+            (CoordinateAxis::X, _) => CoordinateAxis::Z,
+            (CoordinateAxis::Z, _) => CoordinateAxis::Y,
         };
         let [du, dv] = d.projection.unit(inside);
         for plane in 0..derived.counts()[axis.index()] {
@@ -150,11 +157,17 @@ fn planes(object: &SketchObject, data: &ObjectData, size: f64, items: &mut Vec<I
             let reach = 0.09 * size * if outwards < 0.0 { -1.0 } else { 1.0 };
             let to = [p.u + reach * du, p.v + reach * dv];
             let colour = axis_colour(axis);
-            items.push(Item::Stroke { from: [p.u, p.v], to, colour, width: 0.7, dashed: false });
+            items.push(SvgElement::Stroke {
+                from: [p.u, p.v],
+                to,
+                colour,
+                width: 0.7,
+                dashed: false,
+            });
             let place = known.get(&first).and_then(|x| x[axis.index()]);
             let text =
                 place.map_or_else(|| format!("{axis} free"), |x| format!("{axis} {}", plain(x)));
-            items.push(Item::Text { at: to, shift: [2.0, 4.0], text, colour });
+            items.push(SvgElement::Text { at: to, shift: [2.0, 4.0], text, colour });
         }
     }
     // Dimensions on several axes between the same points are reported one below the other.
@@ -167,11 +180,11 @@ fn planes(object: &SketchObject, data: &ObjectData, size: f64, items: &mut Vec<I
         let value = value.map_or_else(|| "?".to_owned(), plain);
         let (from, to) = ([a.u, a.v], [b.u, b.v]);
         let colour = axis_colour(axis);
-        items.push(Item::Stroke { from, to, colour, width: 0.8, dashed: true });
+        items.push(SvgElement::Stroke { from, to, colour, width: 0.8, dashed: true });
         let at = [(a.u + b.u) / 2.0, (a.v + b.v) / 2.0];
         let text = format!("{} {value}", dimension.name);
         let row = told.entry((p.min(q), p.max(q))).or_insert(0.0);
-        items.push(Item::Text { at, shift: [3.0, 3.0 + 15.0 * *row], text, colour });
+        items.push(SvgElement::Text { at, shift: [3.0, 3.0 + 15.0 * *row], text, colour });
         *row += 1.0;
     }
 }
@@ -182,7 +195,7 @@ fn body(
     view: &Projection,
     object: &SketchObject,
     picture: &Picture,
-    items: &mut Vec<Item>,
+    items: &mut Vec<SvgElement>,
 ) {
     let sight = view.sight(object.drawing.letters.up).normalized().unwrap_or_default();
     let mut seen = vec![false; solid.edges.len()];
@@ -216,7 +229,7 @@ fn body(
         let loops: Vec<Vec<[f64; 2]>> =
             face.loops.iter().map(|c| walk(solid, c).iter().map(flat).collect()).collect();
         let chosen = face.id.is_some() && face.id == picture.face;
-        items.push(Item::Area { loops, fill: shade(facing, chosen) });
+        items.push(SvgElement::Area { loops, fill: shade(facing, chosen) });
         for &(e, _) in face.loops.iter().flatten() {
             edge(solid, e, view, "#222", false, items);
         }
@@ -229,7 +242,7 @@ fn body(
     if picture.labels {
         for v in &solid.vertices {
             let (at, text) = (view.project(v.at), v.id.to_string());
-            items.push(Item::Text { at, shift: [4.0, -4.0], text, colour: "#000" });
+            items.push(SvgElement::Text { at, shift: [4.0, -4.0], text, colour: "#000" });
         }
     }
 }
@@ -262,11 +275,11 @@ fn edge(
     view: &Projection,
     colour: &'static str,
     dashed: bool,
-    items: &mut Vec<Item>,
+    items: &mut Vec<SvgElement>,
 ) {
     let way: Vec<[f64; 2]> = solid.polyline(e, CHORDS).iter().map(|p| view.project(*p)).collect();
     let width = if dashed { 0.9 } else { 1.4 };
-    items.extend(way.windows(2).map(|w| Item::Stroke {
+    items.extend(way.windows(2).map(|w| SvgElement::Stroke {
         from: w[0],
         to: w[1],
         colour,
@@ -276,7 +289,7 @@ fn edge(
 }
 
 /// The elements on paper of 800 units.
-fn paper(items: &[Item], [l, b, r, t]: [f64; 4]) -> String {
+fn paper(items: &[SvgElement], [l, b, r, t]: [f64; 4]) -> String {
     const MARGIN: f64 = 60.0;
     let size = (r - l).max(t - b).max(f64::MIN_POSITIVE);
     let scale = 800.0 / size;
@@ -290,7 +303,7 @@ fn paper(items: &[Item], [l, b, r, t]: [f64; 4]) -> String {
     let mut taken = Vec::new();
     for item in items {
         let _ = match item {
-            Item::Stroke { from, to, colour, width, dashed } => {
+            SvgElement::Stroke { from, to, colour, width, dashed } => {
                 let ([x1, y1], [x2, y2]) = (place(*from), place(*to));
                 let dash = if *dashed { " stroke-dasharray=\"5 4\"" } else { "" };
                 writeln!(
@@ -299,7 +312,7 @@ fn paper(items: &[Item], [l, b, r, t]: [f64; 4]) -> String {
                      stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\"{dash}/>"
                 )
             }
-            Item::Area { loops, fill } => {
+            SvgElement::Area { loops, fill } => {
                 let mut path = String::new();
                 for cycle in loops {
                     for (k, p) in cycle.iter().enumerate() {
@@ -310,7 +323,7 @@ fn paper(items: &[Item], [l, b, r, t]: [f64; 4]) -> String {
                 }
                 writeln!(out, "<path d=\"{path}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>")
             }
-            Item::Text { at, shift, text, colour } => {
+            SvgElement::Text { at, shift, text, colour } => {
                 let [x, y] = place(*at);
                 let [x, y] = apart([x + shift[0], y + shift[1]], text, &mut taken);
                 writeln!(

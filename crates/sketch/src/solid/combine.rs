@@ -602,7 +602,7 @@ impl<'a, T: Real> Placing<'a, T> {
         chains: &[Vec<u32>],
         number: &HashMap<u32, usize>,
         vertices: &[Vertex<T>],
-    ) -> super::Facets<T> {
+    ) -> super::CombinedMesh<T> {
         let mut points: Vec<Vec3<T>> = vertices.iter().map(|v| v.at).collect();
         let mut index: HashMap<u32, u32> = number.iter().map(|(v, k)| (*v, *k as u32)).collect();
         let given: HashMap<u32, usize> = {
@@ -634,7 +634,7 @@ impl<'a, T: Real> Placing<'a, T> {
             }
             faces.push(triangles);
         }
-        super::Facets { points, faces, chains }
+        super::CombinedMesh { points, faces, chains }
     }
 }
 

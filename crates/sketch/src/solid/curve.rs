@@ -4,7 +4,7 @@
 //! scale; here every curve has its closed form. The printed matrix of the quadratic has a wrong sign:
 //! the third entry of its second row must be -1, or the curve misses its last point.
 
-use crate::{Expr, PointId};
+use crate::{DimensionExpr, PointId};
 use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
@@ -47,7 +47,7 @@ impl CurveKind {
 
 /// A curve of an object.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub struct SketchCurve {
     /// As the user wrote it.
     pub name: String,
     /// What it is.
@@ -55,9 +55,9 @@ pub struct Curve {
     /// The points it hangs on: for a corner the ends of the lines with the corner in the middle.
     pub points: Vec<PointId>,
     /// Radius of an arc or circle.
-    pub radius: Option<Expr>,
+    pub radius: Option<DimensionExpr>,
     /// Distances along the two lines of an ellipse.
-    pub semi: Option<[Expr; 2]>,
+    pub semi: Option<[DimensionExpr; 2]>,
     /// Chords to draw it with; by tolerance when `None`.
     pub steps: Option<u32>,
     /// Whether it takes the place of lines in the solid.
@@ -199,7 +199,7 @@ pub struct Traced<T> {
 /// # Errors
 /// What is wrong with its sizes or points.
 pub fn trace<T: Real>(
-    curve: &Curve,
+    curve: &SketchCurve,
     at: &dyn Fn(PointId) -> Option<Vec3<T>>,
     values: &BTreeMap<String, T>,
 ) -> Result<Traced<T>, CurveFault> {
@@ -207,7 +207,7 @@ pub fn trace<T: Real>(
         .map(|&id| at(id))
         .collect::<Option<_>>()
         .ok_or(CurveFault::Undetermined)?;
-    let size = |e: &Expr| -> Result<T, CurveFault> {
+    let size = |e: &DimensionExpr| -> Result<T, CurveFault> {
         let value = e.eval(&|n| values.get(n).copied());
         let value = value.map_err(|no| CurveFault::NoValue { reads: no.name })?;
         if value.re() > 0.0 && value.is_finite() {

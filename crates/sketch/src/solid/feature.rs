@@ -3,10 +3,10 @@
 use super::combine::{CombineError, combined, united};
 use super::place::Similarity;
 use super::turn::turned;
-use super::validity::{Flaw, valid};
+use super::validity::{SolidDefect, valid};
 use super::{SketchSolid, unchecked};
 use crate::feature::{Feature, FeatureKind, FeatureOperand, Placement};
-use crate::{Estimate, Expr, Layout, Planes, SketchObject, Variable, solve};
+use crate::{DimensionExpr, DimensionLayout, Estimate, Planes, SketchObject, Variable, solve};
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub enum NoBody {
     /// It has no faces, or misses dimensions.
     Unfinished,
     /// It is not valid.
-    Flaw(Flaw),
+    Flaw(SolidDefect),
     /// The operands cannot be combined.
     Combine(CombineError),
     /// An operand has none.
@@ -40,7 +40,7 @@ pub enum NoBody {
 pub fn body<T: Real>(
     object: &SketchObject,
     planes: &Planes,
-    layout: &Layout<T>,
+    layout: &DimensionLayout<T>,
 ) -> Result<SketchSolid<T>, NoBody> {
     match &object.feature {
         Some(feature) => feature.body(layout),
@@ -102,8 +102,8 @@ impl Feature {
             .collect()
     }
 
-    fn body<T: Real>(&self, layout: &Layout<T>) -> Result<SketchSolid<T>, NoBody> {
-        let value = |e: &Expr| {
+    fn body<T: Real>(&self, layout: &DimensionLayout<T>) -> Result<SketchSolid<T>, NoBody> {
+        let value = |e: &DimensionExpr| {
             let x = e.eval(&|n| layout.values.get(n).copied());
             x.map_err(|no| NoBody::NoValue(no.name))
         };
@@ -158,9 +158,9 @@ impl Feature {
 impl Placement {
     fn similarity<T: Real>(
         &self,
-        value: &dyn Fn(&Expr) -> Result<T, NoBody>,
+        value: &dyn Fn(&DimensionExpr) -> Result<T, NoBody>,
     ) -> Result<Similarity<T>, NoBody> {
-        let vector = |v: &[Expr; 3]| -> Result<Vec3<T>, NoBody> {
+        let vector = |v: &[DimensionExpr; 3]| -> Result<Vec3<T>, NoBody> {
             Ok(Vec3::new(value(&v[0])?, value(&v[1])?, value(&v[2])?))
         };
         Ok(match self {

@@ -10,7 +10,7 @@ const WIDTH: usize = 4;
 
 /// The exact derivatives by one number each, in the order they were asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Gradient {
+pub struct SolidGradient {
     /// Of the volume; zero for a flat figure.
     pub volume: Vec<f64>,
     /// Of the area.
@@ -26,7 +26,11 @@ pub struct Gradient {
 ///
 /// # Errors
 /// The first name that is not a dimension or variable with a value; an empty one when there is no solid.
-pub fn gradient(object: &SketchObject, planes: &Planes, by: &[String]) -> Result<Gradient, String> {
+pub fn gradient(
+    object: &SketchObject,
+    planes: &Planes,
+    by: &[String],
+) -> Result<SolidGradient, String> {
     let estimate = || Estimate::of(&object.drawing, planes, object.reference()?.point);
     let plain = solve(object, planes, &BTreeMap::<String, f64>::new(), &estimate);
     let keys: Vec<String> = by.iter().map(|n| n.to_ascii_lowercase()).collect();
@@ -44,7 +48,7 @@ pub fn gradient(object: &SketchObject, planes: &Planes, by: &[String]) -> Result
         (0..keys.len()).partition(|&k| plain_number(&keys[k]));
     let passes = given.chunks(WIDTH).chain(computed.chunks(1));
     let n = keys.len();
-    let mut out = Gradient {
+    let mut out = SolidGradient {
         volume: vec![0.0; n],
         area: vec![0.0; n],
         centroid: vec![Vec3::zero(); n],

@@ -2,8 +2,9 @@
 
 use crate::dimension::layout::chain_expression;
 use crate::{
-    Align, Axis, Dimension, DimensionFault, DimensionRole, Drawing, DrawnPoint, Expr, Layout, Line,
-    MeasuredQuantity, Planes, PointId, Projection, Reference, SketchObject, Variable,
+    Align, CoordinateAxis, Dimension, DimensionExpr, DimensionFault, DimensionLayout,
+    DimensionRole, Drawing, DrawnLine, DrawnPoint, MeasuredQuantity, Planes, PointId, Projection,
+    Reference, SketchObject, Variable,
 };
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
@@ -37,7 +38,7 @@ pub fn merge(
     parts: &[Placed],
     tolerance: f64,
     keep_first: bool,
-    solve: &dyn Fn(&SketchObject) -> Layout<f64>,
+    solve: &dyn Fn(&SketchObject) -> DimensionLayout<f64>,
 ) -> (SketchObject, MergeReport) {
     let mut out = SketchObject::new(name, None);
     let mut report = MergeReport::default();
@@ -75,7 +76,7 @@ pub fn merge(
             report.lines += usize::from(same.is_some());
             let new = same.unwrap_or_else(|| out.drawing.next_line());
             if p != q && same.is_none() {
-                out.draw().lines.insert(new, Line { p, q, ..*line });
+                out.draw().lines.insert(new, DrawnLine { p, q, ..*line });
             }
             lines.insert(id, new);
         }
@@ -115,7 +116,8 @@ pub fn merge(
             c.points.iter_mut().for_each(|p| *p = number[p]);
             c.radius = c.radius.map(|r| r.renamed(&own));
             c.semi = c.semi.map(|[a, b]| [a.renamed(&own), b.renamed(&own)]);
-            let twin = |o: &crate::solid::curve::Curve| o.kind == c.kind && o.points == c.points;
+            let twin =
+                |o: &crate::solid::curve::SketchCurve| o.kind == c.kind && o.points == c.points;
             if !out.curves.values().any(twin) {
                 out.curves.insert(c.name.to_ascii_lowercase(), c);
             }
@@ -130,13 +132,13 @@ pub fn merge(
     settle(&mut out, &mut report, solve);
     // What hangs on no common plane keeps the place of its own reference.
     for (prefix, point, at) in references.iter().skip(1) {
-        for axis in Axis::ALL {
+        for axis in CoordinateAxis::ALL {
             let planes = Planes::of(&out.drawing);
             if solve(&out).coordinate(&planes, axis, *point).is_none() {
                 out.add_dimension(Dimension {
                     name: format!("{prefix}ref_{}", axis.letter().to_ascii_lowercase()),
                     measure: MeasuredQuantity::Datum { axis, point: *point },
-                    value: Some(Expr::number(at[axis.index()])),
+                    value: Some(DimensionExpr::number(at[axis.index()])),
                     role: DimensionRole::Driving,
                     range: None,
                 });
@@ -151,7 +153,7 @@ pub fn merge(
 pub(crate) fn settle(
     out: &mut SketchObject,
     report: &mut MergeReport,
-    solve: &dyn Fn(&SketchObject) -> Layout<f64>,
+    solve: &dyn Fn(&SketchObject) -> DimensionLayout<f64>,
 ) {
     for fault in solve(out).faults {
         let (name, wrong) = match fault {
@@ -195,7 +197,7 @@ pub fn clean(
             match (own.next(), own.next(), own.next()) {
                 (None, ..) => Some((p, None)),
                 (Some((&i, a)), Some((&j, b)), None) => {
-                    let far = |l: &Line| if l.p == p { l.q } else { l.p };
+                    let far = |l: &DrawnLine| if l.p == p { l.q } else { l.p };
                     let (a, b) = (at.get(&far(a))?, at.get(&far(b))?);
                     let here = *at.get(&p)?;
                     let (da, db) = (*a - here, *b - here);
@@ -208,9 +210,9 @@ pub fn clean(
         let Some((p, pair)) = straight else { break };
         let drawing = out.draw();
         if let Some((i, j)) = pair {
-            let far = |l: Line| if l.p == p { l.q } else { l.p };
+            let far = |l: DrawnLine| if l.p == p { l.q } else { l.p };
             let (a, b) = (drawing.lines[&i], drawing.lines[&j]);
-            let joined = Line { p: far(a), q: far(b), ..a };
+            let joined = DrawnLine { p: far(a), q: far(b), ..a };
             drawing.lines.remove(&j);
             if drawing.line_between(joined.p, joined.q).is_none() {
                 drawing.lines.insert(i, joined);
@@ -247,7 +249,7 @@ pub fn clean(
     out.faces.clear();
     let (old_planes, new_planes) = (Planes::of(&object.drawing), Planes::of(&out.drawing));
     let Some(from) = out.reference() else { return out };
-    for axis in Axis::ALL {
+    for axis in CoordinateAxis::ALL {
         let mut seen: Vec<usize> = Vec::new();
         for &p in new_planes.ids() {
             let Some(plane) = new_planes.plane(axis, p) else { continue };
@@ -263,8 +265,8 @@ pub fn clean(
             let here = at.get(&p).map_or(0.0, |x| x[axis.index()]);
             let there = at.get(&from.point).map_or(0.0, |x| x[axis.index()]);
             let value = sum
-                .and_then(|s| Expr::parse(&s).ok())
-                .unwrap_or_else(|| Expr::number(here - there));
+                .and_then(|s| DimensionExpr::parse(&s).ok())
+                .unwrap_or_else(|| DimensionExpr::number(here - there));
             let measure = MeasuredQuantity::Along { axis, p: from.point, q: p };
             let name = out.fresh_name("D");
             out.add_dimension(Dimension {
@@ -281,7 +283,7 @@ pub fn clean(
 
 /// Makes a solid wireframe of a cross section: a second copy along its normal, `name` being the
 /// dimension between the two.
-pub fn extrude(section: &SketchObject, name: &str, value: Expr) -> Option<SketchObject> {
+pub fn extrude(section: &SketchObject, name: &str, value: DimensionExpr) -> Option<SketchObject> {
     let normal = section.drawing.section?;
     let mut out = section.clone();
     out.faces.clear();
@@ -297,10 +299,10 @@ pub fn extrude(section: &SketchObject, name: &str, value: Expr) -> Option<Sketch
     }
     for line in flat.lines.values() {
         let id = drawing.next_line();
-        drawing.lines.insert(id, Line { p: up(line.p), q: up(line.q), ..*line });
+        drawing.lines.insert(id, DrawnLine { p: up(line.p), q: up(line.q), ..*line });
     }
     for &id in flat.points.keys() {
-        let line = Line {
+        let line = DrawnLine {
             p: id,
             q: up(id),
             free: Some(crate::Free::along(normal)),
@@ -337,10 +339,11 @@ pub fn extrude(section: &SketchObject, name: &str, value: Expr) -> Option<Sketch
     Some(out)
 }
 
-fn product(e: &Expr, factor: f64) -> Expr {
+fn product(e: &DimensionExpr, factor: f64) -> DimensionExpr {
     match e.literal() {
-        Some(x) => Expr::number(x * factor),
-        None => Expr::parse(&format!("({e})*({})", plain(factor))).unwrap_or_else(|_| e.clone()),
+        Some(x) => DimensionExpr::number(x * factor),
+        None => DimensionExpr::parse(&format!("({e})*({})", plain(factor)))
+            .unwrap_or_else(|_| e.clone()),
     }
 }
 
@@ -379,10 +382,9 @@ pub fn moved(object: &SketchObject, by: Vec3) -> SketchObject {
         if let (MeasuredQuantity::Datum { axis, .. }, Some(v)) = (d.measure, &d.value) {
             let shift = by[axis.index()];
             d.value = Some(match v.literal() {
-                Some(x) => Expr::number(x + shift),
-                None => {
-                    Expr::parse(&format!("({v})+({})", plain(shift))).unwrap_or_else(|_| v.clone())
-                }
+                Some(x) => DimensionExpr::number(x + shift),
+                None => DimensionExpr::parse(&format!("({v})+({})", plain(shift)))
+                    .unwrap_or_else(|_| v.clone()),
             });
         }
     }
@@ -390,7 +392,7 @@ pub fn moved(object: &SketchObject, by: Vec3) -> SketchObject {
 }
 
 /// Mirrored in the plane through the origin perpendicular to an axis.
-pub fn mirrored(object: &SketchObject, axis: Axis) -> SketchObject {
+pub fn mirrored(object: &SketchObject, axis: CoordinateAxis) -> SketchObject {
     let mut out = object.clone();
     for d in out.dimensions.values_mut() {
         match &mut d.measure {
@@ -411,13 +413,13 @@ pub fn mirrored(object: &SketchObject, axis: Axis) -> SketchObject {
 }
 
 /// Turned by a quarter about an axis, right-handed: exchange the two other axes, then mirror.
-pub fn quarter_turned(object: &SketchObject, about: Axis) -> SketchObject {
+pub fn quarter_turned(object: &SketchObject, about: CoordinateAxis) -> SketchObject {
     let (a, b) = match about {
-        Axis::X => (Axis::Y, Axis::Z),
-        Axis::Y => (Axis::Z, Axis::X),
-        Axis::Z => (Axis::X, Axis::Y),
+        CoordinateAxis::X => (CoordinateAxis::Y, CoordinateAxis::Z),
+        CoordinateAxis::Y => (CoordinateAxis::Z, CoordinateAxis::X),
+        CoordinateAxis::Z => (CoordinateAxis::X, CoordinateAxis::Y),
     };
-    let other = |x: Axis| {
+    let other = |x: CoordinateAxis| {
         if x == a {
             b
         } else if x == b {

@@ -22,9 +22,9 @@ pub mod surface;
 mod turn;
 pub mod validity;
 
-use crate::solid::curve::{Curve, CurveFault, CurveKind, SmoothPiece, Traced, trace};
+use crate::solid::curve::{CurveFault, CurveKind, SketchCurve, SmoothPiece, Traced, trace};
 use crate::solid::mass::{DirectedEdge, Mass, MassIntegrals};
-use crate::{FaceId, Layout, Planes, PointId, SketchObject};
+use crate::{DimensionLayout, FaceId, Planes, PointId, SketchObject};
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use surface::FaceSurface;
@@ -73,7 +73,7 @@ pub struct Trim<T> {
 
 /// The mesh of a body that was combined: its parts do not follow from edges alone.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Facets<T> {
+pub(crate) struct CombinedMesh<T> {
     /// The vertices of the body, then points on edges and faces.
     pub points: Vec<Vec3<T>>,
     /// Triangles by face.
@@ -138,12 +138,12 @@ pub struct SketchSolid<T> {
     pub unbuilt: Vec<UnbuiltCurve>,
     /// Round faces with borders of any kind.
     pub trims: Vec<Trim<T>>,
-    pub(crate) facets: Option<Facets<T>>,
+    pub(crate) facets: Option<CombinedMesh<T>>,
     steps: BTreeMap<usize, u32>,
 }
 
 /// A corner to be replaced.
-struct Corner<T> {
+struct RoundedCorner<T> {
     curve: usize,
     ends: [PointId; 2],
     tangents: [Vec3<T>; 2],
@@ -158,7 +158,7 @@ struct Corner<T> {
 pub fn solid<T: Real>(
     object: &SketchObject,
     planes: &Planes,
-    layout: &Layout<T>,
+    layout: &DimensionLayout<T>,
 ) -> Option<SketchSolid<T>> {
     feature::body(object, planes, layout).ok()
 }
@@ -167,7 +167,7 @@ pub fn solid<T: Real>(
 pub(crate) fn unchecked<T: Real>(
     object: &SketchObject,
     planes: &Planes,
-    layout: &Layout<T>,
+    layout: &DimensionLayout<T>,
 ) -> Option<SketchSolid<T>> {
     if object.faces.is_empty() {
         return None;
@@ -185,7 +185,7 @@ pub(crate) fn unchecked<T: Real>(
             }
         }
     }
-    let mut build = Builder {
+    let mut build = SolidBuilder {
         object,
         place,
         around,
@@ -261,12 +261,12 @@ fn pair(a: PointId, b: PointId) -> (PointId, PointId) {
     (a.min(b), a.max(b))
 }
 
-struct Builder<'a, T> {
+struct SolidBuilder<'a, T> {
     object: &'a SketchObject,
     place: Places<'a, T>,
     /// Points that share an edge of a face, where there are curves.
     around: BTreeMap<PointId, BTreeSet<PointId>>,
-    corners: BTreeMap<PointId, Corner<T>>,
+    corners: BTreeMap<PointId, RoundedCorner<T>>,
     /// Edges that become curves: from the lower label to the higher.
     bent: BTreeMap<(PointId, PointId), (usize, SmoothPiece<T>)>,
     curves: BTreeMap<usize, Traced<T>>,
@@ -274,9 +274,14 @@ struct Builder<'a, T> {
     next: u32,
 }
 
-impl<T: Real> Builder<'_, T> {
+impl<T: Real> SolidBuilder<'_, T> {
     /// Records what a curve replaces.
-    fn take(&mut self, k: usize, curve: &Curve, traced: &Traced<T>) -> Result<(), UnbuiltReason> {
+    fn take(
+        &mut self,
+        k: usize,
+        curve: &SketchCurve,
+        traced: &Traced<T>,
+    ) -> Result<(), UnbuiltReason> {
         match (curve.kind, &curve.points[..]) {
             (CurveKind::Quadratic, p) if p.len() == 3 => {
                 self.bend(k, &[(p[0], p[1]), (p[1], p[2])], &traced.pieces)
@@ -336,7 +341,7 @@ impl<T: Real> Builder<'_, T> {
         }
         let ids = [PointId(self.next), PointId(self.next.saturating_add(1))];
         self.next = self.next.saturating_add(2);
-        self.corners.insert(at, Corner { curve, ends, tangents, piece, ids });
+        self.corners.insert(at, RoundedCorner { curve, ends, tangents, piece, ids });
         Ok(())
     }
 
@@ -392,7 +397,8 @@ impl<T: Real> Builder<'_, T> {
 
     /// Gives tangent points that meet in the middle of a line one label, and refuses crossed ones.
     fn share_tangents(&mut self) {
-        let on_line = |c: &Corner<T>, other: PointId| c.ends.iter().position(|e| *e == other);
+        let on_line =
+            |c: &RoundedCorner<T>, other: PointId| c.ends.iter().position(|e| *e == other);
         let keys: Vec<PointId> = self.corners.keys().copied().collect();
         for &p in &keys {
             for side in 0..2 {
@@ -437,7 +443,7 @@ impl<T: Real> Builder<'_, T> {
             .values()
             .map(|f| f.loops().map(<[PointId]>::len).sum::<usize>())
             .sum();
-        let mut out = Assembly {
+        let mut out = TopologyTable {
             vertices: Vec::with_capacity(self.place.at.len()),
             number: HashMap::with_capacity_and_hasher(self.place.at.len(), Quick::default()),
             edges: Vec::with_capacity(halves / 2),
@@ -512,7 +518,7 @@ impl<T: Real> Builder<'_, T> {
     fn cycle(
         &self,
         cycle: &[PointId],
-        out: &mut Assembly<T>,
+        out: &mut TopologyTable<T>,
         seams: &mut BTreeMap<PointId, PointId>,
     ) -> Vec<(usize, bool)> {
         let n = cycle.len();
@@ -558,7 +564,7 @@ impl<T: Real> Builder<'_, T> {
     }
 
     /// `Some(false)` plane, `Some(true)` ruled, `None` neither.
-    fn ruled_face(&self, loops: &[Vec<(usize, bool)>], out: &Assembly<T>) -> Option<bool> {
+    fn ruled_face(&self, loops: &[Vec<(usize, bool)>], out: &TopologyTable<T>) -> Option<bool> {
         let all = || loops.iter().flatten();
         if all().all(|h| out.edges[h.0].piece.is_none()) {
             return Some(false);
@@ -592,7 +598,11 @@ impl<T: Real> Builder<'_, T> {
     }
 
     /// The patches of the third lines at corners.
-    fn patches(&self, out: &mut Assembly<T>, seams: &BTreeMap<PointId, PointId>) -> Vec<SolidFace> {
+    fn patches(
+        &self,
+        out: &mut TopologyTable<T>,
+        seams: &BTreeMap<PointId, PointId>,
+    ) -> Vec<SolidFace> {
         let mut faces = Vec::new();
         let mut done = BTreeSet::new();
         for (&p, c) in &self.corners {
@@ -684,7 +694,7 @@ impl std::hash::Hasher for IndexHasher {
 type Quick = std::hash::BuildHasherDefault<IndexHasher>;
 
 /// Vertices and edges, each made once.
-struct Assembly<T> {
+struct TopologyTable<T> {
     vertices: Vec<Vertex<T>>,
     // Looked up, never run through, so that their order does not show.
     number: HashMap<PointId, usize, Quick>,
@@ -692,7 +702,7 @@ struct Assembly<T> {
     known: HashMap<(usize, usize, bool), usize, Quick>,
 }
 
-impl<T: Real> Assembly<T> {
+impl<T: Real> TopologyTable<T> {
     fn vertex(&mut self, id: PointId, at: Vec3<T>) -> usize {
         *self.number.entry(id).or_insert_with(|| {
             self.vertices.push(Vertex { id, at });

@@ -155,7 +155,7 @@ pub(super) fn patch<T: Real>(
         return vec![];
     }
     // Which way the parameters run along the first edge and the sides.
-    let grid = Grid::of(surface, places, &near, &left);
+    let grid = PatchOrientation::of(surface, places, &near, &left);
     let mut rows = vec![near.clone()];
     for j in 1..m - 1 {
         let mut row = vec![left[j]];
@@ -180,25 +180,27 @@ pub(super) fn patch<T: Real>(
 }
 
 /// How the first edge (s) and the sides (t) of a patch run in its parameters.
-struct Grid {
+struct PatchOrientation {
     corner: [f64; 2],
     along: [f64; 2],
     across: [f64; 2],
 }
 
-impl Grid {
+impl PatchOrientation {
     fn of<T: Real>(
         surface: &FaceSurface<T>,
         places: &[Vec3<T>],
         near: &[u32],
         left: &[u32],
-    ) -> Grid {
+    ) -> PatchOrientation {
         let place = |v: u32| places[v as usize].re();
         let corner = |u: f64, v: f64| surface.jet(T::from(u), T::from(v))[0].re();
         // The corners of the square that the patch's own corners are nearest to.
         let (a, b, d) = (place(near[0]), place(near[near.len() - 1]), place(left[left.len() - 1]));
-        let mut best =
-            (f64::INFINITY, Grid { corner: [0.0; 2], along: [1.0, 0.0], across: [0.0, 1.0] });
+        let mut best = (
+            f64::INFINITY,
+            PatchOrientation { corner: [0.0; 2], along: [1.0, 0.0], across: [0.0, 1.0] },
+        );
         for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
             let (du, dv) = (1.0 - 2.0 * u, 1.0 - 2.0 * v);
             for (along, across) in [([du, 0.0], [0.0, dv]), ([0.0, dv], [du, 0.0])] {
@@ -206,7 +208,7 @@ impl Grid {
                     + corner(u + along[0], v + along[1]).distance(b)
                     + corner(u + across[0], v + across[1]).distance(d);
                 if off < best.0 {
-                    best = (off, Grid { corner: [u, v], along, across });
+                    best = (off, PatchOrientation { corner: [u, v], along, across });
                 }
             }
         }

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 /// Why a body has no volume.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Flaw {
+pub enum SolidDefect {
     /// Its faces do not close: edges that have not one face on each side, by their ends.
     Open(Vec<[PointId; 2]>),
     /// The cycle of one face crosses itself there: lines have passed each other.
@@ -36,10 +36,10 @@ pub enum Flaw {
 /// The body itself when it is valid, the one derived anew when it crosses itself.
 ///
 /// # Errors
-/// [`Flaw`], with the place.
-pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, Flaw> {
+/// [`SolidDefect`], with the place.
+pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
     if body.vertices.iter().any(|v| !v.at.is_finite()) {
-        return Err(Flaw::NotFinite);
+        return Err(SolidDefect::NotFinite);
     }
     if body.flat {
         return match crossed_cycle(&body, true) {
@@ -49,7 +49,7 @@ pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, Flaw> 
     }
     let open = open_edges(&body);
     if !open.is_empty() {
-        return Err(Flaw::Open(open));
+        return Err(SolidDefect::Open(open));
     }
     let suspect = suspect(&body);
     if !suspect && shells(&body) == Shells::Outward {
@@ -65,7 +65,7 @@ pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, Flaw> 
     match resolved(&body) {
         Ok((_, false)) => Ok(body),
         Ok((new, true)) => Ok(new.named_after(&body)),
-        Err(e) => Err(Flaw::Unresolved(e)),
+        Err(e) => Err(SolidDefect::Unresolved(e)),
     }
 }
 
@@ -360,7 +360,7 @@ fn solid_angle(corners: &[Vec3; 3], p: Vec3) -> f64 {
 }
 
 /// A cycle of a plane face that crosses itself; in a section also two cycles that cross.
-fn crossed_cycle<T: Real>(body: &SketchSolid<T>, between: bool) -> Option<Flaw> {
+fn crossed_cycle<T: Real>(body: &SketchSolid<T>, between: bool) -> Option<SolidDefect> {
     let outline = body.outline();
     let at = |v: u32| outline.points[v as usize].re();
     let [low, high] = bounds(outline.points.iter().map(|p| p.re()));
@@ -396,7 +396,7 @@ fn crossed_cycle<T: Real>(body: &SketchSolid<T>, between: bool) -> Option<Flaw> 
             }
         });
         if let Some((at, sides)) = found {
-            return Some(Flaw::Crossed { face: face.id, sides, at });
+            return Some(SolidDefect::Crossed { face: face.id, sides, at });
         }
     }
     None

@@ -10,7 +10,7 @@ pub struct Case {
     pub object: SketchObject,
     pub counts: [usize; 3],
     pub xyz: Vec<Vec3>,
-    pub faces: Vec<Face>,
+    pub faces: Vec<SketchFace>,
     pub volume: f64,
     pub area: f64,
     pub centroid: Vec3,
@@ -47,7 +47,7 @@ pub fn add_lines(object: &mut SketchObject, kind: &str, pairs: &str) {
         let [p, q] = [p, q].map(|x| PointId(x.parse().unwrap()));
         let free = drawing.letters.free(kind, drawing.section);
         let id = drawing.next_line();
-        let line = Line { p, q, free, source: LineTypeSource::User, confidence: 1.0 };
+        let line = DrawnLine { p, q, free, source: LineTypeSource::User, confidence: 1.0 };
         drawing.lines.insert(id, line);
     }
 }
@@ -59,11 +59,11 @@ pub fn add_dimension(object: &mut SketchObject, text: &str) {
     object.add_dimension(Dimension {
         name: object.fresh_name("D"),
         measure: MeasuredQuantity::Along {
-            axis: Axis::of(words[0]).unwrap(),
+            axis: CoordinateAxis::of(words[0]).unwrap(),
             p: point(1),
             q: point(2),
         },
-        value: Some(Expr::parse(words[3]).unwrap()),
+        value: Some(DimensionExpr::parse(words[3]).unwrap()),
         role: DimensionRole::Driving,
         range: None,
     });
@@ -73,7 +73,7 @@ pub fn align(object: &mut SketchObject, text: &str) {
     let words: Vec<&str> = text.split_whitespace().collect();
     let point = |k: usize| PointId(words[k].parse().unwrap());
     object.draw().aligns.push(Align {
-        axis: Axis::of(words[0]).unwrap(),
+        axis: CoordinateAxis::of(words[0]).unwrap(),
         p: point(1),
         q: point(2),
     });
@@ -106,11 +106,11 @@ fn case(line: &str) -> Case {
     }
     let n = numbers(get("N"));
     let face = |f: &Json| match f.get("outer") {
-        Some(outer) => Face {
+        Some(outer) => SketchFace {
             outer: cycle(outer),
             holes: f.get("holes").unwrap().items().iter().map(cycle).collect(),
         },
-        None => Face { outer: cycle(f), holes: vec![] },
+        None => SketchFace { outer: cycle(f), holes: vec![] },
     };
     let object = SketchObject { name: "A".into(), ..object };
     let first = vector(&get("xyz").items()[0]);
@@ -128,7 +128,7 @@ fn case(line: &str) -> Case {
 }
 
 /// Solves without derived dimensions.
-pub fn layout(object: &SketchObject) -> (Planes, Layout<f64>) {
+pub fn layout(object: &SketchObject) -> (Planes, DimensionLayout<f64>) {
     let planes = Planes::of(&object.drawing);
     let guess = || {
         let reference = object.reference()?.point;
@@ -168,7 +168,8 @@ pub fn with_faces(mut object: SketchObject) -> SketchObject {
     let fitted = moldloft_sketch::faces::fit(&positions, &edges);
     let points = |c: &Vec<usize>| c.iter().map(|&k| planes.ids()[k]).collect();
     for f in &fitted.fits[0].faces {
-        let face = Face { outer: points(&f.outer), holes: f.holes.iter().map(points).collect() };
+        let face =
+            SketchFace { outer: points(&f.outer), holes: f.holes.iter().map(points).collect() };
         object.faces.insert(object.next_face(), face);
     }
     object
@@ -179,10 +180,15 @@ pub fn built(object: &SketchObject) -> SketchSolid<f64> {
     solid(object, &planes, &layout).unwrap()
 }
 
-pub fn curve(name: &str, kind: curve::CurveKind, points: &[u32], size: &[&str]) -> curve::Curve {
-    let size: Vec<Expr> = size.iter().map(|s| Expr::parse(s).unwrap()).collect();
+pub fn curve(
+    name: &str,
+    kind: curve::CurveKind,
+    points: &[u32],
+    size: &[&str],
+) -> curve::SketchCurve {
+    let size: Vec<DimensionExpr> = size.iter().map(|s| DimensionExpr::parse(s).unwrap()).collect();
     let corner = matches!(kind, curve::CurveKind::Arc | curve::CurveKind::Circle);
-    curve::Curve {
+    curve::SketchCurve {
         name: name.into(),
         kind,
         points: points.iter().map(|&p| PointId(p)).collect(),
@@ -194,6 +200,6 @@ pub fn curve(name: &str, kind: curve::CurveKind, points: &[u32], size: &[&str]) 
     }
 }
 
-pub fn add_curve(object: &mut SketchObject, c: curve::Curve) {
+pub fn add_curve(object: &mut SketchObject, c: curve::SketchCurve) {
     object.curves.insert(c.name.to_ascii_lowercase(), c);
 }

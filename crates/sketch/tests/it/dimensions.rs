@@ -39,7 +39,7 @@ fn every_case_types_itself() {
         for (id, truth) in &case.object.drawing.lines {
             let line = drawing.lines[id];
             let truth = truth.free.unwrap();
-            if case.id.starts_with("T11") && truth == Free::across(Axis::X) {
+            if case.id.starts_with("T11") && truth == Free::across(CoordinateAxis::X) {
                 assert!(proposed.contains(id) && line.confidence <= 0.5);
             } else {
                 assert_eq!(line.free, Some(truth), "{} {}", case.id, drawing.line_text(*id));
@@ -52,7 +52,7 @@ fn every_case_types_itself() {
 #[test]
 fn wrong_names_degrade_their_neighbours() {
     let mut object = case_named("T5").object;
-    let z = Some(Free::along(Axis::Z));
+    let z = Some(Free::along(CoordinateAxis::Z));
     for (p, q) in [(4, 8), (8, 12)] {
         let id = object.drawing.line_between(PointId(p), PointId(q)).unwrap();
         object.draw().lines.get_mut(&id).unwrap().free = z;
@@ -126,9 +126,9 @@ fn the_estimate_recovers_what_the_picture_shows() {
                 for &(axis, plane, m) in &depth.planes {
                     if planes.plane(axis, point) == Some(plane) {
                         d += Vec3::of(
-                            if axis == Axis::X { m } else { 0.0 },
-                            if axis == Axis::Y { m } else { 0.0 },
-                            if axis == Axis::Z { m } else { 0.0 },
+                            if axis == CoordinateAxis::X { m } else { 0.0 },
+                            if axis == CoordinateAxis::Y { m } else { 0.0 },
+                            if axis == CoordinateAxis::Z { m } else { 0.0 },
                         );
                     }
                 }
@@ -186,7 +186,7 @@ fn a_cross_section_types_itself() {
         (-2.0, 379.0),
     ];
     let mut object = drawn([0.0, 45.0, 90.0], &rough);
-    object.draw().section = Some(Axis::Y);
+    object.draw().section = Some(CoordinateAxis::Y);
     add_lines(&mut object, "?", "1-2 2-3 3-4 4-5 5-6 6-7 7-8 8-9 9-10 10-1");
     object.draw().type_all();
     let drawing = &object.drawing;
@@ -223,12 +223,12 @@ fn a_cross_section_types_itself() {
 }
 
 fn set(object: &mut SketchObject, name: &str, value: &str) {
-    object.dimensions.get_mut(name).unwrap().value = Some(Expr::parse(value).unwrap());
+    object.dimensions.get_mut(name).unwrap().value = Some(DimensionExpr::parse(value).unwrap());
 }
 
 #[test]
 fn redimensioning_moves_the_far_side_and_never_flips() {
-    let planes_of = |object: &SketchObject, axis: Axis| {
+    let planes_of = |object: &SketchObject, axis: CoordinateAxis| {
         let (_, layout) = layout(object);
         let mut at: Vec<f64> =
             layout.coordinates[axis.index()].iter().map(|c| c.unwrap()).collect();
@@ -237,19 +237,20 @@ fn redimensioning_moves_the_far_side_and_never_flips() {
     };
     let mut object = case_named("T1 ").object;
     set(&mut object, "d1", "2");
-    assert_eq!(planes_of(&object, Axis::X), [0.0, 2.0, 7.0]);
+    assert_eq!(planes_of(&object, CoordinateAxis::X), [0.0, 2.0, 7.0]);
     set(&mut object, "d1", "8");
-    assert_eq!(planes_of(&object, Axis::X), [0.0, 8.0, 13.0]);
+    assert_eq!(planes_of(&object, CoordinateAxis::X), [0.0, 8.0, 13.0]);
     let mut dam = case_named("T3").object;
     set(&mut dam, "d1", "20");
-    assert_eq!(planes_of(&dam, Axis::X), [0.0, 20.0, 74.0]);
+    assert_eq!(planes_of(&dam, CoordinateAxis::X), [0.0, 20.0, 74.0]);
 }
 
 #[test]
 fn redundant_contradictory_and_missing_are_told_apart() {
     let mut object = case_named("T1 ").object;
     let planes = Planes::of(&object.drawing);
-    let (points, names) = chain(&object, &planes, Axis::X, PointId(1), PointId(2)).unwrap();
+    let (points, names) =
+        chain(&object, &planes, CoordinateAxis::X, PointId(1), PointId(2)).unwrap();
     assert_eq!((chain_text(&points).as_str(), names), ("1>4>2", vec!["D1".into(), "D2".into()]));
     add_dimension(&mut object, "X 1 2 6");
     let faults = layout(&object).1.faults;
@@ -265,8 +266,11 @@ fn redundant_contradictory_and_missing_are_told_apart() {
     let (_, layout) = layout(&object);
     assert_eq!(layout.counts[0], Count { required: 2, given: 1, missing: 1 });
     assert_eq!(layout.loose.len(), 1);
-    assert_eq!((layout.loose[0].axis, text(&layout.loose[0].points)), (Axis::X, "2 3 8 9".into()));
-    assert!(chain(&object, &planes, Axis::X, PointId(1), PointId(2)).is_none());
+    assert_eq!(
+        (layout.loose[0].axis, text(&layout.loose[0].points)),
+        (CoordinateAxis::X, "2 3 8 9".into())
+    );
+    assert!(chain(&object, &planes, CoordinateAxis::X, PointId(1), PointId(2)).is_none());
 }
 
 #[test]
@@ -278,7 +282,7 @@ fn types_that_contradict_name_their_path() {
     assert_eq!(planes.counts(), [1, 1, 3]);
     let faults = planes.faults(&object.drawing);
     let TypeFault::Contradiction { line, axis, path } = &faults[0] else { panic!("{faults:?}") };
-    assert_eq!((*line, *axis), (LineId(1), Axis::X));
+    assert_eq!((*line, *axis), (LineId(1), CoordinateAxis::X));
     let path: Vec<String> = path.iter().map(|r| r.text(&object.drawing)).collect();
     assert_eq!(path, ["4-1 (Z)", "3-4 (Z)", "2-3 (Z)"]);
     object.draw().points.insert(PointId(9), DrawnPoint { u: 0.0, v: 0.0 });
@@ -291,7 +295,7 @@ fn expressions_follow_each_other_and_cycles_are_named() {
     let mut object = case_named("T1 ").object;
     let variable = |value: &str| Variable {
         name: "t".into(),
-        value: Expr::parse(value).unwrap(),
+        value: DimensionExpr::parse(value).unwrap(),
         range: None,
     };
     object.variables.insert("t".into(), variable("D2/5"));
@@ -299,7 +303,7 @@ fn expressions_follow_each_other_and_cycles_are_named() {
     set(&mut object, "d4", "2*D1");
     let (planes, layout_) = layout(&object);
     assert_eq!(layout_.values["d4"], 4.0);
-    assert_eq!(layout_.coordinate(&planes, Axis::Z, PointId(5)), Some(7.0));
+    assert_eq!(layout_.coordinate(&planes, CoordinateAxis::Z, PointId(5)), Some(7.0));
     object.variables.insert("t".into(), variable("D4"));
     let faults = layout(&object).1.faults;
     let names = vec!["d1".to_owned(), "d4".to_owned(), "t".to_owned()];
@@ -321,9 +325,9 @@ fn derivatives_by_dimensions_are_exact() {
     let seed = Dual::<1>::seeded(6.0, 0);
     let overrides = [("d1".to_owned(), seed)].into_iter().collect();
     let layout = solve(&object, &planes, &overrides, &|| None);
-    let x = |p| layout.coordinate(&planes, Axis::X, PointId(p)).unwrap();
+    let x = |p| layout.coordinate(&planes, CoordinateAxis::X, PointId(p)).unwrap();
     assert_eq!((x(17).re, x(17).eps, x(6).re, x(6).eps), (6.0, [1.0], 14.0, [3.0]));
-    assert_eq!(layout.coordinate(&planes, Axis::Z, PointId(8)).unwrap().eps, [0.0]);
+    assert_eq!(layout.coordinate(&planes, CoordinateAxis::Z, PointId(8)).unwrap().eps, [0.0]);
 }
 
 #[test]
@@ -335,7 +339,7 @@ fn length_slope_angle_and_equal_take_the_place_of_axis_dimensions() {
             Dimension {
                 name: name.into(),
                 measure,
-                value: Some(Expr::parse(value).unwrap()),
+                value: Some(DimensionExpr::parse(value).unwrap()),
                 role: DimensionRole::Driving,
                 range: None,
             },
@@ -356,7 +360,7 @@ fn length_slope_angle_and_equal_take_the_place_of_axis_dimensions() {
         let (planes, layout) = layout(&object);
         assert!(layout.faults.is_empty() && layout.complete(), "{name} {:?}", layout.faults);
         assert_eq!(layout.counts[0].given, 2);
-        let x = layout.coordinate(&planes, Axis::X, PointId(2)).unwrap();
+        let x = layout.coordinate(&planes, CoordinateAxis::X, PointId(2)).unwrap();
         assert!((x - 70.0).abs() < 1e-9, "{name} {x}");
         assert_eq!(truth.coordinates[0].len(), layout.coordinates[0].len());
     }
@@ -368,7 +372,7 @@ fn length_slope_angle_and_equal_take_the_place_of_axis_dimensions() {
     let guess = || Estimate::of(&object.drawing, &planes, PointId(1));
     let overrides = [("length".to_owned(), Dual::<1>::seeded(90.0, 0))].into_iter().collect();
     let dual = solve(&object, &planes, &overrides, &guess);
-    let toe = dual.coordinate(&planes, Axis::X, PointId(2)).unwrap();
+    let toe = dual.coordinate(&planes, CoordinateAxis::X, PointId(2)).unwrap();
     assert!((toe.eps[0] - 90.0 / 54.0).abs() < 1e-9);
     // Two at once: the run and the rise from length and slope.
     let mut object = dam.clone();

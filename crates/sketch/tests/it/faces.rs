@@ -32,7 +32,7 @@ fn euler(faces: &[Polygon]) -> i64 {
     (vertices.len() + faces.len()) as i64 - (halves.len() / 2 + rings) as i64
 }
 
-fn only(fitted: &Fitted) -> &moldloft_sketch::faces::Fit {
+fn only(fitted: &Fitted) -> &moldloft_sketch::faces::WireframeFit {
     assert!(fitted.open.is_empty(), "open {:?}", fitted.open);
     assert_eq!(fitted.fits.len(), 1, "solids of {} cells", fitted.cells);
     &fitted.fits[0]

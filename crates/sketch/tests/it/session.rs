@@ -509,7 +509,10 @@ fn a_dimension_without_value_asks() {
     let replies = run(&mut s, "DIM BACK X 2 1 = 6");
     assert!(replies.iter().any(|r| r.text.contains("as typed")), "{replies:?}");
     let d = &s.object("A").unwrap().dimensions["back"];
-    assert_eq!(d.measure, MeasuredQuantity::Along { axis: Axis::X, p: PointId(2), q: PointId(1) });
+    assert_eq!(
+        d.measure,
+        MeasuredQuantity::Along { axis: CoordinateAxis::X, p: PointId(2), q: PointId(1) }
+    );
     assert_eq!(s.objects()[0].points[1].1[0], Some(-6.0));
     run(&mut s, "REVERSE BACK");
     assert_eq!(s.objects()[0].points[1].1[0], Some(6.0));

@@ -3,7 +3,7 @@
 use crate::common::*;
 use moldloft_mesh::measure;
 use moldloft_num::{Dual, Vec3};
-use moldloft_sketch::curve::{Curve, CurveFault, CurveKind, SmoothPiece, semi_axes, trace};
+use moldloft_sketch::curve::{CurveFault, CurveKind, SketchCurve, SmoothPiece, semi_axes, trace};
 use moldloft_sketch::solid::UnbuiltReason;
 use moldloft_sketch::*;
 use std::f64::consts::PI;
@@ -82,7 +82,7 @@ fn a_box_with_a_fillet() {
     add_curve(&mut object, curve("C2", CurveKind::Arc, &[8, 7, 3], &["R"]));
     let radius = |value: &str| Variable {
         name: "R".into(),
-        value: Expr::parse(value).unwrap(),
+        value: DimensionExpr::parse(value).unwrap(),
         range: None,
     };
     object.variables.insert("r".into(), radius("2"));
@@ -154,7 +154,7 @@ fn four_fillets_and_their_limits() {
     check_mesh(&body, 1e-3);
     // A little more and the tangent points pass each other.
     for c in object.curves.values_mut() {
-        c.radius = Some(Expr::number(3.5));
+        c.radius = Some(DimensionExpr::number(3.5));
     }
     let body = built(&object);
     assert!(body.unbuilt.iter().any(|t| matches!(t.why, UnbuiltReason::Overlap(..))));
@@ -210,7 +210,7 @@ fn quadratics_bend_two_faces() {
     check_mesh(&body, 1e-3);
 }
 
-fn traced(curve: &Curve, points: &[[f64; 3]]) -> Result<curve::Traced<f64>, CurveFault> {
+fn traced(curve: &SketchCurve, points: &[[f64; 3]]) -> Result<curve::Traced<f64>, CurveFault> {
     let at = |p: PointId| points.get(p.0 as usize - 1).map(|&p| p.into());
     trace(curve, &at, &Default::default())
 }
@@ -278,13 +278,13 @@ fn closed_forms_of_the_curves() {
     close(long, 4.148_627, 1e-6);
     close(short, 1.669_999, 1e-6);
     close(PI * long * short, 21.765_592, 1e-6);
-    ellipse.semi = Some([Expr::number(5.0), Expr::number(3.0)]);
+    ellipse.semi = Some([DimensionExpr::number(5.0), DimensionExpr::number(3.0)]);
     let t = traced(&ellipse, &[[9.0, 0.0, 0.0], [0.0; 3], [0.0, 4.0, 0.0]]).unwrap();
     near(t.centre.unwrap(), [5.0, 3.0, 0.0]);
     near(t.pieces[0].at(0.5), [1.464_466, 0.878_680, 0.0]);
     let SmoothPiece::Conic { a, b, .. } = t.pieces[0] else { panic!("an ellipse is a conic") };
     assert_eq!(semi_axes(a, b), [5.0, 3.0]);
-    ellipse.semi = Some([Expr::number(50.0), Expr::number(3.0)]);
+    ellipse.semi = Some([DimensionExpr::number(50.0), DimensionExpr::number(3.0)]);
     let t = traced(&ellipse, &[[9.0, 0.0, 0.0], [0.0; 3], [0.0, 4.0, 0.0]]);
     assert_eq!(t, Err(CurveFault::TooLarge { largest: 9.0 }));
     // Laws: reversal, and the number of chords keeps the tolerance.
@@ -351,12 +351,12 @@ fn a_change_of_one_dimension_of_a_large_sketch_is_quick() {
     }
     let turn = |c: Vec<PointId>| c.into_iter().rev().collect::<Vec<_>>();
     let ids = |from: usize| (0..n).map(|k| PointId((from + k) as u32)).collect::<Vec<_>>();
-    object.faces.insert(FaceId(1), Face { outer: ids(1), holes: vec![] });
-    object.faces.insert(FaceId(2), Face { outer: turn(ids(n + 1)), holes: vec![] });
+    object.faces.insert(FaceId(1), SketchFace { outer: ids(1), holes: vec![] });
+    object.faces.insert(FaceId(2), SketchFace { outer: turn(ids(n + 1)), holes: vec![] });
     for k in 0..n {
         let (a, b) = (k + 1, (k + 1) % n + 1);
         let outer = [a, a + n, b + n, b].map(|x| PointId(x as u32)).to_vec();
-        object.faces.insert(FaceId(3 + k as u32), Face { outer, holes: vec![] });
+        object.faces.insert(FaceId(3 + k as u32), SketchFace { outer, holes: vec![] });
     }
     let planes = Planes::of(&object.drawing);
     let run = |d: f64| {

@@ -1,6 +1,6 @@
 //! Thickness forms of the NACA 6- and 6A-series by conformal mapping (Theodorsen 1931).
 
-use super::tables::{FAMILIES, Family};
+use super::tables::{FAMILIES, ThicknessFamily};
 use super::thickness::Thickness;
 use crate::{End, Ends, InterpolatingSpline};
 use moldloft_num::{Curve, Order, Real, Vec3, find_root};
@@ -27,7 +27,7 @@ struct Mapping {
 }
 
 impl Mapping {
-    fn new(family: &Family, scale: f64) -> Self {
+    fn new(family: &ThicknessFamily, scale: f64) -> Self {
         let n = family.psi.len() - 1;
         let knots: Vec<f64> = (0..=n).map(|k| k as f64 * PI / n as f64).collect();
         // Epsilon is odd about both ends, psi even.
@@ -72,15 +72,15 @@ impl Mapping {
 
 /// Half thickness in units of half the greatest, over s, at one ratio.
 #[derive(Debug)]
-pub struct Form {
+pub struct ThicknessForm {
     /// Powers 0 to 3 of the way into each interval of s.
     pieces: Vec<[f64; 4]>,
     /// The place x of the greatest thickness.
     top: f64,
 }
 
-impl Form {
-    fn new(family: &Family, ratio: f64) -> Self {
+impl ThicknessForm {
+    fn new(family: &ThicknessFamily, ratio: f64) -> Self {
         let scale = family.scale.iter().rev().fold(0.0, |sum, &c| (sum + c) * ratio);
         let mapping = Mapping::new(family, scale);
         let place = |k: usize| {
@@ -120,16 +120,17 @@ fn node(k: usize) -> f64 {
 }
 
 /// The forms of a family at the nodes; computed when they are first asked for.
-fn forms(at: usize) -> &'static [Form] {
-    static FORMS: [OnceLock<Vec<Form>>; FAMILIES.len()] =
+fn forms(at: usize) -> &'static [ThicknessForm] {
+    static FORMS: [OnceLock<Vec<ThicknessForm>>; FAMILIES.len()] =
         [const { OnceLock::new() }; FAMILIES.len()];
-    FORMS[at].get_or_init(|| (0..NODES).map(|k| Form::new(&FAMILIES[at], node(k))).collect())
+    FORMS[at]
+        .get_or_init(|| (0..NODES).map(|k| ThicknessForm::new(&FAMILIES[at], node(k))).collect())
 }
 
 /// A form between those of the nodes.
 #[derive(Clone, Debug)]
 pub struct Blended<T> {
-    forms: &'static [Form],
+    forms: &'static [ThicknessForm],
     /// The share of each: Lagrange's polynomials at the ratio.
     shares: [T; NODES],
     /// Their sums, when they are worth their while.
@@ -196,7 +197,7 @@ mod tests {
     fn forms_between_the_nodes_are_those_of_the_mapping() {
         for (at, family) in FAMILIES.iter().enumerate() {
             for ratio in [0.021, 0.1, 0.137, 0.239] {
-                let direct = Form::new(family, ratio);
+                let direct = ThicknessForm::new(family, ratio);
                 let Some(Thickness::Family(blended)) = thickness(family.name, ratio) else {
                     panic!("{at}")
                 };

@@ -4,7 +4,7 @@
 //! scale by the thickness ratio (Carmichael, AIAA 2001-5235). Both are in the public domain.
 
 /// A family of thickness forms.
-pub(super) struct Family {
+pub(super) struct ThicknessFamily {
     /// Its name.
     pub name: &'static str,
     /// Coefficients of t, t^2, t^3, t^4 of the scale at the thickness ratio t.
@@ -16,8 +16,8 @@ pub(super) struct Family {
 }
 
 /// The families.
-pub(super) const FAMILIES: [Family; 7] = [
-    Family {
+pub(super) const FAMILIES: [ThicknessFamily; 7] = [
+    ThicknessFamily {
         name: "63",
         scale: [8.1827699, 1.3776209, -0.092851684, 7.5942563],
         epsilon: [
@@ -32,7 +32,7 @@ pub(super) const FAMILIES: [Family; 7] = [
             42, 0,
         ],
     },
-    Family {
+    ThicknessFamily {
         name: "64",
         scale: [4.6535511, 1.038063, -1.5041794, 4.7882784],
         epsilon: [
@@ -47,7 +47,7 @@ pub(super) const FAMILIES: [Family; 7] = [
             353, 89, 0,
         ],
     },
-    Family {
+    ThicknessFamily {
         name: "65",
         scale: [6.5718716, 0.49376292, 0.7319794, 1.9491474],
         epsilon: [
@@ -62,7 +62,7 @@ pub(super) const FAMILIES: [Family; 7] = [
             289, 72, 0,
         ],
     },
-    Family {
+    ThicknessFamily {
         name: "66",
         scale: [6.7581414, 0.19253769, 0.81282621, 0.85202897],
         epsilon: [
@@ -77,7 +77,7 @@ pub(super) const FAMILIES: [Family; 7] = [
             439, 110, 0,
         ],
     },
-    Family {
+    ThicknessFamily {
         name: "63A",
         scale: [8.1845925, 1.0492569, 1.3115093, 4.4515579],
         epsilon: [
@@ -92,7 +92,7 @@ pub(super) const FAMILIES: [Family; 7] = [
             2248, 2238, 2243,
         ],
     },
-    Family {
+    ThicknessFamily {
         name: "64A",
         scale: [8.2125018, 0.76855961, 1.4922345, 3.6130133],
         epsilon: [
@@ -107,7 +107,7 @@ pub(super) const FAMILIES: [Family; 7] = [
             2266, 2242, 2243,
         ],
     },
-    Family {
+    ThicknessFamily {
         name: "65A",
         scale: [8.2514822, 0.46569361, 1.50113018, 2.0908904],
         epsilon: [

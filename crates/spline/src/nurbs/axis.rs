@@ -6,7 +6,7 @@ use moldloft_num::Order;
 
 /// The splines of one parameter.
 #[derive(Clone, Debug)]
-pub struct Axis {
+pub struct SplineSpace {
     pub degree: usize,
     /// The ends of the spans, from 0 to 1.
     pub ends: Vec<f64>,
@@ -16,7 +16,7 @@ pub struct Axis {
     pub fitted: bool,
 }
 
-impl Axis {
+impl SplineSpace {
     pub fn knots(&self) -> Vec<f64> {
         let mut knots = vec![0.0; self.degree + 1];
         for (end, &times) in self.ends[1..].iter().zip(&self.repeats) {
@@ -82,7 +82,7 @@ pub struct Interpolation {
 }
 
 impl Interpolation {
-    pub fn new(axis: &Axis) -> Self {
+    pub fn new(axis: &SplineSpace) -> Self {
         let (means, width) = (axis.means(), axis.degree);
         let n = means.len();
         let stride = 2 * width + 1;

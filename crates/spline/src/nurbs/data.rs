@@ -12,12 +12,12 @@ pub fn point([x, y, z, w]: Value) -> Vec3 {
 
 /// A grid of values, the last axis fastest.
 #[derive(Clone, Debug)]
-pub struct Data<const D: usize> {
+pub struct HomogeneousGrid<const D: usize> {
     pub dims: [usize; D],
     pub values: Vec<Value>,
 }
 
-impl<const D: usize> Data<D> {
+impl<const D: usize> HomogeneousGrid<D> {
     /// The grid whose lines along `axis`, of `count` values, are made of those of this one.
     pub fn along(
         &self,

@@ -1,9 +1,9 @@
 //! The spline spaces of a shape, its control points in them, and the bound of what is left.
 
 use super::Nurbs;
-use super::axis::{Axis, Interpolation, apply, basis_rows};
+use super::axis::{Interpolation, SplineSpace, apply, basis_rows};
 use super::chebyshev::{Chebyshev, derivative_at_end, series_derivative};
-use super::data::{Data, Value, gap, point};
+use super::data::{HomogeneousGrid, Value, gap, point};
 use moldloft_num::{Rational, Vec3};
 use std::fmt;
 
@@ -107,7 +107,7 @@ pub fn fit<const D: usize>(
         return Err(NotFitted::Accuracy(options.accuracy));
     }
     let fitter = Fitter::new(source, options)?;
-    let found: [Axis; D] =
+    let found: [SplineSpace; D] =
         std::array::from_fn(|d| fitter.exact(d).unwrap_or_else(|| fitter.free(d)));
     let exact = found.iter().all(|axis| !axis.fitted);
     let done = fitter.refined(found);
@@ -175,7 +175,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
     }
 
     /// Homogeneous values on a grid of the parameters of the NURBS.
-    fn sampled(&self, axes: &[Vec<f64>; D]) -> Data<D> {
+    fn sampled(&self, axes: &[Vec<f64>; D]) -> HomogeneousGrid<D> {
         let rational = &self.source.rational;
         let own: [Vec<f64>; D] = std::array::from_fn(|d| {
             axes[d].iter().map(|&s| rational.paces[d].parameter(s)).collect()
@@ -197,24 +197,24 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
             let w = rational.weight_at(s);
             [p.x * w, p.y * w, p.z * w, w]
         };
-        Data { dims, values: points.into_iter().enumerate().map(value).collect() }
+        HomogeneousGrid { dims, values: points.into_iter().enumerate().map(value).collect() }
     }
 
     /// The values on lines along an axis, at the Chebyshev nodes of spans.
-    fn on_lines(&self, d: usize, at: Vec<f64>) -> Data<D> {
+    fn on_lines(&self, d: usize, at: Vec<f64>) -> HomogeneousGrid<D> {
         let mut axes: [Vec<f64>; D] = std::array::from_fn(|other| self.probes(other));
         axes[d] = at;
         self.sampled(&axes)
     }
 
     /// The space of an axis along which the shape is polynomial between joints.
-    fn exact(&self, d: usize) -> Option<Axis> {
+    fn exact(&self, d: usize) -> Option<SplineSpace> {
         let few = self.polynomial(d, FEW + 2, FEW);
         let tries = self.ends[d].len() <= 40;
         few.or_else(|| if tries { self.polynomial(d, MANY + 2, MANY) } else { None })
     }
 
-    fn polynomial(&self, d: usize, nodes: usize, highest: usize) -> Option<Axis> {
+    fn polynomial(&self, d: usize, nodes: usize, highest: usize) -> Option<SplineSpace> {
         let chebyshev = Chebyshev::new(nodes);
         let ends = &self.ends[d];
         let spans = ends.len() - 1;
@@ -257,7 +257,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
             0
         };
         let times: Vec<usize> = (1..spans).map(repeats).collect();
-        let mut axis = Axis { degree, ends: vec![0.0], repeats: Vec::new(), fitted: false };
+        let mut axis = SplineSpace { degree, ends: vec![0.0], repeats: Vec::new(), fitted: false };
         for (k, &n) in times.iter().enumerate() {
             if n > 0 {
                 axis.ends.push(ends[k + 1]);
@@ -269,11 +269,11 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
     }
 
     /// The space of an axis along which the shape is not polynomial.
-    fn free(&self, d: usize) -> Axis {
+    fn free(&self, d: usize) -> SplineSpace {
         let degree = self.options.degree;
         let ends = &self.ends[d];
         let repeats = (1..ends.len() - 1).map(|k| self.repeats(d, k)).collect();
-        Axis { degree, ends: ends.clone(), repeats, fitted: true }
+        SplineSpace { degree, ends: ends.clone(), repeats, fitted: true }
     }
 
     /// How often a joint is a knot of a fit: as its tangents and curvatures jump.
@@ -315,7 +315,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
     }
 
     /// The NURBS in these spaces, those of fits with knots added until the error is small enough.
-    fn refined(&self, mut axes: [Axis; D]) -> Result<Nurbs<D>, NotFitted> {
+    fn refined(&self, mut axes: [SplineSpace; D]) -> Result<Nurbs<D>, NotFitted> {
         for d in 0..D {
             if axes[d].fitted {
                 self.along(d, &mut axes[d])?;
@@ -349,7 +349,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
     }
 
     /// Halves the spans of one axis until the splines along lines are near enough.
-    fn along(&self, d: usize, axis: &mut Axis) -> Result<(), NotFitted> {
+    fn along(&self, d: usize, axis: &mut SplineSpace) -> Result<(), NotFitted> {
         let aim = 0.3 * self.options.accuracy.max(self.rounding());
         for _ in 0..MOST_ROUNDS {
             let solver = Interpolation::new(axis);
@@ -383,7 +383,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
     }
 
     /// The homogeneous control points.
-    fn interpolated(&self, axes: &[Axis; D]) -> Data<D> {
+    fn interpolated(&self, axes: &[SplineSpace; D]) -> HomogeneousGrid<D> {
         let mut data = self.sampled(&std::array::from_fn(|d| axes[d].means()));
         for d in 0..D {
             let solver = Interpolation::new(&axes[d]);
@@ -392,7 +392,11 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
         data
     }
 
-    fn bound(&self, axes: &[Axis; D], control: &Data<D>) -> Result<Bound<D>, NotFitted> {
+    fn bound(
+        &self,
+        axes: &[SplineSpace; D],
+        control: &HomogeneousGrid<D>,
+    ) -> Result<FitErrorBound<D>, NotFitted> {
         let transforms: [Chebyshev; D] = std::array::from_fn(|d| {
             Chebyshev::new(if axes[d].fitted { BOUND_DEGREE } else { axes[d].degree + 2 })
         });
@@ -422,13 +426,13 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
                 }
             });
         }
-        Ok(Bound::of(&off, axes, &ends, &transforms, self.options.accuracy))
+        Ok(FitErrorBound::of(&off, axes, &ends, &transforms, self.options.accuracy))
     }
 
     fn assembled(
         &self,
-        axes: &[Axis; D],
-        data: Data<D>,
+        axes: &[SplineSpace; D],
+        data: HomogeneousGrid<D>,
         error: f64,
         exact: bool,
     ) -> Result<Nurbs<D>, NotFitted> {
@@ -458,18 +462,18 @@ fn merged(a: &[f64], b: &[f64]) -> Vec<f64> {
 }
 
 /// The bound of an error, and where it is too large.
-struct Bound<const D: usize> {
+struct FitErrorBound<const D: usize> {
     error: f64,
     at: [f64; D],
     /// The spans of each axis that should be halved.
     spans: [Vec<usize>; D],
 }
 
-impl<const D: usize> Bound<D> {
+impl<const D: usize> FitErrorBound<D> {
     /// From the coefficients of the difference on all cells.
     fn of(
-        off: &Data<D>,
-        axes: &[Axis; D],
+        off: &HomogeneousGrid<D>,
+        axes: &[SplineSpace; D],
         ends: &[Vec<f64>; D],
         transforms: &[Chebyshev; D],
         accuracy: f64,

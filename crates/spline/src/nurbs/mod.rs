@@ -57,7 +57,7 @@ impl<const D: usize> Nurbs<D> {
 
     /// The points on a grid of its parameters, the last one fastest.
     pub fn grid(&self, axes: &[Vec<f64>; D]) -> Vec<Vec3> {
-        let mut data = data::Data { dims: self.counts(), values: self.homogeneous() };
+        let mut data = data::HomogeneousGrid { dims: self.counts(), values: self.homogeneous() };
         for d in 0..D {
             let rows = axis::basis_rows(self.degrees[d], &self.knots[d], &axes[d]);
             data = data.along(d, axes[d].len(), |line, out| axis::apply(&rows, line, out));

@@ -2,15 +2,15 @@
 
 use crate::common::{Random, close, curve_laws, point_derivative_law};
 use moldloft_num::{Curve, Dual, Order, Vec3};
-use moldloft_spline::{Arc, ArcError};
+use moldloft_spline::{ArcError, CircularArc};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-fn at(arc: &Arc<f64>, t: f64) -> Vec3<f64> {
+fn at(arc: &CircularArc<f64>, t: f64) -> Vec3<f64> {
     arc.jet(t, Order::Zero)[0]
 }
 
-fn arc(kind: u32, p: [Vec3<f64>; 3]) -> Arc<f64> {
-    Arc::of_type(kind, p).unwrap().unwrap()
+fn arc(kind: u32, p: [Vec3<f64>; 3]) -> CircularArc<f64> {
+    CircularArc::of_type(kind, p).unwrap().unwrap()
 }
 
 fn flat(points: [[f64; 2]; 3]) -> [Vec3<f64>; 3] {
@@ -116,7 +116,7 @@ fn straight_arcs_are_lines_and_the_limit_of_bent_ones() {
                 &[Vec3::zero(), up, Vec3::zero()],
                 |p| at(&arc(kind, [p[0], p[1], p[2]]), t),
                 |p| {
-                    let arc = Arc::of_type(kind, [p[0], p[1], p[2]]).unwrap().unwrap();
+                    let arc = CircularArc::of_type(kind, [p[0], p[1], p[2]]).unwrap().unwrap();
                     arc.jet(Dual::from(t), Order::Zero)[0]
                 },
                 1e-9,
@@ -143,7 +143,7 @@ fn moves_with_its_points() {
         let (points, directions) = (random.points(3), random.points(3));
         let make = |p: &[Vec3<f64>]| at(&arc(kind, [p[0], p[1], p[2]]), 0.7);
         let dual = |p: &[Vec3<Dual<1>>]| {
-            let arc = Arc::of_type(kind, [p[0], p[1], p[2]]).unwrap().unwrap();
+            let arc = CircularArc::of_type(kind, [p[0], p[1], p[2]]).unwrap().unwrap();
             arc.jet(Dual::from(0.7), Order::Zero)[0]
         };
         point_derivative_law(&points, &directions, make, dual, 1e-6);
@@ -154,10 +154,10 @@ fn moves_with_its_points() {
 fn refuses_what_has_no_plane() {
     let line = flat([[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]]);
     for kind in [5, 6] {
-        assert_eq!(Arc::of_type(kind, line).unwrap(), Err(ArcError::Collinear));
+        assert_eq!(CircularArc::of_type(kind, line).unwrap(), Err(ArcError::Collinear));
     }
-    assert_eq!(Arc::about(line[0], line[0], line[1]), Err(ArcError::AtCentre));
+    assert_eq!(CircularArc::about(line[0], line[0], line[1]), Err(ArcError::AtCentre));
     let nan = Vec3::of(f64::NAN, 0.0, 0.0);
-    assert_eq!(Arc::through(line[0], nan, line[1]), Err(ArcError::NotFinite { index: 1 }));
-    assert!(Arc::of_type(7, line).is_none());
+    assert_eq!(CircularArc::through(line[0], nan, line[1]), Err(ArcError::NotFinite { index: 1 }));
+    assert!(CircularArc::of_type(7, line).is_none());
 }

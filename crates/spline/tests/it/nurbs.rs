@@ -2,7 +2,7 @@
 
 use moldloft_num::{Curve, CurveFormula, Jet, Order, Surface, SurfaceFormula, Vec3};
 use moldloft_spline::nurbs::{FitOptions, NotFitted, Nurbs, of_curve, of_surface};
-use moldloft_spline::{Arc, BSplineCurve, BSplineSurface, KnotVector};
+use moldloft_spline::{BSplineCurve, BSplineSurface, CircularArc, KnotVector};
 use moldloft_testing::Random as Rng;
 
 fn point(rng: &mut Rng) -> Vec3 {
@@ -103,10 +103,10 @@ fn arcs_are_rational_quadratics() {
     let [a, b] = [Vec3::of(1.0, 0.0, 0.5), Vec3::of(0.0, 1.0, 0.5)];
     let centre = Vec3::of(0.0, 0.0, 0.5);
     let arcs = [
-        (Arc::circle(a, centre, b).unwrap(), 9),
-        (Arc::about(a, centre, b).unwrap(), 3),
-        (Arc::through(a, b, Vec3::of(-0.6, -0.8, 0.5)).unwrap(), 7),
-        (Arc::through(a, (a + b) * 0.5, b).unwrap(), 2),
+        (CircularArc::circle(a, centre, b).unwrap(), 9),
+        (CircularArc::about(a, centre, b).unwrap(), 3),
+        (CircularArc::through(a, b, Vec3::of(-0.6, -0.8, 0.5)).unwrap(), 7),
+        (CircularArc::through(a, (a + b) * 0.5, b).unwrap(), 2),
     ];
     for (arc, count) in arcs {
         let made = of_curve(&arc, &FitOptions::within(1e-6)).unwrap();

@@ -153,7 +153,7 @@ fn lengths_move_with_points_and_limits() {
     assert!((exact.eps[0] - slope).abs() < 1e-6, "{} {slope}", exact.eps[0]);
     // Points at equal lengths are equally far apart on a circle.
     let p = [[1.0, 0.0], [0.0, 0.0], [0.0, 1.0]].map(|[x, y]| Vec3::of(x, y, 0.0));
-    let circle = Arc::<f64>::circle(p[0], p[1], p[2]).unwrap();
+    let circle = CircularArc::<f64>::circle(p[0], p[1], p[2]).unwrap();
     let t = inv_arclen(&circle, 0.0, std::f64::consts::FRAC_PI_2, 1e-13).unwrap();
     assert!((circle.jet(t, Order::Zero)[0] - p[2]).norm() < 1e-12);
 }

@@ -69,7 +69,7 @@ impl Fields {
 
 /// One field of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Field {
+pub struct EntryField {
     /// What it is.
     pub kind: FieldKind,
     /// Where it stands.
@@ -173,7 +173,7 @@ pub struct ModelFile {
     pub end: Option<Span>,
     /// What follows `EndModel`.
     pub trailer: Option<Span>,
-    fields: Vec<Field>,
+    fields: Vec<EntryField>,
     numbers: Vec<Number>,
     edited: Vec<NumberId>,
 }
@@ -280,8 +280,8 @@ impl Index<NumberId> for ModelFile {
 }
 
 impl Index<Fields> for ModelFile {
-    type Output = [Field];
-    fn index(&self, fields: Fields) -> &[Field] {
+    type Output = [EntryField];
+    fn index(&self, fields: Fields) -> &[EntryField] {
         &self.fields[fields.start as usize..(fields.start + fields.count) as usize]
     }
 }

@@ -56,7 +56,7 @@ struct ModelFileParser<'a> {
     at: usize,
     model: ModelFile,
     /// Fields of the objects and lists under construction.
-    scratch: Vec<Field>,
+    scratch: Vec<EntryField>,
     diagnostics: Vec<Diagnostic>,
     unlisted: usize,
     /// Where the next header line was found to begin.
@@ -324,22 +324,22 @@ impl<'a> ModelFileParser<'a> {
             self.skip_blanks();
             if self.at >= self.bytes.len() {
                 self.at = before;
-                break End::Text;
+                break ObjectEnd::Text;
             }
             if self.peek() == b';' {
-                break End::Semicolon;
+                break ObjectEnd::Semicolon;
             }
             if self.object_starts_here() {
                 self.at = before;
-                break End::NextObject;
+                break ObjectEnd::NextObject;
             }
             complete &= self.field(&mut open);
         };
         let span = self.span(start);
-        complete &= matches!(ended, End::Semicolon);
+        complete &= matches!(ended, ObjectEnd::Semicolon);
         match ended {
-            End::Text => self.truncated(entity, name, &open),
-            End::NextObject => {
+            ObjectEnd::Text => self.truncated(entity, name, &open),
+            ObjectEnd::NextObject => {
                 let place = Span::point(self.file, self.at as u32);
                 let message = format!("`;` is missing after `{}`", self.text_of(name));
                 let diagnostic = Diagnostic::error("missing-semicolon", message)
@@ -348,10 +348,10 @@ impl<'a> ModelFileParser<'a> {
                     .edit(place, ";", "insert `;`");
                 self.report(diagnostic.note_at(entity, "the object begins here"));
             }
-            End::Semicolon => self.at += 1,
+            ObjectEnd::Semicolon => self.at += 1,
         }
         while let Some(list) = open.pop() {
-            if matches!(ended, End::Semicolon) {
+            if matches!(ended, ObjectEnd::Semicolon) {
                 complete = false;
                 let diagnostic = Diagnostic::error("unclosed-bracket", "this list is not closed")
                     .at(list.at)
@@ -362,7 +362,7 @@ impl<'a> ModelFileParser<'a> {
             self.close(&list, span.end);
         }
         let fields = self.take_fields(base);
-        let span = if matches!(ended, End::Semicolon) { self.span(start) } else { span };
+        let span = if matches!(ended, ObjectEnd::Semicolon) { self.span(start) } else { span };
         let object = ObjectEntry { entity, name, fields, span, complete };
         self.push_item(ItemKind::Object(object), span, after_gap);
     }
@@ -468,7 +468,7 @@ impl<'a> ModelFileParser<'a> {
         let fields = self.take_fields(list.base);
         let kind =
             if list.closer == b'}' { FieldKind::List(fields) } else { FieldKind::Tuple(fields) };
-        self.scratch.push(Field { kind, span: Span { end: end.max(list.at.end), ..list.at } });
+        self.scratch.push(EntryField { kind, span: Span { end: end.max(list.at.end), ..list.at } });
     }
 
     fn take_fields(&mut self, base: usize) -> Fields {
@@ -492,7 +492,7 @@ impl<'a> ModelFileParser<'a> {
             self.report(Diagnostic::error("unclosed-string", message).at(self.span(start)));
         }
         let span = self.span(start);
-        self.scratch.push(Field { kind, span });
+        self.scratch.push(EntryField { kind, span });
         closed
     }
 
@@ -528,7 +528,7 @@ impl<'a> ModelFileParser<'a> {
                 }
             }
         };
-        self.scratch.push(Field { kind, span });
+        self.scratch.push(EntryField { kind, span });
         sound
     }
 
@@ -553,7 +553,7 @@ impl<'a> ModelFileParser<'a> {
                 Diagnostic::error("unclosed-bracket", "this attribute is not closed").at(span);
             self.report(diagnostic.expected("`)`"));
         }
-        self.scratch.push(Field { kind: FieldKind::Attribute { name, value }, span });
+        self.scratch.push(EntryField { kind: FieldKind::Attribute { name, value }, span });
         closed
     }
 
@@ -626,7 +626,7 @@ impl<'a> ModelFileParser<'a> {
     }
 }
 
-enum End {
+enum ObjectEnd {
     Semicolon,
     NextObject,
     Text,

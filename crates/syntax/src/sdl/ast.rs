@@ -42,23 +42,23 @@ ids! {
 
 /// A run of neighbours in one of the program's tables; `program[list]` is the slice.
 #[derive(Debug, PartialEq, Eq, Hash)]
-pub struct List<T> {
+pub struct NodeList<T> {
     pub(crate) start: u32,
     pub(crate) count: u32,
     marker: PhantomData<fn() -> T>,
 }
 
-impl<T> Clone for List<T> {
+impl<T> Clone for NodeList<T> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T> Copy for List<T> {}
+impl<T> Copy for NodeList<T> {}
 
-impl<T> List<T> {
+impl<T> NodeList<T> {
     pub(crate) fn new(start: usize, count: usize) -> Self {
-        List { start: start as u32, count: count as u32, marker: PhantomData }
+        NodeList { start: start as u32, count: count as u32, marker: PhantomData }
     }
 
     /// Number of elements.
@@ -226,7 +226,7 @@ pub enum ExprKind {
     /// `(e)`: the same as `e`.
     Paren(ExprId),
     /// `{a, b, …}` of any length, also empty: a vector, a curve or a list, by its elements and its use.
-    List(List<ExprId>),
+    List(NodeList<ExprId>),
     /// `|e|`
     Magnitude(ExprId),
     /// A sign or `not`.
@@ -247,13 +247,13 @@ pub enum ExprKind {
     },
     /// A chain with `^` among other operators or signs, whose grouping depends on whether a set takes part:
     /// [`Program::grouped`](super::Program::grouped) gives either order.
-    Chain(List<ChainItem>),
+    Chain(NodeList<ChainItem>),
     /// `base[subscripts]`
     Index {
         /// What is indexed.
         base: ExprId,
         /// One or two subscripts, or the values of loop variables in a name made in loops.
-        subs: List<Subscript>,
+        subs: NodeList<Subscript>,
     },
     /// `base.name`
     Member {
@@ -270,7 +270,7 @@ pub enum ExprKind {
         /// What is called.
         callee: ExprId,
         /// The arguments, positional ones first.
-        args: List<Arg>,
+        args: NodeList<Arg>,
     },
     /// Text that could not be understood; reported.
     Error,
@@ -329,7 +329,7 @@ pub struct Declarator {
     /// The variable.
     pub name: Ident,
     /// Its dimensions, none, one or two.
-    pub dims: List<ExprId>,
+    pub dims: NodeList<ExprId>,
     /// Its first value.
     pub value: Option<ExprId>,
 }
@@ -356,7 +356,7 @@ pub struct Stmt {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StmtKind {
     /// `{ … }`; also the empty statement.
-    Block(List<StmtId>),
+    Block(NodeList<StmtId>),
     /// `load "path";`
     Load(TextId),
     /// A subroutine or function.
@@ -368,7 +368,7 @@ pub enum StmtKind {
         /// The type and where it stands.
         ty: (Type, Span),
         /// The variables.
-        items: List<Declarator>,
+        items: NodeList<Declarator>,
     },
     /// `param [type] name = value [in [low, high]];`
     Param {
@@ -388,7 +388,7 @@ pub enum StmtKind {
         /// The new object's name.
         name: Ident,
         /// The arguments.
-        args: List<Arg>,
+        args: NodeList<Arg>,
     },
     /// `target = value;` and its like. The target is a name with subscripts and members.
     Assign {
@@ -451,7 +451,7 @@ pub enum StmtKind {
         body: StmtId,
     },
     /// `print values;`
-    Print(List<ExprId>),
+    Print(NodeList<ExprId>),
     /// `assert condition, message;`
     Assert {
         /// What must hold.
@@ -490,9 +490,9 @@ pub struct Routine {
     /// Its name.
     pub name: Ident,
     /// Its arguments.
-    pub formals: List<Formal>,
+    pub formals: NodeList<Formal>,
     /// Its statements.
-    pub body: List<StmtId>,
+    pub body: NodeList<StmtId>,
     /// From its first word to its closing brace.
     pub span: Span,
 }

@@ -40,7 +40,7 @@ impl Program {
         }
     }
 
-    fn dump_stmts(&self, list: List<StmtId>, out: &mut String) {
+    fn dump_stmts(&self, list: NodeList<StmtId>, out: &mut String) {
         for stmt in &self[list] {
             out.push(' ');
             self.dump_stmt(*stmt, out);
@@ -54,7 +54,7 @@ impl Program {
         }
     }
 
-    fn dump_args(&self, args: List<Arg>, out: &mut String) {
+    fn dump_args(&self, args: NodeList<Arg>, out: &mut String) {
         for arg in &self[args] {
             out.push(' ');
             if let Some(name) = arg.name {

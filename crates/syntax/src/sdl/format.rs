@@ -4,7 +4,8 @@
 //! empty statements are dropped, numbers get a digit on both sides of their point, and parentheses are added where set
 //! operators group otherwise than numbers would. Line breaks inside a statement stay where the author put them.
 
-use super::parser::{Layout, TokenRole, parse_marked};
+use super::parser::version::refused;
+use super::parser::{SourceLayout, TokenRole, parse_marked};
 use super::token::{Comment, Kind, Token};
 use moldloft_diag::{Diagnostic, FileId};
 use std::sync::Arc;
@@ -24,6 +25,9 @@ const INDENT: usize = 4;
 /// The diagnostics of a text with syntax errors, which is not formatted. They point into [`FileId`] 0.
 pub fn format(text: &str) -> Result<String, Vec<Diagnostic>> {
     let text: Arc<str> = Arc::from(text);
+    if let Some(newer) = refused(&text, FileId(0)) {
+        return Err(vec![newer]);
+    }
     let (_, diagnostics, layout) = parse_marked(text.clone(), FileId(0));
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
@@ -33,7 +37,7 @@ pub fn format(text: &str) -> Result<String, Vec<Diagnostic>> {
 
 struct Writer<'a> {
     text: &'a str,
-    layout: &'a Layout,
+    layout: &'a SourceLayout,
     open_at: Vec<u32>,
     close_at: Vec<u32>,
     out: String,
@@ -54,7 +58,7 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(text: &'a str, layout: &'a Layout) -> Self {
+    fn new(text: &'a str, layout: &'a SourceLayout) -> Self {
         let mut open_at = layout.open_at.clone();
         let mut close_at = layout.close_at.clone();
         // Taken from the end.

@@ -82,7 +82,7 @@ impl Grouping {
 
 impl Program {
     /// The steps of an [`ExprKind::Chain`] in postfix order under either reading.
-    pub fn grouped(&self, chain: List<ChainItem>, grouping: Grouping) -> Vec<Step> {
+    pub fn grouped(&self, chain: NodeList<ChainItem>, grouping: Grouping) -> Vec<Step> {
         let items = &self[chain];
         let mut steps = Vec::with_capacity(items.len());
         grouping.walk(items, &mut Vec::new(), |step| steps.push(step));

@@ -27,7 +27,7 @@ pub struct Program {
     pub(crate) chain_lists: Vec<ChainItem>,
     pub(crate) declarator_lists: Vec<Declarator>,
     pub(crate) formal_lists: Vec<Formal>,
-    pub(crate) body: List<StmtId>,
+    pub(crate) body: NodeList<StmtId>,
     /// Literals whose value was set, each once.
     pub(crate) edited: Vec<LiteralId>,
 }
@@ -44,7 +44,7 @@ impl Program {
     }
 
     /// The statements of the file, loads and routines among them.
-    pub fn body(&self) -> List<StmtId> {
+    pub fn body(&self) -> NodeList<StmtId> {
         self.body
     }
 
@@ -207,9 +207,9 @@ impl Index<TextId> for Program {
 
 macro_rules! lists {
     ($($node:ty => $table:ident;)*) => {$(
-        impl Index<List<$node>> for Program {
+        impl Index<NodeList<$node>> for Program {
             type Output = [$node];
-            fn index(&self, list: List<$node>) -> &[$node] {
+            fn index(&self, list: NodeList<$node>) -> &[$node] {
                 &self.$table[list.start as usize..(list.start + list.count) as usize]
             }
         }

@@ -23,7 +23,7 @@ pub use round::{Round, RoundProfile};
 
 use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
-use polytope::{Level, Polytope};
+use polytope::{HessePlane, Polytope};
 use round::Rounded;
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -72,11 +72,11 @@ pub fn faced<T: Real>(body: &Sides<'_, T>) -> Result<Set<T>, FieldError> {
     let epsilon = FLAT * size;
     let rounds = Rounded::all(body.rounds, epsilon)?;
     let (flats, mut pieces) = flats(body, &plain, epsilon)?;
-    let mut planes: Vec<Level> = flats.iter().map(|f| f.level).collect();
+    let mut planes: Vec<HessePlane> = flats.iter().map(|f| f.level).collect();
     for (k, round) in rounds.iter().enumerate() {
         // Faces reach to the corners that an arc cuts off: what stands there counts as theirs too.
         for end in round.ends() {
-            let on = |l: &Level| end.iter().all(|p| l.at(*p).abs() <= 10.0 * epsilon);
+            let on = |l: &HessePlane| end.iter().all(|p| l.at(*p).abs() <= 10.0 * epsilon);
             for n in 0..flats.len() {
                 if on(&planes[n]) {
                     let body = Polytope::polygon(end.to_vec());
@@ -117,7 +117,7 @@ pub fn faced<T: Real>(body: &Sides<'_, T>) -> Result<Set<T>, FieldError> {
         half_spaces.push(Primitive::linear(Vec3::lifted(level.normal), T::from(level.offset)));
     }
     let round_sets = rounds.iter().map(|r| r.set(body.rounds)).collect::<Result<Vec<_>, _>>()?;
-    let assembly = Assembly {
+    let assembly = DivisionBuilder {
         half_spaces,
         rounds: round_sets,
         planes: &planes,
@@ -153,8 +153,8 @@ fn seen([a, b, c]: [Vec3; 3]) -> f64 {
 }
 
 /// A plane side.
-struct Flat<T> {
-    level: Level,
+struct PlaneSide<T> {
+    level: HessePlane,
     normal: Vec3<T>,
     point: Vec3<T>,
 }
@@ -164,14 +164,14 @@ fn flats<T: Real>(
     body: &Sides<'_, T>,
     plain: &[Vec3],
     epsilon: f64,
-) -> Result<(Vec<Flat<T>>, Vec<ConvexPiece>), FieldError> {
+) -> Result<(Vec<PlaneSide<T>>, Vec<ConvexPiece>), FieldError> {
     let corners = |t: &[u32; 3]| t.map(|v| plain[v as usize]);
     let level = |t: &[u32; 3]| {
         let [a, b, c] = corners(t);
         // Slivers have no plane of their own: they lie between others.
         let normal = (b - a).cross(c - a);
         let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-        if normal.norm() <= epsilon * longest { None } else { Level::through(normal, a) }
+        if normal.norm() <= epsilon * longest { None } else { HessePlane::through(normal, a) }
     };
     // The triangles of each side, in the order of their first.
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -189,16 +189,16 @@ fn flats<T: Real>(
         }
         None => groups = (0..body.triangles.len()).map(|k| vec![k]).collect(),
     }
-    let mut flats: Vec<Flat<T>> = Vec::new();
+    let mut flats: Vec<PlaneSide<T>> = Vec::new();
     let mut pieces = Vec::new();
-    let mut add = |triangles: &[usize], level: Level| {
+    let mut add = |triangles: &[usize], level: HessePlane| {
         let found = flats.iter().position(|f| {
             let all = || triangles.iter().flat_map(|&k| corners(&body.triangles[k]));
             all().all(|p| f.level.at(p).abs() <= epsilon)
         });
         let n = found.unwrap_or_else(|| {
             let (normal, point) = mean_plane(body, triangles);
-            flats.push(Flat { level, normal, point });
+            flats.push(PlaneSide { level, normal, point });
             flats.len() - 1
         });
         pieces.extend(triangles.iter().map(|&k| {
@@ -208,7 +208,7 @@ fn flats<T: Real>(
     };
     for group in groups {
         let (normal, point) = mean_plane(body, &group);
-        let common = Level::through(normal.re(), point.re()).filter(|l| {
+        let common = HessePlane::through(normal.re(), point.re()).filter(|l| {
             let all = || group.iter().flat_map(|&k| corners(&body.triangles[k]));
             all().all(|p| l.at(p).abs() <= epsilon)
         });
@@ -242,7 +242,7 @@ fn mean_plane<T: Real>(body: &Sides<'_, T>, triangles: &[usize]) -> (Vec3<T>, Ve
 }
 
 /// Whether the half-spaces of the outermost faces bound a part of space.
-fn bounded(planes: &[Level], pieces: &[ConvexPiece], space: &Polytope, epsilon: f64) -> bool {
+fn bounded(planes: &[HessePlane], pieces: &[ConvexPiece], space: &Polytope, epsilon: f64) -> bool {
     let mut hull = Some(space.clone());
     for level in planes {
         let front = pieces.iter().map(|p| level.range(p.body.points())[1]);
@@ -258,10 +258,10 @@ fn bounded(planes: &[Level], pieces: &[ConvexPiece], space: &Polytope, epsilon: 
 }
 
 /// What a division is put together from.
-struct Assembly<'a, T: Real> {
+struct DivisionBuilder<'a, T: Real> {
     half_spaces: Vec<Primitive<T>>,
     rounds: Vec<Set<T>>,
-    planes: &'a [Level],
+    planes: &'a [HessePlane],
     epsilon: f64,
     /// The space in which one side may be found to contain the other; only for bodies whose outermost
     /// faces bound it.
@@ -270,7 +270,7 @@ struct Assembly<'a, T: Real> {
     looks: Cell<usize>,
 }
 
-impl<T: Real> Assembly<'_, T> {
+impl<T: Real> DivisionBuilder<'_, T> {
     /// The set of a division and how many primitives it names.
     fn set(&self, tree: &BspTree) -> Result<(Set<T>, usize), FieldError> {
         let (plane, parts) = match tree {

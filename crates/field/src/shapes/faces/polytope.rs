@@ -4,12 +4,12 @@ use moldloft_num::Vec3;
 
 /// A plane n.X + d = 0 with |n| = 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Level {
+pub(super) struct HessePlane {
     pub normal: Vec3,
     pub offset: f64,
 }
 
-impl Level {
+impl HessePlane {
     /// The plane through `point`.
     pub fn through(normal: Vec3, point: Vec3) -> Option<Self> {
         let normal = normal.normalized()?;
@@ -82,7 +82,7 @@ impl Polytope {
     }
 
     /// What lies in front of a plane by more than `epsilon`: nothing when no corner does.
-    pub fn cut(&self, level: &Level, epsilon: f64) -> Option<Self> {
+    pub fn cut(&self, level: &HessePlane, epsilon: f64) -> Option<Self> {
         let [low, high] = level.range(self.points());
         if high <= epsilon {
             return None;

@@ -1,6 +1,6 @@
 //! Round sides: parts of cylinders and cones over arcs of circles, ellipses and parabolas.
 
-use super::polytope::{Level, Polytope};
+use super::polytope::{HessePlane, Polytope};
 use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Real, Vec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -218,18 +218,18 @@ impl Rounded {
     }
 
     /// Planes that may part it from other round sides.
-    pub fn beside(&self) -> Vec<Level> {
+    pub fn beside(&self) -> Vec<HessePlane> {
         let mut out = Vec::new();
         for round in &self.plain {
             let origin = round.origin();
             for near in round.triangles() {
                 let [p, m, q] = near;
-                out.push(Level::through((m - p).cross(q - p), p));
+                out.push(HessePlane::through((m - p).cross(q - p), p));
                 let [a, b, c] = near.map(|x| round.far(x));
-                out.push(Level::through((b - a).cross(c - a), a));
+                out.push(HessePlane::through((b - a).cross(c - a), a));
                 for [x, y] in [[p, q], [p, m], [m, q], [origin, p], [origin, q]] {
                     let along = if (round.far(x) - x).norm() > 0.0 { x } else { y };
-                    out.push(Level::through((y - x).cross(round.far(along) - along), x));
+                    out.push(HessePlane::through((y - x).cross(round.far(along) - along), x));
                 }
             }
         }
@@ -250,7 +250,7 @@ impl Rounded {
             let (start, end) = (plain.at(0.0), plain.at(1.0));
             let far = |p: Vec3| plain.far(p) - p;
             let ruling = if far(start).norm() > 0.0 { far(start) } else { far(end) };
-            let level = Level::through((end - start).cross(ruling), start)
+            let level = HessePlane::through((end - start).cross(ruling), start)
                 .ok_or(FieldError::Degenerate { what: "round side" })?;
             let level = if level.at(plain.at(0.5)) > 0.0 { level } else { level.turned() };
             let chord = Primitive::linear(Vec3::lifted(level.normal), T::from(level.offset));

@@ -1,6 +1,6 @@
 //! A binary division of space by the planes of faces, and the set that it describes.
 
-use super::polytope::{Level, Polytope};
+use super::polytope::{HessePlane, Polytope};
 
 /// What a piece of a body's surface lies on: a number of a plane or of a round side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub(super) enum Tangled {
 /// What a division is made from.
 pub(super) struct Divider<'a> {
     /// The planes: those of flat sides first, then planes beside round ones that may part these.
-    pub planes: &'a [Level],
+    pub planes: &'a [HessePlane],
     /// How many of them are of flat sides.
     pub flat: usize,
     /// Whether a point off the surface is inside.
@@ -70,7 +70,7 @@ impl Divider<'_> {
         let (plane, split) = self.choose(&pieces)?;
         let level = self.planes[plane];
         let [front, behind] = split;
-        let part = |level: Level, which: Vec<usize>, this: &mut Self| match cell
+        let part = |level: HessePlane, which: Vec<usize>, this: &mut Self| match cell
             .cut(&level, this.epsilon)
         {
             // A plane that only touches the cell: nothing is on its other side.
@@ -152,7 +152,7 @@ impl Divider<'_> {
 /// Whether the set of one division contains that of another within a cell; `false` also when `steps`
 /// do not suffice to tell.
 pub(super) struct Containment<'a> {
-    pub planes: &'a [Level],
+    pub planes: &'a [HessePlane],
     pub epsilon: f64,
     pub steps: usize,
 }

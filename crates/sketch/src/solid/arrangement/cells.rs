@@ -1,6 +1,6 @@
 //! How often each operand winds around the space between regions.
 
-use super::plane::{Frame, facet_winding};
+use super::plane::{PlaneCoordinates, facet_winding};
 use super::pool::Pool;
 use super::{ArrangeError, ArrangedRegion, Facet};
 use moldloft_num::union_find::UnionFind;
@@ -14,8 +14,8 @@ pub(super) type Turns = [i32; 2];
 pub(super) fn windings(
     pool: &Pool,
     facets: &[Facet],
-    frames: &[Frame],
-    sheets: &[Frame],
+    frames: &[PlaneCoordinates],
+    sheets: &[PlaneCoordinates],
     regions: &[ArrangedRegion],
 ) -> Result<Vec<[Turns; 2]>, ArrangeError> {
     let mut wings: BTreeMap<(u32, u32), Vec<(f64, usize, bool)>> = BTreeMap::new();
@@ -90,8 +90,8 @@ pub(super) fn windings(
 fn in_front(
     pool: &Pool,
     facets: &[Facet],
-    frames: &[Frame],
-    sheets: &[Frame],
+    frames: &[PlaneCoordinates],
+    sheets: &[PlaneCoordinates],
     region: &ArrangedRegion,
 ) -> Result<Turns, ArrangeError> {
     let from = region.inner;

@@ -17,7 +17,7 @@ mod regions;
 
 use moldloft_num::Vec3;
 use moldloft_num::union_find::UnionFind;
-use plane::{Frame, common_segments, facet_winding};
+use plane::{PlaneCoordinates, common_segments, facet_winding};
 pub(super) use pool::overlapping;
 use pool::{Pool, bounds};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -137,11 +137,11 @@ pub fn arrange(
         facet.bounds = bounds(facet.loops.iter().flatten().map(|&v| pool.at(v)));
     }
     facets.retain(|f| !f.loops.is_empty());
-    let frames: Vec<Frame> =
-        facets.iter().map(|f| Frame::new(f.normal, pool.at(f.loops[0][0]))).collect();
+    let frames: Vec<PlaneCoordinates> =
+        facets.iter().map(|f| PlaneCoordinates::new(f.normal, pool.at(f.loops[0][0]))).collect();
     let (sheet_of, cuts) = meet(&pool, &facets, &frames, crossing);
     // Sheets: facets of one plane that touch.
-    let mut sheets: Vec<Frame> = Vec::new();
+    let mut sheets: Vec<PlaneCoordinates> = Vec::new();
     let mut members: Vec<Vec<usize>> = Vec::new();
     let mut number: BTreeMap<usize, usize> = BTreeMap::new();
     for (k, &root) in sheet_of.iter().enumerate() {
@@ -236,7 +236,12 @@ type Cuts = BTreeMap<usize, Vec<[Vec3; 2]>>;
 
 /// Which facets lie in one plane and touch (by the lowest of them), and the segments in which others
 /// meet.
-fn meet(pool: &Pool, facets: &[Facet], frames: &[Frame], crossing: bool) -> (Vec<usize>, Cuts) {
+fn meet(
+    pool: &Pool,
+    facets: &[Facet],
+    frames: &[PlaneCoordinates],
+    crossing: bool,
+) -> (Vec<usize>, Cuts) {
     let boxes: Vec<[Vec3; 2]> = facets.iter().map(|f| f.bounds).collect();
     let mut sheet = UnionFind::new(facets.len());
     let mut cuts = Cuts::new();
@@ -246,7 +251,7 @@ fn meet(pool: &Pool, facets: &[Facet], frames: &[Frame], crossing: bool) -> (Vec
         if a.operand == b.operand && !crossing {
             return;
         }
-        let flat = |f: &Facet, frame: &Frame| {
+        let flat = |f: &Facet, frame: &PlaneCoordinates| {
             f.loops.iter().flatten().all(|&v| frame.height(pool.at(v)).abs() <= wide)
         };
         if flat(a, &frames[j]) && flat(b, &frames[i]) {
@@ -254,7 +259,7 @@ fn meet(pool: &Pool, facets: &[Facet], frames: &[Frame], crossing: bool) -> (Vec
             return;
         }
         // Two triangles or convex quads of one surface meet in the edge they share and nowhere else.
-        let side = |f: &Facet, frame: &Frame| {
+        let side = |f: &Facet, frame: &PlaneCoordinates| {
             let heights = f.loops.iter().flatten().map(|&v| frame.height(pool.at(v)));
             let (low, high) = heights.fold((0.0f64, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
             low >= -pool.tolerance || high <= pool.tolerance
@@ -366,8 +371,8 @@ fn chain_of(chains: &Chains, a: u32, b: u32) -> Vec<u32> {
 fn all_regions(
     pool: &Pool,
     facets: &[Facet],
-    frames: &[Frame],
-    sheets: &[Frame],
+    frames: &[PlaneCoordinates],
+    sheets: &[PlaneCoordinates],
     members: &[Vec<usize>],
     segments: &[BTreeSet<(u32, u32)>],
     chains: &Chains,
@@ -414,8 +419,8 @@ fn all_regions(
 fn join(
     pool: &Pool,
     facets: &[Facet],
-    frames: &[Frame],
-    sheets: &[Frame],
+    frames: &[PlaneCoordinates],
+    sheets: &[PlaneCoordinates],
     regions: &[ArrangedRegion],
     kept: &[(usize, bool)],
 ) -> Vec<ArrangedFace> {
@@ -504,7 +509,7 @@ fn join(
             let first = leader(facets, &regions[r]);
             let reversed = frames[first].normal.dot(normal) < 0.0;
             if key.0 {
-                let frame = Frame::new(normal, sheet.origin);
+                let frame = PlaneCoordinates::new(normal, sheet.origin);
                 let size = |c: &Vec<u32>| {
                     regions::area(&c.iter().map(|&v| frame.flat(pool.at(v))).collect::<Vec<_>>())
                 };

@@ -6,18 +6,18 @@ use moldloft_num::Vec3;
 
 /// Coordinates in a plane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub(super) struct PlaneCoordinates {
     pub normal: Vec3,
     pub origin: Vec3,
     u: Vec3,
     v: Vec3,
 }
 
-impl Frame {
-    pub fn new(normal: Vec3, origin: Vec3) -> Frame {
+impl PlaneCoordinates {
+    pub fn new(normal: Vec3, origin: Vec3) -> PlaneCoordinates {
         let u = normal.perpendicular();
         let u = u.normalized().unwrap_or(u);
-        Frame { normal, origin, u, v: normal.cross(u) }
+        PlaneCoordinates { normal, origin, u, v: normal.cross(u) }
     }
 
     pub fn flat(&self, p: Vec3) -> [f64; 2] {
@@ -52,7 +52,7 @@ pub(super) fn winding(edges: impl Iterator<Item = [[f64; 2]; 2]>, [x, y]: [f64; 
 }
 
 /// The winding of a facet at a point of its plane, in a frame of that plane.
-pub(super) fn facet_winding(pool: &Pool, facet: &Facet, frame: &Frame, p: Vec3) -> i32 {
+pub(super) fn facet_winding(pool: &Pool, facet: &Facet, frame: &PlaneCoordinates, p: Vec3) -> i32 {
     let edges = edges_of(facet).map(|[a, b]| [frame.flat(pool.at(a)), frame.flat(pool.at(b))]);
     winding(edges, frame.flat(p))
 }
@@ -64,8 +64,8 @@ type Stop = (f64, Vec3);
 fn intervals(
     pool: &Pool,
     facet: &Facet,
-    frame: &Frame,
-    other: &Frame,
+    frame: &PlaneCoordinates,
+    other: &PlaneCoordinates,
     [origin, direction]: [Vec3; 2],
 ) -> Vec<[Stop; 2]> {
     let tolerance = pool.tolerance;
@@ -116,7 +116,7 @@ fn intervals(
 pub(super) fn common_segments(
     pool: &Pool,
     [a, b]: [&Facet; 2],
-    [fa, fb]: [&Frame; 2],
+    [fa, fb]: [&PlaneCoordinates; 2],
 ) -> Vec<[Vec3; 2]> {
     let Some(direction) = fa.normal.cross(fb.normal).normalized() else { return vec![] };
     // The common line through the foot of the first origin.

@@ -1,6 +1,6 @@
 //! The regions into which edges divide a plane.
 
-use super::plane::{Frame, winding};
+use super::plane::{PlaneCoordinates, winding};
 use super::pool::Pool;
 use moldloft_num::union_find::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,7 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) type Loops = Vec<Vec<u32>>;
 
 /// All bounded regions between edges that meet at their ends only.
-pub(super) fn regions(pool: &Pool, frame: &Frame, edges: &BTreeSet<(u32, u32)>) -> Vec<Loops> {
+pub(super) fn regions(
+    pool: &Pool,
+    frame: &PlaneCoordinates,
+    edges: &BTreeSet<(u32, u32)>,
+) -> Vec<Loops> {
     let flat = |v: u32| frame.flat(pool.at(v));
     let mut leaving: BTreeMap<u32, Vec<(f64, u32)>> = BTreeMap::new();
     for &(a, b) in edges {
@@ -92,7 +96,11 @@ fn figures(edges: &BTreeSet<(u32, u32)>) -> BTreeMap<u32, u32> {
 }
 
 /// A point inside a region: half the way from the middle of its longest edge to what is opposite.
-pub(super) fn inner_point(pool: &Pool, frame: &Frame, loops: &Loops) -> Option<[f64; 2]> {
+pub(super) fn inner_point(
+    pool: &Pool,
+    frame: &PlaneCoordinates,
+    loops: &Loops,
+) -> Option<[f64; 2]> {
     let sides: Vec<[[f64; 2]; 2]> = loops
         .iter()
         .flat_map(|c| {

@@ -15,7 +15,7 @@ pub(super) struct Wing {
 }
 
 /// The space between candidates.
-pub(super) struct Cells {
+pub(super) struct CellComplex {
     /// Cell on the normal side (`2 r`) and on the other (`2 r + 1`) of region `r`; `None` is outside.
     pub side: Vec<Option<usize>>,
     /// The volume of each cell.
@@ -24,21 +24,25 @@ pub(super) struct Cells {
     pub wings: Vec<Vec<Wing>>,
 }
 
-impl Cells {
+impl CellComplex {
     /// The sides (indices into [`Self::side`]) clockwise and counter-clockwise of a wing.
     pub fn sides(wing: Wing) -> [usize; 2] {
         let (plus, minus) = (2 * wing.region, 2 * wing.region + 1);
         if wing.forward { [minus, plus] } else { [plus, minus] }
     }
 
-    pub fn build(wire: &Wireframe, sheets: &[SpannedPlane], regions: &[SheetRegion]) -> Cells {
+    pub fn build(
+        wire: &Wireframe,
+        sheets: &[SpannedPlane],
+        regions: &[SheetRegion],
+    ) -> CellComplex {
         let wings = wings(wire, sheets, regions);
         let mut shell = UnionFind::new(2 * regions.len());
         let mut part = UnionFind::new(regions.len());
         for around in &wings {
             for (k, &wing) in around.iter().enumerate() {
                 let next = around[(k + 1) % around.len()];
-                shell.join(Cells::sides(wing)[1], Cells::sides(next)[0]);
+                shell.join(CellComplex::sides(wing)[1], CellComplex::sides(next)[0]);
                 part.join(wing.region, next.region);
             }
         }
@@ -93,7 +97,7 @@ impl Cells {
                 number[root].or(host[root])
             })
             .collect();
-        Cells { side, volume, wings }
+        CellComplex { side, volume, wings }
     }
 }
 

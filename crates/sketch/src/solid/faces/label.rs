@@ -5,7 +5,7 @@
 //! satisfies this is an answer; they are ranked by what people rarely mean: edges with more than two
 //! faces, then edges between faces of one plane, then less volume.
 
-use super::cells::Cells;
+use super::cells::CellComplex;
 use super::regions::SheetRegion;
 use super::wire::Wireframe;
 use moldloft_num::union_find::UnionFind;
@@ -56,13 +56,13 @@ impl Around {
 pub(super) fn label(
     wire: &Wireframe,
     regions: &[SheetRegion],
-    cells: &Cells,
+    cells: &CellComplex,
 ) -> (Vec<Answer>, bool) {
     let count = cells.volume.len();
     let mut edges: Vec<Around> = Vec::new();
     for (e, around) in cells.wings.iter().enumerate() {
         let wings: Vec<_> = (around.iter())
-            .map(|&w| (Cells::sides(w).map(|s| cells.side[s]), regions[w.region].sheet))
+            .map(|&w| (CellComplex::sides(w).map(|s| cells.side[s]), regions[w.region].sheet))
             .collect();
         let mut own: Vec<usize> = wings.iter().flat_map(|(c, _)| *c).flatten().collect();
         own.sort_unstable();

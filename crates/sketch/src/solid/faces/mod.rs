@@ -13,7 +13,7 @@ mod label;
 mod regions;
 mod wire;
 
-use cells::Cells;
+use cells::CellComplex;
 use moldloft_num::Vec3;
 use moldloft_num::union_find::UnionFind;
 use regions::{Half, SheetRegion, SpannedPlane};
@@ -33,7 +33,7 @@ pub struct Polygon {
 
 /// One solid that fits the wireframe.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fit {
+pub struct WireframeFit {
     /// Its faces, in the order of their cycles.
     pub faces: Vec<Polygon>,
     /// Candidates that are no faces (solid or void on both sides), as outer cycles.
@@ -56,7 +56,7 @@ pub struct Fitted {
     /// Cells between them.
     pub cells: usize,
     /// The solids, the likeliest first.
-    pub fits: Vec<Fit>,
+    pub fits: Vec<WireframeFit>,
     /// Whether these are all.
     pub complete: bool,
     /// Edges with a loose end; they were left out.
@@ -105,9 +105,10 @@ pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
         }
     };
     fitted.candidates = regions.len();
-    let cells = Cells::build(&wire, &sheets, &regions);
+    let cells = CellComplex::build(&wire, &sheets, &regions);
     fitted.cells = cells.volume.len();
-    let build = Build { wire: &wire, sheets: &sheets, regions: &regions, cells: &cells, drawn };
+    let build =
+        FitBuilder { wire: &wire, sheets: &sheets, regions: &regions, cells: &cells, drawn };
     fitted.polygons = regions.iter().map(|r| build.polygon(&r.loops, true)).collect();
     fitted.open = (wire.edges.iter().zip(&cells.wings))
         .filter(|(e, wings)| !e.cut && wings.len() < 2)
@@ -145,25 +146,26 @@ pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Vec<
     let material: Vec<bool> = (0..regions.len()).map(|k| around(k) % 2 == 0).collect();
     let mut keep = material.iter();
     regions.retain(|_| *keep.next().unwrap_or(&true));
-    let cells = Cells { side: vec![], volume: vec![], wings: vec![] };
-    let build = Build { wire: &wire, sheets: &sheets, regions: &regions, cells: &cells, drawn };
+    let cells = CellComplex { side: vec![], volume: vec![], wings: vec![] };
+    let build =
+        FitBuilder { wire: &wire, sheets: &sheets, regions: &regions, cells: &cells, drawn };
     let up = |r: &SheetRegion| sheets[r.sheet].normal.dot(normal) > 0.0;
     let mut faces: Vec<Polygon> = regions.iter().map(|r| build.polygon(&r.loops, up(r))).collect();
     faces.sort();
     faces
 }
 
-struct Build<'a> {
+struct FitBuilder<'a> {
     wire: &'a Wireframe,
     sheets: &'a [SpannedPlane],
     regions: &'a [SheetRegion],
-    cells: &'a Cells,
+    cells: &'a CellComplex,
     /// Vertices from here on were made by cutting.
     drawn: usize,
 }
 
-impl Build<'_> {
-    fn solid(&self, solid: &[bool], volume: f64) -> Fit {
+impl FitBuilder<'_> {
+    fn solid(&self, solid: &[bool], volume: f64) -> WireframeFit {
         let is = |side: usize| self.cells.side[side].is_some_and(|c| solid[c]);
         // Per region: whether its outward normal is that of its sheet.
         let outward: Vec<Option<bool>> = (0..self.regions.len())
@@ -207,7 +209,7 @@ impl Build<'_> {
             .filter(|(_, up)| up.is_none())
             .map(|(r, _)| self.cycle(&r.loops[0], true))
             .collect();
-        Fit { faces, internal, branching, scribed, volume }
+        WireframeFit { faces, internal, branching, scribed, volume }
     }
 
     fn polygon(&self, loops: &[Vec<Half>], up: bool) -> Polygon {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// An edge between two vertices.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(super) struct WireEdge {
     pub ends: [usize; 2],
     /// Added where two candidate faces cross; drawn by nobody.
     pub cut: bool,
@@ -16,7 +16,7 @@ pub(super) struct Wireframe {
     pub vertices: Vec<Vec3>,
     /// The input's vertices come first; `kept[k]` is the vertex that input vertex `k` became.
     pub kept: Vec<usize>,
-    pub edges: Vec<Edge>,
+    pub edges: Vec<WireEdge>,
     pub tolerance: f64,
     known: BTreeMap<(usize, usize), usize>,
     /// Vertices by cells of a coarse grid, to find equal ones.
@@ -109,7 +109,7 @@ impl Wireframe {
 
     fn split_at(&mut self, v: usize) {
         for e in 0..self.edges.len() {
-            let Edge { ends, cut } = self.edges[e];
+            let WireEdge { ends, cut } = self.edges[e];
             if self.inside(ends, self.vertices[v]).is_some() {
                 self.known.remove(&key(ends[0], ends[1]));
                 self.edges[e].ends = [ends[0], v];
@@ -124,7 +124,7 @@ impl Wireframe {
             Some(&e) => self.edges[e].cut &= cut,
             None => {
                 self.known.insert(key(a, b), self.edges.len());
-                self.edges.push(Edge { ends: [a, b], cut });
+                self.edges.push(WireEdge { ends: [a, b], cut });
             }
         }
     }

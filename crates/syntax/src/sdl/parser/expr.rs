@@ -425,11 +425,11 @@ impl Parser {
     }
 
     /// `(…)` of a call or an object, and the height of its highest value.
-    pub(super) fn arguments(&mut self) -> Parse<(List<Arg>, u16)> {
+    pub(super) fn arguments(&mut self) -> Parse<(NodeList<Arg>, u16)> {
         self.within_bracket(Self::argument_list)
     }
 
-    fn argument_list(&mut self) -> Parse<(List<Arg>, u16)> {
+    fn argument_list(&mut self) -> Parse<(NodeList<Arg>, u16)> {
         let open = self.next_as(TokenRole::Applied);
         let base = self.args.len();
         let mut below = 0;
@@ -489,11 +489,11 @@ impl Parser {
         }
     }
 
-    fn subscripts(&mut self) -> Parse<(List<Subscript>, u16)> {
+    fn subscripts(&mut self) -> Parse<(NodeList<Subscript>, u16)> {
         self.within_bracket(Self::subscript_list)
     }
 
-    fn subscript_list(&mut self) -> Parse<(List<Subscript>, u16)> {
+    fn subscript_list(&mut self) -> Parse<(NodeList<Subscript>, u16)> {
         let open = self.next_as(TokenRole::Applied);
         let base = self.subs.len();
         let mut below = 0;

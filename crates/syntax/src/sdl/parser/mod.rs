@@ -4,7 +4,7 @@ mod expr;
 mod recover;
 mod routine;
 mod stmt;
-mod version;
+pub(super) mod version;
 
 use super::ast::*;
 use super::interner::Symbol;
@@ -25,13 +25,14 @@ pub const MAX_DIAGNOSTICS: usize = 100;
 /// and stands in the tree as an `Error` node.
 pub fn parse(text: impl Into<Arc<str>>, file: FileId) -> (Program, Vec<Diagnostic>) {
     let mut parser = Parser::new(text.into(), file, false);
+    // A text in a newer version cannot be judged: it has no statements.
+    if let Some(newer) = version::refused(&parser.program.text, file) {
+        let (program, _, _) = parser.finish();
+        return (program, vec![newer]);
+    }
     parser.program();
     let (program, diagnostics, _) = parser.finish();
-    match version::refused(&program.text, file) {
-        // What else a newer text has cannot be judged.
-        Some(newer) => (program, vec![newer]),
-        None => (program, diagnostics),
-    }
+    (program, diagnostics)
 }
 
 /// Parses a text that is one expression. The expression is an `Error` node if the text is none.
@@ -52,8 +53,17 @@ pub fn parse_expr(text: impl Into<Arc<str>>, file: FileId) -> (Program, ExprId, 
     (program, expr, diagnostics)
 }
 
+/// What was found, as it is named after "unexpected".
+fn without_article(found: &str) -> &str {
+    let articles = ["the ", "a ", "an "];
+    articles.iter().find_map(|article| found.strip_prefix(article)).unwrap_or(found)
+}
+
 /// Parses a program and says what each token is for.
-pub(crate) fn parse_marked(text: Arc<str>, file: FileId) -> (Program, Vec<Diagnostic>, Layout) {
+pub(crate) fn parse_marked(
+    text: Arc<str>,
+    file: FileId,
+) -> (Program, Vec<Diagnostic>, SourceLayout) {
     let mut parser = Parser::new(text, file, true);
     parser.program();
     parser.finish()
@@ -84,7 +94,7 @@ pub(crate) enum TokenRole {
 }
 
 /// What the formatter needs besides the tree.
-pub(crate) struct Layout {
+pub(crate) struct SourceLayout {
     pub tokens: Vec<Token>,
     pub comments: Vec<Comment>,
     pub roles: Vec<TokenRole>,
@@ -118,7 +128,7 @@ struct Parser {
     magnitudes: u32,
     loops: u32,
     in_routine: bool,
-    layout: Option<Layout>,
+    layout: Option<SourceLayout>,
     // Scratch stacks for lists under construction.
     exprs: Vec<ExprId>,
     stmts: Vec<StmtId>,
@@ -135,7 +145,7 @@ impl Parser {
         let too_large = crate::decode::check_size(&text, file);
         let text = if too_large.is_some() { Arc::from("") } else { text };
         let Lexed { tokens, comments, interner, literals, texts, diagnostics } = lex(&text, file);
-        let layout = marked.then(|| Layout {
+        let layout = marked.then(|| SourceLayout {
             tokens: tokens.clone(),
             comments,
             roles: vec![TokenRole::Plain; tokens.len()],
@@ -162,7 +172,7 @@ impl Parser {
                 chain_lists: Vec::new(),
                 declarator_lists: Vec::new(),
                 formal_lists: Vec::new(),
-                body: List::new(0, 0),
+                body: NodeList::new(0, 0),
                 edited: Vec::new(),
             },
             heights: Vec::with_capacity(expected),
@@ -191,7 +201,7 @@ impl Parser {
         self.program.body = self.statements(None, 0);
     }
 
-    fn finish(mut self) -> (Program, Vec<Diagnostic>, Layout) {
+    fn finish(mut self) -> (Program, Vec<Diagnostic>, SourceLayout) {
         let end = self.tokens.last().map_or(0, |token| token.end);
         self.diagnostics.sort_by_key(|diagnostic| diagnostic.span().start);
         if self.diagnostics.len() > MAX_DIAGNOSTICS {
@@ -203,7 +213,7 @@ impl Parser {
             let at = Span::point(self.program.file, end);
             self.diagnostics.push(Diagnostic::error("too-many-errors", message).at(at));
         }
-        let layout = self.layout.unwrap_or_else(|| Layout {
+        let layout = self.layout.unwrap_or_else(|| SourceLayout {
             tokens: Vec::new(),
             comments: Vec::new(),
             roles: Vec::new(),
@@ -286,7 +296,7 @@ impl Parser {
                 Diagnostic::error("unclosed-bracket", message).expected(format!("`{closer}`"));
             diagnostic.at(self.span(token)).found(found)
         } else {
-            let message = format!("unexpected {}", found.trim_start_matches("the "));
+            let message = format!("unexpected {}", without_article(&found));
             let diagnostic = Diagnostic::error("unexpected-token", message).expected(expected);
             diagnostic.at(self.span(token)).found(found)
         };
@@ -333,7 +343,7 @@ impl Parser {
         }
         self.end_is_reported |= token.kind == Kind::End;
         let found = self.describe(token);
-        let message = format!("unexpected {}", found.trim_start_matches("the "));
+        let message = format!("unexpected {}", without_article(&found));
         let diagnostic = Diagnostic::error("unexpected-token", message).at(self.span(token));
         self.report(diagnostic.expected(expected).found(found));
         Reported
@@ -413,8 +423,8 @@ impl Parser {
 }
 
 /// Moves the end of a scratch stack into a table of lists.
-fn close_list<T: Copy>(scratch: &mut Vec<T>, base: usize, table: &mut Vec<T>) -> List<T> {
-    let list = List::new(table.len(), scratch.len() - base);
+fn close_list<T: Copy>(scratch: &mut Vec<T>, base: usize, table: &mut Vec<T>) -> NodeList<T> {
+    let list = NodeList::new(table.len(), scratch.len() - base);
     table.extend_from_slice(&scratch[base..]);
     scratch.truncate(base);
     list

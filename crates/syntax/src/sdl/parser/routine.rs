@@ -34,7 +34,7 @@ impl Parser {
         Ok(self.push_stmt(StmtKind::Routine(id), span))
     }
 
-    fn formals(&mut self) -> Parse<List<Formal>> {
+    fn formals(&mut self) -> Parse<NodeList<Formal>> {
         let mut formals: Vec<Formal> = Vec::new();
         if self.kind() != Kind::RParen {
             loop {
@@ -66,7 +66,7 @@ impl Parser {
                 }
             }
         }
-        let list = List::new(self.program.formal_lists.len(), formals.len());
+        let list = NodeList::new(self.program.formal_lists.len(), formals.len());
         self.program.formal_lists.extend_from_slice(&formals);
         Ok(list)
     }

@@ -7,7 +7,7 @@ use moldloft_diag::{Diagnostic, Span};
 
 impl Parser {
     /// Statements up to the `}` that closes `open`, or to the end of the text.
-    pub(super) fn statements(&mut self, open: Option<Span>, depth: u32) -> List<StmtId> {
+    pub(super) fn statements(&mut self, open: Option<Span>, depth: u32) -> NodeList<StmtId> {
         let base = self.stmts.len();
         loop {
             match self.kind() {
@@ -178,7 +178,7 @@ impl Parser {
     }
 
     /// `{ … }`.
-    pub(super) fn block(&mut self, depth: u32) -> Parse<List<StmtId>> {
+    pub(super) fn block(&mut self, depth: u32) -> Parse<NodeList<StmtId>> {
         let open = self.next_as(TokenRole::BlockOpen);
         let list = self.statements(Some(self.span(open)), depth + 1);
         if self.kind() == Kind::RBrace {
@@ -194,7 +194,7 @@ impl Parser {
         match token.kind {
             Kind::Semi => {
                 self.next();
-                return Ok(self.push_stmt(StmtKind::Block(List::new(0, 0)), self.span(token)));
+                return Ok(self.push_stmt(StmtKind::Block(NodeList::new(0, 0)), self.span(token)));
             }
             Kind::RBrace | Kind::End => return Err(self.unexpected("a statement")),
             _ => {}
@@ -334,7 +334,7 @@ impl Parser {
 
     fn declarator(&mut self) -> Parse<Declarator> {
         let name = self.ident("the name of a variable")?;
-        let mut dims = List::new(0, 0);
+        let mut dims = NodeList::new(0, 0);
         if self.kind() == Kind::LBracket {
             let open = self.next_as(TokenRole::Applied);
             let base = self.exprs.len();

@@ -23,7 +23,8 @@ fn stated(text: &str) -> Option<(u32, usize)> {
 pub fn refused(text: &str, file: FileId) -> Option<Diagnostic> {
     let (version, length) = stated(text).filter(|(version, _)| *version > LANGUAGE)?;
     let message = format!(
-        "the text is written in version {version} of the language; this program reads version {LANGUAGE}"
+        "the text is written in version {version} of the language; moldloft {} reads version {LANGUAGE}",
+        env!("CARGO_PKG_VERSION")
     );
     let span = Span::new(file, 0, length as u32);
     Some(Diagnostic::error("newer-language", message).at(span).help("install a newer moldloft"))
