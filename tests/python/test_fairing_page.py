@@ -11,7 +11,7 @@ import pytest
 import moldloft
 from conftest import ROOT
 from moldloft import fairing
-from moldloft.fairing.page import even_turns
+from moldloft.fairing.drawing import even_turns
 
 DATA = ROOT / "examples" / "fairing"
 

@@ -10,6 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.errors import Error
+from moldloft.fairing.drawing import (
+    AFTER,
+    BEFORE,
+    MOVE,
+    QUIET,
+    WRONG,
+    even_turns,
+    exaggeration,
+    round_below,
+)
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -25,9 +35,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = ["page", "write_page"]
-
-BEFORE, AFTER, QUIET, WRONG = "#c2571a", "#1f5fa8", "#8a8f98", "#b00020"
-MOVE = "#7a3fa0"
 
 _STYLE = (
     "body{font:14px/1.45 sans-serif;max-width:64em;margin:2em auto;padding:0 1em;color:#1b1f24}"
@@ -102,7 +109,7 @@ class _Picture:
 
     def bar(self) -> None:
         """A length that fits the picture, with its number."""
-        length = _round(0.18 * WIDE / float(self.scale[0]))
+        length = round_below(0.18 * WIDE / float(self.scale[0]))
         x, y = self.margin, self.height - 8
         self.parts.append(
             f'<path d="M{x} {y}h{length * self.scale[0]:.2f}" stroke="#333" stroke-width="1.5"/>'
@@ -114,14 +121,6 @@ class _Picture:
             f'<svg viewBox="0 0 {WIDE:g} {self.height:.1f}" role="img" '
             f'aria-label="{escape(label)}">' + "".join(self.parts) + "</svg>"
         )
-
-
-def _round(x: float) -> float:
-    """1, 2 or 5 times a power of ten, at most `x`."""
-    if not (np.isfinite(x) and x > 0):
-        return 1.0
-    power = 10.0 ** np.floor(np.log10(x))
-    return float(next(k * power for k in (5.0, 2.0, 1.0) if k * power <= x * (1 + 1e-12)))
 
 
 def _plane(points: Floats) -> tuple[int, int]:
@@ -149,18 +148,6 @@ def _table(head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]]) -> st
         for kind, cells in rows
     )
     return f"<table><tr>{top}</tr>{body}</table>"
-
-
-def exaggeration(moves: Floats, extent: float) -> float:
-    """A round factor that shows the largest move as about a twentieth of the extent.
-
-    Examples
-    --------
-    >>> exaggeration(np.array([0.001, 0.0004]), 10.0)
-    500.0
-    """
-    largest = float(np.max(moves, initial=0.0))
-    return max(1.0, _round(0.05 * extent / largest)) if largest > 0 else 1.0
 
 
 def _moved(
@@ -205,21 +192,6 @@ def _moved(
         else "No point moved."
     )
     return _figure(picture, f"To scale: before orange, after blue. {moves}")
-
-
-def even_turns(spline: Spline, most: float = 0.05, rows: int = 400) -> Samples:
-    """Samples that follow length and turn alike: enough teeth at a nose."""
-    fine = spline.samples(24)
-    steps = np.linalg.norm(np.diff(fine.points, axis=0), axis=1)
-    length = float(steps.sum()) or 1.0
-    bend = np.abs(fine.curvature)
-    turn = 0.5 * (bend[1:] + bend[:-1]) * steps
-    way = steps / length / 0.005 + turn / most
-    run = np.concatenate([[0.0], np.cumsum(way)])
-    count = int(min(max(run[-1], 60), rows))
-    keep = np.linspace(0.0, run[-1], count + 1)
-    t = np.interp(keep, run, fine.t)
-    return spline.at(np.clip(t, 0, 1))
 
 
 def _by_length(samples: Samples) -> Floats:
@@ -302,7 +274,7 @@ def _combs(pairs: Sequence[tuple[Spline, Spline]], axes: tuple[int, int]) -> str
 def _ticks(low: float, high: float, floor: float) -> list[float]:
     """Round numbers along an axis, which is logarithmic from `floor` on if that is not 0."""
     if floor <= 0:
-        step = _round(0.5 * (high - low))
+        step = round_below(0.5 * (high - low))
         first, last = int(np.ceil(low / step)), int(np.floor(high / step))
         return [k * step for k in range(first, last + 1)]
     out = [0.0]

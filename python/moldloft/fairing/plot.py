@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.errors import Error
-from moldloft.fairing.page import MOVE, even_turns, exaggeration
+from moldloft.fairing.drawing import AFTER, BEFORE, MOVE, QUIET, even_turns, exaggeration
 from moldloft.fairing.spline import Samples, Spline, grid_metric
 
 if TYPE_CHECKING:
@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["needed", "plot_curve", "plot_network", "plot_surface"]
 
-BEFORE, AFTER, ACCENT, QUIET = "#c2571a", "#1f5fa8", "#2e7d32", "#8a8f98"
-"""Colours that stay apart for colour-blind eyes and in grey."""
+ACCENT = "#2e7d32"
 
 STYLE = {
     "font.size": 8,
