@@ -6,14 +6,72 @@ when it is opened from a folder.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import Any, ClassVar
+
+from pygments.lexer import RegexLexer, bygroups
+from pygments.lexers import LEXERS
+from pygments.token import Comment, Keyword, Name, Number, Operator, String, Text
 
 ROOT = Path(__file__).resolve().parents[1]
+
+#: What the editor's highlighting calls the words of the language, and what they are in the site.
+_GRAMMAR = ROOT / "editors" / "vscode" / "syntaxes" / "sdl.tmLanguage.json"
+_CLASSES = {
+    "keyword.control.sdl": Keyword,
+    "keyword.operator.word.sdl": Operator.Word,
+    "storage.modifier.sdl": Keyword.Declaration,
+    "storage.type.sdl": Keyword.Type,
+    "constant.language.sdl": Name.Constant,
+}
+
+
+def _words() -> list[tuple[str, Any]]:
+    grammar = json.loads(_GRAMMAR.read_text(encoding="utf-8"))
+    rows = grammar["repository"]["word"]["patterns"]
+    return [(row["match"], _CLASSES[row["name"]]) for row in rows]
+
+
+class SdlLexer(RegexLexer):
+    """Highlighting of programs in the pages, with the words of the editor's."""
+
+    name = "Moldloft SDL"
+    aliases = ("sdl",)
+    filenames = ("*.sdl",)
+    mimetypes = ()
+    tokens: ClassVar[dict[str, Any]] = {
+        "root": [
+            (r"#[^\n]*", Comment.Single),
+            (r'"(?:\\.|[^"\\\n])*"?', String),
+            (r"(?<![\w\])}|])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", Number),
+            (
+                r"\b([A-Z]\w*)(\s+)([A-Za-z_]\w*)(?=\s*\()",
+                bygroups(Name.Class, Text, Name.Variable),
+            ),
+            *_words(),
+            (r"[A-Za-z_]\w*(?=\s*\()", Name.Function),
+            (r"\w+", Name),
+            (r"[-+*/^%=<>!&|]+", Operator),
+            (r"\s+|.", Text),
+        ]
+    }
+
+
+def on_config(config: Any) -> Any:
+    """Makes the lexer known: Pygments finds lexers by the modules that they are in."""
+    place = ModuleType("moldloft_site_lexer")
+    place.SdlLexer = SdlLexer  # type: ignore[attr-defined]
+    place.__all__ = ["SdlLexer"]  # type: ignore[attr-defined]
+    sys.modules[place.__name__] = place
+    LEXERS["SdlLexer"] = (place.__name__, SdlLexer.name, ("sdl",), ("*.sdl",), ())
+    return config
+
 
 #: `make site` sets it: the models of the gallery stand in the site as pages that one can turn and change.
 LIVING = bool(os.environ.get("MOLDLOFT_LIVING"))

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft.errors import Error
-from moldloft.hydrostatics import header
+from moldloft.units import header
 
 if TYPE_CHECKING:
     from moldloft.models import Model

@@ -7,9 +7,10 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from moldloft.errors import Error
+from moldloft.units import header, shown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from moldloft.hydrostatics import Hydrostatics, _Rows
     from moldloft.mesh import Mesh
     from moldloft.models import Model
-    from moldloft.objects import Object
+    from moldloft.objects import Curve, Object, Surface
     from moldloft.weights import WeightTable
 
     Floats = NDArray[np.float64]
@@ -131,12 +132,12 @@ def _lines(thing: Object) -> list[Floats]:
     """What is drawn of an object: the curve, or lines of even u and v of the surface."""
     import numpy as np
 
-    from moldloft.objects import Curve, Surface
-
     t = np.linspace(0, 1, _POINTS)
-    if isinstance(thing, Curve):
-        return [thing(t)]
-    if isinstance(thing, Surface):
+    # By the word of its class: `objects` imports this module.
+    if thing.class_ in ("curve", "snake"):
+        return [cast("Curve", thing)(t)]
+    if thing.class_ == "surface":
+        thing = cast("Surface", thing)
         even = np.linspace(0, 1, _LINES)
         along = thing(even[:, None], t[None, :])
         across = thing(t[None, :], even[:, None])
@@ -214,8 +215,6 @@ def quality_html(quality: dict[str, dict[str, Any]]) -> str:
 
 def state_html(state: Hydrostatics) -> str:
     """The figures of a floating body with units and bounds; angles in degrees."""
-    from moldloft.hydrostatics import shown
-
     hidden = {"bounds", "derivatives", "iterations", "residual", "outward", "lolls"}
     rows = []
     for name, value in state.as_dict().items():
@@ -231,8 +230,6 @@ def state_html(state: Hydrostatics) -> str:
 
 def rows_html(table: _Rows, names: Sequence[str]) -> str:
     """Rows of figures, units in the header; angles in degrees."""
-    from moldloft.hydrostatics import header, shown
-
     kept = [name for name in names if any(getattr(row, name) is not None for row in table)]
     head = [header(name, table.units) for name in kept]
     rows = [[_number(shown(name, getattr(row, name))) for name in kept] for row in table]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from moldloft.arguments import explain
 from moldloft.errors import Error
-from moldloft.units import ANGLES, DIMENSIONS, Units
+from moldloft.units import DIMENSIONS, Units, header, shown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -205,17 +205,6 @@ class Hydrostatics:
             to.length or mine.length, to.mass or mine.mass, to.force or mine.force, mine.angle
         )
         return replace(self, **changed)
-
-
-def shown(name: str, value: Any) -> Any:
-    """A figure as tables and files have it: angles in degrees."""
-    return math.degrees(value) if name in ANGLES and value is not None else value
-
-
-def header(name: str, units: Units) -> str:
-    """The name of a figure with its unit, as headers of tables have it."""
-    unit = units.of(name)
-    return f"{name} [{unit}]" if unit else name
 
 
 _NUMBERS = [

@@ -10,11 +10,12 @@ from typing import Any
 
 from moldloft import _core
 from moldloft._core import Shape
-from moldloft.versions import check_language
+from moldloft.errors import ModelError
 
 __all__ = [
     "Shape",
     "attributes",
+    "check_language",
     "entry",
     "format_text",
     "guides",
@@ -388,14 +389,45 @@ def format_text(name: str, text: bytes) -> str:
     Raises
     ------
     ModelError
-        When it is not a program.
-    FileError
-        When it states a later version of the language.
+        When it is not a program, or states a newer version of the language.
 
     Examples
     --------
     >>> format_text("a.sdl", b"AbsPoint   P ( 1,2,3 );")
     'AbsPoint P(1, 2, 3);\n'
     """
-    check_language(text[:1000].decode("utf-8", "replace"), name)
+    check_language(text.decode("utf-8", "replace"), name)
     return _core.format_text(name, text)
+
+
+def check_language(text: str, name: str) -> None:
+    r"""Refuse a text that states a newer version of the language, before it is rewritten.
+
+    Parameters
+    ----------
+    text
+        The program.
+    name
+        What the message calls it.
+
+    Raises
+    ------
+    ModelError
+        When its first line states a version that is not read here.
+
+    Examples
+    --------
+    >>> check_language("# moldloft 1\nAbsPoint P(1, 2, 3);", "a.sdl")
+    >>> check_language("# moldloft 2\nAbsPoint P(1, 2, 3);", "a.sdl")
+    Traceback (most recent call last):
+      ...
+    moldloft.errors.ModelError: error[newer-language]: the text is written in version 2 of ...
+    """
+    first, _, _ = text.partition("\n")
+    if not first.lstrip("\ufeff \t").startswith("#"):
+        return
+    # The parser decides. It gets the first line alone: nothing of the program is run.
+    found = _core.Document.from_text(name, first + "\n", None, []).diagnostics()
+    newer = [d for d in found if d.id == "newer-language"]
+    if newer:
+        raise ModelError(str(newer[0]).rstrip(), newer)

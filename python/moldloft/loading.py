@@ -14,7 +14,6 @@ from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FileError, record_raised
 from moldloft.models import Model
-from moldloft.versions import check_language
 
 if TYPE_CHECKING:
     from moldloft.implicit import Field, Set
@@ -103,7 +102,6 @@ def load(
         place.name, os.fspath(place.parent.absolute()), _absolute(folders), dict(functions or {})
     )
     model = Model(_core.Document.open(os.fspath(path), folders), origin)
-    check_language(model.text, os.fspath(path))
     _add_functions(model, functions)
     if strict:
         unread = [d for d in model.diagnostics if d.id == "cannot-read"]
@@ -153,7 +151,6 @@ def loads(
     >>> m["P"].z, m.derivative("P.z", "a")
     (3.0, 0.25)
     """
-    check_language(text, name)
     folders = [os.fspath(folder) for folder in library]
     origin = Origin(name, None, _absolute(folders), dict(functions or {}))
     model = Model(_core.Document.from_text(name, text, None, folders), origin)

@@ -14,7 +14,7 @@ from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FileError, ModelError, UnknownNameError
 from moldloft.floating import Floating
-from moldloft.objects import object_of
+from moldloft.objects import object_of, wrapped
 
 if TYPE_CHECKING:
     import numpy as np
@@ -44,21 +44,6 @@ class Param:
     """The greatest value of its range."""
     whole: bool
     """True when it takes whole numbers only."""
-
-
-def _wrapped(value: Any) -> Any:
-    """Fields and sets as users know them."""
-    if isinstance(value, _core.Field):
-        from moldloft.implicit import Field
-
-        return Field(value)
-    if isinstance(value, _core.Set):
-        from moldloft.implicit import Set
-
-        return Set(value)
-    if isinstance(value, list):
-        return [_wrapped(item) for item in value]
-    return value
 
 
 class Model(Floating):
@@ -384,7 +369,7 @@ class Model(Floating):
         >>> moldloft.loads("AbsPoint P(1, 2, 2);").eval("P.x + 2")
         3.0
         """
-        value = _wrapped(self._document.eval(expression))
+        value = wrapped(self._document.eval(expression))
         for remark in self._document.expression_remarks():
             # Past the check of arguments, to the line of the caller.
             warnings.warn(str(remark), stacklevel=3)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
 import numpy as np
 
+from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import Error, ModelError
 
@@ -39,6 +40,7 @@ __all__ = [
     "Surface",
     "WrongClassError",
     "object_of",
+    "wrapped",
 ]
 
 _OWN = frozenset({"_model", "name"})
@@ -46,6 +48,27 @@ _OWN = frozenset({"_model", "name"})
 
 class WrongClassError(ModelError, AttributeError):
     """An object was asked for what objects of its class do not have."""
+
+
+def wrapped(value: Any) -> Any:
+    """Fields and sets as users know them.
+
+    Parameters
+    ----------
+    value
+        What the core made of an expression; lists are gone through.
+    """
+    if isinstance(value, _core.Field):
+        from moldloft.implicit import Field
+
+        return Field(value)
+    if isinstance(value, _core.Set):
+        from moldloft.implicit import Set
+
+        return Set(value)
+    if isinstance(value, list):
+        return [wrapped(item) for item in value]
+    return value
 
 
 class Object:
@@ -121,9 +144,7 @@ class Object:
         >>> m["ball"].value, m["f"]([[1, 0, 0], [4, 0, 0]])
         (<set of 1 primitive>, array([-4.,  5.]))
         """
-        from moldloft.models import _wrapped
-
-        return _wrapped(self._document.eval(self.name))
+        return wrapped(self._document.eval(self.name))
 
     def delete(self) -> None:
         """Removes the object from the model and its text; refused while others depend on it."""

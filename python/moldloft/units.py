@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from moldloft.arguments import explain
 from moldloft.errors import Error
 
-__all__ = ["DIMENSIONS", "WATERS", "Units"]
+__all__ = ["ANGLES", "DIMENSIONS", "WATERS", "Units", "header", "shown"]
 
 _LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0}
 _LENGTHS |= {"ft": 0.3048, "in": 0.0254, "yd": 0.9144}
@@ -196,3 +197,40 @@ class Units:
 
 
 explain(globals())
+
+
+def shown(name: str, value: Any) -> Any:
+    """A figure as tables and files have it: angles in degrees.
+
+    Parameters
+    ----------
+    name
+        Which figure it is, such as ``heel``.
+    value
+        Its value; angles in radians.
+
+    Examples
+    --------
+    >>> shown("volume", 2.0), round(shown("heel", math.pi), 9), shown("trim", None)
+    (2.0, 180.0, None)
+    """
+    return math.degrees(value) if name in ANGLES and value is not None else value
+
+
+def header(name: str, units: Units) -> str:
+    """The name of a figure with its unit, as headers of tables have it.
+
+    Parameters
+    ----------
+    name
+        Which figure it is.
+    units
+        What the figures are in.
+
+    Examples
+    --------
+    >>> header("volume", Units.parse("ft lb")), header("cb", Units())
+    ('volume [ft³]', 'cb')
+    """
+    unit = units.of(name)
+    return f"{name} [{unit}]" if unit else name

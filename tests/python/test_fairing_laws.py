@@ -244,3 +244,27 @@ def test_a_tolerance_beyond_the_size_is_remarked():
     lines = [*np.arange(64).reshape(8, 8).tolist(), *np.arange(64).reshape(8, 8).T.tolist()]
     assert "is its unit theirs?" in str(network(grid.reshape(-1, 3), lines, 100))
     assert "is its unit theirs?" in str(moldloft.fair(grid, 100, as_="fit"))
+
+
+def test_where_the_index_is_the_parameter_spacing_is_remarked():
+    even = np.c_[np.arange(20.0), np.sin(np.arange(20) / 5)]
+    x = np.r_[0, 0.5, 1, 1.5, np.arange(2.0, 9), 8.5, 9, 9.5, 10]
+    half = np.c_[x, np.sin(x)]
+    for mode in ("faithful", "literal", "vertex", "sweeps", "levels"):
+        for as_ in ("control", "points"):
+            said = moldloft.fair(half, 0.01, mode=mode, as_=as_).notes
+            assert any("at point 5 the step between points changes by a factor of 2" in n
+                       for n in said)  # fmt: skip
+            assert not any("step" in n for n in moldloft.fair(even, 0.01, mode=mode, as_=as_).notes)
+        assert not any("step" in n for n in moldloft.fair(half, 0.01, mode=mode, as_="fit").notes)
+    assert not any("step" in n for n in moldloft.fair(half, 0.01).notes)
+
+
+@pytest.mark.parametrize("mode", ["faithful", "literal", "vertex", "sweeps", "levels"])
+def test_lines_stay_in_local_modes_of_fits(mode):
+    rng = np.random.default_rng(5)
+    for _ in range(40 if SOAK else 3):
+        points = CURVES["line"](stations(rng, int(rng.integers(16, 50))))
+        for measure in ("second", "third", "bending", "variation", "jumps"):
+            faired = moldloft.fair(points, 1e-3, as_="fit", mode=mode, measure=measure)
+            assert np.linalg.norm(faired.points - points, axis=1).max() <= 1e-10

@@ -11,6 +11,7 @@ import pytest
 import moldloft
 from conftest import ROOT
 from moldloft import fairing
+from moldloft.fairing.drawing import even_turns
 
 DATA = ROOT / "examples" / "fairing"
 
@@ -77,8 +78,50 @@ def test_networks_and_surfaces(cli, tmp_path):
     cli("fair", DATA / "lines.csv", "--tol", "0.006", "--along", "0,1,0", "--report", "n.html")
     html = (tmp_path / "n.html").read_text()
     Balanced(html)
-    assert html.count("<svg") == 3 and "Body plan" in html and "times as" in html
+    # Three views; combs of the waterlines in plan and of the stations in the body plan.
+    assert html.count("<svg") == 7 and "Body plan" in html and "times as" in html
+    assert html.count("<figcaption>Curvature combs before") == 2
     cli("fair", DATA / "wigley.p3d", "--tol", "1e-4", "--report", "s.html")
     html = (tmp_path / "s.html").read_text()
     Balanced(html)
     assert html.count("<svg") == 3
+    sheet = np.stack([*np.meshgrid(np.arange(6.0), np.arange(6.0), indexing="ij")], -1)
+    sheet = np.concatenate([sheet, np.sin(sheet[..., :1]) * np.cos(sheet[..., 1:])], -1)
+    other = sheet + np.array([5.0, 0.0, 0.0])
+    other[..., 2] = np.sin(other[..., 0]) * np.cos(other[..., 1])
+    html = fairing.page(fairing.patches([sheet, other], 0.5))
+    Balanced(html)
+    assert html.count("<svg") == 6 and "Plan of surface 2" in html
+
+
+@pytest.mark.parametrize("axes", [(0, 1), (0, 2), (1, 2)])
+@pytest.mark.parametrize("back", [False, True])
+def test_teeth_of_a_circle_are_outside_and_alike(axes, back):
+    """In any view and direction, before and after, in curves and networks."""
+    t = np.linspace(0, 1.2, 30)
+    noise = np.random.default_rng(1).uniform(-1e-3, 1e-3, (2, 30))
+    points = np.zeros((30, 3))
+    points[:, axes[0]], points[:, axes[1]] = 3 * np.cos(t) + noise[0], 3 * np.sin(t) + noise[1]
+    if back:
+        points = points[::-1]
+    faired = moldloft.fair(points, 2e-3)
+    assert not moldloft.fair(points, 2e-3).findings
+    html = fairing.page(faired)
+    comb = html.split("</svg>")[2]
+    tips, feet = paths(comb, "#1f5fa8")[0], paths(comb, "#1b1f24")[0]
+    # The centre of the circle through three feet: all teeth point away from it, as long as others.
+    a, b, c = feet[0], feet[len(feet) // 2], feet[-1]
+    centre = np.linalg.solve(2 * np.array([b - a, c - a]), [b @ b - a @ a, c @ c - a @ a])
+    lengths = np.linalg.norm(tips - centre, axis=1) - np.linalg.norm(feet - centre, axis=1)
+    assert lengths.min() > 0 and np.ptp(lengths) < 0.3 * lengths.mean()
+    net = fairing.network(points, [list(range(30))], 2e-3)
+    assert fairing.page(net).count("<figcaption>Curvature combs") == 2
+
+
+def test_a_nose_has_teeth_enough():
+    points = np.loadtxt(DATA / "naca0012-4.csv", delimiter=",", skiprows=1)
+    faired = moldloft.fair(points, 1e-4)
+    teeth = even_turns(faired.spline)
+    tangent = teeth.first / np.linalg.norm(teeth.first, axis=1, keepdims=True)
+    turn = np.arccos(np.clip((tangent[1:] * tangent[:-1]).sum(1), -1, 1))
+    assert np.degrees(turn.max()) < 5 and len(turn) <= 400

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.util
 import json
 import os
@@ -220,3 +221,116 @@ def test_what_a_matrix_lacks(tmp_path):
         path.write_text(wrong)
         with pytest.raises(FairingError, match=words):
             read_points(path)
+
+
+def drawn(rng):
+    """A table with named columns: its text, its points and which rows have a missing cell."""
+    inches = rng.random() < 0.2
+    comma = not inches and rng.random() < 0.3
+    sign = rng.choice([";", "\t"] if comma else [";", "\t", ",", ", "])
+    kind = rng.choice(["curve", "waterlines", "buttocks"])
+    if kind == "curve":
+        names = {"x": "x", "y": "y"} | ({"z": "z"} if rng.random() < 0.5 else {})
+    else:
+        names = {"x": "Station", "y": "Half-breadth", "z": "Waterline"}
+        if kind == "buttocks":
+            names = {"x": "station", "y": "buttock", "z": "height"}
+    unit = rng.choice(["", " (m)", " [mm]"])
+    extra = [n for n in ("no", "remark", "name") if rng.random() < 0.4]
+    columns = rng.permutation([*names, *extra]).tolist()
+    stations, levels = int(rng.integers(5, 9)), int(rng.integers(5, 9))
+    step = 0.125 if inches else 0.001
+    if kind == "curve":
+        places = [(k, 0.0) for k in range(int(rng.integers(8, 20)))]
+        points = [[a * 1.5, np.sin(a / 3), np.cos(a / 3)] for a, _ in places]
+    else:
+        points = []
+        for a in range(stations):
+            for b in range(levels):
+                bent = 3 + np.sin(a / 3) + 0.1 * b * b
+                points.append([a * 2.0, *((bent, b) if kind == "waterlines" else (b, bent))])
+    points = np.round(np.array(points) / step) * step
+    gone = set()
+    if kind != "curve":
+        gone = set(rng.choice(len(points), int(rng.integers(0, 3)), replace=False).tolist())
+    bent = 2 if kind == "buttocks" else 1
+    lines = [sign.join(names.get(c, c) + (unit if c in names else "") for c in columns)]
+    if rng.random() < 0.5:
+        lines.insert(0, "# of a hull, 1952")
+    for k, point in enumerate(points):
+        cells = []
+        for c in columns:
+            if c not in names:
+                cells.append(f"{k}" if c == "no" else f"p{k}")
+                continue
+            axis = "xyz".index(c)
+            text = sixteenths(point[axis]) if inches else f"{point[axis]:.3f}"
+            if k in gone and axis == bent:
+                text = str(rng.choice(["", "x", "-"]))
+            cells.append(text.replace(".", ",") if comma else text)
+        lines.append(sign.join(cells))
+    kept = [k for k in range(len(points)) if k not in gone]
+    return "\n".join(lines) + "\n", points[kept][:, : 3 if "z" in names else 2], kind, inches
+
+
+@pytest.mark.parametrize("seed", range(400 if SOAK else 40))
+def test_tables_of_every_kind_come_back_in_their_form(tmp_path, seed):
+    rng = np.random.default_rng(seed)
+    text, points, kind, inches = drawn(rng)
+    path = tmp_path / "table.csv"
+    path.write_text(text)
+    file = read_points(path)
+    rows = file.points if file.table is None else file.table
+    assert file.offsets == (kind != "curve") and file.moves == (2 if kind == "buttocks" else 1)
+    assert np.abs(rows - points).max() <= 1e-12
+    # Written as it was read, not a character changes; moved numbers change in their cells alone.
+    one = file if file.table is None else dataclasses.replace(file, blocks=[range(len(rows))])
+    assert points_text(rows, one) == text
+    moved = rows.copy()
+    step = 1 / 16 if inches else 1e-9
+    moved[2:5, file.moves] += step * np.array([3, -5, 1])
+    path.write_text(points_text(moved, one))
+    again = read_points(path)
+    assert ((again.points if again.table is None else again.table) == moved).all()
+    changed = [a != b for a, b in zip(path.read_text().split("\n"), text.split("\n"), strict=True)]
+    assert sum(changed) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("name,x,y\n" + "".join(f"{k},{k},{k}\n" for k in range(8)) + "8,8,\n", "`y` is empty"),
+        ("name,x,y\n" + "".join(f"{k},{k},{k}\n" for k in range(8)) + "8,8\n", "3 cells, found 2"),
+        ("x (m),y (mm)\n" + "1,2\n" * 8, "one unit"),
+        (
+            "station,half-breadth,height\n"
+            + "".join(f"{s},{z},{z}\n" for s in range(6) for z in range(5))
+            + "3,2.5,2\n",
+            "a second half-breadth at station 3, height 2: 2.5, and 2 in line 19",
+        ),
+    ],
+)
+def test_cells_that_lack_or_repeat(tmp_path, text, words):
+    path = tmp_path / "table.csv"
+    path.write_text(text)
+    with pytest.raises(FairingError, match=words):
+        read_points(path)
+
+
+def test_heights_at_buttocks(cli, tmp_path):
+    """Heights move, stations and buttocks stay; rows of buttocks as well as named columns."""
+    x, b = np.arange(9.0), np.arange(6.0) / 4
+    z = np.round(0.2 + 0.3 * b[None] ** 2 + 0.01 * (x[:, None] - 4) ** 2, 2)
+    text = "buttock; " + "; ".join(f"{a:g}" for a in x) + "\n"
+    text += "".join(f"{v:g}; " + "; ".join(f"{q:.2f}" for q in z[:, k]) + "\n"
+                    for k, v in enumerate(b))  # fmt: skip
+    (tmp_path / "b.csv").write_text(text)
+    file = read_points(tmp_path / "b.csv")
+    assert file.moves == 2 and file.table.shape == (54, 3)
+    for station, buttock, height in file.table.tolist():
+        assert height == z[list(x).index(station), list(b).index(buttock)]
+    done = cli("fair", "b.csv", "--tol", 0.005, "-o", "out.csv")
+    assert "heights move; stations and buttocks stay" in done.stdout + done.stderr
+    out = read_points(tmp_path / "out.csv")
+    assert (out.table[:, :2] == file.table[:, :2]).all()
+    assert 0 < np.abs(out.table - file.table).max() <= 0.005 * (1 + 1e-12)

@@ -105,6 +105,7 @@ Path("hull.sdl").write_text({blocks(ROOT / "README.md", "sdl")[0]!r})
 #: What a page's Python blocks take as given.
 GIVEN = {
     "README.md": _README,
+    "index.md": _README,
     "hydrostatics.md": _DECKED,
     "cad.md": _HULL,
     "panels.md": _HULL,
@@ -184,8 +185,8 @@ def test_examples_in_help_are_commands() -> None:
             whole_parser().parse_args(words[1:])
 
 
-def test_the_readme_prints_what_it_shows(cli, workplace: Path) -> None:
-    page = ROOT / "README.md"
+@pytest.mark.parametrize("page", [ROOT / "README.md", DOCS / "index.md"], ids=lambda p: p.name)
+def test_the_first_minute_prints_what_it_shows(page: Path, cli, workplace: Path) -> None:
     Path("hull.sdl").write_text(blocks(page, "sdl")[0])
     printed = ""
     for words in commands(page):
@@ -223,6 +224,10 @@ def test_the_site_is_whole(tmp_path: Path) -> None:
         assert word in index
     pages = list(tmp_path.rglob("*.html"))
     assert len(pages) > 30
+    # Programs are highlighted: kinds, names, numbers, comments.
+    relational = (tmp_path / "relational.html").read_text(encoding="utf-8")
+    for name, word in (("nc", "AbsPoint"), ("nv", "arch"), ("c1", "# halfway"), ("k", "assert")):
+        assert f'<span class="{name}">{word}</span>' in relational, word
     # It opens from a folder: nothing is fetched from elsewhere.
     for page in (tmp_path / "index.html", tmp_path / "relational.html"):
         text = page.read_text(encoding="utf-8")

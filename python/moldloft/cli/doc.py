@@ -128,6 +128,7 @@ _ATTRIBUTES = {
     "attributes": 'attributes = "..."',
 }
 
+
 def _statement_page(row: dict[str, Any]) -> str:
     width = max(len(name) for name, _ in row["arguments"]) + 2
     arguments = [f"  {name:<{width}}{text}" for name, text in row["arguments"]]

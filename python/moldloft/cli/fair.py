@@ -515,8 +515,12 @@ class _Points(_Source):
 
     def fair(self, options: argparse.Namespace) -> Result:
         if self.file.offsets and options.along is None and not options.box:
-            self.said.append("half-breadths move; stations and heights stay")
-            options.along = [0.0, 1.0, 0.0]
+            if self.file.moves == 2:
+                self.said.append("heights move; stations and buttocks stay")
+                options.along = [0.0, 0.0, 1.0]
+            else:
+                self.said.append("half-breadths move; stations and heights stay")
+                options.along = [0.0, 1.0, 0.0]
         if self.file.offsets or len([b for b in self.file.blocks if len(b) > 1]) > 1:
             return self._network(options)
         from moldloft.fairing import fair

@@ -18,14 +18,9 @@ from moldloft.cli.console import (
     water,
 )
 from moldloft.errors import Error
-from moldloft.hydrostatics import (
-    Hydrostatics,
-    HydrostaticTable,
-    RightingCurve,
-    header,
-    shown,
-)
+from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
 from moldloft.text_table import table
+from moldloft.units import header, shown
 
 __all__ = ["add", "run"]
 

@@ -88,6 +88,8 @@ class Prepared:
     parameters: Floats | None
     findings: tuple[Finding, ...]
     corrected: tuple[Finding, ...]
+    own: bool = False
+    """Whether knots or weights were given."""
 
 
 def prepared(
@@ -160,6 +162,7 @@ def prepared(
         parameters,
         tuple(found),
         tuple(corrected),
+        own.given,
     )
 
 
@@ -214,6 +217,25 @@ def spread(tol: ArrayLike | None, made: Prepared, n: int) -> list[float]:
     return out
 
 
+UNEVEN = 1.8
+"""From here on the steps between points are not those of an index: half stations are 2."""
+
+
+def uneven(data: Floats) -> list[str]:
+    """What is to be said where the index is the parameter and points do not follow it."""
+    steps = np.linalg.norm(np.diff(data, axis=0), axis=1)
+    if len(steps) < 2 or not (steps > 0).all():
+        return []
+    ratio = np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:])
+    k = int(ratio.argmax())
+    if ratio[k] < UNEVEN:
+        return []
+    return [
+        f"the index is the parameter here, but at point {k + 2} the step between points changes by "
+        f"a factor of {ratio[k]:.3g}: `fit` follows their spacing"
+    ]
+
+
 def result(
     made: Prepared,
     faired: Spline,
@@ -230,6 +252,8 @@ def result(
     far, certificate = told["deviation"], told["certificate"]
     certified, sampled = far["certified"], far["sampled"]
     notes = list(told["notes"])
+    if made.role in ("points", "control") and not made.own:
+        notes += uneven(data)
     if made.role == "points":
         rows = faired.control_points
         certified = sampled = far["control"]

@@ -14,8 +14,8 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.errors import FairingError, FileError, FormatError
-from moldloft.fairing.matrix import Matrix, matrix
-from moldloft.fairing.tables import plain
+from moldloft.fairing.matrix import matrix
+from moldloft.fairing.tables import Cells, plain, spans
 from moldloft.files import Output, commit
 from moldloft.grids import Plot3DVariant, decode_plot3d, encode_plot3d
 from moldloft.storage import read_bytes
@@ -66,12 +66,17 @@ class PointFile:
     offsets: bool = False
     """Whether it is a table of offsets: stations, half-breadths and heights. Its blocks are then
     the stations and the waterlines, which share their points."""
+    moves: int = 1
+    """The coordinate that a table of offsets gives: 1, half-breadths at stations and waterlines, or
+    2, heights at stations and buttocks."""
     table: Floats | None = None
     """The rows of a table of offsets as they were."""
     places: list[int] = field(default_factory=list)
     """Of each row of the curves the row of the table."""
-    matrix: Matrix | None = None
+    matrix: Cells | None = None
     """Where the offsets stand in a table with a row for each waterline or station."""
+    named: Cells | None = None
+    """Where x, y and z of each row stand in a table whose columns have names."""
 
     @property
     def width(self) -> int:
@@ -118,6 +123,7 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
             file = PointFile(
                 path, rows, lines, [range(len(rows))], [], None, None, said, inches, comma
             )
+            file.moves = 2 if where.heights else 1
             return replace(_as_offsets(file), matrix=where)
     try:
         made = plain(text)
@@ -140,25 +146,49 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
         made.inches,
         made.comma,
     )
+    file.moves = 2 if made.heights else 1
+    if made.axes is not None:
+        file.named = _named_cells(text, file.lines, made.axes)
     return _as_offsets(file) if made.stations and file.width == 3 else file
 
 
+def _named_cells(text: str, lines: list[int], axes: list[int]) -> Cells | None:
+    """Where the coordinates of rows stand in a text."""
+    whole = text.lstrip("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    places = []
+    for line in lines:
+        found = spans(whole[line - 1])
+        if len(found) <= max(axes):
+            return None
+        places += [(line - 1, *found[at]) for at in axes]
+    return Cells(whole, places)
+
+
 def _as_offsets(file: PointFile) -> PointFile:
-    """A table of offsets as the curves of its stations and waterlines."""
+    """A table of offsets as the curves of its stations and waterlines, or buttocks."""
     table = file.points
+    other = 3 - file.moves
     by_station: dict[float, list[int]] = {}
     by_level: dict[float, list[int]] = {}
-    for k, (x, _, z) in enumerate(table.tolist()):
-        by_station.setdefault(x, []).append(k)
-        by_level.setdefault(z, []).append(k)
+    for k, row in enumerate(table.tolist()):
+        by_station.setdefault(row[0], []).append(k)
+        by_level.setdefault(row[other], []).append(k)
     if len(by_station) < 2 or max(map(len, by_station.values())) < 2:
         return file
-    seen: dict[tuple[float, ...], int] = {}
+    seen: dict[tuple[float, float], int] = {}
     for k, row in enumerate(table.tolist()):
-        if tuple(row) in seen:
-            first = file.lines[seen[tuple(row)]]
-            raise FairingError(f"{file.path}:{file.lines[k]}: the same offset as line {first}")
-        seen[tuple(row)] = k
+        place = (row[0], row[other])
+        if place in seen:
+            first = seen[place]
+            at = f"{file.path}:{file.lines[k]}"
+            if (table[first] == table[k]).all():
+                raise FairingError(f"{at}: the same offset as line {file.lines[first]}")
+            names = ("buttock", "height") if file.moves == 2 else ("height", "half-breadth")
+            raise FairingError(
+                f"{at}: a second {names[1]} at station {row[0]:g}, {names[0]} {row[other]:g}: "
+                f"{row[file.moves]:g}, and {table[first, file.moves]:g} in line {file.lines[first]}"
+            )
+        seen[place] = k
     stations = list(by_station)
     rises = [b > a for a, b in itertools.pairwise(stations)]
     if not (all(rises) or not any(rises)):
@@ -173,10 +203,10 @@ def _as_offsets(file: PointFile) -> PointFile:
     long = [rows for rows in lists if len(rows) >= 5]
     short = len(lists) - len(long)
     if not long:
-        raise FairingError(f"{file.path}: no station or waterline has 5 points")
+        raise FairingError(f"{file.path}: none of the curves has 5 points")
     notes = list(file.notes)
     if short:
-        notes.append(f"{short} stations and waterlines with fewer than 5 points: not faired")
+        notes.append(f"{short} curves with fewer than 5 points: not faired")
     places = [k for rows in long for k in rows]
     ends = list(itertools.accumulate(map(len, long)))
     return replace(
@@ -201,13 +231,21 @@ def _at(path: Path, error: FormatError) -> FairingError:
 
 def points_text(points: Floats, like: PointFile | None = None, delimiter: str = ",") -> str:
     """Rows of points as text that reads back to the bit, in the form of a file read."""
-    if like is not None and like.matrix is not None and like.table is not None:
-        if (points[:, [0, 2]] != like.table[:, [0, 2]]).any():
+    given = None if like is None else like.points if like.table is None else like.table
+    if like is not None and like.matrix is not None and given is not None:
+        still = [0, 3 - like.moves]
+        if (points[:, still] != given[:, still]).any():
             raise FairingError(
-                "the stations and waterlines of such a table stay: --along 0,1, or an ending of "
-                "another form"
+                "the stations and levels of such a table stay: without --along and --box, or an "
+                "ending of another form"
             )
-        return like.matrix.written([_cell(y, like) for y in points[:, 1]])
+        pairs = zip(points[:, like.moves], given[:, like.moves], strict=True)
+        return like.matrix.written([None if y == old else _cell(y, like) for y, old in pairs])
+    alike = given is not None and np.shape(points) == np.shape(given)
+    if like is not None and like.named is not None and given is not None and alike:
+        # Cells whose number did not change stay as they were written.
+        each = zip(np.ravel(points), np.ravel(given), strict=True)
+        return like.named.written([None if x == old else _cell(x, like) for x, old in each])
     if like is not None and (like.inches or like.comma):
         return _own_form(points, like)
     own = delimiter if like is None else (like.delimiter or " ")

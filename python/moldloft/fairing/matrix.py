@@ -3,51 +3,16 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from moldloft.errors import FairingError
-from moldloft.fairing.tables import MISSING, length
+from moldloft.fairing.tables import MISSING, Cells, length, names_axes, spans
 
-__all__ = ["Matrix", "matrix"]
+__all__ = ["matrix"]
 
 _LABEL = re.compile(r"(?:[A-Za-z.]+\s*)?(\S.*)")
 _STATION = re.compile(r"\b(stations?|st|sta|frames?|ordinates?)\b")
-_LEVEL = re.compile(r"\b(waterlines?|wl|heights?|levels?|z)\b")
-
-
-@dataclass
-class Matrix:
-    """Where each offset stands in the text."""
-
-    lines: list[str]
-    """The lines as they were read."""
-    places: list[tuple[int, int, int]]
-    """Of each offset its line, from 0, and where its number begins and ends there."""
-
-    def written(self, texts: list[str]) -> str:
-        """The text with other numbers in its cells, as wide as before where they fit."""
-        out = list(self.lines)
-        for (line, start, end), new in reversed(list(zip(self.places, texts, strict=True))):
-            old = out[line]
-            out[line] = old[:start] + new.rjust(end - start) + old[end:]
-        return "\n".join(out).rstrip("\n") + "\n"
-
-
-def _spans(line: str) -> list[tuple[int, int]]:
-    """Where the cells of a line begin and end: between semicolons, tabs or commas, else blanks."""
-    sign = next((s for s in (";", "\t", ",") if s in line), None)
-    if sign is None:
-        return [m.span() for m in re.finditer(r"\S+", line)]
-    out, at = [], 0
-    for cell in line.split(sign):
-        bare = cell.strip()
-        start = at + (len(cell) - len(cell.lstrip())) if bare else at
-        out.append((start, start + len(bare)))
-        at += len(cell) + len(sign)
-    # What a last separator leaves is no cell.
-    while len(out) > 1 and out[-1][0] == out[-1][1]:
-        out.pop()
-    return out
+_LEVEL = re.compile(r"\b(waterlines?|wl|heights?|levels?|z|buttocks?)\b")
+_BUTTOCK = re.compile(r"\bbuttocks?\b")
 
 
 def _number(cell: str, comma: bool) -> float | None:
@@ -56,7 +21,7 @@ def _number(cell: str, comma: bool) -> float | None:
 
 def _header(line: str, comma: bool) -> tuple[str, list[float]] | None:
     """The corner and the values of a head line: a word (or nothing) and four numbers or more."""
-    cells = [line[a:b].strip('"').strip() for a, b in _spans(line)]
+    cells = [line[a:b].strip('"').strip() for a, b in spans(line)]
     values = [_number(c, comma) for c in cells[1:]]
     if len(values) < 4 or any(v is None for v in values):
         # Blanks separate the words of a corner, too.
@@ -83,12 +48,13 @@ def _rows_are_stations(corner: str, above: str) -> bool | None:
     return None
 
 
-def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Matrix, bool] | None:
+def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Cells, bool] | None:
     r"""The offsets of a table with a row for each waterline or station, if the text is one.
 
     Returned are rows of station, half-breadth and height; their lines, from 1; where they stand in
     the text; whether lengths were in feet, inches and eighths. The first cell of the head line says
-    what the rows are: ``waterline`` or ``station``; cells ``x``, ``-`` or nothing are missing.
+    what the rows are: ``waterline``, ``buttock`` (its cells are heights) or ``station``; cells
+    ``x``, ``-`` or nothing are missing.
 
     Raises
     ------
@@ -107,12 +73,14 @@ def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Matr
     head = next((k for k in used[:12] if _header(lines[k], comma)), None)
     if head is None or used.index(head) + 2 >= len(used):
         return None
+    if any(names_axes(lines[k]) for k in used if k < head):
+        return None
     made = _header(lines[head], comma)
     assert made is not None
     corner, across = made
     below = [k for k in used if k > head]
     # A table of points by names of columns has no numbers in its head; a matrix has a label a row.
-    first = [lines[below[0]][a:b] for a, b in _spans(lines[below[0]])]
+    first = [lines[below[0]][a:b] for a, b in spans(lines[below[0]])]
     if len(first) < 4 or len(first) > len(across) + 2:
         return None
     above = " ".join(lines[k] for k in used if k < head)
@@ -120,16 +88,18 @@ def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Matr
     if stations is None:
         raise FairingError(
             f"line {head + 1}: a matrix of offsets? its first cell says what the rows are: "
-            "`waterline` or `station`"
+            "`waterline`, `buttock` or `station`"
         )
-    inches = any("-" in lines[head][a:b] for a, b in _spans(lines[head])[1:])
+    title = f"{above} {corner}".lower()
+    heights = _BUTTOCK.search(title) is not None and not re.search(r"\b(waterlines?|wl)\b", title)
+    inches = any("-" in lines[head][a:b] for a, b in spans(lines[head])[1:])
     rows: list[tuple[float, float, float]] = []
     where: list[int] = []
     places: list[tuple[int, int, int]] = []
     seen: set[float] = set()
     for k in below:
-        spans = _spans(lines[k])
-        cells = [lines[k][a:b].strip('"').strip() for a, b in spans]
+        found_at = spans(lines[k])
+        cells = [lines[k][a:b].strip('"').strip() for a, b in found_at]
         # Words before the value of a row, as in `WL 0.5`.
         words = 1
         if _number(cells[0], comma) is None and len(cells) > 1 and " " not in cells[0]:
@@ -143,7 +113,7 @@ def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Matr
         if value in seen:
             raise FairingError(f"line {k + 1}: a second row of {value:g}")
         seen.add(value)
-        own = spans[words:]
+        own = found_at[words:]
         if len(own) > len(across):
             raise FairingError(
                 f"line {k + 1}: expected {len(across)} offsets at most, found {len(own)}"
@@ -157,14 +127,14 @@ def matrix(text: str) -> tuple[list[tuple[float, float, float]], list[int], Matr
                 raise FairingError(f"line {k + 1}: expected an offset, found `{cell}`")
             inches |= bool(re.fullmatch(r"-?\d+-\d+-\d+.?", cell))
             station, level = (value, at) if stations else (at, value)
-            rows.append((station, breadth, level))
+            rows.append((station, level, breadth) if heights else (station, breadth, level))
             where.append(k + 1)
             places.append((k, a, b))
     order = sorted(range(len(rows)), key=lambda i: _order(rows, i, across, stations))
     return (
         [rows[i] for i in order],
         [where[i] for i in order],
-        Matrix(lines, [places[i] for i in order]),
+        Cells(lines, [places[i] for i in order], heights),
         inches,
     )
 

@@ -10,6 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.errors import Error
+from moldloft.fairing.drawing import (
+    AFTER,
+    BEFORE,
+    MOVE,
+    QUIET,
+    WRONG,
+    even_turns,
+    exaggeration,
+    round_below,
+)
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -20,13 +30,11 @@ if TYPE_CHECKING:
     from moldloft.fairing.network import NetworkFairing
     from moldloft.fairing.patches import PatchesFairing
     from moldloft.fairing.spline import Samples, Spline
-    from moldloft.fairing.surface import SurfaceFairing
+    from moldloft.fairing.surface import SplineSurface, SurfaceFairing
 
     Floats = NDArray[np.float64]
 
 __all__ = ["page", "write_page"]
-
-BEFORE, AFTER, QUIET, WRONG = "#c2571a", "#1f5fa8", "#8a8f98", "#b00020"
 
 _STYLE = (
     "body{font:14px/1.45 sans-serif;max-width:64em;margin:2em auto;padding:0 1em;color:#1b1f24}"
@@ -35,7 +43,7 @@ _STYLE = (
     "td,th{border-bottom:1px solid #ddd;padding:2px 10px;text-align:right}"
     "td:first-child,th:first-child{text-align:left}tr.limit td{background:#fdf3e7}"
     "tr.wrong td{background:#fde4e7}svg{width:100%;height:auto;background:#fff}"
-    "pre{background:#f6f7f9;padding:.8em;overflow-x:auto}"
+    "pre{background:#f6f7f9;padding:.8em;white-space:pre-wrap}"
     "figure{margin:0}figcaption{color:#555;font-size:.92em}"
     "@media print{body{margin:0;max-width:none}h2{break-after:avoid}figure{break-inside:avoid}}"
 )
@@ -101,7 +109,7 @@ class _Picture:
 
     def bar(self) -> None:
         """A length that fits the picture, with its number."""
-        length = _round(0.18 * WIDE / float(self.scale[0]))
+        length = round_below(0.18 * WIDE / float(self.scale[0]))
         x, y = self.margin, self.height - 8
         self.parts.append(
             f'<path d="M{x} {y}h{length * self.scale[0]:.2f}" stroke="#333" stroke-width="1.5"/>'
@@ -115,14 +123,6 @@ class _Picture:
         )
 
 
-def _round(x: float) -> float:
-    """1, 2 or 5 times a power of ten, at most `x`."""
-    if not (np.isfinite(x) and x > 0):
-        return 1.0
-    power = 10.0 ** np.floor(np.log10(x))
-    return float(next(k * power for k in (5.0, 2.0, 1.0) if k * power <= x * (1 + 1e-12)))
-
-
 def _plane(points: Floats) -> tuple[int, int]:
     spread = np.ptp(points, axis=0)
     least = 2 if spread[2] <= 1e-12 * spread.max() else int(np.argmin(spread))
@@ -134,8 +134,9 @@ def _figure(picture: _Picture, caption: str) -> str:
     return f"<figure>{picture.svg(caption)}<figcaption>{escape(caption)}</figcaption></figure>"
 
 
-def _number(x: float) -> str:
-    return f"{x:.6g}"
+def _number(x: float, least: float = 0.0) -> str:
+    """A number to six digits; what is smaller than `least` is rounding."""
+    return f"{x:.6g}" if abs(x) > least else "0"
 
 
 def _table(head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]]) -> str:
@@ -147,18 +148,6 @@ def _table(head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]]) -> st
         for kind, cells in rows
     )
     return f"<table><tr>{top}</tr>{body}</table>"
-
-
-def exaggeration(moves: Floats, extent: float) -> float:
-    """A round factor that shows the largest move as about a twentieth of the extent.
-
-    Examples
-    --------
-    >>> exaggeration(np.array([0.001, 0.0004]), 10.0)
-    500.0
-    """
-    largest = float(np.max(moves, initial=0.0))
-    return max(1.0, _round(0.05 * extent / largest)) if largest > 0 else 1.0
 
 
 def _moved(
@@ -183,7 +172,7 @@ def _moved(
         picture.line(after[:, ij], AFTER, 1.3)
     full = tol is not None and tol > 0
     at_limit = lengths >= (1 - 1e-4) * tol if full and tol is not None else lengths < 0
-    picture.segments(data[:, ij], (data + factor * away)[:, ij], "#555", 0.8)
+    picture.segments(data[:, ij], (data + factor * away)[:, ij], MOVE, 1.1)
     for mask, colour in ((~at_limit, QUIET), (at_limit, BEFORE)):
         picked = np.flatnonzero(mask & ~np.isin(np.arange(len(data)), list(wrong)))
         titles = [f"point {k + 1}: moved {lengths[k]:.3g}" for k in picked]
@@ -195,26 +184,14 @@ def _moved(
     picture.text(WIDE - 8, 16, f"{named[0]} to the right, {named[1]} up", QUIET, end=True)
     reached = int(at_limit.sum())
     said = f"; {reached} points (orange) are at their tolerance" if reached else ""
-    return _figure(
-        picture,
-        f"To scale: before orange, after blue. Moves of the points are drawn {factor:g} times as "
-        f"long; the largest is {lengths.max(initial=0.0):.3g}{said}.",
+    largest = float(lengths.max(initial=0.0))
+    moves = (
+        f"Moves of the points (purple) are drawn {factor:g} times as long; the largest is "
+        f"{largest:.3g}{said}."
+        if largest > 0
+        else "No point moved."
     )
-
-
-def _even_turns(spline: Spline, most: float = 0.05, rows: int = 400) -> Samples:
-    """Samples that follow length and turn alike: enough teeth at a nose."""
-    fine = spline.samples(24)
-    steps = np.linalg.norm(np.diff(fine.points, axis=0), axis=1)
-    length = float(steps.sum()) or 1.0
-    bend = np.abs(fine.curvature)
-    turn = 0.5 * (bend[1:] + bend[:-1]) * steps
-    way = steps / length / 0.005 + turn / most
-    run = np.concatenate([[0.0], np.cumsum(way)])
-    count = int(min(max(run[-1], 60), rows))
-    keep = np.linspace(0.0, run[-1], count + 1)
-    t = np.interp(keep, run, fine.t)
-    return spline.at(np.clip(t, 0, 1))
+    return _figure(picture, f"To scale: before orange, after blue. {moves}")
 
 
 def _by_length(samples: Samples) -> Floats:
@@ -223,31 +200,90 @@ def _by_length(samples: Samples) -> Floats:
     return np.asarray(bend)
 
 
+def _teeth(samples: Samples, ij: list[int], cut: float, scale: float) -> tuple[Floats, Floats]:
+    """Feet and tips of a comb; teeth of more than `cut` are cut there."""
+    tangent = samples.first[:, ij]
+    size = np.linalg.norm(tangent, axis=1, keepdims=True)
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.where(size > 0, size, 1)
+    feet = samples.points[:, ij]
+    # Outside of the bend, from whichever side of its plane a curve is seen.
+    facing = np.cross(np.eye(3)[ij[0]], np.eye(3)[ij[1]])
+    sign = -1.0 if samples.plane is not None and np.dot(samples.plane, facing) < 0 else 1.0
+    return feet, feet - np.clip(samples.curvature, -cut, cut)[:, None] * (sign * scale) * normal
+
+
 def _comb(fairing: Fairing, axes: tuple[int, int]) -> str:
     ij = list(axes)
-    after = _even_turns(fairing.spline)
-    bend = np.abs(after.curvature)
+    after = even_turns(fairing.spline)
     extent = float(np.ptp(after.points, axis=0).max())
-    largest = float(bend.max())
+    largest = float(np.abs(after.curvature).max())
     if largest * extent <= 1e-9:
         return "<p>The curve is straight: it has no comb.</p>"
     # A nose would leave the rest without teeth: these are cut where they are.
     usual = float(np.percentile(_by_length(after), 80))
     cut = largest if largest <= 8 * usual else max(3 * usual, 1e-3 * largest)
     scale = 0.22 * extent / cut
-    tangent = after.first[:, ij]
-    size = np.linalg.norm(tangent, axis=1, keepdims=True)
-    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.where(size > 0, size, 1)
-    teeth = np.clip(after.curvature, -cut, cut)[:, None] * scale
-    feet = after.points[:, ij]
-    tips = feet - teeth * normal
-    picture = _Picture(np.vstack([feet, tips]))
+    feet, tips = _teeth(after, ij, cut, scale)
+    _, rough = _teeth(fairing.original.samples(12), ij, cut, scale)
+    picture = _Picture(np.vstack([feet, tips, rough]))
+    picture.line(rough, BEFORE, 0.5)
     picture.segments(feet, tips, AFTER, 0.5)
     picture.line(tips, AFTER, 1.1)
     picture.line(feet, "#1b1f24", 1.4)
     picture.bar()
     said = f"; teeth beyond {cut:.3g} are cut (largest {largest:.4g})" if cut < largest else ""
-    return _figure(picture, f"Curvature comb of the faired curve, to scale{said}.")
+    return _figure(
+        picture,
+        f"Curvature comb of the faired curve, to scale, and its line before (orange){said}.",
+    )
+
+
+def _combs(pairs: Sequence[tuple[Spline, Spline]], axes: tuple[int, int]) -> str:
+    """Combs of the curves that lie in planes parallel to a view, before and after, alike in scale.
+
+    Stations in the body plan, waterlines in the plan, buttocks in the profile.
+    """
+    ij, across = list(axes), 3 - sum(axes)
+    shown = []
+    for before, after in pairs:
+        points = after.control_points
+        if np.ptp(points[:, across]) <= 1e-9 * np.ptp(points, axis=0).max():
+            shown.append((even_turns(before, 0.05, 160), even_turns(after, 0.05, 160)))
+    bends = [_by_length(after) for _, after in shown]
+    extent = max((float(np.ptp(a.points[:, ij], axis=0).max()) for _, a in shown), default=0.0)
+    if not shown or float(np.max(bends)) * extent <= 1e-9:
+        return ""
+    cut = 3 * float(np.percentile(np.concatenate(bends), 80))
+    cut = min(cut, float(np.max(bends))) or float(np.max(bends))
+    scale = 0.1 * extent / cut
+    both = [[_teeth(s[k], ij, cut, scale) for s in shown] for k in (0, 1)]
+    corners = np.vstack([p for combs in both for feet_tips in combs for p in feet_tips])
+    parts = []
+    for combs, colour, word in zip(both, (BEFORE, AFTER), ("before", "after"), strict=True):
+        picture = _Picture(corners)
+        for feet, tips in combs:
+            picture.segments(feet, tips, colour, 0.4)
+            picture.line(tips, colour, 0.9)
+            picture.line(feet, "#1b1f24", 1.0)
+        picture.bar()
+        caption = f"Curvature combs {word}, to scale; teeth beyond {cut:.3g} are cut."
+        parts.append(_figure(picture, caption))
+    return "".join(parts)
+
+
+def _ticks(low: float, high: float, floor: float) -> list[float]:
+    """Round numbers along an axis, which is logarithmic from `floor` on if that is not 0."""
+    if floor <= 0:
+        step = round_below(0.5 * (high - low))
+        first, last = int(np.ceil(low / step)), int(np.floor(high / step))
+        return [k * step for k in range(first, last + 1)]
+    out = [0.0]
+    for sign, most in ((1.0, high), (-1.0, -low)):
+        value = 10.0 ** np.ceil(np.log10(2 * floor))
+        while np.log1p(value / floor) < most:
+            out.append(sign * float(value))
+            value *= 10.0
+    return out
 
 
 def _bends(fairing: Fairing) -> str:
@@ -271,9 +307,13 @@ def _bends(fairing: Fairing) -> str:
     picture = _Picture(np.array([[0.0, low], [1.0, high]]), 260.0)
     picture.line(np.column_stack([before.arc, np.clip(a, low, high)]), BEFORE, 0.8)
     picture.line(np.column_stack([after.arc, b]), AFTER, 1.4)
-    if low < 0 < high:
-        picture.line(np.array([[0.0, 0.0], [1.0, 0.0]]), "#999", 0.6, "4 3")
-    picture.text(WIDE - 8, 16, f"largest {largest:.4g}, median {usual:.4g}", QUIET, end=True)
+    floor = 0.3 * usual
+    for value in _ticks(low, high, floor if swamped else 0.0):
+        y = float(shown(np.array([value]))[0])
+        picture.line(np.array([[0.0, y], [1.0, y]]), "#c9ccd1" if value else "#888", 0.6)
+        height = float(picture.place(np.array([[0.0, y]]))[0, 1])
+        picture.text(WIDE - 2, height - 3, f"{value:g}", QUIET, end=True)
+    picture.text(WIDE - 60, 12, f"largest {largest:.4g}, median {usual:.4g}", QUIET, end=True)
     picture.text(8, picture.height - 8, "share of the length", QUIET)
     how = "on a logarithmic scale" if swamped else "cut where it was rougher before"
     return _figure(picture, f"Curvature along the curve, {how}: before orange, after blue.")
@@ -287,9 +327,10 @@ def _points(data: Floats, after: Floats, off: Floats, tol: float | None, wrong: 
     if tol:
         head.append("of the tolerance")
     rows = []
+    rounding = 1e-14 * float(np.abs(data).max(initial=0.0))
     for k, (p, q, d) in enumerate(zip(data, after, off, strict=True)):
-        cells = [str(k + 1), *(_number(float(x)) for x in (*p[:width], *q[:width]))]
-        cells.append(f"{d:.3g}")
+        cells = [str(k + 1), *(_number(float(x), rounding) for x in (*p[:width], *q[:width]))]
+        cells.append(f"{d:.3g}" if d > rounding else "0")
         if tol:
             cells.append(f"{100 * d / tol:.0f} %")
         limit = bool(tol) and d >= (1 - 1e-4) * (tol or 0.0)
@@ -343,6 +384,7 @@ def _of_network(fairing: NetworkFairing) -> list[str]:
     for name, axes in views:
         if min(float(np.ptp(data[:, c])) for c in axes) > 0:
             parts += [f"<h2>{name}</h2>", _moved(data, after, fairing.tol, pairs, axes, wrong)]
+            parts.append(_combs(pairs, axes))
     off = np.linalg.norm(after - data, axis=1)
     parts += ["<h2>Points</h2>", _points(data, after, off, fairing.tol, wrong)]
     if fairing.findings:
@@ -352,31 +394,53 @@ def _of_network(fairing: NetworkFairing) -> list[str]:
 
 
 def _of_surface(fairing: SurfaceFairing) -> list[str]:
-    before, after = (s.grid(61, 41) for s in (fairing.original, fairing.surface))
     data = fairing.data.reshape(-1, 3)
-    moved = np.asarray(fairing.points).reshape(-1, fairing.points.shape[-1])
-    away = np.linalg.norm(_three(moved) - data, axis=1)
-    extent = float(np.ptp(data, axis=0).max())
-    factor = exaggeration(away, extent)
+    moved = _three(np.asarray(fairing.points).reshape(-1, fairing.points.shape[-1]))
+    return _surface(fairing.original, fairing.surface, "", data, moved)
+
+
+def _of_patches(fairing: PatchesFairing) -> list[str]:
+    parts = []
+    for k, (before, after) in enumerate(zip(fairing.originals, fairing.surfaces, strict=True)):
+        parts += _surface(before, after, f" of surface {k + 1}")
+    return parts
+
+
+def _surface(
+    original: SplineSurface,
+    surface: SplineSurface,
+    of: str,
+    data: Floats | None = None,
+    moved: Floats | None = None,
+) -> list[str]:
+    """Three views of a surface, with the moves of its points where these are given."""
+    before, after = (s.grid(61, 41) for s in (original, surface))
+    both = np.vstack([before.reshape(-1, 3), after.reshape(-1, 3)])
     parts = []
     for name, axes in (("Plan", (0, 1)), ("Profile", (0, 2)), ("Body plan", (1, 2))):
         ij = list(axes)
-        if min(float(np.ptp(data[:, c])) for c in axes) <= 0:
+        if min(float(np.ptp(both[:, c])) for c in axes) <= 0:
             continue
-        picture = _Picture(np.vstack([before.reshape(-1, 3)[:, ij], after.reshape(-1, 3)[:, ij]]))
+        caption = "To scale: before orange, after blue."
+        tips = None
+        if data is not None and moved is not None:
+            away = np.linalg.norm(moved - data, axis=1)
+            factor = exaggeration(away, float(np.ptp(data, axis=0).max()))
+            tips = data + factor * (moved - data)
+            caption += (
+                f" Moves of the points (purple) are drawn {factor:g} times as long; the largest is "
+                f"{away.max(initial=0.0):.3g}."
+            )
+        picture = _Picture((both if tips is None else np.vstack([both, tips]))[:, ij])
         for grid, colour, width in ((before, BEFORE, 0.5), (after, AFTER, 0.8)):
             for k in range(0, grid.shape[0], 4):
                 picture.line(grid[k][:, ij], colour, width)
             for k in range(0, grid.shape[1], 4):
                 picture.line(grid[:, k][:, ij], colour, width)
-        tips = data + factor * (_three(moved) - data)
-        picture.segments(data[:, ij], tips[:, ij], "#555", 0.8)
+        if tips is not None and data is not None:
+            picture.segments(data[:, ij], tips[:, ij], MOVE, 1.1)
         picture.bar()
-        caption = (
-            f"To scale: before orange, after blue; moves of the points {factor:g} times as long, "
-            f"the largest {away.max(initial=0.0):.3g}."
-        )
-        parts += [f"<h2>{name}</h2>", _figure(picture, caption)]
+        parts += [f"<h2>{name}{of}</h2>", _figure(picture, caption)]
     return parts
 
 
@@ -388,14 +452,11 @@ def page(
     Parameters
     ----------
     fairing
-        What :func:`moldloft.fair` or :func:`moldloft.fairing.network` returned.
+        What :func:`moldloft.fair`, :func:`moldloft.fairing.network` or
+        :func:`moldloft.fairing.patches` returned.
     title
         Its heading.
 
-    Raises
-    ------
-    Error
-        For several blocks at once.
     """
     from moldloft.fairing.faired import Fairing
     from moldloft.fairing.network import NetworkFairing
@@ -408,7 +469,7 @@ def page(
     elif isinstance(fairing, SurfaceFairing):
         parts = _of_surface(fairing)
     else:
-        raise Error("a page is made of a curve, a surface or a network: choose one block")
+        parts = _of_patches(fairing)
     facts: Any = str(fairing)
     return (
         f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>'

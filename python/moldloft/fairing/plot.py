@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.errors import Error
+from moldloft.fairing.drawing import AFTER, BEFORE, MOVE, QUIET, even_turns, exaggeration
 from moldloft.fairing.spline import Samples, Spline, grid_metric
 
 if TYPE_CHECKING:
@@ -25,8 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["needed", "plot_curve", "plot_network", "plot_surface"]
 
-BEFORE, AFTER, ACCENT, QUIET = "#c2571a", "#1f5fa8", "#2e7d32", "#8a8f98"
-"""Colours that stay apart for colour-blind eyes and in grey."""
+ACCENT = "#2e7d32"
 
 STYLE = {
     "font.size": 8,
@@ -205,8 +205,19 @@ def _curvature(ax: Any, before: Samples, after: Samples) -> None:
     ax.plot(after.arc, after.curvature, color=AFTER, label="after")
     ax.set_xlabel("share of the arc length")
     ax.set_ylabel("curvature")
-    _range(ax, before.curvature, after.curvature)
+    bend = np.interp(np.linspace(0, 1, 1001), after.arc, np.abs(after.curvature))
+    usual = float(np.median(bend))
+    if usual > 0 and float(bend.max()) > 30 * usual:
+        # A nose would swamp the rest.
+        ax.set_yscale("symlog", linthresh=_decade(usual))
+        ax.set_ylabel("curvature, logarithmic")
+    else:
+        _range(ax, before.curvature, after.curvature)
     ax.legend(loc="best")
+
+
+def _decade(x: float) -> float:
+    return float(10.0 ** np.floor(np.log10(x)))
 
 
 def _range(ax: Any, before: Floats, after: Floats) -> None:
@@ -241,8 +252,16 @@ def _comb(ax: Any, fairing: Fairing) -> None:
     feet, tips = fairing.original.comb(scale, 6)
     tips = _kept(feet, tips, 0.4 * extent)
     ax.plot(tips[:, i], tips[:, j], color=BEFORE, lw=0.6)
-    feet, tips = fairing.spline.comb(scale, 6)
-    for a, b in zip(feet[::2], tips[::2], strict=True):
+    even = even_turns(fairing.spline)
+    if even.plane is None:
+        feet, tips = fairing.spline.comb(scale, 6)
+    else:
+        # Teeth by length and turn alike: enough of them at a nose.
+        left = np.cross(even.plane, even.first)
+        size = np.linalg.norm(left, axis=1, keepdims=True)
+        feet = even.points
+        tips = feet - scale * even.curvature[:, None] * left / np.where(size > 0, size, 1)
+    for a, b in zip(feet, tips, strict=True):
         ax.plot([a[i], b[i]], [a[j], b[j]], color=AFTER, lw=0.35, alpha=0.6)
     ax.plot(tips[:, i], tips[:, j], color=AFTER, lw=1.0)
     ax.plot(feet[:, i], feet[:, j], color="#30363f", lw=1.2)
@@ -373,8 +392,8 @@ def _logarithmic(ax: Any, fairing: Fairing) -> None:
 
 def plot_surface(fairing: SurfaceFairing, path: str | PathLike[str]) -> None:
     """Shape, curvature, zebra and displacement of a faired surface."""
-    count_u = min(161, 4 * fairing.data.shape[0] + 1)
-    count_v = min(161, 4 * fairing.data.shape[1] + 1)
+    # Enough for the edges of the bands to be smooth.
+    count_u, count_v = (min(max(4 * n + 1, 121), 241) for n in fairing.data.shape[:2])
     looks = [s.look(count_u, count_v) for s in (fairing.original, fairing.surface)]
     u, v = np.linspace(0, 1, count_u), np.linspace(0, 1, count_v)
 
@@ -402,7 +421,7 @@ def plot_surface(fairing: SurfaceFairing, path: str | PathLike[str]) -> None:
         for k, (band, word) in enumerate(zip(bands, ("before", "after"), strict=True)):
             ax = figure.add_subplot(sub[0, k])
             ax.set_title(f"Isophotes {word}")
-            ax.contourf(u, v, (band >= 0).T, levels=[-0.5, 0.5, 1.5], colors=["#20242b", "white"])
+            ax.contourf(u, v, band.T, levels=[-2.0, 0.0, 2.0], colors=["#20242b", "white"])
             _uv(ax)
         ax = figure.add_subplot(sub[0, 2])
         ax.set_title("Displacement")
@@ -485,26 +504,36 @@ def plot_network(fairing: NetworkFairing, path: str | PathLike[str]) -> None:
             points = curve.samples(6).points
             ax.plot(points[:, i], points[:, j], color=colour, lw=width)
 
+    given = np.zeros((len(fairing.data), 3))
+    given[:, : fairing.data.shape[1]] = fairing.data
+    faired = given.copy()
+    faired[:, : fairing.points.shape[1]] = fairing.points
+    moved = np.linalg.norm(faired - given, axis=1)
+    factor = exaggeration(moved, float(np.ptp(given, axis=0).max()))
+
     def draw(figure: Any) -> None:
         figure.suptitle(
             f"{len(fairing.curves)} curves, {fairing.shared} shared points: squared jumps "
             f"{fairing.jumps_before:.3g} to {fairing.jumps_after:.3g}, deviation certified "
-            f"{fairing.deviation_certified:.4g}",
+            f"{fairing.deviation_certified:.4g}\nbefore orange, after blue; moves of the points "
+            f"(purple) {factor:g} times as long",
             fontsize=9,
             color="#30363f",
             ha="left",
             x=0.01,
         )
         axes = figure.subplots(2, 2)
+        tips = given + factor * (faired - given)
         views = (("Plan", 0, 1), ("Body plan", 1, 2))
         for ax, (name, i, j) in zip(axes.flat, views, strict=False):
             ax.set_title(name)
             lines(ax, fairing.originals, i, j, BEFORE, 0.6)
             lines(ax, fairing.curves, i, j, AFTER, 0.9)
+            for a, b in zip(given, tips, strict=True):
+                ax.plot([a[i], b[i]], [a[j], b[j]], color=MOVE, lw=0.8)
             ax.set_xlabel("xyz"[i])
             ax.set_ylabel("xyz"[j])
-            points = fairing.data
-            _near_equal(ax, points[:, i], points[:, j])
+            _near_equal(ax, given[:, i], given[:, j])
         ax = axes[1, 0]
         ax.set_title("Curvature along the curves")
         for curves, colour, width in (
@@ -519,14 +548,17 @@ def plot_network(fairing: NetworkFairing, path: str | PathLike[str]) -> None:
         before = np.concatenate([c.samples(8).curvature for c in fairing.originals])
         _range(ax, before, after)
         ax = axes[1, 1]
-        ax.set_title("Moves of the points")
-        given = fairing.data[:, : fairing.points.shape[1]]
-        moved = np.linalg.norm(fairing.points - given, axis=1)
-        ax.plot(np.arange(1, len(moved) + 1), moved, ".", ms=3, color=AFTER)
-        if fairing.tol:
-            ax.axhline(fairing.tol, color=BEFORE, lw=0.8, ls="--", label="tolerance")
-            ax.legend(loc="lower right")
-        ax.set_xlabel("point")
-        ax.set_ylim(0, None)
+        i, j = _plane(given)
+        if {i, j} == {0, 1} and np.ptp(given[:, 2]) > 0:
+            i, j = 0, 2
+        ax.set_title("Moves of the points, by place")
+        lines(ax, fairing.curves, i, j, "#c9ccd1", 0.5)
+        most = fairing.tol or float(moved.max()) or 1.0
+        dots = ax.scatter(
+            given[:, i], given[:, j], c=moved, s=14, cmap="viridis", vmin=0, vmax=most
+        )
+        figure.colorbar(dots, ax=ax, label="move, to the tolerance" if fairing.tol else "move")
+        ax.set_xlabel("xyz"[i])
+        ax.set_ylabel("xyz"[j])
 
     _saved(draw, (10.0, 8.0), path)

@@ -6,12 +6,13 @@ Aerofoils with prose, decimal commas, named columns, lengths in feet, inches and
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
 from moldloft.errors import FairingError
 
-__all__ = ["MISSING", "Plain", "eighths", "length", "plain"]
+__all__ = ["MISSING", "Cells", "Plain", "eighths", "length", "names_axes", "plain", "spans"]
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _SLIP = re.compile(r"[-+.\dOoIl]+")
@@ -30,7 +31,9 @@ _AXES = {
     "half_breadth": "y",
     "halfbreadth": "y",
     "buttock": "y",
+    "offset": "y",
     "waterline": "z",
+    "wl": "z",
     "height": "z",
 }
 """What named columns are, in the axes of a ship: x along, y across, z up."""
@@ -102,6 +105,61 @@ class Plain:
     """Whether numbers had decimal commas."""
     stations: bool = False
     """Whether the rows are offsets: their columns are station, half-breadth and height."""
+    heights: bool = False
+    """Whether these are heights at buttocks, not half-breadths at waterlines."""
+    axes: list[int] | None = None
+    """Of x, y and z the columns, where names say which and others are beside them or between."""
+
+
+@dataclass
+class Cells:
+    """Where the numbers of a table stand in its text."""
+
+    lines: list[str]
+    """The lines as they were read."""
+    places: list[tuple[int, int, int]]
+    """Of each number its line, from 0, and where it begins and ends there."""
+    heights: bool = False
+    """Whether the numbers are heights at buttocks, not half-breadths at waterlines."""
+
+    def written(self, texts: Sequence[str | None]) -> str:
+        """The text with other numbers in its cells, as wide as before where they fit.
+
+        Parameters
+        ----------
+        texts
+            The number of each cell; ``None`` leaves it as it is.
+        """
+        out = list(self.lines)
+        # From the last on, so that places before stay where they are.
+        for (line, start, end), new in sorted(zip(self.places, texts, strict=True), reverse=True):
+            if new is not None:
+                old = out[line]
+                out[line] = old[:start] + new.rjust(end - start) + old[end:]
+        return "\n".join(out).rstrip("\n") + "\n"
+
+
+def spans(line: str) -> list[tuple[int, int]]:
+    """Where the cells of a line begin and end: between semicolons, tabs or commas, else blanks.
+
+    Parameters
+    ----------
+    line
+        A line of a table.
+    """
+    sign = next((s for s in (";", "\t", ",") if s in line), None)
+    if sign is None:
+        return [m.span() for m in re.finditer(r"\S+", line)]
+    out, at = [], 0
+    for cell in line.split(sign):
+        bare = cell.strip()
+        start = at + (len(cell) - len(cell.lstrip())) if bare else at
+        out.append((start, start + len(bare)))
+        at += len(cell) + len(sign)
+    # What a last separator leaves is no cell.
+    while len(out) > 1 and out[-1][0] == out[-1][1]:
+        out.pop()
+    return out
 
 
 def _cells(line: str) -> list[str]:
@@ -138,13 +196,22 @@ def plain(text: str) -> Plain:
 def _decimal_commas(lines: list[str], out: Plain) -> list[str]:
     """Numbers with decimal commas, where something else separates the columns."""
 
-    def words(line: str) -> list[str]:
-        return [w for w in re.split(r"[;\t ]+", line.strip()) if w]
+    def pieces(line: str) -> list[str]:
+        """Cells and what separates them, in turn: semicolons and tabs before blanks."""
+        between = r"(\s*[;\t]\s*)" if ";" in line or "\t" in line.strip() else r"(\s+)"
+        return re.split(between, line)
 
-    rows = [w for line in lines if line.strip() and (w := words(line))]
-    inner = [w for w in rows if len(w) > 1 and all(_COMMA.fullmatch(c) or c.isdigit() for c in w)]
+    def is_row(cells: list[str]) -> bool:
+        return len(cells) > 1 and any(_COMMA.fullmatch(c) for c in cells)
+
+    rows = [[c for c in pieces(s)[::2] if c] for s in lines if not s.startswith("#")]
+    marked = any(";" in s or "\t" in s.strip() for s in lines)
+    if not marked:
+        # Blanks alone: prose has commas, too.
+        rows = [w for w in rows if all(_COMMA.fullmatch(c) or c.isdigit() for c in w)]
+    inner = [w for w in rows if is_row(w)]
     some = [c for w in inner for c in w if _COMMA.fullmatch(c)]
-    if len(inner) < 3 or not some or any("." in c for w in inner for c in w):
+    if len(inner) < 3 or any(_NUMBER.fullmatch(c) and "." in c for w in inner for c in w):
         return lines
     # `1,2 3,4` could be four whole numbers; points with blanks alone have fractions of some digits.
     if all(len(c.partition(",")[2]) < 2 for c in some) and not any(";" in s for s in lines):
@@ -153,9 +220,9 @@ def _decimal_commas(lines: list[str], out: Plain) -> list[str]:
     out.notes.append("numbers are read with decimal commas")
 
     def one(line: str) -> str:
-        if all(_COMMA.fullmatch(c) or c.lstrip("+-").isdigit() for c in words(line)):
-            return line.replace(",", ".")
-        return line
+        if not marked and not all(_COMMA.fullmatch(c) or c.isdigit() for c in line.split()):
+            return line
+        return "".join(c.replace(",", ".") if _COMMA.fullmatch(c) else c for c in pieces(line))
 
     return [one(line) for line in lines]
 
@@ -165,16 +232,21 @@ def _lengths(lines: list[str], out: Plain) -> list[str]:
     made = []
     large = 0
     for line in lines:
-        cells = _cells(line)
+        places = spans(line)
+        cells = [line[a:b].strip('"').strip() for a, b in places]
         own = [_EIGHTHS.fullmatch(c) or _FEET.fullmatch(c) for c in cells]
-        values = [length(c) for c in cells]
-        if not any(own) or any(v is None for v in values):
+        # Between blanks alone a line of words is prose; a named column may hold words, too.
+        words = not any(sign in line for sign in ";\t,")
+        if not any(own) or (words and any(length(c) is None for c in cells)):
             made.append(line)
             continue
         out.inches = True
         large += sum(1 for c in cells if (e := _EIGHTHS.fullmatch(c)) and int(e[3]) >= 12)
         large += sum(1 for c in cells if (e := _EIGHTHS.fullmatch(c)) and int(e[4]) >= 8)
-        made.append(", ".join(repr(v) for v in values))
+        for (a, b), cell, found in reversed(list(zip(places, cells, own, strict=True))):
+            if found:
+                line = line[:a] + repr(length(cell)) + line[b:]
+        made.append(line)
     if out.inches:
         out.notes.append("lengths in feet, inches and eighths are read as inches")
     if large:
@@ -182,8 +254,23 @@ def _lengths(lines: list[str], out: Plain) -> list[str]:
     return made
 
 
+def names_axes(line: str) -> bool:
+    """Whether a line names two columns or more.
+
+    Parameters
+    ----------
+    line
+        A line of a table.
+    """
+    return sum(_axis(n) is not None for n in _cells(line.lstrip("# "))) >= 2
+
+
 def _axis(name: str) -> str | None:
-    return _AXES.get(re.sub(r"[\s-]+", "_", name.strip().lower()).rstrip("s"))
+    name = _UNIT.sub("", name.strip().lower())
+    return _AXES.get(name) or _AXES.get(re.sub(r"[\s-]+", "_", name).rstrip("s"))
+
+
+_UNIT = re.compile(r"\s*[(\[]\s*([^)\]]*?)\s*[)\]]$")
 
 
 def _named(lines: list[str], out: Plain) -> list[str]:
@@ -193,7 +280,12 @@ def _named(lines: list[str], out: Plain) -> list[str]:
         return lines
     names = _cells(lines[first].lstrip("# "))
     axes = [_axis(n) for n in names]
-    plain_names = [n.strip().lower() for n in names]
+    plain_names = [_UNIT.sub("", n.strip().lower()) for n in names]
+    units = {u[1] for n, a in zip(names, axes, strict=True) if a and (u := _UNIT.search(n.lower()))}
+    if len(units) > 1:
+        raise FairingError(
+            f"line {first + 1}: columns in {' and '.join(sorted(units))}: expected one unit"
+        )
     if {"x", "y"} <= set(plain_names):
         # Beside x and y a station is a number of the section.
         axes = [n if n in ("x", "y", "z") else None for n in plain_names]
@@ -205,7 +297,10 @@ def _named(lines: list[str], out: Plain) -> list[str]:
     order = sorted((a, k) for k, a in enumerate(axes) if a)
     station = any(n.startswith("station") for n in plain_names)
     out.stations = station and len(known) == 3
-    if len(known) == len(names) and [k for _, k in order] == list(range(len(names))):
+    out.heights = out.stations and any(n.startswith("buttock") for n in plain_names)
+    in_order = len(known) == len(names) and [k for _, k in order] == list(range(len(names)))
+    out.axes = [at for _, at in order]
+    if in_order and not out.stations:
         return lines
     unused = [n for n, a in zip(names, axes, strict=True) if not a]
     if unused:
@@ -213,18 +308,29 @@ def _named(lines: list[str], out: Plain) -> list[str]:
         out.notes.append(f"{word} {', '.join(f'`{n}`' for n in unused)}: not used")
     made = list(lines[: first + 1])
     made[first] = ", ".join(names[k] for _, k in order)
+    sign = next((s for s in ";\t," if s in lines[first]), None)
     for k in range(first + 1, len(lines)):
-        cells = _cells(lines[k])
-        if not lines[k].strip() or lines[k].startswith("#") or len(cells) != len(names):
-            made.append(lines[k])
+        line = lines[k]
+        if not line.strip() or line.startswith("#"):
+            made.append(line)
             continue
-        chosen = [cells[at] for _, at in order]
-        gone = [c for c in chosen if c in MISSING]
-        if gone and out.stations:
-            made.append(f"# {lines[k]}")
+        # An empty cell at the end is one, too.
+        cells = [c.strip().strip('"').strip() for c in line.split(sign)] if sign else line.split()
+        while len(cells) > len(names) and not cells[-1]:
+            cells.pop()
+        if len(cells) != len(names):
+            if _numbers([c for c in cells if c]):
+                raise FairingError(f"line {k + 1}: expected {len(names)} cells, found {len(cells)}")
+            made.append(line)
+            continue
+        gone = next((at for _, at in order if cells[at] in MISSING), None)
+        if gone is None:
+            made.append(", ".join(cells[at] for _, at in order))
+        elif out.stations:
+            made.append(f"# {line}")
             out.notes.append(f"line {k + 1}: a missing cell, the row is left out")
         else:
-            made.append(", ".join(chosen))
+            raise FairingError(f"line {k + 1}: the cell of `{names[gone]}` is empty")
     return made
 
 

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any
 
 from moldloft.errors import Error, FileError
+from moldloft.language import check_language
 from moldloft.storage import ChangedError, put
-from moldloft.versions import check_language
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.engine import Engine, EngineLostError
 from moldloft.workbench.text import Stored, applied, change_set, decoded, encoded, read

@@ -1,0 +1,87 @@
+"""What pages and pictures of fairings have in common: colours, round numbers, places of teeth."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from moldloft.fairing.spline import Samples, Spline
+
+    Floats = NDArray[np.float64]
+
+__all__ = [
+    "AFTER",
+    "BEFORE",
+    "MOVE",
+    "QUIET",
+    "WRONG",
+    "even_turns",
+    "exaggeration",
+    "round_below",
+]
+
+BEFORE, AFTER, QUIET, WRONG = "#c2571a", "#1f5fa8", "#8a8f98", "#b00020"
+MOVE = "#7a3fa0"
+"""Colours that stay apart for colour-blind eyes and in grey."""
+
+
+def round_below(x: float) -> float:
+    """1, 2 or 5 times a power of ten, at most `x`.
+
+    Parameters
+    ----------
+    x
+        A positive number.
+    """
+    if not (np.isfinite(x) and x > 0):
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(x))
+    return float(next(k * power for k in (5.0, 2.0, 1.0) if k * power <= x * (1 + 1e-12)))
+
+
+def exaggeration(moves: Floats, extent: float) -> float:
+    """A round factor that shows the largest move as about a twentieth of the extent.
+
+    Parameters
+    ----------
+    moves
+        How far points moved.
+    extent
+        The size of what is drawn.
+
+    Examples
+    --------
+    >>> exaggeration(np.array([0.001, 0.0004]), 10.0)
+    500.0
+    """
+    largest = float(np.max(moves, initial=0.0))
+    return max(1.0, round_below(0.05 * extent / largest)) if largest > 0 else 1.0
+
+
+def even_turns(spline: Spline, most: float = 0.05, rows: int = 400) -> Samples:
+    """Samples that follow length and turn alike: enough teeth at a nose.
+
+    Parameters
+    ----------
+    spline
+        A curve.
+    most
+        The turn of the tangent between two samples, in radians.
+    rows
+        The number of samples at most.
+    """
+    fine = spline.samples(24)
+    steps = np.linalg.norm(np.diff(fine.points, axis=0), axis=1)
+    length = float(steps.sum()) or 1.0
+    bend = np.abs(fine.curvature)
+    turn = 0.5 * (bend[1:] + bend[:-1]) * steps
+    way = steps / length / 0.005 + turn / most
+    run = np.concatenate([[0.0], np.cumsum(way)])
+    count = int(min(max(run[-1], 60), rows))
+    keep = np.linspace(0.0, run[-1], count + 1)
+    t = np.interp(keep, run, fine.t)
+    return spline.at(np.clip(t, 0, 1))
