@@ -90,16 +90,33 @@ def to_pyvista(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
     >>> to_pyvista(m).area
     2.0
     """
-    pyvista = _module("pyvista", "pyvista")
     mesh = _panels(source, tags)
-    triangle, triangles, quads = _split(mesh)
-    threes = np.insert(triangles, 0, 3, axis=1).ravel()
-    fours = np.insert(quads, 0, 4, axis=1).ravel()
-    data = pyvista.PolyData(mesh.vertices, np.concatenate([threes, fours]))
+    data = polydata(mesh.vertices, mesh.faces)
+    triangle, _, _ = _split(mesh)
     numbers = _patch_numbers(mesh)
     data.cell_data["patch"] = np.concatenate([numbers[triangle], numbers[~triangle]])
     data.field_data["patches"] = [patch.name for patch in mesh.patches]
     return data
+
+
+def polydata(points: NDArray[np.float64], faces: NDArray[np.uint32]) -> Any:
+    """Points, and faces between them where there are any, as ``pyvista.PolyData``.
+
+    Parameters
+    ----------
+    points
+        ``(n, 3)``.
+    faces
+        Four corners of each, a triangle repeats its last: ``(m, 4)``.
+    """
+    pyvista = _module("pyvista", "pyvista")
+    if not len(faces):
+        return pyvista.PolyData(points)
+    corners = faces.astype(np.int64)
+    triangle = corners[:, 2] == corners[:, 3]
+    threes = np.insert(corners[triangle][:, :3], 0, 3, axis=1).ravel()
+    fours = np.insert(corners[~triangle], 0, 4, axis=1).ravel()
+    return pyvista.PolyData(points, np.concatenate([threes, fours]))
 
 
 def to_trimesh(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
@@ -290,6 +307,17 @@ def to_pandas(source: Any) -> Any:
             return pandas.DataFrame(columns=["value", "default", "low", "high", "whole"])
         return pandas.DataFrame(_columns(rows)).set_index("name")
     return pandas.DataFrame(_columns(source.rows))
+
+
+def frame(columns: Mapping[str, Any]) -> Any:
+    """Columns as a ``pandas.DataFrame``.
+
+    Parameters
+    ----------
+    columns
+        Arrays of one length by name.
+    """
+    return _module("pandas", "pandas").DataFrame(dict(columns))
 
 
 def to_xarray(source: Any, *, along: str | None = None) -> Any:

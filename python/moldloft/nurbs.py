@@ -153,7 +153,12 @@ class Nurbs:
         >>> print(m["l"].to_nurbs().to_sdl("copy"))
         NURBCurve copy({{0, 0, 0}, {1, 2, 3}}, 1, {0, 0, 1, 1});
         """
-        points = _braced([_braced(map(_plain, p)) for p in self.points.reshape(-1, 3)])
+        return self._statement(name, {})
+
+    def _statement(self, name: str, points_of: Mapping[int, str]) -> str:
+        """The statement; some control points, by their number, are objects of these names."""
+        flat = self.points.reshape(-1, 3)
+        points = _braced([points_of.get(k) or _braced(map(_plain, p)) for k, p in enumerate(flat)])
         weights = "" if self.weights is None else _braced(map(_plain, self.weights.ravel()))
         knots = [_braced(map(_plain, k)) for k in self.knots]
         if self.dimension == 1:

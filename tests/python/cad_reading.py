@@ -26,8 +26,8 @@ class Found:
     shape: Any = None
 
 
-def read(path: Path, unit: float = 1.0) -> Found:
-    """Reads a STEP or IGES file, in units of so many metres."""
+def read(path: Path, unit: float = 1.0, accuracy: float = 1e-10) -> Found:
+    """Reads a STEP or IGES file, in units of so many metres; areas to a relative accuracy."""
     from OCP.TCollection import TCollection_ExtendedString
     from OCP.TDocStd import TDocStd_Document
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
@@ -50,10 +50,10 @@ def read(path: Path, unit: float = 1.0) -> Found:
     status = reader.ReadFile(str(path))
     assert str(status).endswith("RetDone"), status
     assert reader.Transfer(document)
-    return _found(document)
+    return _found(document, accuracy)
 
 
-def _found(document: Any) -> Found:
+def _found(document: Any, accuracy: float) -> Found:
     from OCP.BRep import BRep_Builder, BRep_Tool
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.BRepGProp import BRepGProp
@@ -84,7 +84,7 @@ def _found(document: Any) -> Found:
     area = volume = 0.0
     for face in parts[TopAbs_FACE]:
         figures = GProp_GProps()
-        BRepGProp.SurfaceProperties_s(face, figures, 1e-10)
+        BRepGProp.SurfaceProperties_s(face, figures, accuracy)
         area += figures.Mass()
     for solid in parts[TopAbs_SOLID]:
         figures = GProp_GProps()

@@ -11,7 +11,7 @@ from types import ModuleType
 
 from moldloft.errors import Error
 
-__all__ = ["needed"]
+__all__ = ["identifier", "needed"]
 
 
 def needed(module: str, package: str, purpose: str) -> ModuleType:
@@ -32,3 +32,25 @@ def needed(module: str, package: str, purpose: str) -> ModuleType:
         raise Error(
             f"{purpose} needs the package {package}: pip install 'moldloft[cad]' ({error})"
         ) from error
+
+
+def identifier(label: str, taken: set[str]) -> str:
+    """A name that the language takes, used once.
+
+    Parameters
+    ----------
+    label
+        The name that is wished for.
+    taken
+        The names in use; the new one is added.
+    """
+    base = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in label)
+    base = base.strip("_") or "face"
+    if not (base[0].isalpha()):
+        base = "f_" + base
+    name, k = base, 1
+    while name in taken:
+        k += 1
+        name = f"{base}_{k}"
+    taken.add(name)
+    return name

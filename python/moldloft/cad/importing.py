@@ -5,6 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from moldloft.cad.joining import joins
 from moldloft.cad.occt import Imported, ImportedFace, read
 from moldloft.errors import Error
 from moldloft.nurbs import Nurbs, _braced, _plain, _wrapped
@@ -27,7 +30,8 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     """A CAD file as a program, and what is doubtful or left out.
 
     A face that is all of its surface becomes a ``NURBSurf``; others a hidden ``NURBSurf``, snakes
-    along their loops and a ``TrimSurf``. Curves that bound no face become ``NURBCurve``.
+    along their loops and a ``TrimSurf``. An edge that faces share in the file is a ``Join``. Curves
+    that bound no face become ``NURBCurve``.
 
     Parameters
     ----------
@@ -47,7 +51,9 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     if path.suffix.lower() not in ENDINGS:
         raise Error(f"`{path}` is no CAD file by its ending; expected one of: {', '.join(ENDINGS)}")
     found = read(path, UNITS[units])
-    return _text(found, path.name, units), found.remarks
+    # Joins may add remarks.
+    text = _text(found, path.name, units)
+    return text, found.remarks
 
 
 def load_cad(path: str | os.PathLike[str], *, units: str = "m") -> Model:
@@ -67,11 +73,37 @@ def _text(found: Imported, name: str, units: str) -> str:
     taken = {face.name for face in found.faces} | set(found.curves)
     for face in found.faces:
         if face.natural:
-            lines.append(face.surface.to_sdl(face.name))
+            lines += _whole(face, taken)
         else:
             lines += _trimmed(face, taken)
+    lines += joins(found, taken)
     lines += [curve.to_sdl(label) for label, curve in found.curves.items()]
     return "\n".join(lines) + "\n"
+
+
+_POLE = 1e-9
+"""Control points of an edge within this share of the size are one point."""
+
+
+def _whole(face: ImportedFace, taken: set[str]) -> list[str]:
+    """A surface; an edge that is one point has one point object, by which panels know the pole."""
+    points = face.surface.points
+    near = _POLE * float(np.ptp(points.reshape(-1, 3), axis=0).max())
+    numbers = np.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
+    lines: list[str] = []
+    named: dict[int, str] = {}
+    for edge in (numbers[:, 0], numbers[-1], numbers[:, -1], numbers[0]):
+        places = points.reshape(-1, 3)[edge]
+        if np.ptp(places, axis=0).max() > near:
+            continue
+        pole = f"{face.name}_pole{len(lines) + 1}"
+        while pole in taken:
+            pole += "_"
+        taken.add(pole)
+        at = ", ".join(map(_plain, places.mean(axis=0)))
+        lines.append(f"AbsPoint {pole}({at}, visible = 0);")
+        named |= dict.fromkeys(edge.tolist(), pole)
+    return [*lines, face.surface._statement(face.name, named)]
 
 
 def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from moldloft.cad import needed
+from moldloft.cad import identifier, needed
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs
 from moldloft.storage import read_bytes
@@ -201,6 +201,7 @@ def _collect(document: Any, found: Imported) -> None:
     names = _names(document)
     taken: set[str] = set()
     edges: Any = None
+    known = 0
     for shape in _free(document):
         originals = _unique(shape, TopAbs_FACE)
         convert = BRepBuilderAPI_NurbsConvert(shape, True)
@@ -209,35 +210,24 @@ def _collect(document: Any, found: Imported) -> None:
             label = _called(names, original) or f"face{len(found.faces) + 1}"
             face = TopoDS.Face(convert.ModifiedShape(original))
             try:
-                made = _face(face, edges, _identifier(label, taken))
+                made = _face(face, edges, identifier(label, taken))
             except Error as error:
                 found.remarks.append(f"face `{label}` is left out: {error}")
                 continue
             made.reversed = face.Orientation() == TopAbs_REVERSED
+            # Numbers of edges are those of all shapes of the file.
+            made.loops = [[(n + known, back, t) for n, back, t in own] for own in made.loops]
             found.faces.append(made)
+        known += edges.Extent()
         alone = _loose_edges(shape)
         for edge in alone:
             label = _called(names, edge) or f"curve{len(found.curves) + 1}"
             curve = _space_curve(edge)
             if curve is not None:
-                found.curves[_identifier(label, taken)] = curve
+                found.curves[identifier(label, taken)] = curve
     stated = found.__dict__.pop("_stated", None)
     if stated is not None and stated > len(found.faces):
         found.remarks.append(f"{stated} faces stand in the file, {len(found.faces)} could be read")
-
-
-def _identifier(label: str, taken: set[str]) -> str:
-    """A name that the language takes, used once."""
-    base = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in label)
-    base = base.strip("_") or "face"
-    if not (base[0].isalpha()):
-        base = "f_" + base
-    name, k = base, 1
-    while name in taken:
-        k += 1
-        name = f"{base}_{k}"
-    taken.add(name)
-    return name
 
 
 def _map(shape: Any, kind: Any) -> Any:
@@ -387,16 +377,35 @@ def _face(face: Any, edges: Any, name: str) -> ImportedFace:
             number = edges.FindIndex(edge)
             cycle.append((number, edge.Orientation() == TopAbs_REVERSED, trace))
         loops.append(cycle)
-    on_edge = [
-        any(
-            np.ptp(trace.points[:, k]) < 1e-9
-            and min(abs(trace.points[0, k] - e) for e in (0, 1)) < 1e-9
-            for k in (0, 1)
-        )
-        for cycle in loops
-        for _, _, trace in cycle
-    ]
-    return ImportedFace(name, made, loops, bool(on_edge) and all(on_edge), False)
+    traces = [trace for cycle in loops for _, _, trace in cycle]
+    natural = bool(traces) and all(border(trace) for trace in traces)
+    return ImportedFace(name, made, loops, natural, False)
+
+
+def border(trace: Nurbs) -> str:
+    """The edge of the parameters that a curve in them runs along, such as ``u0``; or nothing.
+
+    Parameters
+    ----------
+    trace
+        The curve, in (u, v, 0).
+    """
+    for k, letter in enumerate("uv"):
+        for end in (0, 1):
+            if np.abs(trace.points[:, k] - end).max() < 1e-9:
+                return f"{letter}{end}"
+    return ""
+
+
+def is_whole(trace: Nurbs) -> bool:
+    """Whether a curve along an edge of the parameters runs along all of it.
+
+    Parameters
+    ----------
+    trace
+        The curve, in (u, v, 0).
+    """
+    return bool(abs(np.ptp(trace.points[[0, -1]], axis=0).max() - 1) < 1e-9)
 
 
 def _surface(surface: Any) -> Nurbs:

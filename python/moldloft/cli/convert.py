@@ -1,4 +1,4 @@
-"""``moldloft convert``: programs, model files, offsets and CAD files into every other format."""
+"""``moldloft convert``: programs, offsets, CAD files and drawings into every other format."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--units",
         choices=["m", "cm", "mm", "ft", "in"],
         default="m",
-        help="of STEP and IGES files: the model's unit, into which lengths are converted (m)",
+        help="of CAD files and drawings: the model's unit, into which lengths are converted (m)",
     )
     parser.add_argument(
         "--curves",
@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     if target is not None:
         check_not_source(target, [options.model])
     named = ending(target) if target else ""
-    if options.model.lower().endswith((".step", ".stp", ".iges", ".igs")):
+    if options.model.lower().endswith((".step", ".stp", ".iges", ".igs", ".dxf", ".svg")):
         return _from_cad(options, target, format_named(options.to or named or "sdl"))
     if options.model.lower().endswith(".csv"):
         return _from_offsets(options, target, format_named(options.to or named or "sdl"))
@@ -80,10 +80,13 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> int:
-    from moldloft.cad.importing import program
     from moldloft.files import Output, commit, produce
     from moldloft.loading import loads
 
+    if options.model.lower().endswith((".dxf", ".svg")):
+        from moldloft.overlays.reading import program
+    else:
+        from moldloft.cad.importing import program
     text, remarks = program(options.model, units=options.units)
     for remark in remarks:
         print(f"warning: {options.model}: {remark}", file=sys.stderr)

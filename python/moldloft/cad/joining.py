@@ -1,0 +1,113 @@
+"""Edges that faces of a CAD file share, as joins of the surfaces that the faces become."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from moldloft.cad.occt import Imported, ImportedFace, border, is_whole
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["joins"]
+
+_PLACES = 65
+"""Places at which two sides are compared, as ``Join`` does it."""
+
+_ROUNDING = 1e-9
+"""The least tolerance of a join, as a share of the model's size."""
+
+_PARTED = 1e-3
+"""Sides farther apart than this share of their length are not joined."""
+
+
+@dataclass
+class _Side:
+    """A side of a face along an edge."""
+
+    name: str
+    """What the program calls it."""
+    places: Floats
+    """Places along it at even parameters."""
+
+
+def joins(found: Imported, taken: set[str]) -> list[str]:
+    """Statements that join the sides along each shared edge; what is not joined is a remark.
+
+    Parameters
+    ----------
+    found
+        What the file holds.
+    taken
+        The names in use.
+    """
+    shared: dict[int, list[_Side | None]] = {}
+    for face in found.faces:
+        for c, cycle in enumerate(face.loops):
+            for k, (number, _, _) in enumerate(cycle):
+                shared.setdefault(number, []).append(_side(face, c, k))
+    lost = [sides for sides in shared.values() if len(sides) > 1 and None in sides]
+    lines: list[str] = []
+    nets = [face.surface.points.reshape(-1, 3) for face in found.faces]
+    size = float(np.ptp(np.concatenate(nets), axis=0).max()) if nets else 0.0
+    apart = 0.0
+    left = 0
+    for sides in shared.values():
+        for one, other in pairwise(sides):
+            if one is None or other is None:
+                continue
+            gap = min(_gap(one.places, other.places), _gap(one.places, other.places[::-1]))
+            length = float(np.linalg.norm(np.diff(one.places, axis=0), axis=1).sum())
+            if one.name == other.name or length == 0:
+                continue
+            if gap > _PARTED * length:
+                left += 1
+                apart = max(apart, gap)
+                continue
+            name = f"join{len(lines) + 1}"
+            while name in taken:
+                name += "_"
+            tolerance = _rounded_up(max(2 * gap, _ROUNDING * size))
+            lines.append(f"Join {name}({one.name}, {other.name}, tolerance = {tolerance});")
+    if lost:
+        found.remarks.append(
+            f"{len(lost)} shared edges are not joined: they are parts of edges of their surfaces"
+        )
+    if left:
+        found.remarks.append(
+            f"{left} shared edges are not joined: their faces run along them differently, or are "
+            f"up to {apart:.3g} apart"
+        )
+    return lines
+
+
+def _side(face: ImportedFace, cycle: int, k: int) -> _Side | None:
+    """A side as it is named in the program; None for a part of an edge of a whole surface."""
+    _, backwards, trace = face.loops[cycle][k]
+    t = np.linspace(0, 1, _PLACES)
+    if face.natural:
+        if not is_whole(trace):
+            return None
+        edge = border(trace)
+        held = np.full(_PLACES, float(edge[1]))
+        at = (held, t) if edge[0] == "u" else (t, held)
+        return _Side(f"{face.name}.{edge}", face.surface(*at))
+    u, v, _ = trace(t[::-1] if backwards else t).T
+    return _Side(f"{face.name}_s{cycle}_{k}", face.surface(np.clip(u, 0, 1), np.clip(v, 0, 1)))
+
+
+def _gap(one: Floats, other: Floats) -> float:
+    return float(np.linalg.norm(one - other, axis=1).max())
+
+
+def _rounded_up(x: float) -> str:
+    """A number of two digits that is not smaller."""
+    exponent = math.floor(math.log10(x)) - 1
+    return f"{math.ceil(x / 10.0**exponent)}e{exponent}"

@@ -1,0 +1,165 @@
+"""Files of other programs as overlays, by their endings."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from moldloft import _core
+from moldloft.errors import Error, FileError, FormatError
+from moldloft.overlays.overlay import Overlay
+from moldloft.storage import read_bytes
+
+if TYPE_CHECKING:
+    Reader = Callable[[str, bytes], tuple[Overlay, float | None]]
+
+__all__ = ["ENDINGS", "METRES", "program", "read"]
+
+METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
+"""Units of length in metres."""
+
+_MESHES = {
+    "stl": "triangles, text or binary",
+    "obj": "vertices and faces",
+    "ply": "points and faces, text or binary",
+    "msh": "nodes and surface elements of Gmsh",
+    "vtk": "points and surface elements of VTK's old format",
+    "vtu": "points and surface elements of VTK's XML",
+}
+"""By meshio."""
+
+_PANELS = {
+    "gdf": "panels of WAMIT, low order",
+    "mar": "panels of Nemoh",
+    "dat": "panels of Nemoh",
+    "pnl": "panels of HAMS",
+    "hst": "panels of HydroStar",
+}
+"""By Capytaine; bodies with planes of symmetry are read whole."""
+
+_POINTS = {
+    "xyz": "points, three coordinates to a line",
+    "txt": "points, two or three coordinates to a line",
+    "csv": "points, two or three coordinates to a line, or a table of offsets",
+    "pts": "points, three coordinates to a line",
+}
+_DRAWINGS = {
+    "dxf": "lines, arcs, polylines, ellipses, splines, points and faces",
+    "svg": "paths and basic shapes",
+}
+
+ENDINGS = {**_MESHES, **_PANELS, **_POINTS, **_DRAWINGS}
+"""The endings of the files that are read, and what of them."""
+
+
+def read(path: str | os.PathLike[str], *, units: str = "", file_units: str = "") -> Overlay:
+    """A file of another program as reference geometry.
+
+    Curves of DXF and SVG files are exact NURBS in the order of the file; :meth:`Overlay.to_sdl`
+    makes them objects of a model. SVG's y runs down and is turned to run up.
+
+    Parameters
+    ----------
+    path
+        The file; what is read is in :data:`ENDINGS`.
+    units
+        The unit of length of the model, m, cm, mm, ft or in: lengths are converted into it. By
+        default numbers stay as they are in the file.
+    file_units
+        The unit of the file's numbers. DXF and SVG files may state it themselves; others do not,
+        so with ``units`` it is needed for them.
+
+    Raises
+    ------
+    FileError
+        When the file cannot be read, is not what its ending says, or cut short: the message says
+        where.
+    """
+    path = Path(path)
+    ending = path.suffix.lower().lstrip(".")
+    if ending not in ENDINGS:
+        known = ", ".join(ENDINGS)
+        raise Error(f"`{path.name}` is not an overlay by its ending; expected one of: {known}")
+    for unit in (units, file_units):
+        if unit and unit not in METRES:
+            raise Error(f"unknown unit `{unit}`; expected one of: {', '.join(METRES)}")
+    data = read_bytes(path)
+    try:
+        found, stated = _read(path, ending, data)
+    except (FileError, FormatError) as error:
+        raise FileError(f"cannot read `{path}`: {error}") from error
+    if not len(found.points) and not found.curves:
+        raise FileError(f"cannot read `{path}`: it holds no points, faces or curves")
+    if not units:
+        return found
+    metres = METRES[file_units] if file_units else stated
+    if metres is None:
+        raise Error(
+            f"`{path.name}` does not say what unit its numbers are in\n"
+            'help: say it: file_units = "mm"'
+        )
+    return found.scaled(metres / METRES[units])
+
+
+def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, list[str]]:
+    """The curves of a drawing (DXF, SVG) as a program, and what is doubtful or left out.
+
+    Parameters
+    ----------
+    path
+        The file.
+    units
+        The unit of length of the model, into which lengths are converted where the file states its
+        own; else its numbers stay as they are.
+
+    Raises
+    ------
+    FileError
+        When the file cannot be read or holds no curve.
+    """
+    path = Path(path)
+    found = read(path)
+    remarks = list(found.remarks)
+    _, metres = _read(path, path.suffix.lower().lstrip("."), read_bytes(path))
+    if metres is None:
+        remarks.append(f"the file names no unit of length; its numbers are taken as {units}")
+    else:
+        found = found.scaled(metres / METRES[units])
+    if not found.curves:
+        raise FileError(f"`{path}` holds no curve; points and faces are overlays only")
+    return f'# {path.name}\nModel info(units = "{units}");\n{found.to_sdl()}', remarks
+
+
+def _read(path: Path, ending: str, data: bytes) -> tuple[Overlay, float | None]:
+    """The overlay, and the unit that the file states in metres."""
+    if ending == "dxf":
+        from moldloft.overlays.dxf import parse as parse_dxf
+
+        return parse_dxf(path.name, data)
+    if ending == "svg":
+        from moldloft.overlays.svg import parse as parse_svg
+
+        return parse_svg(path.name, data)
+    if ending in _POINTS:
+        return _points(path.name, ending, data), None
+    from moldloft.overlays.meshes import mesh, panels
+
+    return (mesh if ending in _MESHES else panels)(path, ending), None
+
+
+def _points(name: str, ending: str, data: bytes) -> Overlay:
+    if ending == "csv":
+        import numpy as np
+
+        from moldloft.offsets import parse
+
+        head = data[:4096].decode("utf-8", "replace").lower()
+        if "station" in head and "waterline" in head:
+            table = parse(data.decode("utf-8", "replace"), name)
+            all_rows = [(x, y, z) for x, own in table.stations.items() for z, y in own]
+            return Overlay(name, np.array(all_rows, dtype=np.float64))
+    rows, _ = _core.read_points(data)
+    return replace(Overlay(name), points=rows)
