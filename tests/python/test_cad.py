@@ -59,6 +59,41 @@ def test_faces_come_out_of_iges_as_they_are(case: Case, tmp_path: Path) -> None:
     assert found.area == pytest.approx(case.area, rel=3e-6)
 
 
+QUICK = ("gallery/spar.sdl", "gallery/planing.sdl", "sailboat/hull.sdl")
+METRES = {"m": 1.0, "mm": 0.001, "cm": 0.01, "ft": 0.3048, "in": 0.0254}
+
+
+def examples() -> list[str]:
+    """Examples of surfaces; all of them, but the propeller (minutes), in the long run."""
+    if ROUNDS == 1:
+        return list(QUICK)
+    files = sorted((ROOT / "examples").glob("*/*.sdl"))
+    surfaces = [f for f in files if "SetBody" not in f.read_text(encoding="utf-8")]
+    names = [f.relative_to(ROOT / "examples").as_posix() for f in surfaces]
+    return [n for n in names if n.split("/")[0] not in ("implicit", "propeller", "sketch")]
+
+
+@pytest.mark.parametrize("name", examples())
+def test_examples_have_their_areas_in_step_and_iges(name: str, tmp_path: Path) -> None:
+    pytest.importorskip("OCP")
+    from cad_reading import read
+
+    model = moldloft.load(ROOT / "examples" / name)
+    surfaces = dict.fromkeys(p.name for p in model.mesh().patches)
+    unit = METRES[moldloft._core.length_unit(model._document)[0]]
+    area = sum(model[n].area for n in surfaces) * unit**2 * 2 ** len(model.symmetry)
+    (step,) = model.write(tmp_path / "model.step")
+    (iges,) = model.write(tmp_path / "model.igs")
+    text = step.read_text()
+    sense(text)
+    for path in (step, iges):
+        found = read(path)
+        assert found.valid and found.faces == text.count("=ADVANCED_FACE(")
+        assert found.area == pytest.approx(area, rel=1e-6)
+        assert found.colours
+    assert read(step).closed == text.count("=CLOSED_SHELL(")
+
+
 def sense(text: str) -> None:
     """What OCCT heals without a word: undefined entities, and edges of closed shells."""
     plain = re.sub(r"'(?:[^']|'')*'", "''", text)
