@@ -4,7 +4,7 @@
 ``wheel``  the page (if npm is there), the language server, and the wheel with all three inside
 ``editor`` the extension for Visual Studio Code of this platform, with the language server inside
 ``sdist``  the source distribution, the notices of bundled software and the bill of materials
-``smoke``  installs the wheel into an empty environment, without Rust and Node.js on the path, and
+``smoke``  installs the wheel into an empty environment (no Rust, Node.js or make on the path) and
            uses it: command, workbench, language server, display in notebooks, each extra
 
 ``MOLDLOFT_PROFILE=dev`` tries the steps with development builds, which take minutes less.
@@ -347,10 +347,11 @@ def smoke() -> None:
         scripts = home / "env" / ("Scripts" if WINDOWS else "bin")
         python = scripts / f"python{EXE}"
         run(python, "-m", "pip", "install", "--quiet", newest)
-        paths = [str(scripts)]
-        if not WINDOWS:
-            paths += ["/usr/bin", "/bin"]
-        clean = {**os.environ, "PATH": os.pathsep.join(paths)}
+        # Nothing but the environment: compilers, Node.js and make are not found.
+        clean = {**os.environ, "PATH": str(scripts)}
+        for tool in ("cargo", "rustc", "node", "npm", "make", "cc"):
+            if shutil.which(tool, path=clean["PATH"]):
+                raise SystemExit(f"{tool} is on the path: this is no empty environment")
         clean.pop("PYTHONPATH", None)
         command = scripts / f"moldloft{EXE}"
         run(command, "--version", cwd=home, env=clean)

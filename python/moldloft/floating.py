@@ -279,6 +279,15 @@ class Floating:
                     answer["derivatives"].pop(name, None)
                     answer["bounds"].pop(name, None)
             answer["units"] = units if density is None else units.complete()
+            # The core multiplies masses by gravity in the model's own units.
+            force = answer["units"].force_scale()
+            for name in ("weight", "righting_moment"):
+                if answer.get(name) is not None:
+                    answer[name] *= force
+                    if name in answer["bounds"]:
+                        answer["bounds"][name] *= force
+                    for by_name in answer["derivatives"].get(name, {}):
+                        answer["derivatives"][name][by_name] *= force
         return [Hydrostatics(**answer) for answer in answers]
 
     @property

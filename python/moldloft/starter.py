@@ -3,7 +3,7 @@
 STARTER = """\
 # {name}: half of a small boat, from stem (x = 0) to transom; the keel lies in y = 0.
 # Try:  moldloft build {file} --set beam=1.4 --to stl png
-Model info(symmetry = "y");
+Model info(symmetry = "y", units = "m t");
 
 param float length = 4.0 in [2, 8];
 param float beam = 1.2 in [0.8, 2];

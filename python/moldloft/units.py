@@ -130,6 +130,18 @@ class Units:
         force = self.force or ("N" if metric else "lbf")
         return Units(self.length, mass, force, self.angle)
 
+    def force_scale(self) -> float:
+        """A mass times an acceleration in these units, in the unit of force; 1 where one is missing.
+
+        Examples
+        --------
+        >>> Units.parse("m t kN").force_scale(), Units.parse("m t N").force_scale()
+        (1.0, 1000.0)
+        """
+        if not (self.length and self.mass and self.force):
+            return 1.0
+        return self.kilograms * self.metres / _FORCES[self.force]
+
     def water(self, density: float | str | None) -> float | None:
         """A density in these units: of a name in :data:`WATERS`, or the number itself.
 

@@ -234,3 +234,27 @@ def test_on_the_command_line(cli, model_file, tmp_path):
     cli("hydro", path, "--displacement", 1e9, status=1)
     cli("hydro", path, "--table", "0.5,2.5,1", status=2)
     cli("hydro", path, "--cg", "1,2", status=2)
+
+
+@pytest.mark.parametrize(
+    ("units", "kilograms", "newtons", "metres"),
+    [
+        ("m kg", 1.0, 1.0, 1.0),
+        ("m t", 1000.0, 1.0, 1.0),
+        ("m t kN", 1000.0, 1000.0, 1.0),
+        ("cm kg", 1.0, 1.0, 0.01),
+        ("ft lb", 0.45359237, 4.4482216152605, 0.3048),
+        ("ft lb kN", 0.45359237, 1000.0, 0.3048),
+    ],
+)
+def test_righting_moments_are_in_the_unit_that_is_stated(
+    units: str, kilograms: float, newtons: float, metres: float
+) -> None:
+    """Displacement times standard gravity times the arm, by SI."""
+    from moldloft.starter import BOX
+
+    m = moldloft.loads(f'Model info(units = "{units}");\n{BOX}')
+    mass = 0.8 * m.hydrostatics(density="salt").displacement
+    row = m.righting_curve([0.1], mass, cg=(0, 0, 0.2), density="salt").rows[0]
+    moment = mass * kilograms * 9.80665 * row.gz * metres
+    assert row.righting_moment * newtons * metres == pytest.approx(moment, rel=1e-9)

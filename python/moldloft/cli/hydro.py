@@ -164,9 +164,15 @@ def _list(text: str) -> list[float]:
 
 
 def _range(text: str) -> list[float]:
-    low, high, count = _numbers(3)(text)
-    if count != int(count) or not 2 <= count <= 10_000:
-        raise argparse.ArgumentTypeError(f"`{text}`: the count is not a whole number 2 to 10000")
+    try:
+        low, high, count = _numbers(3)(text)
+    except argparse.ArgumentTypeError:
+        count = math.nan
+    if not 2 <= count <= 10_000 or count != int(count):
+        raise argparse.ArgumentTypeError(
+            f"`{text}` is not LOW,HIGH,N: the least, the greatest, and how many (a whole number, 2 "
+            "to 10000), such as 0,60,13"
+        )
     n = int(count)
     return [low + (high - low) * k / (n - 1) for k in range(n)]
 
