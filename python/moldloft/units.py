@@ -131,7 +131,7 @@ class Units:
         return Units(self.length, mass, force, self.angle)
 
     def force_scale(self) -> float:
-        """A mass times an acceleration in these units, in the unit of force; 1 where one is missing.
+        """A mass times an acceleration of these units, in that of force; 1 where one is missing.
 
         Examples
         --------
