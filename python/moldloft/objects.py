@@ -534,10 +534,10 @@ class ContourLine(NamedTuple):
 class Contours(Object):
     """A family of sections: stations, waterlines, buttocks, and those by cylinders and half-planes.
 
-    ``positions``, ``lengths`` and ``areas`` are arrays with a number for each section; in expressions they have
-    derivatives: ``m.derivative("stations.areas", "beam")``. A section is all that its surfaces and bodies leave on it,
-    with the images in planes of symmetry that fall on the same section. An open section is closed by a straight chord
-    for its area, which is warned of.
+    ``positions``, ``lengths`` and ``areas`` are arrays with a number for each section; in
+    expressions they have derivatives: ``m.derivative("stations.areas", "beam")``. A section is all
+    that its surfaces and bodies leave on it, with the images in planes of symmetry that fall on the
+    same section. An open section is closed by a straight chord for its area, which is warned of.
 
     Examples
     --------

@@ -1,14 +1,15 @@
-"""Sections of surfaces and bodies against closed forms, SciPy's roots and quadrature, and differences."""
+"""Sections of surfaces and bodies against closed forms, SciPy, and differences."""
 
 from __future__ import annotations
 
 import os
 
-import moldloft
 import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
+
+import moldloft
 
 SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
 
@@ -46,8 +47,9 @@ def test_a_torus_has_a_hole_between_its_circles() -> None:
     m = moldloft.loads("""
         AbsPoint A(2, 0, 0); AbsPoint B(3, 0, 1); AbsPoint C(4, 0, 0); AbsPoint D(3, 0, -1);
         AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z, visible = 0);
-        Arc upper(A, B, C); Arc lower(C, D, A); PolyCurve ring({upper, lower}); RevSurf torus(ring, axis);
-        ZContours z(0, 2, 0, 0.3); YContours y(0, 0, 0, 1); CylinderContours c(axis, 1, 1, 1.5, 1.5);
+        Arc upper(A, B, C); Arc lower(C, D, A); PolyCurve ring({upper, lower});
+        RevSurf torus(ring, axis); ZContours z(0, 2, 0, 0.3); YContours y(0, 0, 0, 1);
+        CylinderContours c(axis, 1, 1, 1.5, 1.5);
         AngleContours a(axis, 0, 3, 0.2, 1);""")
     z = np.array([0, 0.3, 0.6])
     np.testing.assert_allclose(m["z"].areas, 4 * np.pi * 3 * np.sqrt(1 - z**2), rtol=1e-8)
@@ -68,7 +70,9 @@ def test_prisms_of_polygons(seed: int) -> None:
     radius = rng.uniform(0.6, 2, n)
     x, y = radius * np.cos(angle), radius * np.sin(angle)
     points = "".join(
-        f"AbsPoint A{k}({x[k]:.17g}*w, {y[k]:.17g}, 0); AbsPoint B{k}({x[k]:.17g}*w, {y[k]:.17g}, 2);" for k in range(n)
+        f"AbsPoint A{k}({x[k]:.17g}*w, {y[k]:.17g}, 0);"
+        f"AbsPoint B{k}({x[k]:.17g}*w, {y[k]:.17g}, 2);"
+        for k in range(n)
     )
     ring = [", ".join(f"{side}{k % n}" for k in range(n + 1)) for side in "AB"]
     m = moldloft.loads(f"""param float w = 1; {points}
@@ -96,15 +100,14 @@ def test_half_hulls_have_the_area_of_both_sides_up_to_the_chord() -> None:
     np.testing.assert_allclose(areas, 2 * beam, rtol=1e-12)
     np.testing.assert_allclose(m["x"].lengths, 2 * np.hypot(beam, 2), rtol=1e-12)
     # A buttock is on one side alone.
-    ends = [np.array([0, 0.5 / 2]), np.array([9, 0.5])]
-    del ends
     lines = m["y"].sections[0]
     assert len(lines) == 1 and np.allclose(lines[0].points[:, 1], 0.5)
 
 
 def test_bodies_and_surfaces_are_chosen_by_name() -> None:
     m = moldloft.loads("""
-        param float a = 2; set block = cuboid({0, 0, 0}, {a, 3, 1}); set hole = cuboid({0.5, 1, -1}, {1, 2, 2});
+        param float a = 2; set block = cuboid({0, 0, 0}, {a, 3, 1});
+        set hole = cuboid({0.5, 1, -1}, {1, 2, 2});
         SetBody body(block - hole); SetBody plug(hole);
         AbsPoint P(0, 0, 0.5); AbsPoint Q(9, 0, 0.5); AbsPoint R(0, 9, 0.2); AbsPoint T(9, 9, 0.2);
         Line p(P, Q); Line q(R, T); RuledSurf sheet(p, q);
@@ -117,9 +120,13 @@ def test_bodies_and_surfaces_are_chosen_by_name() -> None:
     np.testing.assert_allclose(m.derivative("z.areas", "a"), [3], rtol=1e-9)
     np.testing.assert_allclose(m["x"].lengths, [8 + np.hypot(9, 0.3)], rtol=1e-12)
     with pytest.raises(moldloft.Error, match="SetBody"):
-        moldloft.loads("set s = sphere({0, 0, 0}, 1); ZContours z(0, 0, 0, 1, surfaces = {s});").check()
+        moldloft.loads(
+            "set s = sphere({0, 0, 0}, 1); ZContours z(0, 0, 0, 1, surfaces = {s});"
+        ).check()
     with pytest.raises(moldloft.Error):
-        moldloft.loads("AbsPoint A(0, 0, 0); ZContours z(0, 0, 0, 1, surfaces = {A}); print(z.lengths);").check()
+        moldloft.loads(
+            "AbsPoint A(0, 0, 0); ZContours z(0, 0, 0, 1, surfaces = {A}); print(z.lengths);"
+        ).check()
 
 
 @pytest.mark.parametrize("seed", range(100 if SOAK else 8))
@@ -136,7 +143,9 @@ def test_lofts_against_roots_and_quadrature(seed: int) -> None:
         rows.append(f"BCurve M{k}({{P{k}0, P{k}1, P{k}2}}, 2);")
     station = rng.uniform(2, 7)
     m = moldloft.loads(
-        "param float s = 1;" + "".join(rows) + f"BLoftSurf hull({{M0, M1, M2, M3}}, 3); XContours c(0, 0, {station:.17g}, 1);"
+        "param float s = 1;"
+        + "".join(rows)
+        + f"BLoftSurf hull({{M0, M1, M2, M3}}, 3); XContours c(0, 0, {station:.17g}, 1);"
     )
     hull = m["hull"]
 
@@ -149,7 +158,9 @@ def test_lofts_against_roots_and_quadrature(seed: int) -> None:
         d = (-at(v + 2 * h) + 8 * at(v + h) - 8 * at(v - h) + at(v - 2 * h)) / (12 * h)
         return float(np.linalg.norm(d))
 
-    length = quad(speed, 0, 1, epsabs=1e-9, epsrel=1e-9, points=[0.5])[0] if hull(0.5, 0.5)[0] else 0
+    length = (
+        quad(speed, 0, 1, epsabs=1e-9, epsrel=1e-9, points=[0.5])[0] if hull(0.5, 0.5)[0] else 0
+    )
     np.testing.assert_allclose(m["c"].lengths, [length], rtol=3e-7)
     slope = m.derivative("c.lengths", "s")[0]
     sides = []

@@ -113,11 +113,15 @@ def test_one_type_for_each_name() -> None:
     declared: dict[str, set[str]] = {}
     for path in sorted((ROOT / "crates").glob("*/src/**/*.rs")):
         text = path.read_text(encoding="utf-8")
-        assert re.search(r"^//!", text, re.MULTILINE), f"{path} has no header that says what is in it"
+        assert re.search(r"^//!", text, re.MULTILINE), (
+            f"{path} has no header that says what is in it"
+        )
         if path.name == "tests.rs":
             continue
         text = re.split(r"#\[cfg\(test\)\]\s*mod \w+ \{", text)[0]
-        for found in re.finditer(r"^(?:pub(?:\([^)]*\))? )?(?:struct|enum|trait) (\w+)", text, re.MULTILINE):
+        for found in re.finditer(
+            r"^(?:pub(?:\([^)]*\))? )?(?:struct|enum|trait) (\w+)", text, re.MULTILINE
+        ):
             declared.setdefault(found[1], set()).add(str(path.relative_to(ROOT)))
     doubled = {name: sorted(paths) for name, paths in declared.items() if len(paths) > 1}
     assert not doubled
