@@ -131,7 +131,7 @@ def test_bodies_and_surfaces_are_chosen_by_name() -> None:
 
 @pytest.mark.parametrize("seed", range(100 if SOAK else 8))
 def test_lofts_against_roots_and_quadrature(seed: int) -> None:
-    """Stations of a random hull-like loft: length by SciPy along v, the x of the loft inverted for u."""
+    """Stations of a random hull-like loft: its x inverted by SciPy, the length by quadrature."""
     rng = np.random.default_rng(seed)
     rows = []
     for k in range(4):

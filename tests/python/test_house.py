@@ -109,7 +109,7 @@ def test_the_reference_is_up_to_date():
 
 
 def test_one_type_for_each_name() -> None:
-    """A struct, enum or trait has a name of its own in the whole workspace, so that a search finds what it names."""
+    """A struct, enum or trait has a name of its own in the whole workspace."""
     declared: dict[str, set[str]] = {}
     for path in sorted((ROOT / "crates").glob("*/src/**/*.rs")):
         text = path.read_text(encoding="utf-8")

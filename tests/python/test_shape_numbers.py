@@ -1,4 +1,4 @@
-"""Numbers asked of shapes as functions, coordinates given as vectors, and numbers of objects as unknowns."""
+"""Measures of shapes as functions, coordinates as vectors, numbers of objects as unknowns."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ BOX = """
 AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(2, 1, 0);
 AbsPoint E(0, 0, 3); AbsPoint F(2, 0, 3); AbsPoint G(0, 1, 3); AbsPoint H(2, 1, 3);
 Line a(A, B); Line b(C, D); Line c(E, F); Line d(G, H);
-RuledSurf low(a, b); RuledSurf high(c, d); RuledSolid box(low, high); SetBody body(cuboid({0, 0, 0}, {1, 2, 3}));
+RuledSurf low(a, b); RuledSurf high(c, d); RuledSolid box(low, high);
+SetBody body(cuboid({0, 0, 0}, {1, 2, 3}));
 """
 
 
@@ -46,7 +47,8 @@ def test_distances_from_balls_and_circles(seed: int) -> None:
     m = moldloft.loads(f"""
         param float r = {r:.17g}; param float x = {place[0]:.17g};
         AbsPoint S(0, 0, -r); AbsPoint E(0, 0, r); AbsPoint Q(r, 0, 0); Arc half(S, Q, E);
-        Line axis(S, E, visible = 0); RevSurf ball(half, axis); AbsPoint P(x, {place[1]:.17g}, {place[2]:.17g});""")
+        Line axis(S, E, visible = 0); RevSurf ball(half, axis);
+        AbsPoint P(x, {place[1]:.17g}, {place[2]:.17g});""")
     far = np.linalg.norm(place)
     assert m.eval("distance(P, ball)") == pytest.approx(abs(far - r), rel=1e-9)
     sign = np.sign(far - r)
@@ -56,7 +58,8 @@ def test_distances_from_balls_and_circles(seed: int) -> None:
 
 def test_coordinates_may_be_a_vector() -> None:
     m = moldloft.loads("""
-        param float w = 2; AbsPoint A(0, 0, 0); AbsPoint B(w, 4, 6); AbsPoint M(0.5*(A + B)); AbsPoint N({1, 2, 3});
+        param float w = 2; AbsPoint A(0, 0, 0); AbsPoint B(w, 4, 6); AbsPoint M(0.5*(A + B));
+        AbsPoint N({1, 2, 3});
         RelPoint R(M, {1, 0, w}); AbsPoint K(A + {0, 0, 1}, layer = 3);""")
     assert np.asarray(m["M"]).tolist() == [1, 2, 3] and np.asarray(m["N"]).tolist() == [1, 2, 3]
     assert np.asarray(m["R"]).tolist() == [2, 2, 5] and np.asarray(m["K"]).tolist() == [0, 0, 1]
