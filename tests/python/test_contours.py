@@ -165,7 +165,7 @@ def test_lofts_against_roots_and_quadrature(seed: int) -> None:
     slope = m.derivative("c.lengths", "s")[0]
     sides = []
     for change in (1e-4, -1e-4):
-        m.set(s=1 + change)
+        m["s"] = 1 + change
         sides.append(m["c"].lengths[0])
     np.testing.assert_allclose(slope, (sides[0] - sides[1]) / 2e-4, rtol=1e-6)
 
@@ -174,4 +174,5 @@ def test_sections_that_meet_nothing_are_empty() -> None:
     m = ball(1, "ZContours z(0, 1, 0.5, 2);")
     assert m["z"].lengths[1] == 0 and m["z"].areas[1] == 0
     assert m["z"].sections[1] == []
-    assert m.eval("z.lines[1].d1") == len(m["z"].sections[0][0].points) + 1
+    line = m["z"].sections[0][0]
+    assert m.eval("z.lines[1].d1") == len(line.points) + line.closed

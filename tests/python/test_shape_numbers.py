@@ -102,7 +102,7 @@ def test_an_unknown_of_a_loft_against_brentq(seed: int) -> None:
     def text(z: float, rest: str = "") -> str:
         return f"""
             AbsPoint A(0, {y[0]:.15g}, 0); AbsPoint B(1, {y[1]:.15g}, {z:.17g});
-            AbsPoint C(3, {y[2]:.15g}, 0); AbsPoint O(0, 0, 0); AbsPoint U(0, 0, 1);
+            AbsPoint C(3, {y[2]:.15g}, 0); AbsPoint O(0, 0, 0); AbsPoint U(0.2, 1, 0);
             BCurve low({{A, B, C}}, 2); Line up(O, U); TranSurf s(low, up); {rest}"""
 
     target = moldloft.loads(text(rng.uniform(1, 2))).eval("s.area")
@@ -119,7 +119,7 @@ def test_an_unknown_of_a_loft_against_brentq(seed: int) -> None:
         ("AbsPoint A(1, 0, 0); SolveSet s({A.x, A.x}, {A.x, A.x});", "already"),
         ("AbsPoint A(1, 0, 0); SolveSet s({B.x}, {A.x});", "B"),
         (
-            "for (i = 1, 2) { AbsPoint A[i](1, 0, 0); } SolveSet s({A[1].x}, {A[1].x});",
+            "for (i = 1:2) AbsPoint A[i](1, 0, 0); SolveSet s({A[1].x}, {A[1].x});",
             "of its own",
         ),
     ],

@@ -32,6 +32,15 @@ const RULE: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
+/// Halves of a chord agree with the whole to this share of the section's size.
+const ALIKE: f64 = 1e-11;
+
+/// A chord is halved this often at most.
+const MOST_HALVINGS: u32 = 10;
+
+/// A slope along a grid line is none when it is this share of that along the other.
+const FLAT: f64 = 1e-6;
+
 /// Newton steps to the section from the chord of two neighbouring points.
 const MOST_STEPS: usize = 12;
 
@@ -56,7 +65,9 @@ pub fn contour_piece<T: Real>(
     origin: Vec3,
 ) -> Option<ContourPiece<T>> {
     let breaks = surface.breaks();
-    let follow = Follower { surface, breaks, family, value, origin: Vec3::lifted(origin) };
+    let first = *line.points.first()?;
+    let size = line.points.iter().fold(0.0f64, |size, p| size.max(p.distance(first)));
+    let follow = Follower { surface, breaks, family, value, origin: Vec3::lifted(origin), size };
     let mut nodes: Vec<ContourNode<T>> = line.uv.iter().map(|&uv| follow.node(uv)).collect();
     if line.closed {
         nodes.push(*nodes.first()?);
@@ -78,6 +89,8 @@ struct Follower<'s, T: Real> {
     family: &'s Family<T>,
     value: T,
     origin: Vec3<T>,
+    /// The size of the section.
+    size: f64,
 }
 
 impl<T: Real> Follower<'_, T> {
@@ -104,6 +117,9 @@ impl<T: Real> Follower<'_, T> {
             [false, true] => 1,
             _ => usize::from(slopes[0].re().abs() > slopes[1].re().abs()),
         };
+        // Along a border on which the section is, it keeps to what crosses that.
+        let flat = |k: usize| slopes[k].re().abs() <= FLAT * slopes[1 - k].re().abs();
+        let held = if flat(1 - held) { 1 - held } else { held };
         let free = 1 - held;
         if creased[held] {
             at[held] += crease_rate(&**self.surface, held, uv[held], [ASIDE; 2]);
@@ -117,21 +133,45 @@ impl<T: Real> Follower<'_, T> {
 
     /// Length and swept area between two neighbouring points.
     fn between(&self, a: ContourNode<T>, b: ContourNode<T>) -> Option<(T, Vec3<T>)> {
-        let along = [b.uv[0] - a.uv[0], b.uv[1] - a.uv[1]];
-        // Across the line both ends move up the slope.
-        let across = |node: ContourNode<T>| {
-            let slope = self.height(node.uv).1[node.free].re();
-            let mut direction = [0.0; 2];
-            direction[node.free] = slope.signum();
-            direction
-        };
-        let (up, end) = (across(a), across(b));
-        let turn = [end[0] - up[0], end[1] - up[1]];
+        let chord = Chord::new(self, a, b);
+        let whole = self.over(&chord, 0.0, 1.0)?;
+        self.refined(&chord, 0.0, 1.0, whole, 0)
+    }
+
+    /// The integrals over a part of a chord: halved until halves and whole agree.
+    fn refined(
+        &self,
+        chord: &Chord<T>,
+        low: f64,
+        high: f64,
+        whole: (T, Vec3<T>),
+        depth: u32,
+    ) -> Option<(T, Vec3<T>)> {
+        let middle = 0.5 * (low + high);
+        let halves = [self.over(chord, low, middle)?, self.over(chord, middle, high)?];
+        let [(first, before), (second, after)] = halves;
+        let both = (first + second, before + after);
+        let moved = (0..T::PARTS).map(|k| (both.0 - whole.0).part(k).abs()).fold(0.0, f64::max);
+        let swept = (both.1 - whole.1).re().norm();
+        let limit = ALIKE * self.size;
+        if depth >= MOST_HALVINGS || moved <= limit && swept <= limit * self.size {
+            return Some(both);
+        }
+        let (first, before) = self.refined(chord, low, middle, halves[0], depth + 1)?;
+        let (second, after) = self.refined(chord, middle, high, halves[1], depth + 1)?;
+        Some((first + second, before + after))
+    }
+
+    /// The Gauss rule over a part of a chord.
+    fn over(&self, chord: &Chord<T>, low: f64, high: f64) -> Option<(T, Vec3<T>)> {
+        let Chord { start, along, up, turn } = *chord;
         let (mut length, mut swept) = (T::zero(), Vec3::zero());
         let mut offset = T::zero();
-        for (s, weight) in RULE {
+        for (place, weight) in RULE {
+            let s = low + (high - low) * place;
+            let weight = weight * (high - low);
             let normal = [up[0] + turn[0] * s, up[1] + turn[1] * s];
-            let at = |offset: T| [0, 1].map(|k| a.uv[k] + along[k] * s + offset * normal[k]);
+            let at = |offset: T| [0, 1].map(|k| start[k] + along[k] * s + offset * normal[k]);
             let rise = |slopes: [T; 2]| slopes[0] * normal[0] + slopes[1] * normal[1];
             let mut left = f64::INFINITY;
             for _ in 0..MOST_STEPS {
@@ -159,6 +199,34 @@ impl<T: Real> Follower<'_, T> {
             swept += (jet.p - self.origin).cross(velocity) * T::from(0.5 * weight);
         }
         Some((length, swept))
+    }
+}
+
+/// The chord of two neighbouring points in the parameter plane, and the directions across it.
+struct Chord<T> {
+    start: [T; 2],
+    along: [T; 2],
+    /// Up the slope along the grid line of the first point.
+    up: [f64; 2],
+    /// From there to that of the second.
+    turn: [f64; 2],
+}
+
+impl<T: Real> Chord<T> {
+    fn new(follow: &Follower<'_, T>, a: ContourNode<T>, b: ContourNode<T>) -> Self {
+        let across = |node: ContourNode<T>| {
+            let slope = follow.height(node.uv).1[node.free].re();
+            let mut direction = [0.0; 2];
+            direction[node.free] = slope.signum();
+            direction
+        };
+        let (up, end) = (across(a), across(b));
+        Self {
+            start: a.uv,
+            along: [b.uv[0] - a.uv[0], b.uv[1] - a.uv[1]],
+            up,
+            turn: [end[0] - up[0], end[1] - up[1]],
+        }
     }
 }
 

@@ -40,9 +40,7 @@ fn contours<T: Real>(
     field: FieldId,
 ) -> Result<Value<T>, CallError> {
     for (k, shape) in shapes.iter().flatten().enumerate() {
-        if let Value::Surface(_) | Value::Body(_) = shape {
-            continue;
-        }
+        let Some(shape) = not_cut(shape) else { continue };
         let error = CallError::new("wrong-class", "contours are drawn on surfaces and bodies")
             .expected("names of surfaces and bodies")
             .found(shape.class().with_article())
@@ -56,6 +54,15 @@ fn contours<T: Real>(
         });
     }
     Ok(Value::Contours(Arc::new(Contours { axis, family, values })))
+}
+
+/// What cannot be cut, of a shape or a list of shapes.
+fn not_cut<T: Real>(shape: &Value<T>) -> Option<&Value<T>> {
+    match shape {
+        Value::Surface(_) | Value::Body(_) => None,
+        Value::List(items) => items.iter().find_map(not_cut),
+        other => Some(other),
+    }
 }
 
 macro_rules! contour_kind {

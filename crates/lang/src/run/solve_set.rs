@@ -170,7 +170,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             path.change(&mut object.args.clone(), keep).is_some()
         });
         let (Some(path), Some(value)) = (path, value) else {
-            return Err(refused(format!("`{text}`, which {} does not have as a number", object.row.name)));
+            return Err(refused(format!(
+                "`{text}`, which {} does not have as a number",
+                object.row.name
+            )));
         };
         if program::literal(self.modules, self.env, object, &path).is_err() {
             return Err(refused(format!("`{text}`, which is not a number of its own in the text"))
