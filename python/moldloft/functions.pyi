@@ -1928,7 +1928,7 @@ def d_tanh(
     """`n` numbers from `start` to `end` by the hyperbolic tangent law with given slopes at the ends
     (Vinokur, J. Comput. Phys. 50, 1983).
 
-    `ds1` and `ds2` are steps per index at the two ends; 0 leaves an end free, both 0 is uniform. The
+    `ds1` and `ds2` are steps per index at the two ends; 0 leaves that end free, both 0 gives uniform spacing. The
     first and last cells differ from them by the curvature of the law; `d_tanhx` has exact cells.
 
     Parameters
@@ -1965,7 +1965,7 @@ def d_tanhx(
     """`n` numbers from `start` to `end` by the hyperbolic tangent law whose first and last steps are
     `ds1` and `ds2` to the bit.
 
-    0 leaves an end free, both 0 is uniform. On coarse rows `d_tanh`, whose spacings are slopes, misses
+    0 leaves that end free, both 0 gives uniform spacing. On coarse rows `d_tanh`, whose spacings are slopes, misses
     the asked cells by a third; this one solves for the slopes that give them.
 
     Parameters

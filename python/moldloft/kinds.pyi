@@ -6830,7 +6830,7 @@ def XContours(
     last: _Integer,
     start: _Number,
     step: _Number,
-    surfaces: Sequence[_Surface] | _Any | None = ...,
+    surfaces: Sequence[object] | _Array | _Any | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -6857,8 +6857,8 @@ def XContours(
         Position of the section with index 0.
     step : number
         Distance of neighbouring sections.
-    surfaces : list of surface, optional
-        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    surfaces : list of value, optional
+        The surfaces and bodies to cut; all that are shown when none are given.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6881,7 +6881,7 @@ def YContours(
     last: _Integer,
     start: _Number,
     step: _Number,
-    surfaces: Sequence[_Surface] | _Any | None = ...,
+    surfaces: Sequence[object] | _Array | _Any | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -6908,8 +6908,8 @@ def YContours(
         Position of the section with index 0.
     step : number
         Distance of neighbouring sections.
-    surfaces : list of surface, optional
-        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    surfaces : list of value, optional
+        The surfaces and bodies to cut; all that are shown when none are given.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6932,7 +6932,7 @@ def ZContours(
     last: _Integer,
     start: _Number,
     step: _Number,
-    surfaces: Sequence[_Surface] | _Any | None = ...,
+    surfaces: Sequence[object] | _Array | _Any | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -6959,8 +6959,8 @@ def ZContours(
         Position of the section with index 0.
     step : number
         Distance of neighbouring sections.
-    surfaces : list of surface, optional
-        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    surfaces : list of value, optional
+        The surfaces and bodies to cut; all that are shown when none are given.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -6984,7 +6984,7 @@ def PlaneContours(
     last: _Integer,
     start: _Number,
     step: _Number,
-    surfaces: Sequence[_Surface] | _Any | None = ...,
+    surfaces: Sequence[object] | _Array | _Any | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -7014,8 +7014,8 @@ def PlaneContours(
         Distance of the section with index 0 from the plane.
     step : number
         Distance of neighbouring sections.
-    surfaces : list of surface, optional
-        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    surfaces : list of value, optional
+        The surfaces and bodies to cut; all that are shown when none are given.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7039,7 +7039,7 @@ def CylinderContours(
     last: _Integer,
     start: _Number,
     step: _Number,
-    surfaces: Sequence[_Surface] | _Any | None = ...,
+    surfaces: Sequence[object] | _Array | _Any | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -7069,8 +7069,8 @@ def CylinderContours(
         Radius of the section with index 0.
     step : number
         Difference of neighbouring radii.
-    surfaces : list of surface, optional
-        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    surfaces : list of value, optional
+        The surfaces and bodies to cut; all that are shown when none are given.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -7095,7 +7095,7 @@ def AngleContours(
     start: _Number,
     step: _Number,
     zero: _Point | None = ...,
-    surfaces: Sequence[_Surface] | _Any | None = ...,
+    surfaces: Sequence[object] | _Array | _Any | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -7130,8 +7130,8 @@ def AngleContours(
         Angle between neighbouring sections, in radians (degrees in model files).
     zero : point, optional
         A point in the half-plane of angle 0.
-    surfaces : list of surface, optional
-        The surfaces to cut; all that are shown, and all shown bodies, when none are given.
+    surfaces : list of value, optional
+        The surfaces and bodies to cut; all that are shown when none are given.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8281,11 +8281,12 @@ def SolveSet(
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
 ) -> AnyHandle:
-    """Parameters that are found so that as many numbers become zero, by damped Newton steps from the
-    values that they are given.
+    """Parameters and numbers of objects that are found so that as many other numbers become zero, by damped
+    Newton steps from the values that they are given.
 
-    The unknowns are parameters of the program, and what is built on them is built on the solution;
-    their ranges bound the search. The conditions are numbers computed from them, each zero when it
+    An unknown is a parameter of the program, or a number that is written where an object is declared: the
+    `P21.y` of a point, the `b.t` of a bead. What is built on it is built on the solution; ranges of parameters and
+    arguments bound the search. The text keeps the number from which the search begins. The conditions are numbers computed from them, each zero when it
     holds: `hull.volume - 100`. `s.x` is the solution of the unknown x, `s.residual` the largest
     condition left, `s.iterations` the number of steps.
 
@@ -8294,7 +8295,7 @@ def SolveSet(
     name : str
         The name of the object.
     unknowns : list of number
-        The parameters to find, by name.
+        What to find: parameters, and numbers of objects.
     conditions : list of number
         As many numbers that become zero.
     steps : integer, optional

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
 import numpy as np
@@ -181,7 +182,10 @@ class Object:
                 message = f"`{self.name}` is a {self.class_}; `{member}` is of {_METHODS[member]}"
                 raise WrongClassError(message)
             try:
-                return self._document.eval(f"{self.name}.{member}")
+                value = self._document.eval(f"{self.name}.{member}")
+                for remark in self._document.expression_remarks():
+                    warnings.warn(str(remark), stacklevel=2)
+                return value
             except Error as error:
                 from moldloft.spelling import nearest
 

@@ -170,6 +170,19 @@ def test_lofts_against_roots_and_quadrature(seed: int) -> None:
     np.testing.assert_allclose(slope, (sides[0] - sides[1]) / 2e-4, rtol=1e-6)
 
 
+def test_sections_in_an_edge() -> None:
+    """The first and last station are edges; one in the middle is shared by two surfaces."""
+    m = moldloft.loads("""
+        AbsPoint A(0, 0, 0); AbsPoint B(0, 1, 2); AbsPoint C(4, 0, 0); AbsPoint D(4, 2, 2);
+        AbsPoint E(6, 0, 0); AbsPoint F(6, 1, 1); AbsPoint Q(4, 1.5, 0.5);
+        Line a(A, B); BCurve c({C, Q, D}, 2); Line e(E, F);
+        RuledSurf fore(a, c); RuledSurf aft(e, c);
+        XContours x(0, 3, 0, 2); ZContours z(0, 0, 0, 1);""")
+    np.testing.assert_allclose(m["x"].lengths[[0, 3]], [np.sqrt(5), np.sqrt(2)], rtol=1e-12)
+    np.testing.assert_allclose(m["x"].lengths[2], m.eval("c.length"), rtol=1e-10)
+    np.testing.assert_allclose(m["z"].lengths, [6], rtol=1e-12)
+
+
 def test_sections_that_meet_nothing_are_empty() -> None:
     m = ball(1, "ZContours z(0, 1, 0.5, 2);")
     assert m["z"].lengths[1] == 0 and m["z"].areas[1] == 0

@@ -119,7 +119,7 @@ def test_an_unknown_of_a_loft_against_brentq(seed: int) -> None:
         ("AbsPoint A(1, 0, 0); SolveSet s({A.x, A.x}, {A.x, A.x});", "already"),
         ("AbsPoint A(1, 0, 0); SolveSet s({B.x}, {A.x});", "B"),
         (
-            "for (i = 1:2) AbsPoint A[i](1, 0, 0); SolveSet s({A[1].x}, {A[1].x});",
+            "for (i = 1:2) { AbsPoint A(1, 0, 0); } SolveSet s({A[1].x}, {A[1].x});",
             "of its own",
         ),
     ],

@@ -100,7 +100,43 @@ impl<'s, T: Real> ContourCutter<'s, T> {
                 links.entry(cut[b]).or_default().push(cut[a]);
             }
         }
-        self.chains(&crossings, links, epsilon)
+        let mut lines = self.chains(&crossings, links, epsilon);
+        for axis in 0..2 {
+            for far in [false, true] {
+                let line = self.border(axis, far, &heights, epsilon);
+                let held = |line: &Contour| {
+                    line.points.iter().all(|&p| family.holds(value, Vec3::lifted(p)))
+                };
+                lines.extend(line.filter(held));
+            }
+        }
+        lines
+    }
+
+    /// The border at one end of a parameter, when it is in the section and the surface rises from it: no cell then shows
+    /// a change of sign.
+    fn border(&self, axis: usize, far: bool, heights: &[f64], epsilon: f64) -> Option<Contour> {
+        let counts = [self.us.len(), self.vs.len()];
+        let [end, next] = if far { [counts[axis] - 1, counts[axis] - 2] } else { [0, 1] };
+        let index = |row: usize, k: usize| {
+            if axis == 0 { row * counts[1] + k } else { k * counts[1] + row }
+        };
+        let along = 0..counts[1 - axis];
+        let inside = along.clone().map(|k| heights[index(next, k)]);
+        let (low, high) = inside.fold((0.0f64, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
+        if along.clone().any(|k| heights[index(end, k)].abs() > epsilon)
+            || low < -epsilon
+            || high <= epsilon
+        {
+            return None;
+        }
+        let points: Vec<Vec3> = along.clone().map(|k| self.points[index(end, k)]).collect();
+        let long: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        let place = |k: usize| {
+            if axis == 0 { [self.us[end], self.vs[k]] } else { [self.us[k], self.vs[end]] }
+        };
+        let uv = along.map(place).collect();
+        (long > epsilon).then_some(Contour { points, uv, closed: false })
     }
 
     fn point(&self, [u, v]: [f64; 2]) -> Vec3 {

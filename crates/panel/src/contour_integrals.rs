@@ -252,8 +252,8 @@ pub fn body_integrals<T: Real>(
         for k in 0..3 {
             let ((p, g), (q, h)) = (corners[k], corners[(k + 1) % 3]);
             if below[k] != below[(k + 1) % 3] {
-                // Counter-clockwise from outside, the section leaves where the border comes up through it.
-                ends[usize::from(!below[k])] = p + (q - p) * (g / (g - h));
+                // Counter-clockwise from outside, the section begins where the border comes up through it.
+                ends[usize::from(!below[(k + 1) % 3])] = p + (q - p) * (g / (g - h));
                 found += 1;
             }
         }

@@ -20,6 +20,9 @@ pub const MEMBERS: [&str; 4] = ["positions", "lengths", "areas", "lines"];
 /// Ends of lines this share of the section's size apart meet.
 const MEET: f64 = 1e-9;
 
+/// Lines are the same to this share of their length.
+const SAME: f64 = 1e-9;
+
 /// One section, measured.
 struct MeasuredSection<T> {
     length: T,
@@ -181,8 +184,12 @@ fn section<T: Scalar>(
             Value::Surface(surface) => {
                 for line in ContourCutter::new(surface, &object.head).section(family, x) {
                     let piece = contour_piece(&line, surface, family, x, Vec3::zero());
-                    pieces.push(piece.ok_or_else(failed)?);
-                    found.lines.push(closed_points(line));
+                    let piece = piece.ok_or_else(failed)?;
+                    // An edge that two surfaces share is on the section of both.
+                    if !pieces.iter().any(|other| is_same(&piece, other)) {
+                        pieces.push(piece);
+                        found.lines.push(closed_points(line));
+                    }
                 }
             }
             Value::Body(body) => {
@@ -235,6 +242,17 @@ fn section<T: Scalar>(
     }
     found.area += swept.dot(normal);
     Ok(found)
+}
+
+/// True for lines at the same place, whichever way they run.
+fn is_same<T: Real>(a: &ContourPiece<T>, b: &ContourPiece<T>) -> bool {
+    let near = SAME * (a.length.re() + b.length.re());
+    let meet = |p: Vec3<T>, q: Vec3<T>| p.re().distance(q.re()) <= near;
+    let size = a.points.iter().fold(0.0f64, |size, p| size.max(p.norm()));
+    let alike = |x: Vec3<T>, y: Vec3<T>| (x - y).re().norm() <= near * size;
+    (a.length - b.length).re().abs() <= near
+        && (meet(a.from, b.from) && meet(a.to, b.to) && alike(a.swept, b.swept)
+            || meet(a.from, b.to) && meet(a.to, b.from) && alike(a.swept, -b.swept))
 }
 
 fn closed_points(line: Contour) -> Vec<Vec3> {
