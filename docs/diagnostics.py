@@ -38,7 +38,6 @@ WITHOUT = {
     "faces-apart",
     "faces-tangled",
     "internal-error",
-    "no-contour",
     "no-distance",
     "no-mesh",
     "no-model",

@@ -113,7 +113,7 @@ fn lists_and_contours_that_are_none() {
         ("AngleContours c(axis, 0, 3, 0, 1, zero = O);", "coincident-points", "on the axis"),
         ("PlaneContours c(\"x=0\", 3, 1, 0, 1);", "empty-range", "from 3 to 1"),
         ("PlaneContours c(\"x=0\", 0, 20000, 0, 1);", "out-of-range", "too many"),
-        ("ZContours c(0, 1, 0, 1, surfaces = {axis});", "wrong-class", "expected a surface"),
+        ("ZContours c(0, 1, 0, 1, surfaces = {axis});", "wrong-class", "surfaces and bodies"),
         ("ZContours c(0, 1, 0, 1, surfaces = cone);", "not-a-list", "a list"),
         ("EntityList e({O, A}); RevSurf x(e, axis);", "wrong-class", "a list"),
         ("EntityList e({O, axis}); BCurve x(e);", "wrong-class", "expected a point, found a curve"),
@@ -148,5 +148,21 @@ fn bodies_are_cut_like_surfaces() {
     }
     for p in points(&found[1]) {
         assert!((radius(&p) - 2.0).abs() < 1e-11 && (p.z.abs() - 0.5).abs() < 5e-3, "{p:?}");
+    }
+}
+
+#[test]
+fn what_sections_do_not_measure_is_reported() {
+    let ridge = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 1); AbsPoint C(2, 0, 0); AbsPoint D(0, 2, 0); \
+                 AbsPoint E(1, 2, 1); AbsPoint F(2, 2, 0); BCurve a({A, B, C}, 2); BCurve b({D, E, F}, 2); \
+                 RuledSurf s(a, b); AbsPoint O(0, 0, -1); AbsPoint P(0, 0, 3); Line axis(O, P);";
+    for (text, id) in [
+        // Along its ridge the surface touches the plane.
+        ("ZContours z(0, 0, 0.5, 1); print(z.lengths);", "no-contour"),
+        ("ZContours z(0, 0, 0.2, 1); print(z.areas);", "open-contour"),
+        ("CylinderContours c(axis, 1, 1, 0, 1); print(c.areas);", "not-planar"),
+    ] {
+        let document = open(&format!("{ridge}{text}"));
+        assert_eq!(ids(&document), [id], "{text}: {:?}", told(&document));
     }
 }
