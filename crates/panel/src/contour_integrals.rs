@@ -133,7 +133,7 @@ impl<T: Real> Follower<'_, T> {
 
     /// Length and swept area between two neighbouring points.
     fn between(&self, a: ContourNode<T>, b: ContourNode<T>) -> Option<(T, Vec3<T>)> {
-        let chord = Chord::new(self, a, b);
+        let chord = SectionChord::new(self, a, b);
         let whole = self.over(&chord, 0.0, 1.0)?;
         self.refined(&chord, 0.0, 1.0, whole, 0)
     }
@@ -141,7 +141,7 @@ impl<T: Real> Follower<'_, T> {
     /// The integrals over a part of a chord: halved until halves and whole agree.
     fn refined(
         &self,
-        chord: &Chord<T>,
+        chord: &SectionChord<T>,
         low: f64,
         high: f64,
         whole: (T, Vec3<T>),
@@ -163,8 +163,8 @@ impl<T: Real> Follower<'_, T> {
     }
 
     /// The Gauss rule over a part of a chord.
-    fn over(&self, chord: &Chord<T>, low: f64, high: f64) -> Option<(T, Vec3<T>)> {
-        let Chord { start, along, up, turn } = *chord;
+    fn over(&self, chord: &SectionChord<T>, low: f64, high: f64) -> Option<(T, Vec3<T>)> {
+        let SectionChord { start, along, up, turn } = *chord;
         let (mut length, mut swept) = (T::zero(), Vec3::zero());
         let mut offset = T::zero();
         for (place, weight) in RULE {
@@ -203,7 +203,7 @@ impl<T: Real> Follower<'_, T> {
 }
 
 /// The chord of two neighbouring points in the parameter plane, and the directions across it.
-struct Chord<T> {
+struct SectionChord<T> {
     start: [T; 2],
     along: [T; 2],
     /// Up the slope along the grid line of the first point.
@@ -212,7 +212,7 @@ struct Chord<T> {
     turn: [f64; 2],
 }
 
-impl<T: Real> Chord<T> {
+impl<T: Real> SectionChord<T> {
     fn new(follow: &Follower<'_, T>, a: ContourNode<T>, b: ContourNode<T>) -> Self {
         let across = |node: ContourNode<T>| {
             let slope = follow.height(node.uv).1[node.free].re();

@@ -1,8 +1,7 @@
 //! A model file as a producer of objects.
 //!
-//! Every object is a call of the row that its entity word names; the row's `columns` say which
-//! field of the line is which argument. Parents may stand below their children in the file: the
-//! objects are declared in an order in which they do not.
+//! Every object is a call of the row that its entity word names; the row's `columns` say which field of the line is
+//! which argument. Parents may stand below their children in the file: objects are declared so that they do not.
 
 mod divisions;
 mod formula;
