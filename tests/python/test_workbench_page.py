@@ -91,7 +91,7 @@ class Bench:
     def close(self) -> None:
         self.context.close()
         self.process.terminate()
-        self.process.wait(10)
+        self.process.wait(60)
         for pipe in (self.process.stdout, self.process.stderr):
             if pipe is not None:
                 pipe.close()
@@ -298,7 +298,7 @@ def test_nothing_is_lost_when_engine_or_server_go(bench: Callable[..., Bench]) -
     b.page.keyboard.type("AbsPoint Q(4, 5, 6);\n")
     b.until(lambda: any(i["object"] == "Q" for i in b.hand("items()")), 30)
     b.process.kill()
-    b.process.wait(10)
+    b.process.wait(60)
     b.page.get_by_text("The server does not answer").wait_for()
     b.page.keyboard.type("# typed alone\n")
     assert "Q(4" in (b.path.parent / ".small.sdl.draft").read_text()

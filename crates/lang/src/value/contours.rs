@@ -218,7 +218,7 @@ fn section<T: Scalar>(
         let images: Vec<_> =
             pieces.iter().filter(|p| aside(p)).map(|p| mirrored(p, axis)).collect();
         pieces.extend(images);
-        found.length = found.length * T::from(2.0);
+        found.length *= T::from(2.0);
         // The image of a body's section has the same area.
         swept = swept * T::from(2.0);
     }
