@@ -15,7 +15,7 @@ use rustc_hash::FxHashMap;
 ///
 /// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);
 /// let over = Box3 { low: Vec3::of(-2.0, -2.0, -2.0), high: Vec3::of(2.0, 2.0, 2.0) };
-/// let facets = facet(&ball, &over, &Options::new(Resolution::Depth(4)))?;
+/// let facets = facet(&ball, &over, &FacetOptions::new(Resolution::Depth(4)))?;
 /// assert!(crossing_faces(&facets.mesh, None).is_empty());
 /// # Ok::<(), moldloft_field::FieldError>(())
 /// ```

@@ -131,7 +131,7 @@ fn capped(set: &Set, over: &Box3) -> Result<Set, FieldError> {
 ///
 /// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);
 /// let over = Box3 { low: Vec3::of(-1.5, -1.5, 0.0), high: Vec3::of(1.5, 1.5, 1.5) };
-/// let facets = facet(&ball, &over, &Options::new(Resolution::Depth(4)))?;
+/// let facets = facet(&ball, &over, &FacetOptions::new(Resolution::Depth(4)))?;
 /// assert!(facets.mesh.report().closed);
 /// let names: Vec<&str> = facets.mesh.patches().iter().map(|p| p.info.name.as_str()).collect();
 /// assert_eq!(names, ["sphere", "cap -z"]);
