@@ -260,25 +260,22 @@ fn closed_points(line: Contour) -> Vec<Vec3> {
     line.points.into_iter().chain(again).collect()
 }
 
-/// The image in the plane of coordinate `axis` = 0.
+/// The image of a point in the plane of coordinate `axis` = 0.
+fn image<T: Real>(p: Vec3<T>, axis: usize) -> Vec3<T> {
+    let mut all = p.to_array();
+    all[axis] = -all[axis];
+    Vec3::from(all)
+}
+
+/// The image of a line in the plane of coordinate `axis` = 0.
 fn mirrored<T: Real>(piece: &ContourPiece<T>, axis: usize) -> ContourPiece<T> {
-    let image = |p: Vec3<T>| {
-        let mut all = p.to_array();
-        all[axis] = -all[axis];
-        Vec3::from(all)
-    };
-    let points = piece.points.iter().map(|p| {
-        let mut all = p.to_array();
-        all[axis] = -all[axis];
-        Vec3::from(all)
-    });
     ContourPiece {
-        points: points.collect(),
-        from: image(piece.from),
-        to: image(piece.to),
+        points: piece.points.iter().map(|&p| image(p, axis)).collect(),
+        from: image(piece.from, axis),
+        to: image(piece.to, axis),
         length: piece.length,
         // r x dr is an axial vector.
-        swept: -image(piece.swept),
+        swept: -image(piece.swept, axis),
     }
 }
 
