@@ -4418,7 +4418,7 @@ def mod(
     a: object,
     b: object,
 ) -> AnyShape:
-    """Remainder of a / b, with the sign of b.
+    """Remainder of a / b, with the sign of b; exact.
 
     Parameters
     ----------
@@ -4565,7 +4565,7 @@ def average(
     a: object,
     axis: object | None = ...,
 ) -> AnyShape:
-    """The mean of the numbers of an array.
+    """The mean of the numbers or vectors of an array; `mean` is the same.
 
     Parameters
     ----------
@@ -4732,7 +4732,7 @@ def rewind(
 def count(
     *args: object,
 ) -> AnyShape:
-    """The number of items of a multiple argument.
+    """The number of items of a multiple argument or a list; of a mask, the number of elements where it holds.
 
     Called as `count(c)`.
 
@@ -4763,6 +4763,24 @@ def isset(
     In the language::
 
         curve c[3]; c[1:2] = {0, 0, 0}; assert isset(c[2]) and not isset(c);
+    """
+    ...
+def ieee(
+    *args: object,
+) -> AnyShape:
+    """Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again.
+
+    Called as `ieee(on)`.
+
+    Returns
+    -------
+    value
+
+    Notes
+    -----
+    In the language::
+
+        ieee(); float a = 1/0; assert a > 1e308; ieee(0);
     """
     ...
 def check_edges(

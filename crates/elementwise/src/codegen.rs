@@ -411,11 +411,11 @@ impl Planner {
                     VmInstruction::Term(Term::Product(x, y))
                 }
                 Code::Div => match (a, b) {
-                    (x, Src::Const(c)) => VmInstruction::Part(self.row(x, program), c),
-                    (Src::Const(c), x) => VmInstruction::Over(c, self.row(x, program)),
+                    (x, Src::Const(c)) => VmInstruction::Part(self.row(x, program), c, check),
+                    (Src::Const(c), x) => VmInstruction::Over(c, self.row(x, program), check),
                     _ => {
                         let [x, y] = [a, b].map(|src| self.row(src, program));
-                        VmInstruction::Ratio(x, y)
+                        VmInstruction::Ratio(x, y, check)
                     }
                 },
             },

@@ -250,12 +250,25 @@ impl<T: Real> Tape<T> {
         self.push(Instr { code, of: [a, a] })
     }
 
-    /// The function of each element; its results must be finite.
-    pub fn unary(&mut self, f: fn(T) -> T, a: Src, shape: ArrayShape) -> Src {
+    /// A quotient; it must be finite when there is a shape.
+    pub fn quotient(&mut self, a: Src, b: Src, checked: Option<ArrayShape>) -> Src {
+        let before = self.code.len();
+        let at = self.push(Instr { code: Code::Div, of: [a, b] });
+        // One that was recorded before was checked then.
+        if let Some(shape) = checked.filter(|_| self.code.len() > before) {
+            self.checked.push((before as u16, shape));
+        }
+        at
+    }
+
+    /// The function of each element; its results must be finite when there is a shape.
+    pub fn unary(&mut self, f: fn(T) -> T, a: Src, checked: Option<ArrayShape>) -> Src {
         self.program.unary.push(f);
         let code = Code::Unary((self.program.unary.len() - 1) as u16);
         let at = self.push(Instr { code, of: [a, a] });
-        self.checked.push(((self.code.len() - 1) as u16, shape));
+        if let Some(shape) = checked {
+            self.checked.push(((self.code.len() - 1) as u16, shape));
+        }
         at
     }
 
@@ -287,10 +300,11 @@ impl<T: Real> Tape<T> {
         shapes.into_iter().filter_map(&mut failure).min()
     }
 
-    /// A whole power, by the same multiplications as [`Real::powi`].
-    pub fn powi(&mut self, a: Src, exponent: i32) -> Src {
+    /// A whole power, by the same multiplications as [`Real::powi`]; the reciprocal of a negative one must be finite
+    /// when there is a shape.
+    pub fn powi(&mut self, a: Src, exponent: i32, checked: Option<ArrayShape>) -> Src {
         let one = self.constant(T::one(), Origin::FIXED);
-        let mut base = if exponent < 0 { self.op(Code::Div, one, a) } else { a };
+        let mut base = if exponent < 0 { self.quotient(one, a, checked) } else { a };
         let mut left = exponent.unsigned_abs();
         let mut power = one;
         while left > 0 {

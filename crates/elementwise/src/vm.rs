@@ -70,16 +70,16 @@ pub enum VmInstruction {
     Shifted(Term, Sign, u16),
     /// c - x
     From(u16, Term),
-    /// x / y
-    Ratio(RowLocation, RowLocation),
+    /// x / y. The last number is that of a check, here and below: results must be finite.
+    Ratio(RowLocation, RowLocation, Option<u16>),
     /// x / c
-    Part(RowLocation, u16),
+    Part(RowLocation, u16, Option<u16>),
     /// c / x
-    Over(u16, RowLocation),
+    Over(u16, RowLocation, Option<u16>),
     Neg(RowLocation),
     Abs(RowLocation),
     Sqrt(RowLocation),
-    /// A function of each element. The last number is that of a check: results must be finite.
+    /// A function of each element.
     Unary(u16, Operand, Option<u16>),
     /// A function of two.
     Binary(u16, [Operand; 2], Option<u16>),
@@ -587,21 +587,24 @@ fn carry_out<P: Packs>(
                     packs!(x[j] = p.sub(c, x[j]))
                 }));
             }
-            VmInstruction::Ratio(x, y) => {
+            VmInstruction::Ratio(x, y, check) => {
                 let y = &m.row(y)[..to.len()];
                 let x = &m.row(x)[..to.len()];
                 set!(|k| {
                     let (x, y) = (x[k].get(), y[k].get());
                     packs!(x[j] = p.div(x[j], y[j]))
                 });
+                tested_row::<P>(to, check, failed);
             }
-            VmInstruction::Part(x, c) => {
+            VmInstruction::Part(x, c, check) => {
                 let c = m.consts[c as usize];
                 row!(x, |x| packs!(x[j] = p.div(x[j], c)));
+                tested_row::<P>(to, check, failed);
             }
-            VmInstruction::Over(c, x) => {
+            VmInstruction::Over(c, x, check) => {
                 let c = m.consts[c as usize];
                 row!(x, |x| packs!(x[j] = p.div(c, x[j])));
+                tested_row::<P>(to, check, failed);
             }
             VmInstruction::Neg(x) => row!(x, |x| packs!(x[j] = p.neg(x[j]))),
             VmInstruction::Abs(x) => row!(x, |x| packs!(x[j] = p.abs(x[j]))),
@@ -643,12 +646,28 @@ fn operand<P: Packs>(m: &Machine<'_, P>, x: Operand, k: usize) -> [P::Pack; BLOC
     }
 }
 
+/// [`tested`] of a row that was just written.
+#[inline(always)]
+fn tested_row<P: Packs>(
+    to: &[Cell<[P::Pack; BLOCK]>],
+    check: Option<u16>,
+    failed: &mut Option<u16>,
+) {
+    if check.is_some() {
+        for to in to {
+            let mut packs = to.get();
+            tested(P::numbers_mut(&mut packs), check, failed);
+        }
+    }
+}
+
 /// Notes the check when it is the first that fails.
 #[inline(always)]
 fn tested<T: Real>(numbers: &[T], check: Option<u16>, failed: &mut Option<u16>) {
     if let Some(check) = check
         && failed.is_none_or(|first| check < first)
-        && !numbers.iter().all(|x| x.is_finite())
+        // Without an early exit, so that the loop is of whole packs.
+        && numbers.iter().fold(false, |bad, x| bad | !x.is_finite())
     {
         *failed = Some(check);
     }

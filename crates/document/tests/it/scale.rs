@@ -196,7 +196,7 @@ fn endless_loops_and_recursion_end() {
     refused("an empty endless loop", "while (1) {}", "too-many-steps");
     refused("a long loop", "float x = 0; for (i = 1:1e12) x += i;", "too-many-steps");
     refused("a loop by tiny steps", "float x = 0; for (i = 0:1:1e-300) x += i;", "too-many-steps");
-    refused("a loop without end", "float x = 0; for (i = 0:1/0) x += i;", "endless-loop");
+    refused("a loop without end", "ieee(); float x = 0; for (i = 0:1/0) x += i;", "endless-loop");
     refused("a loop without step", "float x = 0; for (i = 0:1:0) x += i;", "endless-loop");
     refused("an endless loop of faults", "float x = 0; while (1) x = nothing;", "too-many-errors");
     refused(
@@ -210,10 +210,13 @@ fn endless_loops_and_recursion_end() {
         "nested-too-deep",
     );
     refused(
-        "a recursion 10 000 deep",
-        "subroutine f(float n) { if (n > 0) { f(n - 1); } } f(10000);",
+        "a recursion 13 000 deep",
+        "subroutine f(float n) { if (n > 0) { f(n - 1); } } f(13000);",
         "nested-too-deep",
     );
+    timed("a recursion 10 000 deep", || {
+        sound("subroutine f(float n) { if (n > 0) { f(n - 1); } } f(10000);")
+    });
     refused(
         "mutual recursion",
         "subroutine f() { g(); } subroutine g() { f(); } f();",

@@ -265,7 +265,9 @@ fn compute<'v, T: Real>(entry: &Entry<T>, of: impl Fn(Cell) -> &'v Value<T>) -> 
             (BinaryOp::Mul, Value::Number(a), Value::Number(b)) => Some(Value::Number(*a * *b)),
             (BinaryOp::Mul, Value::Number(a), Value::Vector(b)) => Some(Value::Vector(*b * *a)),
             (_, a, b) => ops::binary(op, a, b).ok(),
-        },
+        }
+        // What is not finite is judged by the tree.
+        .filter(Value::is_finite),
         Entry::Negated(a) => ops::negated(of(a)).ok(),
         Entry::Magnitude(a) => ops::magnitude(of(a)).ok(),
         Entry::Component(a, axis) => variables::component(of(a), axis),

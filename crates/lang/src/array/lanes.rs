@@ -65,6 +65,18 @@ pub(super) enum What {
 pub(crate) type Calls = Vec<(Span, &'static str)>;
 
 pub(crate) fn not_finite(name: &str) -> Diagnostic {
-    Diagnostic::error("not-finite", format!("the result of {name} is not a finite number"))
-        .expected("arguments inside the function's domain")
+    let (message, expected) = match name {
+        "/" => ("the quotient is not a finite number".into(), "a divisor other than 0"),
+        "^" => ("the power is not a finite number".into(), "a power of real numbers"),
+        "+" | "-" | "*" | "." | ".*" => {
+            ("the result is not a finite number".into(), "finite numbers below 1.8e308")
+        }
+        name => (
+            format!("the result of {name} is not a finite number"),
+            "arguments inside the function's domain",
+        ),
+    };
+    Diagnostic::error("not-finite", message)
+        .expected(expected)
+        .help("`ieee();` before it lets infinite results and NaN pass")
 }

@@ -73,6 +73,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             calls: Vec::new(),
             ready: read.into(),
             recorder: record.map(|_| self.recorder()),
+            ieee: self.arrays.ieee,
         };
         let operand = tree(self, &mut work);
         let lanes = match &operand {
@@ -469,7 +470,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     return Err(self.differing(m, d, spans, [&shapes[0], &shapes[1]]));
                 }
                 let alike = x.0.is_none() || y.0.is_none() || x.0 == y.0;
-                if alike && let Some(lanes) = work.binary(op, x, y) {
+                if alike && let Some(lanes) = work.binary(op, x, y, spans[0].to(spans[1])) {
                     return Ok(LoweredOperand::Lanes(lanes));
                 }
             }
@@ -477,9 +478,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let cells = [a.cell(), b.cell()];
         let (a, b) = (self.value_of(a, work)?, self.value_of(b, work)?);
         let cell = work.noted(|r| r.binary(op, cells[0], cells[1]));
-        ops::binary(op, &a, &b)
-            .map(|value| LoweredOperand::Value(value, cell))
-            .map_err(|d| self.differing(m, d, spans, [&shape_text(&a), &shape_text(&b)]))
+        let value = ops::binary(op, &a, &b)
+            .map_err(|d| self.differing(m, d, spans, [&shape_text(&a), &shape_text(&b)]))?;
+        // Of arrays the operators that have no value for some numbers, as a tape checks them.
+        let judged = match value {
+            Value::Number(_) | Value::Vector(_) => true,
+            Value::Numbers(_) | Value::Vectors(_) => {
+                matches!(op, BinaryOp::Div | BinaryOp::Caret)
+            }
+            _ => false,
+        };
+        if judged && !self.arrays.ieee && !value.is_finite() {
+            return Err(not_finite(op.spelling()).at(spans[0].to(spans[1])));
+        }
+        Ok(LoweredOperand::Value(value, cell))
     }
 
     /// A fault of shapes with both expressions, their shapes, and where these were declared.
@@ -596,13 +608,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             if shapes.iter().all(|s| *s == shapes[0]) {
                 let srcs: Vec<Src> = numbers.iter().map(|(_, s)| work.src(s)).collect();
                 let src = match function {
-                    elementary::Elementary::Unary(f) => work.tape.unary(f, srcs[0], shapes[0]),
+                    elementary::Elementary::Unary(f) => {
+                        work.tape.unary(f, srcs[0], work.checked(shapes[0]))
+                    }
                     elementary::Elementary::Binary(f) => {
-                        work.tape.binary(f, srcs[0], srcs[1], Some(shapes[0]))
+                        work.tape.binary(f, srcs[0], srcs[1], work.checked(shapes[0]))
                     }
                 };
-                debug_assert_eq!(work.tape.checks(), work.calls.len() + 1);
-                work.calls.push((span, name));
+                work.name_checks(span, name);
                 return Ok(LoweredOperand::Lanes(TapeArray {
                     shape: shapes[0],
                     what: What::Number(src),
@@ -628,7 +641,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             .or_at(at)
         })?;
-        if !value.is_finite() {
+        if !self.arrays.ieee && !value.is_finite() {
             return Err(not_finite(name).at(span));
         }
         Ok(LoweredOperand::Value(value, cell))
@@ -703,6 +716,8 @@ pub(crate) struct TapeBuilder<T: Real> {
     ready: VecDeque<(ExprId, Result<Value<T>, Diagnostic>)>,
     /// Notes what is done, for a recipe.
     pub recorder: Option<Recorder<T>>,
+    /// True to let infinite results and NaN pass.
+    ieee: bool,
 }
 
 impl<T: Real> LoweredOperand<T> {
@@ -718,6 +733,18 @@ impl<T: Real> TapeBuilder<T> {
     /// Notes something that has a value, while that is wanted.
     fn noted(&mut self, note: impl FnOnce(&mut Recorder<T>) -> Cell) -> Cell {
         self.recorder.as_mut().map_or(Cell::NONE, note)
+    }
+
+    /// The shape of results that must be finite.
+    fn checked(&self, shape: ArrayShape) -> Option<ArrayShape> {
+        Some(shape).filter(|_| !self.ieee)
+    }
+
+    /// Says what the checks that were added last are of.
+    fn name_checks(&mut self, span: Span, name: &'static str) {
+        while self.calls.len() < self.tape.checks() {
+            self.calls.push((span, name));
+        }
     }
 
     fn noting(&mut self, note: impl FnOnce(&mut Recorder<T>)) {
@@ -819,15 +846,15 @@ impl<T: Real> TapeBuilder<T> {
 
     /// `a op b` where at least one is an array and the shapes agree; `None` where the operator is
     /// not defined.
-    fn binary(&mut self, op: BinaryOp, a: Loose<T>, b: Loose<T>) -> Option<TapeArray> {
+    fn binary(&mut self, op: BinaryOp, a: Loose<T>, b: Loose<T>, span: Span) -> Option<TapeArray> {
         use Loosely::{Number, Vector};
         let shape = a.0.or(b.0)?;
-        let code = match op {
-            BinaryOp::Add => Code::Add,
-            BinaryOp::Sub => Code::Sub,
-            BinaryOp::Mul => Code::Mul,
-            BinaryOp::Div => Code::Div,
-            _ => Code::Abs,
+        let checked = self.checked(shape);
+        let apply = |this: &mut Self, x: Src, y: Src| match op {
+            BinaryOp::Add => this.tape.op(Code::Add, x, y),
+            BinaryOp::Sub => this.tape.op(Code::Sub, x, y),
+            BinaryOp::Mul => this.tape.op(Code::Mul, x, y),
+            _ => this.tape.quotient(x, y, checked),
         };
         let what = match (op, a.1, b.1) {
             (
@@ -836,7 +863,7 @@ impl<T: Real> TapeBuilder<T> {
                 Number(y),
             ) => {
                 let (x, y) = (self.src(&x), self.src(&y));
-                What::Number(self.tape.op(code, x, y))
+                What::Number(apply(self, x, y))
             }
             (
                 BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div,
@@ -844,15 +871,15 @@ impl<T: Real> TapeBuilder<T> {
                 Vector(w),
             ) => {
                 let (v, w) = (v.map(|x| self.src(&x)), w.map(|x| self.src(&x)));
-                What::Vector([0, 1, 2].map(|c| self.tape.op(code, v[c], w[c])))
+                What::Vector([0, 1, 2].map(|c| apply(self, v[c], w[c])))
             }
             (BinaryOp::Mul, Number(x), Vector(v)) | (BinaryOp::Mul, Vector(v), Number(x)) => {
                 let (x, v) = (self.src(&x), v.map(|x| self.src(&x)));
-                What::Vector(v.map(|y| self.tape.op(code, y, x)))
+                What::Vector(v.map(|y| apply(self, y, x)))
             }
             (BinaryOp::Div, Vector(v), Number(x)) => {
                 let (x, v) = (self.src(&x), v.map(|x| self.src(&x)));
-                What::Vector(v.map(|y| self.tape.op(code, y, x)))
+                What::Vector(v.map(|y| apply(self, y, x)))
             }
             (BinaryOp::Dot, Vector(v), Vector(w)) => {
                 let (v, w) = (v.map(|x| self.src(&x)), w.map(|x| self.src(&x)));
@@ -877,15 +904,16 @@ impl<T: Real> TapeBuilder<T> {
                 };
                 let x = self.src(&x);
                 What::Number(match whole {
-                    Some(k) => self.tape.powi(x, k),
+                    Some(k) => self.tape.powi(x, k, checked),
                     None => {
                         let y = self.src(&y);
-                        self.tape.binary(ops::power, x, y, None)
+                        self.tape.binary(ops::power, x, y, checked)
                     }
                 })
             }
             _ => return None,
         };
+        self.name_checks(span, op.spelling());
         Some(TapeArray { shape, what })
     }
 }

@@ -19,6 +19,8 @@ pub(crate) struct ArrayMachine<T: Real> {
     pub assigning: Option<(ExprKey, ExprId)>,
     /// True to apply operators one after the other.
     pub plain_operators: bool,
+    /// True to let infinite results and NaN pass.
+    pub ieee: bool,
 }
 
 impl<T: Real> Default for ArrayMachine<T> {
@@ -29,6 +31,7 @@ impl<T: Real> Default for ArrayMachine<T> {
             recipes: Slots::default(),
             assigning: None,
             plain_operators: false,
+            ieee: false,
         }
     }
 }

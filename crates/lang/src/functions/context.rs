@@ -51,6 +51,7 @@ pub(crate) enum Action {
     Rewind,
     Count,
     IsSet,
+    Ieee,
     CheckEdges,
     Refined,
     RefinedStep,
@@ -61,7 +62,7 @@ pub(crate) enum Action {
 }
 
 /// All built-in functions, in the order of the reference.
-pub const BUILTINS: [Builtin; 22] = [
+pub const BUILTINS: [Builtin; 23] = [
     Builtin {
         name: "format",
         arguments: (1, usize::MAX),
@@ -131,7 +132,7 @@ pub const BUILTINS: [Builtin; 22] = [
         arguments: (1, 1),
         action: Action::Count,
         signature: "count(c)",
-        doc: "The number of items of a multiple argument.",
+        doc: "The number of items of a multiple argument or a list; of a mask, the number of elements where it holds.",
         example: "function float n(float x...) { return count(x); } assert n(5, 6, 7) == 3;",
     },
     Builtin {
@@ -141,6 +142,14 @@ pub const BUILTINS: [Builtin; 22] = [
         signature: "isset(a[i])",
         doc: "Reports whether a variable, or every element of a section, has a value.",
         example: "curve c[3]; c[1:2] = {0, 0, 0}; assert isset(c[2]) and not isset(c);",
+    },
+    Builtin {
+        name: "ieee",
+        arguments: (0, 1),
+        action: Action::Ieee,
+        signature: "ieee(on)",
+        doc: "Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again.",
+        example: "ieee(); float a = 1/0; assert a > 1e308; ieee(0);",
     },
     Builtin {
         name: "check_edges",
@@ -362,6 +371,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 };
                 Ok(Value::Number(T::from(f64::from(u8::from(set)))))
             }
+            Action::Ieee => {
+                let on = match given.first() {
+                    Some(&arg) => self.number(m, arg)?.re() != 0.0,
+                    None => true,
+                };
+                if std::mem::replace(&mut self.arrays.ieee, on) != on {
+                    // Their tapes test, or do not test, what they compute.
+                    self.arrays.recipes.clear();
+                }
+                Ok(Value::Unset)
+            }
             Action::CheckEdges => self.check_edges(m, given[0]).map(|()| Value::Unset),
             Action::Refined => {
                 let n = self.whole(m, given[0])?;
@@ -530,6 +550,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         });
         let flag = |holds: bool| Value::Number(T::from(f64::from(u8::from(holds))));
         let Some((name, all, read)) = multiple else {
+            if builtin.action == Action::Count {
+                let value = self.operand(m, arg)?;
+                match &*crate::value::ops::gathered(&value) {
+                    Value::Numbers(a) => {
+                        let held = a.items.iter().filter(|x| x.re() != 0.0).count();
+                        return Ok(Value::Number(T::from(held as f64)));
+                    }
+                    Value::List(items) => return Ok(Value::Number(T::from(items.len() as f64))),
+                    _ => {}
+                }
+            }
             if matches!(builtin.action, Action::Count | Action::Next) {
                 return Err(Diagnostic::error(
                     "wrong-type",

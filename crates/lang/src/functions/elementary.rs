@@ -1,11 +1,12 @@
 //! Elementary functions, as rows: element by element over numbers and rows of numbers.
 
+use crate::value::blocks;
 use crate::value::variables::Called as _;
 use moldloft_num::Real;
 use moldloft_registry::export::field_id;
 use moldloft_registry::{
     Array, ArrayShape, CallError, Class, Context, DefaultValue, FieldSpec, Implementation, Row,
-    Unit, Value,
+    Unit, Value, Vectors,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -33,7 +34,7 @@ fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> CallError {
         .in_field(field_id(position))
 }
 
-fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, CallError> {
+fn each<T: Real>(name: &str, value: &Value<T>, f: &dyn Fn(T) -> T) -> Result<Value<T>, CallError> {
     if let Some(field) = crate::value::implicit::function(name, value) {
         return field;
     }
@@ -43,15 +44,25 @@ fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Val
             let items = a.items.iter().map(|&x| f(x)).collect();
             Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items })))
         }
-        other => Err(not_a_number(other, 0)),
+        other => match blocks::by_layer(other, |layer| each(name, layer, f)) {
+            Some(layers) => layers,
+            None => Err(not_a_number(other, 0)),
+        },
     }
 }
 
 fn pairs<T: Real>(
     a: &Value<T>,
     b: &Value<T>,
-    f: impl Fn(T, T) -> T,
+    f: &dyn Fn(T, T) -> T,
 ) -> Result<Value<T>, CallError> {
+    let differ = |found: String| {
+        CallError::new("shapes-differ", format!("shapes differ: {found}"))
+            .expected("equal shapes, or a single number on one side")
+    };
+    if let Some(layers) = blocks::by_layers(a, b, |a, b| pairs(a, b, f), differ) {
+        return layers;
+    }
     let array = |shape, items| Ok(Value::Numbers(Arc::new(Array { shape, items })));
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(f(*a, *b))),
@@ -93,12 +104,27 @@ fn reduced<T: Real>(
         .filter(|(_, arg)| !matches!(arg, Value::Unset))
         .map(|(k, arg)| (k, crate::value::ops::gathered(arg)))
         .collect();
+    if let ([(_, value)], Value::Unset) = (&given[..], axis)
+        && let Some(flat) = blocks::flat(value)
+    {
+        return reduced(name, &[flat, Value::Unset], f);
+    }
     if let Value::Number(axis) = axis {
         return match &given[..] {
-            [(_, value)] => along_axis(value, axis.re(), f),
+            [(_, value)] => along_axis(value, axis.re(), &f),
             _ => Err(CallError::new("unused-argument", "an axis goes with one array")
                 .expected("one array")
                 .in_field(field_id(4))),
+        };
+    }
+    if let [(_, value)] = &given[..]
+        && let Value::Vectors(a) = &**value
+    {
+        // By component.
+        let [x, y, z] = a.planes.each_ref().map(|plane| plane.iter().copied().reduce(f));
+        return match (x, y, z) {
+            (Some(x), Some(y), Some(z)) => Ok(Value::Vector([x, y, z].into())),
+            _ => Err(CallError::new("empty", "an empty row has no such vector")),
         };
     }
     if let [(k, value)] = &given[..] {
@@ -145,7 +171,7 @@ fn componentwise<T: Real>(
             _ => Err(CallError::new("wrong-class", "a vector goes with a vector or a number")
                 .expected("a number or a vector, or arrays of numbers in all places")),
         },
-        _ => pairs(a, b, f),
+        _ => pairs(a, b, &f),
     }
 }
 
@@ -153,8 +179,21 @@ fn componentwise<T: Real>(
 fn along_axis<T: Real>(
     value: &Value<T>,
     axis: f64,
-    f: impl Fn(T, T) -> T,
+    f: &dyn Fn(T, T) -> T,
 ) -> Result<Value<T>, CallError> {
+    if let Value::Vectors(a) = value {
+        let plane = |c: usize| {
+            let items = a.planes[c].clone();
+            along_axis(&Value::Numbers(Arc::new(Array { shape: a.shape, items })), axis, f)
+        };
+        let (Value::Numbers(x), Value::Numbers(y), Value::Numbers(z)) =
+            (plane(0)?, plane(1)?, plane(2)?)
+        else {
+            return Err(not_a_number(value, 0));
+        };
+        let planes = [x.items.clone(), y.items.clone(), z.items.clone()];
+        return Ok(Value::Vectors(Arc::new(Vectors { shape: x.shape, planes })));
+    }
     let Value::Numbers(a) = value else { return Err(not_a_number(value, 0)) };
     let ArrayShape::Grid(m, n) = a.shape else {
         return Err(CallError::new("wrong-shape", format!("an farray {} has one axis", a.shape))
@@ -171,7 +210,7 @@ fn along_axis<T: Real>(
     let at = |k: usize, l: usize| if axis == 1.0 { a.items[l * n + k] } else { a.items[k * n + l] };
     let mut items = Vec::with_capacity(count);
     for k in 0..count {
-        let one = (0..length).map(|l| at(k, l)).reduce(&f);
+        let one = (0..length).map(|l| at(k, l)).reduce(f);
         items.push(one.ok_or_else(|| CallError::new("empty", "an empty row has no such number"))?);
     }
     Ok(Value::Numbers(Arc::new(Array { shape: ArrayShape::Row(count), items })))
@@ -208,10 +247,10 @@ pub(crate) fn apply<T: Real>(
     args: &[Value<T>],
 ) -> Result<Value<T>, CallError> {
     match f {
-        Elementary::Unary(f) => each(name, &args[0], f),
+        Elementary::Unary(f) => each(name, &args[0], &f),
         Elementary::Binary(f) => match crate::value::implicit::functions(name, args) {
             Some(field) => field,
-            None => pairs(&args[0], &args[1], f),
+            None => pairs(&args[0], &args[1], &f),
         },
     }
 }
@@ -236,7 +275,8 @@ macro_rules! elementary {
             vec![
                 $({
                     fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
-                        each($u, &args[0], $u_f)
+                        let f: fn(T) -> T = $u_f;
+                        each($u, &args[0], &f)
                     }
                     row!($u, $u_doc, vec![argument("x", "A number, a row of numbers or a field.")],
                         "assert sin(0) == 0;", body).cheap()
@@ -257,6 +297,18 @@ macro_rules! elementary {
 /// A number without derivatives: what the steps of floor and round give.
 fn step<T: Real>(x: T, f: fn(f64) -> f64) -> T {
     T::from(f(x.re()))
+}
+
+/// a - b floor(a / b) without rounding.
+fn remainder(a: f64, b: f64) -> f64 {
+    let r = a % b;
+    if r != 0.0 && (r < 0.0) != (b < 0.0) { r + b } else { r }
+}
+
+/// floor(a / b), also where a / b rounds to the next whole number.
+fn quotient(a: f64, b: f64) -> f64 {
+    let q = (a - remainder(a, b)) / b;
+    if q.abs() < 4_503_599_627_370_496.0 { q.round() } else { q }
 }
 
 elementary! {
@@ -286,11 +338,14 @@ elementary! {
     binary {
         "atan2", "Angle of the point (x, y), in radians: atan2(y, x).", "y", "x", T::atan2;
         "hypot", "Length of (a, b).", "a", "b", |a: T, b: T| (a * a + b * b).sqrt();
-        "mod", "Remainder of a / b, with the sign of b.", "a", "b", |a: T, b: T| {
-            a - b * T::from((a.re() / b.re()).floor())
+        "mod", "Remainder of a / b, with the sign of b; exact.", "a", "b", |a: T, b: T| {
+            let exact = remainder(a.re(), b.re());
+            let follows = a - b * T::from(quotient(a.re(), b.re()));
+            // Derivatives are those of a - b q, the value is the exact remainder.
+            if follows.is_finite() { follows - follows.re() + exact } else { T::from(exact) }
         };
         "div", "Whole quotient of a / b, rounded down.", "a", "b", |a: T, b: T| {
-            T::from((a.re() / b.re()).floor())
+            T::from(quotient(a.re(), b.re()))
         };
     }
 }
@@ -325,18 +380,25 @@ pub fn rows() -> Vec<Row> {
     }
     fn average<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         let gathered = crate::value::ops::gathered(&args[0]);
+        let shape = match &*gathered {
+            Value::Numbers(a) => Some(a.shape),
+            Value::Vectors(a) => Some(a.shape),
+            _ => None,
+        };
         let count = match (&*gathered, &args[1]) {
-            (Value::Numbers(a), Value::Number(axis)) => match a.shape {
-                ArrayShape::Grid(m, n) => {
-                    if axis.re() == 1.0 {
-                        m
-                    } else {
-                        n
+            (Value::Numbers(_) | Value::Vectors(_), Value::Number(axis)) => {
+                match shape.unwrap_or(ArrayShape::Row(1)) {
+                    ArrayShape::Grid(m, n) => {
+                        if axis.re() == 1.0 {
+                            m
+                        } else {
+                            n
+                        }
                     }
+                    ArrayShape::Row(n) => n,
                 }
-                ArrayShape::Row(n) => n,
-            },
-            (Value::Numbers(a), _) => a.items.len(),
+            }
+            (Value::Numbers(_) | Value::Vectors(_), _) => shape.map_or(1, ArrayShape::count),
             (Value::Vector(_), _) => 3,
             _ => 1,
         };
@@ -347,6 +409,14 @@ pub fn rows() -> Vec<Row> {
             Value::Numbers(a) => {
                 let items = a.items.iter().map(|x| *x / count as f64).collect();
                 Value::Numbers(Arc::new(Array { shape: a.shape, items }))
+            }
+            Value::Vector(v) => Value::Vector(v / T::from(count as f64)),
+            Value::Vectors(a) => {
+                let planes = a
+                    .planes
+                    .each_ref()
+                    .map(|plane| plane.iter().map(|x| *x / count as f64).collect());
+                Value::Vectors(Arc::new(Vectors { shape: a.shape, planes }))
             }
             other => return Err(not_a_number(&other, 0)),
         })
@@ -381,9 +451,9 @@ pub fn rows() -> Vec<Row> {
         .cheap(),
     );
     rows.push(row!(
-        // `mean` is the mean curvature of a surface.
+        // Called `mean` as well: that of a surface is its mean curvature.
         "average",
-        "The mean of the numbers of an array.",
+        "The mean of the numbers or vectors of an array; `mean` is the same.",
         vec![
             argument("a", "A row or grid of numbers."),
             FieldSpec {

@@ -22,9 +22,10 @@ const FIRST_FREE: u32 = 10;
 const MOST_BYTES: usize = 256 << 20;
 const MOST_OPEN: usize = 1_000;
 
-/// The unit that a name stands for without being declared.
+/// The number that a name stands for without being declared: a unit, or PI.
 pub fn predeclared(name: &str) -> Option<f64> {
     match name {
+        "PI" => Some(std::f64::consts::PI),
         "stdin" => Some(f64::from(STANDARD_INPUT)),
         "stdout" => Some(f64::from(STANDARD_OUTPUT)),
         "stderr" => Some(f64::from(STANDARD_ERROR)),

@@ -6,14 +6,14 @@ use crate::source::fault_location;
 use crate::source::module::Module;
 use crate::source::scope::{Binding, Passed, ScopedBinding};
 use crate::value::ops;
-use crate::value::subarray::{ArraySection, Place, Selection};
 use crate::value::variables;
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{
-    Array, Class, CurveRef, Given, Role, Scalar, SurfaceRef, Value, Vectors, bind_arguments, many,
+    Array, ArrayShape, Class, CurveRef, Given, Role, Row, Scalar, SurfaceRef, Value, Vectors,
+    bind_arguments, many,
 };
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, NodeList, Subscript, Symbol, UnaryOp};
@@ -117,7 +117,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Binary { op, left, right } => {
                 let levels = levels.checked_sub(1).filter(|_| ops::is_elementwise(op))?;
                 let (a, b) = (self.scalar(m, left, levels)?, self.scalar(m, right, levels)?);
-                ops::of_numbers(op, a, b)
+                // What is not finite is judged where it can be reported.
+                ops::of_numbers(op, a, b).filter(|x| x.is_finite())
             }
             _ => None,
         }
@@ -175,8 +176,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn name(&mut self, m: &Module, symbol: Symbol, span: Span) -> Evaluated<T> {
         let name = m.names[symbol.0 as usize];
         let Some(bound) = self.env.scope.lookup(name) else {
-            if let Some(unit) = crate::functions::files::predeclared(m.program.name(symbol)) {
-                return Ok(Value::Number(T::from(unit)));
+            if let Some(x) = crate::functions::files::predeclared(m.program.name(symbol)) {
+                return Ok(Value::Number(T::from(x)));
             }
             return Err(self.unknown_name(m, symbol, span));
         };
@@ -226,6 +227,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     .at(span)
                     .help(format!("name one of its objects, as in {family}.name")))
             }
+            Binding::Routine(_) | Binding::Function(_) => {
+                let text = m.program.name(symbol);
+                Err(Diagnostic::error("not-a-value", format!("`{text}` is a routine"))
+                    .at(span)
+                    .help(format!("call it: {text}(...)")))
+            }
             Binding::Poisoned => Err(silent()),
         }
     }
@@ -246,7 +253,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Value::list(keys.into_iter().flatten().map(|&key| Value::Object(key)))
     }
 
-    fn unknown_name(&self, m: &Module, symbol: Symbol, span: Span) -> Diagnostic {
+    pub fn unknown_name(&self, m: &Module, symbol: Symbol, span: Span) -> Diagnostic {
         let text = m.program.name(symbol);
         let diagnostic =
             Diagnostic::error("unknown-name", format!("unknown name `{text}`")).at(span);
@@ -272,7 +279,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     /// The full name of an object that an expression such as `fore[2].leg[3]` spells, when it
     /// begins with something that stands for several objects.
-    fn spelled(&mut self, m: &Module, id: ExprId) -> Result<Option<String>, Diagnostic> {
+    pub fn spelled(&mut self, m: &Module, id: ExprId) -> Result<Option<String>, Diagnostic> {
         Ok(match m.program[id].kind {
             ExprKind::Paren(inner) => self.spelled(m, inner)?,
             ExprKind::Name(symbol) => match self.env.scope.lookup(m.names[symbol.0 as usize]) {
@@ -305,7 +312,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// What a spelled name means: an object or all objects of a family.
-    fn spelled_value(&self, text: &str) -> Option<Value<T>> {
+    pub fn spelled_value(&self, text: &str) -> Option<Value<T>> {
         if let Some(key) = self.run.find(text) {
             return Some(Value::Object(key));
         }
@@ -317,110 +324,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return Some(Value::Number(self.env.param_values[number]));
         }
         self.env.families.contains_key(text).then(|| self.family(text))
-    }
-
-    fn index(
-        &mut self,
-        m: &Module,
-        id: ExprId,
-        base: ExprId,
-        subs: NodeList<Subscript>,
-    ) -> Evaluated<T> {
-        if let Some(text) = self.spelled(m, id)? {
-            if let Some(value) = self.spelled_value(&text) {
-                return Ok(value);
-            }
-            return Err(self.no_such_object(&text));
-        }
-        // A part of what was passed by reference is read where it stands.
-        if let Some(symbol) = m.program.as_name(base)
-            && let Some(place) = self.env.scope.place_of(m.names[symbol.0 as usize])
-            && place.section.is_some()
-        {
-            let place = self.indexed(m, place, base, subs)?;
-            let Some(Binding::Variable { value, .. }) =
-                self.env.scope.root(&place).map(|b| &b.what)
-            else {
-                return Err(silent());
-            };
-            return variables::at_place(value, &place);
-        }
-        let value = self.expr(m, base)?;
-        let value = match self.opened(value) {
-            list @ Value::List(_) => list,
-            other => self.read(other, m.program[base].span)?,
-        };
-        let Some(extents) = variables::extents(&value) else {
-            let class = value.called();
-            return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
-                .expected("a row, grid or list before [")
-                .found(class));
-        };
-        if let [Subscript::At(sub)] = m.program[subs] {
-            // An index can only be an array where it is not written as a number.
-            if !matches!(m.program[sub].kind, ExprKind::Number(_)) {
-                let index = self.operand(m, sub)?;
-                if let Value::Numbers(index) = &*ops::gathered(&index) {
-                    let picked = ops::picked(&value, index);
-                    return picked.map_err(|d| d.or_at(m.program[sub].span));
-                }
-                if let (Value::Number(x), [extent]) = (&index, &extents[..])
-                    && x.re().fract() == 0.0
-                    && x.re() >= 1.0
-                    && x.re() <= *extent as f64
-                {
-                    return variables::part(
-                        &value,
-                        ArraySection::Row(Selection::at(x.re() as usize - 1)),
-                    );
-                }
-            }
-        }
-        let section = self.section(m, base, &extents, &variables::shape_text(&value), subs)?;
-        variables::part(&value, section)
-    }
-
-    /// A section of a place.
-    fn indexed(
-        &mut self,
-        m: &Module,
-        place: Place,
-        base: ExprId,
-        subs: NodeList<Subscript>,
-    ) -> Result<Place, Diagnostic> {
-        let Some(Binding::Variable { value, .. }) = self.env.scope.root(&place).map(|b| &b.what)
-        else {
-            return Err(silent());
-        };
-        let (extents, shape) = match place.section {
-            Some(section) => {
-                let ([m, n], count) = section.extents();
-                ([m, n][..count].to_vec(), variables::shape_at(value, &place))
-            }
-            None => match variables::extents(value) {
-                Some(extents) => (extents, variables::shape_text(value)),
-                None if matches!(value, Value::Unset) => {
-                    let text = m.program.slice(m.program[base].span).to_string();
-                    let declared = self.env.scope.root(&place).map_or(Span::UNKNOWN, |b| b.span);
-                    let message = format!("`{text}` has no value yet");
-                    return Err(
-                        Diagnostic::error("no-value", message).note_at(declared, "declared here")
-                    );
-                }
-                None => (Vec::new(), String::new()),
-            },
-        };
-        if extents.is_empty() {
-            let class = match place.section {
-                Some(_) => "a single element",
-                None => value.called(),
-            };
-            return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
-                .expected("a row, grid or list before [")
-                .found(class));
-        }
-        let section = self.section(m, base, &extents, &shape, subs)?;
-        place.indexed(section)
     }
 
     /// The objects of an entity list, unread; any other value as it is.
@@ -442,133 +345,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    fn no_such_object(&self, text: &str) -> Diagnostic {
+    pub fn no_such_object(&self, text: &str) -> Diagnostic {
         let diagnostic = Diagnostic::error("unknown-name", format!("unknown object `{text}`"));
         if !self.hints() {
             return diagnostic;
         }
         diagnostic
             .maybe_help(self.run.graph().nearest_name(text).map(|n| format!("did you mean `{n}`?")))
-    }
-
-    /// The subscripts as positions, checked against the extents of what stands before them.
-    fn section(
-        &mut self,
-        m: &Module,
-        base: ExprId,
-        extents: &[usize],
-        shape: &str,
-        subs: NodeList<Subscript>,
-    ) -> Result<ArraySection, Diagnostic> {
-        if extents.len() != subs.len() {
-            return Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
-                .expected(format!("{} subscripts", extents.len()))
-                .found(format!("{} subscripts", subs.len()))
-                .note(format!("`{}` is {shape}", m.program.slice(m.program[base].span))));
-        }
-        let mut parts = [Selection::at(0); 2];
-        for (k, (&sub, &extent)) in m.program[subs].iter().zip(extents).enumerate() {
-            parts[k] = self.selection(m, sub, extent).map_err(|d| {
-                if d.id != "outside" {
-                    return d;
-                }
-                let name = m.program.as_name(base).and_then(|symbol| {
-                    let bound = self.env.scope.lookup(m.names[symbol.0 as usize])?;
-                    Some((m.program.name(symbol), bound.span))
-                });
-                match name {
-                    Some((name, declared)) => {
-                        d.note_at(declared, format!("`{name}` is declared here: {shape}"))
-                    }
-                    None => d.note(format!("the array is {shape}")),
-                }
-            })?;
-        }
-        Ok(match subs.len() {
-            1 => ArraySection::Row(parts[0]),
-            _ => ArraySection::Grid(parts[0], parts[1]),
-        })
-    }
-
-    fn selection(
-        &mut self,
-        m: &Module,
-        sub: Subscript,
-        extent: usize,
-    ) -> Result<Selection, Diagnostic> {
-        let bound = |this: &mut Self, expr: Option<ExprId>, default: f64| match expr {
-            Some(expr) => this.number(m, expr).map(|x| (x.re(), m.program[expr].span)),
-            None => Ok((default, Span::UNKNOWN)),
-        };
-        let inside = |(x, span): (f64, Span)| {
-            if x.fract() == 0.0 && x >= 1.0 && x <= extent as f64 {
-                return Ok(x as i64 - 1);
-            }
-            Err(Diagnostic::error("outside", format!("index {x} is outside the array"))
-                .at(span)
-                .expected(format!("a whole number from 1 to {extent}"))
-                .found(x.to_string()))
-        };
-        let (from, to, step) = match sub {
-            Subscript::Whole => return Ok(Selection::whole(extent)),
-            Subscript::At(expr) => {
-                return Ok(Selection::at(inside(bound(self, Some(expr), 1.0)?)? as usize));
-            }
-            Subscript::Range { from, to, step } => {
-                let step = bound(self, step, 1.0)?.0;
-                // A range that goes down begins at the last element.
-                let ends = [1.0, extent as f64];
-                let ends = if step < 0.0 { [ends[1], ends[0]] } else { ends };
-                let from = bound(self, from, ends[0])?;
-                let to = bound(self, to, ends[1])?;
-                (inside(from)?, inside(to)?, step)
-            }
-        };
-        if step.fract() != 0.0 || step == 0.0 || (to - from) as f64 * step < 0.0 {
-            return Err(Diagnostic::error("empty-range", "empty range")
-                .expected("lo:hi with lo <= hi, or a negative step")
-                .found(format!("{}:{}:{step}", from + 1, to + 1)));
-        }
-        let count = ((to - from) as f64 / step).floor() as usize + 1;
-        let step = if count == 1 { 1 } else { step as isize };
-        Ok(Selection { start: from as usize, step, count, keeps: true })
-    }
-
-    /// The variable, section and component that an assignment's target names.
-    pub fn place(&mut self, m: &Module, id: ExprId) -> Result<Place, Diagnostic> {
-        let span = m.program[id].span;
-        match m.program[id].kind {
-            ExprKind::Paren(inner) => self.place(m, inner),
-            ExprKind::Name(symbol) => {
-                let name = m.names[symbol.0 as usize];
-                self.env.scope.place_of(name).ok_or_else(|| self.unknown_name(m, symbol, span))
-            }
-            ExprKind::Member { base, name, .. } => {
-                let place = self.place(m, base)?;
-                let component = ["x", "y", "z"].iter().position(|c| *c == m.program.name(name));
-                match component {
-                    Some(c) if place.component.is_none() => {
-                        Ok(Place { component: Some(c), ..place })
-                    }
-                    _ => Err(Diagnostic::error("not-assignable", "this cannot be assigned to")
-                        .at(span)
-                        .expected("a variable, with subscripts or .x .y .z")),
-                }
-            }
-            ExprKind::Index { base, subs } => {
-                let place = self.place(m, base)?;
-                match self.env.scope.root(&place).map(|bound| (&bound.what, bound.span)) {
-                    Some((Binding::Variable { .. }, _)) => {
-                        self.indexed(m, place, base, subs).map_err(|d| d.or_at(span))
-                    }
-                    Some((Binding::Poisoned, _)) | None => Err(silent()),
-                    Some((_, declared)) => Err(not_a_variable(m, base, declared).at(span)),
-                }
-            }
-            _ => Err(Diagnostic::error("not-assignable", "this cannot be assigned to")
-                .at(span)
-                .expected("a variable, with subscripts or .x .y .z")),
-        }
     }
 
     fn member(
@@ -594,7 +377,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if let Some(symbol) = m.program.as_name(base)
             && let Some(place) = self.env.scope.place_of(m.names[symbol.0 as usize])
             && let Some(section) = place.section
-            && let Some(d) = ["d1", "d2"].iter().position(|d| *d == word)
+            && let Some(d) = ["d1", "d2", "d3"].iter().position(|d| *d == word)
         {
             let (extents, count) = section.extents();
             if d < count {
@@ -715,12 +498,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return self.call_value(m, value, args, m.program[callee].span);
         };
         let name = m.names[symbol.0 as usize];
-        if self.env.scope.lookup(name).is_some() {
-            let value = self.name(m, symbol, m.program[callee].span)?;
-            let value = self.read(value, m.program[callee].span)?;
-            return self.call_value(m, value, args, m.program[callee].span);
+        let routine = self.routine_named(name);
+        match self.env.scope.lookup(name).map(|bound| &bound.what) {
+            Some(Binding::Routine(_)) | None => {}
+            Some(Binding::Function(row)) => {
+                let row = row.clone();
+                return self.call_row(m, row, args, span);
+            }
+            Some(_) => {
+                let value = self.name(m, symbol, m.program[callee].span)?;
+                let value = self.read(value, m.program[callee].span)?;
+                return self.call_value(m, value, args, m.program[callee].span);
+            }
         }
-        if let Some(&routine) = self.env.scope.routines.get(&name) {
+        if let Some(routine) = routine {
             let errors = self.error_count();
             let value = self.call_routine(m, routine, args, None, span)?;
             if value.is_none() && self.error_count() > errors {
@@ -729,8 +520,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             return value.ok_or_else(|| {
                 let text = m.program.name(symbol);
-                Diagnostic::error("no-value", format!("`{text}` returns no value"))
-                    .help("only a function does: declare it as `function float f(...)`")
+                let callee = self.modules.get(routine.module);
+                Diagnostic::error("no-value", format!("`{text}` returns no value")).help(
+                    match callee.program[routine.routine].result {
+                        Some(_) => "it came to its end: every way through it must `return` one",
+                        None => "only a function does: declare it as `function float f(...)`",
+                    },
+                )
             });
         }
         if let Some(value) = self.builtin(m, symbol, args, span) {
@@ -739,6 +535,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let Some(row) = self.row(m, symbol, args.len(), span) else {
             return Err(self.unknown_function(m, symbol).at(m.program[callee].span));
         };
+        self.call_row(m, row, args, span)
+    }
+
+    /// The value of a function of the registry.
+    fn call_row(
+        &mut self,
+        m: &Module,
+        mut row: Arc<Row>,
+        args: NodeList<Arg>,
+        span: Span,
+    ) -> Evaluated<T> {
         let mut given = Given { positional: Vec::with_capacity(args.len()), named: Vec::new() };
         for arg in &m.program[args] {
             let value = self.operand(m, arg.value)?;
@@ -746,6 +553,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 None => given.positional.push(value),
                 Some(ident) => given.named.push((m.program.name(ident.symbol), value)),
             }
+        }
+        // Of numbers and points it is their mean, of a surface alone the mean curvature.
+        if &*row.name == "mean"
+            && given.positional.first().is_some_and(|value| match &*ops::gathered(value) {
+                Value::Number(_) | Value::Numbers(_) | Value::Vector(_) => true,
+                Value::Vectors(a) => matches!(a.shape, ArrayShape::Row(_)) || args.len() > 1,
+                _ => false,
+            })
+            && let Some(average) = self.loader.registry.get("average")
+        {
+            row = average.clone();
         }
         if let Some(measure) = self.shape_measure(&row.name, &given) {
             return measure.map_err(|d| d.or_at(span));
@@ -766,7 +584,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let value = value
             .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
-        if !value.is_finite() {
+        if !self.arrays.ieee && !value.is_finite() {
             return Err(Diagnostic::error(
                 "not-finite",
                 format!("the result of {} is not a finite number", row.name),
@@ -803,15 +621,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         shape_at(&value, &given).map_err(|d| d.or_at(span))
     }
-}
-
-/// What is said of an assignment to an object or parameter.
-fn not_a_variable(m: &Module, base: ExprId, declared: Span) -> Diagnostic {
-    let text = m.program.slice(m.program[base].span);
-    Diagnostic::error("not-assignable", format!("`{text}` cannot be assigned to"))
-        .found("an object or parameter")
-        .note_at(declared, "declared here")
-        .help("objects are named once; change their data, or use a variable")
 }
 
 /// A curve at t, a surface at (u, v), a field at a point; rows of parameters give rows.

@@ -3,10 +3,12 @@
 use crate::array::machine::ArrayMachine;
 use crate::array::recipe::ExprKey;
 use crate::run::read_log::ReadLog;
+use crate::run::semantics::{self, Executed, Semantics};
 use crate::run::usage::{self, Usage};
 use crate::source::env::{Environment, Param, Seed};
 use crate::source::module::{Loader, Module, Modules, Name, RoutineAt};
 use crate::source::scope::{Binding, ScopedBinding};
+use crate::value::chosen::Chosen;
 use crate::value::initialised::Known;
 use crate::value::subarray::Place;
 use crate::value::variables::Called as _;
@@ -36,6 +38,9 @@ const MOST_PRINTED: usize = 16 << 20;
 
 /// Statements, expressions and calls nest at most this deep while running.
 pub(crate) const DEEPEST: u32 = 2_500;
+
+/// Calls of routines under way at a time.
+const MOST_CALLS: usize = 12_000;
 
 /// The stack that a run needs: the deepest nesting times the largest frame, with room to spare.
 #[cfg(not(target_arch = "wasm32"))]
@@ -115,6 +120,8 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub misprint_told: bool,
     /// True while a library routine is left because of an error in it.
     pub abandoned: bool,
+    /// The statements that were executed.
+    executed: Executed,
 }
 
 pub(crate) fn silent() -> Diagnostic {
@@ -150,6 +157,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             measured: None,
             misprint_told: false,
             abandoned: false,
+            executed: Executed::default(),
         }
     }
 
@@ -169,6 +177,26 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         match flow {
             Flow::Stop => Flow::Stop,
             _ => Flow::Next,
+        }
+    }
+
+    /// Judges what the run has not executed; a run that was stopped is not judged.
+    pub fn judge(&mut self) {
+        if self.env.stopped || T::PARTS > 1 {
+            return;
+        }
+        let scope = &self.env.scope;
+        let run: Vec<usize> = scope.executed.iter().copied().collect();
+        // The tree of a text with faults has gaps.
+        if run.iter().any(|&at| semantics::has_gaps(self.modules.get(at))) {
+            return;
+        }
+        let open = !scope.sketches_done.is_empty() || !scope.given.is_empty();
+        let (modules, registry) = (&*self.modules, self.loader.registry);
+        let semantics =
+            Semantics::new(modules, registry, run, &scope.routines, &self.executed, open);
+        for diagnostic in semantics.judged() {
+            self.report(diagnostic);
         }
     }
 
@@ -214,9 +242,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     /// # Errors
     /// When the run must stop; that was reported.
     pub fn charge(&mut self, value: &Value<T>, span: Span) -> Result<(), Diagnostic> {
-        // Large arrays count for the memory they take, small ones for the time, that of a few
-        // statements on numbers; lists are read item by item.
-        let of_array = |n: usize| 3 + n / if n > 100_000 { 4 } else { 16 };
+        // Arrays count for the time they take: a statement on a number takes as long as an operator on some
+        // sixty elements. Lists are read item by item; memory has a limit of its own.
+        let of_array = |n: usize| 3 + n / 64;
         self.usage.steps += match value {
             Value::Numbers(a) => of_array(a.items.len()),
             Value::Vectors(a) => of_array(a.len()),
@@ -299,6 +327,50 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         true
     }
 
+    /// Runs the body of a routine one call deeper. Calls nest deeper than one stack holds, so now and then one goes
+    /// on a new stack.
+    pub fn deeper_call(
+        &mut self,
+        span: Span,
+        body: impl FnOnce(&mut Self) -> Flow<T> + Send,
+    ) -> Option<Flow<T>>
+    where
+        Self: Send,
+    {
+        if self.env.scope.frames.len() > MOST_CALLS {
+            self.stop(
+                Diagnostic::error("nested-too-deep", "calls nest too deep")
+                    .at(span)
+                    .expected(format!("at most {MOST_CALLS} calls under way"))
+                    .help("look for a subroutine that calls itself without end"),
+            );
+            return None;
+        }
+        if cfg!(target_arch = "wasm32") || self.usage.depth < DEEPEST / 2 {
+            if !self.deeper(span) {
+                return None;
+            }
+            let flow = body(self);
+            self.usage.depth -= 1;
+            return Some(flow);
+        }
+        let depth = std::mem::take(&mut self.usage.depth);
+        let flow = crate::run::program::on_new_stack(|| body(self));
+        self.usage.depth = depth;
+        if flow.is_none() {
+            self.stop(
+                Diagnostic::error(
+                    "nested-too-deep",
+                    "there is no memory for the stack of more calls",
+                )
+                .at(span)
+                .found(format!("{} calls under way", self.env.scope.frames.len()))
+                .help("look for a subroutine that calls itself without end"),
+            );
+        }
+        flow
+    }
+
     /// Goes one level deeper; false when that is too deep.
     pub fn deeper(&mut self, span: Span) -> bool {
         if self.usage.depth >= DEEPEST {
@@ -342,6 +414,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         if self.step(stmt.span) || !self.deeper(stmt.span) {
             return Flow::Stop;
         }
+        self.executed.note(self.current, id);
         let flow = self.statement_of(m, id, stmt.kind, stmt.span).unwrap_or_else(|diagnostic| {
             self.report(diagnostic.or_at(stmt.span));
             // A library routine does not go on after an error: what follows would only be its echo.
@@ -552,7 +625,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             self.usage.held = held;
         }
         let known = match (&value, &dims[..]) {
-            (Some(_), _) | (_, []) => Known::default(),
+            (Some(_), _) | (_, [] | [_, _, _]) => Known::default(),
+            _ if ty == Type::String => Known::default(),
             _ => Known::nothing(dims.iter().product()),
         };
         let shape = value.as_ref().map(variables::shape_of);
@@ -596,7 +670,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let kept = self.env.scope.own(name).is_some_and(|known| match known.what {
             Binding::Turn { turn: made, .. } => turn == Some(made),
             Binding::Object(_) | Binding::Param(_) | Binding::Instance(_) => true,
-            Binding::Variable { .. }
+            Binding::Routine(_)
+            | Binding::Function(_)
+            | Binding::Variable { .. }
             | Binding::Reference(_)
             | Binding::Multiple(_)
             | Binding::Poisoned => false,
@@ -614,7 +690,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             Binding::Poisoned => false,
             Binding::Variable { .. } | Binding::Reference(_) | Binding::Multiple(_) => !variable,
             Binding::Turn { .. } | Binding::Instance(_) => variable,
-            Binding::Object(_) | Binding::Param(_) => true,
+            Binding::Object(_) | Binding::Param(_) | Binding::Routine(_) | Binding::Function(_) => {
+                true
+            }
         };
         if !clash {
             return Ok(());
@@ -685,8 +763,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         if !x.is_finite() {
             return Err(wrong("a finite number".into()));
         }
-        if is_int && x.fract() != 0.0 {
-            return Err(wrong("a whole number".into()));
+        if is_int && (x.fract() != 0.0 || x.abs() >= variables::MOST_INT) {
+            return Err(wrong("a whole number below 2^53".into()));
         }
         let value = (self.inputs.seed)(&text, plain);
         let number = self.env.params.len();
@@ -719,7 +797,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             }
             AssignOp::With(op) => self.updated(m, target, op, value)?,
         };
-        let place = self.place(m, target)?;
+        let (place, chosen) = self.target(m, target)?;
+        if let Some(chosen) = chosen {
+            let at = m.program[target].span;
+            return self.store_chosen(place, &chosen, right).map_err(|d| d.or_at(at));
+        }
         let shape = variables::shape_of(&right);
         self.store(place, right).map_err(|d| {
             let spans = [target, value].map(|e| m.program[e].span);
@@ -736,7 +818,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     fn call_statement(&mut self, m: &Module, expr: ExprId) -> Result<Flow<T>, Diagnostic> {
         if let ExprKind::Call { callee, args } = m.program[expr].kind
             && let Some(symbol) = m.program.as_name(callee)
-            && let Some(&routine) = self.env.scope.routines.get(&m.names[symbol.0 as usize])
+            && let Some(routine) = self.routine_named(m.names[symbol.0 as usize])
         {
             self.call_routine(m, routine, args, None, m.program[expr].span)?;
             return Ok(if self.env.stopped { Flow::Stop } else { Flow::Next });
@@ -744,6 +826,15 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         // A call for its effect alone has none, but its errors are worth hearing.
         self.expr(m, expr)?;
         Ok(Flow::Next)
+    }
+
+    /// The routine that a name means: one that was passed, or one of the program.
+    pub fn routine_named(&self, name: Name) -> Option<RoutineAt> {
+        match self.env.scope.lookup(name).map(|bound| &bound.what) {
+            Some(Binding::Routine(at)) => Some(*at),
+            Some(Binding::Function(_)) => None,
+            _ => self.env.scope.routines.get(&name).copied(),
+        }
     }
 
     pub fn unknown_kind(&self, word: &str) -> Diagnostic {
@@ -777,6 +868,33 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let variables = locals.chain(globals).map(|name| &**self.modules.text(name));
         let functions = self.loader.registry.rows().filter(|r| !r.kind).map(|r| &*r.name);
         nearest(word, variables.chain(functions)).map(str::to_string)
+    }
+
+    /// Puts a value into elements of a place that masks or index arrays have chosen.
+    fn store_chosen(
+        &mut self,
+        place: Place,
+        chosen: &Chosen,
+        value: Value<T>,
+    ) -> Result<(), Diagnostic> {
+        let whole = Place { component: None, ..place };
+        let Some(bound) = self.env.scope.root(&whole) else { return Err(silent()) };
+        let Binding::Variable { value: old, known, .. } = &bound.what else {
+            return Err(silent());
+        };
+        let mut part = variables::at_place(old, &whole)?;
+        let mut known = known.clone();
+        chosen.put(&mut part, place.component, value)?;
+        self.store(whole, part)?;
+        // The other elements are as unset as they were.
+        if whole.section.is_none()
+            && let Some(bound) = self.env.scope.root_mut(&whole)
+            && let Binding::Variable { value, known: now, .. } = &mut bound.what
+        {
+            known.give_each(&chosen.positions, value);
+            *now = known;
+        }
+        Ok(())
     }
 
     pub fn store(&mut self, place: Place, value: Value<T>) -> Result<(), Diagnostic> {

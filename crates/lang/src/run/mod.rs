@@ -11,6 +11,8 @@ mod objects;
 pub mod program;
 mod read_log;
 mod routine;
+mod sections;
+mod semantics;
 mod sketches;
 pub(crate) mod solve_set;
 pub(crate) mod usage;

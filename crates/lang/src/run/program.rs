@@ -64,6 +64,29 @@ pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
     })
 }
 
+/// The stack that a part of a run with deep calls needs: [`STACK_BYTES`] has room for large frames of native
+/// functions at all levels, this for a few.
+#[cfg(not(target_arch = "wasm32"))]
+const MORE_STACK: usize = 64 << 20;
+
+/// Runs `f` on a stack of its own; `None` when there is no memory for one.
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) fn on_new_stack<R: Send>(f: impl FnOnce() -> R + Send) -> Option<R> {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(MORE_STACK).spawn_scoped(scope, f);
+        match thread.ok()?.join() {
+            Ok(result) => Some(result),
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
+    })
+}
+
+/// There is one stack in a browser.
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn on_new_stack<R: Send>(f: impl FnOnce() -> R + Send) -> Option<R> {
+    Some(f())
+}
+
 /// A page in a browser has no threads and one stack, which its maker chose.
 #[cfg(target_arch = "wasm32")]
 pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
@@ -94,6 +117,7 @@ impl RunContext<'_> {
                 with_stack(|| {
                     let mut interpreter = Interpreter::new(modules, loader, run, env, inputs);
                     interpreter.module(0);
+                    interpreter.judge();
                     if let Some(sketch) = &sketch {
                         let span = Span::new(sketch.file, 0, 0);
                         interpreter.sketch(sketch, Site { origin: u32::MAX, span });

@@ -60,6 +60,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let place = self.returned(m, &name, formal, exprs[0])?;
                 returned.push((place, m.program[exprs[0]].span));
                 Binding::Reference(place)
+            } else if formal.ty.0 == Type::Routine {
+                self.routine_argument(m, formal, exprs[0])?
             } else {
                 match self.argument(m, formal, exprs[0])? {
                     Value::Object(key) => Binding::Object(key),
@@ -81,18 +83,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .help("pass different sections, or a copy of one and assign it afterwards"));
             }
         }
-        if !self.deeper(span) {
-            return Err(silent());
-        }
         // A call takes about as long as five statements on numbers.
         self.usage.steps += 4;
         let held = self.usage.held;
         self.env.scope.frames.push(frame);
         let outer = std::mem::replace(&mut self.current, at.module);
-        let flow = self.statements(&callee, routine.body);
+        let flow = self.deeper_call(span, |this| this.statements(&callee, routine.body));
         self.current = outer;
         self.env.scope.frames.pop();
-        self.usage.depth -= 1;
+        let flow = flow.ok_or_else(silent)?;
         self.usage.held = held;
         if callee.library && std::mem::take(&mut self.abandoned) {
             // Told already; a caller in the library is left as well.
@@ -242,6 +241,39 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         }
         Ok(ordered)
+    }
+
+    /// The routine or function that an argument names.
+    fn routine_argument(
+        &self,
+        m: &Module,
+        formal: &Formal,
+        expr: ExprId,
+    ) -> Result<Binding<T>, Diagnostic> {
+        let at = m.program.bare(expr);
+        if let Some(symbol) = m.program.as_name(at) {
+            let name = m.names[symbol.0 as usize];
+            match self.env.scope.lookup(name).map(|bound| &bound.what) {
+                Some(passed @ (Binding::Routine(_) | Binding::Function(_))) => {
+                    return Ok(passed.clone());
+                }
+                Some(_) => {}
+                None => {
+                    if let Some(&routine) = self.env.scope.routines.get(&name) {
+                        return Ok(Binding::Routine(routine));
+                    }
+                    if let Some(row) = m.rows[symbol.0 as usize].as_ref().filter(|row| !row.kind) {
+                        return Ok(Binding::Function(row.clone()));
+                    }
+                }
+            }
+        }
+        let expected = variables::described(Type::Routine);
+        let found = m.program.slice(m.program[expr].span).trim();
+        Err(Diagnostic::error("wrong-type", format!("expected {expected}, found `{found}`"))
+            .at(m.program[expr].span)
+            .expected(expected)
+            .note_at(formal.ty.1, "requested here"))
     }
 
     /// The value of an argument of a routine, of the formal's type. An argument of an object class

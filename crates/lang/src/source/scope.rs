@@ -5,7 +5,7 @@ use crate::value::initialised::Known;
 use crate::value::subarray::Place;
 use moldloft_diag::Span;
 use moldloft_num::trace::Key;
-use moldloft_registry::{Scalar, Value};
+use moldloft_registry::{Row, Scalar, Value};
 use moldloft_syntax::sdl::Type;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -43,6 +43,10 @@ pub enum Binding<T: Scalar> {
     },
     /// A named call of a subroutine: the family of the objects in it.
     Instance(Arc<str>),
+    /// A routine of a program that was passed as an argument.
+    Routine(RoutineAt),
+    /// A function of the registry that was passed as an argument.
+    Function(Arc<Row>),
     /// Its declaration failed and was reported; what uses it stays silent.
     Poisoned,
 }

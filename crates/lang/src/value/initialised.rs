@@ -92,6 +92,24 @@ impl Known {
         }
     }
 
+    /// Notes that the elements at these positions in memory were given a value.
+    pub fn give_each<T: Real>(&mut self, positions: &[usize], value: &Value<T>) {
+        let shape = match value {
+            Value::Numbers(a) => a.shape,
+            Value::Vectors(a) => a.shape,
+            _ => return,
+        };
+        for &k in positions {
+            let at = match shape {
+                ArrayShape::Row(_) => ArraySection::Row(Selection::at(k)),
+                ArrayShape::Grid(_, n) => {
+                    ArraySection::Grid(Selection::at(k / n), Selection::at(k % n))
+                }
+            };
+            self.give(Some(at), value);
+        }
+    }
+
     fn give_edges(
         &mut self,
         [m, n]: [usize; 2],

@@ -26,6 +26,7 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
             let items = a.planes[c].clone();
             Some(Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items }))))
         }
+        (Value::List(_), Some(c)) => crate::value::variables::component(value, c).map(Ok),
         (Value::Point(p), None) => match (name, &p.on_curve, &p.on_surface) {
             ("t", Some(place), _) => number(place.1),
             ("u", _, Some(place)) => number(place.1[0]),
@@ -58,6 +59,7 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
             let extent = match name {
                 "d1" => extents.first(),
                 "d2" => extents.get(1),
+                "d3" => extents.get(2),
                 _ => None,
             }?;
             number(T::from(*extent as f64))

@@ -1,5 +1,7 @@
 //! Values of the language: what variables hold, parts of arrays, members, operators, and their display.
 
+pub(crate) mod blocks;
+pub(crate) mod chosen;
 pub mod contours;
 pub mod display;
 pub(crate) mod implicit;

@@ -1,5 +1,6 @@
 //! Operators on values: element by element over rows and grids of equal shape, or with a scalar.
 
+use crate::value::blocks;
 use crate::value::variables::Called as _;
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
@@ -35,6 +36,12 @@ fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T
                      s(u, v), or dists(s, us, vs)",
                 ),
                 _ => None,
+            };
+            let help = match other {
+                Value::Text(_) if op == "+" => {
+                    Some("texts join texts: format(\"%g\", x) makes a text of a number")
+                }
+                _ => help,
             };
             return Err(Diagnostic::error(
                 "wrong-operand",
@@ -205,63 +212,6 @@ pub(crate) fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
     })
 }
 
-/// The elements of an array that a mask of its shape holds at, or those at the positions, from 1, of an index: a row.
-/// An index of a surface takes its lines i.
-pub(crate) fn picked<T: Real>(value: &Value<T>, index: &Array<T>) -> Result<Value<T>, Diagnostic> {
-    let shape = match value {
-        Value::Numbers(a) => a.shape,
-        Value::Vectors(a) => a.shape,
-        _ => {
-            return Err(Diagnostic::error("wrong-subscripts", "a list has no elements at a mask")
-                .expected("a whole number")
-                .found("an array"));
-        }
-    };
-    let is_mask = index.shape == shape && index.items.iter().all(|x| [0.0, 1.0].contains(&x.re()));
-    let extent = match shape {
-        ArrayShape::Row(n) => n,
-        ArrayShape::Grid(m, _) => m,
-    };
-    let positions: Vec<usize> = if is_mask {
-        let held = index.items.iter().enumerate().filter(|(_, x)| x.re() != 0.0);
-        held.map(|(k, _)| k).collect()
-    } else {
-        let mut positions = Vec::with_capacity(index.items.len());
-        for x in &index.items {
-            let x = x.re();
-            if !(x.fract() == 0.0 && x >= 1.0 && x <= extent as f64) {
-                return Err(Diagnostic::error(
-                    "outside",
-                    format!("index {x} is outside the array"),
-                )
-                .expected(format!(
-                    "a mask of 0 and 1 with the shape {shape}, or whole numbers from 1 to {extent}"
-                ))
-                .found(format!("an array {} with {x}", index.shape)));
-            }
-            positions.push(x as usize - 1);
-        }
-        positions
-    };
-    let (shape, positions) = match (shape, is_mask) {
-        (ArrayShape::Grid(_, n), false) => (
-            ArrayShape::Grid(positions.len(), n),
-            positions.iter().flat_map(|i| (0..n).map(move |j| i * n + j)).collect(),
-        ),
-        _ => (ArrayShape::Row(positions.len()), positions),
-    };
-    Ok(match value {
-        Value::Numbers(a) => {
-            numbers(Array { shape, items: positions.iter().map(|k| a.items[*k]).collect() })
-        }
-        Value::Vectors(a) => {
-            let planes = [0, 1, 2].map(|c| positions.iter().map(|k| a.planes[c][*k]).collect());
-            Value::Vectors(Arc::new(Planes { shape, planes }))
-        }
-        _ => unreachable!("arrays have shapes"),
-    })
-}
-
 /// `a and b`, `a or b` by element, one of them an array.
 pub(crate) fn logical<T: Real>(
     op: BinaryOp,
@@ -289,6 +239,18 @@ pub(crate) fn not<T: Real>(a: &Array<T>) -> Value<T> {
     numbers(mapped(a, |x| T::from(f64::from(u8::from(x.re() == 0.0)))))
 }
 
+/// Three numbers in braces beside a row of three numbers, where a vector has no meaning: a row as well.
+fn beside<'v, T: Real>(op: BinaryOp, value: &'v Value<T>, other: &Value<T>) -> Cow<'v, Value<T>> {
+    let row = match (value, other) {
+        (Value::Vector(v), Value::Numbers(a)) if a.shape == ArrayShape::Row(3) => v.to_array(),
+        _ => return Cow::Borrowed(value),
+    };
+    match op {
+        BinaryOp::Mul | BinaryOp::Div | BinaryOp::Dot | BinaryOp::Cross => Cow::Borrowed(value),
+        _ => Cow::Owned(numbers(Array::row(row.to_vec()))),
+    }
+}
+
 /// The value of `a op b`.
 pub(crate) fn binary<T: Real>(
     op: BinaryOp,
@@ -299,7 +261,19 @@ pub(crate) fn binary<T: Real>(
     if let Some(outcome) = crate::value::implicit::binary(op, a, b) {
         return outcome;
     }
+    if let (BinaryOp::Add, Value::Text(a), Value::Text(b)) = (op, a, b) {
+        return Ok(Value::text(&format!("{a}{b}")));
+    }
+    let differ = |found: String| {
+        Diagnostic::error("shapes-differ", format!("shapes differ: {found}"))
+            .expected("equal shapes, or a single value on one side")
+            .found(found)
+    };
+    if let Some(layers) = blocks::by_layers(a, b, |a, b| binary(op, a, b), differ) {
+        return layers;
+    }
     let (a, b) = (&*gathered(a), &*gathered(b));
+    let (a, b) = (&*beside(op, a, b), &*beside(op, b, a));
     let word = op.spelling();
     let Some(r) = rules::<T>(op) else { return compare(op, a, b) };
     let undefined = || {
@@ -314,6 +288,7 @@ pub(crate) fn binary<T: Real>(
                 "add numbers to numbers and vectors to vectors: take a component (.x) or write \
                  {a, a, a}",
             ),
+            _ if [a, b].iter().any(|v| matches!(v, Value::Text(_))) => d,
             BinaryOp::Caret => d.help("only numbers have powers; use . for a dot product"),
             BinaryOp::Dot | BinaryOp::Cross => {
                 d.help("both sides must be vectors; multiply with *")
@@ -378,10 +353,14 @@ fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>
         (Value::Numbers(a), Value::Numbers(b)) => return Ok(numbers(zipped(&**a, &**b, mask)?)),
         (Value::Numbers(a), Value::Number(b)) => return Ok(numbers(mapped(&**a, |a| mask(a, *b)))),
         (Value::Number(a), Value::Numbers(b)) => return Ok(numbers(mapped(&**b, |b| mask(*a, b)))),
+        // By code points, as in dictionaries of plain letters.
         (Value::Text(a), Value::Text(b)) => match op {
             BinaryOp::Eq => a == b,
             BinaryOp::Ne => a != b,
-            _ => return Err(unsupported(op, "texts")),
+            BinaryOp::Lt => a < b,
+            BinaryOp::Le => a <= b,
+            BinaryOp::Gt => a > b,
+            _ => a >= b,
         },
         _ => {
             let found =
@@ -411,6 +390,9 @@ pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
     if let Some(value) = crate::value::implicit::negated(a) {
         return Ok(value);
     }
+    if let Some(layers) = blocks::by_layer(a, negated) {
+        return layers;
+    }
     Ok(match elements(&gathered(a), "-")? {
         Elements::Number(x) => Value::Number(-x),
         Elements::Vector(v) => Value::Vector(-v),
@@ -423,6 +405,9 @@ pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
 pub(crate) fn magnitude<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
     if let Some(value) = crate::value::implicit::magnitude(a) {
         return Ok(value);
+    }
+    if let Some(layers) = blocks::by_layer(a, magnitude) {
+        return layers;
     }
     Ok(match elements(a, "|")? {
         Elements::Number(x) => Value::Number(x.abs()),

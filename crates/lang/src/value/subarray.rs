@@ -4,6 +4,7 @@
 use crate::source::module::Name;
 use moldloft_diag::Diagnostic;
 use moldloft_registry::ArrayShape;
+use smallvec::SmallVec;
 
 /// What a subscript selects from a dimension: `count` positions from `start`, `step` apart, counted
 /// from 0; and whether the dimension stays (a range) or goes (an index).
@@ -73,6 +74,7 @@ impl Selection {
 pub enum ArraySection {
     Row(Selection),
     Grid(Selection, Selection),
+    Block(Selection, Selection, Selection),
 }
 
 impl ArraySection {
@@ -84,53 +86,65 @@ impl ArraySection {
         }
     }
 
+    /// The whole of a block.
+    pub fn whole_block([ni, nj, nk]: [usize; 3]) -> Self {
+        ArraySection::Block(Selection::whole(ni), Selection::whole(nj), Selection::whole(nk))
+    }
+
+    /// The selections of the dimensions.
+    pub fn parts(self) -> SmallVec<[Selection; 3]> {
+        match self {
+            ArraySection::Row(a) => SmallVec::from_slice(&[a]),
+            ArraySection::Grid(a, b) => SmallVec::from_slice(&[a, b]),
+            ArraySection::Block(a, b, c) => SmallVec::from_slice(&[a, b, c]),
+        }
+    }
+
+    /// The section of these selections, one to three.
+    pub fn of_parts(parts: &[Selection]) -> Option<Self> {
+        Some(match *parts {
+            [a] => ArraySection::Row(a),
+            [a, b] => ArraySection::Grid(a, b),
+            [a, b, c] => ArraySection::Block(a, b, c),
+            _ => return None,
+        })
+    }
+
     /// The extents of what is selected; none for a single element.
-    pub fn extents(self) -> ([usize; 2], usize) {
-        let mut extents = ([0; 2], 0);
-        let parts = match self {
-            ArraySection::Row(a) => [Some(a), None],
-            ArraySection::Grid(a, b) => [Some(a), Some(b)],
-        };
-        for part in parts.into_iter().flatten().filter(|s| s.keeps) {
+    pub fn extents(self) -> ([usize; 3], usize) {
+        let mut extents = ([0; 3], 0);
+        for part in self.parts().into_iter().filter(|s| s.keeps) {
             extents.0[extents.1] = part.count;
             extents.1 += 1;
         }
         extents
     }
 
-    /// The shape of what is selected; `None` for a single element.
+    /// The shape of what is selected; `None` for a single element, and for a block.
     pub fn shape(self) -> Option<ArrayShape> {
         match self.extents() {
-            (_, 0) => None,
-            ([n, _], 1) => Some(ArrayShape::Row(n)),
-            ([m, n], _) => Some(ArrayShape::Grid(m, n)),
+            ([n, ..], 1) => Some(ArrayShape::Row(n)),
+            ([m, n, _], 2) => Some(ArrayShape::Grid(m, n)),
+            _ => None,
         }
     }
 
     /// What `inner` selects from what this selects; `None` when it has other dimensions.
     pub fn of(self, inner: ArraySection) -> Option<ArraySection> {
-        Some(match (self, inner) {
-            (ArraySection::Row(a), ArraySection::Row(s)) if a.keeps => ArraySection::Row(a.of(s)),
-            (ArraySection::Grid(a, b), ArraySection::Grid(s, t)) if a.keeps && b.keeps => {
-                ArraySection::Grid(a.of(s), b.of(t))
-            }
-            (ArraySection::Grid(a, b), ArraySection::Row(s)) if a.keeps && !b.keeps => {
-                ArraySection::Grid(a.of(s), b)
-            }
-            (ArraySection::Grid(a, b), ArraySection::Row(s)) if b.keeps && !a.keeps => {
-                ArraySection::Grid(a, b.of(s))
-            }
-            _ => return None,
-        })
+        let (mut parts, inner) = (self.parts(), inner.parts());
+        if parts.iter().filter(|part| part.keeps).count() != inner.len() {
+            return None;
+        }
+        for (part, inner) in parts.iter_mut().filter(|part| part.keeps).zip(inner) {
+            *part = part.of(inner);
+        }
+        Self::of_parts(&parts)
     }
 
     /// True when some element is in both.
     pub fn meets(self, o: ArraySection) -> bool {
-        match (self, o) {
-            (ArraySection::Row(a), ArraySection::Row(b)) => a.meets(b),
-            (ArraySection::Grid(a, b), ArraySection::Grid(c, d)) => a.meets(c) && b.meets(d),
-            _ => true,
-        }
+        let (a, b) = (self.parts(), o.parts());
+        a.len() != b.len() || a.into_iter().zip(b).all(|(a, b)| a.meets(b))
     }
 
     /// Calls `f` with the position in memory of each selected element, in order, as runs of
@@ -147,7 +161,8 @@ impl ArraySection {
                     a.positions().for_each(|i| f(i * n + b.start, b.count, b.step));
                 }
             }
-            (ArraySection::Grid(..), ArrayShape::Row(_)) => {}
+            // A block has no one array in memory.
+            (ArraySection::Grid(..), ArrayShape::Row(_)) | (ArraySection::Block(..), _) => {}
         }
     }
 }
@@ -259,6 +274,14 @@ mod tests {
         put(&mut copy, shape, block, &[0, 0, 0, 1]);
         assert_eq!((copy[16], copy[19], copy[6], copy[9], copy[7]), (0, 0, 0, 1, 7));
         assert!(part.meets(column) && !part.meets(block));
+        let face = ArraySection::Block(Selection::at(1), Selection::whole(5), Selection::whole(3));
+        let edge = face.of(ArraySection::Grid(back, Selection::at(2))).unwrap();
+        assert_eq!(edge, ArraySection::Block(Selection::at(1), back, Selection::at(2)));
+        assert_eq!(
+            (face.shape(), edge.shape()),
+            (Some(ArrayShape::Grid(5, 3)), Some(ArrayShape::Row(2)))
+        );
+        assert!(edge.meets(face) && face.of(face).is_none());
         let rows =
             ArraySection::Grid(Selection { start: 1, ..Selection::whole(2) }, Selection::whole(5));
         assert_eq!(picked(&items, shape, rows), (5..15).collect::<Vec<_>>());

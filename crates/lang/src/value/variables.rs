@@ -1,5 +1,6 @@
 //! Variables: types, sections, and assignment.
 
+use crate::value::blocks;
 use crate::value::subarray::{ArraySection, Place, picked, put, put_all};
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
@@ -9,6 +10,9 @@ use std::sync::Arc;
 
 /// The most elements of an array.
 const MOST_ELEMENTS: f64 = 1e7;
+
+/// Ints are smaller: from here on neighbours share their digits.
+pub const MOST_INT: f64 = 9_007_199_254_740_992.0;
 
 /// What is known of the variable that a value is stored into.
 pub struct Taken<'a> {
@@ -25,6 +29,7 @@ pub fn type_of<T: Real>(value: &Value<T>) -> Type {
     match value {
         Value::Text(_) => Type::String,
         Value::Vector(_) | Value::Point(_) => Type::Vector,
+        Value::List(_) if blocks::size(value).is_some() => Type::Block,
         Value::Numbers(_) => Type::Farray,
         Value::Vectors(a) if matches!(a.shape, ArrayShape::Grid(..)) => Type::Surface,
         Value::Vectors(_) => Type::Curve,
@@ -65,6 +70,8 @@ pub fn described(ty: Type) -> &'static str {
         Type::Psurface => "a parametric surface",
         Type::Field => "a field",
         Type::Set => "a set",
+        Type::Block => "a block (layers of surfaces)",
+        Type::Routine => "the name of a function or subroutine",
         Type::Other(_) => "an object",
     }
 }
@@ -99,6 +106,20 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
                 .expected("a whole number")
                 .found(x.re().to_string())
                 .help("declare it as float, or use round(), floor() or ceil()"));
+        }
+        (Type::Int, Value::Number(x)) if x.re().abs() >= MOST_INT => {
+            return Err(Diagnostic::error("int-overflow", "an int holds whole numbers below 2^53")
+                .expected("a whole number between -9007199254740992 and 9007199254740992")
+                .found(moldloft_syntax::number::plain(x.re()))
+                .help(
+                    "beyond them not every whole number has its own digits; a float is rounded",
+                ));
+        }
+        (Type::Block, value @ Value::List(_)) if blocks::size(&value).is_some() => value,
+        (Type::String, Value::List(items))
+            if !items.is_empty() && items.iter().all(|v| matches!(v, Value::Text(_))) =>
+        {
+            Value::List(items)
         }
         (Type::Int | Type::Float | Type::File, value @ Value::Number(_))
         | (Type::String, value @ Value::Text(_))
@@ -202,6 +223,8 @@ pub fn initial<T: Real>(
         (Type::Surface, [m, n]) => {
             Value::Vectors(Arc::new(Vectors::filled(ArrayShape::Grid(*m, *n), Vec3::zero())))
         }
+        (Type::Block, &[ni, nj, nk]) => blocks::zeros([ni, nj, nk]),
+        (Type::String, [n]) => Value::list(vec![Value::text(""); *n]),
         (_, []) => {
             return Ok(value.unwrap_or_else(|| match ty {
                 Type::Int | Type::Float => Value::Number(T::zero()),
@@ -215,7 +238,7 @@ pub fn initial<T: Real>(
                 "wrong-dimension",
                 format!("{} does not have {} dimensions", described(ty), dims.len()),
             )
-            .expected("farray a[n], curve c[n] or surface s[m,n]"));
+            .expected("farray a[n], curve c[n], surface s[m,n], block b[l,m,n] or string s[n]"));
         }
     };
     let Some(value) = value else { return Ok(empty) };
@@ -237,7 +260,11 @@ pub fn store<T: Real>(
     value: Value<T>,
 ) -> Result<Option<Value<T>>, Diagnostic> {
     let whole = place.section.is_none() && place.component.is_none();
-    let array = matches!(taken.ty, Type::Farray | Type::Curve | Type::Surface);
+    let array = matches!(taken.ty, Type::Farray | Type::Curve | Type::Surface | Type::Block);
+    if whole && taken.fixed && matches!(old, Value::List(_)) {
+        fill(old, None, None, value)?;
+        return Ok(None);
+    }
     if whole {
         let alike = match (&*old, &value) {
             (Value::Numbers(a), Value::Numbers(b)) => a.shape == b.shape,
@@ -276,7 +303,7 @@ fn section_of(
         (ArrayShape::Row(_), Some(s @ ArraySection::Row(_)))
         | (ArrayShape::Grid(..), Some(s @ ArraySection::Grid(..))) => Ok(s),
         (_, Some(section)) => {
-            let found = if matches!(section, ArraySection::Row(_)) { 1 } else { 2 };
+            let found = section.parts().len();
             Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
                 .expected(match shape {
                     ArrayShape::Row(_) => "one subscript, as in c[3]",
@@ -288,7 +315,7 @@ fn section_of(
 }
 
 /// Writes `value` into the selected elements, or one component of them.
-fn fill<T: Real>(
+pub(crate) fn fill<T: Real>(
     old: &mut Value<T>,
     section: Option<ArraySection>,
     component: Option<usize>,
@@ -306,6 +333,13 @@ fn fill<T: Real>(
             .expected(expected.to_string())
             .found(found)
     };
+    let size = blocks::size(old);
+    if let Value::List(items) = old {
+        return match size {
+            Some(size) => blocks::fill(items, size, section, component, &value),
+            None => fill_texts(items, section, value),
+        };
+    }
     let value = match value {
         Value::Point(p) => Value::Vector(p.xyz),
         Value::List(_) | Value::Vector(_) if matches!(old, Value::Numbers(_)) => {
@@ -380,6 +414,51 @@ fn fill<T: Real>(
     Ok(())
 }
 
+/// Writes texts into an array of texts: one for all selected elements, or one for each.
+fn fill_texts<T: Real>(
+    items: &mut Arc<[Value<T>]>,
+    section: Option<ArraySection>,
+    value: Value<T>,
+) -> Result<(), Diagnostic> {
+    let positions: Vec<usize> = match section {
+        None => (0..items.len()).collect(),
+        Some(ArraySection::Row(selection)) => selection.positions().collect(),
+        Some(_) => {
+            return Err(Diagnostic::error(
+                "wrong-subscripts",
+                "an array of texts has one subscript",
+            ));
+        }
+    };
+    let values = match value {
+        Value::Text(_) => vec![value; positions.len()],
+        Value::List(from) if from.iter().all(|v| matches!(v, Value::Text(_))) => {
+            if from.len() != positions.len() {
+                let (to, from) = (positions.len(), from.len());
+                return Err(Diagnostic::error(
+                    "shapes-differ",
+                    format!("shapes differ: [{to}] = [{from}]"),
+                )
+                .expected(format!("{to} texts, or a single one"))
+                .found(format!("{from} texts")));
+            }
+            from.to_vec()
+        }
+        other => {
+            let found = a(&other);
+            return Err(Diagnostic::error("wrong-type", format!("expected a text, found {found}"))
+                .expected("a text, or as many as there are elements")
+                .found(found));
+        }
+    };
+    let mut all = items.to_vec();
+    for (k, value) in positions.into_iter().zip(values) {
+        all[k] = value;
+    }
+    *items = all.into();
+    Ok(())
+}
+
 fn component_mut<T>(v: &mut Vec3<T>, component: usize) -> &mut T {
     match component {
         0 => &mut v.x,
@@ -413,6 +492,7 @@ pub fn part<T: Real>(value: &Value<T>, section: ArraySection) -> Result<Value<T>
         Value::List(items) => match section {
             ArraySection::Row(one) if !one.keeps => items[one.start].clone(),
             ArraySection::Row(some) => Value::list(some.positions().map(|k| items[k].clone())),
+            ArraySection::Block(a, b, c) => blocks::part(items, [a, b, c])?,
             ArraySection::Grid(..) => {
                 return Err(Diagnostic::error("wrong-subscripts", "a list has one subscript"));
             }
@@ -435,6 +515,9 @@ pub fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>> {
         Value::Point(p) => Value::Number(p.xyz[c]),
         Value::Vectors(a) => {
             Value::Numbers(Arc::new(Array { shape: a.shape, items: a.planes[c].clone() }))
+        }
+        Value::List(_) => {
+            return blocks::by_layer(value, |layer| component(layer, c).ok_or(()))?.ok();
         }
         _ => return None,
     })
@@ -464,6 +547,8 @@ pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
         {
             (true, 0) => Type::Vector,
             (true, 1) => Type::Curve,
+            (true, 2) => Type::Surface,
+            (_, 3) => Type::Block,
             (true, _) => Type::Surface,
             (false, 0) => Type::Float,
             (false, _) => Type::Farray,
@@ -474,6 +559,10 @@ pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
         Value::Numbers(a) => of(dimensions(a.shape), false),
         Value::Vectors(a) => of(dimensions(a.shape), true),
         Value::Vector(_) => of(0, true),
+        Value::List(_) => match (blocks::size(root), place.section) {
+            (Some(_), Some(section)) => of(section.extents().1, true),
+            _ => ty,
+        },
         _ => ty,
     }
 }
@@ -485,6 +574,8 @@ pub enum SizedType {
     Numbers(ArrayShape),
     /// Vectors, and their extents.
     Vectors(ArrayShape),
+    /// A block, and its extents.
+    Block([usize; 3]),
     /// A list, and its length.
     List(usize),
     /// A value of another class.
@@ -497,6 +588,7 @@ impl std::fmt::Display for SizedType {
             SizedType::Numbers(shape) => write!(f, "farray{shape}"),
             SizedType::Vectors(shape @ ArrayShape::Row(_)) => write!(f, "curve{shape}"),
             SizedType::Vectors(shape) => write!(f, "surface{shape}"),
+            SizedType::Block(size) => write!(f, "block{}", blocks::spelled(*size)),
             SizedType::List(n) => write!(f, "list[{n}]"),
             SizedType::Other(class) => f.write_str(class.name()),
         }
@@ -508,7 +600,10 @@ pub fn shape_of<T: Real>(value: &Value<T>) -> SizedType {
     match value {
         Value::Numbers(a) => SizedType::Numbers(a.shape),
         Value::Vectors(a) => SizedType::Vectors(a.shape),
-        Value::List(items) => SizedType::List(items.len()),
+        Value::List(items) => match blocks::size(value) {
+            Some(size) => SizedType::Block(size),
+            None => SizedType::List(items.len()),
+        },
         other => SizedType::Other(other.class()),
     }
 }
@@ -532,7 +627,10 @@ pub fn extents<T: Real>(value: &Value<T>) -> Option<Vec<usize>> {
     match value {
         Value::Numbers(a) => Some(of(a.shape)),
         Value::Vectors(a) => Some(of(a.shape)),
-        Value::List(items) => Some(vec![items.len()]),
+        Value::List(items) => Some(match blocks::size(value) {
+            Some(size) => size.to_vec(),
+            None => vec![items.len()],
+        }),
         _ => None,
     }
 }

@@ -252,7 +252,7 @@ pub enum ExprKind {
     Index {
         /// What is indexed.
         base: ExprId,
-        /// One or two subscripts, or the values of loop variables in a name made in loops.
+        /// One to three subscripts, or the values of loop variables in a name made in loops.
         subs: NodeList<Subscript>,
     },
     /// `base.name`
@@ -303,6 +303,10 @@ pub enum Type {
     Field,
     /// `set`
     Set,
+    /// `block`
+    Block,
+    /// `function` or `subroutine` before an argument: a routine is passed.
+    Routine,
     /// Any other word: a class of objects, or a misspelled type.
     Other(Symbol),
 }
@@ -328,7 +332,7 @@ impl Type {
 pub struct Declarator {
     /// The variable.
     pub name: Ident,
-    /// Its dimensions, none, one or two.
+    /// Its dimensions, none to three.
     pub dims: NodeList<ExprId>,
     /// Its first value.
     pub value: Option<ExprId>,

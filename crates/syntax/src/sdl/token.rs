@@ -104,7 +104,8 @@ pub(crate) const RESERVED: [(&str, Kind); 28] = [
 ];
 
 /// Words that are reserved only where they can stand; their symbols follow those of [`RESERVED`].
-const CONTEXTUAL: [&str; 10] = ["param", "in", "assert", "field", "set", "x", "y", "z", "d1", "d2"];
+const CONTEXTUAL: [&str; 11] =
+    ["param", "in", "assert", "field", "set", "block", "x", "y", "z", "d1", "d2"];
 
 /// The words of the language: reserved ones, and those that begin statements or stand between their parts.
 pub fn keywords() -> impl Iterator<Item = &'static str> {
@@ -115,7 +116,7 @@ pub fn keywords() -> impl Iterator<Item = &'static str> {
 /// The words that a declaration may begin with.
 pub fn declaring_words() -> impl Iterator<Item = &'static str> {
     let types = RESERVED.iter().filter(|(_, kind)| *kind == TypeWord).map(|(word, _)| *word);
-    types.chain(["param", "field", "set"])
+    types.chain(["param", "field", "set", "block"])
 }
 
 /// Whether the word has a meaning of its own at some places only.
@@ -128,10 +129,11 @@ pub(crate) const IN: Symbol = Symbol(29);
 pub(crate) const ASSERT: Symbol = Symbol(30);
 pub(crate) const FIELD: Symbol = Symbol(31);
 pub(crate) const SET: Symbol = Symbol(32);
+pub(crate) const BLOCK: Symbol = Symbol(33);
 
 /// Whether the name is one of the component suffixes `x y z d1 d2`.
 pub(crate) fn is_component(symbol: Symbol) -> bool {
-    (33..=37).contains(&symbol.0)
+    (34..=38).contains(&symbol.0)
 }
 
 /// An interner that knows the words above.
@@ -190,8 +192,14 @@ mod tests {
         for (at, (word, _)) in RESERVED.iter().enumerate() {
             assert_eq!(words.find(word), Some(Symbol(at as u32)));
         }
-        let fixed =
-            [("param", PARAM), ("in", IN), ("assert", ASSERT), ("field", FIELD), ("set", SET)];
+        let fixed = [
+            ("param", PARAM),
+            ("in", IN),
+            ("assert", ASSERT),
+            ("field", FIELD),
+            ("set", SET),
+            ("block", BLOCK),
+        ];
         for (word, symbol) in fixed {
             assert_eq!(words.find(word), Some(symbol));
         }

@@ -1,7 +1,7 @@
 //! Subroutines and functions.
 
 use super::super::ast::*;
-use super::super::token::{FIELD, Kind, SET, Token};
+use super::super::token::{BLOCK, FIELD, Kind, SET, Token};
 use super::{Parse, Parser};
 use moldloft_diag::{Diagnostic, Span};
 
@@ -39,7 +39,7 @@ impl Parser {
         if self.kind() != Kind::RParen {
             loop {
                 let returned = self.eat(Kind::Returned);
-                let ty = self.type_word("a type")?;
+                let ty = self.formal_type()?;
                 let name = self.ident("the name of the argument")?;
                 self.mark(self.at, super::TokenRole::Plain);
                 let multiple = self.eat(Kind::Ellipsis);
@@ -71,6 +71,16 @@ impl Parser {
         Ok(list)
     }
 
+    /// The type of an argument; `function` and `subroutine` are types here, too.
+    fn formal_type(&mut self) -> Parse<(Type, Span)> {
+        let token = self.token();
+        if !matches!(token.kind, Kind::Function | Kind::Subroutine) {
+            return self.type_word("a type");
+        }
+        self.next();
+        Ok((Type::Routine, self.span(token)))
+    }
+
     /// A type: a reserved one, or any name, which the interpreter judges.
     pub(super) fn type_word(&mut self, expected: &str) -> Parse<(Type, Span)> {
         let token = self.token();
@@ -88,6 +98,7 @@ fn type_of(token: Token) -> Type {
         (Kind::TypeWord, symbol) => Type::CLASSIC[symbol.0 as usize],
         (_, FIELD) => Type::Field,
         (_, SET) => Type::Set,
+        (_, BLOCK) => Type::Block,
         (_, symbol) => Type::Other(symbol),
     }
 }

@@ -345,9 +345,9 @@ impl Parser {
                     break;
                 }
             }
-            if self.exprs.len() - base > 2 {
-                let place = self.program[self.exprs[base + 2]].span;
-                let message = "an array has one or two dimensions";
+            if self.exprs.len() - base > 3 {
+                let place = self.program[self.exprs[base + 3]].span;
+                let message = "an array has one to three dimensions";
                 self.report(Diagnostic::error("too-many-dimensions", message).at(place));
             }
             dims = close_list(&mut self.exprs, base, &mut self.program.expr_lists);
