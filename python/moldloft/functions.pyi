@@ -4912,9 +4912,9 @@ def write_stl(
 def write_cgns(
     *args: object,
 ) -> AnyShape:
-    """Writes surfaces as structured CGNS zones with the interfaces where their edges have the same points.
+    """Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; behind a block its boundaries.
 
-    Called as `write_cgns(name, s1, s2, ...)`.
+    Called as `write_cgns(name, s1, s2, ...), write_cgns(name, b1, "k1 = hull wall", b2, ...)`.
 
     Returns
     -------
@@ -4925,6 +4925,60 @@ def write_cgns(
     In the language::
 
         surface s[3,2] = {1, 2, 3}; write_cgns("s.cgns", s);
+    """
+    ...
+def write_su2(
+    *args: object,
+) -> AnyShape:
+    """Writes blocks as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.
+
+    Called as `write_su2(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
+
+    Returns
+    -------
+    value
+
+    Notes
+    -----
+    In the language::
+
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_su2("b.su2", b, "k1 = floor wall");
+    """
+    ...
+def write_gmsh(
+    *args: object,
+) -> AnyShape:
+    """Writes blocks as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface.
+
+    Called as `write_gmsh(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
+
+    Returns
+    -------
+    value
+
+    Notes
+    -----
+    In the language::
+
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_gmsh("b.msh", b, "k1 = floor wall");
+    """
+    ...
+def write_blockmesh(
+    *args: object,
+) -> AnyShape:
+    """Writes blocks as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.
+
+    Called as `write_blockmesh(name, b1, "k1 = hull wall, j1 = plane symmetry", b2, ...)`.
+
+    Returns
+    -------
+    value
+
+    Notes
+    -----
+    In the language::
+
+        surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh("blockMeshDict", b, "k1 = floor wall");
     """
     ...
 def write_csv(
@@ -4948,7 +5002,7 @@ def write_csv(
 def read_p3d(
     *args: object,
 ) -> AnyShape:
-    """A surface of a Plot3D file of any variant, by the number of its block (1).
+    """A surface or block of a Plot3D file of any variant, by its number (1).
 
     Called as `read_p3d(name, block)`.
 
@@ -4961,6 +5015,24 @@ def read_p3d(
     In the language::
 
         surface s[3,2] = {1, 2, 3}; write_p3d("s.x", s); assert read_p3d("s.x", 1).d2 == 2;
+    """
+    ...
+def count_p3d(
+    *args: object,
+) -> AnyShape:
+    """The number of surfaces and blocks of a Plot3D file.
+
+    Called as `count_p3d(name)`.
+
+    Returns
+    -------
+    value
+
+    Notes
+    -----
+    In the language::
+
+        surface s[3,2] = {1, 2, 3}; write_p3d("s.x", s, s); assert count_p3d("s.x") == 2;
     """
     ...
 def read_points(

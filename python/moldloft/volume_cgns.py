@@ -4,22 +4,98 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from moldloft import cgns
+from moldloft.blocks import Boundary, Interface
 from moldloft.errors import Error
 
 if TYPE_CHECKING:
     from moldloft.blocks import Blocks
 
-__all__ = ["write"]
+__all__ = ["write", "write_grids"]
 
-_KINDS = {"symmetry": "BCSymmetryPlane", "wall": "BCWall"}
+_KINDS = {
+    "symmetry": "BCSymmetryPlane",
+    "wall": "BCWall",
+    "farfield": "BCFarfield",
+    "inflow": "BCInflow",
+    "outflow": "BCOutflow",
+}
+
+Side = tuple[int, int, Sequence[int], Sequence[int]]
+"""A part of a face: block, face from 0, first and last place (i, j, k) from 0."""
 
 
-def write(blocks: Blocks, title: str) -> bytes:
+@dataclass(frozen=True)
+class _GridBlock:
+    """A block of the language."""
+
+    name: str
+    points: NDArray[np.float64]
+
+    @property
+    def indices(self) -> NDArray[np.float64]:
+        """An array of the block's shape."""
+        return self.points[..., 0]
+
+
+@dataclass(frozen=True)
+class _GridBlocks:
+    """Blocks of the language with their joints and boundaries, as :class:`Blocks` has them."""
+
+    blocks: Sequence[_GridBlock]
+    interfaces: Sequence[Interface]
+    boundaries: Sequence[Boundary]
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """All points."""
+        return np.concatenate([block.points.reshape(-1, 3) for block in self.blocks])
+
+
+def write_grids(
+    title: str,
+    names: Sequence[str],
+    points: Sequence[NDArray[np.float64]],
+    joints: Sequence[tuple[Side, Side, Sequence[int]]],
+    boundaries: Sequence[tuple[Side, str, str]],
+) -> bytes:
+    """The file of blocks of points ``(ni, nj, nk, 3)``.
+
+    Parameters
+    ----------
+    title
+        The name of the base.
+    names
+        Those of the zones.
+    points
+        The points of each block.
+    joints
+        Where blocks meet: (block, face, begin, end) of both sides, and the transform of CGNS.
+    boundaries
+        What meets nothing: its place, name and type.
+    """
+
+    def place(side: Side) -> tuple[int, int, tuple[int, int, int], tuple[int, int, int]]:
+        block, face, begin, end = side
+        return block, face, (begin[0], begin[1], begin[2]), (end[0], end[1], end[2])
+
+    return write(
+        _GridBlocks(
+            [_GridBlock(name, grid) for name, grid in zip(names, points, strict=True)],
+            [Interface(*place(a), *place(b), (t[0], t[1], t[2])) for a, b, t in joints],
+            [Boundary(*place(side), name, kind) for side, name, kind in boundaries],
+        ),
+        title,
+    )
+
+
+def write(blocks: Blocks | _GridBlocks, title: str) -> bytes:
     """The file: a zone per block.
 
     Interfaces are written from both sides. What meets nothing is a boundary of the family of its
@@ -40,7 +116,8 @@ def write(blocks: Blocks, title: str) -> bytes:
     if not np.isfinite(points).all():
         raise Error("cannot write cgns: a position is not a finite number")
     taken: set[str] = set()
-    zones = [cgns.unique(block.name, taken) for block in blocks.blocks]
+    every: Sequence[Any] = blocks.blocks
+    zones = [cgns.unique(block.name, taken) for block in every]
     families: dict[str, str] = {}
     for free in blocks.boundaries:
         if free.name not in families:
@@ -53,7 +130,7 @@ def write(blocks: Blocks, title: str) -> bytes:
                 continue
             family = cgns.node(base, families[free.name], "Family_t")
             cgns.node(family, "FamilyBC", "FamilyBC_t", _KINDS.get(free.kind, "UserDefined"))
-        for number, block in enumerate(blocks.blocks):
+        for number, block in enumerate(every):
             size = np.array(block.indices.shape, dtype=np.int32)
             sizes = np.array([size, size - 1, 0 * size], dtype=np.int32)
             zone = cgns.node(base, zones[number], "Zone_t", sizes)
@@ -73,7 +150,7 @@ def _range(parent: Any, name: str, begin: Sequence[int], end: Sequence[int]) -> 
     cgns.node(parent, name, "IndexRange_t", ends)
 
 
-def _joints(zone: Any, blocks: Blocks, zones: Sequence[str], number: int) -> None:
+def _joints(zone: Any, blocks: Blocks | _GridBlocks, zones: Sequence[str], number: int) -> None:
     seen = [joint for joint in blocks.interfaces if joint.block == number]
     seen += [joint.reversed() for joint in blocks.interfaces if joint.donor == number]
     if not seen:
@@ -87,7 +164,9 @@ def _joints(zone: Any, blocks: Blocks, zones: Sequence[str], number: int) -> Non
         cgns.node(one, "Transform", '"int[IndexDimension]"', transform)
 
 
-def _boundaries(zone: Any, blocks: Blocks, families: dict[str, str], number: int) -> None:
+def _boundaries(
+    zone: Any, blocks: Blocks | _GridBlocks, families: dict[str, str], number: int
+) -> None:
     seen = [free for free in blocks.boundaries if free.block == number]
     if not seen:
         return

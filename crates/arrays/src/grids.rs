@@ -52,7 +52,7 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
                 .help("make the first cell smaller, or the points beside the corner wider"),
             _ => with("folded-grid").expected("unfolded cells").help(
                 "march less far, smooth more, space the wall more evenly there, or take the layers below with \
-                 stop = \"keep\"",
+                 stop = \"keep\"; layers lie on the side of s_i x s_j: s[, ::-1] marches off the other one",
             ),
         },
         GridError::Diverged { .. } => with("diverged")

@@ -608,9 +608,9 @@ impl Document {
         self.plain.env.files.written()
     }
 
-    /// The written files that the host is to make CGNS of, with the names of their blocks: what was
-    /// written is Plot3D, plain binary in double precision.
-    pub fn written_for_cgns(&self) -> impl Iterator<Item = (&str, &[String])> {
+    /// The written files that the host is to make CGNS of, with names, joints and boundaries of their blocks: what
+    /// was written is Plot3D, plain binary in double precision.
+    pub fn written_for_cgns(&self) -> impl Iterator<Item = (&str, &moldloft_lang::CgnsBlocks)> {
         self.plain.env.files.cgns()
     }
 

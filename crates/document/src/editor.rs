@@ -3,7 +3,7 @@
 
 use crate::document::Document;
 use moldloft_diag::{FileId, Span};
-use moldloft_lang::functions::context::BUILTINS;
+use moldloft_lang::BUILTINS;
 use moldloft_lang::run::inserted::INSERTED_FILES;
 use moldloft_lang::source::module::{Module, RoutineAt};
 use moldloft_lang::source::scope::Binding;

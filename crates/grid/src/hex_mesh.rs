@@ -42,25 +42,13 @@ impl HexMesh {
     /// The mesh of blocks, whose nodes are one where they coincide to 1e-10 of the size; left-handed blocks are
     /// turned over. What is not a face of two cells is boundary.
     pub fn of_blocks<T: Real>(blocks: &[VolumeGrid<T>], names: &[FaceNames]) -> Self {
-        let size = blocks.iter().map(VolumeGrid::extent).fold(0.0, f64::max);
-        let mut nodes =
-            Nodes { tolerance: SAME * size, points: Vec::new(), buckets: HashMap::new() };
+        let (points, numbers) = shared_nodes(blocks);
         let mut cells = Vec::new();
         let mut sides: Vec<(Vec<usize>, [usize; 4], Option<(String, String)>)> = Vec::new();
         for (b, block) in blocks.iter().enumerate() {
             let plain = block.re();
             let [ni, nj, nk] = plain.size;
-            let on_face = |i: usize, j: usize, k: usize| {
-                i == 0 || j == 0 || k == 0 || i + 1 == ni || j + 1 == nj || k + 1 == nk
-            };
-            let mut ids = Vec::with_capacity(ni * nj * nk);
-            for i in 0..ni {
-                for j in 0..nj {
-                    for k in 0..nk {
-                        ids.push(nodes.id(plain.at(i, j, k), on_face(i, j, k)));
-                    }
-                }
-            }
+            let ids = &numbers[b];
             let left_handed = plain.volume() < 0.0;
             let last = [ni, nj, nk].map(|n| n.saturating_sub(1));
             for i in 0..last[0] {
@@ -116,7 +104,7 @@ impl HexMesh {
                 None => patches.push(BoundaryPatch { name, kind, faces: vec![*quad] }),
             }
         }
-        Self { points: nodes.points, cells, patches }
+        Self { points, cells, patches }
     }
 }
 
@@ -135,6 +123,31 @@ impl VolumeGrid<f64> {
         }
         sum
     }
+}
+
+/// The nodes of blocks, one where points of faces coincide to 1e-10 of the size, and the node of each point of each
+/// block, in the order of its planes.
+pub fn shared_nodes<T: Real>(blocks: &[VolumeGrid<T>]) -> (Vec<Vec3>, Vec<Vec<usize>>) {
+    let size = blocks.iter().map(VolumeGrid::extent).fold(0.0, f64::max);
+    let mut nodes = Nodes { tolerance: SAME * size, points: Vec::new(), buckets: HashMap::new() };
+    let mut numbers = Vec::with_capacity(blocks.len());
+    for block in blocks {
+        let plain = block.re();
+        let [ni, nj, nk] = plain.size;
+        let on_face = |i: usize, j: usize, k: usize| {
+            i == 0 || j == 0 || k == 0 || i + 1 == ni || j + 1 == nj || k + 1 == nk
+        };
+        let mut ids = Vec::with_capacity(ni * nj * nk);
+        for i in 0..ni {
+            for j in 0..nj {
+                for k in 0..nk {
+                    ids.push(nodes.id(plain.at(i, j, k), on_face(i, j, k)));
+                }
+            }
+        }
+        numbers.push(ids);
+    }
+    (nodes.points, numbers)
 }
 
 /// Nodes found again by their place.

@@ -31,7 +31,7 @@ pub use block::{Faces, transfinite_block};
 pub use control::{WallReport, wall_cells};
 pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};
-pub use hex_mesh::{BoundaryPatch, FaceNames, HEX_FACES, HexMesh, MeshCheck};
+pub use hex_mesh::{BoundaryPatch, FaceNames, HEX_FACES, HexMesh, MeshCheck, shared_nodes};
 pub use marching::{
     FailureCause, Hyperbolic, MarchBoundary, MarchFailure, MarchReport, Marched, Stop, StopReason,
     Support, hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,

@@ -16,6 +16,7 @@ use moldloft::document::{
 };
 use moldloft::export::{SplinePatch, WriteOptions, format_named, spline_patches};
 use moldloft::host::FileWorld;
+use moldloft::lang::{CgnsBlocks, FacePart};
 use moldloft::model::Object;
 use moldloft::num::{Order, Vec3};
 use moldloft::rows::{CurveRef, SurfaceRef, Value};
@@ -50,6 +51,10 @@ pub struct PyDocument {
 
 /// A B-spline patch: name, degrees, spans, control points, deviation.
 type PatchFacts<'py> = (String, [usize; 2], [usize; 2], Bound<'py, PyArray3<f64>>, f64);
+
+/// A file of blocks, their names, joints and boundaries.
+type WrittenBlocks =
+    (String, Vec<String>, Vec<(FacePart, FacePart, [i32; 3])>, Vec<(FacePart, String, String)>);
 
 type Outcome<R> = Result<R, Vec<moldloft::diag::Diagnostic>>;
 
@@ -284,10 +289,14 @@ impl PyDocument {
         self.lock(py).printed().to_vec()
     }
 
-    /// The written files that are to become CGNS, and the names of their blocks.
-    fn written_for_cgns(&self, py: Python<'_>) -> Vec<(String, Vec<String>)> {
+    /// The written files that are to become CGNS, and names, joints and boundaries of their blocks.
+    fn written_for_cgns(&self, py: Python<'_>) -> Vec<WrittenBlocks> {
         let document = self.lock(py);
-        document.written_for_cgns().map(|(name, all)| (name.to_owned(), all.to_vec())).collect()
+        let of = |(name, all): (&str, &CgnsBlocks)| {
+            let CgnsBlocks { names, joints, boundaries } = all.clone();
+            (name.to_owned(), names, joints, boundaries)
+        };
+        document.written_for_cgns().map(of).collect()
     }
 
     /// What the program wrote: names and contents; nothing is on the disk yet.

@@ -67,7 +67,7 @@ fn blocks_have_sections() {
         "load \"stdsubs.sdl\" block b[3,3,3]; b[3,1,1] = {2, 0, 0}; line(b[,1,1]); assert b[2,1,1].x == 1;
          subroutine lift(returned block b, returned surface s) { b.z = 1; s.x = 9; }
          block c[2,2,2]; lift(c, b[,,2]); assert c[1,2,2].z == 1 and b[1,1,2].x == 9 and b[1,1,3].x == 0;",
-        "surface s[2,2] = {1, 2, 3}; block b = list(s, 2*s, 3*s); assert b.d3 == 3 and b[1,1,3].x == 3;",
+        "surface s[2,2] = {1, 2, 3}; block b = {s, 2*s, 3*s}; assert b.d3 == 3 and b[1,1,3].x == 3;",
     ] {
         sound(program);
     }

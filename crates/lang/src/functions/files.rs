@@ -3,6 +3,7 @@
 //! A file is a unit number, as in FORTRAN. Texts only: a point on each line, numbers with all their
 //! digits, the first index of a grid fastest. Whatever is written can be read again in the same run.
 
+use crate::functions::block_files::CgnsBlocks;
 use crate::source::world::World;
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
@@ -38,8 +39,8 @@ pub fn predeclared(name: &str) -> Option<f64> {
 pub struct RunFiles {
     open: BTreeMap<u32, OpenFile>,
     written: IndexMap<String, Vec<u8>>,
-    /// Files that the host makes CGNS of, and the names of their blocks.
-    cgns: IndexMap<String, Vec<String>>,
+    /// Files that the host makes CGNS of, and what is known of their blocks.
+    cgns: IndexMap<String, CgnsBlocks>,
     bytes: usize,
 }
 
@@ -192,15 +193,15 @@ impl RunFiles {
         Ok(())
     }
 
-    /// The host is to make CGNS of a file that was put, of blocks with these names.
-    pub fn for_cgns(&mut self, path: &str, names: Vec<String>) -> Result<(), Diagnostic> {
-        self.cgns.insert(inside(path)?, names);
+    /// The host is to make CGNS of a file that was put, of these blocks.
+    pub fn for_cgns(&mut self, path: &str, blocks: CgnsBlocks) -> Result<(), Diagnostic> {
+        self.cgns.insert(inside(path)?, blocks);
         Ok(())
     }
 
     /// The files that the host makes CGNS of: what was written is Plot3D.
-    pub fn cgns(&self) -> impl Iterator<Item = (&str, &[String])> {
-        self.cgns.iter().map(|(name, blocks)| (name.as_str(), blocks.as_slice()))
+    pub fn cgns(&self) -> impl Iterator<Item = (&str, &CgnsBlocks)> {
+        self.cgns.iter().map(|(name, blocks)| (name.as_str(), blocks))
     }
 
     /// Closes a unit; a unit that is not open is an error.

@@ -3,10 +3,15 @@
 //! Files are whole: each call writes one, into the set that the host commits. CGNS is HDF5, which the
 //! host writes: the run keeps the blocks and their names for it.
 
+use crate::functions::block_files::{
+    CgnsBlocks, NamedBlock, block_mesh, face_names, gmsh, hexahedra, joined, su2,
+};
+use crate::functions::builtins::{GridFormat, RowFormat};
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::value::variables;
 use moldloft_diag::Diagnostic;
+use moldloft_grid::FaceNames;
 use moldloft_io::plot3d::{self, Laid, Variant};
 use moldloft_io::{StructuredGrid, points, section, stl, vtk};
 use moldloft_model::Extent;
@@ -16,23 +21,6 @@ use moldloft_syntax::sdl::ExprId;
 use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
-
-/// What `write_...` writes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum GridFormat {
-    Plot3d,
-    Vts,
-    Stl,
-    Cgns,
-    Csv,
-}
-
-/// What `read_...` reads as a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum RowFormat {
-    Points,
-    Aerofoil,
-}
 
 /// The words that choose a variant of Plot3D, the usual ones first.
 const VARIANTS: &str = "stream, records, text; double, single; multi, single-block; 3d, 2d; whole, planes; little, \
@@ -141,6 +129,15 @@ fn cannot(error: impl std::fmt::Display) -> Diagnostic {
     Diagnostic::error("cannot-write", text.trim_start_matches("error: ").to_string())
 }
 
+fn named(
+    blocks: Vec<StructuredGrid>,
+    names: Vec<String>,
+    faces: Vec<FaceNames>,
+) -> Vec<NamedBlock> {
+    let all = blocks.into_iter().zip(names).zip(faces);
+    all.map(|((grid, name), faces)| NamedBlock { grid, name, faces }).collect()
+}
+
 /// The stem of a file's name: "body" of "out/body.vts".
 fn stem(name: &str) -> &str {
     let last = name.rsplit('/').next().unwrap_or(name);
@@ -166,21 +163,28 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let mut words_at = at_name;
         let mut blocks: Vec<StructuredGrid> = Vec::new();
         let mut names: Vec<String> = Vec::new();
+        let mut faces: Vec<FaceNames> = Vec::new();
         for (k, &arg) in given[1..].iter().enumerate() {
             let span = m.program[arg].span;
             let value = self.operand(m, arg)?;
             self.charge(&value, span)?;
             match &value {
+                Value::Text(text) if format.names_faces() && !blocks.is_empty() => {
+                    let last = faces.last_mut().expect("there is one for each block");
+                    *last = face_names(text).map_err(|d| d.at(span))?;
+                }
                 Value::Text(text) if k == 0 => (words, words_at) = (text.clone(), span),
                 Value::Vectors(a) => {
                     let written = m.program.slice(span).trim().to_string();
                     blocks.push(finite(grid(a), a.shape, &written).map_err(|d| d.at(span))?);
                     names.push(written);
+                    faces.push(FaceNames::default());
                 }
-                Value::List(layers) if matches!(format, GridFormat::Plot3d | GridFormat::Vts) => {
+                Value::List(layers) if !matches!(format, GridFormat::Stl | GridFormat::Csv) => {
                     let written = m.program.slice(span).trim().to_string();
                     blocks.push(volume(layers, &written).map_err(|d| d.or_at(span))?);
                     names.push(written);
+                    faces.push(FaceNames::default());
                 }
                 Value::Numbers(a) if format == GridFormat::Plot3d && !blocks.is_empty() => {
                     let block = blocks.last_mut().expect("there is one");
@@ -259,6 +263,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             GridFormat::Cgns => {
                 nothing_of(&words, "")?;
+                let flat = blocks.iter().filter(|b| b.size[2] == 1).count();
+                if flat != 0 && flat != blocks.len() {
+                    return Err(at(Diagnostic::error("cannot-write", "surfaces among blocks")
+                        .expected("surfaces, or blocks, in one file")));
+                }
                 if let Some(k) = blocks.iter().position(|b| b.size[0] < 2 || b.size[1] < 2) {
                     let message = format!("CGNS cannot hold `{}`: it has no cells", names[k]);
                     return Err(at(Diagnostic::error("cannot-write", message)
@@ -267,7 +276,26 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let bytes = plot3d::write(&blocks, Variant::default());
                 let bytes = bytes.map_err(|e| at(cannot(e)))?;
                 self.env.files.put(&path, bytes).map_err(at)?;
-                self.env.files.for_cgns(&path, names).map_err(at)
+                let content = match flat {
+                    0 => joined(&named(blocks, names, faces)).map_err(at)?,
+                    _ => CgnsBlocks { names, ..CgnsBlocks::default() },
+                };
+                self.env.files.for_cgns(&path, content).map_err(at)
+            }
+            GridFormat::Su2 | GridFormat::Gmsh | GridFormat::BlockMesh => {
+                nothing_of(&words, "")?;
+                if let Some(k) = blocks.iter().position(|b| b.size.iter().any(|n| *n < 2)) {
+                    let message = format!("`{}` is not a block of cells", names[k]);
+                    return Err(at(Diagnostic::error("cannot-write", message)
+                        .expected("blocks with at least two points along each index")));
+                }
+                let mesh = hexahedra(&named(blocks, names, faces));
+                let bytes = match format {
+                    GridFormat::Su2 => su2(&mesh).map_err(at)?,
+                    GridFormat::Gmsh => gmsh(&mesh).map_err(at)?,
+                    _ => block_mesh(&mesh),
+                };
+                self.env.files.put(&path, bytes).map_err(at)
             }
             GridFormat::Csv => {
                 nothing_of(&words, "")?;
@@ -305,14 +333,19 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .found(number.to_string()));
         };
         let [ni, nj, nk] = block.size;
-        if nk != 1 {
-            let message = format!("block {number} of `{path}` is a volume");
-            return Err(Diagnostic::error("cannot-read", message)
-                .expected("a surface: a block with one point along k")
-                .found(format!("{ni} x {nj} x {nk} points")));
-        }
-        let points = block.layer(0).into_iter().map(Vec3::lifted).collect();
-        Ok(self.points(ArrayShape::Grid(ni, nj), points))
+        let layer = |k: usize| {
+            let points = block.layer(k).into_iter().map(Vec3::lifted).collect();
+            self.points(ArrayShape::Grid(ni, nj), points)
+        };
+        Ok(if nk == 1 { layer(0) } else { Value::list((0..nk).map(layer)) })
+    }
+
+    /// `count_p3d("body.x")`.
+    pub(crate) fn count_p3d(&mut self, m: &Module, file: ExprId) -> Evaluated<T> {
+        let (path, bytes) = self.bytes_of(m, file)?;
+        let (blocks, _) = plot3d::read(&bytes)
+            .map_err(|e| Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}")))?;
+        Ok(Value::Number(T::from(blocks.len() as f64)))
     }
 
     /// The points of a text.

@@ -1,6 +1,8 @@
 //! Functions of the language that are no kinds: those that need the interpreter, element-wise ones, and
 //! those of sets; the files that a run opens.
 
+pub mod block_files;
+pub mod builtins;
 pub mod context;
 pub(crate) mod elementary;
 pub mod files;

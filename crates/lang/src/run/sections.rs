@@ -13,7 +13,7 @@ use moldloft_syntax::sdl::{ExprId, ExprKind, NodeList, Subscript};
 use smallvec::SmallVec;
 
 /// What subscripts mean.
-enum Part {
+enum Subscripted {
     Section(ArraySection),
     Chosen(Chosen),
 }
@@ -91,8 +91,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         }
         match self.section(m, base, &extents, &variables::shape_text(&value), subs)? {
-            Part::Section(section) => variables::part(&value, section),
-            Part::Chosen(chosen) => chosen.of(&value),
+            Subscripted::Section(section) => variables::part(&value, section),
+            Subscripted::Chosen(chosen) => chosen.of(&value),
         }
     }
 
@@ -140,8 +140,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return Ok((place.indexed(section)?, None));
         }
         match self.section(m, base, &extents, &shape, subs)? {
-            Part::Section(section) => Ok((place.indexed(section)?, None)),
-            Part::Chosen(chosen) => Ok((place, Some(chosen))),
+            Subscripted::Section(section) => Ok((place.indexed(section)?, None)),
+            Subscripted::Chosen(chosen) => Ok((place, Some(chosen))),
         }
     }
 
@@ -155,7 +155,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     ) -> Result<ArraySection, Diagnostic> {
         let shape = format!("a block of {nk} layers");
         match self.section(m, base, &[nk], &shape, subs)? {
-            Part::Section(ArraySection::Row(k)) => {
+            Subscripted::Section(ArraySection::Row(k)) => {
                 Ok(ArraySection::Block(Selection::whole(ni), Selection::whole(nj), k))
             }
             _ => Err(Diagnostic::error("wrong-subscripts", "masks choose from arrays, not blocks")
@@ -171,13 +171,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         extents: &[usize],
         shape: &str,
         subs: NodeList<Subscript>,
-    ) -> Result<Part, Diagnostic> {
+    ) -> Result<Subscripted, Diagnostic> {
         if let ([Subscript::At(sub)], [rows, columns]) = (&m.program[subs], extents) {
             // A mask of a grid, or an index of its lines.
             let index = self.operand(m, *sub)?;
             if let Some(index) = index_array(&index) {
                 let chosen = Chosen::by(&index, ArrayShape::Grid(*rows, *columns));
-                return chosen.map(Part::Chosen).map_err(|d| d.or_at(m.program[*sub].span));
+                return chosen.map(Subscripted::Chosen).map_err(|d| d.or_at(m.program[*sub].span));
             }
         }
         if extents.len() != subs.len() {
@@ -213,7 +213,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             })
             .collect();
         if let Some(section) = regular.and_then(|parts| ArraySection::of_parts(&parts)) {
-            return Ok(Part::Section(section));
+            return Ok(Subscripted::Section(section));
         }
         if parts.len() > 2 {
             return Err(Diagnostic::error(
@@ -223,8 +223,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .expected("numbers and ranges"));
         }
         Ok(match &parts[..] {
-            [Selected::Chosen(a)] => Part::Chosen(Chosen::of_row(a.clone())),
-            [a, b, ..] => Part::Chosen(Chosen::of_grid(a, b, extents[1])),
+            [Selected::Chosen(a)] => Subscripted::Chosen(Chosen::of_row(a.clone())),
+            [a, b, ..] => Subscripted::Chosen(Chosen::of_grid(a, b, extents[1])),
             _ => return Err(silent()),
         })
     }

@@ -6,7 +6,7 @@
 //! level of what was loaded, or anywhere in the routine: the pass never takes a program for wrong whose run would be
 //! right.
 
-use crate::functions::context::BUILTINS;
+use crate::functions::builtins::BUILTINS;
 use crate::functions::files::predeclared;
 use crate::source::module::{Module, Modules, Name, RoutineAt};
 use crate::value::variables::described;
@@ -80,7 +80,7 @@ pub(crate) struct Semantics<'a> {
 }
 
 /// Where a statement stands.
-struct Place<'a> {
+struct JudgedScope<'a> {
     m: &'a Module,
     module: usize,
     locals: &'a HashMap<Name, Declared>,
@@ -121,7 +121,7 @@ impl<'a> Semantics<'a> {
             if m.library || m.path.to_ascii_lowercase().ends_with(".ms2") {
                 continue;
             }
-            let file = Place { m, module: at, locals: &nothing, routine: None };
+            let file = JudgedScope { m, module: at, locals: &nothing, routine: None };
             self.list(&file, m.program.body());
             self.declared_again(m, m.program.body());
             for routine in m.program.routines() {
@@ -143,7 +143,7 @@ impl<'a> Semantics<'a> {
             locals.insert(m.names[formal.name.symbol.0 as usize], declared);
         }
         collect(m, routine.body, &mut locals, false);
-        let place = Place { m, module, locals: &locals, routine: Some(routine) };
+        let place = JudgedScope { m, module, locals: &locals, routine: Some(routine) };
         self.list(&place, routine.body);
         self.declared_again(m, routine.body);
         self.shadows(m, routine.body);
@@ -175,7 +175,7 @@ impl<'a> Semantics<'a> {
         }
     }
 
-    fn list(&mut self, place: &Place<'_>, list: NodeList<StmtId>) {
+    fn list(&mut self, place: &JudgedScope<'_>, list: NodeList<StmtId>) {
         let m = place.m;
         let all = &m.program[list];
         for (k, &stmt) in all.iter().enumerate() {
@@ -195,7 +195,7 @@ impl<'a> Semantics<'a> {
         }
     }
 
-    fn statement(&mut self, place: &Place<'_>, id: StmtId) {
+    fn statement(&mut self, place: &JudgedScope<'_>, id: StmtId) {
         let m = place.m;
         let judged = !self.executed.has(place.module, id);
         let stmt = m.program[id];
@@ -296,7 +296,7 @@ impl<'a> Semantics<'a> {
     }
 
     /// Names, calls and shapes of an expression.
-    fn expression(&mut self, place: &Place<'_>, expr: ExprId) {
+    fn expression(&mut self, place: &JudgedScope<'_>, expr: ExprId) {
         let m = place.m;
         let mut stack = vec![expr];
         while let Some(id) = stack.pop() {
@@ -352,12 +352,12 @@ impl<'a> Semantics<'a> {
         }
     }
 
-    fn declared<'b>(&'b self, place: &'b Place<'_>, symbol: Symbol) -> Option<&'b Declared> {
+    fn declared<'b>(&'b self, place: &'b JudgedScope<'_>, symbol: Symbol) -> Option<&'b Declared> {
         let name = place.m.names[symbol.0 as usize];
         place.locals.get(&name).or_else(|| self.globals.get(&name))
     }
 
-    fn name(&mut self, place: &Place<'_>, symbol: Symbol, span: Span) {
+    fn name(&mut self, place: &JudgedScope<'_>, symbol: Symbol, span: Span) {
         let m = place.m;
         let word = m.program.name(symbol);
         let name = m.names[symbol.0 as usize];
@@ -384,7 +384,7 @@ impl<'a> Semantics<'a> {
 
     fn call(
         &mut self,
-        place: &Place<'_>,
+        place: &JudgedScope<'_>,
         symbol: Symbol,
         callee: ExprId,
         args: NodeList<Arg>,
@@ -530,7 +530,7 @@ impl<'a> Semantics<'a> {
         }
     }
 
-    fn declaration(&mut self, place: &Place<'_>, ty: (Type, Span), item: &Declarator) {
+    fn declaration(&mut self, place: &JudgedScope<'_>, ty: (Type, Span), item: &Declarator) {
         let m = place.m;
         if let Type::Other(symbol) = ty.0 {
             let word = m.program.name(symbol);
@@ -556,7 +556,7 @@ impl<'a> Semantics<'a> {
         }
     }
 
-    fn assignment(&mut self, place: &Place<'_>, target: ExprId, value: ExprId) {
+    fn assignment(&mut self, place: &JudgedScope<'_>, target: ExprId, value: ExprId) {
         let m = place.m;
         let Some(declared) =
             m.program.as_name(target).and_then(|symbol| self.declared(place, symbol)).cloned()
@@ -577,7 +577,7 @@ impl<'a> Semantics<'a> {
     /// That a variable of a type takes what an expression is, as far as the text says it.
     fn fits(
         &mut self,
-        place: &Place<'_>,
+        place: &JudgedScope<'_>,
         ty: Type,
         filled: bool,
         value: ExprId,
@@ -610,7 +610,7 @@ impl<'a> Semantics<'a> {
     }
 
     /// The type of an expression, where the text alone says it.
-    fn kind(&self, place: &Place<'_>, id: ExprId) -> Option<Type> {
+    fn kind(&self, place: &JudgedScope<'_>, id: ExprId) -> Option<Type> {
         let m = place.m;
         Some(match m.program[m.program.bare(id)].kind {
             ExprKind::Number(_) => Type::Float,
@@ -647,12 +647,18 @@ impl<'a> Semantics<'a> {
     }
 
     /// The dimensions of an array that an expression names, where numbers declare them.
-    fn dims(&self, place: &Place<'_>, id: ExprId) -> Option<Vec<f64>> {
+    fn dims(&self, place: &JudgedScope<'_>, id: ExprId) -> Option<Vec<f64>> {
         let symbol = place.m.program.as_name(place.m.program.bare(id))?;
         self.declared(place, symbol)?.dims.clone()
     }
 
-    fn differ(&mut self, place: &Place<'_>, sides: [ExprId; 2], dims: [&[f64]; 2], span: Span) {
+    fn differ(
+        &mut self,
+        place: &JudgedScope<'_>,
+        sides: [ExprId; 2],
+        dims: [&[f64]; 2],
+        span: Span,
+    ) {
         let m = place.m;
         let [a, b] = sides.map(|side| m.program.slice(m.program[side].span).trim().to_string());
         let [m1, m2] = dims.map(bracketed);
@@ -678,6 +684,10 @@ impl<'a> Semantics<'a> {
                     lists.extend(inner_lists(m, stmt));
                     continue;
                 };
+                // These may be objects, whose names are guarded by the run.
+                if matches!(ty.0, Type::Field | Type::Set) {
+                    continue;
+                }
                 for item in &m.program[items] {
                     let symbol = item.name.symbol;
                     let again = !here.insert(symbol);

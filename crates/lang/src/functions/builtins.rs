@@ -1,0 +1,292 @@
+//! The built-in functions that need the interpreter: names, arguments and examples. What they do is in `context`.
+
+/// The finest grids: intervals halved that many times.
+pub const MOST_REFINED: u32 = 8;
+
+/// A built-in function, as the reference and the editor show it.
+#[derive(Clone, Copy, Debug)]
+pub struct Builtin {
+    /// Its name.
+    pub name: &'static str,
+    /// How many arguments it takes, at least and at most.
+    pub(crate) arguments: (usize, usize),
+    /// What a call does.
+    pub(crate) action: Action,
+    /// Its arguments.
+    pub signature: &'static str,
+    /// What it does, in one line.
+    pub doc: &'static str,
+    /// A program that calls it and runs by itself.
+    pub example: &'static str,
+}
+
+/// What the call of a built-in function does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Action {
+    Format,
+    Open,
+    Close,
+    Write,
+    Read,
+    More,
+    Next,
+    Rewind,
+    Count,
+    IsSet,
+    Ieee,
+    CheckEdges,
+    Refined,
+    RefinedStep,
+    Refinement,
+    WriteGrids(GridFormat),
+    ReadPlot3d,
+    CountPlot3d,
+    ReadRows(RowFormat),
+}
+
+/// All built-in functions, in the order of the reference.
+pub const BUILTINS: [Builtin; 27] = [
+    Builtin {
+        name: "format",
+        arguments: (1, usize::MAX),
+        action: Action::Format,
+        signature: "format(pattern, ...)",
+        doc: "Formats numbers by C directives; the pattern repeats for the remaining values.",
+        example: "assert format(\"%6.2f|%d\", 2.5, 3) == \"  2.50|3\";",
+    },
+    Builtin {
+        name: "open",
+        arguments: (1, 3),
+        action: Action::Open,
+        signature: "open(name, mode)",
+        doc: "Opens a text file to read (\"r\"), write (\"w\") or append (\"a\"); open(7, name) chooses the unit.",
+        example: "file f = open(\"a.txt\", \"w\"); write(f, 1, {2, 3, 4}); close(f);",
+    },
+    Builtin {
+        name: "close",
+        arguments: (1, 1),
+        action: Action::Close,
+        signature: "close(f)",
+        doc: "Closes a file.",
+        example: "open(7, \"a.txt\"); close(7);",
+    },
+    Builtin {
+        name: "write",
+        arguments: (1, usize::MAX),
+        action: Action::Write,
+        signature: "write(f, ...)",
+        doc: "Writes values to a file: a point or number on each line, the first index of a grid fastest.",
+        example: "write(stdout, \"two points\", {{1, 2, 3}, {4, 5, 6}});",
+    },
+    Builtin {
+        name: "read",
+        arguments: (1, usize::MAX),
+        action: Action::Read,
+        signature: "read(f, ...)",
+        doc: "Reads numbers into variables or parts of them; a string takes the rest of the line.",
+        example: "open(7, \"a.txt\"); write(7, {1, 2, 3}); close(7); file f = open(\"a.txt\", \"r\"); vector v; read(f, v); assert v.z == 3;",
+    },
+    Builtin {
+        name: "more",
+        arguments: (1, 1),
+        action: Action::More,
+        signature: "more(c)",
+        doc: "Reports whether a multiple argument, or a file, has unread items.",
+        example: "function float total(float x...) { float s = 0; while (more(x)) s += next(x); return s; } assert total(1, 2) == 3;",
+    },
+    Builtin {
+        name: "next",
+        arguments: (1, 1),
+        action: Action::Next,
+        signature: "next(c)",
+        doc: "The next item of a multiple argument.",
+        example: "function float second(float x...) { next(x); return next(x); } assert second(1, 2) == 2;",
+    },
+    Builtin {
+        name: "rewind",
+        arguments: (1, 1),
+        action: Action::Rewind,
+        signature: "rewind(c)",
+        doc: "Returns to the first item of a multiple argument, or to the start of a file.",
+        example: "function float first(float x...) { next(x); rewind(x); return next(x); } assert first(1, 2) == 1;",
+    },
+    Builtin {
+        name: "count",
+        arguments: (1, 1),
+        action: Action::Count,
+        signature: "count(c)",
+        doc: "The number of items of a multiple argument or a list; of a mask, the number of elements where it holds.",
+        example: "function float n(float x...) { return count(x); } assert n(5, 6, 7) == 3;",
+    },
+    Builtin {
+        name: "isset",
+        arguments: (1, 1),
+        action: Action::IsSet,
+        signature: "isset(a[i])",
+        doc: "Reports whether a variable, or every element of a section, has a value.",
+        example: "curve c[3]; c[1:2] = {0, 0, 0}; assert isset(c[2]) and not isset(c);",
+    },
+    Builtin {
+        name: "ieee",
+        arguments: (0, 1),
+        action: Action::Ieee,
+        signature: "ieee(on)",
+        doc: "Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again.",
+        example: "ieee(); float a = 1/0; assert a > 1e308; ieee(0);",
+    },
+    Builtin {
+        name: "check_edges",
+        arguments: (1, 1),
+        action: Action::CheckEdges,
+        signature: "check_edges(s)",
+        doc: "Stops with location and gap when the four edges of a surface are not set or do not meet.",
+        example: "surface s[3,3] = {0, 0, 0}; check_edges(s);",
+    },
+    Builtin {
+        name: "refined",
+        arguments: (1, 1),
+        action: Action::Refined,
+        signature: "refined(n)",
+        doc: "n points, or more when the run is refined: intervals are halved, so that coarse points recur.",
+        example: "farray s = uniform(0, 1, refined(5));",
+    },
+    Builtin {
+        name: "refined_step",
+        arguments: (1, 1),
+        action: Action::RefinedStep,
+        signature: "refined_step(ds)",
+        doc: "A step per index consistent with refined(n): halved at each refinement.",
+        example: "farray s = d_tanh(0, 1, refined_step(.01), 0, refined(25));",
+    },
+    Builtin {
+        name: "refinement",
+        arguments: (0, 0),
+        action: Action::Refinement,
+        signature: "refinement()",
+        doc: "The number of parts of each interval of refined(n): 1, 2, 4, ...",
+        example: "assert refinement() >= 1;",
+    },
+    Builtin {
+        name: "write_p3d",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Plot3d),
+        signature: "write_p3d(name, words, s1, s2, ...)",
+        doc: "Writes surfaces as a Plot3D file: stream, records or text; single; single-block; 2d; planes; big; iblank; mark8.",
+        example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", \"records single\", s); surface t = read_p3d(\"s.x\"); assert t.d1 == 3;",
+    },
+    Builtin {
+        name: "write_vts",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Vts),
+        signature: "write_vts(name, s1, s2, ...)",
+        doc: "Writes surfaces as VTK structured grids: one .vts, or several with their .vtm.",
+        example: "surface s[3,2] = {1, 2, 3}; write_vts(\"s.vts\", s);",
+    },
+    Builtin {
+        name: "write_stl",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Stl),
+        signature: "write_stl(name, words, s1, s2, ...)",
+        doc: "Writes surfaces as binary STL, triangles without area at poles left out; \"flip\" reverses the normals.",
+        example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);",
+    },
+    Builtin {
+        name: "write_cgns",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Cgns),
+        signature: "write_cgns(name, s1, s2, ...), write_cgns(name, b1, \"k1 = hull wall\", b2, ...)",
+        doc: "Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; behind a block its boundaries.",
+        example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s);",
+    },
+    Builtin {
+        name: "write_su2",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Su2),
+        signature: "write_su2(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
+        doc: "Writes blocks as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.",
+        example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_su2(\"b.su2\", b, \"k1 = floor wall\");",
+    },
+    Builtin {
+        name: "write_gmsh",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Gmsh),
+        signature: "write_gmsh(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
+        doc: "Writes blocks as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface.",
+        example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_gmsh(\"b.msh\", b, \"k1 = floor wall\");",
+    },
+    Builtin {
+        name: "write_blockmesh",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::BlockMesh),
+        signature: "write_blockmesh(name, b1, \"k1 = hull wall, j1 = plane symmetry\", b2, ...)",
+        doc: "Writes blocks as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.",
+        example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh(\"blockMeshDict\", b, \"k1 = floor wall\");",
+    },
+    Builtin {
+        name: "write_csv",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Csv),
+        signature: "write_csv(name, c1, c2, ...)",
+        doc: "Writes points as lines of x,y,z under a heading, with all digits.",
+        example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); assert read_points(\"c.csv\")[2] . {1, 0, 0} == 1;",
+    },
+    Builtin {
+        name: "read_p3d",
+        arguments: (1, 2),
+        action: Action::ReadPlot3d,
+        signature: "read_p3d(name, block)",
+        doc: "A surface or block of a Plot3D file of any variant, by its number (1).",
+        example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", s); assert read_p3d(\"s.x\", 1).d2 == 2;",
+    },
+    Builtin {
+        name: "count_p3d",
+        arguments: (1, 1),
+        action: Action::CountPlot3d,
+        signature: "count_p3d(name)",
+        doc: "The number of surfaces and blocks of a Plot3D file.",
+        example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", s, s); assert count_p3d(\"s.x\") == 2;",
+    },
+    Builtin {
+        name: "read_points",
+        arguments: (1, 1),
+        action: Action::ReadRows(RowFormat::Points),
+        signature: "read_points(name)",
+        doc: "The points of a text with two or three numbers to a line, as a curve.",
+        example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); curve d = read_points(\"c.csv\");",
+    },
+    Builtin {
+        name: "read_aerofoil",
+        arguments: (1, 1),
+        action: Action::ReadRows(RowFormat::Aerofoil),
+        signature: "read_aerofoil(name)",
+        doc: "A section of a coordinate file in Selig's or Lednicer's listing: tail, upper side, nose, lower side, tail.",
+        example: "file f = open(\"a.dat\", \"w\"); write(f, \"a wedge\"); for (x = 1:0:-.25) write(f, format(\"%g %g\", x, .1*x)); for (x = .25:1:.25) write(f, format(\"%g %g\", x, -.1*x)); close(f); assert read_aerofoil(\"a.dat\").d1 == 9;",
+    },
+];
+
+/// What `write_...` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum GridFormat {
+    Plot3d,
+    Vts,
+    Stl,
+    Cgns,
+    Csv,
+    Su2,
+    Gmsh,
+    BlockMesh,
+}
+
+impl GridFormat {
+    /// True for formats of blocks, whose boundaries have names.
+    pub(crate) fn names_faces(self) -> bool {
+        matches!(self, Self::Cgns | Self::Su2 | Self::Gmsh | Self::BlockMesh)
+    }
+}
+
+/// What `read_...` reads as a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RowFormat {
+    Points,
+    Aerofoil,
+}

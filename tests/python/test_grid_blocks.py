@@ -1,0 +1,301 @@
+# ruff: noqa: E501 -- programs of one line
+"""Blocks of the language in files, read by others: meshio, Gmsh, VTK, h5py.
+
+A mapped cube is cut into blocks at random, whose indices run in random directions; whatever was cut must be one mesh again.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import random
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import moldloft
+
+SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
+FACES = ("i1", "in", "j1", "jn", "k1", "kn")
+MAP = """function vector p(float u, float v, float w) { return {u + 0.1*v*v, v + 0.1*sin(u + w), w + 0.05*u*v}; }
+subroutine fill(returned block b, float u0, float u1, float v0, float v1, float w0, float w1, int a1, int a2, int a3) {
+    for (i = 1:b.d1) for (j = 1:b.d2) for (k = 1:b.d3) {
+        farray t = list((i - 1)/(b.d1 - 1), (j - 1)/(b.d2 - 1), (k - 1)/(b.d3 - 1));
+        float u = along(t, a1), v = along(t, a2), w = along(t, a3);
+        b[i,j,k] = p(u0 + u*(u1 - u0), v0 + v*(v1 - v0), w0 + w*(w1 - w0));
+    }
+}
+function float along(farray t, int a) { if (a > 0) return t[a]; return 1 - t[-a]; }
+"""
+
+
+def mapped(u: np.ndarray, v: np.ndarray, w: np.ndarray) -> np.ndarray:
+    return np.stack([u + 0.1 * v * v, v + 0.1 * np.sin(u + w), w + 0.05 * u * v], axis=-1)
+
+
+def cut(rng: random.Random) -> tuple[str, int, np.ndarray, dict[str, int]]:
+    """A program of blocks, the cells of all, the points of the whole, and boundary faces by name."""
+    cells = [rng.randint(2, 4) for _ in range(3)]
+    axis = rng.randrange(3)
+    at = rng.randint(1, cells[axis] - 1)
+    parts = [(0, at), (at, cells[axis])] if rng.random() < 0.8 else [(0, cells[axis])]
+    text, names = MAP, []
+    faces_of: dict[str, int] = {}
+    for number, part in enumerate(parts):
+        spans = [(0, n) for n in cells]
+        spans[axis] = part
+        # Axis k of the map runs along index |order[k]| of the block.
+        order = list(rng.choice(list(itertools.permutations((1, 2, 3)))))
+        signs = [rng.choice((1, -1)) for _ in range(3)]
+        size = [0, 0, 0]
+        for k in range(3):
+            size[order[k] - 1] = spans[k][1] - spans[k][0] + 1
+        ends = ", ".join(f"{a}/{cells[k]}, {b}/{cells[k]}" for k, (a, b) in enumerate(spans))
+        along = ", ".join(str(s * o) for s, o in zip(signs, order, strict=True))
+        text += (
+            f"block b{number}[{size[0]},{size[1]},{size[2]}]; fill(b{number}, {ends}, {along});\n"
+        )
+        # The floor w = 0 has a name; so have the sides u = 0.
+        entries = []
+        for k, name in ((2, "floor wall"), (0, "left symmetry")):
+            if spans[k][0] == 0:
+                word = FACES[2 * (order[k] - 1) + (0 if signs[k] > 0 else 1)]
+                entries.append(f"{word} = {name}")
+                others = [spans[a][1] - spans[a][0] for a in range(3) if a != k]
+                key = name.split()[0]
+                faces_of[key] = faces_of.get(key, 0) + others[0] * others[1]
+        names.append(f'b{number}, "{", ".join(entries)}"')
+    arguments = ", ".join(names)
+    text += f'write_su2("m.su2", {arguments}); write_gmsh("m.msh", {arguments}); write_cgns("m.cgns", {arguments});\n'
+    text += f'write_blockmesh("blockMeshDict", {arguments});\n'
+    bare = ", ".join(f"b{k}" for k in range(len(parts)))
+    text += f'write_p3d("m.x", {bare}); write_vts("m.vts", {bare}); int n = count_p3d("m.x"); block back = read_p3d("m.x", n);\n'
+    text += f"float gap = max(|back - b{len(parts) - 1}|);\n"
+    grid = np.meshgrid(*[np.linspace(0, 1, n + 1) for n in cells], indexing="ij")
+    a, b, c = cells
+    faces_of["defaultFaces"] = 2 * (a * b + b * c + c * a) - sum(faces_of.values())
+    return text, a * b * c, mapped(*grid).reshape(-1, 3), faces_of
+
+
+def same_points(found: np.ndarray, wanted: np.ndarray) -> None:
+    """One point for each, none twice."""
+    assert found.shape == wanted.shape
+    order = lambda p: p[np.lexsort(np.round(p, 9).T)]  # noqa: E731
+    np.testing.assert_allclose(order(found), order(wanted), atol=1e-12)
+
+
+def volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """The triple products at the first corners of hexahedra in VTK's order."""
+    p = points[cells]
+    return np.einsum("ij,ij->i", np.cross(p[:, 1] - p[:, 0], p[:, 3] - p[:, 0]), p[:, 4] - p[:, 0])
+
+
+def check_cgns(path: Path, count: int, boundary: dict[str, int]) -> None:
+    """Every face of every zone is covered once, by a joint whose points coincide or by a boundary."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path) as file:
+        bases = [g for g in file.values() if isinstance(g, h5py.Group)]
+        (base,) = [g for g in bases if g.attrs["label"].startswith(b"CGNSBase_t")]
+
+        def children(node: Any, label: bytes) -> list[Any]:
+            groups = [g for g in node.values() if isinstance(g, h5py.Group)]
+            return [g for g in groups if g.attrs["label"].strip(b"\0") == label]
+
+        zones, cells, named = {}, 0, dict.fromkeys(boundary, 0)
+        for zone in children(base, b"Zone_t"):
+            (grid,) = children(zone, b"GridCoordinates_t")
+            points = np.stack([grid[f"Coordinate{c}"][" data"][:].T for c in "XYZ"], axis=-1)
+            zones[zone.name.rsplit("/", 1)[1]] = points
+            cells += int(np.prod(np.array(points.shape[:3]) - 1))
+        assert cells == count
+
+        def span(node: Any) -> np.ndarray:
+            return np.asarray(node[" data"][:]).reshape(2, 3) - 1
+
+        def quads(ends: np.ndarray) -> list[tuple[int, ...]]:
+            low, high = ends.min(axis=0), ends.max(axis=0)
+            ranges = [range(a, b) if b > a else [a] for a, b in zip(low, high, strict=True)]
+            flat = [k for k in range(3) if low[k] == high[k]]
+            assert len(flat) == 1
+            return [(flat[0], *place) for place in itertools.product(*ranges)]
+
+        for zone in children(base, b"Zone_t"):
+            name = zone.name.rsplit("/", 1)[1]
+            points = zones[name]
+            shape = np.array(points.shape[:3])
+            covered: dict[tuple[int, ...], int] = {}
+            for group in children(zone, b"ZoneGridConnectivity_t"):
+                for joint in children(group, b"GridConnectivity1to1_t"):
+                    donor = zones[bytes(joint[" data"][:].astype(np.uint8)).decode().strip("\0 ")]
+                    own, other = span(joint["PointRange"]), span(joint["PointRangeDonor"])
+                    transform = joint["Transform"][" data"][:]
+                    matrix = np.zeros((3, 3), int)
+                    for k, t in enumerate(transform):
+                        matrix[abs(t) - 1, k] = np.sign(t)
+                    low, high = own.min(axis=0), own.max(axis=0)
+                    for place in itertools.product(
+                        *[range(a, b + 1) for a, b in zip(low, high, strict=True)]
+                    ):
+                        there = matrix @ (np.array(place) - own[0]) + other[0]
+                        assert np.allclose(points[place], donor[tuple(there)], atol=1e-12)
+                    for quad in quads(own):
+                        covered[quad] = covered.get(quad, 0) + 1
+            for group in children(zone, b"ZoneBC_t"):
+                for patch in children(group, b"BC_t"):
+                    family = (
+                        bytes(patch["FamilyName"][" data"][:].astype(np.uint8))
+                        .decode()
+                        .strip("\0 ")
+                    )
+                    for quad in quads(span(patch["PointRange"])):
+                        covered[quad] = covered.get(quad, 0) + 1
+                    if family in named:
+                        named[family] += len(quads(span(patch["PointRange"])))
+            n = shape - 1
+            faces = 2 * (n[0] * n[1] + n[1] * n[2] + n[2] * n[0])
+            assert set(covered.values()) == {1} and len(covered) == faces
+        assert all(named[name] == boundary[name] for name in boundary if name != "defaultFaces")
+
+
+@pytest.mark.parametrize("seed", range(300 if SOAK else 8))
+def test_what_was_cut_is_one_mesh_again(seed: int, tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    text, count, points, boundary = cut(random.Random(seed))
+    model = moldloft.loads(text)
+    assert not model.diagnostics, model.diagnostics
+    assert float(model["gap"]) == 0
+    for name, data in model.written.items():
+        (tmp_path / name).write_bytes(data)
+    # SU2.
+    mesh = meshio.read(tmp_path / "m.su2")
+    hexes = np.concatenate([c.data for c in mesh.cells if c.type == "hexahedron"])
+    same_points(mesh.points, points)
+    assert len(hexes) == count and (volumes(mesh.points, hexes) > 0).all()
+    su2 = (tmp_path / "m.su2").read_text()
+    tags = dict(re.findall(r"MARKER_TAG= (\S+)\nMARKER_ELEMS= (\d+)", su2))
+    assert {name: int(n) for name, n in tags.items()} == {k: n for k, n in boundary.items() if n}
+    # Gmsh's format, by meshio.
+    mesh = meshio.read(tmp_path / "m.msh")
+    hexes = np.concatenate([c.data for c in mesh.cells if c.type == "hexahedron"])
+    same_points(mesh.points, points)
+    assert len(hexes) == count and (volumes(mesh.points, hexes) > 0).all()
+    physical = np.concatenate(
+        [
+            np.asarray(a)
+            for c, a in zip(mesh.cells, mesh.cell_data["gmsh:physical"], strict=True)
+            if c.type == "quad"
+        ]
+    )
+    for name, n in boundary.items():
+        if n:
+            assert (physical == mesh.field_data[name][0]).sum() == n
+    # blockMesh: vertices, cells and patches of the text.
+    text = (tmp_path / "blockMeshDict").read_text()
+    numbers = r"\(([-+.\deE]+) ([-+.\deE]+) ([-+.\deE]+)\)"
+    vertices = text.split("vertices")[1].split("blocks")[0]
+    places = np.array(re.findall(numbers, vertices), dtype=float)
+    same_points(places, points)
+    cells = np.array([list(map(int, m.split())) for m in re.findall(r"hex \(([\d ]+)\)", text)])
+    assert len(cells) == count and (volumes(places, cells) > 0).all()
+    assert text.count("symmetryPlane") == ("left" in boundary) and text.count("type wall") == 1
+    check_cgns(tmp_path / "m.cgns", count, boundary)
+
+
+def test_gmsh_reads_the_mesh(tmp_path: Path) -> None:
+    gmsh = pytest.importorskip("gmsh")
+    text, count, _, _ = cut(random.Random(3))
+    (tmp_path / "m.msh").write_bytes(moldloft.loads(text).written["m.msh"])
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Verbosity", 0)
+        gmsh.open(str(tmp_path / "m.msh"))
+        (kind,), (tags,), _ = gmsh.model.mesh.getElements(3)
+        assert (kind, len(tags)) == (5, count)
+        assert min(gmsh.model.mesh.getElementQualities(tags, "minSICN")) > 0
+        names = {gmsh.model.getPhysicalName(d, t) for d, t in gmsh.model.getPhysicalGroups()}
+        assert {"floor", "left", "fluid"} <= names
+    finally:
+        gmsh.finalize()
+
+
+def test_a_wake_joins_the_block_to_itself() -> None:
+    """A C-grid made a block by a second layer: its wake meets itself, reversed."""
+    model = moldloft.loads(
+        """load "naca.sdl"
+        curve c[41]; naca4s(c, 0, 0, 12); curve s = c[::-1];
+        surface g = c_grid(s, geometric(0, 1, 0.01, 12), 1, 8);
+        block b = {g, g + {0, 0, 0.1}};
+        write_cgns("c.cgns", b, "i1 = wing wall"); write_su2("c.su2", b, "i1 = wing wall");"""
+    )
+    text = model.written["c.su2"].decode()
+    tags = dict(re.findall(r"MARKER_TAG= (\S+)\nMARKER_ELEMS= (\d+)", text))
+    # Of the line next to the section and its wake only the section is boundary.
+    assert int(tags["wing"]) == 40
+    h5py = pytest.importorskip("h5py")
+    import io
+
+    with h5py.File(io.BytesIO(model.written["c.cgns"])) as file:
+        found: list[str] = []
+        file.visit(
+            lambda name: (
+                found.append(name) if "/join" in name and name.endswith("Transform") else None
+            )
+        )
+    assert len(found) == 2
+
+
+@pytest.mark.parametrize("seed", range(20 if SOAK else 2))
+def test_the_volume_grid_of_the_missile(seed: int) -> None:
+    """No cell is turned over, but at the pole none collapses, and the first cell is as high as asked."""
+    example = Path(__file__).resolve().parents[2] / "examples" / "missile" / "volume.sdl"
+    rng = random.Random(seed)
+    model = moldloft.load(example)
+    ranges = {"ogive": (2, 10), "radius": (0.5, 1), "first": (0.001, 0.02), "far": (4, 12)}
+    chosen = {name: rng.uniform(*ends) for name, ends in ranges.items()} if seed else {}
+    if chosen:
+        model.set(chosen)
+    assert not [d for d in model.diagnostics if d.is_error], model.diagnostics
+    g = np.array(model["grid"])  # layers, i, j
+    g = g.transpose(1, 2, 0, 3)
+    cell = [g[1:, :-1], g[:-1, :-1], g[:-1, 1:], g[1:, 1:]]
+    low = [c[:, :, :-1] for c in cell]
+    up = g[:-1, :-1, 1:] - g[:-1, :-1, :-1]
+    # At the corner away from the pole: along i, along j, up.
+    far = low[3]
+    jacobian = np.einsum(
+        "...i,...i", np.cross(far - low[2], far - low[0]), g[1:, 1:, 1:] - g[1:, 1:, :-1]
+    )
+    sign = np.sign(np.median(jacobian))
+    assert (jacobian * sign > 0).all() and up.shape[0] == 47
+    first = chosen.get("first", 0.005)
+    heights = np.linalg.norm(g[:, :, 1] - g[:, :, 0], axis=-1)
+    assert np.allclose(heights, first, rtol=1e-6)
+    assert (g[:, [0, -1], :, 2] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("k1 floor", "stands behind"),
+        ("k9 = floor wall", "no face"),
+        ("k1 = floor wal", "no boundary"),
+        ("k1 = ", "no name"),
+        ("k1 = a(b wall", "not a boundary name"),
+    ],
+)
+def test_wrong_names_of_faces_are_refused(words: str, message: str) -> None:
+    program = f'surface s[2,2]; s[1,] = {{{{0, 0, 0}}, {{0, 1, 0}}}}; s[2,] = {{{{1, 0, 0}}, {{1, 1, 0}}}}; block b = {{s, s + {{0, 0, 1}}}}; write_su2("b.su2", b, "{words}");'
+    with pytest.raises(moldloft.Error, match=message):
+        moldloft.loads(program)
+
+
+def test_poles_are_refused_where_a_format_has_none() -> None:
+    text = """surface s[3,3]; for (i = 1:3) for (j = 1:3) s[i,j] = (i - 1)*{cos(j), sin(j), 0};
+    block b = {s, s + {0, 0, 1}}; write_p3d("b.x", b); %s("b", b);"""
+    for name in ("write_su2", "write_gmsh"):
+        with pytest.raises(moldloft.Error, match="collapsed"):
+            moldloft.loads(text % name)
+    assert b"hex" in moldloft.loads(text % "write_blockmesh").written["b"]
