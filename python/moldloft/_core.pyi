@@ -611,6 +611,9 @@ class Look:
 def data_findings(
     points: NDArray[np.float64], closed: bool
 ) -> list[tuple[str, int, list[float], str]]: ...
+def line_findings(
+    points: NDArray[np.float64], lines: list[tuple[list[int], bool]], marked: list[int]
+) -> list[tuple[int, tuple[str, int, list[float], str]]]: ...
 def detectable(points: NDArray[np.float64], closed: bool) -> NDArray[np.float64]: ...
 def fair_shape(
     text: str, count: int

@@ -1,7 +1,7 @@
 //! A model under work: its text, its graph, the parameters that were set, and what a run found.
 
-use crate::degenerate;
 use crate::solve::SolveReport;
+use crate::{degenerate, faired};
 use indexmap::IndexMap;
 use moldloft_budget::Budget;
 use moldloft_diag::{Diagnostic, Sources};
@@ -448,10 +448,11 @@ impl Document {
         diagnostics
     }
 
-    /// The warnings of curves without length and surfaces without area.
+    /// The warnings of curves without length, surfaces without area, and doubtful fairings.
     pub(crate) fn degeneracies<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         let warned = |object| {
-            let (id, message, advice) = degenerate::remark(object, &evaluation.graph)?;
+            let found = degenerate::remark(object, &evaluation.graph);
+            let (id, message, advice) = found.or_else(|| faired::remark(object))?;
             let message = format!("`{}`: {message}", object.name);
             let warning = Diagnostic::warning(id, message).help(advice).object(&*object.name);
             Some(match self.declared_at(evaluation, object) {

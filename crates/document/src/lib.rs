@@ -26,6 +26,7 @@ mod convert;
 mod degenerate;
 mod document;
 mod editor;
+mod faired;
 mod measures;
 mod places;
 mod rename;

@@ -1,7 +1,7 @@
 //! Direct edits: parameters and literals of objects set to numbers, as the text itself would say them.
 
-use crate::degenerate;
 use crate::document::{Document, ObjectSource};
+use crate::{degenerate, faired};
 use moldloft_diag::Diagnostic;
 use moldloft_lang::run::program;
 use moldloft_lang::value::number_path::NumberPath;
@@ -242,7 +242,8 @@ impl Document {
             self.plain = evaluation;
         }
         let evaluation = std::mem::take(&mut self.plain);
-        self.run_diagnostics.retain(|d| !degenerate::IDS.contains(&&*d.id));
+        let own = |id: &str| degenerate::IDS.contains(&id) || faired::IDS.contains(&id);
+        self.run_diagnostics.retain(|d| !own(&d.id));
         let degeneracies = self.degeneracies(&evaluation);
         self.run_diagnostics.extend(degeneracies);
         self.plain = evaluation;

@@ -115,6 +115,7 @@ pub use curve::shaping::{FoundArc, ShapeConstraints};
 pub use curve::space::Space;
 pub use error::FairError;
 pub use interrogate::deviation::{Deviation, certified, deviation};
+pub use interrogate::lines::line_findings;
 pub use interrogate::outliers::{DataFinding, data_findings, detectable, predicted};
 pub use interrogate::report::{CurveStatistics, FairingReport, Mode, data_report, numbers, report};
 pub use interrogate::{shape, surface};
@@ -124,7 +125,7 @@ pub use net::grid::{
     GridData, GridFit, MovingGrid, fair_grid, fair_grid_with, grid_parameters, grid_spacing,
 };
 pub use net::network;
-pub use net::network::{Network, NetworkCurve, NetworkMode, NetworkReport};
+pub use net::network::{Network, NetworkCurve, NetworkFit, NetworkMode, NetworkReport};
 pub use net::patches::{NetEdge, PatchNet, Seam};
 pub use optimum::certificate::{Certificate, ball_gap};
 pub use optimum::goal::Goal;

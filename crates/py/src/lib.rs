@@ -54,7 +54,7 @@ mod _core {
     #[pymodule_export]
     use crate::fair::{
         Look, Net, Spline, Web, data_findings, detectable, divided_differences, eta_y, fair_shape,
-        monotone_runs,
+        line_findings, monotone_runs,
     };
     #[pymodule_export]
     use crate::formats::{formats, spline_patch_grid, spline_patch_knots};

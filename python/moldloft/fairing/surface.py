@@ -706,6 +706,8 @@ def _fair_data(
         raise FairingError(f"expected tolerances {(m, n)}, found {np.shape(tol)}")
     if tol is None and any(closed):
         raise FairingError("a closed surface without a tolerance shrinks")
+    if any(c and len(rows) for c, rows in zip(closed, options["breaks"], strict=True)):
+        raise FairingError("a closed direction has no breaks of its points")
     limits = radii(tol, m * n)
     for i, j in options["fixed"]:
         limits[int(i) * n + int(j)] = 0.0
@@ -804,8 +806,8 @@ def fair_surface(
         How far each point of the net may move; ``None`` for no limit.
     as_
         ``"control"``: the grid is the control net of a uniform surface; ``"fit"``: data on the
-        surface, which stays within the tolerance of each. Closed surfaces and those with knots or
-        weights of their own pass through data at even parameters before they are faired.
+        surface, which stays within the tolerance of each. Surfaces with knots or weights of their
+        own pass through data at even parameters before they are faired.
     degree, closed, knots, weights
         Of the surface of a grid; see :class:`SplineSurface` and :meth:`SplineSurface.interpolate`.
     measure
@@ -870,10 +872,10 @@ def fair_surface(
         raise FairingError(
             f"unknown mode `{mode}` of surfaces; expected one of: optimum, faithful, sweeps"
         )
-    by_data = as_ == "fit" and mode == "optimum" and bound in (None, "data") and not any(closed)
+    by_data = as_ == "fit" and mode == "optimum" and bound in (None, "data")
     plain = weights is None and all(k is None for k in knots)
     if bound == "data" and not (by_data and plain):
-        raise FairingError("bound `data` is for optima of open grids of data without own knots")
+        raise FairingError("bound `data` is for optima of grids of data without own knots")
     if by_data and plain and not isinstance(points, SplineSurface):
         options = {
             "degree": (degree, degree) if isinstance(degree, int) else degree,

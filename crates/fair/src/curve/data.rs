@@ -8,13 +8,13 @@
 //! what is kept is a proof about the data. The least energy sits at the edge of what is allowed,
 //! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
 
-use crate::curve::exact::exact;
+use crate::curve::exact::{between_breaks, exact};
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
     Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, moved, rounding,
 };
-use crate::optimum::{Bounded, DataLimits, Parts, kept};
+use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
 use crate::{
     Certificate, Condition, FairError, FoundArc, InterpolationSpace, Job, Limit, Measure,
     ShapeConstraints, SparseRows, shape,
@@ -76,6 +76,9 @@ pub struct DataFit {
     pub certificate: Certificate,
     /// The least of the measure within the tolerances.
     pub least: f64,
+    /// What the fairest takes of the squares that [`Self::used`] counts; 3 where it is at all its
+    /// tolerances, 0 where it was not looked for.
+    pub fairest_used: f64,
     /// The weight of the data beside the measure.
     pub weight: f64,
     /// Newton steps taken.
@@ -246,6 +249,13 @@ impl Data {
         (1..first).chain((n - last.max(1)..n - 1).filter(move |&c| c >= first.max(1))).collect()
     }
 
+    /// Whether the data are exact from break to break.
+    fn exact_parts(&self) -> bool {
+        let layout = &self.layout;
+        let closed = layout.space.is_closed() || layout.owner.first() == layout.owner.last();
+        between_breaks(&self.points, &layout.break_data(), closed).iter().all(|part| exact(part))
+    }
+
     /// The data that pull, as rows of displacements over tolerances.
     fn pull(&self, parts: &Parts<'_>) -> SparseRows {
         let mut pull = SparseRows::new();
@@ -323,14 +333,16 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
         return data.in_shape(options, &job);
     }
     let mut parts = data.parts(options, &job)?;
-    let plain = data.along(options, &job, &mut parts, None)?;
-    let higher = matches!(options.measure, Measure::Third | Measure::Variation);
+    let mut found = data.found(options, &job, &mut parts)?;
+    let fairest = std::mem::take(&mut found.fairest);
+    let plain = data.fit(found, &job);
     let all = shape::samples(&data.layout.space, &plain.points, None, shape::COUNTING);
     let plane = shape::plane_normal(&all).is_some();
-    if options.bends || !higher || !plane || plain.points == job.points {
+    let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);
+    if options.bends || jumps || !plane || data.stays(options, &job, &plain) {
         return Ok(plain);
     }
-    data.without_bends(options, &job, parts, plain)
+    data.without_bends(options, &job, plain, fairest)
 }
 
 /// Times that signs and lines are made linear again at most.
@@ -347,93 +359,219 @@ const INSIDE: f64 = 1e-2;
 /// The change of the measure, as a share, at which the search for the least under signs ends.
 const SETTLED: f64 = 1e-8;
 
+/// The same where the weight of the data is not yet that of the goal.
+const COARSE: f64 = 1e-3;
+
+/// Times that signs are made linear again once the curve has them.
+const FEW: usize = 4;
+
+/// Times that signs are made linear at most where a turn fewer is all that they are for.
+const SOME: usize = 12;
+
+/// So many monotone pieces any curve may have, and so many more than the fairest the one that is near.
+const LEAST_PIECES: usize = 2;
+const MORE_PIECES: usize = 2;
+
+/// Steps of the logarithm of the data's weight, how many of them, and halvings of the last.
+const STEP: f64 = 1.4;
+const LIGHTER: usize = 8;
+const HALVES: usize = 2;
+
+/// Steps, and halvings of one of them, on the way between two curves.
+const SHARES: usize = 32;
+const HALVINGS: usize = 6;
+
+/// How a curve under signs is looked for.
+#[derive(Clone, Copy, Debug)]
+struct SignSearch {
+    /// The weight of the data; without one the goal's is found in each round.
+    weight: Option<f64>,
+    /// The change of the measure, as a share, at which it is settled.
+    settled: f64,
+    rounds: usize,
+}
+
+impl SignSearch {
+    /// The least of a goal.
+    const WHOLE: Self = Self { weight: None, settled: SETTLED, rounds: ROUNDS };
+}
+
 impl Data {
-    /// The curve of a goal, or one near it that bends no more often than it has to. Third derivatives
-    /// alone may buy smoothness with a bend; second derivatives do not. As much of them is added as
-    /// keeps the turns to those of the curve of least bending, or else the inflections to those of
-    /// the curve through the data.
+    /// The curve of a goal, or one near it that bends no more often than it has to and, under the goal
+    /// `near`, has hardly more monotone pieces than the fairest, and none more than the data's. Third derivatives may buy smoothness
+    /// with a bend, and budgets leave some of the data's: the signs of the fairest curve, or of that of
+    /// least bending, are conditions then, and the weight of the data falls until the pieces are few.
+    /// Where no such curve is found, one between it and the fairest is taken, which is within the
+    /// tolerances as both are.
     fn without_bends(
         &self,
         options: &DataOptions,
         job: &Job,
-        mut parts: Parts<'_>,
         plain: DataFit,
+        fairest: Vec<Vec3<f64>>,
     ) -> Result<DataFit, FairError> {
         let space = &self.layout.space;
+        let near = matches!(options.goal, Goal::Near(_));
         let turns = |points: &[Vec3<f64>]| shape::turns_back(space, points);
         let signs = |points: &[Vec3<f64>]| {
             shape::inflections(&shape::samples(space, points, None, shape::COUNTING))
         };
-        let stiffest = self.least_bending(options, job)?;
-        let (most, own) = (turns(&stiffest), signs(&job.points));
-        let good = |points: &[Vec3<f64>]| turns(points) <= most && signs(points) <= own;
-        if good(&plain.points) {
+        let pieces = |points: &[Vec3<f64>]| shape::pieces(space, points);
+        let own = signs(&job.points);
+        let bent = turns(&plain.points) > 0 || signs(&plain.points) > own;
+        let before = pieces(&job.points);
+        let few = before.min(LEAST_PIECES + MORE_PIECES);
+        if !bent && (!near || pieces(&plain.points) <= few) {
             return Ok(plain);
         }
-        // What is taken where the turns cannot be kept.
-        let mut second = (signs(&plain.points) <= own).then(|| plain.clone());
-        let stiff = Measure::Bending.rows(space)?;
-        let third = parts.measure.clone();
-        let (low, high) = (plain.certificate.value, stiff.sum_sq(&plain.points));
-        let mut attempt = |log: f64| -> Result<DataFit, FairError> {
-            let factor =
-                (libm::exp(log) * low.max(f64::MIN_POSITIVE) / high.max(f64::MIN_POSITIVE)).sqrt();
-            parts.measure = third.clone().joined(&stiff.clone().scaled(factor));
-            let mut made = self.along(options, job, &mut parts, Some(&third))?;
-            // What the count costs is part of the gap.
-            made.certificate.gap = made.certificate.gap.max(made.certificate.value - plain.least);
-            made.least = plain.least;
-            Ok(made)
+        let fairest = if fairest.is_empty() { self.fairest(options, job)? } else { fairest };
+        let allowed = if near {
+            let least = pieces(&fairest);
+            (least.max(LEAST_PIECES) + MORE_PIECES).min(before.max(least))
+        } else {
+            usize::MAX
         };
-        // From little to much, then back half-way as long as the count is kept.
-        let step = 2.0 * libm::log(10.0);
-        for k in -1..=2 {
-            let mut log = f64::from(k) * step;
-            let mut made = attempt(log)?;
-            if good(&made.points) {
-                let mut low = log - step;
-                for _ in 0..4 {
-                    let middle = 0.5 * (low + log);
-                    let trial = attempt(middle)?;
-                    if good(&trial.points) {
-                        (log, made) = (middle, trial);
-                    } else {
-                        low = middle;
+        let mut starts = vec![(turns(&fairest), fairest)];
+        if bent {
+            let stiffest = self.least_bending(options, job)?;
+            let count = turns(&stiffest);
+            let at = usize::from(count >= starts[0].0);
+            starts.insert(at, (count, stiffest));
+        }
+        let most = starts[0].0;
+        let good = |points: &[Vec3<f64>]| turns(points) <= most && signs(points) <= own;
+        let fine = |points: &[Vec3<f64>]| good(points) && pieces(points) <= allowed;
+        if fine(&plain.points) {
+            return Ok(plain);
+        }
+        let least = plain.least;
+        // What the form costs is part of the gap.
+        let priced = |mut made: DataFit| {
+            made.certificate.gap = made.certificate.gap.max(made.certificate.value - least);
+            made.least = least;
+            made.fairest_used = plain.fairest_used;
+            made
+        };
+        let mut found: Option<DataFit> = None;
+        for (_, start) in starts.iter().filter(|s| s.0 <= most) {
+            let Some(shape) = ShapeConstraints::pattern(space, start) else { continue };
+            let signed = DataOptions { shape: shape.clone(), ..options.clone() };
+            let under = |weight: f64| -> Result<Option<DataFit>, FairError> {
+                let mut parts = self.parts(options, job)?;
+                let made = self.weighed(job, &mut parts, weight)?;
+                if good(&made.points) {
+                    return Ok(Some(made));
+                }
+                let search = SignSearch { weight: Some(weight), settled: COARSE, rounds: SOME };
+                match self.with_signs(&signed, job, shape.clone(), start, search) {
+                    Ok(made) => Ok(Some(made).filter(|made| good(&made.points))),
+                    Err(FairError::Shape { .. }) => Ok(None),
+                    Err(other) => Err(other),
+                }
+            };
+            // First under the weight of the goal's own curve.
+            let first =
+                if good(&plain.points) { Some(plain.clone()) } else { under(plain.weight)? };
+            let Some(mut made) = first else { continue };
+            if pieces(&made.points) <= allowed {
+                if options.goal != Goal::Fairest && !near {
+                    let then = SignSearch { weight: None, settled: f64::INFINITY, rounds: FEW };
+                    match self.with_signs(&signed, job, shape, &made.points, then) {
+                        Ok(more) if good(&more.points) => made = more,
+                        Ok(_) | Err(FairError::Shape { .. }) => {}
+                        Err(other) => return Err(other),
                     }
                 }
-                return Ok(made);
+                return Ok(priced(made));
             }
-            if second.is_none() && signs(&made.points) <= own {
-                second = Some(made);
-            }
-        }
-        // The signs of the curve of least bending as conditions.
-        if let Some(shape) = ShapeConstraints::pattern(space, &stiffest) {
-            let signed = DataOptions { shape: shape.clone(), ..options.clone() };
-            match self.with_signs(&signed, job, shape, &stiffest) {
-                Ok(mut made) if good(&made.points) => {
-                    let cost = made.certificate.value - plain.least;
-                    made.certificate.gap = made.certificate.gap.max(cost);
-                    made.least = plain.least;
-                    return Ok(made);
+            // Then less and less of it, and back half-way as long as the pieces are few.
+            let (mut high, mut low) = (libm::log(plain.weight), None);
+            for _ in 0..LIGHTER {
+                let weight = high - STEP;
+                let Some(tried) = under(libm::exp(weight))? else { break };
+                if fine(&tried.points) {
+                    low = Some((weight, tried));
+                    break;
                 }
-                Ok(_) | Err(FairError::Shape { .. }) => {}
-                Err(other) => return Err(other),
+                (high, made) = (weight, tried);
+            }
+            let Some((mut weight, mut best)) = low else {
+                found.get_or_insert(made);
+                continue;
+            };
+            for _ in 0..HALVES {
+                let middle = 0.5 * (weight + high);
+                match under(libm::exp(middle))? {
+                    Some(tried) if fine(&tried.points) => (weight, best) = (middle, tried),
+                    _ => high = middle,
+                }
+            }
+            return Ok(priced(best));
+        }
+        if let Some(made) = found {
+            return Ok(priced(made));
+        }
+        let norm = options.measure.norm();
+        let rows = options.measure.rows(space)?;
+        // As much bending beside the measure as keeps the turns.
+        let stiff = Measure::Bending.rows(space)?;
+        let (low, high) = (plain.certificate.value, stiff.sum_sq(&plain.points));
+        let ratio = low.max(f64::MIN_POSITIVE) / high.max(f64::MIN_POSITIVE);
+        let mut parts = self.parts(options, job)?;
+        for factor in [0.1, 1.0, 10.0, 100.0] {
+            parts.measure = rows.clone().joined(&stiff.clone().scaled(factor * ratio.sqrt()));
+            let mut made = self.along(options, job, &mut parts)?;
+            if good(&made.points) {
+                made.certificate.value = crate::measure::value(&rows, norm, &made.points);
+                return Ok(priced(made));
             }
         }
-        if let Some(made) = second {
-            return Ok(made);
+        let (_, start) = &starts[0];
+        let between = |share: f64| -> Vec<Vec3<f64>> {
+            let both = start.iter().zip(&plain.points);
+            both.map(|(p, q)| *p + (*q - *p) * share).collect()
+        };
+        let shares = (0..SHARES).rev().map(|k| k as f64 / SHARES as f64);
+        if let Some(mut low) = shares.into_iter().find(|&s| good(&between(s))) {
+            let mut high = low + 1.0 / SHARES as f64;
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                *(if good(&between(middle)) { &mut low } else { &mut high }) = middle;
+            }
+            let points = between(low);
+            let value = crate::measure::value(&rows, norm, &points);
+            let mut made = self.fit(GoalOptimum::unmoved(&points, value, false), job);
+            let radii = &self.limit.radii;
+            made.active = made.residuals.iter().zip(radii).filter(|(r, a)| r >= a).count();
+            made.used = self.used(&made.residuals);
+            made.certificate.gap = value;
+            return Ok(priced(made));
         }
         let bends = signs(&plain.points).saturating_sub(own);
-        if !options.conditions.is_empty() {
+        if bends == 0 || !options.conditions.is_empty() {
             return Ok(DataFit { bends, ..plain });
         }
         // The curve through the data bends no more often than itself.
-        let value = crate::measure::value(&third, parts.norm, &job.points);
+        let value = crate::measure::value(&rows, norm, &job.points);
         let mut kept = self.fit(GoalOptimum::unmoved(&job.points, value, false), job);
-        kept.least = plain.least;
+        kept.least = least;
         kept.bends = bends;
         Ok(kept)
+    }
+
+    /// Whether data that did not move are to stay: they are exact, or as fair as asked. Under the goal
+    /// `near` others move for a turn that the fairest does not have.
+    fn stays(&self, options: &DataOptions, job: &Job, plain: &DataFit) -> bool {
+        let near = matches!(options.goal, Goal::Near(_));
+        let still = self.limit.radii.iter().all(|&r| r == 0.0);
+        plain.points == job.points && (!near || still || self.exact_parts())
+    }
+
+    /// The mean of squared residuals over tolerances, over 1/3.
+    fn used(&self, residuals: &[f64]) -> f64 {
+        let moves = |(r, a): (&f64, &f64)| (*a > 0.0 && a.is_finite()).then(|| (r / a) * (r / a));
+        let all: Vec<f64> = residuals.iter().zip(&self.limit.radii).filter_map(moves).collect();
+        all.iter().sum::<f64>() * 3.0 / all.len().max(1) as f64
     }
 
     /// The control points of the curve of least bending within the tolerances.
@@ -442,7 +580,7 @@ impl Data {
         let least =
             DataOptions { measure, goal, shape: ShapeConstraints::default(), ..options.clone() };
         let mut own = self.parts(&least, job)?;
-        Ok(self.along(&least, job, &mut own, None)?.points)
+        Ok(self.along(&least, job, &mut own)?.points)
     }
 
     /// The curve of a goal that has the shape asked for.
@@ -454,19 +592,19 @@ impl Data {
         if met && options.shape.counted(space, &job.points).is_none() {
             let plain = DataOptions { shape: ShapeConstraints::default(), ..options.clone() };
             let mut parts = self.parts(&plain, job)?;
-            let made = self.along(&plain, job, &mut parts, None)?;
+            let made = self.along(&plain, job, &mut parts)?;
             if made.points == job.points {
                 return Ok(DataFit { arcs: options.shape.arcs.clone(), ..made });
             }
         }
         let stiffest = self.least_bending(options, job)?;
         let plain = options.shape.without_pieces().by(space, &stiffest);
-        let mut made = match self.with_signs(options, job, plain, &stiffest) {
+        let mut made = match self.with_signs(options, job, plain, &stiffest, SignSearch::WHOLE) {
             // Signs may be too far from those of the first start.
             Err(e @ FairError::Shape { .. }) => {
                 let start = self.fairest(options, job)?;
                 let again = options.shape.without_pieces().by(space, &start);
-                self.with_signs(options, job, again, &start).map_err(|_| e)?
+                self.with_signs(options, job, again, &start, SignSearch::WHOLE).map_err(|_| e)?
             }
             other => other?,
         };
@@ -477,7 +615,7 @@ impl Data {
         // Where the curvature turns is taken from fairer and fairer curves.
         for start in [made.points.clone(), self.fairest(options, job)?, stiffest] {
             let shape = options.shape.by(space, &start);
-            match self.with_signs(options, job, shape, &start) {
+            match self.with_signs(options, job, shape, &start, SignSearch::WHOLE) {
                 Ok(tried) => match options.shape.counted(space, &tried.points) {
                     None => return Ok(DataFit { arcs: options.shape.arcs.clone(), ..tried }),
                     Some((_, count)) => fewest = fewest.min(count),
@@ -498,7 +636,7 @@ impl Data {
         let (goal, shape) = (Goal::Fairest, ShapeConstraints::default());
         let plain = DataOptions { goal, shape, bends: true, ..options.clone() };
         let mut parts = self.parts(&plain, job)?;
-        Ok(self.along(&plain, job, &mut parts, None)?.points)
+        Ok(self.along(&plain, job, &mut parts)?.points)
     }
 
     /// The curve with the control points of lines and arcs in their places to rounding, where that
@@ -538,6 +676,7 @@ impl Data {
         job: &Job,
         shape: ShapeConstraints,
         start: &[Vec3<f64>],
+        search: SignSearch,
     ) -> Result<DataFit, FairError> {
         let mut control = shape.projected(start);
         let slack = self.slack();
@@ -547,9 +686,12 @@ impl Data {
         let most = INSIDE * finite().sum::<f64>() / finite().count().max(1) as f64;
         let mut best: Option<DataFit> = None;
         let mut missed = (f64::INFINITY, 0);
-        for round in 0..ROUNDS {
+        for round in 0..search.rounds {
             let mut parts = self.parts_at(&options, job, &control)?;
-            let tried = self.along(&options, job, &mut parts, None);
+            let tried = match search.weight {
+                Some(weight) => self.weighed(job, &mut parts, weight),
+                None => self.along(&options, job, &mut parts),
+            };
             let made = match tried {
                 Err(FairError::Contradiction { conditions, ends, miss }) => {
                     // The shape's own equations come after the caller's.
@@ -570,7 +712,7 @@ impl Data {
             missed = options.shape.miss(self, &made.points, slack);
             let settled = best.as_ref().is_some_and(|b| {
                 let (was, now) = (b.certificate.value, made.certificate.value);
-                (was - now).abs() <= SETTLED * now.abs()
+                (was - now).abs() <= search.settled * now.abs()
             });
             let far = if round < WHOLE { 1.0 } else { 0.5 };
             for (c, p) in control.iter_mut().zip(&made.points) {
@@ -581,7 +723,7 @@ impl Data {
             }
             if missed.0 <= 0.0 {
                 best = Some(self.exact(&options.shape, made));
-                if settled {
+                if settled || search.settled.is_infinite() {
                     break;
                 }
             }
@@ -589,21 +731,29 @@ impl Data {
         best.ok_or(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
     }
 
-    /// The optimum of a goal by the rows of `parts`; its value by those of `counted`, where these
-    /// are others.
+    /// The optimum of a goal.
     fn along(
         &self,
         options: &DataOptions,
         job: &Job,
         parts: &mut Parts<'_>,
-        counted: Option<&SparseRows>,
     ) -> Result<DataFit, FairError> {
-        let found = self.found(options, job, parts)?;
-        let mut fit = self.fit(found, job);
-        if let Some(rows) = counted {
-            fit.certificate.value = rows.sum_sq(&fit.points);
-        }
-        Ok(fit)
+        Ok(self.fit(self.found(options, job, parts)?, job))
+    }
+
+    /// The optimum of the measure and the squared residuals of this weight.
+    fn weighed(&self, job: &Job, parts: &mut Parts<'_>, weight: f64) -> Result<DataFit, FairError> {
+        let pull = self.pull(parts);
+        parts.pull = (weight > 0.0).then(|| pull.scaled(weight.sqrt()));
+        let optimum = parts.solve()?;
+        let value = crate::measure::value(&parts.measure, parts.norm, &optimum.points);
+        let mut found = GoalOptimum::unmoved(&optimum.points, value, false);
+        found.optimum =
+            Optimum { certificate: Certificate { value, ..optimum.certificate }, ..optimum };
+        found.weight = weight;
+        let mut made = self.fit(found, job);
+        made.used = self.used(&made.residuals);
+        Ok(made)
     }
 
     fn fit(&self, found: GoalOptimum, job: &Job) -> DataFit {
@@ -611,6 +761,7 @@ impl Data {
             residuals: self.residuals(&found.optimum.points),
             used: found.used,
             least: found.least,
+            fairest_used: found.fairest_used,
             weight: found.weight,
             certificate: found.optimum.certificate,
             iterations: found.optimum.iterations,
@@ -631,7 +782,7 @@ impl Data {
         let pull = self.pull(parts);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
         let still = self.limit.radii.iter().all(|&r| r == 0.0);
-        let fair = matches!(options.goal, Goal::Near(_)) && exact(&self.points);
+        let fair = matches!(options.goal, Goal::Near(_)) && self.exact_parts();
         let conditioned = !options.conditions.is_empty() || !options.shape.is_empty();
         if !conditioned && (still || fair) {
             let value = crate::measure::value(&rows, norm, &job.points);

@@ -8,14 +8,47 @@ use moldloft_num::Vec3;
 /// Rounding of coordinates, as a share of their size.
 const ROUNDING: f64 = 1e-12;
 
-/// More points than coefficients by so many make a coincidence impossible.
-const SPARE: usize = 3;
+/// So many points more than a curve is determined by make a coincidence impossible.
+const SPARE: usize = 4;
+
+/// The same for one line of many, all of which have to be exact.
+const SPARE_EACH: usize = 1;
 
 /// Whether points lie in order on a line, a circle, another conic, a plane cubic or a helix.
 pub(crate) fn exact(points: &[Vec3<f64>]) -> bool {
+    exact_with(points, SPARE)
+}
+
+/// Whether all lines of a grid or network are exact; one whose points are in one place is.
+pub(crate) fn all_exact(lines: impl IntoIterator<Item = Vec<Vec3<f64>>>) -> bool {
+    lines
+        .into_iter()
+        .all(|line| line.iter().all(|p| *p == line[0]) || exact_with(&line, SPARE_EACH))
+}
+
+/// The parts of a list between breaks, which belong to both sides; of a closed list the last runs on
+/// to the first break.
+pub(crate) fn between_breaks<T: Copy>(list: &[T], breaks: &[usize], closed: bool) -> Vec<Vec<T>> {
+    let n = list.len();
+    let mut inner: Vec<usize> = breaks.iter().copied().filter(|&b| b < n).collect();
+    inner.sort_unstable();
+    inner.dedup();
+    if closed {
+        let Some(&first) = inner.first() else { return vec![list.to_vec()] };
+        let turned: Vec<T> = (0..=n).map(|k| list[(first + k) % n]).collect();
+        let moved: Vec<usize> = inner.iter().map(|b| b - first).collect();
+        return between_breaks(&turned, &moved, false);
+    }
+    let ends = [0].into_iter().chain(inner.into_iter().filter(|&b| 0 < b && b + 1 < n));
+    let ends: Vec<usize> = ends.chain([n.saturating_sub(1)]).collect();
+    ends.windows(2).map(|w| list[w[0]..=w[1]].to_vec()).collect()
+}
+
+/// Whether points lie in order on one of these curves, with so many points more than it needs.
+fn exact_with(points: &[Vec3<f64>], spare: usize) -> bool {
     let n = points.len();
     let finite = points.iter().all(|p| p.is_finite());
-    if n < 4 || !finite {
+    if n < 2 || !finite {
         return false;
     }
     let middle = points.iter().fold(Vec3::zero(), |s, &p| s + p) * (1.0 / n as f64);
@@ -32,9 +65,21 @@ pub(crate) fn exact(points: &[Vec3<f64>]) -> bool {
     }
     if own.iter().all(|p| c.dot(*p).abs() <= close) {
         let plane: Vec<[f64; 2]> = own.iter().map(|p| [a.dot(*p), b.dot(*p)]).collect();
-        return [2, 3].into_iter().any(|degree| algebraic(&plane, degree, close));
+        return families().iter().any(|terms| algebraic(&plane, terms, close, spare));
     }
-    helix(&own, close)
+    helix(&own, close, spare)
+}
+
+/// A sum of monomials x^i y^j.
+type Term = Vec<(usize, usize)>;
+
+/// The terms of circles, conics and cubics.
+fn families() -> [Vec<Term>; 3] {
+    let all = |degree: usize| -> Vec<Term> {
+        (0..=degree).flat_map(|i| (0..=degree - i).map(move |j| vec![(i, j)])).collect()
+    };
+    let circle = vec![vec![(2, 0), (0, 2)], vec![(1, 0)], vec![(0, 1)], vec![(0, 0)]];
+    [circle, all(2), all(3)]
 }
 
 /// Axes: from the first point to the farthest, across it to the farthest from that line, and across
@@ -53,17 +98,16 @@ fn frame(points: &[Vec3<f64>]) -> Option<[Vec3<f64>; 3]> {
     Some([a, b, a.cross(b)])
 }
 
-/// Whether plane points lie in order on an algebraic curve of a degree.
-fn algebraic(points: &[[f64; 2]], degree: usize, close: f64) -> bool {
-    let powers: Vec<(usize, usize)> =
-        (0..=degree).flat_map(|i| (0..=degree - i).map(move |j| (i, j))).collect();
-    let count = powers.len();
-    if points.len() < count + SPARE {
+/// Whether plane points lie in order on an algebraic curve with these terms.
+fn algebraic(points: &[[f64; 2]], terms: &[Term], close: f64, spare: usize) -> bool {
+    let count = terms.len();
+    if points.len() < count - 1 + spare {
         return false;
     }
-    let term = |&(i, j): &(usize, usize), [x, y]: [f64; 2]| x.powi(i as i32) * y.powi(j as i32);
+    let one = |&(i, j): &(usize, usize), [x, y]: [f64; 2]| x.powi(i as i32) * y.powi(j as i32);
+    let term = |all: &Term, p: [f64; 2]| all.iter().map(|e| one(e, p)).sum::<f64>();
     let mut rows: Vec<Vec<f64>> =
-        points.iter().map(|&p| powers.iter().map(|e| term(e, p)).collect()).collect();
+        points.iter().map(|&p| terms.iter().map(|e| term(e, p)).collect()).collect();
     // Elimination with complete pivoting: the last pivot says how far the columns are from
     // dependent.
     let mut order: Vec<usize> = (0..count).collect();
@@ -88,9 +132,10 @@ fn algebraic(points: &[[f64; 2]], degree: usize, close: f64) -> bool {
                 let sum: f64 = (r + 1..count).map(|c| rows[r][c] * own[c]).sum();
                 own[r] = -sum / rows[r][r];
             }
-            let mut curve = vec![0.0; count];
+            let (mut powers, mut curve) = (Vec::new(), Vec::new());
             for (c, &place) in order.iter().enumerate() {
-                curve[place] = own[c];
+                powers.extend(&terms[place]);
+                curve.resize(powers.len(), own[c]);
             }
             return in_order(points, &powers, &curve);
         }
@@ -146,8 +191,8 @@ fn in_order(points: &[[f64; 2]], powers: &[(usize, usize)], curve: &[f64]) -> bo
 
 /// Whether points are on a helix: on a circle seen along its axis, at angles that grow with the
 /// height.
-fn helix(points: &[Vec3<f64>], close: f64) -> bool {
-    if points.len() < 7 + SPARE {
+fn helix(points: &[Vec3<f64>], close: f64, spare: usize) -> bool {
+    if points.len() < 6 + spare {
         return false;
     }
     // An axis is across the differences of a helix' second derivatives: those of the circles through
@@ -259,6 +304,15 @@ fn off_helix(points: &[Vec3<f64>], axis: Vec3<f64>) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn parts_share_their_breaks() {
+        let list = [0, 1, 2, 3, 4, 5];
+        assert_eq!(between_breaks(&list, &[], false), [vec![0, 1, 2, 3, 4, 5]]);
+        assert_eq!(between_breaks(&list, &[0, 3, 5], false), [vec![0, 1, 2, 3], vec![3, 4, 5]]);
+        assert_eq!(between_breaks(&list, &[], true), [vec![0, 1, 2, 3, 4, 5]]);
+        assert_eq!(between_breaks(&list, &[4, 2, 2], true), [vec![2, 3, 4], vec![4, 5, 0, 1, 2]]);
+    }
 
     fn turned(points: &[[f64; 3]]) -> Vec<Vec3<f64>> {
         let a = Vec3::of(0.36, 0.48, 0.8);

@@ -7,7 +7,7 @@ pub(crate) mod chain;
 pub(crate) mod condition;
 pub(crate) mod corners;
 pub(crate) mod data;
-mod exact;
+pub(crate) mod exact;
 pub(crate) mod fit;
 pub(crate) mod job;
 pub(crate) mod jumps;

@@ -1,6 +1,7 @@
 //! How fair a shape is: curvature and its derivatives, distances, and reports of a fairing.
 
 pub(crate) mod deviation;
+pub(crate) mod lines;
 pub(crate) mod outliers;
 pub(crate) mod report;
 pub mod shape;

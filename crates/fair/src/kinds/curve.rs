@@ -11,8 +11,12 @@ use std::sync::Arc;
 /// A fair B-spline curve within a tolerance of the one through its points.
 ///
 /// Of all splines with knots at the points that stay within the tolerance of each point, `goal` says
-/// which is taken; parameters and knots follow the points' spacing. Points that are as fair as the
-/// tolerance allows do not move. The result is continuous in the points. Points can be control points
+/// which is taken; members say how it came out: `deviation` (the greatest distance of a point from it),
+/// `value` and `gap` (its measure, and how much less any other has at most), `active` (tolerances that
+/// are reached), `used` (squared residuals as a multiple of those of noise that fills the tolerance),
+/// `fairest_used` (the same of the fairest) and `findings` (points that do not fit their neighbours).
+/// Parameters and knots follow the points' spacing. Points that are as fair as the tolerance allows do
+/// not move. The result is continuous in the points. Points can be control points
 /// or be faired themselves instead (`as`); these, curves that join others and the mode "faithful"
 /// take the number of a point for its parameter, as the report of 1991 does. In mode "faithful" the
 /// worst knots are removed and re-inserted one after the other (Farin and Sapidis 1989), one step per
@@ -450,7 +454,7 @@ impl<T: Real> Build<T> for FairCurve<T> {
         let index = matches!(intent.spacing, crate::ParameterSpacing::Uniform);
         let alone = intent.joins.iter().all(Option::is_none);
         if intent.role == super::PointRole::Fit && !intent.faithful && alone && !index {
-            let curve = intent.near(&points, &demands).map_err(about)?;
+            let (curve, figures) = intent.near(&points, &demands).map_err(about)?;
             let [first, .., last] = self.points.as_slice() else {
                 return Err(
                     CallError::new("too-few-items", "a curve needs points").in_field(Self::POINTS)
@@ -459,7 +463,8 @@ impl<T: Real> Build<T> for FairCurve<T> {
             // A free end leaves its point, and a closed curve has no ends.
             let kept = !intent.closed && (intent.end.kept() > 0 || self.tolerance.re() == 0.0);
             let ends = [first, last].map(|p| if kept { p.key } else { None });
-            return Ok(Value::Curve(CurveRef::new(AnchoredSpline { curve, ends }, 0)));
+            let curve = CurveRef::new(AnchoredSpline { curve, ends }, 0);
+            return Ok(Value::Curve(curve.with_figures(&figures.members())));
         }
         if let Some((what, field)) = near_only {
             let message = format!("`{what}` is for curves near their points");

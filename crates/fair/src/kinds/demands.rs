@@ -1,9 +1,10 @@
 //! What a model asks of a curve near its points besides the tolerance.
 
+use super::figures::FairFigures;
 use super::{ACCURACY, Intent};
 use crate::{
-    Condition, Data, DataOptions, FairError, InterpolationSpace, Limit, ShapeCondition,
-    fair_data_with, parameters_across,
+    Condition, Data, DataFinding, DataOptions, FairError, InterpolationSpace, Limit,
+    ShapeCondition, data_findings, fair_data_with, parameters_across,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::SplineWithKnotDerivatives;
@@ -45,12 +46,12 @@ impl<T> Demands<T> {
 
 impl<T: Real> Intent<T> {
     /// The faired spline within the tolerances of the points themselves, which it passes through
-    /// before it is faired.
+    /// before it is faired, and what is to be said of it.
     pub fn near(
         &self,
         points: &[Vec3<T>],
         demands: &Demands<T>,
-    ) -> Result<SplineWithKnotDerivatives<T>, FairError> {
+    ) -> Result<(SplineWithKnotDerivatives<T>, FairFigures), FairError> {
         let n = points.len();
         let marks = super::indices(&self.breaks, n)?;
         let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
@@ -103,9 +104,16 @@ impl<T: Real> Intent<T> {
                 });
             }
         }
-        let (made, _) = fair_data_with(&data, &options, points, &tolerances, &at)?;
+        let (made, fit) = fair_data_with(&data, &options, points, &tolerances, &at)?;
         let (knots, control) = data.layout.space.open_form(&made.knots, &made.points);
-        SplineWithKnotDerivatives::new(self.degree, Some(knots), control, None)
-            .map_err(|_| FairError::Singular)
+        let curve = SplineWithKnotDerivatives::new(self.degree, Some(knots), control, None)
+            .map_err(|_| FairError::Singular)?;
+        let known = |f: &DataFinding| {
+            let at = f.index() + 1;
+            self.breaks.contains(&at) || demands.release.contains(&at)
+        };
+        let findings = data_findings(&data.points, self.closed);
+        let findings = findings.iter().filter(|f| !known(f)).count();
+        Ok((curve, FairFigures::of_curve(&fit, &data.limit.radii, findings)))
     }
 }

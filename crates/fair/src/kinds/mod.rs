@@ -2,6 +2,7 @@
 
 mod curve;
 mod demands;
+mod figures;
 mod functions;
 mod moving_surface;
 mod net;

@@ -1,10 +1,11 @@
 //! `FairNet` and `NetCurve`: networks of curves that share points.
 
+use super::figures::FairFigures;
 use super::shapes::{self, AnchoredSpline};
 use super::{ACCURACY, ArgumentFields, fault, measure};
 use crate::{
     EndContinuity, FairError, InterpolationSpace, Limit, Motion, Network, NetworkCurve,
-    ParameterSpacing, Space, interpolate_with_corners, parameters_across,
+    ParameterSpacing, Space, interpolate_with_corners, line_findings, parameters_across,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
@@ -239,6 +240,7 @@ impl<T: Real> Build<T> for FairNet<T> {
         let mut still = vec![self.tolerance.re() == 0.0; joined.points.len()];
         kept.iter().chain(&marked).for_each(|&i| still[i] = true);
         let xyz: Vec<Vec3<T>> = joined.points.iter().map(|p| p.xyz).collect();
+        let mut fit = None;
         let solve = || -> Result<Vec<Vec3<T>>, FairError> {
             let limit = Limit::new(motion, vec![self.tolerance.re(); xyz.len()])?;
             let plain = xyz.iter().map(|p| p.re()).collect();
@@ -248,9 +250,31 @@ impl<T: Real> Build<T> for FairNet<T> {
             if let Some(passes) = passes {
                 return network.passes_with(passes, 3, &xyz, &tolerances);
             }
-            network.toward_with(measure, goal, ACCURACY, &xyz, &tolerances, &ats)
+            let (points, own) =
+                network.toward_with(measure, goal, ACCURACY, &xyz, &tolerances, &ats)?;
+            fit = Some(own);
+            Ok(points)
         };
         let moved = solve().map_err(|e| fault(e, &places))?;
+        let figures = fit.map(|fit| {
+            let plain: Vec<Vec3<f64>> = xyz.iter().map(|p| p.re()).collect();
+            let found = line_findings(&plain, &joined.curves, &marked);
+            let off: Vec<f64> =
+                moved.iter().zip(&plain).map(|(p, q)| (p.re() - *q).norm()).collect();
+            let free = |i: usize| if still[i] { 0.0 } else { self.tolerance.re() };
+            let of = |own: &[usize], findings: usize| {
+                let residuals: Vec<f64> = own.iter().map(|&i| off[i]).collect();
+                let radii: Vec<f64> = own.iter().map(|&i| free(i)).collect();
+                FairFigures::of_network(&fit, &residuals, &radii, findings)
+            };
+            let each = joined.curves.iter().enumerate();
+            each.map(|(k, (own, _))| of(own, found.iter().filter(|f| f.0 == k).count()))
+                .collect::<Vec<_>>()
+        });
+        let said = |curve: CurveRef<T>, k: usize| match &figures {
+            Some(all) => curve.with_figures(&all[k].members()),
+            None => curve,
+        };
         let curve = |(k, (own, closed)): (usize, &(Vec<usize>, bool))| {
             let points: Vec<Vec3<T>> = own.iter().map(|&i| moved[i]).collect();
             // Ends that may move are no longer their point objects.
@@ -262,7 +286,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             if let Some(at) = &ats[k] {
                 // At the parameters of the points given: the moved ones are near them.
                 let curve = through(degree, &points, at, &marks_of(own), *closed).map_err(about)?;
-                return Ok(Value::Curve(CurveRef::new(AnchoredSpline { curve, ends }, 0)));
+                return Ok(Value::Curve(said(CurveRef::new(AnchoredSpline { curve, ends }, 0), k)));
             }
             let marks = marks_of(own);
             let sharp = interpolate_with_corners(
@@ -276,7 +300,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
                 CallError::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
             })?;
-            Ok(Value::Curve(CurveRef::new(AnchoredSpline { curve, ends }, 0)))
+            Ok(Value::Curve(said(CurveRef::new(AnchoredSpline { curve, ends }, 0), k)))
         };
         let curves: Result<Vec<_>, CallError> =
             joined.curves.iter().enumerate().map(curve).collect();

@@ -30,7 +30,7 @@ impl<T: Real> FromValue<T> for SurfacePoint<T> {
 /// A fair curve on a surface: its path in the parameter plane is faired within a tolerance.
 ///
 /// The path passes through the magnets' parameters before it is faired; the tolerance is a
-/// distance in the parameter plane. See `FairCurve`.
+/// distance in the parameter plane, and so are its members. See `FairCurve`.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -114,11 +114,12 @@ impl<T: Real> Build<T> for FairSnake<T> {
             self.magnets.iter().map(|m| Vec3::new(m.uv[0], m.uv[1], T::zero())).collect();
         let ends = [first.point.key, last.point.key];
         if !intent.faithful {
-            let path = intent
+            let (path, figures) = intent
                 .near(&path, &super::demands::Demands::none())
                 .map_err(|e| fault(e, &places))?;
             let shape = SplineOnSurface { surface: surface.clone(), path, ends };
-            return Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)));
+            let snake = CurveRef::snake(shape, surface, context.nesting);
+            return Ok(Value::Curve(snake.with_figures(&figures.members())));
         }
         let (space, control) = intent.spline(&path).map_err(|e| fault(e, &places))?;
         let path = shapes::curve(&space, &control)

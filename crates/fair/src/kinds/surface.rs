@@ -1,5 +1,6 @@
 //! `FairSurf`: the faired surface of a grid of points.
 
+use super::figures::FairFigures;
 use super::moving_surface::MovingSurface;
 use super::{
     ACCURACY, ArgumentFields, GivenKnots, PointRole, faithful, fault, indices, measure, role,
@@ -7,6 +8,7 @@ use super::{
 use crate::{
     Bound, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Motion, Network,
     ParameterSpacing, Space, fair_grid_with, grid_parameters, interpolate_with_corners,
+    line_findings,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
@@ -329,8 +331,15 @@ impl<T: Real> Build<T> for FairSurf<T> {
             };
             let tolerances = vec![self.tolerance; points.len()];
             let at = [at[0].as_slice(), at[1].as_slice()];
-            let made = fair_grid_with(&data, measure, goal, ACCURACY, &points, &tolerances, at)?.0;
-            Ok(made)
+            let (made, fit) =
+                fair_grid_with(&data, measure, goal, ACCURACY, &points, &tolerances, at)?;
+            let rows = (0..m).map(|i| ((i * n..(i + 1) * n).collect(), false));
+            let columns = (0..n).map(|j| ((0..m).map(|i| i * n + j).collect(), false));
+            let lines: Vec<(Vec<usize>, bool)> = rows.chain(columns).collect();
+            let of_breaks =
+                (0..m * n).filter(|k| marks_u.contains(&(k / n)) || marks_v.contains(&(k % n)));
+            let findings = line_findings(&data.points, &lines, &of_breaks.collect::<Vec<_>>());
+            Ok((made, FairFigures::of_surface(&fit, &data.limit.radii, findings.len())))
         };
         let about = |e: FairError| match e {
             FairError::Weight { .. } => {
@@ -345,10 +354,10 @@ impl<T: Real> Build<T> for FairSurf<T> {
             e => fault(e, &places),
         };
         if by_data {
-            let (degree, made) = (self.degree, by_points().map_err(about)?);
+            let (made, figures) = by_points().map_err(about)?;
             let surface =
-                MovingSurface::referred(degree, made.knots, made.points).map_err(about)?;
-            return Ok(Value::Surface(surface));
+                MovingSurface::referred(self.degree, made.knots, made.points).map_err(about)?;
+            return Ok(Value::Surface(surface.with_figures(&figures.members())));
         }
         let (spaces, points) = make().map_err(about)?;
         let [u, v] = spaces.map(|s| s.knot_vector().0);

@@ -9,6 +9,7 @@
 //! for: integrals over the surface by the trapezoidal rule. Both directions count by the parameter
 //! from 0 to 1, hence by the measure of a curve of unit length.
 
+use crate::curve::exact::{all_exact, between_breaks};
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
     Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, moved, rounding,
@@ -45,6 +46,8 @@ pub struct GridFit {
     pub residuals: Vec<f64>,
     /// The mean of the squared residuals over the tolerances, over 1/3.
     pub used: f64,
+    /// What the fairest takes of the same squares; see [`crate::DataFit`].
+    pub fairest_used: f64,
     /// The measure of the surface and the optimality gap; see [`crate::DataFit`].
     pub certificate: Certificate,
     /// The measure of the surface through the data.
@@ -289,7 +292,9 @@ impl GridData {
     /// As [`Network::net`].
     pub fn network(&self, points: Vec<Vec3<f64>>) -> Result<Network, FairError> {
         let spaces = [self.layouts[0].space.clone(), self.layouts[1].space.clone()];
-        let limit = Limit::ball(points.len(), f64::INFINITY)?;
+        // Closed curves are refused without a tolerance; none is smaller than that of the data.
+        let largest = self.limit.radii.iter().copied().fold(0.0, f64::max);
+        let limit = Limit::ball(points.len(), largest)?;
         Network::net(spaces, points, None, limit)
     }
 
@@ -400,6 +405,19 @@ impl GridData {
         pull
     }
 
+    /// Whether all lines of the grid are exact from break to break.
+    fn exact(&self) -> bool {
+        let n = self.columns();
+        let m = self.points.len() / n;
+        let along = |d: usize, line: Vec<Vec3<f64>>| {
+            let layout = &self.layouts[d];
+            between_breaks(&line, &layout.break_data(), layout.space.is_closed())
+        };
+        let columns = (0..n).map(|j| (0, (0..m).map(|i| self.points[i * n + j]).collect()));
+        let rows = (0..m).map(|i| (1, self.points[i * n..(i + 1) * n].to_vec()));
+        all_exact(columns.chain(rows).flat_map(|(d, line)| along(d, line)))
+    }
+
     fn found(
         &self,
         goal: Goal,
@@ -409,9 +427,10 @@ impl GridData {
     ) -> Result<GoalOptimum, FairError> {
         let (rows, norm, original) = (parts.measure.clone(), parts.norm, parts.points);
         let still = self.limit.radii.iter().all(|&r| r == 0.0) || parts.frozen.iter().all(|&f| f);
-        if !conditioned && still {
+        let fair = matches!(goal, Goal::Near(_)) && self.exact();
+        if !conditioned && (still || fair) {
             let value = crate::measure::value(&rows, norm, original);
-            return Ok(GoalOptimum::unmoved(original, value, true));
+            return Ok(GoalOptimum::unmoved(original, value, still));
         }
         let path = RegularizationPath {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
@@ -423,6 +442,12 @@ impl GridData {
             noise: rounding(&rows, norm, original),
             original,
             adapts: false,
+        };
+        // The measure of closed lines is never small, so that it does not show what a move is worth.
+        let closed = self.layouts.iter().any(|layout| layout.space.is_closed());
+        let goal = match goal {
+            Goal::Near(share) if closed => Goal::Budget(share),
+            other => other,
         };
         path.follow(goal, norm, conditioned, |weight| {
             parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
@@ -459,6 +484,7 @@ impl GridData {
         GridFit {
             residuals: self.residuals(&found.optimum.points),
             used: found.used,
+            fairest_used: found.fairest_used,
             certificate: found.optimum.certificate,
             before,
             iterations: found.optimum.iterations,

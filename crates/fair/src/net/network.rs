@@ -1,6 +1,7 @@
 //! Curves that share points: control nets of surfaces, and hulls of stations, waterlines and
 //! buttocks.
 
+use crate::curve::exact::{all_exact, between_breaks};
 use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
 use crate::net::patches::{PlacedNet, SeamCondition};
@@ -383,6 +384,16 @@ impl Network {
         (pull, owners)
     }
 
+    /// Whether all curves through their points are exact from break to break.
+    fn exact(&self) -> bool {
+        let curve = |strand: &NetworkCurve| {
+            let own: Vec<Vec3<f64>> = strand.points.iter().map(|&i| self.points[i]).collect();
+            between_breaks(&own, &strand.marks, strand.space.is_closed())
+        };
+        self.strands.iter().all(|s| s.at.is_some())
+            && all_exact(self.strands.iter().flat_map(curve))
+    }
+
     fn found(
         &self,
         parts: &mut Parts<'_>,
@@ -391,6 +402,10 @@ impl Network {
     ) -> Result<(GoalOptimum, SparseRows, Vec<usize>), FairError> {
         let (pull, owners) = self.pull(&parts.frozen);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
+        if !conditioned && matches!(goal, Goal::Near(_)) && self.exact() {
+            let value = crate::measure::value(&rows, norm, &self.points);
+            return Ok((GoalOptimum::unmoved(&self.points, value, false), pull, owners));
+        }
         let path = RegularizationPath {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
             squares: |points: &[Vec3<f64>]| {
@@ -427,7 +442,7 @@ impl Network {
     }
 
     /// The same for numbers that carry derivatives: points, tolerances, and of each curve with
-    /// parameters these.
+    /// parameters these. With the points what is to be said of them.
     ///
     /// # Errors
     /// As [`Network::toward`].
@@ -439,15 +454,21 @@ impl Network {
         points: &[Vec3<T>],
         tolerances: &[T],
         ats: &[Option<Vec<T>>],
-    ) -> Result<Vec<Vec3<T>>, FairError> {
+    ) -> Result<(Vec<Vec3<T>>, NetworkFit), FairError> {
         let mut parts = self.parts(measure, Bound::ControlPoints, Vec::new(), accuracy)?;
         let (found, pull, owners) = self.found(&mut parts, goal, false)?;
+        let fit = NetworkFit {
+            certificate: found.optimum.certificate,
+            active: found.optimum.active,
+            used: found.used,
+            fairest_used: found.fairest_used,
+        };
         let mut numbers = points.iter().flat_map(|p| p.to_array());
         if numbers.all(T::is_constant) && tolerances.iter().all(|t| t.is_constant()) {
-            return Ok(found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect());
+            return Ok((found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect(), fit));
         }
         if found.share == 0.0 {
-            return Ok(points.to_vec());
+            return Ok((points.to_vec(), fit));
         }
         if found.weight == 0.0 && matches!(goal, Goal::Near(share) if found.used > share) {
             // Limits at one line leave the others' parabolas free, and which of them the solver takes
@@ -522,7 +543,7 @@ impl Network {
                 crate::optimum::goal::allowed(share, used, owners.len()).unwrap_or(used) * mean;
         }
         let moving = moving(forces, budget);
-        moved(&parts, &solved, goal, &found, &pull, moving)
+        Ok((moved(&parts, &solved, goal, &found, &pull, moving)?, fit))
     }
 
     /// Which points do not move in the joint optimum.
@@ -757,6 +778,19 @@ impl Network {
         surface.grid(&us, &vs, &mut grid, None);
         largest(&grid)
     }
+}
+
+/// What is to be said of the result of a goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NetworkFit {
+    /// The measure of all curves and the optimality gap within the limits.
+    pub certificate: Certificate,
+    /// Limits that are reached.
+    pub active: usize,
+    /// The mean of the squared moves over tolerances, over 1/3.
+    pub used: f64,
+    /// What the fairest takes of the same squares; 3 where it is at all its tolerances.
+    pub fairest_used: f64,
 }
 
 /// What a fairing did to a network, for reports.

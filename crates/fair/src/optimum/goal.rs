@@ -126,6 +126,9 @@ pub(crate) struct GoalOptimum {
     pub used: f64,
     pub least: f64,
     pub weight: f64,
+    /// The fairest, where it was looked for, and what it takes of the squares.
+    pub fairest: Vec<Vec3<f64>>,
+    pub fairest_used: f64,
     /// Whether the budget was between that of the goal and that of the fairest.
     pub between: bool,
 }
@@ -135,7 +138,16 @@ impl GoalOptimum {
     pub fn unmoved(points: &[Vec3<f64>], value: f64, still: bool) -> Self {
         let certificate = Certificate { value, gap: if still { 0.0 } else { value } };
         let optimum = Optimum { points: points.to_vec(), certificate, iterations: 0, active: 0 };
-        Self { optimum, share: 0.0, used: 0.0, least: value, weight: 0.0, between: false }
+        Self {
+            optimum,
+            share: 0.0,
+            used: 0.0,
+            least: value,
+            weight: 0.0,
+            fairest: Vec::new(),
+            fairest_used: 0.0,
+            between: false,
+        }
     }
 }
 
@@ -148,9 +160,14 @@ where
     fn left_as_it_is(&self, fairest: Optimum, begin: f64, least: f64) -> GoalOptimum {
         let gap = begin - least + fairest.certificate.gap;
         let certificate = Certificate { value: begin, gap };
-        let points = self.original.to_vec();
-        let optimum = Optimum { points, certificate, active: 0, ..fairest };
-        GoalOptimum { optimum, share: 0.0, used: 0.0, least, weight: 0.0, between: false }
+        let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
+        let mut left = GoalOptimum::unmoved(self.original, begin, false);
+        left.optimum.certificate = certificate;
+        left.optimum.iterations = fairest.iterations;
+        left.least = least;
+        left.fairest_used = (self.squares)(&fairest.points) / mean;
+        left.fairest = fairest.points;
+        left
     }
 
     /// The optimum of a goal. The sum of squares falls and the measure rises with the weight, both
@@ -166,21 +183,12 @@ where
         let begin = (self.energy)(self.original);
         if !conditioned && (begin <= self.noise || goal == Goal::Closest) {
             // Nothing is left but rounding: not a bit moves.
-            let certificate = Certificate { value: begin, gap: begin };
-            let points = self.original.to_vec();
-            let optimum = Optimum { points, certificate, iterations: 0, active: 0 };
-            return Ok(GoalOptimum {
-                optimum,
-                share: 0.0,
-                used: 0.0,
-                least: begin,
-                weight: 0.0,
-                between: false,
-            });
+            return Ok(GoalOptimum::unmoved(self.original, begin, false));
         }
         let fairest = solve(0.0)?;
         let least = (self.energy)(&fairest.points);
         let squares = (self.squares)(&fairest.points);
+        let fairest_points = fairest.points.clone();
         let mut between = false;
         let goal = match goal {
             Goal::Near(share) if self.adapts && norm == RowNorm::Square => {
@@ -201,6 +209,8 @@ where
                 used,
                 least,
                 weight,
+                fairest: fairest_points.clone(),
+                fairest_used: squares / mean,
                 between,
             })
         };

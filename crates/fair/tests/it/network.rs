@@ -406,7 +406,7 @@ fn the_budget_of_a_network_goes_by_its_fairest() {
             assert!(matches!(moved, Err(FairError::Goal(_))));
             continue;
         }
-        let moved = moved.unwrap();
+        let moved = moved.unwrap().0;
         checked[zone] += 1;
         for (k, by) in [(0, 15), (1, 22), (2, 27)] {
             let at = |h: f64| {

@@ -9,4 +9,6 @@ mod spline;
 pub use look::Look;
 pub use net::{Net, Web};
 pub use solve::fair_shape;
-pub use spline::{Spline, data_findings, detectable, divided_differences, eta_y, monotone_runs};
+pub use spline::{
+    Spline, data_findings, detectable, divided_differences, eta_y, line_findings, monotone_runs,
+};

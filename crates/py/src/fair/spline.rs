@@ -5,8 +5,8 @@ use super::solve;
 use crate::arrays;
 use moldloft::fair::shape::{self, Sample};
 use moldloft::fair::{
-    Finding, Job, KnotJumps, ParameterSpacing, Space, fit, fit_rational, interpolate_with_corners,
-    least_squares, parameters, surface,
+    DataFinding, Finding, Job, KnotJumps, ParameterSpacing, Space, fit, fit_rational,
+    interpolate_with_corners, least_squares, parameters, surface,
 };
 use moldloft::num::Vec3;
 use numpy::ndarray::Array1;
@@ -372,22 +372,39 @@ pub fn told(finding: Finding) -> Told {
     }
 }
 
+/// A finding about data as a word, a point, a vector and a sentence.
+fn told_of(points: &[Vec3], finding: DataFinding) -> Told {
+    let text = finding.to_string();
+    match finding {
+        DataFinding::WrongDigit { index, expected, .. } => {
+            ("outlier", index, (points[index] - expected).to_array(), text)
+        }
+        DataFinding::Knuckle { index, angle, .. } => ("corner", index, [angle, 0.0, 0.0], text),
+    }
+}
+
 /// What stands out among data at any spacing: kind, point, vector, sentence.
 #[pyfunction]
 pub fn data_findings(points: PyReadonlyArray2<'_, f64>, closed: bool) -> PyResult<Vec<Told>> {
     let points = vectors(&points)?;
-    let one = |f: moldloft::fair::DataFinding| {
-        let text = f.to_string();
-        match f {
-            moldloft::fair::DataFinding::WrongDigit { index, expected, .. } => {
-                ("outlier", index, (points[index] - expected).to_array(), text)
-            }
-            moldloft::fair::DataFinding::Knuckle { index, angle, .. } => {
-                ("corner", index, [angle, 0.0, 0.0], text)
-            }
-        }
-    };
-    Ok(moldloft::fair::data_findings(&points, closed).into_iter().map(one).collect())
+    let found = moldloft::fair::data_findings(&points, closed);
+    Ok(found.into_iter().map(|f| told_of(&points, f)).collect())
+}
+
+/// What stands out along lines through numbered points (each its points and whether it is closed), but
+/// for marked points: the line, and the rest as for `data_findings`.
+#[pyfunction]
+pub fn line_findings(
+    points: PyReadonlyArray2<'_, f64>,
+    lines: Vec<(Vec<usize>, bool)>,
+    marked: Vec<usize>,
+) -> PyResult<Vec<(usize, Told)>> {
+    let points = vectors(&points)?;
+    if let Some(i) = lines.iter().flat_map(|l| &l.0).find(|&&i| i >= points.len()) {
+        return Err(refused(format!("there is no point {}", i + 1)));
+    }
+    let found = moldloft::fair::line_findings(&points, &lines, &marked);
+    Ok(found.into_iter().map(|(line, f)| (line, told_of(&points, f))).collect())
 }
 
 /// How large an error of each point would be found.

@@ -1,0 +1,89 @@
+//! What faired objects say of themselves.
+
+use crate::{DataFit, GridFit, NetworkFit};
+
+/// Figures of a faired object, which become its members.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FairFigures {
+    /// The greatest distance of a point from the result at its parameter.
+    pub deviation: f64,
+    /// The measure of the result, and its optimality gap.
+    pub value: f64,
+    pub gap: f64,
+    /// Tolerances that are reached.
+    pub active: usize,
+    /// The mean of squared residuals over tolerances, over 1/3; and that of the fairest.
+    pub used: f64,
+    pub fairest_used: f64,
+    /// Points that do not fit their neighbours.
+    pub findings: usize,
+}
+
+impl FairFigures {
+    /// Of a curve near its data, whose tolerances are `radii`.
+    pub fn of_curve(made: &DataFit, radii: &[f64], findings: usize) -> Self {
+        Self {
+            value: made.certificate.value,
+            gap: made.certificate.gap,
+            active: made.active,
+            used: made.used,
+            fairest_used: made.fairest_used,
+            ..Self::of_residuals(&made.residuals, radii, findings)
+        }
+    }
+
+    /// Of a surface near its data.
+    pub fn of_surface(made: &GridFit, radii: &[f64], findings: usize) -> Self {
+        Self {
+            value: made.certificate.value,
+            gap: made.certificate.gap,
+            active: made.active,
+            used: made.used,
+            fairest_used: made.fairest_used,
+            ..Self::of_residuals(&made.residuals, radii, findings)
+        }
+    }
+
+    /// Of a curve of a network: its own points, the network's measure.
+    pub fn of_network(
+        made: &NetworkFit,
+        residuals: &[f64],
+        radii: &[f64],
+        findings: usize,
+    ) -> Self {
+        let own = Self::of_residuals(residuals, radii, findings);
+        Self {
+            value: made.certificate.value,
+            gap: made.certificate.gap,
+            used: made.used,
+            fairest_used: made.fairest_used,
+            ..own
+        }
+    }
+
+    fn of_residuals(residuals: &[f64], radii: &[f64], findings: usize) -> Self {
+        // Released points have a tolerance, but none that they were given.
+        let least = radii.iter().copied().filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
+        let limited = residuals.iter().zip(radii).filter(|(_, a)| **a > 0.0 && **a < 1e3 * least);
+        let reached = limited.filter(|(r, a)| **r > **a * (1.0 - 1e-4)).count();
+        Self {
+            deviation: residuals.iter().copied().fold(0.0, f64::max),
+            active: reached,
+            findings,
+            ..Self::default()
+        }
+    }
+
+    /// The members.
+    pub fn members(&self) -> [(&'static str, f64); 7] {
+        [
+            ("deviation", self.deviation),
+            ("value", self.value),
+            ("gap", self.gap),
+            ("active", self.active as f64),
+            ("used", self.used),
+            ("fairest_used", self.fairest_used),
+            ("findings", self.findings as f64),
+        ]
+    }
+}

@@ -1,0 +1,221 @@
+"""The law of exact data for grids, networks and entities, open and closed; what entities report."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+
+import moldloft
+from moldloft.fairing import network
+
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
+
+
+def along(rng, n, most=100):
+    """Places in [0, 1] whose steps differ by factors of up to ``most``."""
+    steps = np.exp(rng.uniform(-0.5, 0.5, n - 1) * np.log(rng.choice([1, 2, 10, most])))
+    x = np.concatenate([[0], np.cumsum(steps)])
+    return x / x[-1]
+
+
+def around(rng, n):
+    """Angles of a full turn, the first not repeated."""
+    return 2 * np.pi * along(rng, n + 1, 10)[:-1]
+
+
+def plane(rng, m, n):
+    u, v = np.meshgrid(along(rng, m), along(rng, n), indexing="ij")
+    return np.stack([3 * u, 0.4 * u - 0.2 * v, 2 * v], -1), (False, False)
+
+
+def translated(rng, m, n):
+    """A parabola moved along a parabola."""
+    u, v = np.meshgrid(2 * along(rng, m) - 1, along(rng, n), indexing="ij")
+    return np.stack([3 * u, u**2 - 0.5 * v**2, 2 * v], -1), (False, False)
+
+
+def tube(rng, m, n):
+    a, z = np.meshgrid(2.5 * along(rng, m), along(rng, n), indexing="ij")
+    return np.stack([np.cos(a), np.sin(a), 3 * z], -1), (False, False)
+
+
+def cylinder(rng, m, n):
+    a, z = np.meshgrid(around(rng, m), along(rng, n), indexing="ij")
+    return np.stack([np.cos(a), np.sin(a), 3 * z], -1), (True, False)
+
+
+def hemisphere(rng, m, n):
+    """With a pole."""
+    a, b = np.meshgrid(around(rng, m), 0.5 * np.pi * along(rng, n), indexing="ij")
+    grid = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], -1)
+    grid[:, -1] = 0, 0, 1
+    return grid, (True, False)
+
+
+def torus(rng, m, n):
+    a, b = np.meshgrid(around(rng, m), around(rng, n), indexing="ij")
+    far = 3 + np.cos(b)
+    return np.stack([far * np.cos(a), far * np.sin(a), np.sin(b)], -1), (True, True)
+
+
+def helicoid(rng, m, n):
+    a, r = np.meshgrid(4 * along(rng, m), 1 + along(rng, n), indexing="ij")
+    return np.stack([r * np.cos(a), r * np.sin(a), 0.9 * a], -1), (False, False)
+
+
+GRIDS = {f.__name__: f for f in (plane, translated, tube, cylinder, hemisphere, torus, helicoid)}
+
+
+def drawn(name, seed):
+    """A grid anywhere, of any size, with which directions are closed and its extent."""
+    rng = np.random.default_rng([seed, list(GRIDS).index(name)])
+    grid, closed = GRIDS[name](rng, int(rng.integers(12, 18)), int(rng.integers(10, 15)))
+    if rng.random() < 0.5:
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        grid = grid @ turn.T + rng.normal(size=3)
+        if name == "hemisphere":
+            grid[:, -1] = grid[0, -1]
+    grid = grid * 10.0 ** rng.integers(-3, 4)
+    return grid, closed, np.abs(grid).max() + np.ptp(grid)
+
+
+def lines_of(shape, closed):
+    """The lines of a grid as curves of a network, closed ones returning to their first point."""
+    m, n = shape
+    places = np.arange(m * n).reshape(m, n)
+    rows = [[*row, row[0]] if closed[1] else [*row] for row in places.tolist()]
+    columns = [[*row, row[0]] if closed[0] else [*row] for row in places.T.tolist()]
+    return rows + columns
+
+
+@pytest.mark.parametrize("name", GRIDS)
+def test_exact_grids_stay(name):
+    for seed in range(40 if SOAK else 3):
+        grid, closed, size = drawn(name, seed)
+        for measure in ("variation", "second", "bending", "third"):
+            for tol in (1e-3, 3e-2):
+                faired = moldloft.fair(grid, tol * size, as_="fit", closed=closed, measure=measure)
+                far = np.linalg.norm(faired.points - grid, axis=2).max()
+                assert far <= 1e-12 * size, (seed, measure, tol, grid.shape)
+
+
+@pytest.mark.parametrize("name", [n for n in GRIDS if n != "hemisphere"])
+def test_exact_networks_stay(name):
+    for seed in range(40 if SOAK else 3):
+        grid, closed, size = drawn(name, seed)
+        data = grid.reshape(-1, 3)
+        curves = lines_of(grid.shape[:2], closed)
+        for measure in ("third", "second"):
+            faired = network(data, curves, 1e-2 * size, measure=measure)
+            far = np.linalg.norm(faired.points - data, axis=1).max()
+            assert far <= 1e-12 * size, (seed, measure, grid.shape)
+
+
+def test_corners_between_exact_parts_stay():
+    rng = np.random.default_rng(3)
+    for _ in range(40 if SOAK else 5):
+        a = np.pi * along(rng, 14)
+        arc = np.c_[np.cos(a), np.sin(a), 0 * a]
+        leg = np.c_[-1 + 0 * a, -3 * along(rng, 14), 0 * a]
+        data = np.concatenate([arc, leg[1:]])
+        for measure in ("variation", "second"):
+            faired = moldloft.fair(data, 0.02, as_="fit", measure=measure, breaks=(13,))
+            assert np.abs(faired.points - data).max() <= 1e-12
+        closing = np.c_[-1 + 2 * along(rng, 12), -3 + 0 * along(rng, 12), 0 * along(rng, 12)]
+        right = np.c_[1 + 0 * a, -3 + 3 * along(rng, 14), 0 * a]
+        ring = np.concatenate([data, closing[1:], right[1:-1]])
+        corners = (0, 13, 26, 37)
+        faired = moldloft.fair(ring, 0.02, as_="fit", closed=True, breaks=corners)
+        assert np.abs(faired.points - ring).max() <= 1e-12
+
+
+def number(x):
+    return repr(float(x))
+
+
+def vector(p):
+    return "{" + ", ".join(number(c) for c in p) + "}"
+
+
+def curve_text(points, rest):
+    return f"FairCurve c({{{', '.join(vector(p) for p in points)}}}, {rest});"
+
+
+def grid_text(grid, rest):
+    m, n = grid.shape[:2]
+    cells = [f"g[{i + 1},{j + 1}] = {vector(grid[i, j])};" for i in range(m) for j in range(n)]
+    return f"surface g[{m},{n}]; " + " ".join(cells) + f" FairSurf s(g, {rest});"
+
+
+@pytest.mark.parametrize("measure", ["second", "variation"])
+def test_exact_entities_stay(measure):
+    rng = np.random.default_rng(5)
+    u = along(rng, 20)
+    curves = {
+        "line": np.c_[3 * u, 0.4 * u, u],
+        "parabola": np.c_[3 * u - 1, 0.5 * (3 * u - 1) ** 2, 0 * u],
+        "circle": np.c_[np.cos(2.5 * u), np.sin(2.5 * u), 0 * u],
+        "helix": np.c_[np.cos(4 * u), np.sin(4 * u), 0.9 * u],
+    }
+    for name, points in curves.items():
+        text = curve_text(points, f'0.05, measure = "{measure}"')
+        assert moldloft.loads(text).eval("c.deviation") <= 1e-12, name
+    a = around(rng, 18)
+    ring = np.c_[np.cos(a), np.sin(a), 0 * a]
+    text = curve_text(ring, f'0.05, measure = "{measure}", closed = 1')
+    assert moldloft.loads(text).eval("c.deviation") <= 1e-12
+    for name in ("plane", "translated", "tube", "helicoid"):
+        grid, _, size = drawn(name, 2)
+        text = grid_text(grid, f'{number(0.01 * size)}, measure = "{measure}"')
+        assert moldloft.loads(text).eval("s.deviation") <= 1e-12 * size, name
+    grid, closed, size = drawn("cylinder", 4)
+    points = "".join(
+        f"AbsPoint P{k}({number(p[0])}, {number(p[1])}, {number(p[2])}); "
+        for k, p in enumerate(grid.reshape(-1, 3))
+    )
+    lines = ", ".join(
+        "{" + ", ".join(f"P{k}" for k in line) + "}" for line in lines_of(grid.shape[:2], closed)
+    )
+    net = f'FairNet n({{{lines}}}, {number(0.01 * size)}, measure = "{measure}");'
+    model = moldloft.loads(points + net + " NetCurve a(n, 1); NetCurve b(n, 20);")
+    assert model.eval("a.deviation") <= 1e-12 * size
+    assert model.eval("b.deviation") <= 1e-12 * size
+
+
+def test_entities_report_how_they_came_out():
+    rng = np.random.default_rng(7)
+    x = np.linspace(0, 10, 24)
+    points = np.c_[x, np.sin(x / 3) + 0.02 * rng.uniform(-1, 1, 24), 0 * x]
+    model = moldloft.loads(curve_text(points, '0.02, goal = "fairest", measure = "variation"'))
+    faired = moldloft.fair(points, 0.02, as_="fit", goal="fairest", ends="position")
+    for name, expected in (
+        ("deviation", faired.deviation_data),
+        ("value", faired.value),
+        ("active", faired.active),
+        ("used", faired.used),
+        ("findings", len(faired.findings)),
+    ):
+        assert model.eval(f"c.{name}") == pytest.approx(expected, rel=1e-6), name
+    assert model.eval("c.fairest_used") == model.eval("c.used")
+    assert 0 <= model.eval("c.gap") < 1e-9
+    assert not model.diagnostics
+    # A wrong digit, and a tolerance far below the noise.
+    points[11, 1] += 0.5
+    model = moldloft.loads(curve_text(points, "0.02"))
+    assert model.eval("c.findings") == 1
+    assert [d.id for d in model.diagnostics] == ["unlike-neighbours"]
+    wide = np.c_[x, np.sin(x / 3) + 0.1 * rng.uniform(-1, 1, 24), 0 * x]
+    model = moldloft.loads(curve_text(wide, '0.002, goal = "budget"'))
+    assert [d.id for d in model.diagnostics] == ["at-its-tolerance"]
+    assert model.eval("c.fairest_used") > 2.6
+    # A grid.
+    u, v = np.meshgrid(np.linspace(0, 4, 15), np.linspace(0, 2, 13), indexing="ij")
+    grid = np.stack([u, np.sin(u) * (1 - v**2 / 8), v], -1)
+    grid = grid + 0.01 * rng.uniform(-1, 1, grid.shape)
+    model = moldloft.loads(grid_text(grid, '0.02, measure = "variation", goal = "budget"'))
+    faired = moldloft.fair(grid, 0.02, as_="fit", goal="budget", spacing="chord")
+    assert model.eval("s.deviation") == pytest.approx(faired.deviation_data, rel=1e-3)
+    assert model.eval("s.used") == pytest.approx(0.8, rel=1e-5)
+    assert model.eval("s.findings") == 0
