@@ -93,6 +93,72 @@ def volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     return np.einsum("ij,ij->i", np.cross(p[:, 1] - p[:, 0], p[:, 3] - p[:, 0]), p[:, 4] - p[:, 0])
 
 
+def section_of(rng: random.Random, n: int) -> tuple[str, Any]:
+    """A subscript, and NumPy's."""
+    kind = rng.randrange(4)
+    if kind == 0:
+        return "", slice(None)
+    if kind == 1:
+        k = rng.randint(1, n)
+        return str(k), k - 1
+    low, high = sorted((rng.randint(1, n), rng.randint(1, n)))
+    if kind == 2:
+        return f"{low}:{high}", slice(low - 1, high)
+    step = rng.randint(1, 3)
+    stop = low - 2 if low > 1 else None
+    return f"{high}:{low}:-{step}", slice(high - 1, stop, -step)
+
+
+@pytest.mark.parametrize("seed", range(200 if SOAK else 10))
+def test_sections_of_blocks_are_those_of_numpy(seed: int) -> None:
+    """Read, assigned one value, another section, and computed with; to the bit."""
+    rng = random.Random(seed)
+    shape = [rng.randint(1, 4) for _ in range(3)]
+    if shape[2] == 1 and rng.random() < 0.5:
+        shape[2] = 2
+    ni, nj, nk = shape
+    text = f"block b[{ni},{nj},{nk}];\nfor (i = 1:{ni}) for (j = 1:{nj}) for (k = 1:{nk}) b[i,j,k] = {{i, 10*j, 100*k}};\n"
+    i, j, k = np.meshgrid(*[np.arange(1.0, n + 1) for n in shape], indexing="ij")
+    b = np.stack([i, 10 * j, 100 * k], axis=-1)
+    want: dict[str, np.ndarray] = {}
+    kinds = {3: "block", 2: "surface", 1: "curve", 0: "vector"}
+    for number in range(12):
+        parts = [section_of(rng, n) for n in shape]
+        words = "[" + ", ".join(p[0] for p in parts) + "]"
+        at = tuple(p[1] for p in parts)
+        count = sum(isinstance(a, slice) for a in at)
+        action = rng.randrange(6)
+        if action < 2:
+            text += f"{kinds[count]} r{number} = b{words};\n"
+            want[f"r{number}"] = b[at].copy()
+        elif action == 2:
+            x = rng.randint(-9, 9)
+            text += f"b{words} = {{{x}, 1, 2}};\n"
+            b[at] = [x, 1, 2]
+        elif action == 3:
+            axis = rng.randrange(3)
+            text += f"b{words}.{'xyz'[axis]} = {number};\n"
+            b[(*at, axis)] = number
+        elif action == 4:
+            text += f"b{words} = 2*b{words} + {{1, 0, 0}};\n"
+            b[at] = 2 * b[at] + [1, 0, 0]
+        else:
+            text += f"b{words} *= 3;\n"
+            b[at] *= 3
+    text += "block all = b; float total = sum(b.x), high = max(b.y);\n"
+    model = moldloft.loads(text)
+    assert not model.diagnostics, (text, model.diagnostics)
+
+    def found(name: str) -> np.ndarray:
+        value = np.asarray(model[name])
+        return value.transpose(1, 2, 0, 3) if value.ndim == 4 else value
+
+    for name, value in want.items():
+        assert np.array_equal(found(name), value), (name, text)
+    assert np.array_equal(found("all"), b), text
+    assert (float(model["total"]), float(model["high"])) == (b[..., 0].sum(), b[..., 1].max())
+
+
 def check_cgns(path: Path, count: int, boundary: dict[str, int]) -> None:
     """Every face of every zone is covered once, by a joint whose points coincide or by a boundary."""
     h5py = pytest.importorskip("h5py")

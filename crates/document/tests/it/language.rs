@@ -63,6 +63,9 @@ fn blocks_have_sections() {
          b[,,1] = s; assert b[2,1,1].z == 2; b[,,1].z = 7; assert b[1,1,1].z == 7;
          b[2,,3] = c; assert b[2,1,3].x == 1; b[,3,] *= 2; assert b[2,3,2].y == 6;
          b = {1, 2, 3}; assert b[2,2,2].y == 2;",
+        "block b[2,2,2]; b = translate(b, {1, 2, 3}); assert b[2,2,2].y == 2; block c = scale(b, 2); assert c[1,1,1].z == 6;",
+        "float s = 0; foreach (x in {1, 2, 3}) s += x; assert s == 6;",
+        "farray a = max(list(1, 2, 3), {2, 2, 2}); assert a[1] == 2 and a[3] == 3;",
         // Parts are passed by reference.
         "load \"stdsubs.sdl\" block b[3,3,3]; b[3,1,1] = {2, 0, 0}; line(b[,1,1]); assert b[2,1,1].x == 1;
          subroutine lift(returned block b, returned surface s) { b.z = 1; s.x = 9; }

@@ -162,7 +162,15 @@ fn componentwise<T: Real>(
         Value::Number(x) => Some([*x; 3]),
         _ => None,
     };
+    // Three numbers in braces beside a row of three are a row.
+    let row = |v: &Value<T>| match v {
+        Value::Vector(v) => Value::Numbers(Arc::new(Array::row(v.to_array().to_vec()))),
+        other => other.clone(),
+    };
     match (a, b) {
+        (Value::Vector(_), Value::Numbers(_)) | (Value::Numbers(_), Value::Vector(_)) => {
+            pairs(&row(a), &row(b), &f)
+        }
         (Value::Vector(_), _) | (_, Value::Vector(_)) => match (parts(a), parts(b)) {
             (Some(a), Some(b)) => {
                 let c: [T; 3] = std::array::from_fn(|k| f(a[k], b[k]));
@@ -307,8 +315,9 @@ fn remainder(a: f64, b: f64) -> f64 {
 
 /// floor(a / b), also where a / b rounds to the next whole number.
 fn quotient(a: f64, b: f64) -> f64 {
-    let q = (a - remainder(a, b)) / b;
-    if q.abs() < 4_503_599_627_370_496.0 { q.round() } else { q }
+    let q = (a / b).floor();
+    // Rounding can reach a whole number from below, and only from there.
+    if q == a / b && remainder(a, b) / b > 0.5 { q - 1.0 } else { q }
 }
 
 elementary! {

@@ -5,6 +5,7 @@ use crate::source::env::SolveUnknown;
 use crate::source::fault_location;
 use crate::source::module::Module;
 use crate::source::scope::{Binding, Passed, ScopedBinding};
+use crate::value::blocks;
 use crate::value::ops;
 use crate::value::variables;
 use crate::value::variables::Called as _;
@@ -554,6 +555,19 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Some(ident) => given.named.push((m.program.name(ident.symbol), value)),
             }
         }
+        // A block is moved layer by layer.
+        if matches!(&*row.name, "translate" | "scale" | "mirror" | "rotate")
+            && let Some(Value::List(layers)) =
+                given.positional.first().filter(|value| blocks::size(value).is_some()).cloned()
+        {
+            let mut moved = Vec::with_capacity(layers.len());
+            for layer in layers.iter() {
+                let mut given = given.clone();
+                given.positional[0] = layer.clone();
+                moved.push(self.call_given(m, &row, given, args, span)?);
+            }
+            return Ok(Value::list(moved));
+        }
         // Of numbers and points it is their mean, of a surface alone the mean curvature.
         if &*row.name == "mean"
             && given.positional.first().is_some_and(|value| match &*ops::gathered(value) {
@@ -565,25 +579,37 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         {
             row = average.clone();
         }
+        self.call_given(m, &row, given, args, span)
+    }
+
+    /// The value of a function of the registry with these arguments, those of `args`.
+    fn call_given(
+        &mut self,
+        m: &Module,
+        row: &Arc<Row>,
+        given: Given<'_, T>,
+        args: NodeList<Arg>,
+        span: Span,
+    ) -> Evaluated<T> {
         if let Some(measure) = self.shape_measure(&row.name, &given) {
             return measure.map_err(|d| d.or_at(span));
         }
         let positional = given.positional.len();
-        let (filled, _) = bind_arguments(&row, given, |_| Class::Any)
-            .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
+        let (filled, _) = bind_arguments(row, given, |_| Class::Any)
+            .map_err(|fault| fault_location::diagnostic(m, args, row, positional, &fault, span))?;
         // What is as quick to compute as to look up is not remembered.
-        let value = if crate::functions::elementary::is_quick(&row) {
-            T::call(&row, &filled, &self.run.graph().context())
+        let value = if crate::functions::elementary::is_quick(row) {
+            T::call(row, &filled, &self.run.graph().context())
         } else {
             self.charge_call();
-            self.run.call(&row, filled)
+            self.run.call(row, filled)
         };
         for remark in self.run.graph().context().take_remarks() {
             let diagnostic = Diagnostic::remark(remark.id, remark.message).at(span);
             self.report(diagnostic.help(remark.help));
         }
         let value = value
-            .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
+            .map_err(|fault| fault_location::diagnostic(m, args, row, positional, &fault, span))?;
         if !self.arrays.ieee && !value.is_finite() {
             return Err(Diagnostic::error(
                 "not-finite",

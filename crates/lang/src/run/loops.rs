@@ -133,6 +133,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Value::List(items) => items.to_vec(),
             Value::Numbers(a) => a.items.iter().map(|&x| Value::Number(x)).collect(),
             Value::Vectors(a) => a.iter().map(Value::Vector).collect(),
+            // Three numbers in braces.
+            Value::Vector(v) => v.to_array().map(Value::Number).to_vec(),
             other => {
                 return Err(Diagnostic::error("not-a-list", "foreach walks through a list")
                     .at(m.program[list].span)
