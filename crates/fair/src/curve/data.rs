@@ -12,7 +12,8 @@ use crate::curve::exact::{between_breaks, exact};
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
-    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, moved, rounding,
+    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique, moved,
+    rounding,
 };
 use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
 use crate::{
@@ -885,6 +886,7 @@ pub fn fair_data_with<T: Real>(
     }
     // The optimum of the weight found, with what its answers need.
     let pull = data.pull(&parts);
+    check_unique(&mut parts, &found, &pull)?;
     parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
     let solved = parts.whole()?;
     let control = &solved.optimum.points;

@@ -12,7 +12,8 @@
 use crate::curve::exact::{all_exact, between_breaks};
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
-    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, moved, rounding,
+    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique, moved,
+    rounding,
 };
 use crate::optimum::{Bounded, DataLimits, Parts};
 use crate::{
@@ -635,6 +636,7 @@ pub fn fair_grid_with<T: Real>(
     if !ku.iter().chain(&kv).all(|k| k.is_constant()) {
         check_single(&found, before)?;
     }
+    check_unique(&mut parts, &found, &pull)?;
     if parts.norm != RowNorm::Square {
         return Err(FairError::Goal(
             "derivatives of a sum of lengths through moving knots are not known: take another \

@@ -6,7 +6,10 @@ use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
 use crate::net::patches::{PlacedNet, SeamCondition};
 use crate::optimum::certificate::gap;
-use crate::optimum::goal::{Goal, GoalOptimum, GoalVariation, RegularizationPath, moved, rounding};
+use crate::optimum::goal::{
+    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_unique, moved,
+    rounding,
+};
 use crate::optimum::{Bounded, Optimum, Parts};
 use crate::{
     Bound, Certificate, Condition, EndContinuity, FairError, Job, KnotRemovalOptions, Limit,
@@ -470,14 +473,21 @@ impl Network {
         if found.share == 0.0 {
             return Ok((points.to_vec(), fit));
         }
-        if found.weight == 0.0 && matches!(goal, Goal::Near(share) if found.used > share) {
+        let explained = crate::optimum::goal::allowed(0.0, found.used, owners.len()).is_none();
+        let free = match goal {
+            Goal::Near(share) => found.used > share,
+            Goal::Fairest => explained,
+            _ => false,
+        };
+        if found.weight == 0.0 && free {
             // Limits at one line leave the others' parabolas free, and which of them the solver takes
             // says nothing about how they move.
             return Err(FairError::Goal(
-                "`near` took the fairest network, which may be one of many as fair, so that its \
-                 derivatives are not known: take the goal \"budget\"",
+                "the fairest network may be one of many as fair, so that its derivatives are not \
+                 known: take the goal \"budget\"",
             ));
         }
+        check_unique(&mut parts, &found, &pull)?;
         if parts.norm != crate::RowNorm::Square
             && (found.share < 1.0 || ats.iter().any(Option::is_some))
         {
@@ -488,6 +498,7 @@ impl Network {
         }
         parts.pull = (found.weight > 0.0).then(|| pull.clone().scaled(found.weight.sqrt()));
         let solved = parts.whole()?;
+        check_decided(&found, &solved)?;
         let mut rows = MovingRows { rows: Vec::new() };
         for (k, strand) in self.strands.iter().enumerate() {
             match ats.get(k).and_then(Option::as_ref) {

@@ -367,6 +367,62 @@ pub(crate) fn check_single(found: &GoalOptimum, begin: f64) -> Result<(), FairEr
     Ok(())
 }
 
+/// The weight of the data, as a share of that which balances the measure, by which one of many fairest
+/// results would go to the data, and how far, in tolerances.
+const LIGHT: f64 = 1e-6;
+const APART: f64 = 0.05;
+
+/// Refuses derivatives of a fairest that is one of many: a trace of the data's weight takes another. Of a
+/// network limits that are reached on one line may leave others free.
+///
+/// # Errors
+/// [`FairError::Goal`]; those of the solver.
+pub(crate) fn check_unique(
+    parts: &mut Parts<'_>,
+    found: &GoalOptimum,
+    pull: &SparseRows,
+) -> Result<(), FairError> {
+    if found.weight > 0.0 || found.share == 0.0 || parts.norm != RowNorm::Square {
+        return Ok(());
+    }
+    // Between the data and the optimum: where that is, the solver says again.
+    parts.pull = None;
+    let fairest = parts.solve()?.points;
+    let away: Vec<Vec3<f64>> = fairest.iter().zip(parts.points).map(|(p, q)| *p - *q).collect();
+    let squares = pull.sum_sq(&away);
+    if squares == 0.0 {
+        return Ok(());
+    }
+    let weight = LIGHT * found.least.max(f64::MIN_POSITIVE) / squares;
+    parts.pull = Some(pull.clone().scaled(weight.sqrt()));
+    let other = parts.solve()?.points;
+    parts.pull = None;
+    let between: Vec<Vec3<f64>> = other.iter().zip(&fairest).map(|(p, q)| *p - *q).collect();
+    let far = (0..pull.len()).map(|k| pull.apply(k, &between).norm()).fold(0.0, f64::max);
+    if far > APART {
+        return Err(FairError::Goal(
+            "more than one result within the tolerance is the fairest, so derivatives of the one that \
+             was taken are not known: take the goal \"budget\"",
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses derivatives of a fairest of which it is not decided which limits it reaches: what the solver
+/// has then is near the optimum and does not move as it does.
+///
+/// # Errors
+/// [`FairError::Goal`].
+pub(crate) fn check_decided(found: &GoalOptimum, solved: &Solved) -> Result<(), FairError> {
+    if found.weight == 0.0 && found.share > 0.0 && !solved.is_decided() {
+        return Err(FairError::Goal(
+            "which tolerances the fairest reaches is not decided to rounding, so its derivatives are \
+             not known: take the goal \"budget\"",
+        ));
+    }
+    Ok(())
+}
+
 /// The share of the data's own measure that is nothing.
 const NOTHING: f64 = 1e-9;
 

@@ -144,6 +144,11 @@ pub(crate) struct Solved {
 }
 
 impl Solved {
+    /// Whether it is known which limits are reached.
+    pub fn is_decided(&self) -> bool {
+        self.solution.active.is_some()
+    }
+
     /// The forces of the limits on what they limit, one per limit of the problem.
     pub fn forces(&self) -> Vec<Vec3<f64>> {
         let groups = if self.problem.bounds.separate { self.problem.dimension } else { 1 };

@@ -429,3 +429,86 @@ fn the_budget_of_a_network_goes_by_its_fairest() {
     }
     assert!(zones.iter().all(|&z| z > 0) && checked[1..] == [3, 3], "{zones:?} {checked:?}");
 }
+
+/// Derivatives of the fairest network are those of differences, or refused: of many networks as fair
+/// which one is taken says nothing.
+#[test]
+fn derivatives_of_the_fairest_network_are_right_or_refused() {
+    let (m, n) = (8, 6);
+    let (mut right, mut refused, mut worst) = (0, 0, Vec::new());
+    for seed in 0..24u64 {
+        let mut random = Lcg::new(seed + 1);
+        let data: Vec<Vec3<f64>> = (0..m * n)
+            .map(|k| {
+                let (x, z) = ((k / n) as f64 / 7.0, (k % n) as f64 / 5.0);
+                let wave = 0.2 * (seed % 2) as f64 * (5.0 * x).sin();
+                let hull = (1.0 - (2.0 * x - 1.0).powi(2)) * (1.0 - z * z) + wave;
+                Vec3::of(x, hull + 0.02 * random.centred(), z)
+            })
+            .collect();
+        let tolerance = 2e-3 * 1.5f64.powi((seed % 12) as i32 / 2 * 2);
+        let network = |data: &[Vec3<f64>], radius: f64| {
+            let curve = |points: Vec<usize>, at: Vec<f64>| NetworkCurve {
+                space: Space::floating(3, points.len()).unwrap(),
+                points,
+                weights: None,
+                marks: Vec::new(),
+                ends: [EndContinuity::Points(0); 2],
+                at: Some(at),
+            };
+            let rows = (0..m).map(|i| {
+                curve((0..n).map(|j| i * n + j).collect(), (0..n).map(|j| j as f64 / 5.0).collect())
+            });
+            let columns = (0..n).map(|j| {
+                curve((0..m).map(|i| i * n + j).collect(), (0..m).map(|i| i as f64 / 7.0).collect())
+            });
+            let motion = Motion::Along(Vec3::of(0.0, 1.0, 0.0));
+            let limit = Limit::new(motion, vec![radius; m * n]).unwrap();
+            Network::new(data.to_vec(), rows.chain(columns).collect(), limit).unwrap()
+        };
+        let own = network(&data, tolerance);
+        let mut points: Vec<Vec3<Dual4>> = data.iter().map(|&p| Vec3::lifted(p)).collect();
+        points[15].y = Dual4::seeded(data[15].y, 0);
+        points[22].y = Dual4::seeded(data[22].y, 1);
+        let tolerances = vec![Dual4::seeded(tolerance, 2); m * n];
+        let ats: Vec<Option<Vec<Dual4>>> = own
+            .strands
+            .iter()
+            .map(|s| s.at.as_ref().map(|at| at.iter().map(|&t| Dual4::from(t)).collect()))
+            .collect();
+        let made =
+            own.toward_with(Measure::Third, Goal::Fairest, 1e-13, &points, &tolerances, &ats);
+        let Ok((moved, _)) = made else {
+            assert!(matches!(made, Err(FairError::Goal(_))));
+            refused += 1;
+            continue;
+        };
+        right += 1;
+        for (k, by) in [(0, 15), (1, 22), (2, 0)] {
+            let at = |h: f64| {
+                let (mut data, mut radius) = (data.clone(), tolerance);
+                if k < 2 {
+                    data[by].y += h
+                } else {
+                    radius += h
+                }
+                let own = network(&data, radius);
+                own.toward(Measure::Third, Goal::Fairest, Vec::new(), 1e-13).unwrap().0.points
+            };
+            // Of flat optima the last digits are the solver's, and larger steps meet limits.
+            let off = |h: f64| {
+                let (low, high) = (at(-h), at(h));
+                let one = |i: usize| {
+                    let wanted = (high[i].y - low[i].y) / (2.0 * h);
+                    (moved[i].y.part(k + 1) - wanted).abs()
+                };
+                (0..m * n).map(one).fold(0.0, f64::max)
+            };
+            let least = [1e-7, 1e-6, 1e-5].map(off).into_iter().fold(f64::INFINITY, f64::min);
+            worst.push((least, seed, k));
+        }
+    }
+    worst.sort_by(|a, b| b.0.total_cmp(&a.0));
+    assert!(right >= 8 && refused > 0, "right {right}, refused {refused}");
+    assert!(worst[0].0 < 1e-3, "{:?}", &worst[..8]);
+}
