@@ -1,7 +1,7 @@
 # `make demo` needs only Rust and Python >= 3.10; the workbench's page needs Node.js besides. CI runs `make test`.
 #
-# The tests run a development build of the extension, which shares all that it compiles with the Rust tests and checks
-# its own assertions; `make demo` and `make optimised` build what users get.
+# The demo and the tests run a development build of the extension, which takes a fraction of the time, shares all that it
+# compiles with the Rust tests and checks its own assertions; `make optimised` and `pip install .` build what users get.
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -16,7 +16,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # What a package that is not there yet is built with.
 PROFILE ?= dev
-demo optimised: PROFILE = release
+optimised: PROFILE = release
 BUILT = $${CARGO_TARGET_DIR:-target}/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))
 
 SOURCES := pyproject.toml Cargo.toml $(shell find crates -name '*.rs' -o -name Cargo.toml -o -name '*.sdl')
@@ -91,6 +91,7 @@ $(VENV)/.with-browser:
 
 demo: $(VENV)/.installed ## the sailing yacht of examples/sailboat as panels, files, hydrostatics and a picture
 	@$(BIN)/moldloft build examples/sailboat/hull.sdl --to gdf stl obj vtp vts p3d svg png -o out/sailboat
+	@echo "this is the development build of the package, several times slower: \`make optimised\` builds the one that users get"
 
 optimised: ## the package in .venv anew, as users get it: for benchmarks
 	@rm -f $(VENV)/.installed
