@@ -7314,8 +7314,12 @@ def FairCurve(
     """A fair B-spline curve within a tolerance of the one through its points.
 
     Of all splines with knots at the points that stay within the tolerance of each point, `goal` says
-    which is taken; parameters and knots follow the points' spacing. Points that are as fair as the
-    tolerance allows do not move. The result is continuous in the points. Points can be control points
+    which is taken; members say how it came out: `deviation` (the greatest distance of a point from it),
+    `value` and `gap` (its measure, and how much less any other has at most), `active` (tolerances that
+    are reached), `used` (squared residuals as a multiple of those of noise that fills the tolerance),
+    `fairest_used` (the same of the fairest) and `findings` (points that do not fit their neighbours).
+    Parameters and knots follow the points' spacing. Points that are as fair as the tolerance allows do
+    not move. The result is continuous in the points. Points can be control points
     or be faired themselves instead (`as`); these, curves that join others and the mode "faithful"
     take the number of a point for its parameter, as the report of 1991 does. In mode "faithful" the
     worst knots are removed and re-inserted one after the other (Farin and Sapidis 1989), one step per
@@ -7441,7 +7445,7 @@ def FairSnake(
     """A fair curve on a surface: its path in the parameter plane is faired within a tolerance.
 
     The path passes through the magnets' parameters before it is faired; the tolerance is a
-    distance in the parameter plane. See `FairCurve`.
+    distance in the parameter plane, and so are its members. See `FairCurve`.
 
     Parameters
     ----------

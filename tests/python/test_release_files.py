@@ -304,7 +304,16 @@ def test_what_needs_an_extra_names_it(tmp_path: Path) -> None:
         "view": "import sys; from moldloft.cli import main; "
         "sys.exit(main(['view', 'boat.sdl', '--no-browser']))",
     }
-    hidden = ["matplotlib", "h5py", "openmdao", "capytaine", "ezdxf", "rhino3dm", "websockets"]
+    hidden = [
+        "matplotlib",
+        "reportlab",
+        "h5py",
+        "openmdao",
+        "capytaine",
+        "ezdxf",
+        "rhino3dm",
+        "websockets",
+    ]
     for extra, use in uses.items():
         lines = ["import sys", *(f"sys.modules[{name!r}] = None" for name in hidden)]
         lines += ["import moldloft", "from moldloft.starter import BOX"]

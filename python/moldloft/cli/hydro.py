@@ -93,7 +93,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="a downflooding point; may be repeated",
     )
     parser.add_argument(
-        "--booklet", metavar="FILE", help="a stability booklet of the loading (.html)"
+        "--booklet", metavar="FILE", help="a stability booklet of the loading (.html, .pdf)"
     )
     parser.add_argument(
         "--kn",
