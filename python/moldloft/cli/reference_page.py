@@ -40,7 +40,7 @@ FUNCTIONS = (
         "Elementary functions",
         "sqrt sin cos tan asin acos atan atan2 exp log log10 sinh cosh tanh abs sign floor ceil "
         "round hypot mod div min max sum prod average mean len any all argmin argmax radians "
-        "degrees clamp where interp format count isset dot norm",
+        "degrees clamp where interp format count isset dot norm ieee",
     ),
     (
         "Rows and grids of numbers and points",
@@ -75,7 +75,8 @@ FUNCTIONS = (
     (
         "Files",
         "open close read write more next rewind read_p3d read_points read_aerofoil write_p3d "
-        "write_vts write_stl write_cgns write_csv",
+        "write_vts write_stl write_cgns write_su2 write_gmsh write_blockmesh count_p3d "
+        "write_csv",
     ),
 )
 
