@@ -1,9 +1,9 @@
-//! Wrong digits and knuckles among points that stand in several lines: grids, networks.
+//! Wrong digits and knuckles among points that several lines share: grids, networks.
 
 use crate::interrogate::outliers::{DataFinding, data_findings, detectable};
 use moldloft_num::Vec3;
 
-/// What stands out along lines through numbered points: the line, and the finding with the number of
+/// What differs from its neighbours along lines through numbered points: the line, and the finding with the number of
 /// the point. A line is its points and whether it is closed.
 ///
 /// A wrong digit shows in all lines that judge its point, or in two of them, a knuckle in one. Points
@@ -15,13 +15,13 @@ use moldloft_num::Vec3;
 /// use moldloft_num::Vec3;
 /// let place = |k: usize| Vec3::of((k / 15) as f64, (k % 15) as f64, 0.0);
 /// let mut points: Vec<_> = (0..225).map(place).collect();
-/// points[100].z = 0.5;
+/// points[112].z = 0.5;
 /// let rows = (0..15).map(|i| ((0..15).map(|j| 15 * i + j).collect(), false));
 /// let columns = (0..15).map(|j| ((0..15).map(|i| 15 * i + j).collect(), false));
 /// let lines: Vec<(Vec<usize>, bool)> = rows.chain(columns).collect();
 /// let found = line_findings(&points, &lines, &[]);
 /// assert_eq!(found.len(), 1);
-/// assert_eq!((found[0].0, found[0].1.index()), (6, 100));
+/// assert_eq!((found[0].0, found[0].1.index()), (7, 112));
 /// ```
 pub fn line_findings(
     points: &[Vec3<f64>],
@@ -49,11 +49,11 @@ pub fn line_findings(
             found.push((k, finding));
         }
     }
-    let mut told = vec![false; points.len()];
+    let mut reported = vec![false; points.len()];
     found.retain(|(_, finding)| {
         let i = finding.index();
         let wrong = matches!(finding, DataFinding::WrongDigit { .. });
-        !wrong || (seen[i] >= judged[i].min(2) && !std::mem::replace(&mut told[i], true))
+        !wrong || (seen[i] >= judged[i].min(2) && !std::mem::replace(&mut reported[i], true))
     });
     found
 }
