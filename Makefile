@@ -1,7 +1,7 @@
 # `make demo` needs only Rust and Python >= 3.10; the workbench's page needs Node.js besides. CI runs `make test`.
 #
-# The demo and the tests run a development build of the extension, which takes a fraction of the time, shares all that it
-# compiles with the Rust tests and checks its own assertions; `make optimised` and `pip install .` build what users get.
+# The demo and the tests run a development build of the extension, which shares all that it compiles with the Rust tests and
+# checks its own assertions, so that nothing is compiled twice; `make optimised` and `pip install .` build what users get.
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -91,7 +91,7 @@ $(VENV)/.with-browser:
 
 demo: $(VENV)/.installed ## the sailing yacht of examples/sailboat as panels, files, hydrostatics and a picture
 	@$(BIN)/moldloft build examples/sailboat/hull.sdl --to gdf stl obj vtp vts p3d svg png -o out/sailboat
-	@echo "this is the development build of the package, several times slower: \`make optimised\` builds the one that users get"
+	@echo "this is the development build of the package, which is slower: \`make optimised\` builds the one that users get"
 
 optimised: ## the package in .venv anew, as users get it: for benchmarks
 	@rm -f $(VENV)/.installed

@@ -39,6 +39,12 @@ pub const HEX_FACES: [[usize; 4]; 6] =
     [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]];
 
 impl HexMesh {
+    /// The number of cells of which corners coincide, as at poles.
+    pub fn collapsed(&self) -> usize {
+        let is_collapsed = |cell: &&[usize; 8]| (1..8).any(|k| cell[..k].contains(&cell[k]));
+        self.cells.iter().filter(is_collapsed).count()
+    }
+
     /// The mesh of blocks, whose nodes are one where they coincide to 1e-10 of the size; left-handed blocks are
     /// turned over. What is not a face of two cells is boundary.
     pub fn of_blocks<T: Real>(blocks: &[VolumeGrid<T>], names: &[FaceNames]) -> Self {

@@ -15,6 +15,7 @@
 //! | OFF | [`off::write`] | – |
 //! | Gmsh | [`msh::write`] | – |
 //! | SU2 | [`su2::write`] | – |
+//! | hexahedra of SU2, Gmsh, blockMesh | [`hexahedra::su2`], [`hexahedra::gmsh`], [`hexahedra::block_mesh`] | – |
 //! | STL, text | [`stl::write_text`] | [`stl::read`] |
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`], [`vtk::grid_files`] | – |
 //! | Plot3D, all variants | [`plot3d::write`], [`plot3d::write_mesh`], [`plot3d::write_blocks`] | [`plot3d::read`] |
@@ -45,6 +46,7 @@ pub mod drawing;
 pub mod gdf;
 pub mod gltf;
 pub mod hams;
+pub mod hexahedra;
 pub mod hydrostar;
 pub mod iges;
 pub mod msh;

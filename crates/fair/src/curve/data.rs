@@ -399,8 +399,8 @@ impl SignSearch {
 
 impl Data {
     /// The curve of a goal, or one near it that bends no more often than it has to and, under the goal
-    /// `near`, has hardly more monotone pieces than the fairest, and none more than the data's. Third derivatives may buy smoothness
-    /// with a bend, and budgets leave some of the data's: the signs of the fairest curve, or of that of
+    /// `near`, has hardly more monotone pieces than the fairest, and none more than the data's. Third
+    /// derivatives may buy smoothness with a bend, and budgets leave some of the data's: the signs of the fairest curve, or of that of
     /// least bending, are conditions then, and the weight of the data falls until the pieces are few.
     /// Where no such curve is found, one between it and the fairest is taken, which is within the
     /// tolerances as both are.

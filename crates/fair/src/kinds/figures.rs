@@ -1,6 +1,6 @@
 //! What faired objects say of themselves.
 
-use crate::{DataFit, GridFit, NetworkFit};
+use crate::{Certificate, DataFit, GridFit, NetworkFit};
 
 /// Figures of a faired object, which become its members.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,26 +22,14 @@ pub(crate) struct FairFigures {
 impl FairFigures {
     /// Of a curve near its data, whose tolerances are `radii`.
     pub fn of_curve(made: &DataFit, radii: &[f64], findings: usize) -> Self {
-        Self {
-            value: made.certificate.value,
-            gap: made.certificate.gap,
-            active: made.active,
-            used: made.used,
-            fairest_used: made.fairest_used,
-            ..Self::of_residuals(&made.residuals, radii, findings)
-        }
+        let own = Self::of_residuals(&made.residuals, radii, findings);
+        Self { active: made.active, ..own }.of_goal(&made.certificate, made.used, made.fairest_used)
     }
 
     /// Of a surface near its data.
     pub fn of_surface(made: &GridFit, radii: &[f64], findings: usize) -> Self {
-        Self {
-            value: made.certificate.value,
-            gap: made.certificate.gap,
-            active: made.active,
-            used: made.used,
-            fairest_used: made.fairest_used,
-            ..Self::of_residuals(&made.residuals, radii, findings)
-        }
+        let own = Self::of_residuals(&made.residuals, radii, findings);
+        Self { active: made.active, ..own }.of_goal(&made.certificate, made.used, made.fairest_used)
     }
 
     /// Of a curve of a network: its own points, the network's measure.
@@ -52,13 +40,11 @@ impl FairFigures {
         findings: usize,
     ) -> Self {
         let own = Self::of_residuals(residuals, radii, findings);
-        Self {
-            value: made.certificate.value,
-            gap: made.certificate.gap,
-            used: made.used,
-            fairest_used: made.fairest_used,
-            ..own
-        }
+        own.of_goal(&made.certificate, made.used, made.fairest_used)
+    }
+
+    fn of_goal(self, certificate: &Certificate, used: f64, fairest_used: f64) -> Self {
+        Self { value: certificate.value, gap: certificate.gap, used, fairest_used, ..self }
     }
 
     fn of_residuals(residuals: &[f64], radii: &[f64], findings: usize) -> Self {

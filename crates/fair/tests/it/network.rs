@@ -347,25 +347,7 @@ fn the_budget_of_a_network_goes_by_its_fairest() {
             Vec3::of(s, y + 8e-3 * g.centred(), z)
         })
         .collect();
-    let motion = Motion::Along(Vec3::of(0.0, 1.0, 0.0));
-    let network = |data: &[Vec3<f64>], radii: Vec<f64>| {
-        let curve = |own: Vec<usize>, at: Vec<f64>| NetworkCurve {
-            space: Space::floating(3, own.len()).unwrap(),
-            points: own,
-            weights: None,
-            marks: Vec::new(),
-            ends: [EndContinuity::Points(0); 2],
-            at: Some(at),
-        };
-        let rows = (0..m).map(|i| {
-            curve((0..n).map(|j| i * n + j).collect(), (0..n).map(|j| j as f64 / 5.0).collect())
-        });
-        let columns = (0..n).map(|j| {
-            curve((0..m).map(|i| i * n + j).collect(), (0..m).map(|i| i as f64 / 7.0).collect())
-        });
-        let limit = Limit::new(motion, radii).unwrap();
-        Network::new(data.to_vec(), rows.chain(columns).collect(), limit).unwrap()
-    };
+    let network = |data: &[Vec3<f64>], radii: Vec<f64>| lines_and_stations(data, n, radii);
     let near = |data: &[Vec3<f64>], radii: &[f64]| {
         let network = network(data, radii.to_vec());
         network.toward(Measure::Third, Goal::Near(0.3), Vec::new(), 1e-12).unwrap()
@@ -447,25 +429,8 @@ fn derivatives_of_the_fairest_network_are_right_or_refused() {
             })
             .collect();
         let tolerance = 2e-3 * 1.5f64.powi((seed % 12) as i32 / 2 * 2);
-        let network = |data: &[Vec3<f64>], radius: f64| {
-            let curve = |points: Vec<usize>, at: Vec<f64>| NetworkCurve {
-                space: Space::floating(3, points.len()).unwrap(),
-                points,
-                weights: None,
-                marks: Vec::new(),
-                ends: [EndContinuity::Points(0); 2],
-                at: Some(at),
-            };
-            let rows = (0..m).map(|i| {
-                curve((0..n).map(|j| i * n + j).collect(), (0..n).map(|j| j as f64 / 5.0).collect())
-            });
-            let columns = (0..n).map(|j| {
-                curve((0..m).map(|i| i * n + j).collect(), (0..m).map(|i| i as f64 / 7.0).collect())
-            });
-            let motion = Motion::Along(Vec3::of(0.0, 1.0, 0.0));
-            let limit = Limit::new(motion, vec![radius; m * n]).unwrap();
-            Network::new(data.to_vec(), rows.chain(columns).collect(), limit).unwrap()
-        };
+        let network =
+            |data: &[Vec3<f64>], radius: f64| lines_and_stations(data, n, vec![radius; m * n]);
         let own = network(&data, tolerance);
         let mut points: Vec<Vec3<Dual4>> = data.iter().map(|&p| Vec3::lifted(p)).collect();
         points[15].y = Dual4::seeded(data[15].y, 0);
@@ -511,4 +476,22 @@ fn derivatives_of_the_fairest_network_are_right_or_refused() {
     worst.sort_by(|a, b| b.0.total_cmp(&a.0));
     assert!(right >= 8 && refused > 0, "right {right}, refused {refused}");
     assert!(worst[0].0 < 1e-3, "{:?}", &worst[..8]);
+}
+
+/// A network of m stations of n points each, which move in y, at even parameters.
+fn lines_and_stations(data: &[Vec3<f64>], n: usize, radii: Vec<f64>) -> Network {
+    let m = data.len() / n;
+    let even = |count: usize| (0..count).map(|k| k as f64 / (count - 1) as f64).collect();
+    let curve = |points: Vec<usize>| NetworkCurve {
+        space: Space::floating(3, points.len()).unwrap(),
+        at: Some(even(points.len())),
+        points,
+        weights: None,
+        marks: Vec::new(),
+        ends: [EndContinuity::Points(0); 2],
+    };
+    let stations = (0..m).map(|i| curve((0..n).map(|j| i * n + j).collect()));
+    let lines = (0..n).map(|j| curve((0..m).map(|i| i * n + j).collect()));
+    let limit = Limit::new(Motion::Along(Vec3::of(0.0, 1.0, 0.0)), radii).unwrap();
+    Network::new(data.to_vec(), stations.chain(lines).collect(), limit).unwrap()
 }

@@ -3,9 +3,7 @@
 //! Files are whole: each call writes one, into the set that the host commits. CGNS is HDF5, which the
 //! host writes: the run keeps the blocks and their names for it.
 
-use crate::functions::block_files::{
-    CgnsBlocks, NamedBlock, block_mesh, face_names, gmsh, hexahedra, joined, su2,
-};
+use crate::functions::block_files::{CgnsBlocks, NamedBlock, face_names, joined, one_mesh, whole};
 use crate::functions::builtins::{GridFormat, RowFormat};
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
@@ -13,7 +11,7 @@ use crate::value::variables;
 use moldloft_diag::Diagnostic;
 use moldloft_grid::FaceNames;
 use moldloft_io::plot3d::{self, Laid, Variant};
-use moldloft_io::{StructuredGrid, points, section, stl, vtk};
+use moldloft_io::{StructuredGrid, hexahedra, points, section, stl, vtk};
 use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value, Vectors};
@@ -289,11 +287,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     return Err(at(Diagnostic::error("cannot-write", message)
                         .expected("blocks with at least two points along each index")));
                 }
-                let mesh = hexahedra(&named(blocks, names, faces));
+                let mesh = one_mesh(&named(blocks, names, faces));
                 let bytes = match format {
-                    GridFormat::Su2 => su2(&mesh).map_err(at)?,
-                    GridFormat::Gmsh => gmsh(&mesh).map_err(at)?,
-                    _ => block_mesh(&mesh),
+                    GridFormat::Su2 => whole(hexahedra::su2(&mesh), &mesh, "SU2").map_err(at)?,
+                    GridFormat::Gmsh => whole(hexahedra::gmsh(&mesh), &mesh, "Gmsh").map_err(at)?,
+                    _ => hexahedra::block_mesh(&mesh),
                 };
                 self.env.files.put(&path, bytes).map_err(at)
             }

@@ -1,4 +1,4 @@
-//! Runs a program: subscripts, and the places that assignments write to.
+//! Subscripts of a program that runs, and the places that assignments write to.
 
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
@@ -66,31 +66,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let section = self.layers(m, base, size, subs)?;
             return variables::part(&value, section);
         }
-        if let [Subscript::At(sub)] = m.program[subs] {
-            // An index can only be an array where it is not written as a number.
-            if !matches!(m.program[sub].kind, ExprKind::Number(_)) {
-                let index = self.operand(m, sub)?;
-                if let Some(index) = index_array(&index) {
-                    let shape = match extents[..] {
-                        [m, n] => ArrayShape::Grid(m, n),
-                        _ => ArrayShape::Row(extents[0]),
-                    };
-                    let chosen = Chosen::by(&index, shape).and_then(|chosen| chosen.of(&value));
-                    return chosen.map_err(|d| d.or_at(m.program[sub].span));
-                }
-                if let (Value::Number(x), [extent]) = (&index, &extents[..])
-                    && x.re().fract() == 0.0
-                    && x.re() >= 1.0
-                    && x.re() <= *extent as f64
-                {
-                    return variables::part(
-                        &value,
-                        ArraySection::Row(Selection::at(x.re() as usize - 1)),
-                    );
-                }
-            }
-        }
-        match self.section(m, base, &extents, &variables::shape_text(&value), subs)? {
+        match self.section(m, base, &extents, |_| variables::shape_text(&value), subs)? {
             Subscripted::Section(section) => variables::part(&value, section),
             Subscripted::Chosen(chosen) => chosen.of(&value),
         }
@@ -108,13 +84,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         else {
             return Err(silent());
         };
-        let (extents, shape) = match place.section {
+        let extents = match place.section {
             Some(section) => {
                 let (extents, count) = section.extents();
-                (extents[..count].to_vec(), variables::shape_at(value, &place))
+                extents[..count].to_vec()
             }
             None => match variables::extents(value) {
-                Some(extents) => (extents, variables::shape_text(value)),
+                Some(extents) => extents,
                 None if matches!(value, Value::Unset) => {
                     let text = m.program.slice(m.program[base].span).to_string();
                     let declared = self.env.scope.root(&place).map_or(Span::UNKNOWN, |b| b.span);
@@ -123,7 +99,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         Diagnostic::error("no-value", message).note_at(declared, "declared here")
                     );
                 }
-                None => (Vec::new(), String::new()),
+                None => Vec::new(),
             },
         };
         if extents.is_empty() {
@@ -139,7 +115,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let section = self.layers(m, base, [*ni, *nj, *nk], subs)?;
             return Ok((place.indexed(section)?, None));
         }
-        match self.section(m, base, &extents, &shape, subs)? {
+        let shape = |this: &Self| {
+            let root = this.env.scope.root(&place).map(|bound| &bound.what);
+            match root {
+                Some(Binding::Variable { value, .. }) => variables::shape_at(value, &place),
+                _ => String::new(),
+            }
+        };
+        match self.section(m, base, &extents, shape, subs)? {
             Subscripted::Section(section) => Ok((place.indexed(section)?, None)),
             Subscripted::Chosen(chosen) => Ok((place, Some(chosen))),
         }
@@ -153,8 +136,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         [ni, nj, nk]: [usize; 3],
         subs: NodeList<Subscript>,
     ) -> Result<ArraySection, Diagnostic> {
-        let shape = format!("a block of {nk} layers");
-        match self.section(m, base, &[nk], &shape, subs)? {
+        match self.section(m, base, &[nk], |_| format!("a block of {nk} layers"), subs)? {
             Subscripted::Section(ArraySection::Row(k)) => {
                 Ok(ArraySection::Block(Selection::whole(ni), Selection::whole(nj), k))
             }
@@ -163,13 +145,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// The subscripts as positions, checked against the extents of what stands before them.
+    /// The subscripts as positions, checked against the extents of what stands before them; `shape` describes that
+    /// in errors.
     fn section(
         &mut self,
         m: &Module,
         base: ExprId,
         extents: &[usize],
-        shape: &str,
+        shape: impl Fn(&Self) -> String,
         subs: NodeList<Subscript>,
     ) -> Result<Subscripted, Diagnostic> {
         if let ([Subscript::At(sub)], [rows, columns]) = (&m.program[subs], extents) {
@@ -184,7 +167,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
                 .expected(format!("{} subscripts", extents.len()))
                 .found(format!("{} subscripts", subs.len()))
-                .note(format!("`{}` is {shape}", m.program.slice(m.program[base].span))));
+                .note(format!("`{}` is {}", m.program.slice(m.program[base].span), shape(self))));
         }
         let mut parts: SmallVec<[Selected; 3]> = SmallVec::new();
         for (&sub, &extent) in m.program[subs].iter().zip(extents) {
@@ -198,9 +181,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 });
                 match name {
                     Some((name, declared)) => {
-                        d.note_at(declared, format!("`{name}` is declared here: {shape}"))
+                        d.note_at(declared, format!("`{name}` is declared here: {}", shape(self)))
                     }
-                    None => d.note(format!("the array is {shape}")),
+                    None => d.note(format!("the array is {}", shape(self))),
                 }
             })?;
             parts.push(part);
