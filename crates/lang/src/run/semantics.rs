@@ -124,8 +124,9 @@ impl<'a> Semantics<'a> {
             let file = JudgedScope { m, module: at, locals: &nothing, routine: None };
             self.list(&file, m.program.body());
             self.declared_again(m, m.program.body());
+            let of_file = variables_of_file(m);
             for routine in m.program.routines() {
-                self.routine(m, at, routine);
+                self.routine(m, at, &of_file, routine);
             }
         }
         self.found
@@ -135,7 +136,7 @@ impl<'a> Semantics<'a> {
         self.found.push(diagnostic);
     }
 
-    fn routine(&mut self, m: &Module, module: usize, routine: &Routine) {
+    fn routine(&mut self, m: &Module, module: usize, of_file: &HashSet<Symbol>, routine: &Routine) {
         let mut locals: HashMap<Name, Declared> = HashMap::new();
         for formal in &m.program[routine.formals] {
             let ty = Some(formal.ty.0).filter(|ty| !formal.multiple && *ty != Type::Routine);
@@ -146,7 +147,7 @@ impl<'a> Semantics<'a> {
         let place = JudgedScope { m, module, locals: &locals, routine: Some(routine) };
         self.list(&place, routine.body);
         self.declared_again(m, routine.body);
-        self.shadows(m, routine.body);
+        self.shadows(m, of_file, routine.body);
         let word = m.program.name(routine.name.symbol);
         if routine.result.is_some() && !ends(m, routine.body) {
             self.say(
@@ -715,14 +716,7 @@ impl<'a> Semantics<'a> {
     }
 
     /// Variables of a routine that hide one of the file.
-    fn shadows(&mut self, m: &Module, list: NodeList<StmtId>) {
-        // Those of loops at file level are none that a routine would read.
-        let mut of_file: HashSet<Symbol> = HashSet::new();
-        for &stmt in &m.program[m.program.body()] {
-            if let StmtKind::Declare { items, .. } = m.program[stmt].kind {
-                of_file.extend(m.program[items].iter().map(|item| item.name.symbol));
-            }
-        }
+    fn shadows(&mut self, m: &Module, of_file: &HashSet<Symbol>, list: NodeList<StmtId>) {
         let mut lists = vec![list];
         while let Some(list) = lists.pop() {
             for &stmt in &m.program[list] {
@@ -769,6 +763,17 @@ impl<'a> Semantics<'a> {
             );
         }
     }
+}
+
+/// The variables that routines of a file may read; those of loops at file level are none.
+fn variables_of_file(m: &Module) -> HashSet<Symbol> {
+    let mut names = HashSet::new();
+    for &stmt in &m.program[m.program.body()] {
+        if let StmtKind::Declare { items, .. } = m.program[stmt].kind {
+            names.extend(m.program[items].iter().map(|item| item.name.symbol));
+        }
+    }
+    names
 }
 
 /// The names that statements declare: variables, parameters, objects, those of loops. `global` takes in only those
