@@ -7,10 +7,13 @@ functions.
 
 from __future__ import annotations
 
+import contextlib
+import signal
 from dataclasses import fields
 from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import current_thread, main_thread
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +21,7 @@ import numpy as np
 from moldloft.errors import Error
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -251,7 +254,8 @@ def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldlof
 
     gmsh = _module("gmsh", "gmsh")
     if not gmsh.isInitialized():
-        gmsh.initialize()
+        with _kept_signals():
+            gmsh.initialize()
         gmsh.option.setNumber("General.Terminal", 0)
     gmsh.model.add(name)
     metres = _core.length_unit(model._document)[1] / 1000
@@ -269,6 +273,17 @@ def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldlof
     for label, tags in groups.items():
         gmsh.model.addPhysicalGroup(2, tags, name=label)
     return entities
+
+
+@contextlib.contextmanager
+def _kept_signals() -> Iterator[None]:
+    """Gmsh makes a broken pipe end the process; within, it stays the exception that it was."""
+    pipe = getattr(signal, "SIGPIPE", None)
+    before = pipe and signal.getsignal(pipe)
+    yield
+    # Only the main thread may set handlers, and none can be set again that Python did not set.
+    if pipe is not None and before is not None and current_thread() is main_thread():
+        signal.signal(pipe, before)
 
 
 def _columns(rows: Iterable[Any]) -> dict[str, list[Any]]:

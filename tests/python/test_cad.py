@@ -242,7 +242,7 @@ def test_plane_bodies_become_plane_faces_and_curved_ones_are_named(tmp_path: Pat
 
 def test_gmsh_reads_the_same_solid(tmp_path: Path) -> None:
     code = f"""
-import gmsh, moldloft
+import gmsh, moldloft, os
 m = moldloft.loads({box(1, 2, 3)!r})
 m.to_gmsh()
 (volume,) = gmsh.model.getEntities(3)
@@ -250,10 +250,18 @@ assert abs(gmsh.model.occ.getMass(*volume) - 6) < 1e-9
 assert len(gmsh.model.getEntities(2)) == 6 and len(gmsh.model.getEntities(1)) == 12
 assert len(gmsh.model.getPhysicalGroups(2)) >= 1
 gmsh.finalize()
+# Gmsh by itself would let a broken pipe end the process without a word.
+end, pipe = os.pipe()
+os.close(end)
+try:
+    os.write(pipe, b"x")
+except OSError:
+    print("a broken pipe is an exception")
 """
     pytest.importorskip("gmsh")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+    assert "a broken pipe is an exception" in done.stdout
 
 
 def test_dxf_and_3dm_hold_the_same_curves_and_surfaces(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 import moldloft
+from moldloft.adapters import _kept_signals
 
 SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
 FACES = ("i1", "in", "j1", "jn", "k1", "kn")
@@ -274,7 +275,8 @@ def test_gmsh_reads_the_mesh(tmp_path: Path) -> None:
     gmsh = pytest.importorskip("gmsh")
     text, count, _, _ = cut(random.Random(3))
     (tmp_path / "m.msh").write_bytes(moldloft.loads(text).written["m.msh"])
-    gmsh.initialize(interruptible=False)
+    with _kept_signals():
+        gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Verbosity", 0)
         gmsh.open(str(tmp_path / "m.msh"))
