@@ -215,16 +215,14 @@ def quality_html(quality: dict[str, dict[str, Any]]) -> str:
 
 def state_html(state: Hydrostatics) -> str:
     """The figures of a floating body with units and bounds; angles in degrees."""
-    hidden = {"bounds", "derivatives", "iterations", "residual", "outward", "lolls"}
+    hidden = {"bounds", "derivatives", "iterations", "residual", "outward", "lolls", "accuracy"}
     rows = []
     for name, value in state.as_dict().items():
         if name in hidden or isinstance(value, dict):
             continue
         bound = f"± {state.bounds[name]:.1g}" if name in state.bounds else ""
         rows.append([name, _number(shown(name, value)), state.unit(name), bound])
-    note = ""
-    if state.open_edges:
-        note = f"<p>{state.open_edges} open edges below the water: results are unreliable</p>"
+    note = "".join(f"<p>{remark}</p>" for remark in state.remarks)
     return _table(["figure", "value", "unit", "bound"], rows) + note
 
 

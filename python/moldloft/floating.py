@@ -279,6 +279,7 @@ class Floating:
                     answer["derivatives"].pop(name, None)
                     answer["bounds"].pop(name, None)
             answer["units"] = units if density is None else units.complete()
+            answer["accuracy"] = accuracy
             # The core multiplies masses by gravity in the model's own units.
             force = answer["units"].force_scale()
             for name in ("weight", "righting_moment"):

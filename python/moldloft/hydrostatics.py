@@ -23,6 +23,11 @@ if TYPE_CHECKING:
 __all__ = ["HydrostaticTable", "Hydrostatics", "RightingCurve"]
 
 
+#: Figures whose bounds are shares of themselves.
+_RELATIVE = ("volume", "displacement", "wetted_area", "waterplane_area")
+_RELATIVE += ("waterplane_it", "waterplane_il")
+
+
 @dataclass(frozen=True)
 class Hydrostatics:
     """The hydrostatics of a body; lengths in the model's unit, angles in radians.
@@ -83,7 +88,8 @@ class Hydrostatics:
     midship_area: float | None = None
     """Immersed area of the section half-way between the ends of the waterline."""
     cb: float | None = None
-    """Block coefficient, volume / (length beam draft)."""
+    """Block coefficient, volume / (length beam draft); the form coefficients are those of an
+    upright body and ``None`` where it heels."""
     cp: float | None = None
     """Prismatic coefficient, volume / (midship area length)."""
     cm: float | None = None
@@ -148,6 +154,8 @@ class Hydrostatics:
     interpolation of the surfaces leave."""
     units: Units = field(default_factory=Units)
     """What the figures are in."""
+    accuracy: float = 0.0
+    """The relative accuracy that was asked for."""
     derivatives: dict[str, dict[str, float]] = field(default_factory=dict)
     """Exact derivatives ``[figure][parameter]``, where parameters were asked for."""
 
@@ -155,6 +163,21 @@ class Hydrostatics:
     def floods(self) -> bool:
         """True when an open edge is under water."""
         return self.freeboard is not None and self.freeboard < 0
+
+    @property
+    def remarks(self) -> list[str]:
+        """Openings under water, and figures that are known less well than asked for."""
+        lines = []
+        if self.open_edges:
+            count = f"{self.open_edges} open edge{'s' * (self.open_edges > 1)}"
+            lines.append(f"{count} of the skin below the water: results are unreliable")
+        for name in _RELATIVE:
+            value = getattr(self, name)
+            if value and (share := self.bounds.get(name, 0.0) / abs(value)) > self.accuracy > 0:
+                lines.append(
+                    f"{name} is known to {share:.1g} of itself; {self.accuracy:.1g} was asked for"
+                )
+        return lines
 
     def as_dict(self) -> dict[str, Any]:
         """All figures that have a meaning, by name, in a fixed order."""
@@ -210,7 +233,7 @@ class Hydrostatics:
 _NUMBERS = [
     f.name
     for f in fields(Hydrostatics)
-    if f.name not in ("sides", "status", "derivatives", "bounds", "units")
+    if f.name not in ("sides", "status", "derivatives", "bounds", "units", "accuracy")
 ]
 
 

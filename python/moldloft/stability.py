@@ -301,21 +301,26 @@ class Stability:
         return heels[k], self.gz(heels[k])
 
     def vanishing(self, most: float = math.pi) -> float | None:
-        """The angle of vanishing stability: where a positive arm first falls to zero.
+        """The angle of vanishing stability: where a righting arm first ceases to right.
 
-        ``None`` when it was never positive, or stays so up to ``most``.
+        The arm falls to zero there, or jumps below where the body turns over its ends.
+        ``None`` when it was never righting, or stays so up to ``most``.
 
         Parameters
         ----------
         most
             The largest heel that is searched, radians.
         """
-        heels = self.grid(0.0, most)
+        start = 0.0 if self.gmt >= 0 else self.loll(most)
+        if start is None:
+            return None
+        heels = [start, *(heel for heel in self.grid(0.0, most) if heel > start)]
         for a, b in pairwise(heels):
-            positive = self.gz(a) > 0 or (a == 0 and self.slope(0.0) > 0)
+            # At rest the arm is zero; from the angle of loll on it rights.
+            positive = self.gz(a) > 0 or (a == start and (start > 0 or self.slope(0.0) > 0))
             if positive and self.gz(b) <= 0:
-                start = a if a > 0 else min(1e-6, b / 2)
-                return _root(self.gz, start, b)
+                low = a if a > start else start + min(1e-6, (b - start) / 2)
+                return _root(self.gz, low, b) if self.gz(low) > 0 else low
         return None
 
     def range(self, most: float = math.pi) -> float:

@@ -256,6 +256,81 @@ def wing(rng: Generator, fine: int = 1) -> Drawn:
     return Drawn(t.text(), -0.01, 0.05)
 
 
+@dataclass
+class Faceted:
+    """A ship of plane faces, and its faces as triangles, (n, 3, 3), outward."""
+
+    text: str
+    triangles: np.ndarray
+    length: float
+    beam: float
+    depth: float
+
+
+def faceted_ship(rng: Generator) -> Faceted:
+    """A hard-chine ship or a catamaran of two such hulls, every face plane.
+
+    The sections of a hull are alike: of different size and height, so that strips between them are
+    trapezoids.
+    """
+    catamaran = bool(rng.integers(2))
+    t = _Text('Model info(symmetry = "y", units = "m t");')
+    length, half, depth = rng.uniform(10, 40), rng.uniform(1, 5), rng.uniform(2, 5)
+    chines = int(rng.integers(0, 3))
+    # A convex half section from keel to the middle of the deck: slopes increase from keel to sheer.
+    angles = np.sort(rng.uniform(0, 0.5 * np.pi, chines + 1))
+    steps = rng.uniform(0.5, 1, chines + 1)[:, None] * np.column_stack(
+        [np.cos(angles), np.sin(angles)]
+    )
+    section = np.vstack([[0, 0], np.cumsum(steps, axis=0)])
+    section *= np.array([half, depth]) / section[-1]
+    section = np.vstack([section, [0, depth]])
+    count = int(rng.integers(2, 6))
+    stations = np.concatenate([[0], np.sort(rng.uniform(0.1, 0.9, count - 2)), [1]]) * length
+    sizes, lifts = rng.uniform(0.4, 1, count), rng.uniform(0, 0.3, count) * depth
+    middle = float(half * rng.uniform(1.3, 3)) if catamaran else 0.0
+
+    def ring(k: int, side: int) -> list[list[float]]:
+        y, z = (section * sizes[k]).T
+        return [
+            [float(stations[k]), middle + side * float(a), float(b) + lifts[k]]
+            for a, b in zip(y, z, strict=True)
+        ]
+
+    sides = (1, -1) if catamaran else (1,)
+    rings = {(k, side): ring(k, side) for k in range(count) for side in sides}
+    outlines = {}
+    for k in range(count):
+        ends = t.points([rings[k, 1][0], rings[k, 1][-1]])
+        for side in sides:
+            names = [ends[0], *t.points(rings[k, side][1:-1]), ends[1]]
+            outlines[k, side] = t.polyline(names)
+        if not catamaran:
+            outlines[k, -1] = t.add("Line", ", ".join(ends))
+    count_along = _divisions(2 * (chines + 2), 2, 1)
+    for a, b in pairwise(range(count)):
+        for side in sides:
+            t.add("RuledSurf", f"{outlines[a, side]}, {outlines[b, side]}, {count_along}", "side")
+    for k in (0, count - 1):
+        t.add("RuledSurf", f"{outlines[k, 1]}, {outlines[k, -1]}, {count_along}", "end")
+
+    faces = []
+    for side in (1, -1):
+        # Seen from outside, the starboard side runs from the first station to the last.
+        for a, b in pairwise(range(count)):
+            for (p, q), (r, s) in zip(
+                pairwise(ring(a, side)), pairwise(ring(b, side)), strict=True
+            ):
+                faces += [[p, q, r][::side], [q, s, r][::side]]
+        for k, out in ((0, -side), (count - 1, side)):
+            keel, *rim = ring(k, side)
+            faces += [[keel, p, q][::out] for p, q in pairwise(rim)]
+    corners = np.array(faces)
+    if catamaran:
+        corners = np.vstack([corners, (corners * [1, -1, 1])[:, ::-1]])
+    return Faceted(t.text(), corners, float(length), 2 * (float(half) + middle), float(depth))
+
+
 FAMILIES: tuple[Callable[..., Drawn], ...] = (chine_hull, round_hull, prisms, platform, wing)
 
 

@@ -104,6 +104,9 @@ const MOST_STEPS: usize = 60;
 const TIGHT: f64 = 1e-13;
 const LOOSE: f64 = 1e-9;
 
+/// Residual from which a Newton step leads to rounding.
+const POLISHED: f64 = 1e-10;
+
 /// The largest turn of a step, in radians.
 const LARGEST_TURN: f64 = 0.2;
 
@@ -112,7 +115,7 @@ const LARGEST_TURN: f64 = 0.2;
 ///
 /// The level is first found at the given trim and heel, by Newton steps within a bracket; then all
 /// unknowns together by Newton's method with exact derivatives and shortened steps, on the real
-/// parts. From an unstable state at rest the search goes on, heeling to both sides, to the nearest stable one, if
+/// parts; where that does not come to rest, by descent of the energy. From an unstable state at rest the search goes on, heeling to both sides, to the nearest stable one, if
 /// there is one. One more step in `T` gives the derivatives of the solution (implicit function theorem).
 ///
 /// # Errors
@@ -137,7 +140,7 @@ pub fn equilibrium<T: Real>(
     let real = body.re();
     let problem = EquilibriumProblem::new(&real, water, loading)?;
     let from = [problem.level(start.trim.re(), start.heel.re())?, start.trim.re(), start.heel.re()];
-    let (mut at, mut iterations, mut residual) = problem.newton(from);
+    let (mut at, mut iterations, mut residual) = problem.rest(from);
     let loose = problem.loose();
     let mut lolls = false;
     if residual <= loose
@@ -150,7 +153,9 @@ pub fn equilibrium<T: Real>(
     }
     let status = if residual <= loose { Status::Converged } else { Status::NotConverged };
 
-    // One Newton step in T: the unknowns move so that the residual's derivative vanishes.
+    // One Newton step in T: the unknowns move so that the residual's derivative vanishes. Its real part removes rounding;
+    // where more is left, the body is about to turn over its ends, and the step could lead anywhere.
+    let tight = residual <= POLISHED;
     let constant = at.map(T::from);
     let seeded = [constant[0], start.trim, start.heel];
     let fixed: [T; 3] =
@@ -161,7 +166,7 @@ pub fn equilibrium<T: Real>(
     let mut unknowns = fixed;
     if let Some(step) = problem.step(at, |r| off[r]) {
         for (&k, dx) in problem.free.iter().zip(step) {
-            unknowns[k] += dx;
+            unknowns[k] += if tight { dx } else { dx - dx.re() };
         }
     }
     let flotation = flotation(body, water, Attitude::of(unknowns), loading.centre);
@@ -170,16 +175,16 @@ pub fn equilibrium<T: Real>(
 }
 
 /// The equations of rest, made dimensionless: volume, trimming arm, heeling arm.
-struct EquilibriumProblem<'m, T: Real> {
-    body: &'m Body<T>,
+pub(crate) struct EquilibriumProblem<'m, T: Real> {
+    pub(crate) body: &'m Body<T>,
     water: Water,
-    loading: Loading<T>,
+    pub(crate) loading: Loading<T>,
     /// Which of level, trim and heel are sought: equation k for unknown k.
-    free: Vec<usize>,
+    pub(crate) free: Vec<usize>,
     /// 1, or -1 where the normals point inward; times 2 for one of two sides.
-    count: f64,
+    pub(crate) count: f64,
     /// The body's diagonal.
-    size: f64,
+    pub(crate) size: f64,
 }
 
 /// Steps of heel in the search beyond an unstable attitude.
@@ -221,7 +226,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
     }
 
     /// The level at which the body displaces its mass, at a trim and heel.
-    fn level(&self, trim: f64, heel: f64) -> Result<f64, FloatError> {
+    pub(crate) fn level(&self, trim: f64, heel: f64) -> Result<f64, FloatError> {
         let turned = Attitude { level: 0.0, trim, heel }.turned(self.body);
         let bounds = turned.bounds();
         let density = self.water.density;
@@ -246,6 +251,8 @@ impl<'m> EquilibriumProblem<'m, f64> {
             high = full;
         }
         let mut z = 0.5 * (low + high);
+        // Between the hulls of a catamaran the volume hardly grows with the level: there Newton's steps creep.
+        let mut before = f64::INFINITY;
         for _ in 0..200 {
             let (off, slope) = volume(z);
             if off.abs() <= TIGHT * wanted {
@@ -257,7 +264,10 @@ impl<'m> EquilibriumProblem<'m, f64> {
                 low = z
             }
             let newton = z - off / slope;
-            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            let shrinks = off.abs() <= 0.5 * before;
+            before = off.abs();
+            let next =
+                if newton > low && newton < high && shrinks { newton } else { 0.5 * (low + high) };
             if next == z || high - low <= 1e-15 * self.size {
                 break;
             }
@@ -271,7 +281,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
     /// With the level axes ex, ey, n and moments about the origin: d/dlevel of V, P, Q are A, A xf, A yf; d/dtrim are
     /// A xf, Ipp + V n.B, Ipq; d/dheel are c A yf, c Ipq - s V ey.B, c Iqq + V (s ex.B + c n.B), with c and s of the
     /// trim.
-    fn slopes(&self, at: [f64; 3]) -> [[f64; 3]; 3] {
+    pub(crate) fn slopes(&self, at: [f64; 3]) -> [[f64; 3]; 3] {
         let attitude = Attitude::of(at);
         let turned = attitude.turned(self.body);
         let g = attitude.earth_from(self.loading.centre.unwrap_or_default());
@@ -313,6 +323,27 @@ impl<'m> EquilibriumProblem<'m, f64> {
 
     fn worst(&self, residual: [f64; 3]) -> f64 {
         self.free.iter().map(|&k| residual[k].abs()).fold(0.0, f64::max)
+    }
+
+    /// The attitude at rest from `from`, with the number of steps and what is left.
+    fn rest(&self, from: [f64; 3]) -> ([f64; 3], usize, f64) {
+        let mut best = self.newton(from);
+        let improved = |best: &mut ([f64; 3], usize, f64), from: [f64; 3]| {
+            let Some((at, steps)) = self.descended(from) else { return };
+            let found = self.newton(at);
+            best.1 += steps + found.1;
+            if found.2 < best.2 {
+                (best.0, best.2) = (found.0, found.2);
+            }
+        };
+        if self.free.len() > 1 && best.2 > self.loose() {
+            let near = best.0;
+            improved(&mut best, near);
+            if best.2 > self.loose() {
+                improved(&mut best, from);
+            }
+        }
+        best
     }
 
     fn newton(&self, from: [f64; 3]) -> ([f64; 3], usize, f64) {
@@ -375,7 +406,7 @@ impl<'m> EquilibriumProblem<'m, f64> {
                 let mut next = now;
                 next[2] += sign * HEEL_STEP;
                 next[0] = held.level(next[1], next[2]).ok()?;
-                let (next, steps, left) = held.newton(next);
+                let (next, steps, left) = held.rest(next);
                 count += steps;
                 if left > self.loose() {
                     return None;

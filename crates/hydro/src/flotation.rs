@@ -5,6 +5,9 @@ use crate::figures::{Floating, floating};
 use moldloft_mesh::{Hydrostatics, Symmetry, Waterplane};
 use moldloft_num::{Real, Vec3};
 
+/// Within this heel, in radians, a body is upright: rounding leaves less, and no table shows it.
+const UPRIGHT: f64 = 1e-6;
+
 /// How a body lies in the water: first heeled about its own x axis, then trimmed about the level
 /// axis across it, both through its origin; then the water stands at `level` above the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -223,8 +226,12 @@ pub fn flotation<T: Real>(
 ) -> Flotation<T> {
     let turned = attitude.turned(body);
     let Water { density, gravity, symmetry, centimetre } = water;
-    let Floating { figures: earth, product_moment, errors } =
+    let Floating { figures: mut earth, product_moment, errors } =
         floating(&turned, attitude.level, symmetry, density);
+    if attitude.heel.re().abs() > UPRIGHT {
+        // The box of a heeled waterline says nothing of the form: where a corner of the deck dips in, it is a sliver.
+        earth.coefficients = None;
+    }
     let around = extents(body);
     let draft = |x: T| attitude.water_over(x) - around.low_z;
     let drafts = [around.low_x, (around.low_x + around.high_x) * 0.5, around.high_x].map(draft);

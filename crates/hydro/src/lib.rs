@@ -13,6 +13,7 @@
 mod bernstein;
 mod body;
 mod cell;
+mod descent;
 mod equilibrium;
 mod figures;
 mod flotation;

@@ -133,6 +133,12 @@ impl<T: Real> Piece<T> {
         })
     }
 
+    /// The mark on the root where the alias, in which the piece begins at `begin`, has `mark`.
+    fn mark(&self, begin: T, mark: Mark<T>) -> Mark<T> {
+        let share = (mark.t - begin) / (self.until - begin);
+        Mark { t: self.from.t + (self.to.t - self.from.t) * share, point: mark.point }
+    }
+
     /// The whole of the straight line from one point object to another, to the share `until` of
     /// the alias; `None` when they are the same.
     pub fn straight(from: Key, to: Key, until: T) -> Option<Self> {
@@ -192,27 +198,68 @@ impl<T: Real> Trace<T> {
         }
     }
 
-    /// The trace of the part between two marks given in the alias's own parameter, when it lies
-    /// in one piece; otherwise the part is a root of its own. A part of a point is that point.
+    /// The trace of the part between two marks given in the alias's own parameter, which may run
+    /// backwards: whole pieces between them, and parts of the first and the last. A part of a point is
+    /// that point; a part of no length, or one that leaves a curve of several pieces, is a root of its own.
     pub fn part(&self, root: Root, from: Mark<T>, to: Mark<T>) -> Self {
         if let Trace::Point(point) = self {
             return Trace::Point(*point);
         }
         let pieces = self.pieces(root);
-        let [whole] = pieces.as_slice() else {
+        if let [whole] = pieces.as_slice() {
+            let whole = *whole;
+            return Trace::Pieces(smallvec![Piece {
+                root: whole.root,
+                from: whole.mark(T::zero(), from),
+                to: whole.mark(T::zero(), to),
+                until: T::one(),
+            }]);
+        }
+        let backwards = to.t.re() < from.t.re();
+        let [low, high] = if backwards { [to, from] } else { [from, to] };
+        let inside = low.t.re() >= 0.0 && high.t.re() <= 1.0 && low.t.re() < high.t.re();
+        if !inside {
             return Trace::Own([from.point, to.point]);
-        };
-        let along = |mark: Mark<T>| Mark {
-            t: whole.from.t + (whole.to.t - whole.from.t) * mark.t,
-            point: mark.point,
-        };
-        let whole = *whole;
-        Trace::Pieces(smallvec![Piece {
-            root: whole.root,
-            from: along(from),
-            to: along(to),
-            until: T::one(),
-        }])
+        }
+        let mut all: SmallVec<[Piece<T>; 1]> = SmallVec::new();
+        let mut begin = T::zero();
+        for piece in &pieces {
+            let until = piece.until;
+            if until.re() > low.t.re() && begin.re() < high.t.re() {
+                // At a joint the point that the curves have in common is the mark's own.
+                let from = if begin.re() < low.t.re() {
+                    piece.mark(begin, low)
+                } else {
+                    Mark {
+                        point: piece.from.point.or(all.is_empty().then_some(low.point).flatten()),
+                        ..piece.from
+                    }
+                };
+                let last = until.re() >= high.t.re();
+                let to = if until.re() > high.t.re() {
+                    piece.mark(begin, high)
+                } else {
+                    Mark {
+                        point: piece.to.point.or(last.then_some(high.point).flatten()),
+                        ..piece.to
+                    }
+                };
+                let share = if last { T::one() } else { (until - low.t) / (high.t - low.t) };
+                all.push(Piece { root: piece.root, from, to, until: share });
+            }
+            begin = until;
+        }
+        if backwards {
+            let ends: Vec<T> = all.iter().map(|p| p.until).collect();
+            all.reverse();
+            let count = all.len();
+            for (k, piece) in all.iter_mut().enumerate() {
+                std::mem::swap(&mut piece.from, &mut piece.to);
+                piece.until =
+                    if k + 1 == count { T::one() } else { T::one() - ends[count - 2 - k] };
+            }
+        }
+        Trace::Pieces(all)
     }
 }
 
@@ -363,6 +410,59 @@ impl<T: Real> Faces<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The root and the parameter on it where an alias of pieces has `t`.
+    fn place(pieces: &[Piece<f64>], t: f64) -> (Root, f64) {
+        let k = pieces.iter().position(|p| t <= p.until).unwrap_or(pieces.len() - 1);
+        let begin = if k == 0 { 0.0 } else { pieces[k - 1].until };
+        let piece = &pieces[k];
+        let share = (t - begin) / (piece.until - begin);
+        (piece.root, piece.from.t + (piece.to.t - piece.from.t) * share)
+    }
+
+    #[test]
+    fn a_part_runs_along_the_pieces_of_the_whole() {
+        // Five pieces, some of them parts of curves and some backwards; all pairs of marks among 21.
+        let untils = [0.1, 0.35, 0.5, 0.8, 1.0];
+        let ts = [[0.0, 1.0], [1.0, 0.0], [0.2, 0.7], [0.9, 0.4], [0.0, 1.0]];
+        let joint = |k: usize| Some(Key(100 + k as u32));
+        let pieces: SmallVec<[Piece<f64>; 1]> = (0..5)
+            .map(|k| Piece {
+                root: Root::Curve(Key(k as u32)),
+                from: Mark { t: ts[k][0], point: joint(k) },
+                to: Mark { t: ts[k][1], point: joint(k + 1) },
+                until: untils[k],
+            })
+            .collect();
+        let whole = Trace::Pieces(pieces.clone());
+        for (i, j) in (0..=20).flat_map(|i| (0..=20).map(move |j| (i, j))).filter(|(i, j)| i != j) {
+            let [from, to] = [i, j].map(|k| f64::from(k) / 20.0);
+            let marks = [from, to].map(|t| Mark { t, point: Some(Key((t * 20.0) as u32)) });
+            let Trace::Pieces(part) = whole.part(Root::Curve(Key(99)), marks[0], marks[1]) else {
+                panic!("{from} {to}")
+            };
+            assert_eq!(part[part.len() - 1].until, 1.0);
+            assert!(part.windows(2).all(|p| p[0].until < p[1].until), "{from} {to}: {part:?}");
+            for k in 0..40 {
+                // Never at a joint, where the piece before and the one after are both right.
+                let s = (f64::from(k) + 0.37) / 40.0;
+                let (root, t) = place(&part, s);
+                let (expected, at) = place(&pieces, from + (to - from) * s);
+                assert!(root == expected && (t - at).abs() < 1e-12, "{from} {to} {s}");
+            }
+            // A mark at a joint is the joint's point, any other its own.
+            let ends = [(from, part[0].from), (to, part[part.len() - 1].to)];
+            for (mark, (t, end)) in marks.into_iter().zip(ends) {
+                let at = [0.0, 0.1, 0.35, 0.5, 0.8, 1.0].into_iter().position(|u| u == t);
+                assert_eq!(end.point, at.map_or(mark.point, joint), "{from} {to}");
+            }
+        }
+        // What leaves it, and what has no length, is a curve of its own.
+        let mark = |t: f64| Mark { t, point: None };
+        for (a, b) in [(-0.1, 0.5), (0.5, 1.1), (0.4, 0.4), (f64::NAN, 0.5)] {
+            assert_eq!(whole.part(Root::Curve(Key(99)), mark(a), mark(b)), Trace::own());
+        }
+    }
 
     #[test]
     fn turns_know_their_edges() {

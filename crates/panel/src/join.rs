@@ -129,9 +129,12 @@ impl<'s> Joiner<'s> {
                         at = end;
                     }
                 }
-                EdgeRun::Loose([from, to]) => {
-                    self.at_place(vertices[0], *from);
-                    self.at_place(vertices[vertices.len() - 1], *to);
+                EdgeRun::Loose(spans) => {
+                    let ends = spans.first().zip(spans.last());
+                    if let Some((first, last)) = ends {
+                        self.at_place(vertices[0], first.ends[0]);
+                        self.at_place(vertices[vertices.len() - 1], last.ends[1]);
+                    }
                 }
                 EdgeRun::Same(other) => {
                     let others = &edges[usize::from(*other)];

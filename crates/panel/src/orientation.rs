@@ -52,6 +52,7 @@ impl Orientation {
                 bodies.join(p, q, forward == again);
             }
         }
+        join_along_intervals(structure, &mut bodies);
         let sides: Vec<(usize, bool)> =
             (0..structure.patches.len()).map(|p| bodies.find(p)).collect();
         let mut closed = vec![true; sides.len()];
@@ -99,6 +100,25 @@ impl Orientation {
     fn body(&self, patch: usize) -> usize {
         let first = self.sides[patch].0;
         if self.closed[first] { first } else { self.sides.len() }
+    }
+}
+
+/// Patches that run along one interval are neighbours even where their counts contradict and no panels of theirs meet.
+fn join_along_intervals(structure: &PanelTopology, bodies: &mut SignedUnionFind) {
+    let mut all: Vec<(u32, usize, bool)> = Vec::new();
+    for (patch, frame) in structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {
+        for (k, run) in frame.runs.iter().enumerate() {
+            let along = run.spans().filter_map(|s| Some((s.interval?, s.backwards)));
+            all.extend(along.map(|(interval, backwards)| (interval, patch, (k < 2) != backwards)));
+        }
+    }
+    all.sort_unstable();
+    for run in all.chunk_by(|a, b| a.0 == b.0) {
+        if let [(_, p, forward), (_, q, again)] = *run
+            && p != q
+        {
+            bodies.join(p, q, forward == again);
+        }
     }
 }
 

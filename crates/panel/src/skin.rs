@@ -2,11 +2,11 @@
 
 use crate::panelling::Panelling;
 use moldloft_hydro::{Body, HullSide};
-use moldloft_mesh::{Closes, EdgeName, Mesh, closure};
+use moldloft_mesh::{Closes, EdgeName, Mesh, OpenEdge, closure};
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
 use moldloft_registry::{Scalar, Value};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Which surfaces and panels bound the body; independent of the scalar.
@@ -51,6 +51,7 @@ impl Skin {
             on_panels: Vec::new(),
         };
         let mut in_parts: HashSet<usize> = HashSet::new();
+        let shared = shared_edges(panelling, mesh);
         for (k, patch) in mesh.patches().iter().enumerate() {
             if !patch.info.tag.is_skin() {
                 continue;
@@ -64,7 +65,10 @@ impl Skin {
             let side = names.get(k).zip(patch.block.as_ref());
             let side = side.filter(|(name, _)| pieces(name).is_some_and(|n| n <= MOST_PIECES));
             let mut open_edges = [false; 4];
-            for edge in open.open.iter().filter(|e| e.patch == k && e.closes == Closes::Nothing) {
+            let closed =
+                |edge: EdgeName| matches!(edge, EdgeName::Side(n) if shared.contains(&(k, n)));
+            let bare = |e: &&OpenEdge| e.closes == Closes::Nothing && !closed(e.edge);
+            for edge in open.open.iter().filter(|e| e.patch == k).filter(bare) {
                 match (edge.edge, side) {
                     (EdgeName::Side(n), Some((_, block))) => {
                         let count = if n % 2 == 0 { block.nu } else { block.nv } - 1;
@@ -147,4 +151,24 @@ impl Skin {
         }
         Body::new(&sides, panels, rims, self.size, accuracy)
     }
+}
+
+/// The edges (patch of the mesh, edge 0..4) that run along intervals all of which another edge of the skin runs
+/// along, too: there the surfaces are joined, even where counts contradict and the panels are not.
+fn shared_edges(panelling: &Panelling, mesh: &Mesh<f64>) -> HashSet<(usize, u8)> {
+    let meshed = panelling.structure.patches.iter().filter(|f| f.meshed).enumerate();
+    let skin = meshed.filter(|(k, _)| mesh.patches()[*k].info.tag.is_skin());
+    let edges: Vec<_> = skin
+        .flat_map(|(k, frame)| {
+            (0..4u8).map(move |n| ((k, n), frame.runs[usize::from(n)].intervals()))
+        })
+        .collect();
+    let mut users: HashMap<u32, usize> = HashMap::new();
+    edges
+        .iter()
+        .flat_map(|(_, intervals)| intervals)
+        .for_each(|&i| *users.entry(i).or_default() += 1);
+    let shared =
+        |intervals: &[u32]| !intervals.is_empty() && intervals.iter().all(|i| users[i] > 1);
+    edges.into_iter().filter(|(_, intervals)| shared(intervals)).map(|(edge, _)| edge).collect()
 }

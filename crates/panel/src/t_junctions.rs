@@ -202,15 +202,30 @@ impl Panelling {
 
     /// True for edges along a common stretch: their counts contradict, which is said elsewhere.
     fn along_one_curve(&self, a: (usize, u8), b: (usize, u8)) -> bool {
-        let intervals = |(patch, k): (usize, u8)| -> Vec<u32> {
-            match &self.structure.patches[patch].runs[usize::from(k)] {
-                EdgeRun::Along(spans) => spans.iter().filter_map(|s| s.0.interval).collect(),
-                EdgeRun::Loose(ends) => ends.to_vec(),
-                _ => Vec::new(),
-            }
+        let intervals = |(patch, k): (usize, u8)| {
+            self.structure.patches[patch].runs[usize::from(k)].intervals()
         };
         let of_a = intervals(a);
         intervals(b).iter().any(|i| of_a.contains(i))
+    }
+
+    /// True for a corner at a place of an edge whose counts contradict those along it, so that no vertex
+    /// of the edge is there: that is said elsewhere.
+    fn at_loose_place(&self, patch: usize, [u, v]: [u8; 2], edge: (usize, u8)) -> bool {
+        let EdgeRun::Loose(spans) = &self.structure.patches[edge.0].runs[usize::from(edge.1)]
+        else {
+            return false;
+        };
+        let beside = [if v == 0 { 0 } else { 2 }, if u == 0 { 3 } else { 1 }];
+        let number = [[0, 3], [1, 2]][usize::from(u)][usize::from(v)];
+        let key = self.structure.patches[patch].corners[number];
+        beside.into_iter().any(|k| self.along_one_curve((patch, k), edge))
+            || key.is_some_and(|key| {
+                spans
+                    .iter()
+                    .flat_map(|s| s.ends)
+                    .any(|place| self.structure.points[place as usize].contains(&key))
+            })
     }
 
     /// The corners of patches that lie on open edges of others and are not joined to them, but for the
@@ -236,7 +251,9 @@ impl Panelling {
                 }
                 for side in open.near(p) {
                     let itself = side.patch == patch || side.vertices.contains(&vertex);
-                    if itself || skipped([patch, side.patch]) {
+                    let known_loose =
+                        || self.at_loose_place(patch, corner, (side.patch, side.edge));
+                    if itself || skipped([patch, side.patch]) || known_loose() {
                         continue;
                     }
                     let Some(surface) = &known.surfaces[side.patch] else { continue };

@@ -5,7 +5,7 @@ use crate::counts::{Conflict, CountProblem, Links, Node, Sum};
 use crate::draft::Draft;
 use crate::edges::{DivisionRun, EdgePlan, Shares, reversed, shares_of};
 use crate::notes::{ChainStep, PanelNote};
-use crate::roots::{EdgeInterval, EdgeParameter, IntervalId, RootPlaceId, RootTable};
+use crate::roots::{EdgeInterval, EdgeParameter, IntervalId, RootTable};
 use moldloft_model::Graph;
 use moldloft_num::trace::{Edge, Key, Named, Root};
 use moldloft_num::{Real, Vec3};
@@ -30,12 +30,29 @@ const MOST_DIVISIONS: f64 = 1e6;
 pub(crate) enum EdgeRun {
     /// These stretches, with the count on each.
     Along(Vec<(EdgeInterval, u32)>),
-    /// Stretches whose counts do not add up to that of the patch: its two ends.
-    Loose([RootPlaceId; 2]),
+    /// Stretches whose counts do not add up to that of the patch, so that it is joined at its two ends alone.
+    Loose(Vec<EdgeInterval>),
     /// The same line as edge 0..4 of the patch.
     Same(u8),
     /// One point.
     Pole(Option<Key>),
+}
+
+impl EdgeRun {
+    /// The stretches that the edge runs along, whether or not its panels end where these end.
+    pub fn spans(&self) -> impl Iterator<Item = &EdgeInterval> {
+        let (along, loose): (&[(EdgeInterval, u32)], &[EdgeInterval]) = match self {
+            EdgeRun::Along(spans) => (spans, &[]),
+            EdgeRun::Loose(spans) => (&[], spans),
+            EdgeRun::Same(_) | EdgeRun::Pole(_) => (&[], &[]),
+        };
+        along.iter().map(|(span, _)| span).chain(loose)
+    }
+
+    /// The intervals of roots among them.
+    pub fn intervals(&self) -> Vec<IntervalId> {
+        self.spans().filter_map(|s| s.interval).collect()
+    }
 }
 
 /// A patch without its shape.
@@ -572,7 +589,7 @@ impl TopologySolver<'_, '_> {
             Some(_) if along == 1 => n,
             Some(interval) => counts[self.interval(interval)],
         };
-        let (Some(first), Some(last)) = (spans.first(), spans.last()) else {
+        let Some(first) = spans.first() else {
             return (EdgeRun::Pole(None), EdgePlan::Whole(n, None));
         };
         if along == 0 {
@@ -580,8 +597,7 @@ impl TopologySolver<'_, '_> {
             return (EdgeRun::Pole(point), EdgePlan::Whole(n, None));
         }
         if spans.iter().map(count).sum::<u32>() != n {
-            let ends = [first.ends[0], last.ends[1]];
-            return (EdgeRun::Loose(ends), EdgePlan::Whole(n, None));
+            return (EdgeRun::Loose(spans.to_vec()), EdgePlan::Whole(n, None));
         }
         let mut begin = 0;
         let mut segments = Vec::with_capacity(along);

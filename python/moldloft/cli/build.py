@@ -357,9 +357,7 @@ def _main_figures(floating: Hydrostatics) -> str:
             words.append(f"{name} {value:.5g} {floating.unit(name)}".rstrip())
     text = f"hydrostatics at z = {_number(floating.level)}, {sides} (all: -v, or moldloft hydro)"
     lines = [", ".join(words[k : k + 4]) for k in range(0, len(words), 4)]
-    if floating.open_edges:
-        lines.append(f"{floating.open_edges} open edges below the water: results are unreliable")
-    return "\n  ".join([text, *lines])
+    return "\n  ".join([text, *lines, *floating.remarks])
 
 
 def _panels_against_shape(model: Model, floating: Hydrostatics, options: argparse.Namespace) -> str:
@@ -427,15 +425,14 @@ def _floating(floating: Hydrostatics) -> str:
     hidden = {"level", "sides", "open_edges", "closure_error", "waterplane_error", "outward"}
     hidden |= {"trim", "heel", "status", "iterations", "residual"}
     hidden |= {"draft_low_x", "draft_mid", "draft_high_x", "weight"}
-    hidden |= {"bounds", "lolls", "waterplane_product"}
+    hidden |= {"bounds", "lolls", "waterplane_product", "accuracy"}
     figures = {k: v for k, v in floating.as_dict().items() if k not in hidden}
     width = max(map(len, figures))
     for name, value in figures.items():
         bound = f" ± {floating.bounds[name]:.1g}" if name in floating.bounds else ""
         text = f"{_number(value)} {floating.unit(name)}".rstrip()
         lines.append(f"  {name.ljust(width)}  {text}{bound}")
-    if floating.open_edges:
-        lines.append(f"  {floating.open_edges} open edges below the water: results are unreliable")
+    lines += [f"  {remark}" for remark in floating.remarks]
     return "\n".join(lines)
 
 

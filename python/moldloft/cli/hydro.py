@@ -27,7 +27,7 @@ __all__ = ["add", "run"]
 _TABLE = ["draft", "displacement", "lcb", "vcb", "waterplane_area", "lcf", "kmt", "kml"]
 _TABLE += ["tpc", "mtc", "cb", "cp", "cm", "cwp"]
 _HIDDEN = {"sides", "open_edges", "closure_error", "waterplane_error", "outward", "derivatives"}
-_HIDDEN |= {"bounds", "lolls", "waterplane_product"}
+_HIDDEN |= {"bounds", "lolls", "waterplane_product", "accuracy"}
 _ANGLES = ("trim", "heel")
 
 
@@ -415,11 +415,7 @@ def _one(flotation: Hydrostatics) -> str:
         slopes = flotation.derivatives.get(name, {})
         more = "".join(f"  d/d{by} {slope:.6g}" for by, slope in slopes.items())
         lines.append(f"  {name.ljust(width)}  {text}{more}")
-    if flotation.open_edges:
-        lines.append(
-            f"  {flotation.open_edges} open edges of the skin below the water: "
-            "results are unreliable"
-        )
+    lines += [f"  {remark}" for remark in flotation.remarks]
     return "\n".join(lines)
 
 

@@ -120,9 +120,13 @@ class Hub:
 
     async def stop(self) -> None:
         """End the engine; the draft stays when something is unsaved."""
-        for task in [*self._tasks, *self._sending]:
-            task.cancel()
-        await asyncio.gather(*self._tasks, *self._sending, return_exceptions=True)
+        left = {task for task in (*self._tasks, *self._sending) if not task.done()}
+        while left:
+            # Once is not enough: until Python 3.12, `wait_for` forgets a cancellation that comes
+            # together with the answer.
+            for task in left:
+                task.cancel()
+            _, left = await asyncio.wait(left, timeout=0.5)
         await self.engine.end()
         self.draft.close(keep=self.dirty)
 

@@ -316,6 +316,71 @@ fn random_bands_join_or_say_why() {
     assert!(explained > 0);
 }
 
+/// A stern of two strips with a transom whose outline has a knuckle; its halves are 3 and 3 panels.
+fn stern(outline: &str, divisions: u32) -> String {
+    format!(
+        "Model info(symmetry = \"y\");
+         AbsPoint k0(0, 0, -0.8); AbsPoint c0(0, 0, -0.2); AbsPoint d0(0, 0, 1);
+         AbsPoint k1(10, 0, -1); AbsPoint c1(10, 1.5, -0.5); AbsPoint d1(10, 2, 1); AbsPoint m1(10, 0, 1);
+         Line K(k0, k1); Line C(c0, c1); Line S(d0, d1); Line M(d0, m1); Line Z(k1, m1); {outline}
+         RuledSurf bottom(K, C, divisions = {{12, 3}}); RuledSurf side(C, S, divisions = {{12, 3}});
+         RuledSurf deck(S, M, divisions = {{12, 3}}); RuledSurf transom(Z, T, divisions = {{{divisions}, 3}});"
+    )
+}
+
+#[test]
+fn contradictory_counts_open_the_panels_and_not_the_body() {
+    use moldloft_document::{FloatRequest, FlotationOptions, Immersion};
+    let outline = "Line t1(k1, c1); Line t2(c1, d1); PolyCurve T({t1, t2});";
+    let mut answers = Vec::new();
+    for divisions in [6, 12, 5, 2] {
+        let mut d = open(&stern(outline, divisions));
+        let told = ids(&d);
+        d.panelled().unwrap();
+        let contradicts = d.diagnostics().iter().any(|x| x.id == "divisions-contradict");
+        assert_eq!(contradicts, divisions != 6, "{divisions}: {told:?}");
+        // What is said by the counts is not said again by the corners.
+        assert_eq!(d.junctions().unwrap(), [], "{divisions}");
+        let request = |heel| FloatRequest { immersion: Immersion::Level(0.2), trim: 0.0, heel };
+        let requests = [request(0.0), request(0.3)];
+        let options = FlotationOptions {
+            density: 1.0,
+            gravity: 9.81,
+            centimetre: 0.01,
+            centre: None,
+            one_side: false,
+            of_weights: false,
+            accuracy: 1e-6,
+        };
+        let found = d.floating(&requests, options, &[]).unwrap();
+        for answer in &found {
+            assert_eq!(answer.open_edges, 0, "{divisions}");
+            assert!(answer.figures.iter().all(|(name, _)| *name != "freeboard"), "{divisions}");
+        }
+        // Form coefficients are those of the upright body.
+        let has = |k: usize| found[k].figures.iter().any(|(name, _)| *name == "cb");
+        assert!(has(0) && !has(1));
+        answers.push(found.into_iter().map(|a| a.figures).collect::<Vec<_>>());
+    }
+    assert!(answers.windows(2).all(|w| w[0] == w[1]), "{answers:?}");
+}
+
+#[test]
+fn a_polyline_is_the_lines_between_its_points() {
+    for outline in [
+        "BCurve T({k1, c1, d1}, degree = 1);",
+        "CCurve T({k1, c1, d1}, degree = 1);",
+        // A part of a longer one, run backwards.
+        "BCurve W({m1, d1, c1, k1}, degree = 1); AbsBead a(W, 1); AbsBead b(W, 1/3.); SubCurve T(a, b);",
+    ] {
+        let mut d = sound(&stern(outline, 6));
+        assert_eq!(d.junctions().unwrap(), [], "{outline}");
+        let report = panelled(&mut d).mesh.report();
+        assert!(report.manifold && report.components == 1, "{outline}");
+        assert_eq!(report.open_loops.len(), 1, "open in the plane of symmetry alone: {outline}");
+    }
+}
+
 #[test]
 fn corners_that_miss_their_neighbours_are_told() {
     // Two strips below a third meet at points that lie on its edge but mark nothing there.

@@ -50,6 +50,6 @@ impl<T: Real> Build<T> for Arc<T> {
             _ => p3.key,
         };
         let curve = arc.map_err(|error| faults::of_arc(error, Self::P1))?;
-        Ok(Value::Curve(CurveRef::new(Ended { curve, ends: [p1.key, end] }, 0)))
+        Ok(Value::Curve(CurveRef::new(Ended::between(curve, [p1.key, end]), 0)))
     }
 }

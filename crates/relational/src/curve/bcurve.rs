@@ -1,8 +1,10 @@
 //! B-spline curves.
 
 use crate::curve::Ended;
+use crate::curve::ended::polyline;
 use crate::faults;
 use moldloft_num::Real;
+use moldloft_num::trace::Trace;
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use moldloft_spline::BSplineCurve;
 
@@ -34,9 +36,15 @@ impl<T: Real> Build<T> for BCurve<T> {
         let degree = degree.min(points.len() - 1);
         let curve = BSplineCurve::uniform(degree, points.iter().map(|p| p.xyz).collect())
             .map_err(|error| faults::of_spline(error, Self::POINTS, Self::DEGREE))?;
+        let sides = points.len() - 1;
+        let shares = (1..=sides).map(|k| T::from(k as f64 / sides as f64)).collect();
+        let trace = match degree {
+            1 => polyline(&points, shares),
+            _ => Trace::Own(ends),
+        };
         Ok(Value::Curve(match curve.power_form() {
-            Some(curve) => CurveRef::new(Ended { curve, ends }, 0),
-            None => CurveRef::new(Ended { curve, ends }, 0),
+            Some(curve) => CurveRef::new(Ended { curve, trace }, 0),
+            None => CurveRef::new(Ended { curve, trace }, 0),
         }))
     }
 }

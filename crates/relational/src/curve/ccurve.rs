@@ -3,7 +3,9 @@
 use super::bcurve;
 use crate::arguments::EndRule;
 use crate::curve::Ended;
+use crate::curve::ended::polyline;
 use crate::faults;
+use moldloft_num::trace::Trace;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline};
@@ -50,8 +52,25 @@ impl<T: Real> Build<T> for CCurve<T> {
         .map_err(|error| {
             faults::of_interpolation(error, "point", [Self::POINTS, Self::DEGREE, Self::ENDS])
         })?;
-        Ok(Value::Curve(CurveRef::new(Ended { curve, ends: names }, 0)))
+        let trace = match self.degree {
+            1 => polyline(&self.points, polyline_shares(&points)),
+            _ => Trace::Own(names),
+        };
+        Ok(Value::Curve(CurveRef::new(Ended { curve, trace }, 0)))
     }
+}
+
+/// Where the sides of a polyline end, by its chords' lengths.
+fn polyline_shares<T: Real>(points: &[Vec3<T>]) -> Vec<T> {
+    let lengths = points.windows(2).map(|p| p[0].distance(p[1]));
+    let ends: Vec<T> = lengths
+        .scan(T::zero(), |sum, length| {
+            *sum += length;
+            Some(*sum)
+        })
+        .collect();
+    let whole = ends[ends.len() - 1];
+    ends.iter().map(|&end| end / whole).collect()
 }
 
 /// The conditions of a rule with these slopes, which are those of `fields`.

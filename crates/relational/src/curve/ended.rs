@@ -1,17 +1,36 @@
 //! Curves of their own between point objects: what joins them to their neighbours.
 
-use moldloft_num::trace::{Key, Trace};
+use moldloft_num::trace::{Key, Piece, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Rational, Real, Vec3};
+use moldloft_registry::Point;
 
-/// A curve of its own that begins and ends at point objects.
-pub struct Ended<C> {
+/// A curve with what it runs along: most are roots of their own between point objects.
+pub struct Ended<T: Real, C> {
     /// The curve.
     pub curve: C,
-    /// The point objects at its ends, where it has them.
-    pub ends: [Option<Key>; 2],
+    /// What it runs along.
+    pub trace: Trace<T>,
 }
 
-impl<T: Real, C: Curve<T>> Curve<T> for Ended<C> {
+impl<T: Real, C> Ended<T, C> {
+    /// A root of its own between the point objects at its ends, where it has them.
+    pub fn between(curve: C, ends: [Option<Key>; 2]) -> Self {
+        Self { curve, trace: Trace::Own(ends) }
+    }
+}
+
+/// The trace of a polyline through points, side k of which ends at `shares[k]`: the lines between the point
+/// objects, where all points are objects and each differs from the next.
+pub(crate) fn polyline<T: Real>(points: &[Point<T>], shares: Vec<T>) -> Trace<T> {
+    let sides = points.windows(2).zip(shares);
+    let pieces = sides.map(|(ends, until)| Piece::straight(ends[0].key?, ends[1].key?, until));
+    match pieces.collect::<Option<_>>() {
+        Some(pieces) if points.len() > 2 => Trace::Pieces(pieces),
+        _ => Trace::Own([0, points.len() - 1].map(|k| points[k].key)),
+    }
+}
+
+impl<T: Real, C: Curve<T>> Curve<T> for Ended<T, C> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         self.curve.jet(t, order)
     }
@@ -25,7 +44,7 @@ impl<T: Real, C: Curve<T>> Curve<T> for Ended<C> {
         self.curve.joints()
     }
     fn trace(&self) -> Trace<T> {
-        Trace::Own(self.ends)
+        self.trace.clone()
     }
     fn rational(&self) -> Rational<1> {
         self.curve.rational()

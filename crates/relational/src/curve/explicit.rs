@@ -69,6 +69,6 @@ impl<T: Real> Build<T> for XCurve<T> {
                 _ => fault,
             }
         })?;
-        Ok(Value::Curve(CurveRef::new(Ended { curve, ends: names }, 0)))
+        Ok(Value::Curve(CurveRef::new(Ended::between(curve, names), 0)))
     }
 }

@@ -99,7 +99,7 @@ fn fit<T: Real>(
     near_enough(residual, accuracy, "curve")
         .map_err(|fault| fault.related(curve.key, "is the curve").in_field(within))?;
     let ends = curve.end_points();
-    let fitted = CurveRef::new(Ended { curve: spline, ends }, 0).with_found(report(residual));
+    let fitted = CurveRef::new(Ended::between(spline, ends), 0).with_found(report(residual));
     Ok(Value::Curve(fitted))
 }
 

@@ -40,6 +40,6 @@ impl<T: Real> Build<T> for FoilCurve<T> {
         let [first, last] = [0, points.len() - 1].map(|k| points[k].key);
         let tail = |key| if closed { key } else { None };
         let start = if curve.layout.is_half() { first } else { tail(first) };
-        Ok(Value::Curve(CurveRef::new(Ended { curve, ends: [start, tail(last)] }, nesting)))
+        Ok(Value::Curve(CurveRef::new(Ended::between(curve, [start, tail(last)]), nesting)))
     }
 }

@@ -38,7 +38,7 @@ impl<T: Real> Build<T> for Helix<T> {
             angle,
             advance: line.direction * (pitch * angle / (2.0 * PI)),
         };
-        Ok(Value::Curve(CurveRef::new(Ended { curve, ends: [point.key, None] }, 0)))
+        Ok(Value::Curve(CurveRef::new(Ended::between(curve, [point.key, None]), 0)))
     }
 }
 

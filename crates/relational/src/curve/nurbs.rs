@@ -39,7 +39,7 @@ impl<T: Real> Build<T> for NURBCurve<T> {
         let curve = spline(points, self.degree, self.knots, self.weights, fields)?;
         let clamped = curve.clamped_ends();
         let ends = [0, 1].map(|k| if clamped[k] { names[k] } else { None });
-        Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
+        Ok(Value::Curve(CurveRef::new(Ended::between(curve, ends), 0)))
     }
 }
 

@@ -30,7 +30,7 @@ impl<T: Real> Build<T> for RelCurve<T> {
         let Self { curve, p1, p2 } = self;
         let nesting = curve.depth;
         let shape = Moved::new(curve, p1.xyz, p2.xyz);
-        Ok(Value::Curve(CurveRef::new(Ended { curve: shape, ends: [p1.key, p2.key] }, nesting)))
+        Ok(Value::Curve(CurveRef::new(Ended::between(shape, [p1.key, p2.key]), nesting)))
     }
 }
 
