@@ -111,7 +111,14 @@ class Plan:
         self.paths.append(Path2(layer, np.array(pieces), straight=True))
 
     def label(
-        self, x: float, y: float, text: str, size: float = 2.5, *, anchor: str = "middle"
+        self,
+        x: float,
+        y: float,
+        text: str,
+        size: float = 2.5,
+        *,
+        anchor: str = "middle",
+        needed: bool = True,
     ) -> bool:
         """A text about (x, y); where it would overlap another it is left out, and listed.
 
@@ -127,15 +134,22 @@ class Plan:
             Height of the letters, millimetres.
         anchor
             ``"start"``, ``"middle"`` or ``"end"``: what of the text is at the place.
+        needed
+            Whether to list it when it is left out.
         """
         wide = text_width(text, size)
         shift = {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor]
         place = Text(x - shift * wide, y - 0.36 * size, size, text)
         if any(_overlap(place, other) for other in self.texts):
-            self.left_out.append(text)
+            if needed:
+                self.left_out.append(text)
             return False
         self.texts.append(place)
         return True
+
+
+#: Lines at least so far apart can all be labelled, in mm.
+_LABEL_STEP = 3.2
 
 
 def text_width(text: str, size: float) -> float:
@@ -339,8 +353,9 @@ def lines_plan(
             plan.paths.append(Path2(layer, _flat(curve, across, up, m) * f + np.array(origin)))
 
     low_z, high_z = float(lines.low[2]), float(lines.high[2])
-    rise = waterline_spacing or _nice(height / 7)
-    aside = buttock_spacing or _nice(breadth / 4.5)
+    # Of lines closer than their labels are high, not all could be labelled.
+    rise = waterline_spacing or _nice(max(height / 7, _LABEL_STEP / f))
+    aside = buttock_spacing or _nice(max(breadth / 4.5, _LABEL_STEP / f))
     first = math.ceil((low_z + 0.02 * height) / rise)
     levels = [k * rise for k in range(first, math.floor((high_z - 0.02 * height) / rise) + 1)]
     offs = [k * aside for k in range(1, math.floor(breadth * 0.97 / aside) + 1)]
@@ -355,7 +370,8 @@ def lines_plan(
         plan.line("grid", (px, profile_y + f * low_z - 3), (px, profile_y + f * high_z + 3))
         plan.label(px, half_y - 6.5, number)
         plan.label(px, profile_y + f * high_z + 5.5, number)
-    for z in levels:
+    # The design waterline is labelled first, then the others from the lowest up.
+    for z in sorted(levels, key=lambda z: (abs(z) >= 1e-9 * height, z)):
         layer = "dwl" if abs(z) < 1e-9 * height else "grid"
         y = profile_y + f * z
         plan.line(layer, (x0 + f * lines.low[0] - 6, y), (x0 + f * lines.high[0] + 6, y))
@@ -363,18 +379,19 @@ def lines_plan(
         text = "DWL" if layer == "dwl" else f"WL {z:g}"
         plan.label(x0 + f * lines.low[0] - 7, y, text, anchor="end")
         plan.label(body_x + f * breadth + 5, y, text, anchor="start")
+    plan.label(body_x, body_y + f * low_z - 5.5, "CL")
+    plan.label(x0 + f * lines.low[0] - 7, half_y, "CL", anchor="end")
     for y in offs:
         py = half_y + f * y
         plan.line("grid", (x0 + f * lines.low[0] - 6, py), (x0 + f * lines.high[0] + 6, py))
-        plan.label(x0 + f * lines.low[0] - 7, py, f"B {y:g}", anchor="end")
+        known = plan.label(x0 + f * lines.low[0] - 7, py, f"B {y:g}", anchor="end")
         for sign in (-1, 1):
             px = body_x + sign * f * y
             plan.line("grid", (px, body_y + f * low_z - 3), (px, body_y + f * high_z + 3))
-            plan.label(px, body_y + f * low_z - 5.5, f"B {y:g}")
+            # In a narrow body plan the half-breadth plan says which they are.
+            plan.label(px, body_y + f * low_z - 5.5, f"B {y:g}", needed=not known)
     plan.line("grid", (x0 + f * lines.low[0] - 6, half_y), (x0 + f * lines.high[0] + 6, half_y))
-    plan.label(x0 + f * lines.low[0] - 7, half_y, "CL", anchor="end")
     plan.line("grid", (body_x, body_y + f * low_z - 3), (body_x, body_y + f * high_z + 3))
-    plan.label(body_x, body_y + f * low_z - 5.5, "CL")
     base = profile_y + f * low_z
     plan.line("grid", (x0 + f * lines.low[0] - 6, base), (x0 + f * lines.high[0] + 6, base))
     plan.label(x0 + f * lines.high[0] + 7, base, "BL", anchor="start")
@@ -431,6 +448,10 @@ def lines_plan(
             ) * np.sign(curve.points[:, 1] + 1e-300)
             put("diagonals", [_Curve(flat, slopes)], 0, 1, half)
     _title_block(plan, block, title, name, unit, metres, flotation, lines, ends, mirrored)
+    if plan.left_out:
+        names = list(dict.fromkeys(plan.left_out))
+        more = f" and {len(names) - 8} more" if len(names) > 8 else ""
+        plan.label(30, 30, f"without labels: {', '.join(names[:8])}{more}", 2.5, anchor="start")
     return plan
 
 

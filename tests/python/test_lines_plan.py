@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import re
 import zlib
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import moldloft
+import random_models
 from conftest import SAILBOAT
 from moldloft.lines_plan import _overlap, draw, dxf, lines_plan, pdf, svg
 
@@ -28,6 +30,24 @@ def test_labels_are_there_and_do_not_overlap(plan):
     for k, a in enumerate(plan.texts):
         assert not any(_overlap(a, b) for b in plan.texts[k + 1 :])
     assert any(word.startswith("volume  117.45 ft³") for word in words)
+
+
+@pytest.mark.parametrize("seed", range(60 if os.environ.get("MOLDLOFT_SOAK") else 6))
+def test_plans_of_drawn_ships_are_labelled(seed):
+    family = (random_models.chine_hull, random_models.round_hull, random_models.faceted_ship)
+    model = moldloft.loads(family[seed % 3](np.random.default_rng(seed)).text)
+    drawn = lines_plan(model)
+    words = [text.text for text in drawn.texts]
+    assert drawn.left_out == [] and all(words.count(str(k)) >= 2 for k in range(11))
+    for k, a in enumerate(drawn.texts):
+        assert not any(_overlap(a, b) for b in drawn.texts[k + 1 :])
+
+
+def test_labels_without_place_are_listed_on_the_sheet():
+    model = moldloft.load(Path(SAILBOAT, "hull.sdl"))
+    drawn = lines_plan(model, waterline_spacing=0.2)
+    (note,) = [t.text for t in drawn.texts if t.text.startswith("without labels: ")]
+    assert drawn.left_out and drawn.left_out[0] in note and " more" in note
 
 
 def test_the_waterline_is_that_of_the_hydrostatics(plan):

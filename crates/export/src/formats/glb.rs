@@ -8,7 +8,6 @@ use moldloft_picture::patch_colour;
 
 pub const FORMAT: Format = Format {
     name: "glb",
-    aliases: &["gltf"],
     suffix: "glb",
     about: "glTF with patch names and colours",
     write,

@@ -6,7 +6,6 @@ use moldloft_io::vtk::{self, NamedFile};
 
 pub const FORMAT: Format = Format {
     name: "vtp",
-    aliases: &["vtk"],
     suffix: "vtp",
     about: "VTK polygons",
     holds: Holds::PanelsAndLines,
