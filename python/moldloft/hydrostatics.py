@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 __all__ = ["HydrostaticTable", "Hydrostatics", "RightingCurve"]
 
 
-#: Figures whose bounds are shares of themselves.
+#: Figures that must be known to the accuracy of themselves; moments are known to that of the body's
+#: size.
 _RELATIVE = ("volume", "displacement", "wetted_area", "waterplane_area")
-_RELATIVE += ("waterplane_it", "waterplane_il")
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -258,3 +259,15 @@ def test_righting_moments_are_in_the_unit_that_is_stated(
     row = m.righting_curve([0.1], mass, cg=(0, 0, 0.2), density="salt").rows[0]
     moment = mass * kilograms * 9.80665 * row.gz * metres
     assert row.righting_moment * newtons * metres == pytest.approx(moment, rel=1e-9)
+
+
+def test_what_is_known_less_well_than_asked_for_is_remarked(barge):
+    state = barge.hydrostatics(level=T)
+    assert state.remarks == [] and state.accuracy == 1e-6
+    assert max(state.bounds[name] for name in ("volume", "waterplane_area")) < 1e-6
+    worse = replace(state, bounds={**state.bounds, "volume": 3e-5 * state.volume}, open_edges=2)
+    assert worse.remarks == [
+        "2 open edges of the skin below the water: results are unreliable",
+        "volume is known to 3e-05 of itself; 1e-06 was asked for",
+    ]
+    assert "volume is known to 3e-05" in worse._repr_html_()
