@@ -110,3 +110,22 @@ def test_derivatives_equal_differences(seed):
         scale = max(abs(getattr(row, figure)), 1e-3)
         difference = (high - low) / (2 * step)
         assert row.derivatives[figure]["w"] == pytest.approx(difference, abs=1e-7 * scale), figure
+
+
+@pytest.mark.parametrize("seed", range(100 if SOAK else 5))
+def test_sections_add_up_to_the_volume(seed):
+    drawn = random_models.drawn(seed)
+    model = moldloft.loads(drawn.text)
+    level = np.random.default_rng(seed + 10**6).uniform(drawn.low, drawn.high)
+    row = model.hydrostatics(level=level)
+    along = triangles(model)[:, :, 0]
+    low, length = along.min(), np.ptp(along)
+    sums = []
+    for count in (500, 2000):
+        stations = low + (np.arange(count) + 0.5) / count * length
+        areas = model.section_areas(stations, [level])[:, 0] * length / count
+        sums.append((areas.sum(), (areas * stations).sum()))
+    (coarse, _), (volume, moment) = sums
+    # Columns begin with an upright tangent: the error falls with the power 1.5 there.
+    assert volume == pytest.approx(row.volume, abs=abs(volume - coarse) + 1e-5 * row.volume)
+    assert moment / volume == pytest.approx(row.lcb, abs=1e-3 * length)
