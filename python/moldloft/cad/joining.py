@@ -32,6 +32,8 @@ _PARTED = 1e-3
 class _Side:
     """A side of a face along an edge."""
 
+    face: str
+    """The face."""
     name: str
     """What the program calls it."""
     places: Floats
@@ -59,6 +61,8 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
     size = float(np.ptp(np.concatenate(nets), axis=0).max()) if nets else 0.0
     apart = 0.0
     left = 0
+    seams: list[str] = []
+    trimmed = {face.name for face in found.faces if not face.natural}
     for sides in shared.values():
         for one, other in pairwise(sides):
             if one is None or other is None:
@@ -66,6 +70,9 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
             gap = min(_gap(one.places, other.places), _gap(one.places, other.places[::-1]))
             length = float(np.linalg.norm(np.diff(one.places, axis=0), axis=1).sum())
             if one.name == other.name or length == 0:
+                continue
+            if one.face == other.face and one.face in trimmed:
+                seams.append(one.face)
                 continue
             if gap > _PARTED * length:
                 left += 1
@@ -79,6 +86,10 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
     if lost:
         found.remarks.append(
             f"{len(lost)} shared edges are not joined: they are parts of edges of their surfaces"
+        )
+    if seams:
+        found.remarks.append(
+            f"trimmed faces that meet themselves are open there: {', '.join(dict.fromkeys(seams))}"
         )
     if left:
         found.remarks.append(
@@ -98,9 +109,11 @@ def _side(face: ImportedFace, cycle: int, k: int) -> _Side | None:
         edge = border(trace)
         held = np.full(_PLACES, float(edge[1]))
         at = (held, t) if edge[0] == "u" else (t, held)
-        return _Side(f"{face.name}.{edge}", face.surface(*at))
+        return _Side(face.name, f"{face.name}.{edge}", face.surface(*at))
     u, v, _ = trace(t[::-1] if backwards else t).T
-    return _Side(f"{face.name}_s{cycle}_{k}", face.surface(np.clip(u, 0, 1), np.clip(v, 0, 1)))
+    return _Side(
+        face.name, f"{face.name}_s{cycle}_{k}", face.surface(np.clip(u, 0, 1), np.clip(v, 0, 1))
+    )
 
 
 def _gap(one: Floats, other: Floats) -> float:
