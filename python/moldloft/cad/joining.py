@@ -83,6 +83,18 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
                 name += "_"
             tolerance = _rounded_up(max(2 * gap, _ROUNDING * size))
             lines.append(f"Join {name}({one.name}, {other.name}, tolerance = {tolerance});")
+    poles, alone = _poles(found, _ROUNDING * size)
+    for first, second in poles:
+        name = f"join{len(lines) + 1}"
+        while name in taken:
+            name += "_"
+        tolerance = _rounded_up(_ROUNDING * size)
+        lines.append(f"Join {name}({first}, {second}, tolerance = {tolerance});")
+    if alone:
+        found.remarks.append(
+            f"trimmed faces that end in one point are open there by a line of no length: "
+            f"{', '.join(alone)}"
+        )
     if lost:
         found.remarks.append(
             f"{len(lost)} shared edges are not joined: they are parts of edges of their surfaces"
@@ -114,6 +126,28 @@ def _side(face: ImportedFace, cycle: int, k: int) -> _Side | None:
     return _Side(
         face.name, f"{face.name}_s{cycle}_{k}", face.surface(np.clip(u, 0, 1), np.clip(v, 0, 1))
     )
+
+
+def _poles(found: Imported, near: float) -> tuple[list[tuple[str, str]], list[str]]:
+    """Sides of trimmed faces that are one point: those of two faces that meet, and other faces."""
+    sides: list[_Side] = []
+    for face in found.faces:
+        if face.natural:
+            continue
+        for c, cycle in enumerate(face.loops):
+            own = [_side(face, c, k) for k in range(len(cycle))]
+            sides += [s for s in own if s is not None and np.ptp(s.places, axis=0).max() <= near]
+    pairs: list[tuple[str, str]] = []
+    alone: list[str] = []
+    while sides:
+        one = sides.pop()
+        there = [s for s in sides if np.abs(s.places[0] - one.places[0]).max() <= near]
+        if len(there) == 1 and there[0].face != one.face:
+            pairs.append((there[0].name, one.name))
+        else:
+            alone += dict.fromkeys([one.face, *(s.face for s in there)])
+        sides = [s for s in sides if all(s is not other for other in there)]
+    return pairs, alone
 
 
 def _gap(one: Floats, other: Floats) -> float:

@@ -142,25 +142,45 @@ def read(path: Path, metres: float) -> Imported:
         When the file is not of its format, or holds no shape.
     """
     needed("OCP", "cadquery-ocp-novtk", "reading STEP and IGES")
-    found = Imported(metres=metres)
     data = read_bytes(path)
     if not data.strip():
         raise FileError(f"cannot read `{path}`: the file is empty")
     iges = path.suffix.lower() in (".igs", ".iges")
     text = data.decode("latin-1")
     source = IgesText.of(path, text) if iges else StepText.of(path, text)
-    found.remarks += source.remarks
-    document = _document(metres)
-    done = _transferred(source.text.encode("latin-1"), iges, document)
+    found, done = _held(source, iges, metres)
+    if isinstance(source, StepText) and len(found.faces) < len(source.whole_faces):
+        # One missing vertex may take a body with it.
+        rest, again = _held(source.only_faces(), iges, metres)
+        if again and len(rest.faces) > len(found.faces):
+            rest.remarks.append(
+                f"the {len(rest.faces)} faces that are whole are kept, their body is not"
+            )
+            found, done = rest, again
     if not done and source.remarks:
         raise FileError(f"cannot read `{path}`: {'; '.join(source.remarks)}")
     if not done:
         kind = "an IGES" if iges else "a STEP"
         raise FileError(f"cannot read `{path}`: not {kind} file that OCCT takes")
-    _collect(document, found, source.names)
+    numbers = [n for face in found.faces for n in {n for own in face.loops for n, _, _ in own}]
+    if iges and len(found.faces) > 1 and len({*numbers}) == len(numbers):
+        found.remarks.append(
+            "no two faces share an edge in this file, as in IGES they seldom do: they are not "
+            "joined; STEP keeps what is joined"
+        )
     if not found.faces and not found.curves:
         raise FileError(f"cannot read `{path}`: it holds no face and no curve")
     return found
+
+
+def _held(source: StepText | IgesText, iges: bool, metres: float) -> tuple[Imported, bool]:
+    """What OCCT makes of a file's text, and whether it can be read."""
+    found = Imported(metres=metres, remarks=list(source.remarks))
+    document = _document(metres)
+    done = _transferred(source.text.encode("latin-1"), iges, document)
+    if done:
+        _collect(document, found, source.names)
+    return found, done
 
 
 def _transferred(data: bytes, iges: bool, document: Any) -> bool:

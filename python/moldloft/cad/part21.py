@@ -89,10 +89,20 @@ class StepText:
         made._look_at_references()
         if whole:
             made._look_at_units()
-        else:
-            made._cut(path)
+            made._mark()
+            return made
+        if not made.whole_faces:
+            raise FileError(
+                f"cannot read `{path}`: the end is missing, and no face before it is whole; the "
+                "file is cut short"
+            )
+        made.remarks.insert(
+            0,
+            f"the end of the file is missing: it is cut short after #{max(made.entities)}; "
+            f"{len(made.whole_faces)} faces before are whole and kept, bodies and curves are not",
+        )
         made._mark()
-        return made
+        return made.only_faces()
 
     @cached_property
     def entities(self) -> dict[int, str]:
@@ -232,33 +242,31 @@ class StepText:
                     return float(value[1]) * inner
         return None
 
-    def _cut(self, path: object) -> None:
-        """Makes one shell of the faces that are whole, for roots may be lost with the end."""
-        whole = [n for n in self.faces if not self.missing(n)]
-        if not whole:
-            raise FileError(
-                f"cannot read `{path}`: the end is missing, and no face before it is whole; the "
-                "file is cut short"
-            )
+    @cached_property
+    def whole_faces(self) -> list[int]:
+        """The faces of which nothing is missing."""
+        return [n for n in self.faces if not self.missing(n)]
+
+    def only_faces(self) -> StepText:
+        """A file of the faces that are whole, as one shell; for what holds them may be lost."""
+        remarks = list(self.remarks)
+        whole = self.whole_faces
         last = max(self.entities)
         contexts = [
             n
             for n, b in self.entities.items()
             if "GLOBAL_UNIT_ASSIGNED_CONTEXT" in b and not self.missing(n)
         ]
-        self.remarks.insert(
-            0,
-            f"the end of the file is missing: it is cut short after #{last}; {len(whole)} faces "
-            "before are whole and kept, bodies and curves are not",
-        )
         roots = "SHAPE_DEFINITION_REPRESENTATION|CONTEXT_DEPENDENT_SHAPE_REPRESENTATION"
         kept, placed = re.subn(rf"#\d+\s*=\s*(?:{roots})\s*\([^;]*;", "", self.text)
         if placed > 1 or any("ITEM_DEFINED_TRANSF" in b for b in self.entities.values()):
-            self.remarks.append("parts are where they were drawn: positions in assemblies are lost")
+            remarks.append("parts are where they were drawn: positions in assemblies are lost")
         if contexts:
-            self._look_at_units()
+            units = StepText(self.text)
+            units._look_at_units()
+            remarks += [remark for remark in units.remarks if remark not in remarks]
         else:
-            self.remarks.append(f"the file names no unit of length; {_TAKEN['LENGTH_UNIT']}")
+            remarks.append(f"the file names no unit of length; {_TAKEN['LENGTH_UNIT']}")
         shell = ",".join(f"#{n}" for n in whole)
         n = last
         added = [
@@ -281,7 +289,9 @@ class StepText:
             f"SHAPE_DEFINITION_REPRESENTATION(#{n + 14},#{n + 7})",
         ]
         tail = "".join(f"#{n + k + 1}={body};\n" for k, body in enumerate(added))
-        self.text = kept.replace(_END, tail + _END)
+        end = kept.rindex("ENDSEC")
+        names = {n: name for n, name in self.names.items() if n in whole}
+        return StepText(kept[:end] + tail + kept[end:], remarks, names)
 
     def _mark(self) -> None:
         """Names the faces by their numbers, so that those that OCCT drops are known."""
