@@ -1,6 +1,7 @@
 /* A model in a C program: a parameter, a million points, derivatives and panels.
  *
- *   cc points.c -I../../crates/capi/include -L../../target/release -lmoldloft -lm -o points
+ *   ln -sf libmoldloft.so ../../target/release/libmoldloft.so.1
+ *   cc points.c -I../../crates/capi/include -L../../target/release -lmoldloft -Wl,-rpath,../../target/release -lm -o points
  */
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,7 @@
 ! A model in a Fortran program: a parameter, points, a number and its derivative, panels.
 !
-!   gfortran points.f90 -L../../target/release -lmoldloft -o points
+!   ln -sf libmoldloft.so ../../target/release/libmoldloft.so.1
+!   gfortran points.f90 -L../../target/release -lmoldloft -Wl,-rpath,../../target/release -o points
 module moldloft
   use iso_c_binding
   implicit none

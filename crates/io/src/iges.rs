@@ -375,12 +375,13 @@ fn rectangle(
     (surface, PlaneFrame { origin: corner, axes })
 }
 
-/// A side's curve in parameters, run as the loop runs.
+/// A side's curve in parameters, run as the loop runs; none where its pace is not that of the curve in space, for
+/// readers compare both at equal parameters.
 fn traced(side: &Coedge, curve: &Nurbs<1>, flat: Option<&PlaneFrame>) -> Option<Nurbs<1>> {
     match flat {
         Some(flat) => Some(flat.trace(curve)),
         None => {
-            let trace = side.trace.as_ref()?;
+            let trace = side.trace.as_ref().filter(|_| side.alike)?;
             Some(if side.forward { trace.clone() } else { trace.reversed() })
         }
     }

@@ -103,7 +103,8 @@ def _whole(face: ImportedFace, taken: set[str]) -> list[str]:
         at = ", ".join(map(_plain, places.mean(axis=0)))
         lines.append(f"AbsPoint {pole}({at}, visible = 0);")
         named |= dict.fromkeys(edge.tolist(), pole)
-    return [*lines, face.surface._statement(face.name, named)]
+    text = face.surface._statement(face.name, named)
+    return [*lines, text.removesuffix(");") + ", orientation = 1);" if face.reversed else text]
 
 
 def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
@@ -138,7 +139,8 @@ def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
                 text += f", weights = {_braced(map(_plain, own.weights))}"
             lines.append(_wrapped(text + ", visible = 0);"))
             names.append(label)
-    lines.append(_wrapped(f"TrimSurf {face.name}({base}, {_braced(names)});"))
+    turned = ", orientation = 1" if face.reversed else ""
+    lines.append(_wrapped(f"TrimSurf {face.name}({base}, {_braced(names)}{turned});"))
     return lines
 
 

@@ -32,6 +32,8 @@ _PARTED = 1e-3
 class _Side:
     """A side of a face along an edge."""
 
+    face: str
+    """The face."""
     name: str
     """What the program calls it."""
     places: Floats
@@ -59,6 +61,8 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
     size = float(np.ptp(np.concatenate(nets), axis=0).max()) if nets else 0.0
     apart = 0.0
     left = 0
+    seams: list[str] = []
+    trimmed = {face.name for face in found.faces if not face.natural}
     for sides in shared.values():
         for one, other in pairwise(sides):
             if one is None or other is None:
@@ -66,6 +70,9 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
             gap = min(_gap(one.places, other.places), _gap(one.places, other.places[::-1]))
             length = float(np.linalg.norm(np.diff(one.places, axis=0), axis=1).sum())
             if one.name == other.name or length == 0:
+                continue
+            if one.face == other.face and one.face in trimmed:
+                seams.append(one.face)
                 continue
             if gap > _PARTED * length:
                 left += 1
@@ -76,9 +83,25 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
                 name += "_"
             tolerance = _rounded_up(max(2 * gap, _ROUNDING * size))
             lines.append(f"Join {name}({one.name}, {other.name}, tolerance = {tolerance});")
+    poles, alone = _poles(found, _ROUNDING * size)
+    for first, second in poles:
+        name = f"join{len(lines) + 1}"
+        while name in taken:
+            name += "_"
+        tolerance = _rounded_up(_ROUNDING * size)
+        lines.append(f"Join {name}({first}, {second}, tolerance = {tolerance});")
+    if alone:
+        found.remarks.append(
+            f"trimmed faces that end in one point are open there by a line of no length: "
+            f"{', '.join(alone)}"
+        )
     if lost:
         found.remarks.append(
             f"{len(lost)} shared edges are not joined: they are parts of edges of their surfaces"
+        )
+    if seams:
+        found.remarks.append(
+            f"trimmed faces that meet themselves are open there: {', '.join(dict.fromkeys(seams))}"
         )
     if left:
         found.remarks.append(
@@ -98,9 +121,33 @@ def _side(face: ImportedFace, cycle: int, k: int) -> _Side | None:
         edge = border(trace)
         held = np.full(_PLACES, float(edge[1]))
         at = (held, t) if edge[0] == "u" else (t, held)
-        return _Side(f"{face.name}.{edge}", face.surface(*at))
+        return _Side(face.name, f"{face.name}.{edge}", face.surface(*at))
     u, v, _ = trace(t[::-1] if backwards else t).T
-    return _Side(f"{face.name}_s{cycle}_{k}", face.surface(np.clip(u, 0, 1), np.clip(v, 0, 1)))
+    return _Side(
+        face.name, f"{face.name}_s{cycle}_{k}", face.surface(np.clip(u, 0, 1), np.clip(v, 0, 1))
+    )
+
+
+def _poles(found: Imported, near: float) -> tuple[list[tuple[str, str]], list[str]]:
+    """Sides of trimmed faces that are one point: those of two faces that meet, and other faces."""
+    sides: list[_Side] = []
+    for face in found.faces:
+        if face.natural:
+            continue
+        for c, cycle in enumerate(face.loops):
+            own = [_side(face, c, k) for k in range(len(cycle))]
+            sides += [s for s in own if s is not None and np.ptp(s.places, axis=0).max() <= near]
+    pairs: list[tuple[str, str]] = []
+    alone: list[str] = []
+    while sides:
+        one = sides.pop()
+        there = [s for s in sides if np.abs(s.places[0] - one.places[0]).max() <= near]
+        if len(there) == 1 and there[0].face != one.face:
+            pairs.append((there[0].name, one.name))
+        else:
+            alone += dict.fromkeys([one.face, *(s.face for s in there)])
+        sides = [s for s in sides if all(s is not other for other in there)]
+    return pairs, alone
 
 
 def _gap(one: Floats, other: Floats) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -14,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.cad import identifier, needed
+from moldloft.cad.iges_text import IgesText
+from moldloft.cad.part21 import StepText
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs
 from moldloft.storage import read_bytes
@@ -124,6 +127,8 @@ class Imported:
 def read(path: Path, metres: float) -> Imported:
     """The faces and curves of a STEP or IGES file, in units of so many metres.
 
+    Of a file that is cut short the faces that are whole are read, with remarks.
+
     Parameters
     ----------
     path
@@ -134,100 +139,182 @@ def read(path: Path, metres: float) -> Imported:
     Raises
     ------
     FileError
-        When the file is not of its format, cut short, or holds no shape.
+        When the file is not of its format, or holds no shape.
     """
     needed("OCP", "cadquery-ocp-novtk", "reading STEP and IGES")
-    found = Imported(metres=metres)
+    data = read_bytes(path)
+    if not data.strip():
+        raise FileError(f"cannot read `{path}`: the file is empty")
     iges = path.suffix.lower() in (".igs", ".iges")
-    _look(path, iges, found)
-    if iges:
-        from OCP.IGESCAFControl import IGESCAFControl_Reader
-
-        reader: Any = IGESCAFControl_Reader()
-    else:
-        from OCP.Interface import Interface_Static
-        from OCP.STEPCAFControl import STEPCAFControl_Reader
-
-        reader = STEPCAFControl_Reader()
-        Interface_Static.SetIVal_s("read.stepcaf.subshapes.name", 1)
-    reader.SetNameMode(True)
-    document = _document(metres)
-    with _quiet():
-        status = reader.ReadFile(str(path))
-        done = str(status).endswith("RetDone") and reader.Transfer(document)
+    text = data.decode("latin-1")
+    source = IgesText.of(path, text) if iges else StepText.of(path, text)
+    found, done = _held(source, iges, metres)
+    if isinstance(source, StepText) and len(found.faces) < len(source.whole_faces):
+        # One missing vertex may take a body with it.
+        rest, again = _held(source.only_faces(), iges, metres)
+        if again and len(rest.faces) > len(found.faces):
+            rest.remarks.append(
+                f"the {len(rest.faces)} faces that are whole are kept, their body is not"
+            )
+            found, done = rest, again
+    if not done and source.remarks:
+        raise FileError(f"cannot read `{path}`: {'; '.join(source.remarks)}")
     if not done:
         kind = "an IGES" if iges else "a STEP"
-        raise FileError(f"cannot read `{path}`: not {kind} file that OCCT takes, or cut short")
-    _collect(document, found)
+        raise FileError(f"cannot read `{path}`: not {kind} file that OCCT takes")
+    numbers = [n for face in found.faces for n in {n for own in face.loops for n, _, _ in own}]
+    if iges and len(found.faces) > 1 and len({*numbers}) == len(numbers):
+        found.remarks.append(
+            "no two faces share an edge in this file, as in IGES they seldom do: they are not "
+            "joined; STEP keeps what is joined"
+        )
     if not found.faces and not found.curves:
         raise FileError(f"cannot read `{path}`: it holds no face and no curve")
     return found
 
 
-def _look(path: Path, iges: bool, found: Imported) -> None:
-    """What the text says that OCCT passes over: missing units, references to nothing."""
-    import re
+def _held(source: StepText | IgesText, iges: bool, metres: float) -> tuple[Imported, bool]:
+    """What OCCT makes of a file's text, and whether it can be read."""
+    found = Imported(metres=metres, remarks=list(source.remarks))
+    document = _document(metres)
+    done = _transferred(source.text.encode("latin-1"), iges, document)
+    if done:
+        _collect(document, found, source.names)
+    return found, done
 
-    text = read_bytes(path).decode("latin-1")
-    if not text.strip():
-        raise FileError(f"cannot read `{path}`: the file is empty")
+
+def _transferred(data: bytes, iges: bool, document: Any) -> bool:
+    """Whether OCCT reads a file's bytes into a document."""
     if iges:
-        if not re.search(r"^.{72}T", text, re.M):
-            raise FileError(f"cannot read `{path}`: no terminate section; the file is cut short")
-        return
-    if not text.lstrip().startswith("ISO-10303-21"):
-        raise FileError(f"cannot read `{path}`: not a STEP file (it must begin with ISO-10303-21)")
-    if "END-ISO-10303-21" not in text:
-        raise FileError(f"cannot read `{path}`: the end is missing; the file is cut short")
-    plain = re.sub(r"'[^']*'", "''", text)
-    if "LENGTH_UNIT" not in plain:
-        found.remarks.append("the file names no unit of length; millimetres are taken")
-    defined = set(re.findall(r"#(\d+)\s*=", plain))
-    lost = sorted({int(n) for n in re.findall(r"#(\d+)", plain) if n not in defined})
-    if lost:
-        few = ", ".join(f"#{n}" for n in lost[:5])
-        found.remarks.append(
-            f"{len(lost)} entities that others refer to are missing ({few}); faces may be lost"
-        )
-    faces = len(re.findall(r"=\s*ADVANCED_FACE\s*\(", plain))
-    found.__dict__["_stated"] = faces
+        from OCP.IGESCAFControl import IGESCAFControl_Reader
+
+        reader: Any = IGESCAFControl_Reader()
+        reader.SetNameMode(True)
+        # This reader takes files only.
+        with tempfile.TemporaryDirectory() as folder, _quiet():
+            path = Path(folder) / "model.igs"
+            path.write_bytes(data)
+            status = reader.ReadFile(str(path))
+            return str(status).endswith("RetDone") and reader.Transfer(document)
+    from OCP.Interface import Interface_Static
+    from OCP.STEPCAFControl import STEPCAFControl_Reader
+
+    reader = STEPCAFControl_Reader()
+    Interface_Static.SetIVal_s("read.stepcaf.subshapes.name", 1)
+    reader.SetNameMode(True)
+    with _quiet():
+        status = reader.ChangeReader().ReadStream("model.step", io.BytesIO(data))
+        return str(status).endswith("RetDone") and reader.Transfer(document)
 
 
-def _collect(document: Any, found: Imported) -> None:
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
-    from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED
-    from OCP.TopoDS import TopoDS
-
-    names = _names(document)
+def _collect(document: Any, found: Imported, numbered: dict[int, str]) -> None:
+    """The faces and curves of a document; faces of STEP files are called by their numbers there."""
+    named = _Names(document)
     taken: set[str] = set()
-    edges: Any = None
+    seen: set[int] = set()
     known = 0
     for shape in _free(document):
-        originals = _unique(shape, TopAbs_FACE)
-        convert = BRepBuilderAPI_NurbsConvert(shape, True)
-        edges = _map(convert.Shape(), TopAbs_EDGE)
-        for original in originals:
-            label = _called(names, original) or f"face{len(found.faces) + 1}"
-            face = TopoDS.Face(convert.ModifiedShape(original))
-            try:
-                made = _face(face, edges, identifier(label, taken))
-            except Error as error:
-                found.remarks.append(f"face `{label}` is left out: {error}")
-                continue
-            made.reversed = face.Orientation() == TopAbs_REVERSED
+        labels = _Labels(named, numbered, taken.copy(), seen, len(found.faces))
+        faces, count, left_out = _shape_faces(shape, labels, False)
+        if any(not face.natural and _own_seam(face) for face in faces):
+            # Trimmed faces cannot be joined to themselves.
+            labels = _Labels(named, numbered, taken.copy(), seen, len(found.faces))
+            faces, count, left_out = _shape_faces(shape, labels, True)
+        taken |= labels.taken
+        found.remarks += left_out
+        for face in faces:
             # Numbers of edges are those of all shapes of the file.
-            made.loops = [[(n + known, back, t) for n, back, t in own] for own in made.loops]
-            found.faces.append(made)
-        known += edges.Extent()
-        alone = _loose_edges(shape)
-        for edge in alone:
-            label = _called(names, edge) or f"curve{len(found.curves) + 1}"
+            face.loops = [[(n + known, back, t) for n, back, t in own] for own in face.loops]
+        found.faces += faces
+        known += count
+        for edge in _loose_edges(shape):
+            label = named.of(edge) or f"curve{len(found.curves) + 1}"
             curve = _space_curve(edge)
             if curve is not None:
                 found.curves[identifier(label, taken)] = curve
-    stated = found.__dict__.pop("_stated", None)
-    if stated is not None and stated > len(found.faces):
-        found.remarks.append(f"{stated} faces stand in the file, {len(found.faces)} could be read")
+    lost = [n for n in numbered if n not in seen]
+    if lost:
+        few = ", ".join(f"#{n}" for n in lost[:20]) + (", ..." if len(lost) > 20 else "")
+        found.remarks.append(
+            f"{len(lost)} of the file's {len(numbered)} faces could not be read: {few}"
+        )
+
+
+@dataclass
+class _Labels:
+    """What faces are called."""
+
+    named: _Names
+    numbered: dict[int, str]
+    taken: set[str]
+    seen: set[int]
+    count: int
+
+    def of(self, face: Any) -> tuple[str, str]:
+        """A name for the program, and what remarks call the face."""
+        self.count += 1
+        label = self.named.of(face)
+        number = int(label[1:]) if label[:1] == "#" and label[1:].isdecimal() else 0
+        known = number in self.numbered
+        if known:
+            self.seen.add(number)
+            label = self.numbered[number]
+        # Some programs write NONE for no name.
+        label = f"face{self.count}" if label in ("", "NONE") else label
+        return label, f"face #{number} (`{label}`)" if known else f"face `{label}`"
+
+
+def _shape_faces(
+    shape: Any, labels: _Labels, divided: bool
+) -> tuple[list[ImportedFace], int, list[str]]:
+    """The faces of a shape, how many edges they have, and remarks; closed faces may be halved."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+    from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideClosed
+    from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED
+    from OCP.TopoDS import TopoDS
+
+    originals = _unique(shape, TopAbs_FACE)
+    parts = {k: [original] for k, original in enumerate(originals)}
+    whole = shape
+    if divided:
+        divide = ShapeUpgrade_ShapeDivideClosed(shape)
+        with _quiet():
+            divide.Perform()
+        whole = divide.Result()
+        context = divide.GetContext()
+        parts = {k: _unique(context.Apply(f), TopAbs_FACE) for k, f in enumerate(originals)}
+    convert = BRepBuilderAPI_NurbsConvert(whole, True)
+    edges = _map(convert.Shape(), TopAbs_EDGE)
+    faces: list[ImportedFace] = []
+    remarks = []
+    for k, original in enumerate(originals):
+        label, where = labels.of(original)
+        for part in parts[k]:
+            face = TopoDS.Face(convert.ModifiedShape(part))
+            try:
+                made = _face(face, edges, identifier(label, labels.taken))
+            except Error as error:
+                remarks.append(f"{where} is left out: {error}")
+                continue
+            # The converted face has lost its sense.
+            made.reversed = part.Orientation() == TopAbs_REVERSED
+            faces.append(made)
+    uses: dict[int, int] = {}
+    for face in faces:
+        for number, _, _ in (side for cycle in face.loops for side in cycle):
+            uses[number] = uses.get(number, 0) + 1
+    for face in faces:
+        # Whole surfaces have no sides that are parts of their edges.
+        sides = [side for cycle in face.loops for side in cycle]
+        if any(uses[n] > 1 and border(t) and not is_whole(t) for n, _, t in sides):
+            face.natural = False
+    return faces, edges.Extent(), remarks
+
+
+def _own_seam(face: ImportedFace) -> bool:
+    """Whether a face meets itself along an edge."""
+    numbers = [n for cycle in face.loops for n, _, _ in cycle]
+    return len({*numbers}) < len(numbers)
 
 
 def _map(shape: Any, kind: Any) -> Any:
@@ -256,36 +343,42 @@ def _loose_edges(shape: Any) -> list[Any]:
     return found
 
 
-def _names(document: Any) -> list[tuple[Any, str]]:
-    from OCP.collections import Sequence_TDF_Label
-    from OCP.TDataStd import TDataStd_Name
-    from OCP.XCAFDoc import XCAFDoc_DocumentTool
+class _Names:
+    """The names of a document's shapes."""
 
-    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    found: list[tuple[Any, str]] = []
+    def __init__(self, document: Any) -> None:
+        from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
+        from OCP.collections import Sequence_TDF_Label
+        from OCP.TDataStd import TDataStd_Name
+        from OCP.TopLoc import TopLoc_Location
+        from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-    def walk(label: Any) -> None:
-        if label.IsAttribute(TDataStd_Name.GetID_s()):
-            name = TDataStd_Name()
-            label.FindAttribute(TDataStd_Name.GetID_s(), name)
-            found.append((tool.GetShape_s(label), name.Get().ToExtString()))
-        inner = Sequence_TDF_Label()
-        tool.GetSubShapes_s(label, inner)
-        for k in range(1, inner.Length() + 1):
-            walk(inner.Value(k))
+        tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+        self._nowhere = TopLoc_Location()
+        self._shapes = Shapes()
+        self._names: dict[int, str] = {}
 
-    labels = Sequence_TDF_Label()
-    tool.GetShapes(labels)
-    for k in range(1, labels.Length() + 1):
-        walk(labels.Value(k))
-    return found
+        def walk(label: Any) -> None:
+            if label.IsAttribute(TDataStd_Name.GetID_s()):
+                name = TDataStd_Name()
+                label.FindAttribute(TDataStd_Name.GetID_s(), name)
+                shape = tool.GetShape_s(label)
+                if not shape.IsNull():
+                    index = self._shapes.Add(shape.Located(self._nowhere))
+                    self._names.setdefault(index, name.Get().ToExtString())
+            inner = Sequence_TDF_Label()
+            tool.GetSubShapes_s(label, inner)
+            for k in range(1, inner.Length() + 1):
+                walk(inner.Value(k))
 
+        labels = Sequence_TDF_Label()
+        tool.GetShapes(labels)
+        for k in range(1, labels.Length() + 1):
+            walk(labels.Value(k))
 
-def _called(names: list[tuple[Any, str]], shape: Any) -> str:
-    for named, name in names:
-        if named.IsPartner(shape) or named.IsSame(shape):
-            return name
-    return ""
+    def of(self, shape: Any) -> str:
+        """The name of a shape, wherever it is; empty when it has none."""
+        return self._names.get(self._shapes.FindIndex(shape.Located(self._nowhere)), "")
 
 
 def _clamped(curve: Any, low: float, high: float, flat: bool) -> Nurbs:
@@ -326,12 +419,10 @@ def _space_curve(edge: Any) -> Nurbs | None:
 
 def _face(face: Any, edges: Any, name: str) -> ImportedFace:
     from OCP.BRep import BRep_Tool
-    from OCP.BRepTools import BRepTools, BRepTools_WireExplorer
+    from OCP.BRepTools import BRepTools
     from OCP.Geom import Geom_BSplineSurface
-    from OCP.Geom2d import Geom2d_TrimmedCurve
-    from OCP.Geom2dConvert import Geom2dConvert
     from OCP.GeomConvert import GeomConvert
-    from OCP.TopAbs import TopAbs_REVERSED, TopAbs_WIRE
+    from OCP.TopAbs import TopAbs_WIRE
     from OCP.TopoDS import TopoDS
 
     surface = BRep_Tool.Surface_s(face)
@@ -355,31 +446,64 @@ def _face(face: Any, edges: Any, name: str) -> ImportedFace:
     surface.Segment(u0, u1, v0, v1, 1e-12, 1e-12)
     made = _surface(surface)
     outer = BRepTools.OuterWire_s(face)
-    loops = []
     wires = _unique(face, TopAbs_WIRE)
     wires.sort(key=lambda w: not w.IsSame(outer))
-    for wire in wires:
-        cycle = []
-        explorer = BRepTools_WireExplorer(TopoDS.Wire(wire), face)
-        while explorer.More():
-            edge = explorer.Current()
-            explorer.Next()
-            low, high = BRep_Tool.Range_s(edge, face)
-            path = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
-            if path is None:
-                raise Error("an edge has no curve in its parameters")
-            spline = Geom2dConvert.CurveToBSplineCurve_s(Geom2d_TrimmedCurve(path, low, high))
-            trace = _clamped(spline, spline.FirstParameter(), spline.LastParameter(), flat=True)
-            trace.points[:, 0] = (trace.points[:, 0] - u0) / (u1 - u0)
-            trace.points[:, 1] = (trace.points[:, 1] - v0) / (v1 - v0)
-            if np.ptp(trace.points, axis=0).max() < 1e-12:
-                continue
-            number = edges.FindIndex(edge)
-            cycle.append((number, edge.Orientation() == TopAbs_REVERSED, trace))
-        loops.append(cycle)
+    frame = np.array([u0, v0, 0.0]), np.array([u1 - u0, v1 - v0, 1.0])
+    loops = [_cycle(TopoDS.Wire(wire), face, edges, frame) for wire in wires]
     traces = [trace for cycle in loops for _, _, trace in cycle]
     natural = bool(traces) and all(border(trace) for trace in traces)
     return ImportedFace(name, made, loops, natural, False)
+
+
+def _cycle(
+    wire: Any, face: Any, edges: Any, frame: tuple[Floats, Floats]
+) -> list[tuple[int, bool, Nurbs]]:
+    """The sides of a loop, in its order."""
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepTools import BRepTools_WireExplorer
+    from OCP.Geom2d import Geom2d_TrimmedCurve
+    from OCP.Geom2dConvert import Geom2dConvert
+    from OCP.TopAbs import TopAbs_REVERSED
+    from OCP.TopoDS import TopoDS, TopoDS_Iterator
+
+    held = []
+    parts = TopoDS_Iterator(wire)
+    while parts.More():
+        held.append(TopoDS.Edge(parts.Value()))
+        parts.Next()
+    found = []
+    explorer = BRepTools_WireExplorer(wire, face)
+    while explorer.More():
+        found.append(explorer.Current())
+        explorer.Next()
+    # The explorer stops at some poles and seams.
+    ordered = len(found) == len(held)
+    cycle = []
+    for edge in found if ordered else held:
+        low, high = BRep_Tool.Range_s(edge, face)
+        path = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
+        if path is None:
+            raise Error("an edge has no curve in its parameters")
+        spline = Geom2dConvert.CurveToBSplineCurve_s(Geom2d_TrimmedCurve(path, low, high))
+        trace = _clamped(spline, spline.FirstParameter(), spline.LastParameter(), flat=True)
+        trace.points[:] = (trace.points - frame[0]) / frame[1]
+        if np.ptp(trace.points, axis=0).max() < 1e-12:
+            continue
+        cycle.append((edges.FindIndex(edge), edge.Orientation() == TopAbs_REVERSED, trace))
+    return cycle if ordered else _chained(cycle)
+
+
+def _chained(sides: list[tuple[int, bool, Nurbs]]) -> list[tuple[int, bool, Nurbs]]:
+    """Sides in the order in which they follow each other in the parameters."""
+    left = list(sides)
+    chain = left[:1]
+    del left[:1]
+    while left:
+        _, back, trace = chain[-1]
+        end = trace.points[0 if back else -1]
+        away = [float(np.linalg.norm(t.points[-1 if b else 0] - end)) for _, b, t in left]
+        chain.append(left.pop(int(np.argmin(away))))
+    return chain
 
 
 def border(trace: Nurbs) -> str:

@@ -14,6 +14,9 @@ use std::sync::Arc;
 /// Curves through the same vertices that part by more than so many times the accuracy are two edges.
 const PARTED: f64 = 50.0;
 
+/// And by this share of their length: the tolerance of declared joins is seldom more.
+const JOINED: f64 = 1e-4;
+
 /// Curves within this share of the size at equal parameters run alike.
 const ALIKE: f64 = 1e-9;
 
@@ -292,18 +295,45 @@ impl<'a> Sewing<'a> {
             return Some((forward, true, off));
         }
         // Other parameters: how far each place is from the curve.
-        const FINE: usize = 400;
+        const FINE: usize = 64;
         let fine: Vec<f64> = (0..=FINE).map(|k| k as f64 / FINE as f64).collect();
-        let fine = known.curve.grid(&[fine]);
-        let foot = |p: &Vec3| {
-            fine.windows(2).map(|w| to_segment(*p, w[0], w[1])).fold(f64::INFINITY, f64::min)
-        };
-        let off = own.iter().map(foot).fold(0.0, f64::max);
-        // Chords leave a curve by an eighth of their turning, here far below a thousandth of its length.
-        let length: f64 = fine.windows(2).map(|w| w[0].distance(w[1])).sum();
-        let allowed = PARTED * self.accuracy + 1e-4 * length;
-        (off <= allowed).then_some((forward, false, off.min(PARTED * self.accuracy)))
+        let fine = [fine];
+        let own = curve.grid(&fine);
+        let places = known.curve.grid(&fine);
+        let off = own.iter().map(|p| to_curve(*p, &known.curve, &places)).fold(0.0, f64::max);
+        let length: f64 = places.windows(2).map(|w| w[0].distance(w[1])).sum();
+        // What joins make one may be this far apart; the file says how far it is.
+        let allowed = PARTED * self.accuracy + JOINED * length;
+        (off <= allowed).then_some((forward, false, off))
     }
+}
+
+/// The distance of a place from a curve, known at even parameters: the least near the nearest chord, by golden
+/// sections. It is never less than the true distance.
+fn to_curve(p: Vec3, curve: &Nurbs<1>, places: &[Vec3]) -> f64 {
+    /// Sections that leave 1e-7 of two chords.
+    const SECTIONS: usize = 32;
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let chords = places.len() - 1;
+    let distances = places.windows(2).map(|w| to_segment(p, w[0], w[1]));
+    let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(k, _)| k);
+    let far = |t: f64| p.distance(curve.at([t]));
+    let mut low = nearest.saturating_sub(1) as f64 / chords as f64;
+    let mut high = (nearest + 2).min(chords) as f64 / chords as f64;
+    let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+    let mut values = inner.map(far);
+    for _ in 0..SECTIONS {
+        if values[0] < values[1] {
+            (high, inner[1], values[1]) = (inner[1], inner[0], values[0]);
+            inner[0] = high - GOLDEN * (high - low);
+            values[0] = far(inner[0]);
+        } else {
+            (low, inner[0], values[0]) = (inner[0], inner[1], values[1]);
+            inner[1] = low + GOLDEN * (high - low);
+            values[1] = far(inner[1]);
+        }
+    }
+    values[0].min(values[1]).min(far(low)).min(far(high))
 }
 
 fn to_segment(p: Vec3, a: Vec3, b: Vec3) -> f64 {

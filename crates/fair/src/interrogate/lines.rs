@@ -15,13 +15,13 @@ use moldloft_num::Vec3;
 /// use moldloft_num::Vec3;
 /// let place = |k: usize| Vec3::of((k / 15) as f64, (k % 15) as f64, 0.0);
 /// let mut points: Vec<_> = (0..225).map(place).collect();
-/// points[112].z = 0.5;
+/// points[65].z = 0.5;
 /// let rows = (0..15).map(|i| ((0..15).map(|j| 15 * i + j).collect(), false));
 /// let columns = (0..15).map(|j| ((0..15).map(|i| 15 * i + j).collect(), false));
 /// let lines: Vec<(Vec<usize>, bool)> = rows.chain(columns).collect();
 /// let found = line_findings(&points, &lines, &[]);
 /// assert_eq!(found.len(), 1);
-/// assert_eq!((found[0].0, found[0].1.index()), (7, 112));
+/// assert_eq!((found[0].0, found[0].1.index()), (4, 65));
 /// ```
 pub fn line_findings(
     points: &[Vec3<f64>],

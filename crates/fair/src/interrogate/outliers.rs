@@ -70,9 +70,12 @@ const CHANCE: f64 = 0.01;
 /// aerofoils none had a false finding at 5 that was not near an end.
 const SCORES: [f64; 2] = [4.0, 5.0];
 
-/// The same where neighbours on one side are missing: there a cubic is extrapolated, and a straight
-/// end or a trailing edge looks like a slip.
+/// The same where fewer than `CLOSE` neighbours are on one side: there a cubic is extrapolated, and a
+/// straight end or a trailing edge looks like a slip.
 const END_SCORE: f64 = 7.0;
+
+/// The same between the two, where there are more on one side than on the other.
+const ASIDE_SCORE: f64 = 6.0;
 
 /// Leaving a point out cures when no neighbour has a larger score without it.
 const CURED: f64 = 6.0;
@@ -93,6 +96,15 @@ const STANDS_OUT: f64 = 6.0;
 /// Neighbours on either side.
 const SIDE: usize = 5;
 
+/// Neighbours on either side that have to agree, and on how much of what all find: more of it beside
+/// an end.
+const CLOSE: usize = 3;
+const CONFIRMS: [f64; 2] = [0.5, 0.8];
+
+/// Points of which the scale of the others is looked at, those that stand out most by their own
+/// neighbourhood's scale and by the file's.
+const CANDIDATES: [usize; 2] = [8, 4];
+
 /// Proposals at most.
 const MOST: usize = 5;
 
@@ -108,6 +120,8 @@ const FREEDOM: f64 = (2 * SIDE - 4) as f64;
 struct NeighbourFit {
     /// Across the curve, over the root of 1 + leverage.
     off: f64,
+    /// The same as it is.
+    across: Vec3<f64>,
     expected: Vec3<f64>,
     leverage: f64,
     /// The scale of the neighbours about their cubic.
@@ -115,6 +129,8 @@ struct NeighbourFit {
     judged: bool,
     /// Whether there are as many neighbours on either side.
     central: bool,
+    /// Whether there are enough of them on either side for a point to be one among others.
+    inner: bool,
 }
 
 /// A least squares fit of polynomials with an extra column, by Householder's QR through modified
@@ -181,9 +197,10 @@ fn cubic(c: &[Vec3<f64>; 4], x: f64) -> [Vec3<f64>; 3] {
     ]
 }
 
-/// The indices of the neighbours of place `i` in a list, and whether it lies among them.
-fn window(i: usize, n: usize, closed: bool) -> (Vec<usize>, usize) {
-    let side = SIDE.min((n - 1) / 2);
+/// The indices of the neighbours of place `i` in a list, so many on either side, and how many of them
+/// are before it.
+fn window(i: usize, n: usize, side: usize, closed: bool) -> (Vec<usize>, usize) {
+    let side = side.min((n - 1) / 2);
     if closed {
         let all = (1..=side).rev().map(|k| (i + n - k) % n).chain((1..=side).map(|k| (i + k) % n));
         return (all.collect(), side);
@@ -192,9 +209,9 @@ fn window(i: usize, n: usize, closed: bool) -> (Vec<usize>, usize) {
     ((low..=low + 2 * side).filter(|&j| j != i).collect(), i - low)
 }
 
-fn seen(points: &[Vec3<f64>], i: usize, closed: bool) -> Option<NeighbourFit> {
+fn seen(points: &[Vec3<f64>], i: usize, side: usize, closed: bool) -> Option<NeighbourFit> {
     let n = points.len();
-    let (near, place) = window(i, n, closed);
+    let (near, place) = window(i, n, side, closed);
     let m = near.len();
     if m < 6 {
         return None;
@@ -247,16 +264,29 @@ fn seen(points: &[Vec3<f64>], i: usize, closed: bool) -> Option<NeighbourFit> {
         })
         .sum();
     let scale = (squares / (m - 4) as f64).sqrt();
+    let across = off;
     let off = off.norm() / (1.0 + leverage).sqrt();
     let judged = inside && (closed || (i > 0 && i + 1 < n));
     let central = closed || 2 * place == m;
+    let inner = central || (place >= CLOSE && m - place >= CLOSE);
     (off.is_finite() && scale.is_finite()).then_some(NeighbourFit {
         off,
+        across,
         expected: at,
         leverage,
         scale,
         judged,
         central,
+        inner,
+    })
+}
+
+/// Whether the nearest neighbours alone, `CLOSE` on either side, have the point as far off and on the
+/// same side: where a cubic does not follow the curve they miss it by much less.
+fn confirmed(points: &[Vec3<f64>], i: usize, closed: bool, wide: &NeighbourFit) -> bool {
+    seen(points, i, CLOSE, closed).is_some_and(|close| {
+        let share = CONFIRMS[usize::from(!close.central)];
+        close.across.dot(wide.across) >= share * wide.across.norm_sq()
     })
 }
 
@@ -313,29 +343,85 @@ fn threshold(count: usize, freedom: f64) -> f64 {
     student.clamp(SCORES[0], SCORES[1])
 }
 
-/// All points set against their scales.
-fn judged(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<Option<Judged>> {
-    let all: Vec<Option<NeighbourFit>> =
-        (0..points.len()).map(|i| seen(points, i, closed)).collect();
-    let fit = || all.iter().flatten().filter(|s| s.judged);
-    let file = (1.4826 * median(fit().map(|s| s.off).collect())).max(floor);
-    let weight = prior(fit().map(|s| s.scale), floor.max(f64::MIN_POSITIVE));
-    all.into_iter()
-        .map(|s| {
-            let seen = s.filter(|s| s.judged)?;
-            // Where cubics miss by more than noise does the file says little: a nose has a scale of
-            // its own. The squares of noise exceed the double in one neighbourhood of twenty.
-            let beyond =
-                (seen.scale * seen.scale / (file * file).max(f64::MIN_POSITIVE) - 2.0) / 2.0;
-            let weight = weight + (PRIOR[0] - weight) * beyond.clamp(0.0, 1.0);
-            let usual = threshold(points.len(), weight + FREEDOM);
-            let squares = weight * file * file + FREEDOM * seen.scale * seen.scale;
-            let scale = (squares / (weight + FREEDOM)).sqrt().max(f64::MIN_POSITIVE);
-            let least = if seen.central { usual } else { END_SCORE };
-            let deviation = scale * (1.0 + seen.leverage).sqrt();
-            Some(Judged { seen, score: seen.off / scale, least, deviation })
+/// What all points look like from their neighbours.
+fn fits(points: &[Vec3<f64>], closed: bool) -> Vec<Option<NeighbourFit>> {
+    (0..points.len()).map(|i| seen(points, i, SIDE, closed)).collect()
+}
+
+/// The scale of a file, and how many degrees of freedom it has for a neighbourhood.
+#[derive(Clone, Copy, Debug)]
+struct FileScale {
+    scale: f64,
+    weight: f64,
+    count: usize,
+}
+
+impl FileScale {
+    fn of(all: &[Option<NeighbourFit>], floor: f64) -> Self {
+        let fit = || all.iter().flatten().filter(|s| s.judged);
+        let scale = (1.4826 * median(fit().map(|s| s.off).collect())).max(floor);
+        let weight = prior(fit().map(|s| s.scale), floor.max(f64::MIN_POSITIVE));
+        // The scale of few points is not known better than they allow.
+        let most = (all.len() as f64 - 4.0).max(PRIOR[0]);
+        Self { scale, weight: weight.min(most), count: all.len() }
+    }
+
+    /// A point set against its scale.
+    fn judge(&self, seen: NeighbourFit) -> Judged {
+        let file = self.scale;
+        // Where cubics miss by more than noise does the file says little: a nose has a scale of
+        // its own. The squares of noise exceed the double in one neighbourhood of twenty.
+        let beyond = (seen.scale * seen.scale / (file * file).max(f64::MIN_POSITIVE) - 2.0) / 2.0;
+        let weight = self.weight + (PRIOR[0] - self.weight) * beyond.clamp(0.0, 1.0);
+        let usual = threshold(self.count, weight + FREEDOM);
+        let squares = weight * file * file + FREEDOM * seen.scale * seen.scale;
+        let scale = (squares / (weight + FREEDOM)).sqrt().max(f64::MIN_POSITIVE);
+        let least = match (seen.central, seen.inner) {
+            (true, _) => usual,
+            (false, true) => ASIDE_SCORE,
+            (false, false) => END_SCORE,
+        };
+        let deviation = scale * (1.0 + seen.leverage).sqrt();
+        Judged { seen, score: seen.off / scale, least, deviation }
+    }
+}
+
+/// The clearest wrong digit of a list.
+///
+/// One point is among the neighbours of ten, and of all in a short list: it is set against the scale
+/// that the others have among themselves.
+fn clearest(points: &[Vec3<f64>], closed: bool, floor: f64) -> Option<(usize, Judged)> {
+    let n = points.len();
+    let all = fits(points, closed);
+    let file = FileScale::of(&all, floor);
+    let own = |s: &NeighbourFit| s.off / s.scale.max(floor).max(f64::MIN_POSITIVE);
+    let mut by_own: Vec<(usize, NeighbourFit)> =
+        (0..n).filter_map(|i| Some((i, all[i].filter(|s| s.judged)?))).collect();
+    let mut by_file = by_own.clone();
+    by_own.sort_by(|a, b| own(&b.1).total_cmp(&own(&a.1)));
+    by_file.sort_by(|a, b| file.judge(b.1).score.total_cmp(&file.judge(a.1).score));
+    by_own.truncate(CANDIDATES[0]);
+    by_own.extend(by_file.into_iter().take(CANDIDATES[1]));
+    by_own
+        .into_iter()
+        .filter_map(|(at, seen_at)| {
+            let mut left = points.to_vec();
+            left.remove(at);
+            let others: Vec<Option<NeighbourFit>> = (0..n)
+                .filter(|&i| i != at)
+                .map(|i| {
+                    if window(i, n, SIDE, closed).0.contains(&at) {
+                        seen(&left, i - usize::from(i > at), SIDE, closed)
+                    } else {
+                        all[i]
+                    }
+                })
+                .collect();
+            let judged = FileScale::of(&others, floor).judge(seen_at);
+            let found = judged.score >= judged.least && confirmed(points, at, closed, &seen_at);
+            found.then_some((at, judged))
         })
-        .collect()
+        .max_by(|a, b| a.1.score.total_cmp(&b.1.score))
 }
 
 /// Half the step of the digits that all coordinates have, over the root of three: what rounding
@@ -393,12 +479,7 @@ pub fn data_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
                 break;
             }
             let list: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
-            let found = judged(&list, round, floor)
-                .into_iter()
-                .enumerate()
-                .filter_map(|(k, j)| Some((k, j?)))
-                .filter(|(_, j)| j.score >= j.least)
-                .max_by(|a, b| a.1.score.total_cmp(&b.1.score));
+            let found = clearest(&list, round, floor);
             let Some((at, Judged { seen, score, least, deviation })) = found else { break };
             let (index, expected) = (own.remove(at), seen.expected);
             let least = least * deviation;
@@ -434,8 +515,10 @@ fn of_each(points: &[Vec3<f64>], closed: bool, what: impl Fn(Judged) -> f64) -> 
     }
     let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
     let floor = digit_scale(points).max(1e-12 * size);
-    let all = judged(points, closed, floor).into_iter();
-    all.map(|j| j.map_or(f64::INFINITY, &what)).collect()
+    let all = fits(points, closed);
+    let file = FileScale::of(&all, floor);
+    let each = |s: &Option<NeighbourFit>| Some(what(file.judge(s.filter(|s| s.judged)?)));
+    all.iter().map(|s| each(s).unwrap_or(f64::INFINITY)).collect()
 }
 
 /// Points at which a cubic through the neighbours wants a hinge.
@@ -539,7 +622,7 @@ fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> 
                 let m = left.len();
                 let near = (0..8).map(|k| (gone + m + k - 4) % m);
                 let fine = near
-                    .filter_map(|j| seen(&left, j, closed))
+                    .filter_map(|j| seen(&left, j, SIDE, closed))
                     .filter(|s| s.judged)
                     .map(|s| {
                         let scale = ((PRIOR[0] * file * file + 6.0 * s.scale * s.scale)

@@ -134,3 +134,88 @@ fn wrong_readings_of_a_straight_frame() {
         "{found:?}"
     );
 }
+
+/// In a short list a wrong digit is among the neighbours of all the others: it is set against the scale
+/// that they have without it, wherever it is.
+#[test]
+fn a_wrong_digit_is_found_wherever_it_is() {
+    let mut g = Lcg::new(12);
+    for noise in [0.0, 1e-6, 1e-3, 1e-2] {
+        for at in 1..14 {
+            let height = |k: usize| noise * 2.0 * g.unit() + if k == at { 0.5 } else { 0.0 };
+            let heights: Vec<f64> = (0..15).map(height).collect();
+            let points: Vec<_> =
+                heights.iter().enumerate().map(|(k, &y)| Vec3::of(k as f64, y, 0.0)).collect();
+            let found = data_findings(&points, false);
+            assert!(
+                matches!(found.first(), Some(DataFinding::WrongDigit { index, .. }) if *index == at),
+                "{noise} {at}: {found:?}"
+            );
+        }
+    }
+}
+
+/// Few points of ordinary curves at ordinary spacings, with one off by ten predicted deviations at any
+/// place but the two outermost.
+#[test]
+fn wrong_digits_of_short_lists() {
+    let draws = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 200 } else { 6 };
+    let mut g = Lcg::new(77);
+    let (mut all, mut found, mut stray, mut clean) = (0, 0, 0, 0);
+    for draw in 0..draws {
+        for shape in 0..4 {
+            for spacing in 0..4 {
+                let n = [12, 15, 20, 30, 40][draw % 5];
+                let last = (n - 1) as f64;
+                let us: Vec<f64> = match spacing {
+                    0 => (0..n).map(|k| k as f64 / last).collect(),
+                    1 => {
+                        let inner = |k: usize| if k % (n - 1) == 0 { 0.0 } else { 0.7 };
+                        (0..n).map(|k| (k as f64 + inner(k) * g.unit()) / last).collect()
+                    }
+                    2 => {
+                        let quarter = n / 4;
+                        let step = |k: usize| {
+                            if k < quarter || k + quarter >= n - 1 { 0.5 } else { 1.0 }
+                        };
+                        let whole: f64 = (0..n - 1).map(step).sum();
+                        (0..n).map(|k| (0..k).map(step).sum::<f64>() / whole).collect()
+                    }
+                    _ => {
+                        let steps: Vec<f64> = (1..n).map(|_| 1.0 + 1.2 * g.unit()).collect();
+                        let whole: f64 = steps.iter().sum();
+                        (0..n).map(|k| steps[..k].iter().sum::<f64>() / whole).collect()
+                    }
+                };
+                let size = [0.0, 1e-4, 1e-3][draw % 3];
+                let mut points: Vec<_> = us
+                    .iter()
+                    .map(|&u| {
+                        let (x, y) = match shape {
+                            0 => (10.0 * u, 3.0 * u + 1.0),
+                            1 => (10.0 * u, 4.0 * (u - 0.4) * (u - 0.4)),
+                            2 => (5.0 * (1.5 * u).cos(), 5.0 * (1.5 * u).sin()),
+                            _ => (5.0 * u, (4.0 * u * (1.0 - u)).powi(2) * (0.7 + 0.6 * u)),
+                        };
+                        Vec3::of(x + size * g.unit(), y + size * g.unit(), 0.0)
+                    })
+                    .collect();
+                clean += usize::from(data_findings(&points, false).is_empty());
+                let deviations = predicted(&points, false);
+                let at = 2 + ((g.unit() + 0.5) * (n - 4) as f64) as usize;
+                let along = points[at + 1] - points[at - 1];
+                let normal = Vec3::of(-along.y, along.x, 0.0).normalized().unwrap();
+                let sign = if draw % 2 == 0 { 10.0 } else { -10.0 };
+                points[at] += normal * (deviations[at] * sign);
+                let findings = data_findings(&points, false);
+                let right = findings.iter().filter(|f| f.index() == at).count();
+                all += 1;
+                found += right;
+                stray += findings.len() - right;
+            }
+        }
+    }
+    assert!(100 * found >= 95 * all, "{found} of {all}");
+    assert!(100 * clean >= 99 * all, "{clean} of {all} without a false finding");
+    assert!(100 * stray <= 2 * all, "{stray} false ones in {all}");
+}

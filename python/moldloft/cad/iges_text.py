@@ -1,0 +1,149 @@
+"""The text of IGES files: entities that are missing, and what is left of a file cut short."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from moldloft.errors import FileError
+
+__all__ = ["IgesText"]
+
+
+@dataclass
+class IgesText:
+    """The text of an IGES file."""
+
+    text: str
+    """What OCCT is to read: with an end where the file is cut short."""
+    remarks: list[str] = field(default_factory=list)
+    """What is doubtful or lost."""
+    names: dict[int, str] = field(default_factory=dict)
+    """Faces by number: none, for OCCT keeps their names itself."""
+
+    @classmethod
+    def of(cls, path: object, text: str) -> IgesText:
+        """The text of a file, with what is wrong in it as remarks.
+
+        Parameters
+        ----------
+        path
+            The file, for errors.
+        text
+            What it holds.
+
+        Raises
+        ------
+        FileError
+            When the file is cut short before its entities are listed.
+        """
+        lines = text.splitlines()
+        sections: dict[str, list[str]] = {letter: [] for letter in "SGDPT"}
+        for line in lines:
+            if len(line) >= 73 and line[72] in sections:
+                sections[line[72]].append(line)
+        made = cls(text)
+        listed, given = _directory(sections["D"]), sections["P"]
+        whole = bool(sections["T"])
+        if not whole and not given:
+            raise FileError(f"cannot read `{path}`: no terminate section; the file is cut short")
+        # The last line of parameters may be cut itself.
+        if not whole and len(lines[-1]) < 80 and lines[-1] is given[-1]:
+            given.pop()
+        lost = {n for n, (_, first, count) in listed.items() if first + count - 1 > len(given)}
+        fields = {
+            n: _fields(given[first - 1 : first - 1 + count])
+            for n, (_, first, count) in listed.items()
+            if n not in lost
+        }
+
+        faces = [n for n, (kind, _, _) in listed.items() if kind == 144]
+        hurt = [n for n in faces if not _there(n, listed, fields)]
+        if not whole:
+            kept = len(faces) - len(hurt)
+            if not kept:
+                raise FileError(
+                    f"cannot read `{path}`: no terminate section, and no face before it is whole; "
+                    "the file is cut short"
+                )
+            made.remarks.append(
+                f"the end of the file is missing: {kept} of {len(faces)} faces are whole and kept"
+            )
+            made.text = _ended(sections, listed, {n for n in listed if n in lost} | {*hurt})
+        for n in hurt[:_MOST]:
+            made.remarks.append(f"face D{n} needs entities that the file does not hold")
+        if len(hurt) > _MOST:
+            made.remarks.append(f"{len(hurt) - _MOST} more faces need what the file does not hold")
+        return made
+
+
+_MOST = 20
+"""Remarks of one kind that are written out."""
+
+
+def _whole_number(text: str) -> int:
+    return int(text) if text.strip().lstrip("-").isdigit() else 0
+
+
+def _directory(lines: list[str]) -> dict[int, tuple[int, int, int]]:
+    """Kind, first line of parameters and their count, by number."""
+    found = {}
+    for k in range(0, len(lines) - 1, 2):
+        one, other = lines[k], lines[k + 1]
+        count = max(_whole_number(other[24:32]), 1)
+        found[k + 1] = _whole_number(one[:8]), _whole_number(one[8:16]), count
+    return found
+
+
+def _fields(lines: list[str]) -> list[str]:
+    text = "".join(line[:64] for line in lines)
+    # Strings, which count their letters first, do not matter to faces.
+    return [field.strip() for field in re.split(r"[,;]", text)]
+
+
+def _there(
+    number: int, listed: dict[int, tuple[int, int, int]], fields: dict[int, list[str]]
+) -> bool:
+    """Whether an entity and what its shape needs are in the file."""
+    if number == 0:
+        return True
+    if number not in fields:
+        return False
+    own = [_whole_number(f) for f in fields[number][1:]]
+    match listed[number][0]:
+        case 144:
+            needs = [own[0], *own[3 : 4 + own[2]]] if len(own) > 3 else own[:1]
+        case 142:
+            needs = own[1:4]
+        case 102:
+            needs = own[1 : 1 + own[0]] if own else []
+        case 0:
+            return False
+        case _:
+            return True
+    return all(_there(n, listed, fields) for n in needs)
+
+
+def _ended(
+    sections: dict[str, list[str]], listed: dict[int, tuple[int, int, int]], lost: set[int]
+) -> str:
+    """The file with an end, and what is lost in it as null entities."""
+    directory = list(sections["D"][: 2 * len(listed)])
+    given = list(sections["P"])
+    if lost:
+        # Parameters that belong to no entity any more are overwritten from the first lost one.
+        used = [first + count for n, (_, first, count) in listed.items() if n not in lost]
+        del given[max(used, default=1) - 1 :]
+    for n in sorted(lost):
+        at = len(given) + 1
+        given.append(f"{'0;':<64} {n:>7}P{at:>7}")
+        directory[n - 1] = f"{0:>8}{at:>8}{0:>8}{0:>8}{0:>8}{0:>8}{0:>8}{0:>8}00000000D{n:>7}"
+        directory[n] = f"{0:>8}{0:>8}{0:>8}{1:>8}{0:>8}{'':>32}D{n + 1:>7}"
+    counts = "".join(
+        f"{letter}{len(lines):>7}"
+        for letter, lines in zip(
+            "SGDP", (sections["S"], sections["G"], directory, given), strict=True
+        )
+    )
+    every = [*sections["S"], *sections["G"], *directory, *given, f"{counts:<72}T{1:>7}"]
+    return "\n".join(every) + "\n"

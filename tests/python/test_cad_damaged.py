@@ -1,0 +1,170 @@
+"""CAD files that are damaged or doubtful: what is lost is named, and the rest is read."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+import moldloft
+from cad_models import box
+
+pytest.importorskip("OCP")
+
+
+def step_of(tmp_path: Path, text: str = "") -> str:
+    """The STEP file of a box from 0 to (1, 2, 3), or of a program."""
+    (path,) = moldloft.loads(text or box(1, 2, 3)).write(tmp_path / "whole.step")
+    return path.read_text()
+
+
+def read_back(tmp_path: Path, text: str, ending: str = "step") -> tuple[moldloft.Model, list[str]]:
+    """The model of a file of this text, and the remarks."""
+    from moldloft.cad.importing import program
+
+    path = tmp_path / f"damaged.{ending}"
+    path.write_text(text)
+    source, remarks = program(path)
+    return moldloft.loads(source), remarks
+
+
+def entity(text: str, kind: str, which: int = 0) -> tuple[str, str]:
+    """The number and the line of an entity."""
+    line = re.findall(rf"^#\d+={kind}\(.*$", text, re.M)[which]
+    return line.split("=")[0], line
+
+
+def test_a_missing_line_is_named_with_the_faces_that_need_it(tmp_path: Path) -> None:
+    text = step_of(tmp_path)
+    for kind, hurt in [
+        ("ADVANCED_FACE", 0),
+        ("PLANE", 1),
+        ("EDGE_CURVE", 2),
+        ("ORIENTED_EDGE", 1),
+        ("VERTEX_POINT", 3),
+        ("CARTESIAN_POINT", 1),
+    ]:
+        number, line = entity(text, kind, -1)
+        if kind == "CARTESIAN_POINT":
+            number = "#" + re.findall(r"#(\d+)", entity(text, "AXIS2_PLACEMENT_3D", 1)[1])[1]
+            line = re.findall(rf"^{number}=.*$", text, re.M)[0]
+        model, remarks = read_back(tmp_path, text.replace(line + "\n", ""))
+        assert f"1 entity that others refer to is missing ({number})" in remarks
+        faces = [r for r in remarks if r.startswith("face #")]
+        assert len(faces) == hurt and all(number in r for r in faces)
+        # What is not hurt is there.
+        patches = {p.name for p in model.mesh().patches}
+        assert len(patches) >= 6 - max(hurt, 1)
+
+
+def test_a_face_of_an_unknown_surface_is_named(tmp_path: Path) -> None:
+    text = step_of(tmp_path)
+    face, line = entity(text, "ADVANCED_FACE", 2)
+    plane = re.findall(r"#\d+", line)[2]
+    changed = re.sub(rf"^{plane}=PLANE\(", f"{plane}=FOO_SURFACE(", text, flags=re.M)
+    assert changed != text
+    model, remarks = read_back(tmp_path, changed)
+    assert remarks == [f"1 of the file's 6 faces could not be read: {face}"]
+    assert len(model.mesh().patches) == 5
+
+
+def test_a_loop_without_one_of_its_edges_is_named(tmp_path: Path) -> None:
+    text = step_of(tmp_path)
+    loop, line = entity(text, "EDGE_LOOP")
+    _, remarks = read_back(tmp_path, text.replace(line, re.sub(r"\(#\d+,", "(", line)))
+    assert any(r.startswith(f"loop {loop} of face #") and "missing" in r for r in remarks)
+
+
+def conversion(name: str, value: float, kind: str, number: int) -> str:
+    """A unit by conversion; its factor and base are entities 9001 and 9002."""
+    si = ".METRE." if kind == "LENGTH" else ".RADIAN."
+    unit = f"{kind}_UNIT()" if kind == "LENGTH" else ""
+    other = f"{kind}_UNIT()" if kind != "LENGTH" else ""
+    return (
+        f"#9002=({unit}NAMED_UNIT(*){other}SI_UNIT($,{si}));\n"
+        f"#9001={kind}_MEASURE_WITH_UNIT({kind}_MEASURE({value!r}),#9002);\n"
+        f"#{number}=(CONVERSION_BASED_UNIT('{name}',#9001){unit}NAMED_UNIT(*){other});"
+    )
+
+
+def test_units_that_are_wrong_unknown_or_absent_are_remarks(tmp_path: Path) -> None:
+    text = step_of(tmp_path)
+    length = "#5=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));"
+    angle = "#6=(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.));"
+    assert length in text and angle in text
+    good = [
+        (angle, conversion("DEGREE", math.pi / 180, "PLANE_ANGLE", 6)),
+        (angle, conversion("DEGREE", 0.0174533, "PLANE_ANGLE", 6)),
+        (length, conversion("FOOT", 0.3048, "LENGTH", 5)),
+        (length, conversion("INCH", 0.0254, "LENGTH", 5)),
+    ]
+    for old, new in good:
+        assert read_back(tmp_path, text.replace(old, new))[1] == []
+    bad = [
+        (angle, conversion("DEGREE", 0.5, "PLANE_ANGLE", 6), r"plane angle #6 \(`DEGREE`\) is 0.5"),
+        (angle, conversion("TURN", 6.28, "PLANE_ANGLE", 6), r"#6 \(`TURN`\) is not known"),
+        (angle, angle.replace("RADIAN", "STERADIAN"), "#6 is called steradian"),
+        (length, conversion("FURLONG", 201.168, "LENGTH", 5), r"#5 \(`FURLONG`\) is not known"),
+        (length, conversion("FOOT", 0.5, "LENGTH", 5), r"#5 \(`FOOT`\) is 0.5 metres"),
+        ("((#5,#6,#7))", "((#5,#7))", "context #9 names no unit of plane angle"),
+        ("((#5,#6,#7))", "((#6,#7))", "context #9 names no unit of length"),
+    ]
+    for old, new, words in bad:
+        _, remarks = read_back(tmp_path, text.replace(old, new))
+        assert len(remarks) == 1 and re.search(words, remarks[0]), (new, remarks)
+
+
+def test_a_file_cut_short_keeps_the_faces_that_are_whole(tmp_path: Path) -> None:
+    text = step_of(tmp_path)
+    ends = [m.end() for m in re.finditer(r"ADVANCED_FACE\([^;]*;", text)]
+    for count, end in enumerate(ends, 1):
+        # In the middle of the next statement, and within a string of it.
+        for cut in (end + 7, end + 1):
+            model, remarks = read_back(tmp_path, text[:cut])
+            assert f"{count} faces before are whole and kept" in remarks[0]
+            assert len(model.mesh().patches) == count
+            # In the unit of the file.
+            assert max(model.mesh().vertices.ravel()) in (1.0, 2.0, 3.0)
+    model, remarks = read_back(tmp_path, text.replace("END-ISO-10303-21;", ""))
+    assert model.mesh().closed and model.mesh().volume == pytest.approx(6)
+    with pytest.raises(moldloft.Error, match="cut short"):
+        read_back(tmp_path, text[: ends[0] - 5])
+    # At any place: an error that says so, or whole faces.
+    for cut in range(200, len(text), len(text) // 23):
+        try:
+            model, remarks = read_back(tmp_path, text[:cut])
+        except moldloft.Error as error:
+            assert "damaged.step" in str(error) and cut < ends[0]
+        else:
+            assert "cut short" in remarks[0]
+            assert f"{len(model.mesh().patches)} faces" in remarks[0]
+
+
+def test_an_iges_file_cut_short_keeps_the_faces_that_are_whole(tmp_path: Path) -> None:
+    (path,) = moldloft.loads(box(1, 2, 3)).write(tmp_path / "whole.igs")
+    text = path.read_text()
+    lines = text.splitlines(keepends=True)
+    ends = [k for k, line in enumerate(lines) if line.startswith("144,") and line[72] == "P"]
+    assert len(ends) == 6
+    for count, end in enumerate(ends, 1):
+        for part in ("", lines[end + 1][:30]):
+            cut = "".join(lines[: end + 1]) + part
+            model, remarks = read_back(tmp_path, cut, "igs")
+            assert f"{count} of 6 faces are whole and kept" in remarks[0]
+            assert len(model.mesh().patches) == count
+            assert sum(r.startswith("face D") for r in remarks) == 6 - count
+    with pytest.raises(moldloft.Error, match="cut short"):
+        read_back(tmp_path, "".join(lines[: ends[0]]), "igs")
+
+
+def test_names_of_faces_are_those_of_the_file(tmp_path: Path) -> None:
+    text = step_of(tmp_path)
+    face, line = entity(text, "ADVANCED_FACE", 0)
+    changed = text.replace(line, re.sub(r"'[^']*'", r"'K\\X2\\00E4\\X0\\se ''1'' #12'", line))
+    model, remarks = read_back(tmp_path, changed)
+    assert not remarks
+    names = {p.name for p in model.mesh().patches}
+    assert "K_se__1___12" in names and {"x1", "y0", "y1", "z0", "z1"} <= names
+    assert face.startswith("#")
