@@ -170,7 +170,7 @@ fn wrong_digits_of_short_lists() {
                 let us: Vec<f64> = match spacing {
                     0 => (0..n).map(|k| k as f64 / last).collect(),
                     1 => {
-                        let inner = |k: usize| if k % (n - 1) == 0 { 0.0 } else { 0.7 };
+                        let inner = |k: usize| if k.is_multiple_of(n - 1) { 0.0 } else { 0.7 };
                         (0..n).map(|k| (k as f64 + inner(k) * g.unit()) / last).collect()
                     }
                     2 => {
