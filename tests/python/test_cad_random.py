@@ -95,12 +95,12 @@ def sharp_set(rng: Generator, folder: Path) -> Drawn:
         )
         for k in (0, 2)
     ]
-    boxes.insert(0, (np.full(3, 0.6 * scale), np.array([4.1, 3.4, 2.9]) * scale))
+    boxes.insert(0, (np.full(3, 0.625 * scale), np.array([4.125, 3.375, 2.875]) * scale))
     corner = [", ".join(f"{{{', '.join(map(repr, map(float, p)))}}}" for p in b) for b in boxes]
     text = f"""
         set block = cuboid({corner[0]}); set cut = cuboid({corner[1]});
         set more = cuboid({corner[2]});
-        SetBody body((block - cut) | more, {{-1, -1, -1}}, {{6, 6, 6}});
+        SetBody body((block - cut) | more, {{-1, -1, -1}}, {{6, 6, 6}}, depth = 7);
     """
     # Volume and area over the grid of all corners.
     cuts = [np.unique([p[k] for b in boxes for p in b]) for k in range(3)]
@@ -164,7 +164,8 @@ def test_models_leave_and_come_back_as_they_are(seed: int, tmp_path: Path) -> No
     # Valid, closed where the file says so, with names and colours.
     assert one.valid and flat.valid
     assert one.faces == flat.faces == text.count("=ADVANCED_FACE(")
-    assert one.closed == one.solids == text.count("=CLOSED_SHELL(") > 0
+    assert one.closed == text.count("=CLOSED_SHELL(") > 0
+    assert one.solids == text.count("=MANIFOLD_SOLID_BREP(") + text.count("=BREP_WITH_VOIDS(")
     assert one.colours and flat.colours
     faces = set(re.findall(r"=ADVANCED_FACE\('([^']*)'", text))
     assert faces <= one.names and set(drawn.names) <= faces
@@ -184,3 +185,34 @@ def test_models_leave_and_come_back_as_they_are(seed: int, tmp_path: Path) -> No
     assert found.valid and (found.solids, found.closed) == (one.solids, one.closed)
     assert abs(found.volume - one.volume) <= gap * one.area + 1e-6 * one.volume
     assert abs(found.area - one.area) <= bound
+
+
+def test_a_cavity_is_one_of_its_solid(tmp_path: Path) -> None:
+    from cad_reading import read
+
+    corner = "set block = cuboid({0, 0, 0}, {4, 4, 4}); set hole = cuboid({1, 1, 2}, {2, 2, 3});"
+    box = "{-1, -1, -1}, {12, 5, 5}"
+    model = moldloft.loads(f"{corner} SetBody body(block - hole, {box});")
+    found = read(model.write(tmp_path / "hollow.step")[0])
+    assert found.valid and (found.solids, found.shells, found.closed) == (1, 2, 2)
+    # A cube of 4 with a void of 1.
+    assert found.area == pytest.approx(102, rel=1e-9)
+    assert found.volume == pytest.approx(63, rel=1e-9)
+    assert read(model.write(tmp_path / "hollow.igs")[0]).area == pytest.approx(102, rel=1e-9)
+    # Beside another body the cavity is in the one that is round it.
+    model = moldloft.loads(
+        f"{corner} set other = cuboid({{6, 0, 0}}, {{8, 4, 4}});"
+        f"SetBody body((block - hole) | other, {box});"
+    )
+    found = read(model.write(tmp_path / "two.step")[0])
+    assert found.valid and (found.solids, found.shells) == (2, 3)
+    assert found.volume == pytest.approx(63 + 32, rel=1e-9)
+    # A body in the cavity has the outer one round it as well.
+    model = moldloft.loads(
+        "set block = cuboid({0, 0, 0}, {4, 4, 4}); set hole = cuboid({1, 1, 1}, {3, 3, 3});"
+        "set core = cuboid({1.5, 1.5, 1.5}, {2.5, 2.5, 2.5});"
+        "SetBody body((block - hole) | core, {-1, -1, -1}, {5, 5, 5});"
+    )
+    found = read(model.write(tmp_path / "core.step")[0])
+    assert found.valid and (found.solids, found.shells) == (2, 3)
+    assert found.volume == pytest.approx(64 - 8 + 1, rel=1e-9)

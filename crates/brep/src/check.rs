@@ -1,6 +1,7 @@
 //! Shells: which faces hang together, whether they close, and what is wrong with them.
 
-use crate::{Brep, Shell};
+use crate::{Brep, Coedge, Shell, SurfaceShape};
+use moldloft_num::Vec3;
 
 /// What counts of a shell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +61,7 @@ impl Brep {
             let own = root(&mut first, f);
             match shells.iter_mut().find(|(k, _)| *k == own) {
                 Some((_, shell)) => shell.faces.push(f),
-                None => shells.push((own, Shell { faces: vec![f], closed: true })),
+                None => shells.push((own, Shell { faces: vec![f], closed: true, cavity: false })),
             }
         }
         let mut owner = vec![usize::MAX; self.faces.len()];
@@ -76,6 +77,33 @@ impl Brep {
             }
         }
         shells.into_iter().map(|(_, shell)| shell).collect()
+    }
+
+    /// The volume that a closed shell of plane faces with straight edges encloses, negative where its faces look
+    /// inward, as round a cavity; none for other shells.
+    pub fn volume_of_polyhedron(&self, shell: &Shell) -> Option<f64> {
+        if !shell.closed {
+            return None;
+        }
+        let faces = || shell.faces.iter().map(|&f| &self.faces[f]);
+        let sides = || faces().flat_map(|face| face.loops.iter().flatten());
+        let plane = faces().all(|face| matches!(face.surface, SurfaceShape::Plane { .. }));
+        if !plane || sides().any(|side| self.edges[side.edge].curve.points.len() != 2) {
+            return None;
+        }
+        let origin = self.vertices[self.edges[sides().next()?.edge].ends[0]];
+        let mut sum = 0.0;
+        for cycle in faces().flat_map(|face| &face.loops) {
+            let start = |side: &Coedge| {
+                let ends = self.edges[side.edge].ends;
+                self.vertices[ends[usize::from(!side.forward)]] - origin
+            };
+            let places: Vec<Vec3> = cycle.iter().map(start).collect();
+            for k in 1..places.len().saturating_sub(1) {
+                sum += places[0].dot(places[k].cross(places[k + 1]));
+            }
+        }
+        Some(sum / 6.0)
     }
 
     /// The counts of a shell.

@@ -110,6 +110,8 @@ pub struct Shell {
     pub faces: Vec<usize>,
     /// True when each edge has two sides, of opposite senses: the shell bounds a solid.
     pub closed: bool,
+    /// True for the border of a cavity in the solid of its part's closed shell before it.
+    pub cavity: bool,
 }
 
 /// A curve that bounds no face.

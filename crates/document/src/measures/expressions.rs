@@ -134,7 +134,13 @@ impl Document {
                         };
                         one_of(found, group, number).map_err(|d| vec![d])?
                     }
-                    None => document.eval_in(evaluation, text)?,
+                    // What failed with derivatives alone is known here only: the reason goes along.
+                    None => document.eval_in(evaluation, text).map_err(|mut found| {
+                        if found.iter().any(|d| d.id == "blocked") {
+                            found.extend(document.failures(evaluation));
+                        }
+                        found
+                    })?,
                 };
                 for k in 0..count {
                     column.push(derivative_part(&value, k).ok_or_else(|| {

@@ -219,3 +219,23 @@ fn bad_input_is_told_clearly() {
         whole(&format!("{plane}\n{text}"), id);
     }
 }
+
+/// What is refused with derivatives alone is known in their evaluation only: its reason goes along.
+#[test]
+fn a_derivative_that_is_refused_says_why() {
+    let mut text = "param float b = 1 in [0.5, 2];\n".to_string();
+    let rough = [0.0, 0.02, -0.01, 0.03, -0.02, 0.01, 0.03, -0.03, 0.02, 0.0];
+    for (k, off) in rough.into_iter().enumerate() {
+        text += &format!("AbsPoint P{k}({k}, b*{}, 0);\n", 0.1 * (k as f64).powi(2) + off);
+    }
+    let points: Vec<String> = (0..rough.len()).map(|k| format!("P{k}")).collect();
+    let points = points.join(", ");
+    text += &format!("FairCurve c({{{points}}}, 0.02, measure = \"jump-lengths\");\n");
+    let mut document = open(&text);
+    let faults = document.derivatives(&["c(0.3)".into()], &["b".into()]).unwrap_err();
+    assert!(faults.iter().any(|d| d.id == "blocked"), "{faults:?}");
+    let reason = faults.iter().find(|d| d.message.contains("derivatives of a sum of lengths"));
+    let reason = reason.unwrap_or_else(|| panic!("{faults:?}"));
+    assert!(reason.message.starts_with("`c`"), "{reason:?}");
+    assert!(document.sources().slice(reason.span()).contains("jump-lengths"), "{reason:?}");
+}

@@ -66,7 +66,7 @@ pub fn brep(
         }
     }
     let shells = brep.shells();
-    brep.parts = named(&brep, shells, stem);
+    brep.parts = named(&brep, shells, stem)?;
     wires::add(&mut brep, document, accuracy)?;
     Ok(brep)
 }
@@ -100,18 +100,14 @@ pub(crate) fn metres(document: &Document) -> f64 {
 }
 
 /// A part for each shell: of one face, that face's name; of one object's faces, the object's; of several, theirs.
-fn named(brep: &Brep, shells: Vec<Shell>, stem: &str) -> Vec<Part> {
+/// Cavities belong to the part of the body that they are in.
+fn named(brep: &Brep, shells: Vec<Shell>, stem: &str) -> Result<Vec<Part>, ExportFailure> {
     const LONGEST: usize = 60;
+    let inward = |shell: &Shell| brep.volume_of_polyhedron(shell).is_some_and(|v| v < 0.0);
+    let (cavities, shells): (Vec<Shell>, Vec<Shell>) = shells.into_iter().partition(inward);
     let mut taken = std::collections::HashMap::new();
-    let part = |shell: Shell| {
-        let mut names: Vec<&str> = Vec::new();
-        for &f in &shell.faces {
-            let name = brep.faces[f].name.split('.').next().unwrap_or("");
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        let mut name = names.join(", ");
+    let mut part = |shell: Shell| {
+        let mut name = objects(brep, &shell).join(", ");
         if name.chars().count() > LONGEST || name.is_empty() {
             name = stem.to_string();
         }
@@ -122,5 +118,55 @@ fn named(brep: &Brep, shells: Vec<Shell>, stem: &str) -> Vec<Part> {
         }
         Part { name, shells: vec![shell], wires: Vec::new() }
     };
-    shells.into_iter().map(part).collect()
+    let mut parts: Vec<Part> = shells.into_iter().map(&mut part).collect();
+    for cavity in cavities {
+        let own = objects(brep, &cavity);
+        let inner = bounds(brep, &cavity);
+        let round = |part: &&mut Part| {
+            let shell = &part.shells[0];
+            shell.closed && objects(brep, shell) == own && contains(bounds(brep, shell), inner)
+        };
+        let mut bodies: Vec<&mut Part> = parts.iter_mut().filter(round).collect();
+        match &mut bodies[..] {
+            // Surfaces that face inward, round nothing else.
+            [] => parts.push(part(cavity)),
+            [body] => body.shells.push(Shell { cavity: true, ..cavity }),
+            _ => {
+                let message = format!("`{}` has a cavity in one of several bodies", own.join(", "));
+                let help = "write it as stl, 3mf or obj, or make a set of each body";
+                return Err(Diagnostic::error("cavity", message).help(help).into());
+            }
+        }
+    }
+    Ok(parts)
+}
+
+/// The objects that the faces of a shell come from.
+fn objects<'a>(brep: &'a Brep, shell: &Shell) -> Vec<&'a str> {
+    let mut names: Vec<&str> = Vec::new();
+    for &f in &shell.faces {
+        let name = brep.faces[f].name.split('.').next().unwrap_or("");
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// Least and greatest coordinates of a shell's edges.
+fn bounds(brep: &Brep, shell: &Shell) -> [[f64; 3]; 2] {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for side in shell.faces.iter().flat_map(|&f| brep.faces[f].loops.iter().flatten()) {
+        for p in &brep.edges[side.edge].curve.points {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+        }
+    }
+    [low, high]
+}
+
+fn contains([low, high]: [[f64; 3]; 2], [from, to]: [[f64; 3]; 2]) -> bool {
+    (0..3).all(|axis| low[axis] < from[axis] && to[axis] < high[axis])
 }

@@ -203,9 +203,22 @@ impl<'a> Shapes<'a> {
     /// The items of a part.
     pub fn part(&mut self, file: &mut Part21, part: &Part) -> RepresentationItems {
         let (mut solids, mut shells) = (Vec::new(), Vec::new());
-        for shell in &part.shells {
+        let cavities: Vec<usize> = part
+            .shells
+            .iter()
+            .filter(|shell| shell.cavity)
+            .map(|shell| {
+                let number = self.shell(file, shell);
+                // Its faces look out of the material already.
+                file.add(format!("ORIENTED_CLOSED_SHELL('',*,#{number},.T.)"))
+            })
+            .collect();
+        for shell in part.shells.iter().filter(|shell| !shell.cavity) {
             let number = self.shell(file, shell);
-            if shell.closed {
+            if shell.closed && !cavities.is_empty() {
+                let (name, voids) = (text(&part.name), list(&cavities));
+                solids.push(file.add(format!("BREP_WITH_VOIDS({name},#{number},{voids})")));
+            } else if shell.closed {
                 solids
                     .push(file.add(format!("MANIFOLD_SOLID_BREP({},#{number})", text(&part.name))));
             } else {
