@@ -213,6 +213,7 @@ def _collect(document: Any, found: Imported, numbered: dict[int, str]) -> None:
     taken: set[str] = set()
     seen: set[int] = set()
     known = 0
+    originals = 0
     for shape in _free(document):
         labels = _Labels(named, numbered, taken.copy(), seen, len(found.faces))
         faces, count, left_out = _shape_faces(shape, labels, False)
@@ -221,6 +222,7 @@ def _collect(document: Any, found: Imported, numbered: dict[int, str]) -> None:
             labels = _Labels(named, numbered, taken.copy(), seen, len(found.faces))
             faces, count, left_out = _shape_faces(shape, labels, True)
         taken |= labels.taken
+        originals += labels.count - len(found.faces)
         found.remarks += left_out
         for face in faces:
             # Numbers of edges are those of all shapes of the file.
@@ -233,10 +235,13 @@ def _collect(document: Any, found: Imported, numbered: dict[int, str]) -> None:
             if curve is not None:
                 found.curves[identifier(label, taken)] = curve
     lost = [n for n in numbered if n not in seen]
-    if lost:
+    count = len(numbered) - originals
+    if lost and count > 0:
         few = ", ".join(f"#{n}" for n in lost[:20]) + (", ..." if len(lost) > 20 else "")
+        # OCCT does not say which the faces round a cavity are.
+        which = few if count >= len(lost) else f"they are among {few}"
         found.remarks.append(
-            f"{len(lost)} of the file's {len(numbered)} faces could not be read: {few}"
+            f"{count} of the file's {len(numbered)} faces could not be read: {which}"
         )
 
 
