@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -167,6 +168,12 @@ def read(path: Path, metres: float) -> Imported:
         found.remarks.append(
             "no two faces share an edge in this file, as in IGES they seldom do: they are not "
             "joined; STEP keeps what is joined"
+        )
+    hollow = 0 if iges else len(re.findall(r"=\s*BREP_WITH_VOIDS\s*\(", text))
+    if hollow:
+        found.remarks.append(
+            f"{hollow} of the file's solids have cavities: here the faces round a cavity bound a "
+            "body of its own, whose volume is added instead of taken away"
         )
     if not found.faces and not found.curves:
         raise FileError(f"cannot read `{path}`: it holds no face and no curve")
