@@ -6,7 +6,7 @@ import csv
 import io
 import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from itertools import pairwise
 from pathlib import Path
@@ -434,6 +434,35 @@ class RightingCurve(_Rows):
         axis.grid(True)
         axis.legend()
         return _save(figure, path)
+
+
+def plot_curves(
+    path: str | os.PathLike[str],
+    along: Sequence[float],
+    curves: Mapping[str, Sequence[float]],
+    labels: tuple[str, str],
+) -> Path:
+    """Draw curves over one quantity; points are marked where there are few.
+
+    Parameters
+    ----------
+    path
+        The file; its ending gives its form.
+    along
+        The values of the quantity.
+    curves
+        A curve for each name, as many values as ``along`` has.
+    labels
+        Of the quantity, and of the curves.
+    """
+    figure, (axis,) = _axes(1)
+    for name, values in curves.items():
+        axis.plot(along, values, "o-" if len(along) < 12 else "-", markersize=3, label=name)
+    axis.set_xlabel(labels[0])
+    axis.set_ylabel(labels[1])
+    axis.grid(True)
+    axis.legend()
+    return _save(figure, path)
 
 
 def _axes(columns: int) -> tuple[Any, list[Any]]:

@@ -513,6 +513,25 @@ class CrossCurves:
         path = Path(path)
         return commit(path.parent, [Output(path.name, self.csv().encode())])[0]
 
+    def plot(self, path: str | os.PathLike[str]) -> Path:
+        """Draw the arms over the displaced volume, a curve for each heel.
+
+        Needs matplotlib (``pip install 'moldloft[plot]'``); the file's ending gives its form.
+
+        Parameters
+        ----------
+        path
+            The file.
+        """
+        from moldloft.hydrostatics import plot_curves
+
+        volume, arm = self.units.of("volume"), self.units.of("kn")
+        curves = {
+            f"{math.degrees(h):g}°": [row[k] for row in self.kn] for k, h in enumerate(self.heels)
+        }
+        labels = (f"volume [{volume}]" if volume else "volume", f"KN [{arm}]" if arm else "KN")
+        return plot_curves(path, self.volumes, curves, labels)
+
     def __str__(self) -> str:
         from moldloft.text_table import table
 

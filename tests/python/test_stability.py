@@ -319,3 +319,33 @@ def test_mass_is_never_volume_by_accident():
     assert ship.hydrostatics(level=3.5, density="salt").displacement == pytest.approx(2583)
     assert ship.hydrostatics(level=3.5, density="fresh").displacement == pytest.approx(2520)
     assert ship.hydrostatics(level=3.5, density=1.025).displacement == pytest.approx(2583)
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ["--kn", "1000,2000", "--gz", "0,40,5"],
+        ["--sections", "-9,9,7", "--table", "1,3,3"],
+        ["--table", "1,3,3"],
+        ["--gz", "0,40,5", "--displacement", "1500", "--cg", "0,0,3"],
+    ],
+)
+def test_rows_as_csv_json_and_plot(rows, cli, tmp_path):
+    path = tmp_path / "ship.sdl"
+    path.write_text(SHIP)
+    words = ["hydro", path, "--density", "salt", *rows]
+    data = json.loads(cli(*words, "--json", "--plot", "p.svg", "--csv", "t.csv").stdout)
+    assert data
+    lines = (tmp_path / "t.csv").read_text().splitlines()
+    assert "[" in lines[0] and len(lines) > 2
+    assert "<svg" in (tmp_path / "p.svg").read_text()
+    assert cli(*words, "--csv", "-").stdout.splitlines() == lines
+
+
+def test_criteria_as_csv(cli, tmp_path):
+    path = tmp_path / "ship.sdl"
+    path.write_text(SHIP)
+    words = ["hydro", path, "--density", "salt", "--displacement", "1500", "--cg", "0,0,3"]
+    lines = cli(*words, "--criteria", "--csv", "-").stdout.splitlines()
+    assert len(lines) > 6 and lines[0].startswith("clause")
+    assert "--plot is of" in cli(*words, "--criteria", "--plot", "c.png", status=1).stderr

@@ -183,8 +183,11 @@ def run(options: argparse.Namespace) -> int:
         raise Error("ask for --table or for --gz, not for both")
     if options.kn and not options.gz:
         raise Error("--kn needs the heels of --gz")
-    if (options.plot or options.csv) and not (options.table or options.gz or options.sections):
-        raise Error("--csv and --plot are of the rows of --table, --gz or --sections")
+    rows_of = options.table or options.gz or options.sections
+    if options.plot and not rows_of:
+        raise Error("--plot is of the rows of --table, --gz, --kn or --sections")
+    if options.csv and not (rows_of or options.criteria):
+        raise Error("--csv is of the rows of --table, --gz, --kn, --sections or --criteria")
     with Progress() as progress:
         progress.stage(f"running {options.model}")
         model = open_model(options)
@@ -314,6 +317,9 @@ def _criteria(model: Any, options: argparse.Namespace) -> int:
     if options.json:
         print_json({"rule": found.rule, "passed": found.passed, "checks": found.as_list()})
         return 0
+    if options.csv:
+        _write_csv(options, found.csv())
+        return 0
     print(stability.summary())
     print()
     print(found)
@@ -343,11 +349,28 @@ def _cross_curves(model: Any, options: argparse.Namespace) -> int:
     )
     if options.json:
         print_json(found.as_list())
-    elif options.csv:
-        print(f"wrote {found.write_csv(options.csv)}")
-    else:
+    if options.csv:
+        _write_csv(options, found.csv())
+    if options.plot:
+        path = found.plot(options.plot)
+        if not options.json:
+            print(f"wrote {path}")
+    if not (options.json or options.csv or options.plot):
         print(found)
     return 0
+
+
+def _write_csv(options: argparse.Namespace, text: str) -> None:
+    """Writes rows to the file of --csv, or to standard output."""
+    from moldloft.files import Output, commit
+
+    if options.csv == "-":
+        emit("-", text.encode())
+        return
+    path = Path(options.csv)
+    commit(path.parent, [Output(path.name, text.encode())])
+    if not options.json:
+        print(f"wrote {path}")
 
 
 def _sections(model: Any, options: argparse.Namespace) -> int:
@@ -364,20 +387,25 @@ def _sections(model: Any, options: argparse.Namespace) -> int:
         import csv
         import io
 
-        from moldloft.files import Output, commit
-
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\r\n")
         writer.writerow(head)
         writer.writerows(
             [[x, *row] for x, row in zip(options.sections, areas.tolist(), strict=True)]
         )
-        path = Path(options.csv)
-        commit(path.parent, [Output(path.name, text.getvalue().encode())])
-        print(f"wrote {path}")
-    elif options.json:
+        _write_csv(options, text.getvalue())
+    if options.plot:
+        from moldloft.hydrostatics import plot_curves
+
+        curves = {f"z = {z:g}": areas[:, k].tolist() for k, z in enumerate(levels)}
+        path = plot_curves(
+            options.plot, options.sections, curves, (head[0], f"area [{unit}]" if unit else "area")
+        )
+        if not options.json:
+            print(f"wrote {path}")
+    if options.json:
         print_json({"stations": options.sections, "levels": levels, "areas": areas.tolist()})
-    else:
+    elif not (options.csv or options.plot):
         print(table(head, body, left=0))
     return 0
 
