@@ -27,19 +27,12 @@ def triangles(model):
     return corners
 
 
-def under(corners, level):
-    """Volume, skin and water plane below a level: exact for triangles that close."""
-
-    def summed(parts, depths):
-        a, b = parts[:, 1] - parts[:, 0], parts[:, 2] - parts[:, 0]
-        up = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-        skin = 0.5 * np.linalg.norm(np.cross(a, b), axis=1).sum()
-        return np.array([(up * depths.mean(1)).sum(), skin, -up.sum()])
-
+def wet_parts(corners, level):
+    """The parts of triangles below a level, as triangles."""
     depth = corners[:, :, 2] - level
     wet = depth < 0
     count = wet.sum(1)
-    total = summed(corners[count == 3], depth[count == 3])
+    parts = [corners[count == 3]]
     for first in range(3):
         for lone in (True, False):
             # One corner that is wet, or one that is dry: it is cut off at the level.
@@ -49,14 +42,20 @@ def under(corners, level):
             s, t = d[:, 0] / (d[:, 0] - d[:, 1]), d[:, 0] / (d[:, 0] - d[:, 2])
             a = p[:, 0] + s[:, None] * (p[:, 1] - p[:, 0])
             b = p[:, 0] + t[:, None] * (p[:, 2] - p[:, 0])
-            dry = np.zeros(len(p))
             if lone:
-                total += summed(np.stack([p[:, 0], a, b], 1), np.stack([d[:, 0], dry, dry], 1))
+                parts.append(np.stack([p[:, 0], a, b], 1))
             else:
-                parts = np.stack([a, p[:, 1], p[:, 2]], 1), np.stack([a, p[:, 2], b], 1)
-                total += summed(parts[0], np.stack([dry, d[:, 1], d[:, 2]], 1))
-                total += summed(parts[1], np.stack([dry, d[:, 2], dry], 1))
-    return total
+                parts += [np.stack([a, p[:, 1], p[:, 2]], 1), np.stack([a, p[:, 2], b], 1)]
+    return np.concatenate(parts)
+
+
+def under(corners, level):
+    """Volume, skin and water plane below a level: exact for triangles that close."""
+    p = wet_parts(corners, level)
+    a, b = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    up = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    skin = 0.5 * np.linalg.norm(np.cross(a, b), axis=1).sum()
+    return np.array([(up * (p[:, :, 2].mean(1) - level)).sum(), skin, -up.sum()])
 
 
 def attitudes(rng, drawn):

@@ -11,30 +11,9 @@ from scipy.optimize import brentq
 
 import moldloft
 import random_models
-from test_random_models import into_water
+from test_random_models import into_water, wet_parts
 
 SOAK = bool(os.environ.get("MOLDLOFT_SOAK"))
-
-
-def wet_parts(corners, level):
-    """The parts of triangles below a level, as triangles."""
-    depth = corners[:, :, 2] - level
-    wet = depth < 0
-    count = wet.sum(1)
-    parts = [corners[count == 3]]
-    for first in range(3):
-        for lone in (True, False):
-            chosen = (count == (1 if lone else 2)) & (wet[:, first] == lone)
-            p = np.roll(corners[chosen], -first, axis=1)
-            d = np.roll(depth[chosen], -first, axis=1)
-            s, t = d[:, 0] / (d[:, 0] - d[:, 1]), d[:, 0] / (d[:, 0] - d[:, 2])
-            a = p[:, 0] + s[:, None] * (p[:, 1] - p[:, 0])
-            b = p[:, 0] + t[:, None] * (p[:, 2] - p[:, 0])
-            if lone:
-                parts.append(np.stack([p[:, 0], a, b], 1))
-            else:
-                parts += [np.stack([a, p[:, 1], p[:, 2]], 1), np.stack([a, p[:, 2], b], 1)]
-    return np.concatenate(parts)
 
 
 def buoyancy(corners, level):

@@ -7,6 +7,8 @@
 use crate::Attitude;
 use crate::equilibrium::EquilibriumProblem;
 use crate::figures::displaced;
+use moldloft_num::find_root;
+use std::cell::Cell;
 
 /// The most steps of a descent.
 const MOST_STEPS: usize = 200;
@@ -33,8 +35,6 @@ struct EnergyState {
     energy: f64,
     /// Its derivatives by trim and heel; zero for what is held.
     slopes: [f64; 2],
-    /// Its second derivatives: by trim, by both, by heel.
-    stiffness: [f64; 3],
 }
 
 impl EquilibriumProblem<'_, f64> {
@@ -49,8 +49,7 @@ impl EquilibriumProblem<'_, f64> {
         let volume = sums.forms[2];
         let [trims, heels] = self.tilts(trim);
         let slopes = [trims * sums.moment.x / volume, heels * sums.moment.y / volume];
-        let stiffness = self.stiffness(at);
-        Some(EnergyState { at, energy: g.z - sums.moment.z / volume - level, slopes, stiffness })
+        Some(EnergyState { at, energy: g.z - sums.moment.z / volume - level, slopes })
     }
 
     /// By how much a turn about the level axes exceeds one of trim and of heel, zero for what is held: the body heels
@@ -62,7 +61,7 @@ impl EquilibriumProblem<'_, f64> {
 
     /// The second derivatives of the energy where the body displaces its mass, the level following: by trim, by both,
     /// by heel.
-    pub(crate) fn stiffness(&self, at: [f64; 3]) -> [f64; 3] {
+    fn stiffness(&self, at: [f64; 3]) -> [f64; 3] {
         let rows = self.slopes(at);
         let tilts = self.tilts(at[1]);
         let of = |r: usize, k: usize| {
@@ -79,61 +78,48 @@ impl EquilibriumProblem<'_, f64> {
 
     /// An attitude nearly at rest down the slope of the energy from a trim and a heel, and the steps that led there.
     pub(crate) fn descended(&self, from: [f64; 3]) -> Option<([f64; 3], usize)> {
-        let state = self.energy_state(from[1], from[2])?;
+        let [_, trim, heel] = from;
         match self.free[..] {
-            [0, 1] => self.trimmed(state),
-            _ => self.descended_in_both(state),
+            [0, 1] => self.trimmed(trim, heel),
+            _ => self.descended_in_both(trim, heel),
         }
     }
 
     /// At a heel that is held: the nearest trim downhill where the slope changes its sign.
-    fn trimmed(&self, from: EnergyState) -> Option<([f64; 3], usize)> {
-        let heel = from.at[2];
-        let way = if from.slopes[0] > 0.0 { -1.0 } else { 1.0 };
-        let (mut above, mut turn, mut steps) = (from, FIRST_TURN, 0);
-        let mut below = loop {
-            let next = self.energy_state(above.at[1] + way * turn, heel)?;
-            steps += 1;
-            if next.slopes[0] * way >= 0.0 {
+    fn trimmed(&self, trim: f64, heel: f64) -> Option<([f64; 3], usize)> {
+        let steps = Cell::new(0);
+        let slope = |trim: f64| {
+            steps.set(steps.get() + 1);
+            self.energy_state(trim, heel).map_or(f64::NAN, |state| state.slopes[0])
+        };
+        let first = slope(trim);
+        let way = if first > 0.0 { -1.0 } else { 1.0 };
+        let (mut above, mut turn) = (trim, FIRST_TURN);
+        let below = loop {
+            let next = above + way * turn;
+            let found = slope(next);
+            if found * way >= 0.0 {
                 break next;
             }
             // A whole turn without an end: what it weighs has no slope.
-            if steps > MOST_STEPS {
+            if found.is_nan() || steps.get() > MOST_STEPS {
                 return None;
             }
             above = next;
             turn = (2.0 * turn).min(LARGEST_TURN);
         };
-        // By secants (Illinois), and by halves where these do not shrink the bracket.
-        let (mut left, mut right) = (above.slopes[0], below.slopes[0]);
-        while steps < MOST_STEPS {
-            let width = below.at[1] - above.at[1];
-            let best = if above.slopes[0].abs() < below.slopes[0].abs() { &above } else { &below };
-            if best.slopes[0].abs() <= NEARLY_AT_REST * self.size || width.abs() <= 1e-15 {
-                return Some((best.at, steps));
-            }
-            let share = if steps % 3 == 0 { 0.5 } else { left / (left - right) };
-            let next = self.energy_state(above.at[1] + share.clamp(0.01, 0.99) * width, heel)?;
-            steps += 1;
-            if next.slopes[0] * way < 0.0 {
-                (left, right) = (next.slopes[0], 0.5 * right);
-                above = next;
-            } else {
-                (left, right) = (0.5 * left, next.slopes[0]);
-                below = next;
-            }
-        }
-        Some((above.at, steps))
+        let trim = find_root(slope, above, below).ok()?;
+        Some(([self.level(trim, heel).ok()?, trim, heel], steps.get()))
     }
 
-    fn descended_in_both(&self, from: EnergyState) -> Option<([f64; 3], usize)> {
-        let mut state = from;
+    fn descended_in_both(&self, trim: f64, heel: f64) -> Option<([f64; 3], usize)> {
+        let mut state = self.energy_state(trim, heel)?;
         for steps in 0..MOST_STEPS {
             let steepest = state.slopes.iter().fold(0.0f64, |m, s| m.max(s.abs()));
             if steepest <= NEARLY_AT_REST * self.size {
                 return Some((state.at, steps));
             }
-            let turn = turn(&state, self.size);
+            let turn = turn(state.slopes, self.stiffness(state.at), self.size);
             let descent = turn[0] * state.slopes[0] + turn[1] * state.slopes[1];
             let mut share = 1.0;
             let mut next = None;
@@ -158,15 +144,14 @@ impl EquilibriumProblem<'_, f64> {
 }
 
 /// The Newton step with the sizes of the principal stiffnesses, so that it leads downhill everywhere.
-fn turn(state: &EnergyState, size: f64) -> [f64; 2] {
-    let [a, b, c] = state.stiffness;
+fn turn(slopes: [f64; 2], [a, b, c]: [f64; 3], size: f64) -> [f64; 2] {
     let (middle, half) = (0.5 * (a + c), libm::hypot(0.5 * (a - c), b));
     // The direction of the greater principal stiffness.
     let angle = 0.5 * libm::atan2(2.0 * b, a - c);
     let axis = [libm::cos(angle), libm::sin(angle)];
     let mut turn = [0.0; 2];
     for (stiff, v) in [(middle + half, axis), (middle - half, [-axis[1], axis[0]])] {
-        let along = v[0] * state.slopes[0] + v[1] * state.slopes[1];
+        let along = v[0] * slopes[0] + v[1] * slopes[1];
         let step = -along / stiff.abs().max(1e-9 * size);
         turn[0] += step * v[0];
         turn[1] += step * v[1];

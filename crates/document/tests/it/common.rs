@@ -1,7 +1,9 @@
 //! What the tests of documents share: opening texts, values.
 
 use moldloft_diag::Diagnostic;
-use moldloft_document::{Document, NoFiles, ReadText, TextReadError, World, registry};
+use moldloft_document::{
+    Document, FlotationOptions, NoFiles, ReadText, TextReadError, World, registry,
+};
 use moldloft_num::Vec3;
 use moldloft_registry::Value;
 pub use moldloft_testing::{Random, soak};
@@ -77,3 +79,14 @@ impl World for Files {
 pub fn with_files(text: &str, files: &[(&'static str, &'static str)]) -> Document {
     Document::from_text(registry(), Box::new(Files(files.to_vec())), "model.sdl", text)
 }
+
+/// Water of density 1 on the whole body.
+pub const WATER: FlotationOptions = FlotationOptions {
+    density: 1.0,
+    gravity: 9.81,
+    centimetre: 0.01,
+    centre: None,
+    one_side: false,
+    of_weights: false,
+    accuracy: 1e-6,
+};

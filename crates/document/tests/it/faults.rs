@@ -1,7 +1,7 @@
 //! Refusals that need more than a program: files, floating, solids, models too large; and the bad
 //! input of which designers are most often guilty, each with what was expected and how to fix it.
 
-use crate::common::{ids, open, sound, told};
+use crate::common::{WATER, ids, open, sound, told};
 use moldloft_document::{Document, FloatRequest, FlotationOptions, Immersion, registry};
 
 #[test]
@@ -32,21 +32,11 @@ const SIDE: &str =
     "AbsPoint A(0, 0, -1); AbsPoint B(4, 0, -1); AbsPoint C(0, 1, 1); AbsPoint D(4, 1, 1);
                     Line l(A, B); Line m(C, D); RuledSurf S(l, m);";
 
-const OPTIONS: FlotationOptions = FlotationOptions {
-    density: 1.0,
-    gravity: 9.81,
-    centimetre: 0.01,
-    centre: None,
-    one_side: false,
-    of_weights: false,
-    accuracy: 1e-6,
-};
-
 #[test]
 fn weights_that_are_asked_for_must_be_there() {
     let mut document = sound(SIDE);
     let immersion = Immersion::Mass { mass: 1.0, free_trim: false, free_heel: false };
-    let options = FlotationOptions { of_weights: true, ..OPTIONS };
+    let options = FlotationOptions { of_weights: true, ..WATER };
     let request = FloatRequest { immersion, trim: 0.0, heel: 0.0 };
     let faults = document.floating(&[request], options, &[]).unwrap_err();
     assert_eq!(faults[0].id, "no-weights");
@@ -140,7 +130,7 @@ fn the_weight_of_one_side_says_whether_the_other_counts() {
 fn what_has_no_centre_cannot_float_freely() {
     let mut document = sound(SIDE);
     let immersion = Immersion::Mass { mass: 1.0, free_trim: true, free_heel: false };
-    let options = OPTIONS;
+    let options = WATER;
     let faults = document
         .floating(&[FloatRequest { immersion, trim: 0.0, heel: 0.0 }], options, &[])
         .unwrap_err();

@@ -1,6 +1,6 @@
 //! Divisions along chains of patches, vertices shared by identity, and what is reported for joins.
 
-use crate::common::{Random, ids, open, rounds, sound, told};
+use crate::common::{Random, WATER, ids, open, rounds, sound, told};
 use moldloft_document::{Document, Panelled};
 use moldloft_num::Vec3;
 use moldloft_panel::PanelNote;
@@ -330,7 +330,7 @@ fn stern(outline: &str, divisions: u32) -> String {
 
 #[test]
 fn contradictory_counts_open_the_panels_and_not_the_body() {
-    use moldloft_document::{FloatRequest, FlotationOptions, Immersion};
+    use moldloft_document::{FloatRequest, Immersion};
     let outline = "Line t1(k1, c1); Line t2(c1, d1); PolyCurve T({t1, t2});";
     let mut answers = Vec::new();
     for divisions in [6, 12, 5, 2] {
@@ -343,16 +343,7 @@ fn contradictory_counts_open_the_panels_and_not_the_body() {
         assert_eq!(d.junctions().unwrap(), [], "{divisions}");
         let request = |heel| FloatRequest { immersion: Immersion::Level(0.2), trim: 0.0, heel };
         let requests = [request(0.0), request(0.3)];
-        let options = FlotationOptions {
-            density: 1.0,
-            gravity: 9.81,
-            centimetre: 0.01,
-            centre: None,
-            one_side: false,
-            of_weights: false,
-            accuracy: 1e-6,
-        };
-        let found = d.floating(&requests, options, &[]).unwrap();
+        let found = d.floating(&requests, WATER, &[]).unwrap();
         for answer in &found {
             assert_eq!(answer.open_edges, 0, "{divisions}");
             assert!(answer.figures.iter().all(|(name, _)| *name != "freeboard"), "{divisions}");

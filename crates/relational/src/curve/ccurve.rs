@@ -53,24 +53,11 @@ impl<T: Real> Build<T> for CCurve<T> {
             faults::of_interpolation(error, "point", [Self::POINTS, Self::DEGREE, Self::ENDS])
         })?;
         let trace = match self.degree {
-            1 => polyline(&self.points, polyline_shares(&points)),
+            1 => polyline(&self.points, curve.knots()[1..].to_vec()),
             _ => Trace::Own(names),
         };
         Ok(Value::Curve(CurveRef::new(Ended { curve, trace }, 0)))
     }
-}
-
-/// Where the sides of a polyline end, by its chords' lengths.
-fn polyline_shares<T: Real>(points: &[Vec3<T>]) -> Vec<T> {
-    let lengths = points.windows(2).map(|p| p[0].distance(p[1]));
-    let ends: Vec<T> = lengths
-        .scan(T::zero(), |sum, length| {
-            *sum += length;
-            Some(*sum)
-        })
-        .collect();
-    let whole = ends[ends.len() - 1];
-    ends.iter().map(|&end| end / whole).collect()
 }
 
 /// The conditions of a rule with these slopes, which are those of `fields`.
