@@ -200,10 +200,28 @@ class _Lines:
         grids = [s.grid(9, 9) for s in self.surfaces]
         points = np.concatenate([g.reshape(-1, 3) for g in grids])
         self.low, self.high = points.min(axis=0), points.max(axis=0)
+        # Of a model that shows one end, the sheet shows both.
+        self.mirrored = "x" in model.symmetry
+        if self.mirrored:
+            self.high[0] = max(abs(self.low[0]), abs(self.high[0]))
+            self.low[0] = -self.high[0]
         self.size = float(np.linalg.norm(self.high - self.low))
+
+    def _whole(self, curves: list[_Curve]) -> list[_Curve]:
+        """The curves with those of the other end."""
+        if not self.mirrored:
+            return curves
+        flip = np.array([-1.0, 1.0, 1.0])
+        return curves + [_Curve(c.points * flip, c.tangents * flip) for c in curves]
 
     def section(self, axis: int, value: float) -> list[_Curve]:
         """The curves in the plane x, y or z = value."""
+        if axis == 0 and self.mirrored:
+            own, other = self._cut(0, value), self._cut(0, -value) if value else []
+            return own + self._whole(other)[len(other) :]
+        return self._whole(self._cut(axis, value))
+
+    def _cut(self, axis: int, value: float) -> list[_Curve]:
         found = []
         for surface in self.surfaces:
             cut = surface.intersect(f"{'xyz'[axis]}={value!r}")
@@ -220,7 +238,7 @@ class _Lines:
             for branch in surface.intersect(((0.0, 0.0, height), normal)).branches:
                 if len(branch.points) >= 2:
                     found.append(_Curve(np.array(branch.points), np.array(branch.tangents)))
-        return found
+        return self._whole(found)
 
     def edges(self) -> list[_Curve]:
         """The edges of all surfaces that are not points."""
@@ -229,9 +247,11 @@ class _Lines:
         for surface in self.surfaces:
             for u, v in ((t, 0 * t), (1 + 0 * t, t), (t, 1 + 0 * t), (0 * t, t)):
                 points = np.array([surface(a, b) for a, b in zip(u, v, strict=True)])
-                if np.ptp(points, axis=0).max() > 1e-9 * self.size:
+                # An edge in the plane of symmetry is none of the whole.
+                seam = self.mirrored and abs(points[:, 0]).max() <= 1e-9 * self.size
+                if not seam and np.ptp(points, axis=0).max() > 1e-9 * self.size:
                     found.append(_Curve(points, _slopes(points)))
-        return found
+        return self._whole(found)
 
 
 def _slopes(points: np.ndarray[Any, np.dtype[np.float64]]) -> Any:
@@ -300,7 +320,7 @@ def lines_plan(
         raise Error(f"a scale has a positive denominator, not {scale}")
     lines = _Lines(model)
     mirrored = "y" in model.symmetry
-    flotation = model.hydrostatics(density=density) if lines.low[2] < 0 < lines.high[2] else None
+    flotation = model.hydrostatics(density=density) if lines.low[2] < 0 <= lines.high[2] else None
     if flotation is not None and flotation.waterline_low_x is not None:
         ends = (flotation.waterline_low_x, flotation.waterline_high_x or lines.high[0])
     else:
@@ -672,17 +692,17 @@ def dxf(plan: Plan) -> bytes:
 
 def encode_svg(model: Model, stem: str) -> bytes:
     """The row ``lines-svg`` of the table of formats."""
-    return svg(lines_plan(model, title=stem))
+    return svg(lines_plan(model, title=stem.removesuffix(".lines")))
 
 
 def encode_pdf(model: Model, stem: str) -> bytes:
     """The row ``lines-pdf`` of the table of formats."""
-    return pdf(lines_plan(model, title=stem))
+    return pdf(lines_plan(model, title=stem.removesuffix(".lines")))
 
 
 def encode_dxf(model: Model, stem: str) -> bytes:
     """The row ``lines-dxf`` of the table of formats."""
-    return dxf(lines_plan(model, title=stem))
+    return dxf(lines_plan(model, title=stem.removesuffix(".lines")))
 
 
 def draw(model: Model, path: str | os.PathLike[str], **options: Any) -> Path:

@@ -43,6 +43,21 @@ def test_plans_of_drawn_ships_are_labelled(seed):
         assert not any(_overlap(a, b) for b in drawn.texts[k + 1 :])
 
 
+def test_a_model_of_one_end_is_drawn_whole():
+    quarter = """Model info(symmetry = "xy", units = "m");
+        AbsPoint a(0, 0, -2); AbsPoint b(8, 0, -2); AbsPoint c(0, 3, -2); AbsPoint d(8, 3, -2);
+        AbsPoint e(0, 3, 1); AbsPoint f(8, 3, 1); AbsPoint g(8, 0, 1);
+        Line ab(a, b); Line cd(c, d); Line ef(e, f); Line bd(b, d); Line gf(g, f);
+        RuledSurf floor(ab, cd); RuledSurf side(cd, ef); RuledSurf end(bd, gf);"""
+    drawn = lines_plan(moldloft.loads(quarter))
+    words = [text.text for text in drawn.texts]
+    for word in ("L OA  16 m", "B  6 m", "D  3 m", "L WL  16 m", "volume  192 m³", "CB  1"):
+        assert word in words, words
+    flat = np.concatenate([p.points for p in drawn.paths if p.layer == "outline"])
+    profile = flat[(flat[:, 1] > 90)]
+    assert np.ptp(profile[:, 0]) * drawn.scale / 1000 > 16 * (1 - 1e-9)
+
+
 def test_labels_without_place_are_listed_on_the_sheet():
     model = moldloft.load(Path(SAILBOAT, "hull.sdl"))
     drawn = lines_plan(model, waterline_spacing=0.2)
