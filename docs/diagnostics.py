@@ -10,6 +10,7 @@ import contextlib
 import os
 import re
 import tempfile
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -95,7 +96,9 @@ def _diagnostics(language: str, text: str) -> list[Any]:
     try:
         if language == "python":
             names: dict[str, Any] = {}
-            exec(compile(text, "example.py", "exec"), names)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                exec(compile(text, "example.py", "exec"), names)
             return list(names.get("found", ()))
         model = moldloft.loads(text, name="model." + language, strict=False)
         found = list(model.diagnostics)

@@ -591,11 +591,20 @@ class Model(Floating):
         triangles
             Triangles only, in files of plain panels.
         """
-        return dict(
-            self._document.write(
-                format, name, lids, immersed, list(tags), tolerance, whole, triangles
-            )
+        files = self._document.write(
+            format, name, lids, immersed, list(tags), tolerance, whole, triangles
         )
+        self._warn_of_export()
+        return dict(files)
+
+    @property
+    def export_remarks(self) -> list[_core.Diagnostic]:
+        """What the text or file that was written last does not keep of the model."""
+        return self._document.export_remarks()
+
+    def _warn_of_export(self) -> None:
+        for remark in self.export_remarks:
+            warnings.warn(str(remark), stacklevel=4)
 
     # -- for other packages ----------------------------------------------------------------
 
@@ -708,12 +717,25 @@ class Model(Floating):
     def convert(self, to: str) -> str:
         """The model's text in another form: ``"sdl"`` or ``"ms2"``.
 
+        A program becomes a model file of its objects. Parameters become ``Variable``, variables
+        that are assigned once ``Formula``, expressions of the main program in arguments ``[...]``;
+        what routines and loops compute becomes numbers. Arguments that have no column are
+        attributes ``A:Moldloft(name value)``. The text is read again, and refused where it makes
+        another object.
+
         Parameters
         ----------
         to
             ``"sdl"`` or ``"ms2"``.
+
+        Warns
+        -----
+        UserWarning
+            Which objects have numbers that no longer follow the parameters.
         """
-        return self._document.convert(to)
+        text = self._document.convert(to)
+        self._warn_of_export()
+        return text
 
     def _repr_html_(self) -> str:
         from moldloft.display import model_html

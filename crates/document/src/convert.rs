@@ -2,8 +2,8 @@
 //!
 //! A model file becomes a program with one statement an object, in the order of the file (parents
 //! first); the way back gives the same objects and numbers. What the language has no words for
-//! travels in comments that begin with `#ms2 `. A program becomes a model file of the objects that
-//! it makes: computed numbers as numbers.
+//! travels in comments that begin with `#ms2`. A program becomes a model file of the objects that
+//! it makes; its parameters, variables and expressions stay relations where the file has words for them.
 
 use crate::document::{Document, ObjectSource};
 use moldloft_diag::Diagnostic;
@@ -34,6 +34,27 @@ impl Document {
     /// assert!(program.ends_with("AbsPoint P_x2d_1(0, 0, 3.6);\n"));
     /// ```
     pub fn convert(&self, to: ModelFormat) -> Result<String, Vec<Diagnostic>> {
+        self.convert_with_remarks(to).map(|(text, _)| text)
+    }
+
+    /// What the file that was written last does not keep of the model.
+    pub fn export_remarks(&self) -> &[Diagnostic] {
+        &self.export_remarks
+    }
+
+    /// Keeps what a file does not hold, for [`Document::export_remarks`].
+    pub fn set_export_remarks(&mut self, remarks: Vec<Diagnostic>) {
+        self.export_remarks = remarks;
+    }
+
+    /// As [`Document::convert`], with what the other form does not keep.
+    ///
+    /// # Errors
+    /// What is wrong with the model, or which objects the other form cannot hold.
+    pub fn convert_with_remarks(
+        &self,
+        to: ModelFormat,
+    ) -> Result<(String, Vec<Diagnostic>), Vec<Diagnostic>> {
         let objects = self.graph();
         let all = self.text_diagnostics.iter().chain(&self.run_diagnostics);
         let errors: Vec<Diagnostic> =
@@ -41,7 +62,7 @@ impl Document {
         if !errors.is_empty() {
             return Err(errors);
         }
-        match (&self.source, to) {
+        let text = match (&self.source, to) {
             (ObjectSource::ModelFile(source), ModelFormat::Sdl) => {
                 Ok(to_program(source, self.registry(), &self.plain))
             }
@@ -55,9 +76,11 @@ impl Document {
                 Ok(format!("load {};\n", quoted(base)))
             }
             (ObjectSource::Program | ObjectSource::Sketch(_), ModelFormat::ModelFile) => {
-                to_model_file(self.modules.get(0), &self.plain)
+                let written = to_model_file(self.modules.get(0), &self.plain, self.registry())?;
+                return Ok((written.text, written.remarks));
             }
             (ObjectSource::None, _) => Ok(String::new()),
-        }
+        };
+        text.map(|text| (text, Vec::new()))
     }
 }

@@ -30,6 +30,7 @@ pub struct Document {
     pub(crate) text_diagnostics: Vec<Diagnostic>,
     pub(crate) run_diagnostics: Vec<Diagnostic>,
     pub(crate) expression_remarks: Vec<Diagnostic>,
+    pub(crate) export_remarks: Vec<Diagnostic>,
     pub(crate) source: ObjectSource,
     pub(crate) modules: Modules,
     /// Values of parameters, and of literals of objects, that differ from the text's.
@@ -131,6 +132,7 @@ impl Document {
             text_diagnostics: Vec::new(),
             run_diagnostics: Vec::new(),
             expression_remarks: Vec::new(),
+            export_remarks: Vec::new(),
             source: ObjectSource::None,
             modules: Modules::default(),
             overrides: IndexMap::new(),

@@ -81,6 +81,7 @@ pub fn write(
 ) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
     refuse_options(format, options).map_err(|d| vec![d])?;
     let main = FileName(main);
+    document.set_export_remarks(Vec::new());
     let mut export = Export { document, format, main, options: options.clone() };
     (format.write)(&mut export).map_err(|failure| failure.diagnostics(format.name))
 }

@@ -187,6 +187,13 @@ impl PyDocument {
         document.expression_remarks().iter().map(|d| d.to_data(sources).into()).collect()
     }
 
+    /// What the text or file that was written last does not keep of the model.
+    fn export_remarks(&self, py: Python<'_>) -> Vec<PyDiagnostic> {
+        let document = self.lock(py);
+        let sources = document.sources();
+        document.export_remarks().iter().map(|d| d.to_data(sources).into()).collect()
+    }
+
     fn has_errors(&self, py: Python<'_>) -> bool {
         self.lock(py).has_errors()
     }
@@ -207,7 +214,11 @@ impl PyDocument {
             "ms2" => ModelFormat::ModelFile,
             _ => return Err(plain_error(format!("unknown form `{to}`; expected sdl or ms2"))),
         };
-        self.long_checked(py, move |document| document.convert(format))
+        self.long_checked(py, move |document| {
+            let (text, remarks) = document.convert_with_remarks(format)?;
+            document.set_export_remarks(remarks);
+            Ok(text)
+        })
     }
 
     /// Rows of name, value, default, low, high, whole.

@@ -6,9 +6,10 @@ import contextlib
 import io
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -123,6 +124,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             # A terminal that has no letter for something shows its number.
             stream.reconfigure(errors="backslashreplace")
+    shown, warnings.showwarning = warnings.showwarning, _show_warning
     try:
         status = _run(arguments)
         sys.stdout.flush()
@@ -145,7 +147,27 @@ def main(argv: Sequence[str] | None = None) -> int:
             raise
         print(_unexpected(error, arguments), file=sys.stderr)
         return 1
+    finally:
+        warnings.showwarning = shown
     return status
+
+
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """A remark as it is; the place in Python is nothing to who typed a command."""
+    from moldloft.cli.colour import painted
+
+    stream = file or sys.stderr
+    if category is UserWarning:
+        print(painted(str(message), stream), file=stream)
+    else:
+        stream.write(warnings.formatwarning(message, category, filename, lineno, line))
 
 
 def _unexpected(error: Exception, arguments: Sequence[str]) -> str:

@@ -56,10 +56,14 @@ def run(options: argparse.Namespace) -> int:
         return _from_offsets(options, target, format_named(options.to or named or "sdl"))
     model = open_model(options)
     report(model.diagnostics)
-    if model.has_errors:
-        return 1
     other = "ms2" if options.model.lower().endswith(".sdl") else "sdl"
     form = format_named(options.to or named or other)
+    # Text carries what is not built for want of another program's entity; the rest is as it was.
+    carried = form in ("sdl", "ms2") and all(
+        d.id == "blocked" for d in model.diagnostics if d.severity == "error"
+    )
+    if model.has_errors and not carried:
+        return 1
     if target is not None:
         commit(target.parent, produce(model, form, target))
     elif form in ("sdl", "ms2"):

@@ -264,7 +264,8 @@ fn programs_become_model_files() {
     let file = document.convert(ModelFormat::ModelFile).unwrap();
     assert_eq!(
         file,
-        "MultiSurf 1.44\nBeginModel;\nRem five ribs\nAbsPoint rib[1] 14 1 / 1 0.5 0;\nAbsPoint rib[2] 14 1 / 2 0.5 0;\n\
+        "MultiSurf 1.44\nBeginModel;\nRem Moldloft: 5 objects have computed numbers that no longer follow the \
+         parameters: rib[1], rib[2], rib[3], rib[4], rib[5]\nRem five ribs\nAbsPoint rib[1] 14 1 / 1 0.5 0;\nAbsPoint rib[2] 14 1 / 2 0.5 0;\n\
          AbsPoint rib[3] 14 1 / 3 0.5 0;\nAbsPoint rib[4] 14 1 / 4 0.5 0;\nAbsPoint rib[5] 14 1 / 5 0.5 0;\n\
          BCurve c 11 1 8x4 / * 2 { rib[1] rib[3] rib[5] };\nMirrPoint m 14 1 A:Layer(3) / rib[2] *Y=0;\nEndModel;\n"
     );
@@ -438,6 +439,123 @@ fn the_given_table_2_is_ours() {
     let path = here.join("../../../shared/fixtures/table2.ms2");
     let Ok(text) = std::fs::read_to_string(path) else { return };
     assert_eq!(objects(&open(&text)), objects(&open(HULL)));
+}
+
+/// What a program states by names is a relation of the model file, and again one of the program made from that.
+#[test]
+fn relations_stay_relations_both_ways() {
+    let program = "param float w = 2 in [1, 3];\nparam float turn = 0.5 in [0.1, 1];\nparam int n = 3 in [1, 5];\n\
+        float half = w/2; float kept = 0.25; float twice = 1; twice = 2;\n\
+        AbsPoint A(0, half, -kept); AbsPoint B(4, w, sqrt(w) + A.y); AbsPoint C(n, twice, 2*PI);\n\
+        Line axis(A, C); Line l(A, B);\n\
+        RevSurf s(l, axis, 0, turn);\n";
+    let mut document = open_sdl(program);
+    assert!(!document.has_errors(), "{:?}", document.diagnostics());
+    let (file, remarks) = document.convert_with_remarks(ModelFormat::ModelFile).unwrap();
+    for line in [
+        "Variable w 2 1 3;",
+        "Variable turn 0.5 0.1 1;",
+        "Formula half [w/2];",
+        "Formula kept [0.25];",
+        "AbsPoint A 14 1 / 0 =half [-kept];",
+        "AbsPoint B 14 1 / 4 =w [sqrt(w) + A.y];",
+        // A whole number, and what is assigned twice.
+        "AbsPoint C 14 1 / 3 2 6.283185307179586;",
+        "A:Moldloft(divisions *) / * l axis 0 [(turn)*57.29577951308232];",
+        "Rem Moldloft: 1 object has computed numbers that no longer follow the parameters: C",
+    ] {
+        assert!(file.contains(line), "{line}\n{file}");
+    }
+    assert!(!file.contains("Variable n") && !file.contains("twice"), "{file}");
+    assert_eq!(&*remarks[0].id, "numbers-fixed");
+    let mut again = open(&file);
+    assert!(again.diagnostics().is_empty(), "{:?}", again.diagnostics());
+    let mut third = open_sdl(&again.convert(ModelFormat::Sdl).unwrap());
+    assert!(third.diagnostics().is_empty(), "{:?}", third.diagnostics());
+    for (w, turn) in [(2.0, 0.5), (1.25, 0.9)] {
+        for d in [&mut document, &mut again, &mut third] {
+            d.set(&[("w".into(), w), ("turn".into(), turn)]).unwrap();
+        }
+        for text in ["A.y", "B.z", "l.length"] {
+            let value = number(&mut document, text);
+            assert_eq!(number(&mut again, text), value);
+            assert_eq!(number(&mut third, text), value);
+        }
+        let area = number(&mut document, "s.area");
+        assert!((number(&mut third, "s.area") / area - 1.0).abs() < 1e-12);
+    }
+    // The file and the program made from it say the same of all relations.
+    assert_eq!(
+        third.convert(ModelFormat::ModelFile).unwrap().matches('=').count(),
+        file.matches('=').count()
+    );
+}
+
+/// Arguments that have no column are attributes of their names.
+#[test]
+fn arguments_without_columns_travel_by_name() {
+    let program = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(1, 1, 0); AbsPoint D(3, 1, 0);\n\
+        Line p(A, B); Line q(B, C); Line r(C, D);\n\
+        PolyCurve c({p, q, r}, breaks = {0.2, 0.7});\nWeight w(C, 12.5);\n\
+        BCurve far({A, B, C, D}, degree = 2, divisions = 5);\nTranSurf t(far, q, divisions = {4, 3});\nTranSurf u(c, q);\n";
+    let document = open_sdl(program);
+    assert!(!document.has_errors(), "{:?}", document.diagnostics());
+    let file = document.convert(ModelFormat::ModelFile).unwrap();
+    assert!(
+        file.contains("PolyCurve c 11 1 8x4 A:Moldloft(breaks { 0.2 0.7 }) / * { p q r };"),
+        "{file}"
+    );
+    assert!(file.contains("Weight w 12 1 A:Moldloft("), "{file}");
+    assert!(
+        file.contains("TranSurf t 10 1 4x1 3x1 0 /")
+            && file.contains("TranSurf u 10 1 8x1 8x1 0 A:Moldloft(divisions *) /"),
+        "{file}"
+    );
+    let again = open(&file);
+    assert!(again.diagnostics().is_empty(), "{:?}", again.diagnostics());
+    assert_eq!(objects(&document).len(), objects(&again).len());
+    assert_eq!(again.convert(ModelFormat::ModelFile).unwrap(), file);
+    // Renamed like any mention, moved like any number.
+    let mut again = again;
+    again.rename("C", "corner").unwrap();
+    assert!(again.text().contains("corner") && !again.text().contains(" C "), "{}", again.text());
+    again.set(&[("c.breaks[2]".into(), 0.75)]).unwrap_or_else(|found| panic!("{found:?}"));
+    assert!(again.text().contains("A:Moldloft(breaks { 0.2 0.75 })"), "{}", again.text());
+    for (from, to, id) in [
+        ("(breaks {", "(brakes {", "unknown-argument"),
+        ("{ 0.2 0.7 })", "{ 0.2 0.7 } 3)", "unknown-argument"),
+        ("{ 0.2 0.7 })", "nothing)", "not-a-list"),
+        ("{ 0.2 0.7 })", "{ 0.2 half })", "not-a-number"),
+        ("{ 0.2 0.7 })", "{ 0.2 0.7 }", "unclosed-bracket"),
+        ("(divisions *)", "(divisions x)", "wrong-length"),
+    ] {
+        let found = faults(&file.replace(from, to));
+        assert!(found.iter().any(|(i, ..)| i == id), "{to}: {found:?}");
+    }
+}
+
+/// Order, entity words and unused variables of a file outlast the way through a program.
+#[test]
+fn order_and_words_survive() {
+    let text = "MultiSurf 1.44
+Units: m kg
+BeginModel;
+Rem a bead before its point
+AbsBead b 10 1 / c 0.25;
+PolyCurve2 c 11 1 8x4 / * { l };
+Foo f 1 1 / A B
+  12;
+Variable unused 2.5 1 5;
+Line l 11 1 8x4 / * A B;
+
+Rem the points
+AbsPoint A 14 1 / 0 1.25 0;
+AbsPoint B 14 1 / 5 2.25 0;
+EndModel;
+";
+    let program = open(text).convert(ModelFormat::Sdl).unwrap();
+    let back = open_sdl(&program).convert(ModelFormat::ModelFile).unwrap();
+    assert_eq!(back, text, "{program}");
 }
 
 /// Variables and formulas, used as words, by `=` and in brackets, above and below their uses.

@@ -16,6 +16,7 @@ pub const FORMAT: Format = Format {
 };
 
 fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
-    let text = export.document.convert(Form::ModelFile)?;
+    let (text, remarks) = export.document.convert_with_remarks(Form::ModelFile)?;
+    export.document.set_export_remarks(remarks);
     Ok(export.main_file(text.into_bytes()))
 }

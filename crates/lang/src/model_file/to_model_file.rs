@@ -1,33 +1,113 @@
 //! From a program to a model file of the objects that it makes: computed numbers as numbers.
 
 use crate::model_file::names::{is_layer, plain_name, spelled, system_name};
-use crate::model_file::to_program::{RELABEL, VERBATIM, is_legacy, planes};
-use crate::model_file::{header, panel_attributes};
+use crate::model_file::relations::{NumberForm, Relations};
+use crate::model_file::to_program::{ENTITY, ORDER, RELABEL, VERBATIM, is_legacy, planes};
+use crate::model_file::{header, panel_attributes, reread};
 use crate::source::env::Evaluation;
 use crate::source::module::Module;
 use moldloft_diag::Diagnostic;
 use moldloft_model::Object;
-use moldloft_registry::{Attributes, Class, FieldSpec, Role, Value};
+use moldloft_registry::{Attributes, Class, FieldSpec, Registry, Role, Unit, Value};
+use moldloft_syntax::model_file::ARGUMENT;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write;
 
 /// The version of model files made from programs that do not come from one.
 const VERSION: &str = "1.44";
 
-/// The model file of the objects that a program, the main module of a run, made.
+/// What begins the comments that the program writes into a model file.
+const OWN_REMARK: &str = "Rem Moldloft: ";
+
+/// Names listed in a remark; the rest is counted.
+const LISTED: usize = 5;
+
+/// The entities whose columns are known from MultiSurf's own files or from readers of them.
+const KNOWN_COLUMNS: [&str; 26] = [
+    "AbsBead",
+    "AbsMagnet",
+    "AbsPoint",
+    "AbsRing",
+    "Arc",
+    "BCurve",
+    "BLoftSurf",
+    "BSubSnake",
+    "CLoftSurf",
+    "Conic",
+    "CopyCurve",
+    "CopySurf",
+    "DevSurf",
+    "FramePoint",
+    "Line",
+    "MirrCurve",
+    "MirrPoint",
+    "MirrSurf",
+    "PolyCurve",
+    "RelBead",
+    "RevSurf",
+    "RuledSurf",
+    "SubCurve",
+    "SubSnake",
+    "XContours",
+    "ZContours",
+];
+
+/// The text of a model file, and what it does not hold of the program.
+pub struct ModelFileText {
+    /// The text.
+    pub text: String,
+    /// Numbers that no longer follow the parameters.
+    pub remarks: Vec<Diagnostic>,
+}
+
+/// The model file of the objects that a program, the main module of a run, made. The text is read again, and its
+/// objects compared with those of the program.
 ///
 /// # Errors
 /// Which objects a model file cannot hold.
 pub fn to_model_file(
     main: &Module,
     evaluation: &Evaluation<f64>,
-) -> Result<String, Vec<Diagnostic>> {
-    ToModelFile::new(main, evaluation).text()
+    registry: &Registry,
+) -> Result<ModelFileText, Vec<Diagnostic>> {
+    // Objects whose expressions say something else in the file.
+    let mut fixed = HashSet::new();
+    loop {
+        let written = ToModelFile::new(main, evaluation, &fixed).text()?;
+        let differing = reread::differences(&written.text, evaluation, registry);
+        let before = fixed.len();
+        fixed.extend(differing.iter().map(|(name, _)| name.clone()));
+        if differing.is_empty() {
+            return Ok(written);
+        }
+        if fixed.len() == before {
+            let writer = ToModelFile::new(main, evaluation, &fixed);
+            return Err(differing.iter().map(|(name, why)| writer.unlike(name, why)).collect());
+        }
+    }
 }
 
 /// True when a layer is among the attributes, outside the parentheses of the others.
 fn tells_layer(attributes: &str) -> bool {
     let depth = |text: &str| text.matches('(').count() as i64 - text.matches(')').count() as i64;
     attributes.match_indices("A:Layer(").any(|(at, _)| depth(&attributes[..at]) == 0)
+}
+
+/// A line of the file with what comes before it.
+struct FileLine {
+    before: String,
+    name: String,
+    text: String,
+    /// A variable or formula, kept where it is used.
+    real: bool,
+}
+
+/// Goes on with a text; one empty line is enough where what was between two is left out.
+fn append(text: &mut String, mut before: &str) {
+    while text.ends_with("\n\n") && before.starts_with('\n') {
+        before = &before[1..];
+    }
+    *text += before;
 }
 
 /// The planes of a header line.
@@ -39,41 +119,66 @@ fn letters(rest: &str) -> String {
 struct ToModelFile<'a> {
     module: &'a Module,
     evaluation: &'a Evaluation<f64>,
+    relations: Relations<'a>,
+    /// Objects whose relations cannot be kept.
+    fixed: &'a HashSet<String>,
     legacy: bool,
+    /// True for what was a model file before.
+    returning: bool,
     version: String,
-    out: String,
+    head: String,
+    chunks: Vec<FileLine>,
+    /// What stands before the next object.
+    before: String,
     relabel: Option<String>,
+    entity: Option<String>,
+    /// The names in the order of the file that it was.
+    order: Vec<String>,
     trailer: String,
+    /// Objects with numbers that no longer follow the parameters.
+    computed: Vec<String>,
     errors: Vec<Diagnostic>,
 }
 
 impl<'a> ToModelFile<'a> {
-    fn new(module: &'a Module, evaluation: &'a Evaluation<f64>) -> Self {
+    fn new(
+        module: &'a Module,
+        evaluation: &'a Evaluation<f64>,
+        fixed: &'a HashSet<String>,
+    ) -> Self {
         let version = header::text(&evaluation.graph, "version");
-        let version = if version.is_empty() { VERSION.to_string() } else { version };
+        let returning = !version.is_empty();
+        let version = if returning { version } else { VERSION.to_string() };
         Self {
             module,
             evaluation,
+            relations: Relations::new(module, evaluation),
+            fixed,
             legacy: is_legacy(&version),
+            returning,
             version,
-            out: String::new(),
+            head: String::new(),
+            chunks: Vec::new(),
+            before: String::new(),
             relabel: None,
+            entity: None,
+            order: Vec::new(),
             trailer: String::new(),
+            computed: Vec::new(),
             errors: Vec::new(),
         }
     }
 
-    fn text(mut self) -> Result<String, Vec<Diagnostic>> {
+    fn text(mut self) -> Result<ModelFileText, Vec<Diagnostic>> {
         self.header();
         let program = &self.module.program;
         let statements = &program[program.body()];
-        let ends = statements.iter().map(|id| program[*id].span);
         let mut from = 0;
-        // The text between the statements: what stands before each, and after the last.
-        let mut gaps: Vec<(usize, &str)> = Vec::with_capacity(statements.len() + 1);
-        for span in ends {
+        // Each statement with the text before it.
+        let mut gaps: Vec<(u32, u32, &str)> = Vec::with_capacity(statements.len());
+        for span in statements.iter().map(|id| program[*id].span) {
             let start = (span.start as usize).max(from);
-            gaps.push((span.end as usize, &program.text()[from..start]));
+            gaps.push((span.start, span.end, &program.text()[from..start]));
             from = start.max(span.end as usize);
         }
         let last = &program.text()[from..];
@@ -82,11 +187,12 @@ impl<'a> ToModelFile<'a> {
         for object in self.evaluation.graph.objects() {
             let origin = self.evaluation.env.origins.get(object.origin as usize);
             if let Some(origin) = origin.filter(|o| o.module == 0) {
-                let start = program[origin.stmt].span.start as usize;
-                while let Some((_, gap)) = gaps.get(next)
-                    && (next == 0 || gaps[next - 1].0 <= start)
+                let start = program[origin.stmt].span.start;
+                while let Some((own_start, _, gap)) = gaps.get(next)
+                    && (next == 0 || gaps[next - 1].1 <= start)
                 {
                     self.gap(gap);
+                    self.reals(*own_start);
                     next += 1;
                 }
             }
@@ -99,14 +205,117 @@ impl<'a> ToModelFile<'a> {
             }
             self.object(object);
         }
-        for (_, gap) in &gaps[next..] {
+        for (start, _, gap) in &gaps[next..] {
             self.gap(gap);
+            self.reals(*start);
         }
         self.gap(last);
-        self.out += "EndModel;\n";
-        let trailer = std::mem::take(&mut self.trailer);
-        self.out += &trailer;
-        if self.errors.is_empty() { Ok(self.out) } else { Err(self.errors) }
+        if !self.errors.is_empty() {
+            return Err(self.errors);
+        }
+        Ok(self.finished())
+    }
+
+    /// The chunks in the order of the file that they came from, if they came from one.
+    fn finished(mut self) -> ModelFileText {
+        let used: HashSet<String> = self.relations.used_reals();
+        for chunk in self.chunks.iter_mut().filter(|chunk| chunk.real) {
+            if !(self.returning || used.contains(&chunk.name)) {
+                chunk.text.clear();
+            }
+        }
+        if !self.order.is_empty() {
+            let places: HashMap<&str, usize> =
+                self.order.iter().enumerate().map(|(k, name)| (&**name, k)).collect();
+            let mut place = 0;
+            let mut keyed: Vec<(usize, FileLine)> = Vec::with_capacity(self.chunks.len());
+            for chunk in std::mem::take(&mut self.chunks) {
+                // What is new stays behind what it followed.
+                place = places.get(&*chunk.name).copied().unwrap_or(place);
+                keyed.push((place, chunk));
+            }
+            keyed.sort_by_key(|(place, _)| *place);
+            self.chunks = keyed.into_iter().map(|(_, chunk)| chunk).collect();
+        }
+        let mut text = std::mem::take(&mut self.head);
+        if !self.returning {
+            text += &self.own_remarks();
+        }
+        for chunk in &self.chunks {
+            append(&mut text, &chunk.before);
+            text += &chunk.text;
+        }
+        append(&mut text, &self.before);
+        while text.ends_with("\n\n") {
+            text.pop();
+        }
+        text += "EndModel;\n";
+        text += &self.trailer;
+        let remarks = match self.computed.len() {
+            0 => Vec::new(),
+            _ if self.evaluation.env.params.is_empty() => Vec::new(),
+            _ => vec![
+                Diagnostic::warning("numbers-fixed", self.fixed_numbers())
+                    .help("a model file keeps what the main program states by parameters, by variables that are assigned once, and by objects; not what a routine or a loop computes"),
+            ],
+        };
+        ModelFileText { text, remarks }
+    }
+
+    fn fixed_numbers(&self) -> String {
+        let names = &self.computed;
+        let shown = names[..names.len().min(LISTED)].join(", ");
+        let more = match names.len().saturating_sub(LISTED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let objects = if names.len() == 1 { "1 object has" } else { "objects have" };
+        let count = if names.len() == 1 { String::new() } else { format!("{} ", names.len()) };
+        format!(
+            "{count}{objects} computed numbers that no longer follow the parameters: {shown}{more}"
+        )
+    }
+
+    /// Comments about what in the file is not MultiSurf's.
+    fn own_remarks(&self) -> String {
+        let mut out = String::new();
+        let graph = &self.evaluation.graph;
+        let ours: BTreeSet<&str> = graph
+            .objects()
+            .filter(|o| o.row.role != Role::Header && !KNOWN_COLUMNS.contains(&&*o.row.name))
+            .map(|o| &*o.row.name)
+            .collect();
+        if !ours.is_empty() {
+            let names = ours.into_iter().collect::<Vec<_>>().join(", ");
+            let _ = writeln!(out, "{OWN_REMARK}the columns of these entities are its own: {names}");
+        }
+        if self.chunks.iter().any(|chunk| chunk.text.contains(ARGUMENT)) {
+            let text = "arguments that have no column are attributes of its own, by their names";
+            let _ = writeln!(out, "{OWN_REMARK}{text}");
+        }
+        if !self.computed.is_empty() && !self.evaluation.env.params.is_empty() {
+            let _ = writeln!(out, "{OWN_REMARK}{}", self.fixed_numbers());
+        }
+        out
+    }
+
+    /// The variables and formulas of the statement that begins there.
+    fn reals(&mut self, start: u32) {
+        for (name, text) in self.relations.reals_at(start) {
+            let before = std::mem::take(&mut self.before);
+            self.chunks.push(FileLine { before, name, text, real: true });
+        }
+    }
+
+    /// The diagnostic of an object that the text makes otherwise.
+    fn unlike(&self, name: &str, why: &str) -> Diagnostic {
+        Diagnostic::error(
+            "not-in-model-files",
+            format!("`{name}` cannot be written to a model file"),
+        )
+        .found(why)
+        .object(name)
+        .help("keep the model in .sdl")
     }
 
     fn header(&mut self) {
@@ -121,13 +330,13 @@ impl<'a> ToModelFile<'a> {
         };
         let first = lines.iter().find(|line| line.starts_with("MultiSurf "));
         let has = |key: &str| lines.iter().any(|line| line.starts_with(key));
-        let told = has("Symmetry:") || first.is_some_and(|line| line.contains('/'));
-        let out = &mut self.out;
+        let stated = has("Symmetry:") || first.is_some_and(|line| line.contains('/'));
+        let out = &mut self.head;
         match first {
             Some(line) => *out += line,
             None => {
                 let _ = write!(out, "MultiSurf {}", self.version);
-                if self.legacy && !symmetry.is_empty() && !told {
+                if self.legacy && !symmetry.is_empty() && !stated {
                     let _ = write!(out, " /{symmetry}");
                 }
             }
@@ -136,7 +345,7 @@ impl<'a> ToModelFile<'a> {
         if !units.is_empty() && !has("Units:") {
             let _ = writeln!(out, "Units: {units}");
         }
-        if !self.legacy && !symmetry.is_empty() && !told {
+        if !self.legacy && !symmetry.is_empty() && !stated {
             let _ = writeln!(out, "Symmetry: {}", planes(&symmetry));
         }
         for line in lines.iter().filter(|line| !line.starts_with("MultiSurf ")) {
@@ -152,7 +361,7 @@ impl<'a> ToModelFile<'a> {
             }
         }
         if !self.legacy {
-            *out += "BeginModel;\n";
+            self.head += "BeginModel;\n";
         }
     }
 
@@ -164,7 +373,12 @@ impl<'a> ToModelFile<'a> {
         for (k, line) in lines.iter().enumerate() {
             match line.find('#') {
                 Some(at) => self.comment(line[at..].trim_end()),
-                None if between.contains(&k) && !self.out.ends_with("\n\n") => self.out.push('\n'),
+                None if between.contains(&k)
+                    && self.before != "\n"
+                    && !self.before.ends_with("\n\n") =>
+                {
+                    self.before.push('\n');
+                }
                 None => {}
             }
         }
@@ -173,19 +387,38 @@ impl<'a> ToModelFile<'a> {
     fn comment(&mut self, text: &str) {
         if let Some(name) = text.strip_prefix(RELABEL) {
             self.relabel = Some(name.trim().to_string());
+        } else if let Some(entity) = text.strip_prefix(ENTITY) {
+            self.entity = Some(entity.trim().to_string());
+        } else if let Some(names) = text.strip_prefix(ORDER) {
+            self.order.extend(names.split_whitespace().map(str::to_string));
         } else if let Some(line) = text.strip_prefix("#ms2-trailer") {
             self.trailer += line.strip_prefix(' ').unwrap_or(line);
             self.trailer.push('\n');
         } else if text == VERBATIM.trim_end() {
-            self.out.push('\n');
+            self.before.push('\n');
         } else if let Some(line) = text.strip_prefix(VERBATIM) {
-            self.out += line;
-            self.out.push('\n');
+            self.verbatim(line);
         } else {
             let rest = &text[1..];
             let blank =
                 rest.starts_with(|c: char| c.is_alphanumeric() || matches!(c, '_' | ':' | '#'));
-            let _ = writeln!(self.out, "Rem{}{rest}", if blank { " " } else { "" });
+            let _ = writeln!(self.before, "Rem{}{rest}", if blank { " " } else { "" });
+        }
+    }
+
+    /// A line of the file that the program is from: a comment, or part of an object of a kind that is not ours.
+    fn verbatim(&mut self, line: &str) {
+        self.before += line;
+        self.before.push('\n');
+        // An object ends with its line; its name is the second word of its first.
+        let first =
+            self.before.lines().rfind(|l| !l.starts_with([' ', '\t', '#']) && !l.is_empty());
+        if !line.starts_with('#')
+            && line.ends_with(';')
+            && let Some(name) = first.and_then(|l| l.split_whitespace().nth(1)).map(str::to_string)
+        {
+            let text = std::mem::take(&mut self.before);
+            self.chunks.push(FileLine { before: String::new(), name, text, real: false });
         }
     }
 
@@ -205,51 +438,84 @@ impl<'a> ToModelFile<'a> {
 
     fn object(&mut self, object: &Object<f64>) {
         let row = &*object.row;
-        let Some(columns) = row.columns else {
-            self.refuse(object, "a kind that model files do not know", "keep the model in .sdl");
-            return;
-        };
-        let mut line = format!("{} {}", row.name, plain_name(&object.name));
-        line += &self.head(&object.head, row.class);
+        let entity = self.entity.take().unwrap_or_else(|| row.name.to_string());
         let relabel = self.relabel.take();
-        let mut columns: Vec<&str> = columns.split_ascii_whitespace().collect();
+        let mut columns: Vec<&str> = row.columns.unwrap_or("").split_ascii_whitespace().collect();
         let own = row.field("relabel").filter(|_| row.class.dimension() > Some(0));
         let set = own.filter(|at| !matches!(object.args[*at], Value::Unset));
+        let mut given_relabel = None;
         if columns.first() != Some(&"relabel") {
             if set.is_some() {
                 columns.insert(0, "relabel");
-            } else if let Some(relabel) = &relabel {
-                line = format!("{line} {relabel}");
+            } else {
+                given_relabel = relabel.as_deref();
             }
         }
+        let mut computed = false;
+        let mut data = given_relabel.map_or(String::new(), |word| format!(" {word}"));
         for column in &columns {
-            line.push(' ');
+            data.push(' ');
             let Some(at) = row.field(column).filter(|at| own != Some(*at) || set.is_some()) else {
-                line += relabel.as_deref().unwrap_or("*");
+                data += relabel.as_deref().unwrap_or("*");
                 continue;
             };
-            match self.value(&row.fields[at], &object.args[at]) {
-                Ok(text) => line += &text,
-                Err(found) => {
-                    let help = format!(
-                        "declare `{}` as an object of its own and give its name here",
-                        row.fields[at].name
-                    );
-                    self.refuse(object, found, &help);
-                    return;
+            match self.argument(object, at, false, &mut computed) {
+                Some(text) => data += &text,
+                None => return,
+            }
+        }
+        let mut named = String::new();
+        for (at, field) in row.fields.iter().enumerate() {
+            let usual = field.default.is_some_and(|d| d.value().same(&object.args[at]));
+            if !columns.contains(&field.name) && !usual {
+                match self.argument(object, at, true, &mut computed) {
+                    Some(text) => {
+                        let _ = write!(named, " {ARGUMENT}({} {text})", field.name);
+                    }
+                    None => return,
                 }
             }
         }
-        for (field, arg) in row.fields.iter().zip(&object.args) {
-            let usual = field.default.is_some_and(|d| d.value().same(arg));
-            if !columns.contains(&field.name) && !usual {
-                let found = format!("`{}`, which model files have no column for", field.name);
-                self.refuse(object, &found, "leave it out, or keep the model in .sdl");
-                return;
+        if computed {
+            self.computed.push(object.name.to_string());
+        }
+        let head = self.head(&object.head, row.class);
+        let slash = if self.legacy { "" } else { " /" };
+        let name = plain_name(&object.name);
+        let text = format!("{entity} {name}{head}{named}{slash}{data};\n");
+        let before = std::mem::take(&mut self.before);
+        self.chunks.push(FileLine { before, name, text, real: false });
+    }
+
+    /// The text of an argument; `None` when it was refused.
+    fn argument(
+        &mut self,
+        object: &Object<f64>,
+        at: usize,
+        named: bool,
+        computed: &mut bool,
+    ) -> Option<String> {
+        let field = &object.row.fields[at];
+        // Where no column of another program says what it is, numbers may be a point or a vector.
+        let vector = match &object.args[at] {
+            Value::Vector(v) if named && !is_number(field.class) => Some(v.to_array()),
+            _ => None,
+        };
+        if let Some(v) = vector {
+            let items = (0..3).map(|k| self.number(object, at, Some(k), v[k], computed));
+            return Some(format!("{{ {} }}", items.collect::<Vec<_>>().join(" ")));
+        }
+        match self.value(object, at, None, &object.args[at], computed) {
+            Ok(text) => Some(text),
+            Err(found) => {
+                let help = format!(
+                    "declare `{}` as an object of its own and give its name here",
+                    field.name
+                );
+                self.refuse(object, found, &help);
+                None
             }
         }
-        self.out += &line;
-        self.out += ";\n";
     }
 
     fn head(&self, head: &Attributes, class: Class) -> String {
@@ -281,40 +547,86 @@ impl<'a> ToModelFile<'a> {
         if !attributes.is_empty() {
             let _ = write!(out, " {attributes}");
         }
-        if !self.legacy {
-            out += " /";
+        // Panels that were left to the neighbours, and cells of solids, have no place in the head.
+        let [u, v, w] = head.blocks;
+        match class.dimension() {
+            Some(2) if !head.divided => {
+                let _ = write!(out, " {ARGUMENT}(divisions *)");
+            }
+            Some(3) if head.divided => {
+                let _ = write!(out, " {ARGUMENT}(divisions {{ {u} {v} {w} }})");
+            }
+            _ => {}
         }
         out
     }
 
     /// The argument as a column, or what it is when no column can hold that.
-    fn value(&self, field: &FieldSpec, value: &Value<f64>) -> Result<String, &'static str> {
+    fn value(
+        &self,
+        object: &Object<f64>,
+        at: usize,
+        item: Option<usize>,
+        value: &Value<f64>,
+        computed: &mut bool,
+    ) -> Result<String, &'static str> {
+        let field = &object.row.fields[at];
         let list = |items: Vec<String>| {
             let items: Vec<String> = items.into_iter().map(|item| item + " ").collect();
             format!("{{ {}}}", items.concat())
         };
+        let numbers = |items: &[f64], computed: &mut bool| {
+            let items = items.iter().enumerate();
+            list(items.map(|(k, x)| self.number(object, at, Some(k), *x, computed)).collect())
+        };
         match value {
             Value::Unset => Ok("*".into()),
-            Value::Number(x) => Ok(spelled(*x, field.unit)),
+            Value::Number(x) => Ok(self.number(object, at, item, *x, computed)),
             Value::Text(text) => Ok(self.word(field, text)),
             Value::Object(key) => {
                 let object = self.evaluation.graph.get(*key);
                 Ok(object.map_or("*".into(), |o| plain_name(&o.name)))
             }
             Value::List(items) if field.many => {
-                let items: Result<Vec<_>, _> = items.iter().map(|v| self.value(field, v)).collect();
+                let items = items.iter().enumerate();
+                let items: Result<Vec<_>, _> =
+                    items.map(|(k, v)| self.value(object, at, Some(k), v, computed)).collect();
                 Ok(list(items?))
             }
             Value::Vector(v) if field.many && is_number(field.class) => {
-                Ok(list(v.to_array().map(|x| spelled(x, field.unit)).into()))
+                Ok(numbers(&v.to_array(), computed))
             }
             Value::Numbers(a) if field.many && is_number(field.class) => {
-                Ok(list(a.items.iter().map(|x| spelled(*x, field.unit)).collect()))
+                Ok(numbers(&a.items, computed))
             }
             other => Err(match other.class() {
                 Class::Any => "a value without a name",
                 class => class.with_article(),
             }),
+        }
+    }
+
+    /// A number as a relation where it is one, else as it is.
+    fn number(
+        &self,
+        object: &Object<f64>,
+        at: usize,
+        item: Option<usize>,
+        x: f64,
+        computed: &mut bool,
+    ) -> String {
+        let unit: Unit = object.row.fields[at].unit;
+        if self.fixed.contains(&*object.name) {
+            *computed = true;
+            return spelled(x, unit);
+        }
+        match self.relations.number(object, at, item, unit) {
+            NumberForm::Relation(text) => text,
+            NumberForm::Constant => spelled(x, unit),
+            NumberForm::Computed => {
+                *computed = true;
+                spelled(x, unit)
+            }
         }
     }
 

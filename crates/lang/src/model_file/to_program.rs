@@ -2,6 +2,7 @@
 //! the language has no words for travels in comments that begin with `#ms2 `.
 
 use crate::model_file::names::{bare, identifier, is_real, system_name};
+use crate::model_file::relations::RADIANS;
 use crate::model_file::{ModelFileSource, Sorted};
 use crate::source::env::Evaluation;
 use moldloft_diag::Diagnostic;
@@ -18,8 +19,14 @@ pub(crate) const VERBATIM: &str = "#ms2 ";
 /// The relabel of the object that follows.
 pub(crate) const RELABEL: &str = "#ms2-relabel ";
 
-/// How many radians a degree has, as the language spells it.
-const RADIANS: &str = "0.017453292519943295";
+/// The entity word of the object that follows, where it is another than that of our kind.
+pub(crate) const ENTITY: &str = "#ms2-entity ";
+
+/// The names of the file's objects in its order, where parents stand below their children.
+pub(crate) const ORDER: &str = "#ms2-order ";
+
+/// The most names in a line of the order.
+const NAMES_IN_LINE: usize = 12;
 
 /// The program that makes the objects of a model file, as a run of it built them.
 pub fn to_program(
@@ -146,7 +153,14 @@ impl ToProgram<'_> {
         let lines = self.source.lines();
         let sorted: Vec<Sorted> =
             lines.iter().map(|l| self.source.sorted(self.registry, l)).collect();
-        for at in self.source.order(&sorted).0 {
+        let order = self.source.order(&sorted).0;
+        if !order.is_sorted() {
+            let names: Vec<&str> = lines.iter().map(|line| model.slice(line.name)).collect();
+            for names in names.chunks(NAMES_IN_LINE) {
+                let _ = writeln!(out, "{ORDER}{}", names.join(" "));
+            }
+        }
+        for at in order {
             let object = self.object(&lines[at], at, &sorted[at]);
             // A comment inside an object comes before it, unless the object has it in its text.
             let inside = |start: u32| object.is_none() && start > lines[at].span.start;
@@ -231,6 +245,10 @@ impl ToProgram<'_> {
         let mut out = String::new();
         if let Some(relabel) = &sorted.relabel {
             let _ = writeln!(out, "{RELABEL}{}", model.slice(relabel.span));
+        }
+        let entity = model.slice(line.entity);
+        if entity != &*row.name {
+            let _ = writeln!(out, "{ENTITY}{entity}");
         }
         let mut args = Vec::new();
         let mut positional = true;

@@ -31,6 +31,9 @@ use moldloft_diag::{Diagnostic, FileId, Span};
 use std::ops::Index;
 use std::sync::Arc;
 
+/// The attribute that holds an argument without a column: `A:Moldloft(breaks { 0.25 0.7 })`.
+pub const ARGUMENT: &str = "A:Moldloft";
+
 /// A number of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NumberId(pub u32);
@@ -101,6 +104,13 @@ pub enum FieldKind {
         name: Span,
         /// Where the value stands, without the parentheses.
         value: Span,
+    },
+    /// `A:Moldloft(name field)`: an argument that has no column, by its name.
+    Argument {
+        /// Where the name stands.
+        name: Span,
+        /// Its fields: one, where it is sound.
+        value: Fields,
     },
     /// `/`, which ends the head of an object in 1.x.
     Slash,

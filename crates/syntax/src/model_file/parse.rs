@@ -67,6 +67,8 @@ struct ModelFileParser<'a> {
 struct OpenList {
     closer: u8,
     at: Span,
+    /// The name of the argument that it is.
+    argument: Option<Span>,
     /// Where its fields begin in the scratch stack.
     base: usize,
 }
@@ -426,20 +428,24 @@ impl<'a> ModelFileParser<'a> {
                 self.push_item(ItemKind::Comment, span, false);
                 return true;
             }
-            _ => return self.plain_field(start),
+            _ => return self.plain_field(start, open),
         };
         self.at += 1;
         let at = self.span(start);
+        self.open_list(open, OpenList { closer, at, argument: None, base: self.scratch.len() })
+    }
+
+    fn open_list(&mut self, open: &mut Vec<OpenList>, list: OpenList) -> bool {
         if open.len() >= MAX_NESTING {
             let diagnostic =
-                Diagnostic::error("nesting-too-deep", "lists are nested too deep").at(at);
+                Diagnostic::error("nesting-too-deep", "lists are nested too deep").at(list.at);
             self.report(diagnostic.expected(format!("at most {MAX_NESTING} levels")));
             // The rest of this object is skipped.
             let rest = &self.bytes[self.at..];
             self.at += rest.iter().position(|byte| *byte == b';').unwrap_or(rest.len());
             return false;
         }
-        open.push(OpenList { closer, at, base: self.scratch.len() });
+        open.push(list);
         true
     }
 
@@ -466,8 +472,11 @@ impl<'a> ModelFileParser<'a> {
 
     fn close(&mut self, list: &OpenList, end: u32) {
         let fields = self.take_fields(list.base);
-        let kind =
-            if list.closer == b'}' { FieldKind::List(fields) } else { FieldKind::Tuple(fields) };
+        let kind = match list.argument {
+            Some(name) => FieldKind::Argument { name, value: fields },
+            None if list.closer == b'}' => FieldKind::List(fields),
+            None => FieldKind::Tuple(fields),
+        };
         self.scratch.push(EntryField { kind, span: Span { end: end.max(list.at.end), ..list.at } });
     }
 
@@ -496,7 +505,7 @@ impl<'a> ModelFileParser<'a> {
         closed
     }
 
-    fn plain_field(&mut self, start: usize) -> bool {
+    fn plain_field(&mut self, start: usize, open: &mut Vec<OpenList>) -> bool {
         let span = self.word();
         let word = self.text_of(span);
         let mut sound = true;
@@ -506,6 +515,13 @@ impl<'a> ModelFileParser<'a> {
             FieldKind::Star
         } else if word.starts_with('=') && word.len() > 1 {
             FieldKind::Formula
+        } else if word == ARGUMENT && self.peek() == b'(' {
+            self.at += 1;
+            self.skip_line_blanks();
+            let at = self.span(start);
+            let argument = Some(self.word());
+            let list = OpenList { closer: b')', at, argument, base: self.scratch.len() };
+            return self.open_list(open, list);
         } else if word.starts_with("A:") && self.peek() == b'(' {
             return self.attribute(start, span);
         } else if let Some(pair) = self.pair(span, word) {

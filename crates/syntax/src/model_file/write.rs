@@ -108,6 +108,13 @@ impl ModelFile {
                     self.write_fields(list, out);
                     out.push_str(" )");
                 }
+                FieldKind::Argument { name, value } => {
+                    out.push_str(ARGUMENT);
+                    out.push('(');
+                    out.push_str(self.slice(name));
+                    self.write_fields(value, out);
+                    out.push(')');
+                }
                 FieldKind::Word
                 | FieldKind::Star
                 | FieldKind::Text
