@@ -1,6 +1,6 @@
 //! Mirror images of boundary representations in coordinate planes, sewn to their originals there.
 
-use crate::{Brep, BrepEdge, BrepFace, SurfaceShape};
+use crate::{Brep, BrepEdge, BrepFace, ExactCurve, SurfaceAxes, SurfaceShape};
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 
@@ -25,6 +25,7 @@ fn flat(face: &BrepFace, axis: usize, near: f64) -> bool {
             origin[axis].abs() <= near && (normal[axis].abs() - 1.0).abs() < 1e-12
         }
         SurfaceShape::Nurbs(n) => n.points.iter().all(|p| p[axis].abs() <= near),
+        _ => false,
     }
 }
 
@@ -68,7 +69,15 @@ impl Brep {
             let ends = edge.ends.map(|v| twin[v]);
             let curve = image(&edge.curve, axis);
             other[e] = self.edges.len();
-            self.edges.push(BrepEdge { ends, curve });
+            let ellipse = edge.ellipse.map(|curve| match curve {
+                ExactCurve::Ellipse { centre, x, y } => ExactCurve::Ellipse {
+                    centre: mirrored(centre, axis),
+                    x: mirrored(x, axis),
+                    y: mirrored(y, axis),
+                },
+                line @ ExactCurve::Line { .. } => line,
+            });
+            self.edges.push(BrepEdge { ends, curve, ellipse });
         }
         for f in 0..self.faces.len() {
             let mut face = self.faces[f].clone();
@@ -87,7 +96,21 @@ impl Brep {
                     face.reversed = !face.reversed;
                     SurfaceShape::Nurbs(Box::new(image(&n, axis)))
                 }
+                // Their normals follow from their places, as those of the images do.
+                round => {
+                    let made = round.axes().map(|a| {
+                        round.with_axes(SurfaceAxes {
+                            origin: mirrored(a.origin, axis),
+                            z: mirrored(a.z, axis),
+                            x: mirrored(a.x, axis),
+                        })
+                    });
+                    made.unwrap_or(round)
+                }
             };
+            if let Some(([low, high], _)) = &mut face.extent {
+                (low[axis], high[axis]) = (-high[axis], -low[axis]);
+            }
             for cycle in &mut face.loops {
                 for side in cycle.iter_mut() {
                     side.edge = other[side.edge];

@@ -10,10 +10,18 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod analytic;
 mod check;
+mod crossing;
 mod image;
+mod labelled;
+mod meet;
+mod seams;
 
+pub use analytic::SurfaceAxes;
 pub use check::{Fault, ShellFacts};
+pub use labelled::{FacetFault, FacetFaultKind, LabelledFacets};
+pub use meet::{ExactCurve, meet};
 
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
@@ -40,6 +48,8 @@ pub struct BrepEdge {
     pub ends: [usize; 2],
     /// Its curve, from the first vertex at 0 to the second at 1.
     pub curve: Nurbs<1>,
+    /// The ellipse that it is a part of, run by increasing angle, if it is one.
+    pub ellipse: Option<ExactCurve>,
 }
 
 /// A part of a surface.
@@ -61,6 +71,8 @@ pub struct BrepFace {
     pub error: f64,
     /// True when the surface is that of the model but for rounding.
     pub exact: bool,
+    /// The box round a face of a set's body, which bounds a cavity where the second is true.
+    pub extent: Option<([[f64; 3]; 2], bool)>,
 }
 
 /// A side of a loop.
@@ -87,6 +99,38 @@ pub enum SurfaceShape {
         normal: Vec3,
         /// A unit vector in it.
         axis: Vec3,
+    },
+    /// A cylinder.
+    Cylinder {
+        /// Its axes.
+        axes: SurfaceAxes,
+        /// Its radius.
+        radius: f64,
+    },
+    /// A cone.
+    Cone {
+        /// Its axes; it widens along z.
+        axes: SurfaceAxes,
+        /// Its radius at their origin.
+        radius: f64,
+        /// The angle between the axis and the cone.
+        half_angle: f64,
+    },
+    /// A sphere.
+    Sphere {
+        /// Its axes, at its centre.
+        axes: SurfaceAxes,
+        /// Its radius.
+        radius: f64,
+    },
+    /// A torus.
+    Torus {
+        /// Its axes, at its centre.
+        axes: SurfaceAxes,
+        /// The radius of the circle of centres.
+        major: f64,
+        /// The radius of the tube.
+        minor: f64,
     },
     /// A NURBS.
     Nurbs(Box<Nurbs<2>>),
@@ -131,6 +175,37 @@ impl Brep {
     /// The largest error of its faces.
     pub fn error(&self) -> f64 {
         self.faces.iter().map(|f| f.error).fold(0.0, f64::max)
+    }
+
+    /// The surface of a face as a NURBS; none for a plane.
+    pub fn nurbs(&self, face: &BrepFace) -> Option<Nurbs<2>> {
+        if let SurfaceShape::Nurbs(surface) = &face.surface {
+            return Some((**surface).clone());
+        }
+        let axes = face.surface.axes()?;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for side in face.loops.iter().flatten() {
+            for p in &self.edges[side.edge].curve.points {
+                let h = axes.local(*p)[2];
+                (low, high) = (low.min(h), high.max(h));
+            }
+        }
+        face.surface.nurbs([low, high])
+    }
+
+    /// Adds the vertices, edges and faces of another.
+    pub fn append(&mut self, other: Self) {
+        let (vertices, edges) = (self.vertices.len(), self.edges.len());
+        self.vertices.extend(other.vertices);
+        self.edges.extend(other.edges.into_iter().map(|mut edge| {
+            edge.ends.iter_mut().for_each(|v| *v += vertices);
+            edge
+        }));
+        self.faces.extend(other.faces.into_iter().map(|mut face| {
+            face.loops.iter_mut().flatten().for_each(|side| side.edge += edges);
+            face
+        }));
+        self.gap = self.gap.max(other.gap);
     }
 
     /// True when all faces are exact but for rounding.

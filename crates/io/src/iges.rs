@@ -192,6 +192,12 @@ impl File {
                 flat = made.0;
                 (&flat, Some(made.1))
             }
+            // Of cylinders, cones, spheres and tori; their curves are in space alone.
+            _ => {
+                let Some(made) = brep.nurbs(face) else { return };
+                flat = made;
+                (&flat, None)
+            }
         };
         let mut bounds = Vec::new();
         let number = self.surface(surface, &plain);

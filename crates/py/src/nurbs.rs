@@ -117,14 +117,18 @@ pub fn brep<'py>(
     let edges: PyResult<Vec<_>> =
         brep.edges.iter().map(|e| Ok((e.ends[0], e.ends[1], data(py, &e.curve)?))).collect();
     dict.set_item("edges", edges?)?;
-    let faces: PyResult<Vec<_>> = brep.faces.iter().map(|f| face(py, f)).collect();
+    let faces: PyResult<Vec<_>> = brep.faces.iter().map(|f| face(py, &brep, f)).collect();
     dict.set_item("faces", faces?)?;
     dict.set_item("parts", parts(py, &brep)?)?;
     dict.set_item("gap", brep.gap)?;
     Ok(dict)
 }
 
-fn face<'py>(py: Python<'py>, face: &moldloft::brep::BrepFace) -> PyResult<Bound<'py, PyDict>> {
+fn face<'py>(
+    py: Python<'py>,
+    brep: &Brep,
+    face: &moldloft::brep::BrepFace,
+) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("name", &face.name)?;
     dict.set_item("colour", face.colour)?;
@@ -138,9 +142,10 @@ fn face<'py>(py: Python<'py>, face: &moldloft::brep::BrepFace) -> PyResult<Bound
             dict.set_item("plane", all)?;
             dict.set_item("surface", py.None())?;
         }
-        SurfaceShape::Nurbs(surface) => {
+        _ => {
             dict.set_item("plane", py.None())?;
-            dict.set_item("surface", data(py, surface)?)?;
+            let surface = brep.nurbs(face);
+            dict.set_item("surface", surface.map(|s| data(py, &s)).transpose()?)?;
         }
     }
     let mut loops = Vec::new();

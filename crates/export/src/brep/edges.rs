@@ -162,6 +162,7 @@ impl<'a> Sewing<'a> {
             loops,
             error: surface.error,
             exact: surface.exact,
+            extent: None,
         });
         Ok(())
     }
@@ -259,7 +260,7 @@ impl<'a> Sewing<'a> {
         let far = |k: usize, t: f64| curve.at([t]).distance(self.brep.vertices[ends[k]]);
         self.brep.gap = self.brep.gap.max(far(0, 0.0)).max(far(1, 1.0)).max(error);
         let edge = self.brep.edges.len();
-        self.brep.edges.push(BrepEdge { ends, curve });
+        self.brep.edges.push(BrepEdge { ends, curve, ellipse: None });
         self.edges.entry(key).or_default().push(edge);
         Ok(Coedge { edge, forward: true, trace: Some(trace), alike: true })
     }

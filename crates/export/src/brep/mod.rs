@@ -5,6 +5,7 @@
 //! Two sides are one edge when they run through the same vertices of the mesh, which are one by identity, and their
 //! curves do not part by more than the accuracy allows: places are compared to refuse a join, never to make one.
 
+mod bodies;
 mod edges;
 mod faces;
 mod parents;
@@ -56,8 +57,11 @@ pub fn brep(
     outlines.iter_mut().for_each(|outline| parents::on_parent(document, outline));
     let faces = faces::all(&outlines, accuracy)?;
     let mut brep = Sewing::new(&outlines, &faces, positions, accuracy, size).finish()?;
+    let panelled = document.panelled()?;
     for name in bodies {
-        polyhedra::add(&mut brep, &panelled.mesh, &name, size)?;
+        if !bodies::add(&mut brep, document, &name, accuracy, size)? {
+            polyhedra::add(&mut brep, &panelled.mesh, &name, size)?;
+        }
     }
     for (axis, letter) in ['x', 'y', 'z'].into_iter().enumerate() {
         if symmetry.contains(letter) {
@@ -103,7 +107,13 @@ pub(crate) fn metres(document: &Document) -> f64 {
 /// Cavities belong to the part of the body that they are in.
 fn named(brep: &Brep, shells: Vec<Shell>, stem: &str) -> Result<Vec<Part>, ExportFailure> {
     const LONGEST: usize = 60;
-    let inward = |shell: &Shell| brep.volume_of_polyhedron(shell).is_some_and(|v| v < 0.0);
+    let inward = |shell: &Shell| {
+        let known = shell.faces.first().and_then(|&f| brep.faces[f].extent);
+        known.map_or_else(
+            || brep.volume_of_polyhedron(shell).is_some_and(|v| v < 0.0),
+            |(_, cavity)| cavity,
+        )
+    };
     let (cavities, shells): (Vec<Shell>, Vec<Shell>) = shells.into_iter().partition(inward);
     let mut taken = std::collections::HashMap::new();
     let mut part = |shell: Shell| {
@@ -156,6 +166,12 @@ fn objects<'a>(brep: &'a Brep, shell: &Shell) -> Vec<&'a str> {
 /// Least and greatest coordinates of a shell's edges.
 fn bounds(brep: &Brep, shell: &Shell) -> [[f64; 3]; 2] {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for ([from, to], _) in shell.faces.iter().filter_map(|&f| brep.faces[f].extent) {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(from[axis]);
+            high[axis] = high[axis].max(to[axis]);
+        }
+    }
     for side in shell.faces.iter().flat_map(|&f| brep.faces[f].loops.iter().flatten()) {
         for p in &brep.edges[side.edge].curve.points {
             for axis in 0..3 {

@@ -163,7 +163,8 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Ex
                 let [a, b] = ends.map(|v| base(v, brep, &mut vertices));
                 let edge = *edges.entry((a.min(b), a.max(b))).or_insert_with(|| {
                     let [p, q] = [a.min(b), a.max(b)].map(|v| brep.vertices[v]);
-                    brep.edges.push(BrepEdge { ends: [a.min(b), a.max(b)], curve: segment(p, q) });
+                    let ends = [a.min(b), a.max(b)];
+                    brep.edges.push(BrepEdge { ends, curve: segment(p, q), ellipse: None });
                     brep.edges.len() - 1
                 });
                 sides.push(Coedge { edge, forward: a < b, trace: None, alike: true });
@@ -182,6 +183,7 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Ex
             loops: made,
             error: near,
             exact: true,
+            extent: None,
         });
         brep.gap = brep.gap.max(near);
     }

@@ -3,7 +3,7 @@
 use super::RepresentationItems;
 use super::part21::{Part21, joined, list, real, reals, text};
 use crate::WriteError;
-use moldloft_brep::{Brep, BrepFace, Part, Shell, SurfaceShape, Wire};
+use moldloft_brep::{Brep, BrepFace, ExactCurve, Part, Shell, SurfaceAxes, SurfaceShape, Wire};
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 use std::collections::BTreeMap;
@@ -76,6 +76,23 @@ pub fn axis(file: &mut Part21, o: Vec3, z: Vec3, x: Vec3) -> usize {
     file.add(format!("AXIS2_PLACEMENT_3D('',#{o},#{z},#{x})"))
 }
 
+fn placed(file: &mut Part21, axes: &SurfaceAxes) -> usize {
+    axis(file, axes.origin, axes.z, axes.x)
+}
+
+/// A circle or an ellipse with its longer axis first, run by increasing angle.
+fn ellipse(file: &mut Part21, centre: Vec3, x: Vec3, y: Vec3) -> Option<usize> {
+    let (a, b) = (x.norm(), y.norm());
+    let (z, unit) = (x.cross(y).normalized()?, x.normalized()?);
+    if (a - b).abs() <= 1e-14 * a {
+        let placement = axis(file, centre, z, unit);
+        return Some(file.add(format!("CIRCLE('',#{placement},{})", real(a))));
+    }
+    let (long, short, first) = if a > b { (a, b, unit) } else { (b, a, y.normalized()?) };
+    let placement = axis(file, centre, z, first);
+    Some(file.add(format!("ELLIPSE('',#{placement},{},{})", real(long), real(short))))
+}
+
 /// Multiplicities and distinct knots.
 fn knots_of(knots: &[f64]) -> [String; 2] {
     let runs: Vec<&[f64]> = knots.chunk_by(|a, b| a == b).collect();
@@ -118,6 +135,24 @@ fn surface(file: &mut Part21, s: &SurfaceShape) -> usize {
         SurfaceShape::Plane { origin, normal, axis: x } => {
             let placement = axis(file, *origin, *normal, *x);
             return file.add(format!("PLANE('',#{placement})"));
+        }
+        SurfaceShape::Cylinder { axes, radius } => {
+            let (placement, radius) = (placed(file, axes), real(*radius));
+            return file.add(format!("CYLINDRICAL_SURFACE('',#{placement},{radius})"));
+        }
+        SurfaceShape::Cone { axes, radius, half_angle } => {
+            let placement = placed(file, axes);
+            let (radius, angle) = (real(*radius), real(*half_angle));
+            return file.add(format!("CONICAL_SURFACE('',#{placement},{radius},{angle})"));
+        }
+        SurfaceShape::Sphere { axes, radius } => {
+            let (placement, radius) = (placed(file, axes), real(*radius));
+            return file.add(format!("SPHERICAL_SURFACE('',#{placement},{radius})"));
+        }
+        SurfaceShape::Torus { axes, major, minor } => {
+            let placement = placed(file, axes);
+            let (major, minor) = (real(*major), real(*minor));
+            return file.add(format!("TOROIDAL_SURFACE('',#{placement},{major},{minor})"));
         }
         SurfaceShape::Nurbs(s) => s,
     };
@@ -322,13 +357,18 @@ impl<'a> Shapes<'a> {
         let [from, to] = edge.ends.map(|v| self.vertex(file, v));
         let traces = self.traces[e].clone();
         let line = if traces.is_empty() { straight(&edge.curve) } else { None };
-        let mut shape = match line {
-            Some((a, d)) => {
+        let conic = match edge.ellipse {
+            Some(ExactCurve::Ellipse { centre, x, y }) => ellipse(file, centre, x, y),
+            _ => None,
+        };
+        let mut shape = match (conic, line) {
+            (Some(conic), _) => conic,
+            (None, Some((a, d))) => {
                 let (a, d) = (point(file, a), direction(file, d));
                 let vector = file.add(format!("VECTOR('',#{d},1.)"));
                 file.add(format!("LINE('',#{a},#{vector})"))
             }
-            None => curve(file, &edge.curve, 3),
+            (None, None) => curve(file, &edge.curve, 3),
         };
         if !traces.is_empty() {
             let seam = traces.len() == 2 && traces[0][0] == traces[1][0];

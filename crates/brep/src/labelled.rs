@@ -1,0 +1,876 @@
+//! Labelled triangles into faces: each face on the surface of its label, its edges where that surface meets the next.
+//!
+//! `triangles with surfaces -> faces that hang together -> seams -> chains of sides -> edges -> loops`
+//!
+//! The triangles say what hangs together and which part of a curve is an edge; no number of theirs is in the result.
+
+use crate::crossing::crossing;
+use crate::seams::{FacetNet, ordered};
+use crate::{Brep, BrepEdge, BrepFace, Coedge, ExactCurve, SurfaceAxes, SurfaceShape, meet};
+use moldloft_num::{Pace, Vec3};
+use moldloft_spline::nurbs::Nurbs;
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// What counts as in a surface, as a share of the size.
+const NEAR: f64 = 1e-9;
+
+/// Corners may be so many cells off where faces meet at small angles.
+const REACH: f64 = 4.0;
+
+/// Surfaces touch, as far as triangles go, where the sine of the angle of their normals is less.
+const TOUCHING: f64 = 0.5;
+
+/// Triangles of a closed body, and the surface that each is on.
+#[derive(Clone, Debug)]
+pub struct LabelledFacets {
+    /// Positions.
+    pub positions: Vec<Vec3>,
+    /// Triangles, counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// The surface of each triangle.
+    pub labels: Vec<u32>,
+    /// The surfaces.
+    pub surfaces: Vec<SurfaceShape>,
+    /// Their names.
+    pub names: Vec<String>,
+    /// Their colours.
+    pub colours: Vec<Option<[u8; 3]>>,
+    /// Their layers.
+    pub layers: Vec<Vec<String>>,
+    /// The length of a usual side: edges are found where triangles are off by less.
+    pub step: f64,
+}
+
+/// Why triangles do not show a body of faces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FacetFault {
+    /// What is wrong.
+    pub kind: FacetFaultKind,
+    /// The names of the surfaces concerned.
+    pub surfaces: Vec<String>,
+    /// Where.
+    pub place: Vec3,
+}
+
+/// What is wrong with triangles that do not show a body of faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FacetFaultKind {
+    /// The triangles do not close, or more than two share a side.
+    NotClosed,
+    /// No seam goes round the face without meeting vertices.
+    Seam,
+    /// The surfaces meet, or touch, in a curve that is not found within the accuracy near the triangles.
+    Edge,
+    /// The surfaces round a vertex have no common point near it.
+    Vertex,
+}
+
+/// Sides of triangles between the same two faces, from corner to corner.
+struct BorderChain {
+    vertices: Vec<u32>,
+    surfaces: [u32; 2],
+    exact: Option<ExactCurve>,
+}
+
+impl BorderChain {
+    fn closed(&self) -> bool {
+        self.vertices.first() == self.vertices.last()
+    }
+}
+
+impl Brep {
+    /// Adds the faces of a body; gives a place on its face for each triangle.
+    ///
+    /// # Errors
+    /// Triangles that do not show its faces; finer ones may.
+    pub fn add_facets(
+        &mut self,
+        facets: LabelledFacets,
+        accuracy: f64,
+        size: f64,
+    ) -> Result<Vec<Vec3>, FacetFault> {
+        let mut work = Body::new(facets, accuracy, size)?;
+        work.join_islands();
+        work.pin()?;
+        let places = work.places();
+        work.cut()?;
+        work.find_chains();
+        work.choose_curves();
+        work.place_corners()?;
+        work.into_brep(self)?;
+        Ok(places)
+    }
+}
+
+struct Body {
+    net: FacetNet,
+    /// The surfaces, and behind them the planes of seams.
+    surfaces: Vec<SurfaceShape>,
+    names: Vec<String>,
+    colours: Vec<Option<[u8; 3]>>,
+    layers: Vec<Vec<String>>,
+    axes: BTreeMap<u32, SurfaceAxes>,
+    chains: Vec<BorderChain>,
+    corners: BTreeMap<u32, Vec3>,
+    /// How far off the found places are.
+    gap: f64,
+    accuracy: f64,
+    size: f64,
+    step: f64,
+}
+
+impl Body {
+    fn new(facets: LabelledFacets, accuracy: f64, size: f64) -> Result<Self, FacetFault> {
+        let LabelledFacets { positions, triangles, mut labels, surfaces, names, .. } = facets;
+        let near = NEAR * size;
+        let first: Vec<u32> = (0..surfaces.len())
+            .map(|k| {
+                let same = |&j: &usize| surfaces[j].is_same(&surfaces[k], near, size);
+                (0..k).find(same).unwrap_or(k) as u32
+            })
+            .collect();
+        labels.iter_mut().for_each(|l| *l = first[*l as usize]);
+        let place = positions.first().copied().unwrap_or_default();
+        let Some(net) = FacetNet::new(positions, triangles, labels) else {
+            let kind = FacetFaultKind::NotClosed;
+            return Err(FacetFault { kind, surfaces: Vec::new(), place });
+        };
+        Ok(Self {
+            net,
+            surfaces,
+            names,
+            colours: facets.colours,
+            layers: facets.layers,
+            axes: BTreeMap::new(),
+            chains: Vec::new(),
+            corners: BTreeMap::new(),
+            gap: 0.0,
+            accuracy,
+            size,
+            step: facets.step,
+        })
+    }
+
+    fn fault(&self, kind: FacetFaultKind, surfaces: &[u32], place: Vec3) -> FacetFault {
+        let mut names: Vec<String> = Vec::new();
+        for &s in surfaces {
+            if let Some(name) = self.names.get(s as usize)
+                && !names.contains(name)
+            {
+                names.push(name.clone());
+            }
+        }
+        FacetFault { kind, surfaces: names, place }
+    }
+
+    /// How far from the line or point where surfaces touch they are less than a cell apart.
+    fn cusp(&self) -> f64 {
+        (self.step * self.size).sqrt()
+    }
+
+    /// The middles of the triangles, moved onto their surfaces; without those beside a border along which surfaces
+    /// touch, for there they are on either of both.
+    fn places(&self) -> Vec<Vec3> {
+        let mut touching: HashSet<u32> = HashSet::new();
+        for ((a, b), surfaces) in self.borders() {
+            let [m, n] = surfaces.map(|s| &self.surfaces[s as usize]);
+            let sine = |v: u32| {
+                let p = self.net.positions[v as usize];
+                m.normal(p).cross(n.normal(p)).norm()
+            };
+            touching.extend([a, b].into_iter().filter(|&v| sine(v) < TOUCHING));
+        }
+        let middle = |k: usize| {
+            let [a, b, c] = self.net.corners(k);
+            let p = (a + b + c) / 3.0;
+            let surface = &self.surfaces[self.net.labels[k] as usize];
+            p - surface.normal(p) * surface.distance(p).unwrap_or(0.0)
+        };
+        let clear = |k: &usize| self.net.triangles[*k].iter().all(|v| !touching.contains(v));
+        (0..self.net.triangles.len()).filter(clear).map(middle).collect()
+    }
+
+    /// Gives faces that are smaller than cells and in the surface of the next one to that: where surfaces touch, few
+    /// triangles are on the wrong one of both.
+    fn join_islands(&mut self) {
+        const PASSES: usize = 3;
+        for _ in 0..PASSES {
+            let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+            for (k, g) in self.net.groups.iter().enumerate() {
+                members.entry(*g).or_default().push(k);
+            }
+            let mut joined = false;
+            for (group, own) in &members {
+                let places: Vec<Vec3> = own.iter().flat_map(|&k| self.net.corners(k)).collect();
+                let [low, high] = extent(places.iter().copied());
+                if Vec3::from(high).distance(low.into()) > 3.0 * self.step {
+                    continue;
+                }
+                let mut others: Vec<u32> = Vec::new();
+                for &k in own {
+                    let t = self.net.triangles[k];
+                    for i in 0..3 {
+                        let other = self.net.across[&(t[(i + 1) % 3], t[i])] as usize;
+                        if self.net.groups[other] != *group {
+                            others.push(self.net.labels[other]);
+                        }
+                    }
+                }
+                others.sort_unstable();
+                others.dedup();
+                let off = |label: &u32| {
+                    let surface = &self.surfaces[*label as usize];
+                    let far = |p: &Vec3| surface.distance(*p).unwrap_or(f64::INFINITY).abs();
+                    places.iter().map(far).fold(0.0, f64::max)
+                };
+                let best = others.iter().map(|l| (off(l), *l)).min_by(|a, b| a.0.total_cmp(&b.0));
+                if let Some((off, label)) = best
+                    && off <= 1e-2 * self.step
+                {
+                    own.iter().for_each(|&k| self.net.labels[k] = label);
+                    joined = true;
+                }
+            }
+            if !joined {
+                return;
+            }
+            self.net.groups = self.net.connected();
+        }
+    }
+
+    /// Makes one vertex of those round the apex of a cone, or a point where two surfaces touch and their edges cross.
+    fn pin(&mut self) -> Result<(), FacetFault> {
+        let mut points: Vec<Vec3> = Vec::new();
+        let step = self.step;
+        let known = |points: &[Vec3], p: Vec3| points.iter().any(|q| q.distance(p) <= step);
+        let mut shown: Vec<u32> = self.net.labels.clone();
+        shown.sort_unstable();
+        shown.dedup();
+        for apex in shown.iter().filter_map(|&l| self.surfaces[l as usize].apex()) {
+            if self.net.positions.iter().any(|p| p.distance(apex) <= 0.5 * self.step)
+                && !known(&points, apex)
+            {
+                points.push(apex);
+            }
+        }
+        self.find_chains();
+        for chain in std::mem::take(&mut self.chains) {
+            let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
+            let sine = |v: &u32| {
+                let p = self.net.positions[*v as usize];
+                both[0].normal(p).cross(both[1].normal(p)).norm()
+            };
+            let sines: Vec<f64> = chain.vertices.iter().map(sine).collect();
+            // Along all of it they touch in a curve.
+            if sines.iter().fold(0.0, |m: f64, s| m.max(*s)) < 0.1 {
+                continue;
+            }
+            for (k, &v) in chain.vertices.iter().enumerate() {
+                let low = k.saturating_sub(1);
+                let high = (k + 1).min(sines.len() - 1);
+                if sines[k] > 0.3 || sines[k] > sines[low] || sines[k] > sines[high] {
+                    continue;
+                }
+                let start = self.net.positions[v as usize];
+                if let Some(p) = crate::crossing::touch(both, start, NEAR * self.size)
+                    && p.distance(start) <= 2.0 * self.step
+                    && !known(&points, p)
+                {
+                    points.push(p);
+                }
+            }
+        }
+        self.corners.clear();
+        for p in points {
+            self.net = self
+                .net
+                .pinned(p, self.step)
+                .ok_or_else(|| self.fault(FacetFaultKind::NotClosed, &[], p))?;
+        }
+        Ok(())
+    }
+
+    /// The sides between faces, each once: vertices in order and the surfaces of both faces, or of the face and its
+    /// cut.
+    fn borders(&self) -> BTreeMap<(u32, u32), [u32; 2]> {
+        let mut borders = BTreeMap::new();
+        for (k, t) in self.net.triangles.iter().enumerate() {
+            for i in 0..3 {
+                let (a, b) = (t[i], t[(i + 1) % 3]);
+                if a > b {
+                    continue;
+                }
+                let other = self.net.across[&(b, a)] as usize;
+                if let Some(&seam) = self.net.seams.get(&(a, b)) {
+                    borders.insert((a, b), [self.net.labels[k], seam]);
+                } else if self.net.groups[k] != self.net.groups[other] {
+                    borders.insert((a, b), [self.net.labels[k], self.net.labels[other]]);
+                }
+            }
+        }
+        borders
+    }
+
+    fn corners_of(borders: &BTreeMap<(u32, u32), [u32; 2]>) -> HashSet<u32> {
+        let mut degree: HashMap<u32, usize> = HashMap::new();
+        for (a, b) in borders.keys() {
+            *degree.entry(*a).or_insert(0) += 1;
+            *degree.entry(*b).or_insert(0) += 1;
+        }
+        degree.into_iter().filter(|(_, n)| *n != 2).map(|(v, _)| v).collect()
+    }
+
+    /// Cuts the faces that go round their axes.
+    fn cut(&mut self) -> Result<(), FacetFault> {
+        let borders = self.borders();
+        let corners = Self::corners_of(&borders);
+        let count = self.net.groups.iter().max().map_or(0, |g| g + 1);
+        let mut beside: Vec<Vec<Vec3>> = vec![Vec::new(); count as usize];
+        for (a, b) in borders.keys() {
+            let sides = [(*a, *b), (*b, *a)].map(|s| self.net.across[&s] as usize);
+            for [k, o] in [[0, 1], [1, 0]].map(|w| w.map(|i| sides[i])) {
+                let z = match &self.surfaces[self.net.labels[o] as usize] {
+                    SurfaceShape::Plane { normal, .. } => Some(*normal),
+                    SurfaceShape::Sphere { axes, .. } => {
+                        let own = self.surfaces[self.net.labels[k] as usize].axes();
+                        own.and_then(|c| (axes.origin - c.origin).normalized())
+                    }
+                    other => other.axes().map(|a| a.z),
+                };
+                let known = &mut beside[self.net.groups[k] as usize];
+                known.extend(z.filter(|z| known.iter().all(|u| u.dot(*z).abs() < 1.0 - 1e-9)));
+            }
+        }
+        for group in 0..count {
+            let Some(k) = self.net.groups.iter().position(|g| *g == group) else { continue };
+            let label = self.net.labels[k];
+            let surface = self.surfaces[label as usize].clone();
+            if surface.axes().is_none() {
+                continue;
+            }
+            let place = self.net.corners(k)[0];
+            let scale = (self.size, self.step);
+            let beside = &beside[group as usize];
+            let made =
+                self.net.prepared(group, &surface, beside, &mut self.surfaces, &corners, scale);
+            match made {
+                Some(axes) => self.axes.insert(group, axes),
+                None => return Err(self.fault(FacetFaultKind::Seam, &[label], place)),
+            };
+        }
+        // A cut may have made two faces of one.
+        let before = std::mem::take(&mut self.net.groups);
+        self.net.groups = self.net.connected();
+        let axes = std::mem::take(&mut self.axes);
+        for (old, new) in before.iter().zip(&self.net.groups) {
+            if let Some(a) = axes.get(old) {
+                self.axes.insert(*new, *a);
+            }
+        }
+        Ok(())
+    }
+
+    fn find_chains(&mut self) {
+        let borders = self.borders();
+        let mut corners = Self::corners_of(&borders);
+        corners.extend(self.net.fixed.keys());
+        let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (a, b) in borders.keys() {
+            next.entry(*a).or_default().push(*b);
+            next.entry(*b).or_default().push(*a);
+        }
+        corners.retain(|v| next.contains_key(v));
+        let mut used: HashSet<(u32, u32)> = HashSet::new();
+        let mut starts: Vec<u32> = corners.iter().copied().collect();
+        starts.sort_unstable();
+        // Rings without corners begin anywhere.
+        starts.extend(next.keys().filter(|v| !corners.contains(v)));
+        for start in starts {
+            for &first in &next[&start] {
+                if used.contains(&ordered(start, first)) {
+                    continue;
+                }
+                let mut vertices = vec![start, first];
+                used.insert(ordered(start, first));
+                let (mut before, mut here) = (start, first);
+                while here != start && !corners.contains(&here) {
+                    let Some(&to) = next[&here].iter().find(|&&v| v != before) else { break };
+                    used.insert(ordered(here, to));
+                    vertices.push(to);
+                    (before, here) = (here, to);
+                }
+                let surfaces = borders[&ordered(start, first)];
+                self.chains.push(BorderChain { vertices, surfaces, exact: None });
+            }
+        }
+        for chain in &self.chains {
+            for v in [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]] {
+                self.corners.insert(v, self.net.positions[v as usize]);
+            }
+        }
+    }
+
+    /// Lines, circles and ellipses where the chains run along one.
+    fn choose_curves(&mut self) {
+        let near = NEAR * self.size;
+        let cusp = self.cusp();
+        let mut known: HashMap<[u32; 2], Vec<ExactCurve>> = HashMap::new();
+        for chain in &mut self.chains {
+            let [a, b] = chain.surfaces;
+            let curves = known.entry([a, b]).or_insert_with(|| {
+                meet(&self.surfaces[a as usize], &self.surfaces[b as usize], near, self.size)
+            });
+            let far = |curve: &ExactCurve| {
+                let places = chain.vertices.iter().map(|&v| self.net.positions[v as usize]);
+                places.map(|p| curve.near(p).distance(p)).fold(0.0, f64::max)
+            };
+            let best = curves.iter().map(|c| (far(c), *c)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let touching = chain.vertices.iter().all(|&v| {
+                let p = self.net.positions[v as usize];
+                let [m, n] = [a, b].map(|s| self.surfaces[s as usize].normal(p));
+                m.cross(n).norm() < TOUCHING
+            });
+            // Triangles end far from where surfaces touch.
+            let reach = if touching { cusp } else { self.step };
+            chain.exact = best.filter(|(far, _)| *far <= reach).map(|(_, c)| c);
+        }
+    }
+
+    /// Moves the ends of chains onto all surfaces and curves that meet there.
+    fn place_corners(&mut self) -> Result<(), FacetFault> {
+        let near = NEAR * self.size;
+        let mut round: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (k, chain) in self.chains.iter().enumerate() {
+            round.entry(chain.vertices[0]).or_default().push(k);
+            if !chain.closed() {
+                round.entry(chain.vertices[chain.vertices.len() - 1]).or_default().push(k);
+            }
+        }
+        for (v, chains) in round {
+            let start = self.net.positions[v as usize];
+            if let Some(&fixed) = self.net.fixed.get(&v) {
+                self.corners.insert(v, fixed);
+                continue;
+            }
+            let mut labels: Vec<u32> =
+                chains.iter().flat_map(|&k| self.chains[k].surfaces).collect();
+            labels.sort_unstable();
+            labels.dedup();
+            let mut shapes: Vec<SurfaceShape> =
+                labels.iter().map(|&l| self.surfaces[l as usize].clone()).collect();
+            let tip = shapes.iter().filter_map(SurfaceShape::apex).find(|apex| {
+                let on = |s: &SurfaceShape| s.distance(*apex).is_some_and(|d| d.abs() <= near);
+                apex.distance(start) <= 0.1 * self.step && shapes.iter().all(on)
+            });
+            if let Some(apex) = tip {
+                self.corners.insert(v, apex);
+                continue;
+            }
+            for &k in &chains {
+                let chain = &self.chains[k];
+                if let Some(curve) = &chain.exact {
+                    let normal = self.surfaces[chain.surfaces[0] as usize].normal(start);
+                    shapes.extend(curve.planes(normal));
+                }
+            }
+            let ring = [chains.len() == 1 && self.chains[chains[0]].closed()];
+            let found = if ring[0] {
+                // The beginning of a ring is any point of it.
+                let chain = &self.chains[chains[0]];
+                match &chain.exact {
+                    Some(curve) => Some(curve.near(start)),
+                    None => {
+                        let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
+                        crate::crossing::on_both(both, start)
+                    }
+                }
+            } else {
+                common_point(&shapes, start, near)
+            };
+            let touching = labels.iter().any(|&a| {
+                let m = self.surfaces[a as usize].normal(start);
+                labels
+                    .iter()
+                    .filter(|&&b| b > a)
+                    .any(|&b| m.cross(self.surfaces[b as usize].normal(start)).norm() < TOUCHING)
+            });
+            let reach = if touching { self.cusp() } else { 0.0 }.max(REACH * self.step);
+            let found = found.filter(|p| p.distance(start) <= reach);
+            let Some(p) = found else {
+                return Err(self.fault(FacetFaultKind::Vertex, &labels, start));
+            };
+            let off =
+                shapes.iter().filter_map(|s| s.distance(p)).fold(0.0f64, |m, d| m.max(d.abs()));
+            if off > self.accuracy {
+                return Err(self.fault(FacetFaultKind::Vertex, &labels, start));
+            }
+            self.gap = self.gap.max(off);
+            self.corners.insert(v, p);
+        }
+        Ok(())
+    }
+
+    /// The curve of a chain between the places of its ends.
+    fn curve(&self, chain: &BorderChain) -> Option<(Nurbs<1>, Option<ExactCurve>)> {
+        let n = chain.vertices.len();
+        let [p, q] = [chain.vertices[0], chain.vertices[n - 1]].map(|v| self.corners[&v]);
+        let inner = chain.vertices[1..n - 1].iter().map(|&v| self.net.positions[v as usize]);
+        match chain.exact {
+            Some(ExactCurve::Line { .. }) => Some((segment(p, q), None)),
+            Some(ellipse @ ExactCurve::Ellipse { centre, x, y }) => {
+                let start = ellipse.angle(p);
+                let wrapped = |d: f64| d - TAU * libm::round(d / TAU);
+                let mut at = start;
+                for p in inner.chain([q]) {
+                    at += wrapped(ellipse.angle(p) - at);
+                }
+                let mut sweep = at - start;
+                if chain.closed() {
+                    sweep = if sweep < 0.0 { -TAU } else { TAU };
+                }
+                let (y, start) = if sweep < 0.0 { (-y, -start) } else { (y, start) };
+                let own = ExactCurve::Ellipse { centre, x, y };
+                let mut curve = arc(centre, x, y, start, sweep.abs());
+                // Ends are vertices, bit for bit.
+                let last = curve.points.len() - 1;
+                (curve.points[0], curve.points[last]) = (p, q);
+                (sweep != 0.0).then_some((curve, Some(own)))
+            }
+            None => {
+                let mut guide = vec![p];
+                let least = 0.3 * self.step;
+                for r in inner {
+                    if r.distance(guide[guide.len() - 1]) >= least && r.distance(q) >= least {
+                        guide.push(r);
+                    }
+                }
+                guide.push(q);
+                let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
+                Some((crossing(both, &guide, self.accuracy, REACH * self.step)?, None))
+            }
+        }
+    }
+
+    fn into_brep(self, brep: &mut Brep) -> Result<(), FacetFault> {
+        // Corners in one place, joined by a chain without length, are one.
+        let mut one: BTreeMap<u32, u32> = BTreeMap::new();
+        fn root(one: &BTreeMap<u32, u32>, mut v: u32) -> u32 {
+            while let Some(&w) = one.get(&v) {
+                v = w;
+            }
+            v
+        }
+        let near = 10.0 * NEAR * self.size;
+        let mut vanished = vec![false; self.chains.len()];
+        for (k, chain) in self.chains.iter().enumerate() {
+            let ends = [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]];
+            let [p, q] = ends.map(|v| self.corners[&v]);
+            let places = chain.vertices.iter().map(|&v| self.net.positions[v as usize]);
+            let long = places.map(|r| r.distance(p)).fold(0.0, f64::max);
+            if !chain.closed() && p.distance(q) <= near && long <= 2.0 * self.step {
+                vanished[k] = true;
+                let [a, b] = ends.map(|v| root(&one, v));
+                if a != b {
+                    one.insert(a.max(b), a.min(b));
+                }
+            }
+        }
+        let mut vertices: BTreeMap<u32, usize> = BTreeMap::new();
+        let mut edges = vec![usize::MAX; self.chains.len()];
+        let mut first: HashMap<(u32, u32), (usize, bool)> = HashMap::new();
+        let mut border: HashSet<(u32, u32)> = HashSet::new();
+        let mut gap = self.gap.max(1e-15 * self.size);
+        for (k, chain) in self.chains.iter().enumerate() {
+            let n = chain.vertices.len();
+            border.extend(chain.vertices.windows(2).flat_map(|w| [(w[0], w[1]), (w[1], w[0])]));
+            first.insert((chain.vertices[0], chain.vertices[1]), (k, true));
+            first.insert((chain.vertices[n - 1], chain.vertices[n - 2]), (k, false));
+            if vanished[k] {
+                continue;
+            }
+            let made = self.curve(chain);
+            let Some((curve, ellipse)) = made else {
+                let place = self.net.positions[chain.vertices[n / 2] as usize];
+                return Err(self.fault(FacetFaultKind::Edge, &chain.surfaces, place));
+            };
+            let off = self.off(chain, &curve);
+            if off > self.accuracy {
+                let place = self.net.positions[chain.vertices[n / 2] as usize];
+                return Err(self.fault(FacetFaultKind::Edge, &chain.surfaces, place));
+            }
+            gap = gap.max(off);
+            let ends = [chain.vertices[0], chain.vertices[n - 1]].map(|v| {
+                *vertices.entry(root(&one, v)).or_insert_with(|| {
+                    brep.vertices.push(self.corners[&root(&one, v)]);
+                    brep.vertices.len() - 1
+                })
+            });
+            edges[k] = brep.edges.len();
+            brep.edges.push(BrepEdge { ends, curve, ellipse });
+        }
+        brep.gap = brep.gap.max(gap);
+        let cavities = self.cavities();
+        let mut by_group: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (k, g) in self.net.groups.iter().enumerate() {
+            by_group.entry(*g).or_default().push(k);
+        }
+        for (group, members) in by_group {
+            let mut loops = self.loops(&members, &border, &first, &edges);
+            let size = |cycle: &Vec<Coedge>| {
+                let points = cycle.iter().flat_map(|side| &brep.edges[side.edge].curve.points);
+                let [low, high] = extent(points.copied());
+                Vec3::from(high).distance(low.into())
+            };
+            loops.sort_by(|a, b| size(b).total_cmp(&size(a)));
+            if loops.is_empty() {
+                continue;
+            }
+            let cavity = cavities[members[0]];
+            brep.faces.push(self.face(group, &members, loops, cavity));
+        }
+        Ok(())
+    }
+
+    /// How far a curve is from its surfaces: of exact ones by samples, for these are right or not at all.
+    fn off(&self, chain: &BorderChain, curve: &Nurbs<1>) -> f64 {
+        if chain.exact.is_none() {
+            return curve.error;
+        }
+        let ts: Vec<f64> = (0..=24).map(|k| k as f64 / 24.0).collect();
+        let places = curve.grid(&[ts]);
+        let far = |p: &Vec3| {
+            let both = chain.surfaces.map(|s| self.surfaces[s as usize].distance(*p));
+            both.into_iter().flatten().fold(0.0f64, |m, d| m.max(d.abs()))
+        };
+        places.iter().map(far).fold(0.0, f64::max)
+    }
+
+    /// The loops of a face: its border sides, each followed by the next one round its end within the face.
+    fn loops(
+        &self,
+        members: &[usize],
+        border: &HashSet<(u32, u32)>,
+        first: &HashMap<(u32, u32), (usize, bool)>,
+        edges: &[usize],
+    ) -> Vec<Vec<Coedge>> {
+        let mut seen: HashSet<(u32, u32)> = HashSet::new();
+        let mut loops = Vec::new();
+        for &k in members {
+            let t = self.net.triangles[k];
+            for i in 0..3 {
+                let start = (t[i], t[(i + 1) % 3]);
+                if !border.contains(&start) || seen.contains(&start) {
+                    continue;
+                }
+                let mut cycle = Vec::new();
+                let mut side = start;
+                while seen.insert(side) {
+                    if let Some(&(chain, forward)) = first.get(&side)
+                        && edges[chain] != usize::MAX
+                    {
+                        cycle.push(Coedge {
+                            edge: edges[chain],
+                            forward,
+                            trace: None,
+                            alike: true,
+                        });
+                    }
+                    // The next side of the triangle, and of those round the vertex, until one is a border.
+                    let mut turn = side;
+                    loop {
+                        let t = self.net.triangles[self.net.across[&turn] as usize];
+                        let i = (0..3).find(|&i| t[i] == turn.0).unwrap_or(0);
+                        let out = (t[(i + 1) % 3], t[(i + 2) % 3]);
+                        if border.contains(&out) {
+                            side = out;
+                            break;
+                        }
+                        turn = (out.1, out.0);
+                    }
+                }
+                if !cycle.is_empty() {
+                    loops.push(cycle);
+                }
+            }
+        }
+        loops
+    }
+
+    fn face(
+        &self,
+        group: u32,
+        members: &[usize],
+        loops: Vec<Vec<Coedge>>,
+        cavity: bool,
+    ) -> BrepFace {
+        let label = self.net.labels[members[0]] as usize;
+        let area = |k: usize| {
+            let [a, b, c] = self.net.corners(k);
+            (b - a).cross(c - a)
+        };
+        let largest = members.iter().max_by(|a, b| area(**a).norm().total_cmp(&area(**b).norm()));
+        let largest = *largest.unwrap_or(&members[0]);
+        let [a, b, c] = self.net.corners(largest);
+        let (middle, out) = ((a + b + c) / 3.0, area(largest));
+        let mut surface = self.surfaces[label].clone();
+        if let Some(axes) = self.axes.get(&group) {
+            surface = surface.with_axes(*axes);
+        }
+        if let (Some(apex), SurfaceShape::Cone { axes, radius, half_angle }) =
+            (surface.apex(), &mut surface)
+        {
+            if (middle - apex).dot(axes.z) < 0.0 {
+                axes.z = -axes.z;
+            }
+            // At its widest place, where its radius is not zero.
+            let all = members.iter().flat_map(|&k| self.net.corners(k));
+            let high = all.map(|p| (p - apex).dot(axes.z)).fold(0.0, f64::max);
+            axes.origin = apex + axes.z * high;
+            *radius = high * libm::tan(*half_angle);
+        }
+        let mut reversed = surface.normal(middle).dot(out) < 0.0;
+        if let (true, SurfaceShape::Plane { normal, .. }) = (reversed, &mut surface) {
+            *normal = -*normal;
+            reversed = false;
+        }
+        let extent = extent(members.iter().flat_map(|&k| self.net.corners(k)));
+        BrepFace {
+            name: self.names[label].clone(),
+            colour: self.colours[label],
+            layers: self.layers[label].clone(),
+            surface,
+            reversed,
+            loops,
+            error: 0.0,
+            exact: true,
+            extent: Some((extent, cavity)),
+        }
+    }
+
+    /// For each triangle whether it bounds a cavity.
+    fn cavities(&self) -> Vec<bool> {
+        let mut shell = vec![usize::MAX; self.net.triangles.len()];
+        let mut volumes = Vec::new();
+        for start in 0..shell.len() {
+            if shell[start] != usize::MAX {
+                continue;
+            }
+            let own = volumes.len();
+            let origin = self.net.corners(start)[0];
+            let mut volume = 0.0;
+            shell[start] = own;
+            let mut queue = vec![start];
+            while let Some(k) = queue.pop() {
+                let [a, b, c] = self.net.corners(k).map(|p| p - origin);
+                volume += a.dot(b.cross(c));
+                let t = self.net.triangles[k];
+                for i in 0..3 {
+                    let other = self.net.across[&(t[(i + 1) % 3], t[i])] as usize;
+                    if shell[other] == usize::MAX {
+                        shell[other] = own;
+                        queue.push(other);
+                    }
+                }
+            }
+            volumes.push(volume);
+        }
+        shell.into_iter().map(|s| volumes[s] < 0.0).collect()
+    }
+}
+
+/// The point near another that is on all surfaces: that of the three that cross best, if it is on the others, too.
+fn common_point(shapes: &[SurfaceShape], start: Vec3, near: f64) -> Option<Vec3> {
+    const STEPS: usize = 40;
+    let n = shapes.len();
+    let mut triples = Vec::new();
+    let normals: Vec<Vec3> = shapes.iter().map(|s| s.normal(start)).collect();
+    for i in 0..n {
+        for j in i + 1..n {
+            for k in j + 1..n {
+                let det = normals[i].dot(normals[j].cross(normals[k])).abs();
+                triples.push((det, [i, j, k]));
+            }
+        }
+    }
+    triples.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let off =
+        |p: Vec3| shapes.iter().filter_map(|s| s.distance(p)).fold(0.0f64, |m, d| m.max(d.abs()));
+    let mut best: Option<(f64, Vec3)> = None;
+    for (det, triple) in triples.into_iter().take(4) {
+        if det < 1e-3 {
+            break;
+        }
+        let mut p = start;
+        for _ in 0..STEPS {
+            let m = triple.map(|k| shapes[k].normal(p));
+            let d = triple.map(|k| shapes[k].distance(p).unwrap_or(0.0));
+            let [a, b, c] = m;
+            let det = a.dot(b.cross(c));
+            if det.abs() < 1e-6 {
+                break;
+            }
+            let step = (b.cross(c) * d[0] + c.cross(a) * d[1] + a.cross(b) * d[2]) / det;
+            p -= step;
+            if step.norm() <= 1e-15 * (1.0 + p.norm()) {
+                break;
+            }
+        }
+        let own = off(p);
+        if best.is_none_or(|(least, _)| own < least) {
+            best = Some((own, p));
+        }
+        if own <= near {
+            break;
+        }
+    }
+    best.map(|(_, p)| p)
+}
+
+/// The box round points.
+fn extent(points: impl Iterator<Item = Vec3>) -> [[f64; 3]; 2] {
+    points.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[mut low, mut high], p| {
+        for k in 0..3 {
+            low[k] = low[k].min(p[k]);
+            high[k] = high[k].max(p[k]);
+        }
+        [low, high]
+    })
+}
+
+fn segment(a: Vec3, b: Vec3) -> Nurbs<1> {
+    Nurbs {
+        degrees: [1],
+        knots: [vec![0.0, 0.0, 1.0, 1.0]],
+        points: vec![a, b],
+        weights: None,
+        error: 0.0,
+        exact: true,
+        paces: [Pace::Even],
+    }
+}
+
+/// A part of an ellipse as rational arcs of 90 degrees at most (Piegl and Tiller 1997, 7.3).
+pub(crate) fn arc(centre: Vec3, x: Vec3, y: Vec3, start: f64, sweep: f64) -> Nurbs<1> {
+    let pieces = (sweep / FRAC_PI_2 - 1e-9).ceil().max(1.0);
+    let half = 0.5 * sweep / pieces;
+    let w = libm::cos(half);
+    let at = |t: f64, s: f64| centre + (x * libm::cos(t) + y * libm::sin(t)) / s;
+    let (mut points, mut weights, mut knots) = (vec![at(start, 1.0)], vec![1.0], vec![0.0; 3]);
+    for k in 0..pieces as usize {
+        let t = start + 2.0 * half * k as f64;
+        points.extend([at(t + half, w), at(t + 2.0 * half, 1.0)]);
+        weights.extend([w, 1.0]);
+        knots.extend([(k + 1) as f64 / pieces; 2]);
+    }
+    knots.push(1.0);
+    Nurbs {
+        degrees: [2],
+        knots: [knots],
+        points,
+        weights: Some(weights),
+        error: 0.0,
+        exact: true,
+        paces: [Pace::Even],
+    }
+}

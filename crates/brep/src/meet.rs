@@ -1,0 +1,414 @@
+//! Lines, circles and ellipses in which two surfaces meet or touch.
+
+use crate::{SurfaceAxes, SurfaceShape};
+use moldloft_num::Vec3;
+
+/// A curve of degree 1 or 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ExactCurve {
+    /// A line through a point.
+    Line {
+        /// The point.
+        point: Vec3,
+        /// Its unit direction.
+        direction: Vec3,
+    },
+    /// An ellipse: centre + x cos(t) + y sin(t).
+    Ellipse {
+        /// Centre.
+        centre: Vec3,
+        /// A semi-axis.
+        x: Vec3,
+        /// The other one.
+        y: Vec3,
+    },
+}
+
+impl ExactCurve {
+    /// A circle.
+    pub fn circle(centre: Vec3, normal: Vec3, radius: f64) -> Self {
+        let axes = SurfaceAxes::about(centre, normal);
+        Self::Ellipse { centre, x: axes.x * radius, y: axes.y() * radius }
+    }
+
+    /// The angle at which an ellipse is nearest to a point, nearly; 0 for a line.
+    pub fn angle(&self, p: Vec3) -> f64 {
+        match self {
+            Self::Line { .. } => 0.0,
+            Self::Ellipse { centre, x, y } => {
+                let d = p - *centre;
+                libm::atan2(d.dot(*y) / y.norm_sq(), d.dot(*x) / x.norm_sq())
+            }
+        }
+    }
+
+    /// A point of an ellipse.
+    pub fn at(&self, t: f64) -> Vec3 {
+        match self {
+            Self::Line { point, direction } => *point + *direction * t,
+            Self::Ellipse { centre, x, y } => *centre + *x * libm::cos(t) + *y * libm::sin(t),
+        }
+    }
+
+    /// A point of the curve near another.
+    pub fn near(&self, p: Vec3) -> Vec3 {
+        match self {
+            Self::Line { point, direction } => *point + *direction * (p - *point).dot(*direction),
+            Self::Ellipse { .. } => self.at(self.angle(p)),
+        }
+    }
+
+    /// Planes through the curve: of an ellipse one, of a line two.
+    pub fn planes(&self, normal: Vec3) -> Vec<SurfaceShape> {
+        let plane = |origin: Vec3, normal: Vec3| SurfaceShape::Plane {
+            origin,
+            normal,
+            axis: normal.perpendicular(),
+        };
+        match self {
+            Self::Line { point, direction } => {
+                let Some(n) = (normal - *direction * normal.dot(*direction)).normalized() else {
+                    return Vec::new();
+                };
+                vec![plane(*point, n), plane(*point, direction.cross(n))]
+            }
+            Self::Ellipse { centre, x, y } => {
+                x.cross(*y).normalized().map(|n| plane(*centre, n)).into_iter().collect()
+            }
+        }
+    }
+}
+
+/// A piece of the profile of a surface of revolution, in (distance from the axis, height).
+enum Profile {
+    Line([f64; 2], [f64; 2]),
+    Circle([f64; 2], f64),
+}
+
+/// What two surfaces have in common where that is lines, circles or ellipses; nothing where it is another curve.
+pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Vec<ExactCurve> {
+    use SurfaceShape::{Cone, Cylinder, Plane, Sphere, Torus};
+    let parallel = |u: Vec3, v: Vec3| u.cross(v).norm() * size <= tolerance;
+    let near = |u: f64, v: f64| (u - v).abs() <= tolerance;
+    if let (Plane { origin, normal, .. }, Plane { origin: o, normal: n, .. }) = (a, b) {
+        let Some(direction) = normal.cross(*n).normalized() else { return Vec::new() };
+        let point = on_planes([*normal, *n, direction], [*origin, *o, *origin]);
+        return point.map(|point| ExactCurve::Line { point, direction }).into_iter().collect();
+    }
+    if let Some((origin, z)) = common_axis(a, b, tolerance, size) {
+        return coaxial([a, b], origin, z, tolerance);
+    }
+    match (a, b) {
+        (Plane { .. }, Cylinder { .. } | Cone { .. } | Torus { .. }) => {
+            let Plane { origin, normal, .. } = a else { return Vec::new() };
+            match b {
+                Cylinder { axes, radius } => {
+                    plane_cylinder(*origin, *normal, axes, *radius, tolerance, size)
+                }
+                Cone { half_angle, .. } => {
+                    plane_cone(*origin, *normal, b, *half_angle, tolerance, size)
+                }
+                Torus { axes, major, minor } => {
+                    let through = near((axes.origin - *origin).dot(*normal), 0.0);
+                    if !through || (axes.z.dot(*normal) * size).abs() > tolerance {
+                        return Vec::new();
+                    }
+                    let along = normal.cross(axes.z);
+                    [-*major, *major]
+                        .map(|r| ExactCurve::circle(axes.origin + along * r, *normal, *minor))
+                        .into()
+                }
+                _ => Vec::new(),
+            }
+        }
+        (Cylinder { .. } | Cone { .. } | Torus { .. }, Plane { .. }) => meet(b, a, tolerance, size),
+        (Cylinder { axes, radius }, Cylinder { axes: o, radius: r }) => {
+            if parallel(axes.z, o.z) {
+                return parallel_cylinders([axes, o], [*radius, *r], tolerance);
+            }
+            let normal = axes.z.cross(o.z).normalized().unwrap_or_default();
+            if !near(*radius, *r) || !near((o.origin - axes.origin).dot(normal), 0.0) {
+                return Vec::new();
+            }
+            let Some(centre) = on_planes(
+                [normal, normal.cross(axes.z), normal.cross(o.z)],
+                [axes.origin, axes.origin, o.origin],
+            ) else {
+                return Vec::new();
+            };
+            let planes = [axes.z - o.z, axes.z + o.z].map(|n| n.normalized());
+            let cut = |n: Vec3| plane_cylinder(centre, n, axes, *radius, tolerance, size);
+            planes.into_iter().flatten().flat_map(cut).collect()
+        }
+        (Cylinder { axes, radius }, Torus { axes: ring, major, minor }) => {
+            // A straight pipe goes on as a bent one.
+            let foot = axes.origin + axes.z * (ring.origin - axes.origin).dot(axes.z);
+            let level = near((foot - ring.origin).dot(ring.z), 0.0);
+            let across = (axes.z.dot(ring.z) * size).abs() <= tolerance;
+            let tangent = near(foot.distance(ring.origin), *major);
+            if level && across && tangent && near(*radius, *minor) {
+                return vec![ExactCurve::circle(foot, axes.z, *radius)];
+            }
+            Vec::new()
+        }
+        (Sphere { axes, radius }, Torus { axes: ring, major, minor }) => {
+            let d = axes.origin - ring.origin;
+            let level = near(d.dot(ring.z), 0.0);
+            if level && near(d.norm(), *major) && near(*radius, *minor) {
+                return vec![ExactCurve::circle(axes.origin, ring.z.cross(d), *radius)];
+            }
+            Vec::new()
+        }
+        (Torus { .. }, Cylinder { .. } | Sphere { .. }) => meet(b, a, tolerance, size),
+        (Torus { axes, major, minor }, Torus { axes: o, major: r, minor: t })
+            if near(*minor, *t) =>
+        {
+            // Two bends: their rings touch where the line of both planes touches them.
+            let mut made = Vec::new();
+            let mut touch = |p: Vec3, direction: Vec3| {
+                let on = near(p.distance(axes.origin), *major) && near(p.distance(o.origin), *r);
+                if on {
+                    made.push(ExactCurve::circle(p, direction, *minor));
+                }
+            };
+            if parallel(axes.z, o.z) {
+                if let Some(d) = (o.origin - axes.origin).normalized() {
+                    touch(axes.origin + d * *major, axes.z.cross(d));
+                    touch(axes.origin - d * *major, axes.z.cross(d));
+                }
+            } else if let Some(d) = axes.z.cross(o.z).normalized()
+                && let Some(p) = on_planes([axes.z, o.z, d], [axes.origin, o.origin, axes.origin])
+            {
+                touch(p, d);
+            }
+            made
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The point of three planes.
+fn on_planes(normals: [Vec3; 3], points: [Vec3; 3]) -> Option<Vec3> {
+    let [a, b, c] = normals;
+    let det = a.dot(b.cross(c));
+    let origin = points[0];
+    let [p, q, r] = [0, 1, 2].map(|k| normals[k].dot(points[k] - origin));
+    (det.abs() > 1e-12).then(|| origin + (b.cross(c) * p + c.cross(a) * q + a.cross(b) * r) / det)
+}
+
+fn plane_cylinder(
+    origin: Vec3,
+    normal: Vec3,
+    axes: &SurfaceAxes,
+    radius: f64,
+    tolerance: f64,
+    size: f64,
+) -> Vec<ExactCurve> {
+    let along = normal.dot(axes.z);
+    if (along * size).abs() > tolerance {
+        let centre = axes.origin - axes.z * ((axes.origin - origin).dot(normal) / along);
+        let Some(y) = normal.cross(axes.z).normalized() else {
+            return vec![ExactCurve::circle(centre, axes.z, radius)];
+        };
+        if normal.cross(axes.z).norm() * size <= tolerance {
+            return vec![ExactCurve::circle(centre, axes.z, radius)];
+        }
+        let Some(x) = y.cross(normal).normalized() else { return Vec::new() };
+        return vec![ExactCurve::Ellipse { centre, x: x * (radius / along.abs()), y: y * radius }];
+    }
+    let far = (origin - axes.origin).dot(normal);
+    let foot = axes.origin + normal * far;
+    let half = radius * radius - far * far;
+    let direction = axes.z;
+    if (far.abs() - radius).abs() <= tolerance {
+        let point = axes.origin + normal * if far < 0.0 { -radius } else { radius };
+        return vec![ExactCurve::Line { point, direction }];
+    }
+    if half < 0.0 {
+        return Vec::new();
+    }
+    let side = normal.cross(axes.z) * half.sqrt();
+    [foot - side, foot + side].map(|point| ExactCurve::Line { point, direction }).into()
+}
+
+fn plane_cone(
+    origin: Vec3,
+    normal: Vec3,
+    cone: &SurfaceShape,
+    half_angle: f64,
+    tolerance: f64,
+    size: f64,
+) -> Vec<ExactCurve> {
+    let (Some(apex), Some(axes)) = (cone.apex(), cone.axes()) else { return Vec::new() };
+    let along = normal.dot(axes.z);
+    let Some(x) = (normal - axes.z * along).normalized() else { return Vec::new() };
+    let (sin, cos) = (libm::sin(half_angle), libm::cos(half_angle));
+    let far = (origin - apex).dot(normal);
+    let across = normal.dot(x);
+    if far.abs() <= tolerance {
+        // Generators z cos + (x c + y s) sin with along cos + across c sin = 0.
+        let c = -along * cos / (across * sin);
+        let point = apex;
+        if (c.abs() - 1.0).abs() * size <= tolerance {
+            let direction = axes.z * cos + x * (sin * if c < 0.0 { -1.0 } else { 1.0 });
+            return vec![ExactCurve::Line { point, direction }];
+        }
+        if c.abs() > 1.0 {
+            return Vec::new();
+        }
+        let s = (1.0 - c * c).sqrt();
+        let y = axes.z.cross(x);
+        return [-s, s]
+            .map(|s| axes.z * cos + (x * c + y * s) * sin)
+            .map(|direction| ExactCurve::Line { point, direction })
+            .into();
+    }
+    if along.abs() <= sin + 1e-9 {
+        // A parabola or a hyperbola.
+        return Vec::new();
+    }
+    // The ends of the long axis are on the generators in the plane of symmetry.
+    let end = |s: f64| {
+        let g = axes.z * cos + x * (s * sin);
+        let t = far / g.dot(normal);
+        apex + g * t
+    };
+    let [p, q] = [end(-1.0), end(1.0)];
+    let centre = (p + q) * 0.5;
+    let h = (centre - apex).dot(axes.z);
+    let out = (centre - apex).dot(x);
+    let y = (h * sin / cos) * (h * sin / cos) - out * out;
+    if y <= 0.0 {
+        return Vec::new();
+    }
+    vec![ExactCurve::Ellipse { centre, x: (q - p) * 0.5, y: axes.z.cross(x) * y.sqrt() }]
+}
+
+fn parallel_cylinders(
+    [a, b]: [&SurfaceAxes; 2],
+    [r, s]: [f64; 2],
+    tolerance: f64,
+) -> Vec<ExactCurve> {
+    let d = b.origin - a.origin;
+    let d = d - a.z * d.dot(a.z);
+    let Some(x) = d.normalized() else { return Vec::new() };
+    let places = two_circles([0.0, 0.0], r, [d.norm(), 0.0], s, tolerance);
+    let y = a.z.cross(x);
+    let line =
+        |[u, v]: [f64; 2]| ExactCurve::Line { point: a.origin + x * u + y * v, direction: a.z };
+    places.into_iter().map(line).collect()
+}
+
+/// The axis about which both surfaces are surfaces of revolution.
+fn common_axis(
+    a: &SurfaceShape,
+    b: &SurfaceShape,
+    tolerance: f64,
+    size: f64,
+) -> Option<(Vec3, Vec3)> {
+    use SurfaceShape::{Nurbs, Plane, Sphere};
+    match (a, b) {
+        (Nurbs(_), _) | (_, Nurbs(_)) | (Plane { .. }, Plane { .. }) => None,
+        (Plane { normal, .. }, Sphere { axes, .. })
+        | (Sphere { axes, .. }, Plane { normal, .. }) => Some((axes.origin, *normal)),
+        (Sphere { axes, .. }, Sphere { axes: o, .. }) => {
+            Some((axes.origin, (o.origin - axes.origin).normalized()?))
+        }
+        (Plane { normal, .. }, other) | (other, Plane { normal, .. }) => {
+            let axes = other.axes()?;
+            let same = axes.z.cross(*normal).norm() * size <= tolerance;
+            same.then_some((axes.origin, axes.z))
+        }
+        (Sphere { axes, .. }, other) | (other, Sphere { axes, .. }) => {
+            let own = other.axes()?;
+            let d = axes.origin - own.origin;
+            let off = (d - own.z * d.dot(own.z)).norm();
+            (off <= tolerance).then_some((own.origin, own.z))
+        }
+        _ => {
+            let (axes, o) = (a.axes()?, b.axes()?);
+            let d = o.origin - axes.origin;
+            let off = (d - axes.z * d.dot(axes.z)).norm();
+            let same = axes.z.cross(o.z).norm() * size <= tolerance;
+            (same && off <= tolerance).then_some((axes.origin, axes.z))
+        }
+    }
+}
+
+fn profile(s: &SurfaceShape, origin: Vec3, z: Vec3) -> Vec<Profile> {
+    let height = |p: Vec3| (p - origin).dot(z);
+    match s {
+        SurfaceShape::Plane { origin, .. } => {
+            vec![Profile::Line([0.0, height(*origin)], [1.0, 0.0])]
+        }
+        SurfaceShape::Cylinder { radius, .. } => vec![Profile::Line([*radius, 0.0], [0.0, 1.0])],
+        SurfaceShape::Cone { half_angle, .. } => {
+            let h = s.apex().map_or(0.0, height);
+            let (sin, cos) = (libm::sin(*half_angle), libm::cos(*half_angle));
+            [cos, -cos].map(|c| Profile::Line([0.0, h], [sin, c])).into()
+        }
+        SurfaceShape::Sphere { axes, radius } => {
+            vec![Profile::Circle([0.0, height(axes.origin)], *radius)]
+        }
+        SurfaceShape::Torus { axes, major, minor } => {
+            vec![Profile::Circle([*major, height(axes.origin)], *minor)]
+        }
+        SurfaceShape::Nurbs(_) => Vec::new(),
+    }
+}
+
+fn coaxial([a, b]: [&SurfaceShape; 2], origin: Vec3, z: Vec3, tolerance: f64) -> Vec<ExactCurve> {
+    let mut made: Vec<[f64; 2]> = Vec::new();
+    for p in profile(a, origin, z) {
+        for q in profile(b, origin, z) {
+            made.extend(match (&p, &q) {
+                (Profile::Line(a, d), Profile::Line(b, e)) => {
+                    let det = d[0] * e[1] - d[1] * e[0];
+                    let w = [b[0] - a[0], b[1] - a[1]];
+                    let t = (w[0] * e[1] - w[1] * e[0]) / det;
+                    let one = [a[0] + d[0] * t, a[1] + d[1] * t];
+                    if det.abs() > 1e-12 { vec![one] } else { Vec::new() }
+                }
+                (Profile::Line(a, d), Profile::Circle(c, r))
+                | (Profile::Circle(c, r), Profile::Line(a, d)) => {
+                    let t = (c[0] - a[0]) * d[0] + (c[1] - a[1]) * d[1];
+                    let foot = [a[0] + d[0] * t, a[1] + d[1] * t];
+                    let far = [foot[0] - c[0], foot[1] - c[1]];
+                    let far = (far[0] * far[0] + far[1] * far[1]).sqrt();
+                    if (far - r).abs() <= tolerance {
+                        vec![foot]
+                    } else if far < *r {
+                        let half = (r * r - far * far).sqrt();
+                        [-half, half].map(|s| [foot[0] + d[0] * s, foot[1] + d[1] * s]).into()
+                    } else {
+                        Vec::new()
+                    }
+                }
+                (Profile::Circle(c, r), Profile::Circle(e, s)) => {
+                    two_circles(*c, *r, *e, *s, tolerance)
+                }
+            });
+        }
+    }
+    made.retain(|p| p[0] > tolerance);
+    made.into_iter().map(|[r, h]| ExactCurve::circle(origin + z * h, z, r)).collect()
+}
+
+fn two_circles(a: [f64; 2], r: f64, b: [f64; 2], s: f64, tolerance: f64) -> Vec<[f64; 2]> {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let far = (d[0] * d[0] + d[1] * d[1]).sqrt();
+    if far <= tolerance {
+        return Vec::new();
+    }
+    let d = [d[0] / far, d[1] / far];
+    let at = |t: f64, u: f64| [a[0] + d[0] * t - d[1] * u, a[1] + d[1] * t + d[0] * u];
+    if (far - r - s).abs() <= tolerance {
+        return vec![at(r, 0.0)];
+    }
+    if (far - (r - s).abs()).abs() <= tolerance {
+        return vec![at(if r > s { r } else { -r }, 0.0)];
+    }
+    let t = (far * far + r * r - s * s) / (2.0 * far);
+    let half = r * r - t * t;
+    if half <= 0.0 { Vec::new() } else { vec![at(t, -half.sqrt()), at(t, half.sqrt())] }
+}

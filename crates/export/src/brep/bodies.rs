@@ -1,0 +1,216 @@
+//! Bodies of sets as exact faces: planes, cylinders, cones, spheres and tori where these are what shows.
+//!
+//! `set -> facets, each with its primitive -> faces, edges, vertices -> places on the border of the set?`
+//!
+//! Facets say what hangs together only; where a place of an edge or face then is not on the border of the set, the
+//! facets have missed something, and finer ones are made, or the body is refused with the place.
+
+use crate::ExportFailure;
+use moldloft_brep::{Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxes, SurfaceShape};
+use moldloft_diag::Diagnostic;
+use moldloft_document::Document;
+use moldloft_field::{
+    FacetOptions, Facets, Form, Membership, Resolution, Set, around, facet, set_of,
+};
+use moldloft_model::Object;
+use moldloft_num::{Box3, Vec3};
+use moldloft_picture::PALETTE;
+use moldloft_registry::{FromValue, Point, Value};
+use std::collections::HashMap;
+
+/// Levels of cells that are tried.
+const LEVELS: std::ops::RangeInclusive<u32> = 6..=8;
+
+/// Places along an edge that are compared with the set, for the length of a cell.
+const PLACES: f64 = 6.0;
+
+/// What helps with a body that is refused.
+const HELP: &str = "write it as stl, 3mf or obj, or hide it";
+
+/// Adds the faces of the body of that name, if it is one of a set; false for other bodies.
+///
+/// # Errors
+/// Primitives that are no plane, cylinder, cone, sphere or torus; parts that are thinner than the finest cells.
+pub fn add(
+    brep: &mut Brep,
+    document: &Document,
+    name: &str,
+    accuracy: f64,
+    size: f64,
+) -> Result<bool, ExportFailure> {
+    let graph = document.graph();
+    let Some(object) = graph.find(name).and_then(|key| graph.get(key)) else { return Ok(false) };
+    let Some((set, over)) = set_and_box(document, object) else { return Ok(false) };
+    if set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
+        return Ok(false);
+    }
+    let mut last = None;
+    for level in LEVELS {
+        let options = FacetOptions::new(Resolution::Level(level));
+        let facets = facet(&set, &over, &options).map_err(|e| {
+            Diagnostic::error("cannot-write", format!("`{name}` has no facets: {e}"))
+        })?;
+        let (labelled, step) = (labelled(&facets, name)?, facets.step);
+        let mut made = Brep::default();
+        match made.add_facets(labelled, accuracy, size) {
+            Err(fault) => last = Some(told(name, &fault)),
+            Ok(places) => match elsewhere(&made, &set, &over, places, step, [accuracy, size]) {
+                Some(place) => last = Some(missed(name, place, step)),
+                None => {
+                    brep.append(made);
+                    return Ok(true);
+                }
+            },
+        }
+    }
+    Err(last.unwrap_or_else(|| Diagnostic::error("cannot-write", "no cells")).into())
+}
+
+/// The set and the box of a body of facets.
+fn set_and_box(document: &Document, object: &Object<f64>) -> Option<(Set, Box3)> {
+    if object.row.name != "SetBody" {
+        return None;
+    }
+    let graph = document.graph();
+    let value = |k: usize| -> Option<Value<f64>> {
+        match object.args.get(k)? {
+            Value::Object(key) => graph.get(*key)?.value().cloned(),
+            other => Some(other.clone()),
+        }
+    };
+    let set = set_of(&value(0)?)?;
+    let corner = |k: usize| value(k).and_then(|v| Point::from_value(&v).ok()).map(|p| p.xyz);
+    let over = match (corner(1), corner(2)) {
+        (Some(low), Some(high)) => Box3 { low, high },
+        _ => around(&set).ok()??,
+    };
+    Some((set, over))
+}
+
+fn labelled(facets: &Facets, name: &str) -> Result<LabelledFacets, ExportFailure> {
+    let mesh = &facets.mesh;
+    let (mut triangles, mut labels) = (Vec::new(), Vec::new());
+    let (mut surfaces, mut names, mut colours, mut layers) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut taken: HashMap<String, usize> = HashMap::new();
+    for (k, patch) in mesh.patches().iter().enumerate() {
+        for face in &mesh.faces()[patch.faces.clone()] {
+            triangles.push([face[0], face[1], face[2]]);
+            labels.push(k as u32);
+        }
+        let own = &patch.info.name;
+        let count = taken.entry(own.clone()).or_insert(0);
+        *count += 1;
+        let full =
+            if *count == 1 { format!("{name}.{own}") } else { format!("{name}.{own}.{count}") };
+        let Some(surface) = surface(facets.form(k)) else {
+            return Err(curved(name, own, facets.form(k).name()).into());
+        };
+        surfaces.push(surface);
+        names.push(full);
+        colours.push(patch.info.colour.map(|c| PALETTE[usize::from(c & 15)]));
+        layers.push(patch.info.tags.clone());
+    }
+    let positions = mesh.positions().to_vec();
+    let step = facets.step;
+    Ok(LabelledFacets { positions, triangles, labels, surfaces, names, colours, layers, step })
+}
+
+/// The surface of a primitive, where CAD formats have one.
+fn surface(form: &Form<f64>) -> Option<SurfaceShape> {
+    let about = |axis: &moldloft_num::Axis<f64>| SurfaceAxes::about(axis.point, axis.direction);
+    Some(match form {
+        Form::Plane(plane) => SurfaceShape::Plane {
+            origin: plane.point,
+            normal: plane.normal,
+            axis: plane.normal.perpendicular(),
+        },
+        Form::Sphere { centre, radius } => SurfaceShape::Sphere {
+            axes: SurfaceAxes::about(*centre, Vec3::of(0.0, 0.0, 1.0)),
+            radius: *radius,
+        },
+        Form::Cylinder { axis, radius } => {
+            SurfaceShape::Cylinder { axes: about(axis), radius: *radius }
+        }
+        Form::Cone { axis, angle } => {
+            SurfaceShape::Cone { axes: about(axis), radius: 0.0, half_angle: 0.5 * angle }
+        }
+        // One that meets itself has points of which the normal is none.
+        Form::Torus { axis, major, minor } if minor < major => {
+            SurfaceShape::Torus { axes: about(axis), major: *major, minor: *minor }
+        }
+        _ => return None,
+    })
+}
+
+/// A place of the faces' edges, or of triangles moved onto their surfaces, that is not on the border of the set.
+fn elsewhere(
+    made: &Brep,
+    set: &Set,
+    over: &Box3,
+    mut places: Vec<Vec3>,
+    step: f64,
+    [accuracy, size]: [f64; 2],
+) -> Option<Vec3> {
+    let tolerance = accuracy.max(made.gap) + 1e-9 * size;
+    places.extend(&made.vertices);
+    for edge in &made.edges {
+        let length = edge.curve.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
+        let count = (PLACES * length / step).clamp(PLACES, 1e4) as usize;
+        let ts: Vec<f64> = (1..count).map(|k| k as f64 / count as f64).collect();
+        places.extend(edge.curve.grid(&[ts]));
+    }
+    let mut values = vec![0.0; places.len()];
+    set.values(&places, &mut values);
+    let on = |(p, value): (&Vec3, &f64)| {
+        let above = |k: usize| (p[k] - over.high[k]).max(over.low[k] - p[k]);
+        let outside = (0..3).map(above).fold(f64::NEG_INFINITY, f64::max);
+        if outside > tolerance {
+            return false;
+        }
+        if value.abs() <= 1e-12 * size.min(size * size) {
+            return outside <= tolerance;
+        }
+        match set.member(*p, tolerance) {
+            Membership::Surface => true,
+            Membership::Solid => outside >= -tolerance,
+            Membership::Air => false,
+        }
+    };
+    places.iter().zip(&values).find(|pair| !on(*pair)).map(|pair| *pair.0)
+}
+
+fn curved(name: &str, part: &str, kind: &str) -> Diagnostic {
+    Diagnostic::error(
+        "curved-body",
+        format!("`{part}` of `{name}` is not a plane, cylinder, cone, sphere or torus"),
+    )
+    .found(format!("a {kind}"))
+    .help(HELP)
+}
+
+fn place_of(p: Vec3) -> String {
+    format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
+}
+
+fn missed(name: &str, place: Vec3, step: f64) -> Diagnostic {
+    Diagnostic::error(
+        "thin-part",
+        format!("`{name}` has a part that is thinner than cells near {}", place_of(place)),
+    )
+    .found(format!("cells of {step:.3e}"))
+    .help(HELP)
+}
+
+fn told(name: &str, fault: &FacetFault) -> Diagnostic {
+    let surfaces = fault.surfaces.join("` and `");
+    let of = if surfaces.is_empty() { format!("`{name}`") } else { format!("`{surfaces}`") };
+    let what = match fault.kind {
+        FacetFaultKind::NotClosed => "has facets that do not close",
+        FacetFaultKind::Seam => "goes round its axis without room for a seam",
+        FacetFaultKind::Edge => "meet, or touch, in an edge that is not found",
+        FacetFaultKind::Vertex => "meet in a corner that is not found",
+    };
+    Diagnostic::error("curved-body", format!("{of} {what} near {}", place_of(fault.place)))
+        .help(HELP)
+}
