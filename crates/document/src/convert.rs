@@ -76,7 +76,8 @@ impl Document {
                 Ok(format!("load {};\n", quoted(base)))
             }
             (ObjectSource::Program | ObjectSource::Sketch(_), ModelFormat::ModelFile) => {
-                let written = to_model_file(self.modules.get(0), &self.plain, self.registry())?;
+                let written =
+                    to_model_file(self.modules.get(0), &self.plain, self.registry(), &*self.world)?;
                 return Ok((written.text, written.remarks));
             }
             (ObjectSource::None, _) => Ok(String::new()),

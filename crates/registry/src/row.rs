@@ -200,6 +200,8 @@ pub enum Role {
     Plain,
     /// What a model says of itself: units, symmetry, title.
     Header,
+    /// Made of the points of a file that its argument `file` names: the program reads them into `points`.
+    Table,
     /// A list of objects under a name, read as its items.
     List,
     /// Unknowns and conditions that are solved before what is built on them.

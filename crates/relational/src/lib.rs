@@ -23,6 +23,7 @@ mod faults;
 mod foil;
 mod frame;
 mod lists;
+mod mesh;
 mod normal;
 mod plane;
 mod point;
@@ -32,6 +33,7 @@ mod search;
 mod snake;
 mod solid;
 mod surface;
+mod table;
 mod third_derivatives;
 
 pub use search::{distance_from_curve, distance_from_surface, separation};
@@ -70,6 +72,7 @@ pub fn rows() -> Vec<Row> {
         point::CopyPoint,
         point::BlendPoint,
         point::CentroidPoint,
+        table::TabPoint,
         search::ProjPoint,
         search::IntPoint,
         point::AbsBead,
@@ -115,7 +118,9 @@ pub fn rows() -> Vec<Row> {
         curve::OffsetCurve,
         curve::BFitCurve,
         curve::NUBFitCurve,
+        table::TabCurve,
         curve::ProcCurve,
+        curve::TanCurve,
         curve::MirrCurve,
         search::ProjCurve,
         search::IntCurve,
@@ -157,6 +162,8 @@ pub fn rows() -> Vec<Row> {
         surface::RollFillet,
         surface::SubSurf,
         surface::TrimSurf,
+        mesh::TriMesh,
+        surface::Blister,
         surface::MirrSurf,
         surface::RotatSurf,
         surface::CopySurf,
@@ -166,6 +173,7 @@ pub fn rows() -> Vec<Row> {
         surface::PolySurf,
         surface::BFitSurf,
         surface::NUBFitSurf,
+        table::TabSurf,
         surface::ProcSurf,
         solid::FaceSurf,
         solid::RuledSolid,

@@ -20,6 +20,7 @@ pub use producer::Producer;
 pub use to_model_file::{ModelFileText, to_model_file};
 pub use to_program::{prevents_conversion, quoted, to_program};
 
+use crate::World;
 use crate::run::interpreter::{Inputs, Settings};
 use crate::run::program::{NotLiteral, RunContext};
 use crate::source::NoFiles;
@@ -628,7 +629,7 @@ pub fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, 
     let file = sources.add(name, text);
     let (source, mut found) = ModelFileSource::parse(text.to_string(), file);
     let mut evaluation = Evaluation::default();
-    run_alone(&source, &mut sources, registry, &mut evaluation, &mut found);
+    run_alone(&source, &NoFiles, &mut sources, registry, &mut evaluation, &mut found);
     match found.iter().find(|d| prevents_conversion(&evaluation, d)) {
         None => Ok(to_program(&source, registry, &evaluation)),
         Some(first) => Err(Diagnostic::error(
@@ -642,20 +643,15 @@ pub fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, 
 /// Makes the objects of a model file that stands by itself.
 fn run_alone(
     source: &ModelFileSource,
+    world: &dyn World,
     sources: &mut Sources,
     registry: &Registry,
     evaluation: &mut Evaluation<f64>,
     found: &mut Vec<Diagnostic>,
 ) {
     let mut modules = Modules::default();
-    let host = RunContext {
-        modules: &mut modules,
-        world: &NoFiles,
-        registry,
-        sources,
-        sketch: None,
-        converted,
-    };
+    let host =
+        RunContext { modules: &mut modules, world, registry, sources, sketch: None, converted };
     let inputs = Inputs {
         overrides: &IndexMap::new(),
         seed: &|_, x| x,

@@ -5,6 +5,7 @@ use crate::model_file::names::system_name;
 use crate::model_file::{ModelFileSource, Outcome, RootCause, Sorted, Trouble, wrong};
 use crate::run::interpreter::Inputs;
 use crate::run::program::RunContext;
+use crate::run::tables;
 use crate::source::env::Environment;
 use crate::source::fault_location;
 use crate::value::number_path;
@@ -12,7 +13,7 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::{Declaration, Run};
 use moldloft_num::Vec3;
 use moldloft_registry::{
-    CallError, Class, FieldSpec, Given, Registry, Row, Scalar, Unit, Value, bind_arguments,
+    CallError, Class, FieldSpec, Given, Registry, Role, Row, Scalar, Unit, Value, bind_arguments,
 };
 use moldloft_syntax::model_file::{EntryField as Written, FieldKind, Fields, ObjectEntry as Line};
 use std::collections::HashMap;
@@ -149,6 +150,16 @@ impl<T: Scalar> Producer<'_, '_, T> {
             self.outcomes[at] = Some(self.root(named));
             return;
         };
+        if row.role == Role::Table {
+            let from = self.host.sources.name(source.model.file()).unwrap_or_default().to_string();
+            let world = self.host.world;
+            if let Err((field, fault)) = tables::fill(&self.env.files, world, &from, row, &mut args)
+            {
+                let place = source.place(sorted, field, None).unwrap_or(line.name);
+                self.outcomes[at] = Some(self.root(vec![fault.or_at(place).object(name)]));
+                return;
+            }
+        }
         if !self.inputs.seeded_objects.is_empty() && self.inputs.seeded_objects.contains(name) {
             number_path::seed(row, &mut args, name, self.inputs.seed);
         }

@@ -1,5 +1,6 @@
 //! A written model file, read again: whether it makes the objects of the program.
 
+use crate::World;
 use crate::model_file::ModelFileSource;
 use crate::model_file::names::plain_name;
 use crate::model_file::run_alone;
@@ -11,17 +12,18 @@ use moldloft_registry::{Registry, Role, Unit, Value};
 /// By how much an angle may differ that is written in degrees, relative.
 const ANGLE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// The objects that the text makes otherwise or not at all, each with how.
+/// The objects that the text makes otherwise or not at all, each with how; files are read as from `path`.
 pub(super) fn differences(
     text: &str,
     evaluation: &Evaluation<f64>,
     registry: &Registry,
+    (world, path): (&dyn World, &str),
 ) -> Vec<(String, String)> {
     let mut sources = Sources::new();
-    let file = sources.add("model.ms2", text);
+    let file = sources.add(path, text);
     let (source, mut found) = ModelFileSource::parse(text.to_string(), file);
     let mut again = Evaluation::default();
-    run_alone(&source, &mut sources, registry, &mut again, &mut found);
+    run_alone(&source, world, &mut sources, registry, &mut again, &mut found);
     let graph = &evaluation.graph;
     let mut differing = Vec::new();
     for object in graph.objects().filter(|o| o.row.role != Role::Header) {
@@ -102,6 +104,7 @@ fn numbers(value: &Value<f64>) -> Option<Vec<f64>> {
         Value::Number(x) => Some(vec![*x]),
         Value::Vector(v) => Some(v.to_array().to_vec()),
         Value::Numbers(a) => Some(a.items.to_vec()),
+        Value::Vectors(a) => Some(a.planes.iter().flatten().copied().collect()),
         Value::List(items) if !items.is_empty() => {
             let number = |v: &Value<f64>| match v {
                 Value::Number(x) => Some(*x),

@@ -1,5 +1,6 @@
 //! From a program to a model file of the objects that it makes: computed numbers as numbers.
 
+use crate::World;
 use crate::model_file::names::{is_layer, plain_name, spelled, system_name};
 use crate::model_file::relations::{NumberForm, Relations};
 use crate::model_file::to_program::{ENTITY, ORDER, RELABEL, VERBATIM, is_legacy, planes};
@@ -69,12 +70,14 @@ pub fn to_model_file(
     main: &Module,
     evaluation: &Evaluation<f64>,
     registry: &Registry,
+    world: &dyn World,
 ) -> Result<ModelFileText, Vec<Diagnostic>> {
     // Objects whose expressions say something else in the file.
     let mut fixed = HashSet::new();
     loop {
         let written = ToModelFile::new(main, evaluation, &fixed).text()?;
-        let differing = reread::differences(&written.text, evaluation, registry);
+        let differing =
+            reread::differences(&written.text, evaluation, registry, (world, &main.path));
         let before = fixed.len();
         fixed.extend(differing.iter().map(|(name, _)| name.clone()));
         if differing.is_empty() {
@@ -467,6 +470,13 @@ impl<'a> ToModelFile<'a> {
         let mut named = String::new();
         for (at, field) in row.fields.iter().enumerate() {
             let usual = field.default.is_some_and(|d| d.value().same(&object.args[at]));
+            // The points of a table stay in its file.
+            let of_file = row.role == Role::Table
+                && field.name == "points"
+                && row.field("file").is_some_and(|file| is_text(&object.args[file]));
+            if of_file {
+                continue;
+            }
             if !columns.contains(&field.name) && !usual {
                 match self.argument(object, at, true, &mut computed) {
                     Some(text) => {
@@ -646,6 +656,11 @@ impl<'a> ToModelFile<'a> {
 
 fn is_number(class: Class) -> bool {
     matches!(class, Class::Number | Class::Integer)
+}
+
+/// True for a text with letters.
+fn is_text(value: &Value<f64>) -> bool {
+    matches!(value, Value::Text(text) if !text.is_empty())
 }
 
 fn text_of(value: &Value<f64>) -> Option<String> {

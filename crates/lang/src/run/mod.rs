@@ -15,6 +15,7 @@ mod sections;
 mod semantics;
 mod sketches;
 pub(crate) mod solve_set;
+pub(crate) mod tables;
 pub(crate) mod usage;
 pub mod weight;
 pub mod whole;

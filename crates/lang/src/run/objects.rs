@@ -2,7 +2,9 @@
 
 use crate::run::inserted::{Content, inserted_file};
 use crate::run::interpreter::{Interpreter, silent};
+use crate::run::tables;
 use crate::source::env::DeclarationOrigin;
+use crate::source::fault_location;
 use crate::source::module::{Module, RoutineAt};
 use crate::source::scope::{Binding, ScopedBinding};
 use moldloft_diag::{Diagnostic, Span};
@@ -94,10 +96,19 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let positional = given.positional.len();
         spread_last_vector(row, &mut given);
         let (mut filled, head) = bind_arguments(row, given, |key| self.run.class_of(key))
-            .map_err(|fault| {
-                crate::source::fault_location::diagnostic(m, args, row, positional, &fault, span)
-            })
+            .map_err(|fault| fault_location::diagnostic(m, args, row, positional, &fault, span))
             .map_err(|diagnostic| self.with_parent(m, diagnostic))?;
+        if row.role == Role::Table {
+            let from = self.modules.get(0).path.clone();
+            let files = &self.env.files;
+            tables::fill(files, self.loader.world, &from, row, &mut filled).map_err(
+                |(field, fault)| {
+                    let given =
+                        fault_location::argument(m, &m.program[args], row, positional, field);
+                    fault.or_at(given.map_or(span, |expr| m.program[expr].span))
+                },
+            )?;
+        }
 
         if self.run.extent() == Extent::Edit {
             return Err(Diagnostic::error("misplaced-object", "an expression declares no objects")
@@ -120,11 +131,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let declaration = Declaration { name: full, row, args: filled, head, origin };
         let key = self.run.declare(declaration).map_err(|fault| {
             if fault.id == "too-many-objects" {
-                let diagnostic = crate::source::fault_location::unplaced(&fault).at(name.span);
+                let diagnostic = fault_location::unplaced(&fault).at(name.span);
                 self.stop(diagnostic);
                 return silent();
             }
-            let diagnostic = crate::source::fault_location::unplaced(&fault).at(name.span);
+            let diagnostic = fault_location::unplaced(&fault).at(name.span);
             let first = self.run.find(full).and_then(|key| self.run.graph().get(key));
             match first.and_then(|o| crate::run::program::declared_at(self.modules, self.env, o)) {
                 Some(first) => diagnostic.note_at(first, "first declared here"),

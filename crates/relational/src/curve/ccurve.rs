@@ -39,6 +39,14 @@ pub struct CCurve<T: Real> {
     end: Option<Vec3<T>>,
 }
 
+impl<T: Real> CCurve<T> {
+    /// The spline through points that are no objects.
+    pub fn through(points: &[Vec3<T>], degree: usize) -> Self {
+        let points = points.iter().map(|p| Point::free(*p)).collect();
+        Self { points, degree, ends: EndRule::NotAKnot, start: None, end: None }
+    }
+}
+
 impl<T: Real> Build<T> for CCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let names = bcurve::ends(&self.points, Self::POINTS)?;

@@ -1,5 +1,7 @@
 //! Conic sections by three points and a shape factor.
 
+use crate::curve::Ended;
+use moldloft_num::trace::Key;
 use moldloft_num::{CurveFormula, Jet, Pace, Rational, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
@@ -40,7 +42,8 @@ impl<T: Real> Build<T> for Conic<T> {
         let Self { p1, p2, p3, a1, a2, r#type } = self;
         let (first, second) = (p2.xyz - p1.xyz, p3.xyz - p1.xyz);
         let shape = Oblique { centre: p1.xyz, first, second, a1, a2, kind: r#type };
-        Ok(Value::Curve(CurveRef::new(shape, 0)))
+        let ends = shape.ends([p2.key, p3.key]);
+        Ok(Value::Curve(CurveRef::new(Ended::between(shape, ends), 0)))
     }
 }
 
@@ -58,6 +61,22 @@ pub struct Oblique<T> {
     pub a2: T,
     /// Its type, 1 to 3.
     pub kind: u32,
+}
+
+impl<T: Real> Oblique<T> {
+    /// The point objects at its two ends, of those at the ends of its half diameters: the first where it
+    /// begins or ends at 0 or after a full turn, the second at a right angle.
+    pub fn ends(&self, [first, second]: [Option<Key>; 2]) -> [Option<Key>; 2] {
+        use std::f64::consts::{FRAC_PI_2, TAU};
+        let at = |angle: f64| match self.kind {
+            1 if angle == 0.0 || angle.abs() == TAU => first,
+            1 if angle == FRAC_PI_2 || angle == FRAC_PI_2 + TAU => second,
+            // Only an ellipse passes through the end of its second half diameter.
+            2 if angle == 0.0 => first,
+            _ => None,
+        };
+        [at(self.a1.re()), at(self.a2.re())]
+    }
 }
 
 impl<T: Real> CurveFormula for Oblique<T> {

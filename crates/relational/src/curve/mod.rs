@@ -18,6 +18,7 @@ mod poly;
 mod relative;
 mod sub;
 pub mod swept;
+mod tangent;
 
 pub use arc::Arc;
 pub use bcurve::BCurve;
@@ -37,3 +38,4 @@ pub use poly::{PolyCurve, PolySnake, shares};
 pub use relative::{CopyCurve, Moved, RelCurve, RotatCurve};
 pub use sub::{BSubCurve, BSubSnake, SubCurve, SubSnake};
 pub use swept::ProcCurve;
+pub use tangent::TanCurve;

@@ -191,7 +191,8 @@ impl<T: Real> Build<T> for ConicSnake<T> {
         let Self { m1, m2, m3, a1, a2, r#type } = self;
         let (surface, [centre, p, q]) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let path = Oblique { centre, first: p - centre, second: q - centre, a1, a2, kind: r#type };
-        snake(surface, path, [None, None], 0)
+        let ends = path.ends([m2.key, m3.key]);
+        snake(surface, path, ends, 0)
     }
 }
 

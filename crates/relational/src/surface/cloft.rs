@@ -78,6 +78,13 @@ pub struct XLoftSurf<T: Real> {
 /// The parameters u at which a new loft is tried.
 const TRIALS: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
 
+impl<T: Real> CLoftSurf<T> {
+    /// The loft through curves, without conditions at its ends.
+    pub fn through(curves: Vec<CurveRef<T>>, degree: usize) -> Self {
+        Self { curves, degree, ends: EndRule::NotAKnot, start: None, end: None, about: None }
+    }
+}
+
 impl<T: Real> Build<T> for CLoftSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { curves, degree, ends, start, end, about } = self;

@@ -3,6 +3,7 @@
 
 mod about;
 mod arcloft;
+mod blister;
 mod bloft;
 mod bsurf;
 mod chunk;
@@ -36,6 +37,7 @@ mod translated;
 mod trim;
 
 pub use arcloft::ArcLoftSurf;
+pub use blister::Blister;
 pub use bloft::BLoftSurf;
 pub use bsurf::{BSurf, NURBSurf};
 pub use cloft::{CLoftSurf, XLoftSurf};

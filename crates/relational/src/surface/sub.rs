@@ -91,7 +91,7 @@ enum SideLayout<T: Real> {
     Round(Vec<Side<T>>),
 }
 
-struct SubPatch<T: Real> {
+pub struct SubPatch<T: Real> {
     surface: SurfaceRef<T>,
     layout: SideLayout<T>,
     /// The ends of the edges v = 0 and v = 1, first those of the one.
@@ -125,8 +125,19 @@ fn check_corners<T: Real>(sides: &[Side<T>], field: FieldId) -> Result<(), CallE
 const TRIALS: usize = 8;
 
 impl<T: Real> SubPatch<T> {
+    /// The patch between two sides of a surface.
+    pub fn cap(surface: SurfaceRef<T>, first: Side<T>, last: Side<T>) -> Self {
+        let layout = SideLayout::Between([first, last]);
+        Self { surface, layout, corners: [Vec3::zero(); 4] }
+    }
+
+    /// The surface of which it is a part.
+    pub fn surface(&self) -> &SurfaceRef<T> {
+        &self.surface
+    }
+
     /// The place on the surface.
-    fn inside<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+    pub fn inside<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
         self.blended(u, v, self.along_u(u), self.along_v(v))
     }
 
@@ -183,7 +194,7 @@ const AT_SEAM: f64 = 1e-9;
 impl<T: Real> SubPatch<T> {
     /// True when both sides end where they begin: at one point object, or at the seam of a closed
     /// surface that both run round.
-    fn is_closed(&self) -> bool {
+    pub fn is_closed(&self) -> bool {
         let SideLayout::Between(sides) = &self.layout else { return false };
         let round = seam::joined_sides(&self.surface);
         let spans = sides.each_ref().map(|side| [0.0, 1.0].map(|t| end(side, t).re().to_array()));
@@ -204,7 +215,7 @@ impl<T: Real> SubPatch<T> {
     }
 
     /// Refuses a patch whose parameter plane is folded: det(w_u, w_v) must not change its sign.
-    fn check_folds(&self) -> Result<(), CallError> {
+    pub fn check_folds(&self) -> Result<(), CallError> {
         let mut all = Vec::with_capacity((TRIALS + 1) * (TRIALS + 1));
         let at = |k: usize| T::from(k as f64 / TRIALS as f64);
         let sides: Vec<_> = (0..=TRIALS)
