@@ -427,3 +427,27 @@ def test_the_header_of_the_c_interface_is_that_of_its_source() -> None:
 def test_a_cylinder_is_three_exact_faces(tmp_path: Path) -> None:
     (path,) = moldloft.loads(cylinder(1, 2)).write(tmp_path / "c.step")
     assert "surfaces exact but for rounding" in path.read_text()
+
+
+def test_turned_copies_are_fitted_once_and_right() -> None:
+    from moldloft.cad.boundary import boundary
+
+    model = moldloft.loads("""
+    Arc a({1, 0, 0}, {2, 0.7, 0}, {3, 0, 0}); Arc b({1.2, 0.2, 1}, {2, 1.1, 1.3}, {3.1, 0, 1});
+    Arc c({1, 0.3, 2}, {2.2, 0.8, 2.5}, {3, 0.4, 2}); Arc d({1, 0, 3}, {2, 0.2, 3.1}, {3, 0, 3});
+    CLoftSurf one({a, b, c, d}); Line axis({-1, 0, 0}, {-1, 0.3, 1}); RotatSurf two(one, axis, 2.1);
+    CopySurf three(two, {0, 0, 0}, {5, 6, 7}); CopySurf four(two, {0, 0, 0}, {-5, 6, 7}, sz = 1.1);
+    """)
+    faces = {face.name: face.surface for face in boundary(model, accuracy=1e-5).faces}
+    points = {name: fit.points for name, fit in faces.items() if fit is not None}
+    assert len(points) == 4
+    for name, fit in faces.items():
+        assert fit is not None and not fit.exact and fit.error <= 1e-5
+        u, v = np.meshgrid(np.linspace(0, 1, 23), np.linspace(0, 1, 19), indexing="ij")
+        truth = np.array([model[name](s, t) for s, t in zip(u.flat, v.flat, strict=True)])
+        made = np.array([fit(s, t) for s, t in zip(u.flat, v.flat, strict=True)])
+        assert np.abs(truth - made).max() <= fit.error
+    # The copies have the first one's net, the stretched one its own.
+    lengths = {n: np.linalg.norm(np.diff(p, axis=0), axis=-1) for n, p in points.items()}
+    assert np.allclose(lengths["one"], lengths["two"], rtol=0, atol=1e-12)
+    assert np.allclose(lengths["one"], lengths["three"], rtol=0, atol=1e-12)

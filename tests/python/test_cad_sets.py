@@ -194,7 +194,7 @@ def test_cavities_are_voids_and_names_are_there(tmp_path: Path) -> None:
     assert "BREP_WITH_VOIDS" in file.read_text()
     found = read(file, accuracy=1e-9)
     assert found.solids == 1 and found.volume == pytest.approx(24 - math.pi / 6, rel=1e-8)
-    assert {"body", "body.block", "body.block.6"} <= found.names
+    assert {"body", "body.block", "body.block.6"} <= found.names and found.colours
 
 
 def test_halves_are_written_whole(tmp_path: Path) -> None:

@@ -9,7 +9,8 @@ use crate::seams::{FacetNet, ordered};
 use crate::{Brep, BrepEdge, BrepFace, Coedge, ExactCurve, SurfaceAxes, SurfaceShape, meet};
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// What counts as in a surface, as a share of the size.
@@ -172,7 +173,7 @@ impl Body {
     /// The middles of the triangles, moved onto their surfaces; without those beside a border along which surfaces
     /// touch, for there they are on either of both.
     fn places(&self) -> Vec<Vec3> {
-        let mut touching: HashSet<u32> = HashSet::new();
+        let mut touching: FxHashSet<u32> = FxHashSet::default();
         for ((a, b), surfaces) in self.borders() {
             let [m, n] = surfaces.map(|s| &self.surfaces[s as usize]);
             let sine = |v: u32| {
@@ -312,8 +313,8 @@ impl Body {
         borders
     }
 
-    fn corners_of(borders: &BTreeMap<(u32, u32), [u32; 2]>) -> HashSet<u32> {
-        let mut degree: HashMap<u32, usize> = HashMap::new();
+    fn corners_of(borders: &BTreeMap<(u32, u32), [u32; 2]>) -> FxHashSet<u32> {
+        let mut degree: FxHashMap<u32, usize> = FxHashMap::default();
         for (a, b) in borders.keys() {
             *degree.entry(*a).or_insert(0) += 1;
             *degree.entry(*b).or_insert(0) += 1;
@@ -381,7 +382,7 @@ impl Body {
             next.entry(*b).or_default().push(*a);
         }
         corners.retain(|v| next.contains_key(v));
-        let mut used: HashSet<(u32, u32)> = HashSet::new();
+        let mut used: FxHashSet<(u32, u32)> = FxHashSet::default();
         let mut starts: Vec<u32> = corners.iter().copied().collect();
         starts.sort_unstable();
         // Rings without corners begin anywhere.
@@ -415,7 +416,7 @@ impl Body {
     fn choose_curves(&mut self) {
         let near = NEAR * self.size;
         let cusp = self.cusp();
-        let mut known: HashMap<[u32; 2], Vec<ExactCurve>> = HashMap::new();
+        let mut known: FxHashMap<[u32; 2], Vec<ExactCurve>> = FxHashMap::default();
         for chain in &mut self.chains {
             let [a, b] = chain.surfaces;
             let curves = known.entry([a, b]).or_insert_with(|| {
@@ -578,8 +579,8 @@ impl Body {
         }
         let mut vertices: BTreeMap<u32, usize> = BTreeMap::new();
         let mut edges = vec![usize::MAX; self.chains.len()];
-        let mut first: HashMap<(u32, u32), (usize, bool)> = HashMap::new();
-        let mut border: HashSet<(u32, u32)> = HashSet::new();
+        let mut first: FxHashMap<(u32, u32), (usize, bool)> = FxHashMap::default();
+        let mut border: FxHashSet<(u32, u32)> = FxHashSet::default();
         let mut gap = self.gap.max(1e-15 * self.size);
         for (k, chain) in self.chains.iter().enumerate() {
             let n = chain.vertices.len();
@@ -650,11 +651,11 @@ impl Body {
     fn loops(
         &self,
         members: &[usize],
-        border: &HashSet<(u32, u32)>,
-        first: &HashMap<(u32, u32), (usize, bool)>,
+        border: &FxHashSet<(u32, u32)>,
+        first: &FxHashMap<(u32, u32), (usize, bool)>,
         edges: &[usize],
     ) -> Vec<Vec<Coedge>> {
-        let mut seen: HashSet<(u32, u32)> = HashSet::new();
+        let mut seen: FxHashSet<(u32, u32)> = FxHashSet::default();
         let mut loops = Vec::new();
         for &k in members {
             let t = self.net.triangles[k];

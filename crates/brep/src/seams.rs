@@ -5,7 +5,8 @@
 
 use crate::{SurfaceAxes, SurfaceShape};
 use moldloft_num::Vec3;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 /// Parts of the full angle of which the free ones are looked for.
@@ -23,7 +24,7 @@ pub struct FacetNet {
     /// The face of each triangle, before cuts.
     pub groups: Vec<u32>,
     /// The triangle on the left of each directed side.
-    pub across: HashMap<(u32, u32), u32>,
+    pub across: FxHashMap<(u32, u32), u32>,
     /// The plane of each cut side, by its vertices in order.
     pub seams: BTreeMap<(u32, u32), u32>,
     /// Vertices whose places are known.
@@ -37,7 +38,8 @@ pub fn ordered(a: u32, b: u32) -> (u32, u32) {
 impl FacetNet {
     /// The net of labelled triangles; none where a side has more than two triangles, or one alone.
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>, labels: Vec<u32>) -> Option<Self> {
-        let mut across = HashMap::with_capacity(3 * triangles.len());
+        let mut across =
+            FxHashMap::with_capacity_and_hasher(3 * triangles.len(), Default::default());
         for (k, t) in triangles.iter().enumerate() {
             for i in 0..3 {
                 if across.insert((t[i], t[(i + 1) % 3]), k as u32).is_some() {
@@ -201,9 +203,9 @@ impl FacetNet {
         poles: &[u32],
         near: f64,
     ) -> bool {
-        let mut flagged: HashSet<u32> = poles.iter().copied().collect();
+        let mut flagged: FxHashSet<u32> = poles.iter().copied().collect();
         let mut crossed = Vec::new();
-        let mut seen = HashSet::new();
+        let mut seen = FxHashSet::default();
         for k in self.members(group) {
             let t = self.triangles[k];
             for i in 0..3 {
@@ -279,7 +281,7 @@ impl FacetNet {
         members: &[usize],
         axes: &SurfaceAxes,
         group: u32,
-        corners: &HashSet<u32>,
+        corners: &FxHashSet<u32>,
     ) -> f64 {
         const CHOICES: usize = 72;
         let mut borders = Vec::new();
@@ -323,7 +325,7 @@ impl FacetNet {
         surface: &SurfaceShape,
         beside: &[Vec3],
         planes: &mut Vec<SurfaceShape>,
-        corners: &HashSet<u32>,
+        corners: &FxHashSet<u32>,
         (size, step): (f64, f64),
     ) -> Option<SurfaceAxes> {
         let members = self.members(group);

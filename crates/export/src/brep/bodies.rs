@@ -12,6 +12,7 @@ use moldloft_document::Document;
 use moldloft_field::{
     FacetOptions, Facets, Form, Membership, Resolution, Set, around, facet, set_of,
 };
+use moldloft_mesh::Mesh;
 use moldloft_model::Object;
 use moldloft_num::{Box3, Vec3};
 use moldloft_picture::PALETTE;
@@ -34,9 +35,9 @@ const HELP: &str = "write it as stl, 3mf or obj, or hide it";
 pub fn add(
     brep: &mut Brep,
     document: &Document,
+    mesh: &Mesh,
     name: &str,
-    accuracy: f64,
-    size: f64,
+    [accuracy, size]: [f64; 2],
 ) -> Result<bool, ExportFailure> {
     let graph = document.graph();
     let Some(object) = graph.find(name).and_then(|key| graph.get(key)) else { return Ok(false) };
@@ -50,7 +51,7 @@ pub fn add(
         let facets = facet(&set, &over, &options).map_err(|e| {
             Diagnostic::error("cannot-write", format!("`{name}` has no facets: {e}"))
         })?;
-        let (labelled, step) = (labelled(&facets, name)?, facets.step);
+        let (labelled, step) = (labelled(&facets, mesh, name)?, facets.step);
         let mut made = Brep::default();
         match made.add_facets(labelled, accuracy, size) {
             Err(fault) => last = Some(told(name, &fault)),
@@ -87,7 +88,7 @@ fn set_and_box(document: &Document, object: &Object<f64>) -> Option<(Set, Box3)>
     Some((set, over))
 }
 
-fn labelled(facets: &Facets, name: &str) -> Result<LabelledFacets, ExportFailure> {
+fn labelled(facets: &Facets, shown: &Mesh, name: &str) -> Result<LabelledFacets, ExportFailure> {
     let mesh = &facets.mesh;
     let (mut triangles, mut labels) = (Vec::new(), Vec::new());
     let (mut surfaces, mut names, mut colours, mut layers) =
@@ -107,9 +108,16 @@ fn labelled(facets: &Facets, name: &str) -> Result<LabelledFacets, ExportFailure
             return Err(curved(name, own, facets.form(k).name()).into());
         };
         surfaces.push(surface);
+        // As its panels are shown; those of a face that their cells miss as the first of the body.
+        let prefix = format!("{name}.");
+        let patches = || shown.patches().iter().map(|p| &p.info);
+        let info = patches()
+            .find(|p| p.name == full)
+            .or_else(|| patches().find(|p| p.name.starts_with(&prefix)))
+            .unwrap_or(&patch.info);
         names.push(full);
-        colours.push(patch.info.colour.map(|c| PALETTE[usize::from(c & 15)]));
-        layers.push(patch.info.tags.clone());
+        colours.push(info.colour.map(|c| PALETTE[usize::from(c & 15)]));
+        layers.push(info.tags.clone());
     }
     let positions = mesh.positions().to_vec();
     let step = facets.step;

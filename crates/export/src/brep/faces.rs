@@ -3,7 +3,7 @@
 use crate::ExportFailure;
 use moldloft_brep::SurfaceShape;
 use moldloft_diag::Diagnostic;
-use moldloft_num::Vec3;
+use moldloft_num::{Surface, Vec3};
 use moldloft_panel::FaceOutline;
 use moldloft_spline::nurbs::{FitOptions, NotFitted, Nurbs, of_surface};
 use std::sync::Arc;
@@ -19,13 +19,87 @@ pub fn all(outlines: &[FaceOutline], accuracy: f64) -> Result<Vec<Arc<Nurbs<2>>>
         let known = outlines[..k].iter().position(|o| o.surface.same(&outline.surface));
         made.push(match known {
             Some(known) => made[known].clone(),
-            None => Arc::new(
-                of_surface(&*outline.surface, &options)
-                    .map_err(|e| not_fitted(&outline.name, &e, accuracy))?,
-            ),
+            None => {
+                let copied = outlines[..k].iter().zip(&made).find_map(|(other, fit)| {
+                    moved(fit, &*other.surface, &*outline.surface, accuracy)
+                });
+                Arc::new(match copied {
+                    Some(copied) => copied,
+                    None => of_surface(&*outline.surface, &options)
+                        .map_err(|e| not_fitted(&outline.name, &e, accuracy))?,
+                })
+            }
         });
     }
     Ok(made)
+}
+
+/// Distances below this share of the size count as rounding between a surface and its moved copy.
+const COPIED: f64 = 1e-11;
+
+/// The fit of a surface, turned and shifted onto a copy of that surface, as are the blades of a propeller: a fit is
+/// the spline through its interpolation points, so that it is the copy's where these are turned and shifted alike.
+/// Points between them are compared as well.
+fn moved(
+    fit: &Nurbs<2>,
+    from: &dyn Surface<f64>,
+    to: &dyn Surface<f64>,
+    accuracy: f64,
+) -> Option<Nurbs<2>> {
+    const FEW: usize = 5;
+    if fit.exact || fit.weights.is_some() || from.joints() != to.joints() {
+        return None;
+    }
+    let sampled = |surface: &dyn Surface<f64>, axes: &[Vec<f64>; 2]| {
+        let mut out = vec![Vec3::zero(); axes[0].len() * axes[1].len()];
+        surface.grid(&axes[0], &axes[1], &mut out, None);
+        out
+    };
+    let even = || (0..FEW).map(|k| k as f64 / (FEW - 1) as f64).collect::<Vec<f64>>();
+    let few = [even(), even()];
+    let (own, theirs) = (sampled(from, &few), sampled(to, &few));
+    let far = |p: &Vec3| p.to_array().iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let near = COPIED * own.iter().chain(&theirs).map(far).fold(0.0, f64::max);
+    // Axes of three points that are far apart.
+    let furthest = |of: &dyn Fn(Vec3) -> f64| {
+        (0..own.len()).max_by(|&a, &b| of(own[a]).total_cmp(&of(own[b])))
+    };
+    let b = furthest(&|p| p.distance(own[0]))?;
+    let line = (own[b] - own[0]).normalized()?;
+    let c = furthest(&|p| line.cross(p - own[0]).norm())?;
+    let axes = |points: &[Vec3]| {
+        let x = (points[b] - points[0]).normalized()?;
+        let z = x.cross(points[c] - points[0]).normalized()?;
+        Some([x, z.cross(x), z])
+    };
+    let (before, after) = (axes(&own)?, axes(&theirs)?);
+    let place = |p: Vec3| {
+        let d = p - own[0];
+        (0..3).fold(theirs[0], |sum, k| sum + after[k] * d.dot(before[k]))
+    };
+    let apart = |own: &[Vec3], theirs: &[Vec3]| {
+        own.iter().zip(theirs).map(|(p, q)| place(*p).distance(*q)).fold(0.0, f64::max)
+    };
+    if apart(&own, &theirs) > near {
+        return None;
+    }
+    let means: [Vec<f64>; 2] = std::array::from_fn(|d| {
+        let p = fit.degrees[d];
+        let mean = |w: &[f64]| fit.paces[d].parameter(w.iter().sum::<f64>() / p as f64);
+        fit.knots[d][1..fit.knots[d].len() - 1].windows(p).map(mean).collect()
+    });
+    let between = means.clone().map(|all| all.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect());
+    let mut off = 0.0f64;
+    for axes in [means, between] {
+        off = off.max(apart(&sampled(from, &axes), &sampled(to, &axes)));
+        if off > near {
+            return None;
+        }
+    }
+    // Splines enlarge what their points are off by a few times.
+    let error = fit.error + 10.0 * off;
+    let points = fit.points.iter().map(|p| place(*p)).collect();
+    (error <= accuracy).then(|| Nurbs { points, error, ..fit.clone() })
 }
 
 /// The fault of a shape without a fit.

@@ -59,7 +59,7 @@ pub fn brep(
     let mut brep = Sewing::new(&outlines, &faces, positions, accuracy, size).finish()?;
     let panelled = document.panelled()?;
     for name in bodies {
-        if !bodies::add(&mut brep, document, &name, accuracy, size)? {
+        if !bodies::add(&mut brep, document, &panelled.mesh, &name, [accuracy, size])? {
             polyhedra::add(&mut brep, &panelled.mesh, &name, size)?;
         }
     }
