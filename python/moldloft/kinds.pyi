@@ -581,6 +581,53 @@ def CentroidPoint(
         AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); BCurve l({A, B, D}); Line m(C, D); RuledSurf S(l, m); CentroidPoint p({A, B, C}); CentroidPoint q({l, m}); CentroidPoint r({S}); AbsPoint E(0, 3, 0); Line up(A, E); TranSolid block(S, up); CentroidPoint s({block});
     """
     ...
+def TabPoint(
+    name: str,
+    /,
+    file: _Text | None = ...,
+    row: _Integer | None = ...,
+    points: _Vectors | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> PointHandle:
+    """A point of a table of points.
+
+    The file has a point in a line: x, y, z (or x, y) with blanks or commas between.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    file : text, optional
+        The file, relative to the program that declares the point.
+    row : integer, optional
+        The number of the point, from 1. At least 1, default 1.
+    points : list of vector, optional
+        The points, where there is no file.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    point
+
+    Notes
+    -----
+    In the language::
+
+        TabPoint top(row = 2, points = {{0, 0, 0}, {1, 2, 0.5}, {3, 2, 1}});
+    """
+    ...
 def ProjPoint(
     name: str,
     /,
@@ -2795,6 +2842,56 @@ def NUBFitCurve(
         AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); CCurve c({A, B, C, D}); NUBFitCurve fit(c, 3, {0, 0.3, 0.55, 1});
     """
     ...
+def TabCurve(
+    name: str,
+    /,
+    file: _Text | None = ...,
+    degree: _Integer | None = ...,
+    points: _Vectors | None = ...,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """A curve through the points of a table, as a CCurve or, of degree 1, as the lines between them.
+
+    The file has a point in a line: x, y, z (or x, y) with blanks or commas between.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    file : text, optional
+        The file, relative to the program that declares the curve.
+    degree : integer, optional
+        3 for the cubic spline, 1 for the lines between the points. 1 to 3, default 3.
+    points : list of vector, optional
+        The points, where there is no file.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        TabCurve c(points = {{0, 0, 0}, {1, 2, 0.5}, {3, 2, 1}, {4, 0, 1}}); TabCurve lines(degree = 1, points = {{0, 0, 0}, {1, 2, 0.5}, {3, 2, 1}});
+    """
+    ...
 def ProcCurve(
     name: str,
     /,
@@ -2850,6 +2947,54 @@ def ProcCurve(
     In the language::
 
         AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); AbsBead b(c, 0.5); Line l(A, C); ProjPoint foot(b, l); BlendPoint m({b, foot}); ProcCurve way(b, m);
+    """
+    ...
+def TanCurve(
+    name: str,
+    /,
+    curve: _Curve,
+    distance: _Number,
+    relabel: _Relabel | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> CurveHandle:
+    """The curve of the points on the tangents of another at a distance from where they touch:
+    C(t) = c(t) + d c'(t) / |c'(t)|, which is that of TanPoint for all beads.
+
+    Where the curve has a corner the tangent jumps, and with it this curve: such curves are refused.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    curve : curve
+        The curve whose tangents count.
+    distance : number
+        The distance, in the direction of increasing parameter if positive.
+    relabel : relabel, optional
+        Reparametrisation of t (surfaces: v). Default: none.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    curve
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); TanCurve ahead(c, 0.5); TanCurve behind(c, -0.25);
     """
     ...
 def MirrCurve(
@@ -5075,6 +5220,112 @@ def TrimSurf(
         AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0.5); AbsPoint C(4, 0, 0); AbsPoint D(0, 3, 0); AbsPoint E(4, 3, 1); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m, visible = 0); AbsMagnet p(S, 0.5, 0.45); AbsMagnet q(S, 0.71, 0.45); AbsMagnet r(S, 0.5, 0.7); ArcSnake round(q, p, r, type = 6); AbsMagnet a(S, 0.1, 0.15); AbsMagnet b(S, 0.95, 0.2); AbsMagnet c(S, 0.8, 0.93); LineSnake ab(a, b); LineSnake cb(c, b); LineSnake ca(c, a); TrimSurf window(S, {round}, whole = 1); TrimSurf part(S, {ab, cb, ca}, visible = 0);
     """
     ...
+def TriMesh(
+    name: str,
+    /,
+    points: _Vectors,
+    triangles: Sequence[_Integer] | _Array | _Any,
+    levels: _Integer | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> BodyHandle:
+    """Triangles between points of the model: a body where they close, else an open sheet.
+
+    With `levels` each triangle becomes four, so many times, and the vertices move as in Loop's
+    subdivision surfaces (Loop 1987): smooth within, cubic B-splines along open edges. Points of the
+    model stay the parents: moving one moves the sheet, with derivatives.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    points : list of point
+        The vertices.
+    triangles : list of integer
+        Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
+    levels : integer, optional
+        How often the triangles are divided. At most 8, default 0.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    mesh
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(0, 0, 1); TriMesh t({A, B, C, D}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}); TriMesh egg({A, B, C, D}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}, levels = 2);
+    """
+    ...
+def Blister(
+    name: str,
+    /,
+    snake: _Snake,
+    centre: _Magnet,
+    height: _Number,
+    edge: _Text | None = ...,
+    top: _Text | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A bump on a surface inside a closed snake: a sonar dome, a blister of a fairing, a bulge round a shaft.
+
+    S(u, v) = P(w) + h b(v) n(w), with w on the straight line of the parameter plane from the snake at u
+    (v = 0) to the magnet (v = 1), n the unit normal of the surface P and b a polynomial from 0 to 1. At
+    the edge the bump is "sharp" (b' is not 0 there), "tangent" to the surface (b' = 0), or "curvature"
+    (b' = b'' = 0, the curvatures agree as well); its top is "round" (b' = 0 at v = 1) or "pointed". It
+    joins what else is built on the snake.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    snake : snake
+        The closed snake round the bump.
+    centre : magnet
+        The magnet under its top.
+    height : number
+        Its height, on the side of the natural normal if positive.
+    edge : text, optional
+        At the snake: "sharp", "tangent" or "curvature". Default tangent.
+    top : text, optional
+        At the centre: "round" or "pointed". Default round.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 3); AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); AbsMagnet c(S, 0.5, 0.5); AbsMagnet p(S, 0.8, 0.5); AbsMagnet q(S, 0.5, 0.75); ConicSnake ring(c, p, q); Blister dome(ring, c, 0.4); Blister cone(ring, c, -0.2, "sharp", "pointed");
+    """
+    ...
 def MirrSurf(
     name: str,
     /,
@@ -5529,6 +5780,57 @@ def NUBFitSurf(
     In the language::
 
         AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); AbsPoint E(2, 2, 2.5); AbsPoint F(4, 1, 3); CCurve l({A, B, C}); CCurve m({D, E, F}); RuledSurf S(l, m); NUBFitSurf fit(S, 3, 1, {0, 0.4, 1}, {0, 1});
+    """
+    ...
+def TabSurf(
+    name: str,
+    /,
+    file: _Text | None = ...,
+    rows: _Integer | None = ...,
+    degree: _Integer | None = ...,
+    points: _Vectors | None = ...,
+    *,
+    colour: _Integer | None = ...,
+    visible: _Integer | None = ...,
+    layer: _Integer | None = ...,
+    divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
+    subdivisions: _Integer | Sequence[_Integer] | None = ...,
+    size: _Number | Sequence[_Number] | None = ...,
+    spacing: str | _Number | Sequence[str | _Number] | None = ...,
+    tags: str | Sequence[str] | None = ...,
+    orientation: _Integer | None = ...,
+    attributes: _Text | None = ...,
+) -> SurfaceHandle:
+    """A surface through the points of a table: a C-loft of the curves through its rows.
+
+    The rows of points come one after the other, as many points in each; u runs along them, v across.
+    Empty lines between the rows say how many there are, and so does a Plot3D file of one grid.
+
+    Parameters
+    ----------
+    name : str
+        The name of the object.
+    file : text, optional
+        The file, relative to the program that declares the surface.
+    rows : integer, optional
+        The number of rows, two or more; 0 where the file shows it. Default 0.
+    degree : integer, optional
+        3 for cubic splines, 1 for lines between the points. 1 to 3, default 3.
+    points : list of vector, optional
+        The points, where there is no file.
+    **attributes
+        By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
+        tags, orientation, attributes.
+
+    Returns
+    -------
+    surface
+
+    Notes
+    -----
+    In the language::
+
+        TabSurf s(rows = 2, points = {{0, 0, 0}, {1, 2, 0.5}, {3, 2, 1}, {0, 0, 3}, {1, 1, 3}, {3, 2, 4}});
     """
     ...
 def ProcSurf(

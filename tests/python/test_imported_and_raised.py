@@ -1,5 +1,5 @@
-"""Tables of points as objects, bumps on surfaces, tangent curves and subdivision meshes, against closed forms, SciPy
-and trimesh."""
+"""Tables of points, bumps, tangent curves and subdivision meshes against closed forms, SciPy and
+trimesh."""
 
 from __future__ import annotations
 
@@ -113,7 +113,8 @@ def test_points_on_tangents_of_circles_and_helices() -> None:
         r, d = rng.uniform(0.5, 3), rng.uniform(-2, 2)
         pitch, turn = rng.uniform(-2, 2), rng.uniform(1, 9)
         model = moldloft.loads(
-            f"param float d = {d} in [-3, 3]; AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z);"
+            f"param float d = {d} in [-3, 3]; AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1);"
+            "Line axis(O, Z);"
             f"AbsPoint P({r}, 0, 0); Helix h(P, axis, {turn}, {pitch}); TanCurve c(h, d);"
             "AbsBead b(h, 0.37); TanPoint p(b, d);"
         )
@@ -156,7 +157,7 @@ PROFILES = {
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_bumps_on_planes_have_the_volume_of_their_profile(profile: tuple[str, str]) -> None:
-    """Bump and flat cap on one snake make a closed body: V = 2 pi R^2 h of the integral of b(1 - r) r."""
+    """Bump and flat cap make a closed body: V = 2 A h times the integral of b(1 - r) r."""
     rng = random.Random(str(profile))
     nodes, weights = np.polynomial.legendre.leggauss(12)
     r = 0.5 + 0.5 * nodes
@@ -166,11 +167,13 @@ def test_bumps_on_planes_have_the_volume_of_their_profile(profile: tuple[str, st
         radius = rng.uniform(0.1, 0.4)
         a, b = (rng.uniform(-1, 1) for _ in range(2))
         model = moldloft.loads(
-            f"AbsPoint A(0, 0, -50); AbsPoint B({size}, 0, {a} - 50); AbsPoint C(0, {size}, {b} - 50);"
-            f"RelPoint D(B, 0, {size}, {b}); Line l(A, B); Line m(C, D); RuledSurf S(l, m, visible = 0);"
-            f"AbsMagnet c(S, 0.5, 0.5); AbsMagnet p(S, {0.5 + radius}, 0.5); AbsMagnet q(S, 0.5, {0.5 + radius});"
+            f"AbsPoint A(0, 0, -50); AbsPoint B({size}, 0, {a} - 50);"
+            f"AbsPoint C(0, {size}, {b} - 50); RelPoint D(B, 0, {size}, {b});"
+            "Line l(A, B); Line m(C, D); RuledSurf S(l, m, visible = 0); AbsMagnet c(S, 0.5, 0.5);"
+            f"AbsMagnet p(S, {0.5 + radius}, 0.5); AbsMagnet q(S, 0.5, {0.5 + radius});"
             "ConicSnake ring(c, p, q, 0, 2*PI, type = 1);"
-            f'Blister bump(ring, c, {height}, "{profile[0]}", "{profile[1]}", divisions = {{64, 24}});'
+            f'Blister bump(ring, c, {height}, "{profile[0]}", "{profile[1]}", '
+            "divisions = {64, 24});"
             "SubSurf floor({ring, c}, divisions = {64, 4});"
         )
         floor = model.eval("floor.area")
@@ -189,11 +192,13 @@ def test_bumps_on_planes_have_the_volume_of_their_profile(profile: tuple[str, st
 
 def test_bumps_on_bodies_are_joined_and_differentiable() -> None:
     program = (
-        "param float h = 0.3 in [-0.5, 0.8]; AbsPoint O(0, 0, -9); AbsPoint X(6, 0, -9); Line axis(O, X);"
+        "param float h = 0.3 in [-0.5, 0.8]; AbsPoint O(0, 0, -9); AbsPoint X(6, 0, -9);"
+        "Line axis(O, X);"
         "AbsPoint P(0, 1, -9); AbsPoint Q(6, 1, -9); Line side(P, Q);"
         "RevSurf pipe(side, axis, 0, 2*PI, visible = 0);"
         "AbsMagnet c(pipe, 0.5, 0.4); AbsMagnet p(pipe, 0.6, 0.4); AbsMagnet q(pipe, 0.5, 0.45);"
-        "ConicSnake ring(c, p, q, 0, 2*PI, type = 1); Blister bump(ring, c, h, divisions = {48, 12});"
+        "ConicSnake ring(c, p, q, 0, 2*PI, type = 1);"
+        "Blister bump(ring, c, h, divisions = {48, 12});"
         "SubSurf plug({ring, c}, divisions = {48, 12});"
     )
     model = moldloft.loads(program)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -240,6 +242,31 @@ def test_propeller_thickness_fraction_is_that_of_the_data_sheet() -> None:
     assert fraction == pytest.approx(0.0488, abs=5e-5)
     _, whole = np.polyfit(radii, thick, 1)
     assert whole == pytest.approx(0.0488, rel=3e-3)
+
+
+def test_propeller_report_has_the_figures_of_the_data_sheet() -> None:
+    run = [sys.executable, EXAMPLES / "propeller/report.py"]
+    lines = subprocess.run(run, capture_output=True, text=True, check=True).stdout.splitlines()
+    model = moldloft.load(EXAMPLES / "propeller/propeller.sdl")
+    names = ("r_R", "P_D", "c_D", "t_D", "f_D", "s_deg")
+    sheet = np.transpose([np.asarray(model.eval(name)) for name in names])
+    rows = {row[0]: row for row in (list(map(float, s.split())) for s in lines[1:12])}
+    for at, *figures in sheet[:9].tolist():
+        assert rows[at][1:5] == [pytest.approx(x, abs=6e-5) for x in figures[:4]]
+        assert rows[at][5:] == [pytest.approx(figures[4], abs=6e-3), pytest.approx(0, abs=1e-9)]
+    found = {line[:25].strip(): float(line[25:]) for line in lines[12:]}
+    assert found["expanded area ratio"] == pytest.approx(0.7253, rel=1e-3)
+    # The sheet's own columns give 0.5714; it states 0.5701.
+    assert found["projected area ratio"] == pytest.approx(0.5714, rel=1e-3)
+    assert found["mean width ratio"] == pytest.approx(0.2848, rel=1e-3)
+    assert found["blade thickness fraction"] == pytest.approx(0.0488, abs=1e-4)
+    # The mean of the columns over the disc between hub and tip.
+    radius, pitch = sheet[:, 0], sheet[:, 1]
+    fine = np.linspace(0.2, 1, 4001)
+    columns = np.interp(fine, radius, pitch)
+    mean = np.trapezoid(columns * fine, fine) / np.trapezoid(fine, fine)
+    assert found["mean pitch ratio"] == pytest.approx(mean, rel=2e-3)
+    assert found["pitch ratio at 0.7 R"] == pytest.approx(1.1975, abs=6e-5)
 
 
 def test_wing_corners_lie_where_the_laws_say() -> None:

@@ -57,6 +57,15 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let plane = p.object("ThreePointPlane", &format!("{a}, {b}, {c}"));
             format!("{curve}, 0.01*w, {plane}")
         }
+        "TanCurve" => {
+            let points = p.points::<3>().join(", ");
+            let curve = p.object("BCurve", &format!("{{{points}}}, degree = 2"));
+            format!("{curve}, 0.3*w")
+        }
+        "TabCurve" => {
+            let [x, y, z] = p.coordinates();
+            format!("points = {{{{0, 0, {x}}}, {{1, {y}*w, 0}}, {{2*w, 1, {z}}}, {{3, 0, w}}}}")
+        }
         "BFitCurve" => format!("{}, 2, 5", p.curve()),
         "NUBFitCurve" => format!("{}, 3, {{0, 0.3*w, 1}}", p.curve()),
         "ProcCurve" => {

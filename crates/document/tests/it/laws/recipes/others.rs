@@ -91,6 +91,11 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
                 _ => format!("{body}, {{1, 2, 3, 4}}"),
             }
         }
+        "TriMesh" => {
+            let points = p.points::<4>().join(", ");
+            let levels = p.random.below(3);
+            format!("{{{points}}}, {{1, 3, 2, 1, 2, 4, 2, 3, 4, 3, 1, 4}}, {levels}")
+        }
         "MeshBody" => {
             let points = p.points::<4>().join(", ");
             format!("{{{points}}}, {{1, 3, 2, 1, 2, 4, 2, 3, 4, 3, 1, 4}}")

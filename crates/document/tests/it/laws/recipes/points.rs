@@ -18,6 +18,10 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let surface = p.surface();
             format!("{}, {x}*w", p.magnet(&surface))
         }
+        "TabPoint" => {
+            let [x, y, z] = p.coordinates();
+            format!("row = 2, points = {{{{0, 0, {x}}}, {{{y}*w, 1, {z}}}}}")
+        }
         "TanPoint" => {
             let curve = p.curve();
             format!("{}, {x}*w", p.bead(&curve))

@@ -181,6 +181,25 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let round = p.object("ArcSnake", &format!("{from}, {centre}, {toward}, type = 6"));
             format!("{sheet}, {{{sides}, {round}}}, rim = 5, nu = 4, nv = 4")
         }
+        "Blister" => {
+            let sheet = p.sheet();
+            let mut at = |u: f64, v: f64| {
+                let (u, v) = (p.number(u - 0.03, u + 0.03), p.number(v - 0.03, v + 0.03));
+                p.object("AbsMagnet", &format!("{sheet}, {u}, {v}"))
+            };
+            let [c, a, b] = [at(0.5, 0.5), at(0.75, 0.5), at(0.5, 0.7)];
+            let ring = p.object("ConicSnake", &format!("{c}, {a}, {b}"));
+            let edge = *p.random.pick(&["sharp", "tangent", "curvature"]);
+            let top = *p.random.pick(&["round", "pointed"]);
+            format!("{ring}, {c}, 0.2*w, \"{edge}\", \"{top}\", {divisions}")
+        }
+        "TabSurf" => {
+            let [x, y, z] = p.coordinates();
+            format!(
+                "rows = 2, points = {{{{0, 0, {x}}}, {{1, {y}*w, 0}}, {{2*w, 1, {z}}}, {{0, 0, 3}}, {{1, 1, 3*w}}, \
+                 {{2, 1, 4}}}}, {divisions}"
+            )
+        }
         "OffsetSurf" => format!("{}, 0.2*w, {divisions}", p.sheet()),
         "PolySurf" => {
             let [a, b, c] = stations(p);
