@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import moldloft
+import random_models
 
 ROOT = Path(__file__).parents[2]
 SEVEN = [
@@ -57,6 +58,53 @@ def test_examples_go_to_model_files_and_back_with_the_same_bits(name: str, tmp_p
         again = other.mesh()
         assert np.array_equal(mesh.vertices, again.vertices)
         assert np.array_equal(mesh.faces, again.faces)
+
+
+def test_random_models_go_there_and_back_with_the_same_bits(tmp_path: Path) -> None:
+    """Hulls with chines, lofted hulls, prisms, platforms, wings with flaps."""
+    for seed in range(150 if DRAWS > 100 else 10):
+        model = moldloft.loads(random_models.drawn(seed).text)
+        text, _ = converted(model, "ms2")
+        file = loaded(text, tmp_path, "there.ms2")
+        back = loaded(converted(file, "sdl")[0], tmp_path, "back.sdl")
+        assert converted(back, "ms2") == (text, [])
+        mesh = model.mesh()
+        for other in (file, back):
+            again = other.mesh()
+            assert np.array_equal(mesh.vertices, again.vertices), seed
+            assert np.array_equal(mesh.faces, again.faces), seed
+
+
+def test_what_depends_on_an_unknown_entity_is_left_out_alone(tmp_path: Path) -> None:
+    """Converted with it, built without it on request."""
+    text = """MultiSurf 1.44
+BeginModel;
+AbsPoint A 14 1 / 0 0 0;
+AbsPoint B 14 1 / 0 0 2;
+AbsPoint C 14 1 / 3 0 0;
+AbsPoint D 14 1 / 3 0 2;
+Line l 11 1 8x4 / * A B;
+Line m 11 1 8x4 / * C D;
+RuledSurf s 10 1 4x1 4x1 0 / * l m;
+Strange n 11 1 8x4 / * A D 7;
+RuledSurf t 10 1 4x1 4x1 0 / * l n;
+EndModel;
+"""
+    path = tmp_path / "strange.ms2"
+    path.write_text(text)
+    command = [sys.executable, "-m", "moldloft"]
+
+    def run(*words: str | Path) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([*command, *words], capture_output=True, text=True, cwd=tmp_path)
+
+    assert run("convert", path, "-o", "strange.sdl").returncode == 0
+    assert "#ms2 Strange n 11 1 8x4 / * A D 7;" in (tmp_path / "strange.sdl").read_text()
+    refused = run("build", path, "--to", "stl", "-o", "out")
+    assert refused.returncode == 1 and "unknown entity `Strange`" in refused.stderr
+    kept = run("build", path, "--to", "stl", "-o", "out", "--keep-going")
+    assert (tmp_path / "out" / "strange.stl").exists(), kept.stderr
+    assert kept.returncode == 1 and "not built for want of it: t" in kept.stderr
+    assert "what is written is without t, which could not be made" in kept.stderr
 
 
 def test_what_a_parameter_moves_is_moved_or_named(tmp_path: Path) -> None:

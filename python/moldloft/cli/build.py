@@ -105,7 +105,8 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keep-going",
         action="store_true",
-        help="write the formats that can be written when others cannot; the status is still 1",
+        help="write what can be written: the other formats, and the model without the objects that "
+        "could not be made, which are named; the status is still 1",
     )
     add_force(parser)
     add_quiet(parser)
@@ -159,7 +160,7 @@ def _build(
         model = open_model(options)
         if sources is not None:
             sources.extend(model.sources)
-        if model.has_errors:
+        if model.has_errors and not (options.keep_going and any(o["ok"] for o in _objects(model))):
             progress.stage("reporting")
             return _report_errors(model, options)
         progress.stage("making panels")
@@ -221,6 +222,14 @@ def _build(
     data = facts(model, mesh, floating, written)
     data["closure"] = mesh.closure(level=options.level)
     data["one_side"] = halves
+    missing = _missing(model)
+    if model.has_errors:
+        data["ok"] = False
+        lack = f" without {', '.join(missing)}, which could not be made" if missing else ""
+        print(
+            f"{options.model}: has errors; what is written is{lack or ' what was made'}",
+            file=sys.stderr,
+        )
     if floating is not None:
         units = {name: floating.unit(name) for name in data["hydrostatics"]}
         data["units"] = {name: unit for name, unit in units.items() if unit}
@@ -234,7 +243,14 @@ def _build(
             say(options, "\n" + worst_panels(mesh))
             if floating is not None:
                 say(options, "\n" + _panels_against_shape(model, floating, options))
-    return (1 if refused else 0), data
+    return (1 if refused or model.has_errors else 0), data
+
+
+def _missing(model: Model) -> list[str]:
+    """The objects that could not be made, those of unknown kinds too."""
+    blocked = [d.object for d in model.diagnostics if d.is_error and d.object]
+    failed = [o["name"] for o in _objects(model) if not o["ok"]]
+    return list(dict.fromkeys(failed + blocked))
 
 
 def _refusals(refused: list[tuple[str, Error]], options: argparse.Namespace) -> Error:
