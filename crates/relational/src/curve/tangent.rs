@@ -25,7 +25,7 @@ pub struct TanCurve<T: Real> {
 /// Each stretch of the curve is tried at so many places for a missing tangent.
 const TRIALS: usize = 32;
 
-/// Below this share of the greatest speed the curve stands still, above it tangents at a corner differ.
+/// Below this share of the greatest speed the tangent counts as zero; above its root tangents at a corner differ.
 const TOLERANCE: f64 = 1e-9;
 
 impl<T: Real> Build<T> for TanCurve<T> {
@@ -55,7 +55,7 @@ impl<T: Real> Build<T> for TanCurve<T> {
         };
         if let Some(k) = still {
             let help = "leave the place out: take a part of the curve";
-            return Err(fault("the curve stands still, and has no tangent", places[k], help));
+            return Err(fault("the curve has a zero tangent", places[k], help));
         }
         for &t in &ends[1..ends.len() - 1] {
             let [a, b] = [velocity(t.next_down()), velocity(t.next_up())];

@@ -95,7 +95,7 @@ impl<T: Real> Build<T> for Blister<T> {
         let key = snake.curve.key;
         let patch = SubPatch::cap(surface, Side::Snake(snake), Side::Magnet(centre));
         if !patch.is_closed() {
-            return Err(CallError::new("not-closed", "a bump stands inside a closed snake")
+            return Err(CallError::new("not-closed", "a bump is raised inside a closed snake")
                 .expected("a snake that ends where it begins")
                 .found("two different ends")
                 .related(key, "is the snake")
