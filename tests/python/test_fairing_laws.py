@@ -58,6 +58,44 @@ def test_exact_data_stay_at_any_spacing(name):
                     assert far <= 1e-12 * size, (as_, spacing, measure, len(points))
 
 
+@pytest.mark.parametrize("asked", [{"count": 12}, {"bound": "curve"}, {"bound": "points"}])
+def test_fits_on_knots_of_their_own_keep_exact_lines(asked):
+    """What is no line has no place here: of other data these take the fairest."""
+    rng = np.random.default_rng(3)
+    for _ in range(60 if SOAK else 4):
+        points = CURVES["line"](stations(rng, int(rng.integers(16, 60))))
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        points = (points @ turn.T + rng.normal(size=3)) * 10.0 ** rng.integers(-3, 4)
+        size = np.abs(points).max() + np.ptp(points)
+        along = (points[-1] - points[0]) / np.linalg.norm(points[-1] - points[0])
+        for measure in ("variation", "third", "second", "bending"):
+            faired = moldloft.fair(points, 1e-3 * size, as_="fit", measure=measure, **asked)
+            away = faired.spline.control_points - points[0]
+            off = away - np.outer(away @ along, along)
+            assert np.linalg.norm(off, axis=1).max() <= 1e-12 * size, (measure, len(points))
+
+
+def test_control_points_at_even_steps_keep_what_their_measure_has():
+    """Their parameter is the index; ends keep two points."""
+    u = np.linspace(0, 1, 31)
+    stay = {
+        "line": ("second", "third", "jumps", "variation", "bending"),
+        "parabola": ("second", "third", "jumps", "variation"),
+        "cubic": ("second", "jumps"),
+    }
+    for name, measures in stay.items():
+        points = CURVES[name](u)
+        size = np.abs(points).max() + np.ptp(points)
+        for measure in measures:
+            faired = moldloft.fair(points, 1e-3 * size, as_="control", measure=measure)
+            assert np.abs(faired.points - points).max() <= 1e-12 * size, (name, measure)
+    cubic = CURVES["cubic"](u)
+    assert (
+        np.abs(moldloft.fair(cubic, 1e-3, as_="control", measure="third").points - cubic).max()
+        > 9e-4
+    )
+
+
 def test_a_circle_and_a_line_are_one_piece():
     u = np.linspace(0, 1, 65)
     ring = moldloft.fair(CURVES["ring"](u), 1e-3, closed=True)

@@ -1,8 +1,10 @@
-//! Times of fairing by size: `cargo run --release -p moldloft-fair --example speed [points]`.
+//! Times of fairing by size: `cargo run --release -p moldloft-fair --example speed [points]`; of
+//! data under tolerances alone with `data` before the size.
 
 use moldloft_fair::{
-    Bound, Job, KnotRemovalOptions, Limit, Measure, Network, OptimumOptions, Space, certified,
-    knot_removal, optimum, sweeps,
+    Bound, Data, DataOptions, EndContinuity, Goal, InterpolationSpace, Job, KnotRemovalOptions,
+    Limit, Measure, Network, OptimumOptions, ParameterSpacing, Space, certified, fair_data,
+    knot_removal, optimum, parameters, sweeps,
 };
 use moldloft_num::Vec3;
 use std::time::{Duration, Instant};
@@ -71,7 +73,81 @@ fn net(side: usize) {
     );
 }
 
+/// Curves of n points, a name, and the noise that they have: half the tolerance each way.
+fn curves(n: usize) -> Vec<(&'static str, Vec<Vec3<f64>>, f64)> {
+    let mut unit = random();
+    let mut made = |name, tolerance: f64, shape: &dyn Fn(f64) -> (f64, f64)| {
+        let points = (0..n).map(|i| shape(i as f64 / (n - 1) as f64)).map(|(x, y)| {
+            Vec3::of(x + 1.4 * tolerance * unit(), y + 1.4 * tolerance * unit(), 0.0)
+        });
+        (name, points.collect(), tolerance)
+    };
+    let steep = |u: f64| {
+        let x = (2.0 * u - 1.0).powi(2);
+        let y = 0.6
+            * (0.2969 * x.sqrt() - 0.126 * x - 0.3516 * x * x + 0.2843 * x.powi(3)
+                - 0.1036 * x.powi(4));
+        (x, if u < 0.5 { y } else { -y })
+    };
+    let spacing = 1.0 / n as f64;
+    vec![
+        (
+            "exact ellipse",
+            1e-4,
+            &(|u: f64| ((2.5 * u).cos(), 0.5 * (2.5 * u).sin())) as &dyn Fn(f64) -> (f64, f64),
+        ),
+        ("smooth waterline", 0.02 * spacing, &|u| (10.0 * u, (3.0 * u).sin())),
+        ("rough waterline", 0.3 * spacing, &|u| (10.0 * u, (3.0 * u).sin())),
+        ("rough wave", 0.3 * spacing, &|u| (10.0 * u, (30.0 * u).sin())),
+        ("rough aerofoil", 0.3 * spacing, &steep),
+    ]
+    .into_iter()
+    .map(|(name, tolerance, shape)| {
+        let (name, mut points, tolerance): (_, Vec<Vec3<f64>>, _) = made(name, tolerance, shape);
+        if name.starts_with("exact") {
+            points = (0..n)
+                .map(|i| shape(i as f64 / (n - 1) as f64))
+                .map(|(x, y)| Vec3::of(x, y, 0.0))
+                .collect();
+        }
+        (name, points, tolerance)
+    })
+    .collect()
+}
+
+/// Data under tolerances, with and without inflections held back.
+fn data(n: usize) {
+    for (name, points, tolerance) in curves(n) {
+        let at = parameters(&points, ParameterSpacing::Chord, false).expect("no two in one place");
+        let data = Data {
+            limit: Limit::ball(n, tolerance).expect("the tolerance is good"),
+            layout: InterpolationSpace::new(3, &at, &[], false).expect("parameters rise"),
+            ends: [EndContinuity::Free; 2],
+            points,
+        };
+        for (word, goal) in [("fairest", Goal::Fairest), ("near", Goal::Near(0.8))] {
+            for bends in [true, false] {
+                let options = DataOptions { bends, ..DataOptions::of(Measure::Variation, goal) };
+                let start = Clock::start();
+                let made = fair_data(&data, &options).expect("the data are good");
+                println!(
+                    "{n} {name}: {word}{}, gap {:.1e}, used {:.3}, {} iterations {:?}",
+                    if bends { "" } else { ", no bends added" },
+                    made.certificate.relative(),
+                    made.used,
+                    made.iterations,
+                    start.elapsed()
+                );
+            }
+        }
+    }
+}
+
 fn main() {
+    if std::env::args().nth(1).as_deref() == Some("data") {
+        let sizes = std::env::args().nth(2).and_then(|a| a.parse().ok());
+        return sizes.map_or(vec![1_000, 10_000, 100_000], |n| vec![n]).into_iter().for_each(data);
+    }
     let sizes: Vec<usize> = match std::env::args().nth(1).and_then(|a| a.parse().ok()) {
         Some(n) => vec![n],
         None => vec![1_000, 10_000, 100_000],

@@ -457,14 +457,14 @@ impl Data {
         for (_, start) in starts.iter().filter(|s| s.0 <= most) {
             let Some(shape) = ShapeConstraints::pattern(space, start) else { continue };
             let signed = DataOptions { shape: shape.clone(), ..options.clone() };
-            let under = |weight: f64| -> Result<Option<DataFit>, FairError> {
+            let under = |weight: f64, from: &[Vec3<f64>]| -> Result<Option<DataFit>, FairError> {
                 let mut parts = self.parts(options, job)?;
                 let made = self.weighed(job, &mut parts, weight)?;
                 if good(&made.points) {
                     return Ok(Some(made));
                 }
                 let search = SignSearch { weight: Some(weight), settled: COARSE, rounds: SOME };
-                match self.with_signs(&signed, job, shape.clone(), start, search) {
+                match self.with_signs(&signed, job, shape.clone(), from, search) {
                     Ok(made) => Ok(Some(made).filter(|made| good(&made.points))),
                     Err(FairError::Shape { .. }) => Ok(None),
                     Err(other) => Err(other),
@@ -472,7 +472,7 @@ impl Data {
             };
             // First under the weight of the goal's own curve.
             let first =
-                if good(&plain.points) { Some(plain.clone()) } else { under(plain.weight)? };
+                if good(&plain.points) { Some(plain.clone()) } else { under(plain.weight, start)? };
             let Some(mut made) = first else { continue };
             if pieces(&made.points) <= allowed {
                 if options.goal != Goal::Fairest && !near {
@@ -489,7 +489,7 @@ impl Data {
             let (mut high, mut low) = (libm::log(plain.weight), None);
             for _ in 0..LIGHTER {
                 let weight = high - STEP;
-                let Some(tried) = under(libm::exp(weight))? else { break };
+                let Some(tried) = under(libm::exp(weight), &made.points)? else { break };
                 if fine(&tried.points) {
                     low = Some((weight, tried));
                     break;
@@ -502,7 +502,7 @@ impl Data {
             };
             for _ in 0..HALVES {
                 let middle = 0.5 * (weight + high);
-                match under(libm::exp(middle))? {
+                match under(libm::exp(middle), &best.points)? {
                     Some(tried) if fine(&tried.points) => (weight, best) = (middle, tried),
                     _ => high = middle,
                 }

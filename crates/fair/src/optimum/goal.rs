@@ -90,6 +90,13 @@ const CLOSEST: f64 = 1e6;
 /// How exactly budgets and shares are kept.
 const GOAL_ACCURACY: f64 = 1e-7;
 
+/// The difference of the weights' logarithms from which on a value that is no better is due to rounding.
+const NOISY: f64 = 1e-5;
+
+/// How far the logarithm of the weight goes at once, as long as the goal is not between two weights.
+const FIRST_STRIDE: f64 = 2.0;
+const LARGEST_STRIDE: f64 = 6.0;
+
 /// The measure that rounding of the points alone may leave.
 pub(crate) fn rounding(rows: &SparseRows, norm: RowNorm, points: &[Vec3<f64>]) -> f64 {
     let of = |k: usize| {
@@ -168,6 +175,25 @@ where
         left.fairest_used = (self.squares)(&fairest.points) / mean;
         left.fairest = fairest.points;
         left
+    }
+
+    /// The logarithm of the weight that balances the measure at the fairest, about: its force there towards
+    /// the original is that of the limits, which the weight replaces. `[begin, least, squares]` are the
+    /// measures of both and what the fairest takes of the squares.
+    fn balance(&self, fairest: &[Vec3<f64>], [begin, least, squares]: [f64; 3]) -> f64 {
+        // The measure is a parabola along the line between them; its slope is read where the square
+        // term does not cover it.
+        let s = (least / begin).sqrt().clamp(1e-6, 0.5);
+        let between: Vec<_> =
+            fairest.iter().zip(self.original).map(|(p, q)| *p + (*q - *p) * s).collect();
+        let rise = (self.energy)(&between) - least - s * s * (begin - least);
+        let weight = 0.5 * rise / (s * (1.0 - s) * squares);
+        let floor = 1e-30 * begin / squares;
+        if weight > floor && weight.is_finite() {
+            libm::log(weight)
+        } else {
+            libm::log(least.max(1e-6 * begin) / squares)
+        }
     }
 
     /// The optimum of a goal. The sum of squares falls and the measure rises with the weight, both
@@ -299,25 +325,28 @@ where
             ));
         }
         // Between two weights by regula falsi on logarithms, the stale end halved (Illinois).
-        let mut low = (f64::NEG_INFINITY, measured(&fairest));
-        let mut high: Option<(f64, f64, Optimum)> = None;
-        let mut trial = libm::log(least.max(1e-6 * begin) / squares);
+        let mut low: Option<(f64, f64)> = None;
+        let mut high: Option<(f64, f64)> = None;
+        let mut trial = self.balance(&fairest.points, [begin, least, squares]);
+        let mut stride = FIRST_STRIDE;
         let mut side = 0;
         let mut best: Option<(f64, f64, Optimum)> = None;
         for _ in 0..MOST_SOLUTIONS {
             let optimum = solve(libm::exp(trial))?;
             let value = measured(&optimum);
             // Conditions may keep the data farther off than the budget.
-            let settled = low.0.is_finite() && low.1 - value < 1e-6;
+            let settled = low.is_some_and(|l| l.1 - value < 1e-6);
             if conditioned && high.is_none() && value > 0.0 && settled {
                 best = Some((trial, value, optimum));
                 break;
             }
             let better = best.as_ref().is_none_or(|b| value.abs() < b.1.abs());
             if better {
-                best = Some((trial, value, optimum.clone()));
+                best = Some((trial, value, optimum));
             }
-            if value.abs() <= GOAL_ACCURACY {
+            let width = low.zip(high).map_or(f64::INFINITY, |(l, h)| h.0 - l.0);
+            // Between weights so near to each other what is left is rounding of the optima.
+            if value.abs() <= GOAL_ACCURACY || (!better && width < NOISY) {
                 break;
             }
             if value > 0.0 {
@@ -326,26 +355,30 @@ where
                 {
                     h.1 *= 0.5;
                 }
-                low = (trial, value);
+                low = Some((trial, value));
                 side = 1;
             } else {
-                if side == -1 {
-                    low.1 *= 0.5;
+                if side == -1
+                    && let Some(l) = &mut low
+                {
+                    l.1 *= 0.5;
                 }
-                high = Some((trial, value, optimum));
+                high = Some((trial, value));
                 side = -1;
             }
-            trial = match (&high, low.0.is_finite()) {
-                (Some(h), true) => {
-                    if h.0 - low.0 < 1e-12 {
+            trial = match (low, high) {
+                (Some(l), Some(h)) => {
+                    if h.0 - l.0 < GOAL_ACCURACY {
                         break;
                     }
-                    let share = low.1 / (low.1 - h.1);
-                    low.0 + (h.0 - low.0) * share.clamp(0.01, 0.99)
+                    let share = l.1 / (l.1 - h.1);
+                    l.0 + (h.0 - l.0) * share.clamp(0.01, 0.99)
                 }
-                (Some(h), false) => h.0 - 3.0,
-                (None, _) => low.0 + 3.0,
+                (None, Some(h)) => h.0 - stride,
+                (Some(l), None) => l.0 + stride,
+                (None, None) => unreachable!("one of them was set"),
             };
+            stride = (2.0 * stride).min(LARGEST_STRIDE);
         }
         let (weight, _, optimum) = best.expect("one solution at least");
         settle(optimum, libm::exp(weight))
