@@ -107,6 +107,18 @@ EndModel;
     assert "what is written is without t, which could not be made" in kept.stderr
 
 
+def test_conditions_and_assertions_are_left_out_with_a_remark(tmp_path: Path) -> None:
+    model = moldloft.loads(
+        "param float beam = 2 in [1, 3]; AbsPoint A(0, beam, 1); AbsPoint B(4, 0, 0); Line l(A, B);"
+        "AbsBead b(l, 0.5); SolveSet s({b.t}, {b.x - 1}); assert l.length > 1;"
+    )
+    text, (remark,) = converted(model, "ms2")
+    assert "a model file has no place for SolveSet `s`, an assertion" in remark
+    assert "Rem Moldloft: a model file has no place for SolveSet `s`, an assertion" in text
+    assert "SolveSet s" not in text and "AbsBead b 14 1 / l 0.25;" in text
+    assert float(loaded(text, tmp_path, "s.ms2")["b"].x) == 1
+
+
 def test_what_a_parameter_moves_is_moved_or_named(tmp_path: Path) -> None:
     """A parameter of the file moves what it moved, but for the objects that the remark names."""
     model = moldloft.load(ROOT / "examples/platform/platform.sdl")

@@ -262,8 +262,10 @@ impl<'a> Relations<'a> {
 
     /// The variables and formulas of the statement that begins there: names and lines.
     pub fn reals_at(&self, start: u32) -> Vec<(String, String)> {
+        // They are in the order of the text.
+        let first = self.reals.partition_point(|_, line| line.start < start);
+        let lines = self.reals.iter().skip(first).take_while(|(_, line)| line.start == start);
         let program = &self.module.program;
-        let lines = self.reals.iter().filter(|(_, line)| line.start == start);
         lines.map(|(name, line)| (program.name(*name).to_string(), line.text.clone())).collect()
     }
 

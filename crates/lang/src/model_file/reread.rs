@@ -26,7 +26,8 @@ pub(super) fn differences(
     run_alone(&source, world, &mut sources, registry, &mut again, &mut found);
     let graph = &evaluation.graph;
     let mut differing = Vec::new();
-    for object in graph.objects().filter(|o| o.row.role != Role::Header) {
+    let written = |o: &&Object<f64>| !matches!(o.row.role, Role::Header | Role::SolveSet);
+    for object in graph.objects().filter(written) {
         let name = plain_name(&object.name);
         let made = again.graph.find(&name).and_then(|key| again.graph.get(key));
         let why = match made {

@@ -11,6 +11,7 @@ use moldloft_diag::Diagnostic;
 use moldloft_model::Object;
 use moldloft_registry::{Attributes, Class, FieldSpec, Registry, Role, Unit, Value};
 use moldloft_syntax::model_file::ARGUMENT;
+use moldloft_syntax::sdl::{StmtId, StmtKind};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt::Write;
 
@@ -140,6 +141,8 @@ struct ToModelFile<'a> {
     trailer: String,
     /// Objects with numbers that no longer follow the parameters.
     computed: Vec<String>,
+    /// What is no object of the file.
+    left_out: Vec<String>,
     errors: Vec<Diagnostic>,
 }
 
@@ -168,6 +171,7 @@ impl<'a> ToModelFile<'a> {
             order: Vec::new(),
             trailer: String::new(),
             computed: Vec::new(),
+            left_out: Vec::new(),
             errors: Vec::new(),
         }
     }
@@ -204,6 +208,11 @@ impl<'a> ToModelFile<'a> {
                 if headers > 1 {
                     self.refuse(object, "a second header", "a model file has one header");
                 }
+                continue;
+            }
+            if object.row.role == Role::SolveSet && !self.returning {
+                // Its unknowns are at their solution; nobody solves it there.
+                self.left_out.push(format!("SolveSet `{}`", object.name));
                 continue;
             }
             self.object(object);
@@ -254,7 +263,7 @@ impl<'a> ToModelFile<'a> {
         }
         text += "EndModel;\n";
         text += &self.trailer;
-        let remarks = match self.computed.len() {
+        let mut remarks = match self.computed.len() {
             0 => Vec::new(),
             _ if self.evaluation.env.params.is_empty() => Vec::new(),
             _ => vec![
@@ -262,7 +271,26 @@ impl<'a> ToModelFile<'a> {
                     .help("a model file keeps what the main program states by parameters, by variables that are assigned once, and by objects; not what a routine or a loop computes"),
             ],
         };
+        if let Some(message) = self.left_out_message() {
+            let help = "solve conditions, and check what must hold, in the program";
+            remarks.push(Diagnostic::warning("left-out", message).help(help));
+        }
         ModelFileText { text, remarks }
+    }
+
+    /// What the file leaves out.
+    fn left_out_message(&self) -> Option<String> {
+        let mut parts = self.left_out.clone();
+        let program = &self.module.program;
+        let checks = (0..program.stmt_count() as u32).map(StmtId);
+        let asserts =
+            checks.filter(|id| matches!(program[*id].kind, StmtKind::Assert { .. })).count();
+        match asserts {
+            0 => {}
+            1 => parts.push("an assertion".to_string()),
+            many => parts.push(format!("{many} assertions")),
+        }
+        (!parts.is_empty()).then(|| format!("a model file has no place for {}", parts.join(", ")))
     }
 
     fn fixed_numbers(&self) -> String {
@@ -285,7 +313,8 @@ impl<'a> ToModelFile<'a> {
         let graph = &self.evaluation.graph;
         let ours: BTreeSet<&str> = graph
             .objects()
-            .filter(|o| o.row.role != Role::Header && !KNOWN_COLUMNS.contains(&&*o.row.name))
+            .filter(|o| !matches!(o.row.role, Role::Header | Role::SolveSet))
+            .filter(|o| !KNOWN_COLUMNS.contains(&&*o.row.name))
             .map(|o| &*o.row.name)
             .collect();
         if !ours.is_empty() {
@@ -298,6 +327,9 @@ impl<'a> ToModelFile<'a> {
         }
         if !self.computed.is_empty() && !self.evaluation.env.params.is_empty() {
             let _ = writeln!(out, "{OWN_REMARK}{}", self.fixed_numbers());
+        }
+        if let Some(message) = self.left_out_message() {
+            let _ = writeln!(out, "{OWN_REMARK}{message}");
         }
         out
     }
