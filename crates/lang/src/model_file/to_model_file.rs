@@ -141,7 +141,7 @@ struct ToModelFile<'a> {
     trailer: String,
     /// Objects with numbers that no longer follow the parameters.
     computed: Vec<String>,
-    /// What is no object of the file.
+    /// Statements that are not objects of the file.
     left_out: Vec<String>,
     errors: Vec<Diagnostic>,
 }
