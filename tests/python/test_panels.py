@@ -156,3 +156,24 @@ def test_model_files_keep_what_is_said_of_panels():
     assert "divisions = {0, 8}" in back
     assert 'size = {0.1, 0}, spacing = {"cosine", 1.2}, tags = {"wetted", "bottom"}' in back
     assert 'attributes = "A:Note(left)"' in back
+
+
+def test_full_ellipses_close_by_construction() -> None:
+    """A cylinder on an ellipse with two lids has no open edge, and pi a b L for its volume."""
+    rng = np.random.default_rng(14)
+    for k in range(12):
+        a, b, height = (float(x) for x in rng.uniform(0.5, 4, 3))
+        lean = float(rng.uniform(-0.5, 0.5))
+        # Half diameters that need not be square to one another, a full turn by default or as stated.
+        turn = ("", ", 0, 2*PI", ", 0, -2*PI")[k % 3]
+        model = moldloft.loads(
+            f"AbsPoint O(0, 0, -20); AbsPoint A({a}, 0, -20); AbsPoint B({lean}, {b}, -20);"
+            f"AbsPoint P(0, 0, {height - 20}); AbsPoint Q({a}, 0, {height - 20});"
+            f"AbsPoint R({lean}, {b}, {height - 20});"
+            f"Conic low(O, A, B{turn}); Conic high(P, Q, R{turn}); RuledSurf side(low, high);"
+            "Line o(O, O); Line p(P, P); RuledSurf floor(low, o); RuledSurf roof(high, p);"
+        )
+        assert not model.junctions()
+        found = model.hydrostatics()
+        assert found.open_edges == 0
+        assert found.volume == pytest.approx(np.pi * a * b * height, rel=1e-9)
