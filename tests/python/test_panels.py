@@ -164,7 +164,7 @@ def test_full_ellipses_close_by_construction() -> None:
     for k in range(12):
         a, b, height = (float(x) for x in rng.uniform(0.5, 4, 3))
         lean = float(rng.uniform(-0.5, 0.5))
-        # Half diameters that need not be square to one another, a full turn by default or as stated.
+        # Half diameters not square to one another; a full turn by default or as stated.
         turn = ("", ", 0, 2*PI", ", 0, -2*PI")[k % 3]
         model = moldloft.loads(
             f"AbsPoint O(0, 0, -20); AbsPoint A({a}, 0, -20); AbsPoint B({lean}, {b}, -20);"
