@@ -162,6 +162,24 @@ def test_a_wigley_network_over_draws_of_noise():
     assert np.exp(np.mean(np.log(gains))) > 8
 
 
+def test_noise_between_close_stations_is_no_slope():
+    """Steps that the tolerances allow to be level do not change what chords are measured across."""
+    for seed in range(2600, 2640 if SOAK else 2606):
+        rng = np.random.default_rng(seed)
+        x = np.sort(np.concatenate([[0, 10], rng.uniform(0, 10, 24)]))
+        z = np.sort(np.concatenate([[0, 1.25], rng.uniform(0, 1.25, 11)]))
+        a, b = (v.ravel() for v in np.meshgrid(x, z, indexing="ij"))
+        truth = HULLS["Wigley"](a / 5 - 1, (1.25 - b) / 1.25)
+        places = np.arange(len(a)).reshape(len(x), len(z))
+        curves = [*places.tolist(), *places.T.tolist()]
+        read = np.column_stack([a, np.round(truth, 2), b])
+        options = {"motion": (0, 1, 0), "goal": "fairest"}
+        y = [network(read, curves, 0.005, **options).points[:, 1]]
+        y.append(network(read, curves, 0.005, spacing="z", **options).points[:, 1])
+        error = [np.sqrt(((one - truth) ** 2).mean()) for one in y]
+        assert error[0] < 1.5 * error[1], (seed, error)
+
+
 @pytest.mark.parametrize("kind", ["curve", "surface", "network"])
 def test_a_result_does_not_hang_on_order_unit_and_place(kind):
     """Reversed, turned, moved, scaled and renumbered data give the same result."""

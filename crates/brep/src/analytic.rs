@@ -1,7 +1,6 @@
 //! Planes, cylinders, cones, spheres and tori: distances, angles, and what makes two of them one surface.
 
 use crate::SurfaceShape;
-use crate::labelled::arc;
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -208,5 +207,30 @@ impl SurfaceShape {
             exact: true,
             paces: [Pace::Even; 2],
         })
+    }
+}
+
+/// A part of an ellipse as rational arcs of 90 degrees at most (Piegl and Tiller 1997, 7.3).
+pub(crate) fn arc(centre: Vec3, x: Vec3, y: Vec3, start: f64, sweep: f64) -> Nurbs<1> {
+    let pieces = (sweep / FRAC_PI_2 - 1e-9).ceil().max(1.0);
+    let half = 0.5 * sweep / pieces;
+    let w = libm::cos(half);
+    let at = |t: f64, s: f64| centre + (x * libm::cos(t) + y * libm::sin(t)) / s;
+    let (mut points, mut weights, mut knots) = (vec![at(start, 1.0)], vec![1.0], vec![0.0; 3]);
+    for k in 0..pieces as usize {
+        let t = start + 2.0 * half * k as f64;
+        points.extend([at(t + half, w), at(t + 2.0 * half, 1.0)]);
+        weights.extend([w, 1.0]);
+        knots.extend([(k + 1) as f64 / pieces; 2]);
+    }
+    knots.push(1.0);
+    Nurbs {
+        degrees: [2],
+        knots: [knots],
+        points,
+        weights: Some(weights),
+        error: 0.0,
+        exact: true,
+        paces: [Pace::Even],
     }
 }

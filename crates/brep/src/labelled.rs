@@ -4,6 +4,7 @@
 //!
 //! The triangles say what hangs together and which part of a curve is an edge; no number of theirs is in the result.
 
+use crate::analytic::arc;
 use crate::crossing::crossing;
 use crate::seams::{FacetNet, ordered};
 use crate::{Brep, BrepEdge, BrepFace, Coedge, ExactCurve, SurfaceAxes, SurfaceShape, meet};
@@ -11,7 +12,7 @@ use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 /// What counts as in a surface, as a share of the size.
 const NEAR: f64 = 1e-9;
@@ -91,7 +92,7 @@ impl Brep {
         accuracy: f64,
         size: f64,
     ) -> Result<Vec<Vec3>, FacetFault> {
-        let mut work = Body::new(facets, accuracy, size)?;
+        let mut work = LabelledBody::new(facets, accuracy, size)?;
         work.join_islands();
         work.pin()?;
         let places = work.places();
@@ -104,7 +105,7 @@ impl Brep {
     }
 }
 
-struct Body {
+struct LabelledBody {
     net: FacetNet,
     /// The surfaces, and behind them the planes of seams.
     surfaces: Vec<SurfaceShape>,
@@ -121,7 +122,7 @@ struct Body {
     step: f64,
 }
 
-impl Body {
+impl LabelledBody {
     fn new(facets: LabelledFacets, accuracy: f64, size: f64) -> Result<Self, FacetFault> {
         let LabelledFacets { positions, triangles, mut labels, surfaces, names, .. } = facets;
         let near = NEAR * size;
@@ -845,31 +846,6 @@ fn segment(a: Vec3, b: Vec3) -> Nurbs<1> {
         knots: [vec![0.0, 0.0, 1.0, 1.0]],
         points: vec![a, b],
         weights: None,
-        error: 0.0,
-        exact: true,
-        paces: [Pace::Even],
-    }
-}
-
-/// A part of an ellipse as rational arcs of 90 degrees at most (Piegl and Tiller 1997, 7.3).
-pub(crate) fn arc(centre: Vec3, x: Vec3, y: Vec3, start: f64, sweep: f64) -> Nurbs<1> {
-    let pieces = (sweep / FRAC_PI_2 - 1e-9).ceil().max(1.0);
-    let half = 0.5 * sweep / pieces;
-    let w = libm::cos(half);
-    let at = |t: f64, s: f64| centre + (x * libm::cos(t) + y * libm::sin(t)) / s;
-    let (mut points, mut weights, mut knots) = (vec![at(start, 1.0)], vec![1.0], vec![0.0; 3]);
-    for k in 0..pieces as usize {
-        let t = start + 2.0 * half * k as f64;
-        points.extend([at(t + half, w), at(t + 2.0 * half, 1.0)]);
-        weights.extend([w, 1.0]);
-        knots.extend([(k + 1) as f64 / pieces; 2]);
-    }
-    knots.push(1.0);
-    Nurbs {
-        degrees: [2],
-        knots: [knots],
-        points,
-        weights: Some(weights),
         error: 0.0,
         exact: true,
         paces: [Pace::Even],

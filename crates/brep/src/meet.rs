@@ -80,7 +80,7 @@ impl ExactCurve {
 }
 
 /// A piece of the profile of a surface of revolution, in (distance from the axis, height).
-enum Profile {
+enum ProfilePiece {
     Line([f64; 2], [f64; 2]),
     Circle([f64; 2], f64),
 }
@@ -335,23 +335,25 @@ fn common_axis(
     }
 }
 
-fn profile(s: &SurfaceShape, origin: Vec3, z: Vec3) -> Vec<Profile> {
+fn profile(s: &SurfaceShape, origin: Vec3, z: Vec3) -> Vec<ProfilePiece> {
     let height = |p: Vec3| (p - origin).dot(z);
     match s {
         SurfaceShape::Plane { origin, .. } => {
-            vec![Profile::Line([0.0, height(*origin)], [1.0, 0.0])]
+            vec![ProfilePiece::Line([0.0, height(*origin)], [1.0, 0.0])]
         }
-        SurfaceShape::Cylinder { radius, .. } => vec![Profile::Line([*radius, 0.0], [0.0, 1.0])],
+        SurfaceShape::Cylinder { radius, .. } => {
+            vec![ProfilePiece::Line([*radius, 0.0], [0.0, 1.0])]
+        }
         SurfaceShape::Cone { half_angle, .. } => {
             let h = s.apex().map_or(0.0, height);
             let (sin, cos) = (libm::sin(*half_angle), libm::cos(*half_angle));
-            [cos, -cos].map(|c| Profile::Line([0.0, h], [sin, c])).into()
+            [cos, -cos].map(|c| ProfilePiece::Line([0.0, h], [sin, c])).into()
         }
         SurfaceShape::Sphere { axes, radius } => {
-            vec![Profile::Circle([0.0, height(axes.origin)], *radius)]
+            vec![ProfilePiece::Circle([0.0, height(axes.origin)], *radius)]
         }
         SurfaceShape::Torus { axes, major, minor } => {
-            vec![Profile::Circle([*major, height(axes.origin)], *minor)]
+            vec![ProfilePiece::Circle([*major, height(axes.origin)], *minor)]
         }
         SurfaceShape::Nurbs(_) => Vec::new(),
     }
@@ -362,15 +364,15 @@ fn coaxial([a, b]: [&SurfaceShape; 2], origin: Vec3, z: Vec3, tolerance: f64) ->
     for p in profile(a, origin, z) {
         for q in profile(b, origin, z) {
             made.extend(match (&p, &q) {
-                (Profile::Line(a, d), Profile::Line(b, e)) => {
+                (ProfilePiece::Line(a, d), ProfilePiece::Line(b, e)) => {
                     let det = d[0] * e[1] - d[1] * e[0];
                     let w = [b[0] - a[0], b[1] - a[1]];
                     let t = (w[0] * e[1] - w[1] * e[0]) / det;
                     let one = [a[0] + d[0] * t, a[1] + d[1] * t];
                     if det.abs() > 1e-12 { vec![one] } else { Vec::new() }
                 }
-                (Profile::Line(a, d), Profile::Circle(c, r))
-                | (Profile::Circle(c, r), Profile::Line(a, d)) => {
+                (ProfilePiece::Line(a, d), ProfilePiece::Circle(c, r))
+                | (ProfilePiece::Circle(c, r), ProfilePiece::Line(a, d)) => {
                     let t = (c[0] - a[0]) * d[0] + (c[1] - a[1]) * d[1];
                     let foot = [a[0] + d[0] * t, a[1] + d[1] * t];
                     let far = [foot[0] - c[0], foot[1] - c[1]];
@@ -384,7 +386,7 @@ fn coaxial([a, b]: [&SurfaceShape; 2], origin: Vec3, z: Vec3, tolerance: f64) ->
                         Vec::new()
                     }
                 }
-                (Profile::Circle(c, r), Profile::Circle(e, s)) => {
+                (ProfilePiece::Circle(c, r), ProfilePiece::Circle(e, s)) => {
                     two_circles(*c, *r, *e, *s, tolerance)
                 }
             });

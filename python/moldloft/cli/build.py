@@ -160,7 +160,7 @@ def _build(
         model = open_model(options)
         if sources is not None:
             sources.extend(model.sources)
-        if model.has_errors and not (options.keep_going and any(o["ok"] for o in _objects(model))):
+        if model.has_errors and not (options.keep_going and _is_partly_made(model)):
             progress.stage("reporting")
             return _report_errors(model, options)
         progress.stage("making panels")
@@ -244,6 +244,12 @@ def _build(
             if floating is not None:
                 say(options, "\n" + _panels_against_shape(model, floating, options))
     return (1 if refused or model.has_errors else 0), data
+
+
+def _is_partly_made(model: Model) -> bool:
+    """True when all errors are of objects, beside which others were made."""
+    own = all(d.object for d in model.diagnostics if d.is_error)
+    return own and any(o["ok"] for o in _objects(model))
 
 
 def _missing(model: Model) -> list[str]:

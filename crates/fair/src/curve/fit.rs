@@ -106,7 +106,9 @@ pub fn parameters_with<T: Real>(
 const SHALLOW: f64 = 0.2;
 
 /// The same where points move along a direction only: chords are measured across it, so that
-/// offsets at stations have these for parameters, unless a curve is too steep for that.
+/// offsets at stations have these for parameters, unless a curve is too steep for that. A step is
+/// as steep as it must be: what the tolerances `radii` of its two points allow is taken off, since
+/// noise between two close stations is no slope.
 ///
 /// # Errors
 /// As [`parameters`].
@@ -114,7 +116,7 @@ pub fn parameters_across<T: Real>(
     points: &[Vec3<T>],
     spacing: ParameterSpacing,
     closed: bool,
-    motion: Motion,
+    (motion, radii): (Motion, &[f64]),
 ) -> Result<Vec<T>, FairError> {
     let (Motion::Along(d), ParameterSpacing::Chord | ParameterSpacing::Centripetal) =
         (motion, spacing)
@@ -129,8 +131,14 @@ pub fn parameters_across<T: Real>(
     let n = points.len();
     let steps = if closed { n } else { n.saturating_sub(1) };
     let shallow = (0..steps).all(|k| {
-        let step = |all: &[Vec3<T>]| (all[(k + 1) % n].re() - all[k].re()).norm();
-        step(&projected) >= SHALLOW * step(points) && step(&projected) > 0.0
+        let next = (k + 1) % n;
+        let across = (projected[next].re() - projected[k].re()).norm();
+        let chord = (points[next].re() - points[k].re()).norm();
+        let along = (chord * chord - across * across).max(0.0).sqrt();
+        let allowed: f64 = [k, next].iter().filter_map(|&k| radii.get(k)).sum();
+        let needed = (along - allowed).max(0.0);
+        // Written so that NaN is steep.
+        across > 0.0 && across >= SHALLOW * (needed * needed + across * across).sqrt()
     });
     parameters_with(if shallow { &projected } else { points }, spacing, closed)
 }

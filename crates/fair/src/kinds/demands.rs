@@ -72,11 +72,12 @@ impl<T: Real> Intent<T> {
         for k in super::indices(&demands.release, n)? {
             tolerances[k] += T::from(size);
         }
-        let at = parameters_across(points, self.spacing, self.closed, self.motion)?;
+        let radii: Vec<f64> = tolerances.iter().map(|t| t.re()).collect();
+        let at = parameters_across(points, self.spacing, self.closed, (self.motion, &radii))?;
         let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
         let data = Data {
             points: plain,
-            limit: Limit::new(self.motion, tolerances.iter().map(|t| t.re()).collect())?,
+            limit: Limit::new(self.motion, radii)?,
             layout: InterpolationSpace::new(self.degree, &real, &marks, self.closed)?,
             ends: [self.end; 2],
         };

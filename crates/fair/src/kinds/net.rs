@@ -191,6 +191,8 @@ impl<T: Real> Build<T> for FairNet<T> {
                     .in_field(Self::ALONG));
             }
         };
+        let radii = vec![self.tolerance.re(); joined.points.len()];
+        let limits = (motion, &radii[..]);
         let (mut strands, mut ats) = (Vec::new(), Vec::new());
         for (k, (own, closed)) in joined.curves.iter().enumerate() {
             let space = match (closed, own.len()) {
@@ -213,11 +215,11 @@ impl<T: Real> Build<T> for FairNet<T> {
             let at = if index {
                 None
             } else {
-                let at = match parameters_across(&list, spaced, *closed, motion) {
+                let at = match parameters_across(&list, spaced, *closed, limits) {
                     Err(FairError::TurnsAlong { .. } | FairError::Coincident { .. })
                         if matches!(spaced, ParameterSpacing::Along(_)) =>
                     {
-                        parameters_across(&list, ParameterSpacing::Chord, *closed, motion)
+                        parameters_across(&list, ParameterSpacing::Chord, *closed, limits)
                     }
                     other => other,
                 };

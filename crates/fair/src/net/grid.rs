@@ -81,11 +81,11 @@ pub fn grid_parameters<T: Real>(
         let mut used = 0usize;
         for line in 0..lines {
             let list: Vec<Vec3<T>> = (0..count).map(|k| points[at(k, line)]).collect();
-            let own = match parameters_across(&list, spacing, closed, motion) {
+            let own = match parameters_across(&list, spacing, closed, (motion, &[])) {
                 Err(FairError::TurnsAlong { .. } | FairError::Coincident { .. })
                     if matches!(spacing, ParameterSpacing::Along(_)) =>
                 {
-                    parameters_across(&list, ParameterSpacing::Chord, closed, motion)
+                    parameters_across(&list, ParameterSpacing::Chord, closed, (motion, &[]))
                 }
                 own => own,
             };

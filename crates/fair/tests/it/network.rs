@@ -298,7 +298,9 @@ fn uneven_stations_and_waterlines() {
             let curve = |own: Vec<usize>| {
                 let list: Vec<_> = own.iter().map(|&i| data[i]).collect();
                 let motion = Motion::Along(Vec3::of(0.0, 1.0, 0.0));
-                let at = parameters_across(&list, ParameterSpacing::Chord, false, motion).unwrap();
+                let radii = vec![0.005; own.len()];
+                let at = parameters_across(&list, ParameterSpacing::Chord, false, (motion, &radii))
+                    .unwrap();
                 NetworkCurve {
                     space: Space::floating(3, own.len()).unwrap(),
                     points: own,

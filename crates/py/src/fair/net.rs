@@ -314,8 +314,10 @@ impl Web {
                     ParameterSpacing::Uniform => None,
                     spaced => {
                         let list: Vec<Vec3> = own.iter().map(|&i| self.points[i]).collect();
+                        let radii: Vec<f64> = own.iter().map(|&i| limit.radii[i]).collect();
+                        let limits = (motion, &radii[..]);
                         let at =
-                            parameters_across(&list, spaced, *closed, motion).or_else(|error| {
+                            parameters_across(&list, spaced, *closed, limits).or_else(|error| {
                                 match error {
                                     // Sections run across the stations.
                                     FairError::TurnsAlong { .. } | FairError::Coincident { .. }
@@ -325,7 +327,7 @@ impl Web {
                                             &list,
                                             ParameterSpacing::Chord,
                                             *closed,
-                                            motion,
+                                            limits,
                                         )
                                     }
                                     error => Err(error),

@@ -268,7 +268,8 @@ pub fn data<'py>(
         None => {
             let word: String = get(options, "spacing")?;
             let spaced = spacing(&word, get(options, "spacing_direction")?)?;
-            parameters_across(&one.points, spaced, closed, limit.motion).map_err(fair_error)?
+            parameters_across(&one.points, spaced, closed, (limit.motion, &limit.radii))
+                .map_err(fair_error)?
         }
     };
     let breaks: Vec<usize> = breaks.iter().filter_map(|&b| one.of.get(b).copied()).collect();

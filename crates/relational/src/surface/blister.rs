@@ -34,15 +34,15 @@ pub struct Blister<T: Real> {
     height: T,
     /// At the snake: "sharp", "tangent" or "curvature".
     #[field(default = "tangent")]
-    edge: Foot,
+    edge: BumpEdge,
     /// At the centre: "round" or "pointed".
     #[field(default = "round")]
-    top: Top,
+    top: BumpTop,
 }
 
 /// How a bump leaves the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Foot {
+pub enum BumpEdge {
     /// At an angle.
     Sharp,
     /// In the tangent plane.
@@ -53,7 +53,7 @@ pub enum Foot {
 
 /// What a bump is at its highest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Top {
+pub enum BumpTop {
     /// Level.
     Round,
     /// A point.
@@ -70,19 +70,22 @@ fn word<T: Real, R: Copy>(value: &Value<T>, words: &[(&str, R)]) -> Result<R, Ca
     })
 }
 
-impl<T: Real> FromValue<T> for Foot {
+impl<T: Real> FromValue<T> for BumpEdge {
     const CLASS: Class = Class::Text;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
-        let words =
-            [("sharp", Foot::Sharp), ("tangent", Foot::Tangent), ("curvature", Foot::Curvature)];
+        let words = [
+            ("sharp", BumpEdge::Sharp),
+            ("tangent", BumpEdge::Tangent),
+            ("curvature", BumpEdge::Curvature),
+        ];
         word(value, &words)
     }
 }
 
-impl<T: Real> FromValue<T> for Top {
+impl<T: Real> FromValue<T> for BumpTop {
     const CLASS: Class = Class::Text;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
-        word(value, &[("round", Top::Round), ("pointed", Top::Pointed)])
+        word(value, &[("round", BumpTop::Round), ("pointed", BumpTop::Pointed)])
     }
 }
 
@@ -110,8 +113,8 @@ impl<T: Real> Build<T> for Blister<T> {
 struct Bump<T: Real> {
     patch: SubPatch<T>,
     height: T,
-    edge: Foot,
-    top: Top,
+    edge: BumpEdge,
+    top: BumpTop,
 }
 
 impl<T: Real> Bump<T> {
@@ -119,12 +122,12 @@ impl<T: Real> Bump<T> {
     fn share<J: Jet<T>>(&self, v: J) -> J {
         let square = v * v;
         match (self.edge, self.top) {
-            (Foot::Sharp, Top::Pointed) => v,
-            (Foot::Sharp, Top::Round) => v * (-v + 2.0),
-            (Foot::Tangent, Top::Pointed) => square,
-            (Foot::Tangent, Top::Round) => square * (v * -2.0 + 3.0),
-            (Foot::Curvature, Top::Pointed) => square * v,
-            (Foot::Curvature, Top::Round) => square * v * (v * -3.0 + 4.0),
+            (BumpEdge::Sharp, BumpTop::Pointed) => v,
+            (BumpEdge::Sharp, BumpTop::Round) => v * (-v + 2.0),
+            (BumpEdge::Tangent, BumpTop::Pointed) => square,
+            (BumpEdge::Tangent, BumpTop::Round) => square * (v * -2.0 + 3.0),
+            (BumpEdge::Curvature, BumpTop::Pointed) => square * v,
+            (BumpEdge::Curvature, BumpTop::Round) => square * v * (v * -3.0 + 4.0),
         }
     }
 }
