@@ -58,6 +58,7 @@ WITHOUT = {
     "start-failed",
     "thin-box",
     "undecided-cells",
+    "too-many-triangles",
     "unknown-field",
     "unknown-format",
     "unknown-literal",

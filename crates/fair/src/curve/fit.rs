@@ -107,8 +107,8 @@ const SHALLOW: f64 = 0.2;
 
 /// The same where points move along a direction only: chords are measured across it, so that
 /// offsets at stations have these for parameters, unless a curve is too steep for that. A step is
-/// as steep as it must be: what the tolerances `radii` of its two points allow is taken off, since
-/// noise between two close stations is no slope.
+/// as steep as it must be: what the tolerances `radii` of its two points allow is taken off, so
+/// that noise between two close stations does not count.
 ///
 /// # Errors
 /// As [`parameters`].

@@ -1,7 +1,8 @@
 //! Numbers of model files: variables, formulas, and formulas in columns.
 
 use crate::model_file::names::{bare, words};
-use crate::model_file::{Outcome, Producer, Sorted, Trouble, wrong};
+use crate::model_file::producer::Producer;
+use crate::model_file::source::{Outcome, Sorted, Trouble, wrong};
 use crate::source::env::Param;
 use crate::source::scope::{Binding, ScopedBinding};
 use crate::value::variables::Called as _;

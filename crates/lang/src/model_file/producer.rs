@@ -2,7 +2,7 @@
 
 use crate::model_file::names::is_real;
 use crate::model_file::names::system_name;
-use crate::model_file::{ModelFileSource, Outcome, RootCause, Sorted, Trouble, wrong};
+use crate::model_file::source::{ModelFileSource, Outcome, RootCause, Sorted, Trouble, wrong};
 use crate::run::interpreter::Inputs;
 use crate::run::program::RunContext;
 use crate::run::tables;

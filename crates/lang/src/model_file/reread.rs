@@ -1,9 +1,9 @@
 //! A written model file, read again: whether it makes the objects of the program.
 
 use crate::World;
-use crate::model_file::ModelFileSource;
+use crate::model_file::alone::run_alone;
 use crate::model_file::names::plain_name;
-use crate::model_file::run_alone;
+use crate::model_file::source::ModelFileSource;
 use crate::source::env::Evaluation;
 use moldloft_diag::{Diagnostic, Sources};
 use moldloft_model::{Graph, Object};

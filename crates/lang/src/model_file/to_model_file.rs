@@ -1,10 +1,12 @@
 //! From a program to a model file of the objects that it makes: computed numbers as numbers.
 
 use crate::World;
+use crate::model_file::header;
 use crate::model_file::names::{is_layer, plain_name, spelled, system_name};
+use crate::model_file::panel_attributes;
 use crate::model_file::relations::{NumberForm, Relations};
+use crate::model_file::reread;
 use crate::model_file::to_program::{ENTITY, ORDER, RELABEL, VERBATIM, is_legacy, planes};
-use crate::model_file::{header, panel_attributes, reread};
 use crate::source::env::Evaluation;
 use crate::source::module::Module;
 use moldloft_diag::Diagnostic;

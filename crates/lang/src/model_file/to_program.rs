@@ -3,7 +3,7 @@
 
 use crate::model_file::names::{bare, identifier, is_real, system_name};
 use crate::model_file::relations::RADIANS;
-use crate::model_file::{ModelFileSource, Sorted};
+use crate::model_file::source::{ModelFileSource, Sorted};
 use crate::source::env::Evaluation;
 use moldloft_diag::Diagnostic;
 use moldloft_registry::{Attributes, Class, FieldSpec, PanelAttributes, Registry, Spacing, Unit};

@@ -1,0 +1,57 @@
+//! Model files that stand by themselves: run without a program around them, and converted for one that loads them.
+
+use crate::World;
+use crate::model_file::source::ModelFileSource;
+use crate::model_file::to_program::{prevents_conversion, to_program};
+use crate::run::interpreter::{Inputs, Settings};
+use crate::run::program::RunContext;
+use crate::source::NoFiles;
+use crate::source::env::Evaluation;
+use crate::source::module::Modules;
+use indexmap::IndexMap;
+use moldloft_budget::Budget;
+use moldloft_diag::{Diagnostic, Sources};
+use moldloft_registry::Registry;
+use std::collections::HashSet;
+
+/// The program that a model file stands for where a program loads it.
+///
+/// # Errors
+/// That the file is not sound, with its first fault.
+pub fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, Diagnostic> {
+    let mut sources = Sources::new();
+    let file = sources.add(name, text);
+    let (source, mut found) = ModelFileSource::parse(text.to_string(), file);
+    let mut evaluation = Evaluation::default();
+    run_alone(&source, &NoFiles, &mut sources, registry, &mut evaluation, &mut found);
+    match found.iter().find(|d| prevents_conversion(&evaluation, d)) {
+        None => Ok(to_program(&source, registry, &evaluation)),
+        Some(first) => Err(Diagnostic::error(
+            "cannot-read",
+            format!("`{name}` is not sound: {}", first.message),
+        )
+        .help("open the model file by itself to see all that is wrong with it")),
+    }
+}
+
+/// Makes the objects of a model file that stands by itself.
+pub(super) fn run_alone(
+    source: &ModelFileSource,
+    world: &dyn World,
+    sources: &mut Sources,
+    registry: &Registry,
+    evaluation: &mut Evaluation<f64>,
+    found: &mut Vec<Diagnostic>,
+) {
+    let mut modules = Modules::default();
+    let host =
+        RunContext { modules: &mut modules, world, registry, sources, sketch: None, converted };
+    let inputs = Inputs {
+        overrides: &IndexMap::new(),
+        seed: &|_, x| x,
+        seeded_objects: &HashSet::new(),
+        budget: &Budget::default(),
+        settings: Settings::default(),
+    };
+    source.run(host, evaluation, inputs, found);
+}
