@@ -292,6 +292,11 @@ impl<'a> ToModelFile<'a> {
             1 => parts.push("an assertion".to_string()),
             many => parts.push(format!("{many} assertions")),
         }
+        let body = &program[program.body()];
+        let chosen = |id: &&StmtId| matches!(program[**id].kind, StmtKind::If { .. });
+        if !self.evaluation.env.params.is_empty() && body.iter().any(|id| chosen(&id)) {
+            parts.push("conditions (the branch that is taken now is written)".to_string());
+        }
         (!parts.is_empty()).then(|| format!("a model file has no place for {}", parts.join(", ")))
     }
 
