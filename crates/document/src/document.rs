@@ -606,6 +606,27 @@ impl Document {
         self.run()
     }
 
+    /// Runs the program statement by statement, without code for what is done on numbers: the reference
+    /// that tests compare with.
+    #[doc(hidden)]
+    pub fn without_code(&mut self) -> Applied {
+        self.settings.without_code = true;
+        self.run()
+    }
+
+    /// Runs the program with so many steps at most, for tests of that limit.
+    #[doc(hidden)]
+    pub fn with_steps(&mut self, most: u64) -> Applied {
+        self.settings.most_steps = Some(most);
+        self.run()
+    }
+
+    /// The steps that the last run has counted.
+    #[doc(hidden)]
+    pub fn steps(&self) -> u64 {
+        self.plain.env.steps
+    }
+
     /// What the program wrote, by file name; nothing is on the disk yet.
     pub fn written(&self) -> impl Iterator<Item = (&str, &[u8])> {
         self.plain.env.files.written()

@@ -19,6 +19,7 @@ mod model_files;
 mod mutations;
 mod programs;
 mod relabels;
+mod scalar_code;
 mod scale;
 mod sdl_programs;
 mod segments;

@@ -2,7 +2,7 @@
 //! kept of one that is executed again.
 
 mod cache;
-mod lanes;
+pub(crate) mod lanes;
 mod lower;
 pub(crate) mod machine;
 pub(crate) mod recipe;

@@ -309,6 +309,11 @@ fn step<T: Real>(x: T, f: fn(f64) -> f64) -> T {
 
 /// a - b floor(a / b) without rounding.
 fn remainder(a: f64, b: f64) -> f64 {
+    // The same of whole numbers, several times as quick; zero keeps the sign of a below.
+    let (i, j) = (a as i32, b as i32);
+    if f64::from(i) == a && f64::from(j) == b && i > 0 && j > 0 {
+        return f64::from(i % j);
+    }
     let r = a % b;
     if r != 0.0 && (r < 0.0) != (b < 0.0) { r + b } else { r }
 }

@@ -2,6 +2,7 @@
 
 use crate::array::machine::ArrayMachine;
 use crate::array::recipe::ExprKey;
+use crate::run::compiled::kept::ScalarCode;
 use crate::run::read_log::ReadLog;
 use crate::run::semantics::{self, Executed, Semantics};
 use crate::run::usage::{self, Usage};
@@ -31,7 +32,7 @@ const MOST_ERRORS: usize = 1_000;
 const MOST_HINTS: usize = 100;
 
 /// The most elements of all arrays that are declared at a time.
-const MOST_HELD: usize = 50_000_000;
+pub(super) const MOST_HELD: usize = 50_000_000;
 
 /// The most bytes of all printed lines.
 const MOST_PRINTED: usize = 16 << 20;
@@ -40,7 +41,7 @@ const MOST_PRINTED: usize = 16 << 20;
 pub(crate) const DEEPEST: u32 = 2_500;
 
 /// Calls of routines under way at a time.
-const MOST_CALLS: usize = 12_000;
+pub(super) const MOST_CALLS: usize = 12_000;
 
 /// The stack that a run needs: the deepest nesting times the largest frame, with room to spare.
 #[cfg(not(target_arch = "wasm32"))]
@@ -71,6 +72,10 @@ pub struct Settings {
     /// True to apply operators one after the other, whole arrays at a time: the reference that
     /// fused passes are tested against.
     pub plain_operators: bool,
+    /// True to execute every statement by the interpreter: the reference that code is tested against.
+    pub without_code: bool,
+    /// As many steps instead of those that the limits allow, for tests.
+    pub most_steps: Option<u64>,
 }
 
 impl<'a, T: Scalar> Inputs<'a, T> {
@@ -99,7 +104,7 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub inputs: Inputs<'a, T>,
     pub usage: Usage,
     /// The limits that the run began with.
-    limits: Limits,
+    pub(super) limits: Limits,
     pub turns: u64,
     /// The components under way, by module.
     pub components: Vec<usize>,
@@ -121,7 +126,9 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     /// True while a library routine is left because of an error in it.
     pub abandoned: bool,
     /// The statements that were executed.
-    executed: Executed,
+    pub(super) executed: Executed,
+    /// The code of loops and routines.
+    pub(super) code: ScalarCode<T>,
 }
 
 pub(crate) fn silent() -> Diagnostic {
@@ -138,6 +145,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     ) -> Self {
         env.scope.enter(modules.name_count());
         let plain_operators = inputs.settings.plain_operators;
+        let mut limits = moldloft_budget::limits();
+        limits.steps = inputs.settings.most_steps.unwrap_or(limits.steps);
         Self {
             modules,
             loader,
@@ -145,7 +154,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             env,
             inputs,
             usage: Usage::default(),
-            limits: moldloft_budget::limits(),
+            limits,
             turns: 0,
             components: Vec::new(),
             told: HashSet::new(),
@@ -158,6 +167,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             misprint_told: false,
             abandoned: false,
             executed: Executed::default(),
+            code: ScalarCode::default(),
         }
     }
 
@@ -182,6 +192,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     /// Judges what the run has not executed; a run that was stopped is not judged.
     pub fn judge(&mut self) {
+        self.env.steps = self.usage.steps;
         if self.env.stopped || T::PARTS > 1 {
             return;
         }
@@ -338,12 +349,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         Self: Send,
     {
         if self.env.scope.frames.len() > MOST_CALLS {
-            self.stop(
-                Diagnostic::error("nested-too-deep", "calls nest too deep")
-                    .at(span)
-                    .expected(format!("at most {MOST_CALLS} calls under way"))
-                    .help("look for a subroutine that calls itself without end"),
-            );
+            self.too_many_calls(span);
             return None;
         }
         if cfg!(target_arch = "wasm32") || self.usage.depth < DEEPEST / 2 {
@@ -353,6 +359,22 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             let flow = body(self);
             self.usage.depth -= 1;
             return Some(flow);
+        }
+        self.on_enough_stack(span, body)
+    }
+
+    /// Does what may nest deep where there is stack for it; `None` when there is no memory for more, which is
+    /// reported.
+    pub fn on_enough_stack<R: Send>(
+        &mut self,
+        span: Span,
+        body: impl FnOnce(&mut Self) -> R + Send,
+    ) -> Option<R>
+    where
+        Self: Send,
+    {
+        if cfg!(target_arch = "wasm32") || self.usage.depth < DEEPEST / 2 {
+            return Some(body(self));
         }
         let depth = std::mem::take(&mut self.usage.depth);
         let flow = crate::run::program::on_new_stack(|| body(self));
@@ -369,6 +391,16 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             );
         }
         flow
+    }
+
+    /// Ends the run: more calls are under way than there may be.
+    pub fn too_many_calls(&mut self, span: Span) {
+        self.stop(
+            Diagnostic::error("nested-too-deep", "calls nest too deep")
+                .at(span)
+                .expected(format!("at most {MOST_CALLS} calls under way"))
+                .help("look for a subroutine that calls itself without end"),
+        );
     }
 
     /// Goes one level deeper; false when that is too deep.
@@ -436,6 +468,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         kind: StmtKind,
         span: Span,
     ) -> Result<Flow<T>, Diagnostic> {
+        if matches!(kind, StmtKind::While { .. } | StmtKind::ForRange { .. } | StmtKind::For { .. })
+            && let Some(flow) = self.loop_by_code(m, id)
+        {
+            return Ok(flow);
+        }
         match kind {
             StmtKind::Object { kind, name, args } => self.object(m, id, kind, name, args, span)?,
             StmtKind::Block(list) => return Ok(self.statements(m, list)),
@@ -580,7 +617,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         Err(diagnostic)
     }
 
-    fn declare(
+    pub(super) fn declare(
         &mut self,
         m: &Module,
         id: StmtId,

@@ -1,5 +1,6 @@
 //! The interpreter: statements, expressions, objects, loops, calls, components, sketches and solve sets.
 
+pub(crate) mod compiled;
 mod component;
 pub(crate) mod expr;
 pub(crate) mod forward_reference;

@@ -88,7 +88,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let held = self.usage.held;
         self.env.scope.frames.push(frame);
         let outer = std::mem::replace(&mut self.current, at.module);
-        let flow = self.deeper_call(span, |this| this.statements(&callee, routine.body));
+        let flow = self.deeper_call(span, |this| match this.body_by_code(&callee, at.routine) {
+            Some(flow) => flow,
+            None => this.statements(&callee, routine.body),
+        });
         self.current = outer;
         self.env.scope.frames.pop();
         let flow = flow.ok_or_else(silent)?;

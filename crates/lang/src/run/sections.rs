@@ -172,7 +172,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let mut parts: SmallVec<[Selected; 3]> = SmallVec::new();
         for (&sub, &extent) in m.program[subs].iter().zip(extents) {
             let part = self.selection(m, sub, extent).map_err(|d| {
-                if d.id != "outside" {
+                // A fault in a subscript of the subscript says already which array it is about.
+                if d.id != "outside" || !d.secondary.is_empty() || !d.notes.is_empty() {
                     return d;
                 }
                 let name = m.program.as_name(base).and_then(|symbol| {

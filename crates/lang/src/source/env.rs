@@ -144,6 +144,8 @@ pub struct Environment<T: Scalar> {
     pub sketch_members: HashMap<String, Value<T>>,
     /// True when the run ended early, so that objects may be missing.
     pub stopped: bool,
+    /// The steps that were counted.
+    pub steps: u64,
 }
 
 impl<T: Scalar> Default for Environment<T> {
@@ -162,6 +164,7 @@ impl<T: Scalar> Default for Environment<T> {
             sketches: Vec::new(),
             sketch_members: HashMap::new(),
             stopped: false,
+            steps: 0,
         }
     }
 }

@@ -92,6 +92,17 @@ impl Known {
         }
     }
 
+    /// Notes that the number at this position in memory was given a value.
+    #[inline(always)]
+    pub fn give_at(&mut self, k: usize) {
+        if let Some(missing) = &mut self.missing {
+            missing.left -= usize::from(!std::mem::replace(&mut missing.given[k], true));
+            if missing.left == 0 {
+                self.missing = None;
+            }
+        }
+    }
+
     /// Notes that the elements at these positions in memory were given a value.
     pub fn give_each<T: Real>(&mut self, positions: &[usize], value: &Value<T>) {
         let shape = match value {

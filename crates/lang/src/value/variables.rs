@@ -9,7 +9,7 @@ use moldloft_syntax::sdl::Type;
 use std::sync::Arc;
 
 /// The most elements of an array.
-const MOST_ELEMENTS: f64 = 1e7;
+pub const MOST_ELEMENTS: f64 = 1e7;
 
 /// Ints are smaller: from here on neighbours share their digits.
 pub const MOST_INT: f64 = 9_007_199_254_740_992.0;

@@ -1,0 +1,460 @@
+//! The code of a region: operations on registers, and what is known of each place of it.
+
+use crate::functions::elementary::Elementary;
+use crate::source::module::{Module, Name, RoutineAt};
+use moldloft_diag::Span;
+use moldloft_num::Real;
+use moldloft_syntax::sdl::{ExprId, StmtId, Symbol, Type};
+use std::sync::Arc;
+
+/// Which of two numbers is the greater, as conditions ask.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Relation {
+    Lt,
+    Gt,
+    Le,
+    Ge,
+    Eq,
+    Ne,
+}
+
+impl Relation {
+    #[inline(always)]
+    pub fn holds(self, a: f64, b: f64) -> bool {
+        match self {
+            Relation::Lt => a < b,
+            Relation::Gt => a > b,
+            Relation::Le => a <= b,
+            Relation::Ge => a >= b,
+            Relation::Eq => a == b,
+            Relation::Ne => a != b,
+        }
+    }
+}
+
+/// Set in the number of an array: it is one of the file's, not of the call's.
+pub(super) const OF_FILE: u16 = 1 << 15;
+
+/// An operation. Registers are counted from the first of the call under way, places in the code from
+/// the first of its unit.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum ScalarOp {
+    /// A statement begins; it is counted and noted as executed.
+    Step(u16),
+    /// The same, and the next operation does it for the statement that follows.
+    Steps(u16),
+    Copy {
+        to: u16,
+        a: u16,
+    },
+    Add {
+        to: u16,
+        a: u16,
+        b: u16,
+    },
+    Sub {
+        to: u16,
+        a: u16,
+        b: u16,
+    },
+    Mul {
+        to: u16,
+        a: u16,
+        b: u16,
+    },
+    Div {
+        to: u16,
+        a: u16,
+        b: u16,
+    },
+    Power {
+        to: u16,
+        a: u16,
+        b: u16,
+    },
+    Square {
+        to: u16,
+        a: u16,
+    },
+    /// A power with a whole exponent that stands in the text.
+    PowerWhole {
+        to: u16,
+        a: u16,
+        k: i16,
+    },
+    Negate {
+        to: u16,
+        a: u16,
+    },
+    Magnitude {
+        to: u16,
+        a: u16,
+    },
+    Not {
+        to: u16,
+        a: u16,
+    },
+    Compare {
+        relation: Relation,
+        to: u16,
+        a: u16,
+        b: u16,
+    },
+    /// A function of one number; the result must be finite.
+    Apply {
+        to: u16,
+        a: u16,
+        f: u16,
+    },
+    Apply2 {
+        to: u16,
+        a: u16,
+        b: u16,
+        f: u16,
+    },
+    /// `Apply2` without a look at the result.
+    Combine {
+        to: u16,
+        a: u16,
+        b: u16,
+        f: u16,
+    },
+    /// The result of several `Combine` must be finite.
+    Finite {
+        a: u16,
+    },
+    Jump {
+        to: u16,
+    },
+    JumpUnless {
+        a: u16,
+        to: u16,
+    },
+    JumpIfNot {
+        relation: Relation,
+        a: u16,
+        b: u16,
+        to: u16,
+    },
+    Load {
+        to: u16,
+        array: u16,
+        i: u16,
+    },
+    Load2 {
+        to: u16,
+        array: u16,
+        i: u16,
+        j: u16,
+    },
+    Store {
+        array: u16,
+        i: u16,
+        a: u16,
+    },
+    Store2 {
+        array: u16,
+        i: u16,
+        j: u16,
+        a: u16,
+    },
+    /// `a.d1`, `a.d2`.
+    Extent {
+        to: u16,
+        array: u16,
+        k: u16,
+    },
+    /// Into a whole number; what it does not hold is a fault.
+    Whole {
+        to: u16,
+        a: u16,
+    },
+    /// Into a variable whose type depends on what was executed.
+    Assign {
+        variable: u16,
+        to: u16,
+        a: u16,
+    },
+    /// The variable must have been declared, and rightly.
+    Live {
+        variable: u16,
+    },
+    LiveArray {
+        array: u16,
+    },
+    /// The array must have a value.
+    HasValue {
+        array: u16,
+    },
+    Declare {
+        variable: u16,
+        origin: u16,
+    },
+    /// `farray a[m]`, `farray a[m,n]`; no second register for a row.
+    DeclareArray {
+        array: u16,
+        m: u16,
+        n: u16,
+        origin: u16,
+    },
+    /// A variable of the file, read and written by a routine.
+    LoadFile {
+        to: u16,
+        of_file: u16,
+    },
+    StoreFile {
+        of_file: u16,
+        a: u16,
+    },
+    WholeFile {
+        of_file: u16,
+        a: u16,
+    },
+    AssignFile {
+        variable: u16,
+        of_file: u16,
+        a: u16,
+    },
+    LiveFile {
+        variable: u16,
+    },
+    /// From, to, step in the registers from `at`: then the number of turns takes the place of to.
+    ForBegin {
+        at: u16,
+    },
+    ForTest {
+        at: u16,
+        variable: u16,
+        register: u16,
+        origin: u16,
+        exit: u16,
+    },
+    ForNext {
+        at: u16,
+        test: u16,
+    },
+    /// The number of a turn's name, where the variable may have none.
+    Label {
+        at: u16,
+        variable: u16,
+    },
+    /// A turn of another loop begins; the register of its name's number, or `NO_LABEL`.
+    Turn {
+        at: u16,
+        label: u16,
+    },
+    Call {
+        to: u16,
+        site: u16,
+    },
+    Return {
+        a: u16,
+    },
+    /// `return;`, or the end of a routine.
+    Leave,
+    /// The end of the region.
+    End,
+    /// A statement that the interpreter executes.
+    Interpret {
+        site: u16,
+    },
+    /// A condition that the interpreter evaluates.
+    Condition {
+        to: u16,
+        site: u16,
+    },
+}
+
+/// For turns without a number, and for a dimension that is not there.
+pub(super) const NO_LABEL: u16 = u16::MAX;
+
+/// A variable of a unit.
+#[derive(Clone, Debug)]
+pub(super) struct CodeVariable {
+    pub name: Name,
+    pub register: u16,
+    /// The type; `None` when it depends on what was executed.
+    pub ty: Option<Type>,
+    /// What was there when the region began.
+    pub captured: Option<Captured>,
+    /// True when statements of the region declare it.
+    pub declared: bool,
+}
+
+/// What a name was when a region was compiled, and must be when it is entered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Captured {
+    Number(Type),
+    Param(usize),
+    Array,
+    Nothing,
+}
+
+/// An array of numbers of a unit.
+#[derive(Clone, Debug)]
+pub(super) struct CodeArray {
+    pub name: Name,
+    pub captured: bool,
+    pub declared: bool,
+}
+
+/// A loop under way at a place of the code: the register of its number, behind it that of its turn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ActiveLoop {
+    pub at: u16,
+    pub labelled: bool,
+}
+
+/// A call, or what the interpreter does.
+#[derive(Clone, Debug)]
+pub(super) struct CodeSite {
+    pub stmt: StmtId,
+    pub expr: ExprId,
+    pub span: Span,
+    pub loops: Box<[ActiveLoop]>,
+    /// Of a call: the unit, the arguments, whether a value is wanted.
+    pub unit: usize,
+    pub args: Box<[CodeArgument]>,
+    pub valued: bool,
+}
+
+/// An argument of a call.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum CodeArgument {
+    Number { from: u16 },
+    Array { from: u16 },
+}
+
+/// What a fault at a place of the code is.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum CodeNote {
+    /// The result is not finite.
+    Finite(&'static str, Span),
+    /// The interpreter, asked for the expression, says what is wrong.
+    Expression(ExprId),
+    /// The same of what is assigned to.
+    Target(ExprId),
+    /// An int does not hold the value.
+    Convert(Span),
+    /// The interpreter, asked to declare that variable of the statement, says what is wrong.
+    Declaration(StmtId, u32),
+    /// The argument is not what the routine asks for there.
+    Argument(Span, Span),
+    /// The name may mean nothing here.
+    Name(Symbol, Span),
+}
+
+/// The code of a statement, or of one variable of a declaration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CodeRange {
+    pub start: u16,
+    pub end: u16,
+    pub span: Span,
+    /// NamePlace faults go that have no place.
+    pub fault: Span,
+    /// The variable or array that is poisoned by a fault, and its declaration.
+    pub poison: Option<(Poisonable, u16)>,
+}
+
+/// What a declaration that fails leaves without meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Poisonable {
+    Variable(u16),
+    Array(u16),
+}
+
+/// The code of a loop, of a routine, or nothing but the variables of the file.
+pub(super) struct CodeUnit<T: Real> {
+    pub module: usize,
+    pub m: Arc<Module>,
+    pub routine: Option<RoutineAt>,
+    pub code: Vec<ScalarOp>,
+    pub variables: Vec<CodeVariable>,
+    pub arrays: Vec<CodeArray>,
+    /// The formal arguments: variables and arrays.
+    pub formals: Vec<Poisonable>,
+    /// What the registers hold when a call begins: constants.
+    pub template: Vec<T>,
+    pub sites: Vec<CodeSite>,
+    pub notes: Vec<(u16, CodeNote)>,
+    pub ranges: Vec<CodeRange>,
+    /// The code of subscripts and dimensions, and what is asked again after a fault in it: which of several faults
+    /// comes first is the interpreter's to say.
+    pub inner: Vec<(u16, u16, CodeNote)>,
+    /// NamePlace variables are declared, and as what.
+    pub origins: Vec<(Span, Type)>,
+    pub statements: Vec<StmtId>,
+    /// The type of the value that the routine returns.
+    pub result: Option<Type>,
+}
+
+impl<T: Real> CodeUnit<T> {
+    pub fn new(module: usize, m: Arc<Module>, routine: Option<RoutineAt>) -> Self {
+        let result = routine.and_then(|at| m.program[at.routine].result).map(|(ty, _)| ty);
+        Self {
+            module,
+            m,
+            result,
+            routine,
+            code: Vec::new(),
+            variables: Vec::new(),
+            arrays: Vec::new(),
+            formals: Vec::new(),
+            template: Vec::new(),
+            sites: Vec::new(),
+            notes: Vec::new(),
+            ranges: Vec::new(),
+            inner: Vec::new(),
+            origins: Vec::new(),
+            statements: Vec::new(),
+        }
+    }
+
+    /// The innermost statement that a place of the code belongs to.
+    pub fn range(&self, at: usize) -> CodeRange {
+        let holds = |range: &&CodeRange| (range.start as usize..range.end as usize).contains(&at);
+        let inner = self.ranges.iter().filter(holds).min_by_key(|range| range.end - range.start);
+        *inner.expect("all code belongs to a statement")
+    }
+
+    /// What a fault at a place is.
+    pub fn note(&self, at: usize) -> Option<CodeNote> {
+        let holds = |(start, end, _): &&(u16, u16, CodeNote)| {
+            (*start as usize..*end as usize).contains(&at)
+        };
+        let outer = self.inner.iter().filter(holds).max_by_key(|(start, end, _)| end - start);
+        outer.map(|(.., note)| *note).or_else(|| {
+            self.notes.iter().find(|(place, _)| *place as usize == at).map(|(_, note)| *note)
+        })
+    }
+}
+
+/// What a region begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum RegionStart {
+    Loop(StmtId),
+    Body(u32),
+}
+
+/// The code of a loop or a routine's body and of all routines that it calls.
+pub(super) struct CodeRegion<T: Real> {
+    /// The first holds the variables of the file.
+    pub units: Vec<CodeUnit<T>>,
+    /// The unit that is executed: the first itself at file level, else the second.
+    pub entry: usize,
+    /// Names and what they must mean: in the innermost frame, or in the file.
+    pub guards: Vec<(Name, NamePlace, Captured)>,
+    pub functions: Vec<(&'static str, Elementary<T>)>,
+    /// What was loaded when it was compiled.
+    pub generation: Generation,
+}
+
+/// NamePlace a name is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NamePlace {
+    Frame,
+    File,
+}
+
+/// Modules run, routines known, components under way.
+pub(super) type Generation = (usize, usize, usize);

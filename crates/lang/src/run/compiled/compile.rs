@@ -1,0 +1,842 @@
+//! Statements to code.
+//!
+//! What code cannot say is left to the interpreter, statement by statement. A name that such a statement declares is
+//! the interpreter's alone; when that shows after the name was used, the region is compiled once more.
+
+use super::code::{
+    ActiveLoop, Captured, CodeNote, CodeRange, CodeRegion, CodeSite, CodeUnit, Generation,
+    NO_LABEL, NamePlace, Poisonable, RegionStart, Relation, ScalarOp,
+};
+use super::names::{Meaning, ids};
+use crate::functions::elementary::Elementary;
+use crate::source::module::{Modules, Name, RoutineAt};
+use crate::source::scope::Scope;
+use moldloft_diag::Span;
+use moldloft_registry::Scalar;
+use moldloft_syntax::sdl::{
+    BinaryOp, ExprId, ExprKind, Ident, NodeList, StmtId, StmtKind, Subscript, Type, UnaryOp,
+};
+use std::collections::{HashMap, HashSet};
+
+/// The most operations of a unit: places in it are small numbers.
+const MOST_CODE: usize = 30_000;
+
+/// The most units of a region, and the most times it is compiled until all names are settled.
+const MOST_UNITS: usize = 400;
+const MOST_ATTEMPTS: usize = 24;
+
+/// Why something is not compiled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Unfit {
+    /// The interpreter executes the statement.
+    Statement,
+    /// The interpreter executes the whole routine or loop.
+    Unit,
+}
+
+/// What is sure of a variable at a place of the text.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sure {
+    /// It was declared.
+    pub bound: bool,
+    /// Its declaration did not fail.
+    pub live: bool,
+}
+
+/// A unit while it is compiled.
+#[derive(Default)]
+pub(super) struct UnitProgress<T> {
+    pub variables: Vec<Sure>,
+    pub arrays: Vec<Sure>,
+    loops: Vec<LoopProgress>,
+    constants: Vec<(T, u16)>,
+    free: Vec<u16>,
+    taken: Vec<u16>,
+    registers: u16,
+    compiled: usize,
+    left: usize,
+}
+
+/// A loop while it is compiled.
+struct LoopProgress {
+    active: ActiveLoop,
+    breaks: Vec<usize>,
+    continues: Vec<usize>,
+}
+
+pub(super) struct RegionCompiler<'a, T: Scalar> {
+    pub modules: &'a Modules,
+    pub scope: &'a Scope<T>,
+    pub units: Vec<CodeUnit<T>>,
+    pub progress: Vec<UnitProgress<T>>,
+    pub names: Vec<HashMap<Name, Poisonable>>,
+    pub entry: usize,
+    /// The unit under way.
+    pub unit: usize,
+    pub guards: Vec<(Name, NamePlace, Captured)>,
+    pub functions: Vec<(&'static str, Elementary<T>)>,
+    by_routine: HashMap<(usize, u32), usize>,
+    hidden: HashSet<((u8, usize, u32), Name)>,
+    refused: HashSet<(usize, u32)>,
+    restart: bool,
+    /// Jumps out of loops that were closed and are yet to land.
+    closed: Vec<Vec<usize>>,
+}
+
+/// The code of a loop or a routine's body that stands in module `module`; `None` when the interpreter does it as well.
+pub(super) fn compile<T: Scalar>(
+    modules: &Modules,
+    scope: &Scope<T>,
+    module: usize,
+    start: RegionStart,
+    of_file: &HashSet<Name>,
+    generation: Generation,
+) -> Option<CodeRegion<T>> {
+    let mut hidden: HashSet<_> = of_file.iter().map(|&name| ((0, 0, 0), name)).collect();
+    let mut refused = HashSet::new();
+    for _ in 0..MOST_ATTEMPTS {
+        let global = scope.frame().global;
+        let mut compiler = RegionCompiler {
+            modules,
+            scope,
+            units: Vec::new(),
+            progress: Vec::new(),
+            names: Vec::new(),
+            entry: usize::from(!global),
+            unit: 0,
+            guards: Vec::new(),
+            functions: Vec::new(),
+            by_routine: HashMap::new(),
+            hidden: std::mem::take(&mut hidden),
+            refused: std::mem::take(&mut refused),
+            restart: false,
+            closed: Vec::new(),
+        };
+        let outcome = compiler.region(module, start);
+        if outcome.is_err() {
+            return None;
+        }
+        if !compiler.restart {
+            let RegionCompiler { units, entry, guards, functions, .. } = compiler;
+            return Some(CodeRegion { units, entry, guards, functions, generation });
+        }
+        (hidden, refused) = (compiler.hidden, compiler.refused);
+    }
+    None
+}
+
+impl<T: Scalar> RegionCompiler<'_, T> {
+    fn region(&mut self, module: usize, start: RegionStart) -> Result<(), Unfit> {
+        let m = self.modules.get(module).clone();
+        for _ in 0..=self.entry {
+            self.new_unit(module, None);
+        }
+        self.unit = self.entry;
+        let list = match start {
+            RegionStart::Loop(stmt) => vec![stmt],
+            RegionStart::Body(routine) => ids(&m, m.program.routines()[routine as usize].body),
+        };
+        self.reserve(self.entry, &list)?;
+        match start {
+            RegionStart::Loop(stmt) => {
+                let at = self.here()?;
+                let span = m.program[stmt].span;
+                self.range(at, span, span, None, |this| this.compound(stmt))?;
+                self.emit(ScalarOp::End)?;
+            }
+            RegionStart::Body(_) => {
+                self.list(&list)?;
+                self.emit(ScalarOp::End)?;
+            }
+        }
+        let last = self.here()?;
+        let span = list.first().map_or(Span::UNKNOWN, |&stmt| m.program[stmt].span);
+        self.cover(0, last, span);
+        self.finish(self.entry);
+        if self.entry > 0 {
+            self.finish(0);
+        }
+        let (compiled, left) = self
+            .progress
+            .iter()
+            .fold((0, 0), |(compiled, left), unit| (compiled + unit.compiled, left + unit.left));
+        // Handing variables over and back takes its time.
+        if compiled == 0 || left > 3 * compiled {
+            return Err(Unfit::Unit);
+        }
+        Ok(())
+    }
+
+    fn new_unit(&mut self, module: usize, routine: Option<RoutineAt>) -> usize {
+        let m = self.modules.get(module).clone();
+        self.units.push(CodeUnit::new(module, m, routine));
+        self.progress.push(UnitProgress::default());
+        self.names.push(HashMap::new());
+        self.units.len() - 1
+    }
+
+    /// All code that is of no statement is of the whole.
+    fn cover(&mut self, start: u16, end: u16, span: Span) {
+        let range = CodeRange { start, end: end.max(start + 1), span, fault: span, poison: None };
+        self.units[self.unit].ranges.push(range);
+    }
+
+    fn finish(&mut self, unit: usize) {
+        let progress = &self.progress[unit];
+        let mut template = vec![T::zero(); progress.registers as usize];
+        for (x, register) in &progress.constants {
+            template[*register as usize] = *x;
+        }
+        self.units[unit].template = template;
+        let code = &mut self.units[unit].code;
+        for k in 1..code.len() {
+            if let (ScalarOp::Step(a), ScalarOp::Step(b)) = (code[k - 1], code[k])
+                && b == a + 1
+            {
+                code[k - 1] = ScalarOp::Steps(a);
+            }
+        }
+    }
+
+    /// The unit of a routine.
+    ///
+    /// # Errors
+    /// When the interpreter must call it.
+    pub fn routine(&mut self, at: RoutineAt) -> Result<usize, Unfit> {
+        let key = (at.module, at.routine.0);
+        if self.refused.contains(&key) || self.units.len() >= MOST_UNITS {
+            return Err(Unfit::Statement);
+        }
+        if let Some(&unit) = self.by_routine.get(&key) {
+            return Ok(unit);
+        }
+        let outer = self.unit;
+        let unit = self.new_unit(at.module, Some(at));
+        self.by_routine.insert(key, unit);
+        self.unit = unit;
+        let outcome = self.routine_of(unit, at);
+        self.unit = outer;
+        self.finish(unit);
+        if outcome.is_err() {
+            self.refused.insert(key);
+            self.restart = true;
+            return Err(Unfit::Statement);
+        }
+        Ok(unit)
+    }
+
+    fn routine_of(&mut self, unit: usize, at: RoutineAt) -> Result<(), Unfit> {
+        let m = self.units[unit].m.clone();
+        let routine = m.program[at.routine];
+        let plain = |ty: Type| matches!(ty, Type::Int | Type::Float);
+        if m.library || routine.result.is_some_and(|(ty, _)| !plain(ty)) {
+            return Err(Unfit::Unit);
+        }
+        for formal in &m.program[routine.formals] {
+            if formal.returned || formal.multiple {
+                return Err(Unfit::Unit);
+            }
+            let name = m.names[formal.name.symbol.0 as usize];
+            if self.is_hidden(unit, name) || self.names[unit].contains_key(&name) {
+                return Err(Unfit::Unit);
+            }
+            let ty = formal.ty.0;
+            let what = match ty {
+                Type::Int | Type::Float => self.new_variable(unit, name, Some(ty), None, false),
+                Type::Farray => self.new_array(unit, name, false, false),
+                _ => return Err(Unfit::Unit),
+            };
+            self.set_known(what, true, true);
+            self.units[unit].formals.push(what);
+            self.units[unit].origins.push((formal.name.span, ty));
+        }
+        let list = ids(&m, routine.body);
+        self.reserve(unit, &list)?;
+        self.list(&list)?;
+        self.emit(ScalarOp::Leave)?;
+        let last = self.here()?;
+        self.cover(0, last, routine.span);
+        Ok(())
+    }
+
+    pub fn key(&self, unit: usize) -> (u8, usize, u32) {
+        match self.units[unit].routine {
+            _ if unit == 0 => (0, 0, 0),
+            Some(at) => (2, at.module, at.routine.0),
+            None => (1, 0, 0),
+        }
+    }
+
+    pub fn is_hidden(&self, unit: usize, name: Name) -> bool {
+        self.hidden.contains(&(self.key(unit), name))
+    }
+
+    /// Leaves a name to the interpreter.
+    pub fn hide(&mut self, unit: usize, name: Name) {
+        let new = self.hidden.insert((self.key(unit), name));
+        self.restart |= new && (unit == 0 || self.names[unit].contains_key(&name));
+    }
+
+    pub fn known(&self, what: Poisonable) -> Sure {
+        let progress = &self.progress[self.unit];
+        match what {
+            Poisonable::Variable(k) => progress.variables[k as usize],
+            Poisonable::Array(k) => progress.arrays[k as usize],
+        }
+    }
+
+    pub fn set_known(&mut self, what: Poisonable, bound: bool, live: bool) {
+        self.set_known_in(self.unit, what, bound, live);
+    }
+
+    pub fn set_known_in(&mut self, unit: usize, what: Poisonable, bound: bool, live: bool) {
+        let progress = &mut self.progress[unit];
+        let (all, k) = match what {
+            Poisonable::Variable(k) => (&mut progress.variables, k as usize),
+            Poisonable::Array(k) => (&mut progress.arrays, k as usize),
+        };
+        if all.len() <= k {
+            all.resize(k + 1, Sure::default());
+        }
+        all[k] = Sure { bound, live };
+    }
+
+    /// A register of its own.
+    pub fn register(&mut self, unit: usize) -> u16 {
+        let progress = &mut self.progress[unit];
+        let register = progress.registers;
+        progress.registers += 1;
+        // Every variable and array has its entry.
+        let (n, k) = (self.units[unit].variables.len() + 1, self.units[unit].arrays.len() + 1);
+        if progress.variables.len() < n {
+            progress.variables.resize(n, Sure::default());
+        }
+        if progress.arrays.len() < k {
+            progress.arrays.resize(k, Sure::default());
+        }
+        register
+    }
+
+    /// A register until the end of the statement.
+    pub fn scratch(&mut self) -> u16 {
+        let register = match self.progress[self.unit].free.pop() {
+            Some(register) => register,
+            None => self.register(self.unit),
+        };
+        self.progress[self.unit].taken.push(register);
+        register
+    }
+
+    pub fn constant(&mut self, x: T) -> u16 {
+        let known = self.progress[self.unit].constants.iter().find(|(y, _)| y.bits_eq(x));
+        if let Some((_, register)) = known {
+            return *register;
+        }
+        let register = self.register(self.unit);
+        self.progress[self.unit].constants.push((x, register));
+        register
+    }
+
+    pub fn here(&self) -> Result<u16, Unfit> {
+        let at = self.units[self.unit].code.len();
+        let registers = self.progress[self.unit].registers as usize;
+        if at > MOST_CODE || registers > MOST_CODE { Err(Unfit::Unit) } else { Ok(at as u16) }
+    }
+
+    pub fn emit(&mut self, op: ScalarOp) -> Result<usize, Unfit> {
+        let at = self.here()?;
+        self.units[self.unit].code.push(op);
+        Ok(at as usize)
+    }
+
+    pub fn noted(&mut self, op: ScalarOp, note: CodeNote) -> Result<usize, Unfit> {
+        let at = self.emit(op)?;
+        self.units[self.unit].notes.push((at as u16, note));
+        Ok(at)
+    }
+
+    /// Has the jump at a place go here.
+    pub fn land(&mut self, jump: usize) -> Result<(), Unfit> {
+        let here = self.here()?;
+        match &mut self.units[self.unit].code[jump] {
+            ScalarOp::Jump { to }
+            | ScalarOp::JumpUnless { to, .. }
+            | ScalarOp::JumpIfNot { to, .. }
+            | ScalarOp::ForTest { exit: to, .. } => *to = here,
+            other => unreachable!("{other:?} does not jump"),
+        }
+        Ok(())
+    }
+
+    /// The code that `inner` makes, as that of a statement.
+    pub(super) fn range(
+        &mut self,
+        start: u16,
+        span: Span,
+        fault: Span,
+        poison: Option<(Poisonable, u16)>,
+        inner: impl FnOnce(&mut Self) -> Result<(), Unfit>,
+    ) -> Result<(), Unfit> {
+        inner(self)?;
+        let end = self.here()?;
+        self.units[self.unit].ranges.push(CodeRange { start, end, span, fault, poison });
+        Ok(())
+    }
+
+    fn list(&mut self, list: &[StmtId]) -> Result<(), Unfit> {
+        list.iter().try_for_each(|&stmt| self.statement(stmt))
+    }
+
+    fn statement(&mut self, id: StmtId) -> Result<(), Unfit> {
+        let unit = self.unit;
+        let m = self.units[unit].m.clone();
+        let span = m.program[id].span;
+        let start = self.here()?;
+        let code = &self.units[unit];
+        let before = (code.notes.len(), code.ranges.len(), code.sites.len(), code.statements.len());
+        let inner = code.inner.len();
+        let origins = code.origins.len();
+        let sure = (self.progress[unit].variables.clone(), self.progress[unit].arrays.clone());
+        let counts = (self.progress[unit].compiled, self.progress[unit].left);
+        let outcome = self.range(start, span, span, None, |this| {
+            let number = this.units[unit].statements.len();
+            this.units[unit].statements.push(id);
+            this.emit(ScalarOp::Step(number as u16))?;
+            this.compound(id)
+        });
+        let done = &mut self.progress[unit];
+        let taken = std::mem::take(&mut done.taken);
+        done.free.extend(taken);
+        match outcome {
+            Err(Unfit::Statement) => {
+                let code = &mut self.units[unit];
+                code.code.truncate(start as usize);
+                code.notes.truncate(before.0);
+                code.ranges.truncate(before.1);
+                code.sites.truncate(before.2);
+                code.statements.truncate(before.3);
+                code.origins.truncate(origins);
+                code.inner.truncate(inner);
+                let done = &mut self.progress[unit];
+                // Names that were met for the first time are known to be what they are.
+                sure.0.iter().enumerate().for_each(|(k, sure)| done.variables[k] = *sure);
+                sure.1.iter().enumerate().for_each(|(k, sure)| done.arrays[k] = *sure);
+                (done.compiled, done.left) = counts;
+                done.left += 1;
+                self.hide_declared(&[id])?;
+                self.range(start, span, span, None, |this| {
+                    let site = this.site(id, None, span)?;
+                    this.emit(ScalarOp::Interpret { site }).map(drop)
+                })
+            }
+            other => other,
+        }
+    }
+
+    /// A place where the interpreter takes over, or a routine is called.
+    pub fn site(&mut self, stmt: StmtId, expr: Option<ExprId>, span: Span) -> Result<u16, Unfit> {
+        let loops = self.progress[self.unit].loops.iter().map(|l| l.active).collect();
+        let sites = &mut self.units[self.unit].sites;
+        let at = u16::try_from(sites.len()).map_err(|_| Unfit::Unit)?;
+        sites.push(CodeSite {
+            stmt,
+            expr: expr.unwrap_or(ExprId(0)),
+            span,
+            loops,
+            unit: 0,
+            args: Box::default(),
+            valued: false,
+        });
+        Ok(at)
+    }
+
+    /// The code of a statement without its step.
+    fn compound(&mut self, id: StmtId) -> Result<(), Unfit> {
+        let m = self.units[self.unit].m.clone();
+        let stmt = m.program[id];
+        let simple = |this: &mut Self| this.progress[this.unit].compiled += 1;
+        match stmt.kind {
+            StmtKind::Block(list) => self.list(&ids(&m, list)),
+            StmtKind::Declare { global, ty, items } => {
+                simple(self);
+                if global && !(self.entry == 0 && self.unit == 0) {
+                    return Err(Unfit::Statement);
+                }
+                for (number, item) in m.program[items].iter().enumerate() {
+                    self.declarator(ty, item, (id, number as u32))?;
+                }
+                Ok(())
+            }
+            StmtKind::Assign { target, op, value } => {
+                simple(self);
+                self.assign(id, target, op, value)
+            }
+            StmtKind::Call(expr) => {
+                simple(self);
+                match m.program[expr].kind {
+                    ExprKind::Call { callee, args } => {
+                        self.routine_call(id, expr, callee, args, None).map(drop)
+                    }
+                    _ => Err(Unfit::Statement),
+                }
+            }
+            StmtKind::If { condition, then, otherwise } => {
+                let unless = self.condition(id, condition)?;
+                let before = self.sure();
+                self.statement(then)?;
+                let after = self.sure();
+                self.restore(&before);
+                match otherwise {
+                    Some(otherwise) => {
+                        let end = self.emit(ScalarOp::Jump { to: 0 })?;
+                        self.land_all(&unless)?;
+                        self.statement(otherwise)?;
+                        self.land(end)?;
+                    }
+                    None => self.land_all(&unless)?,
+                }
+                self.meet(&after);
+                Ok(())
+            }
+            StmtKind::While { condition, body } => {
+                let at = self.label_registers();
+                self.forget(&[body])?;
+                let top = self.here()?;
+                let exits = self.condition(id, condition)?;
+                self.emit(ScalarOp::Turn { at, label: NO_LABEL })?;
+                self.looped(at, false, body, None, |this| {
+                    this.emit(ScalarOp::Jump { to: top }).map(drop)
+                })?;
+                self.land_all(&exits)?;
+                self.breaks_here()
+            }
+            StmtKind::ForRange { variable, from, to, step, body } => {
+                self.for_range(id, variable, [Some(from), Some(to), step], body)
+            }
+            StmtKind::For { start, condition, step, body } => {
+                let mut label = None;
+                if let Some(start) = start {
+                    if let StmtKind::Assign { target, .. } = m.program[start].kind {
+                        label = m.program.as_name(target);
+                    }
+                    self.statement(start)?;
+                }
+                let all: Vec<StmtId> = [Some(body), step].into_iter().flatten().collect();
+                self.forget(&all)?;
+                let mut sure = true;
+                let mut variable = 0;
+                let label = match label.map(|symbol| self.meaning(symbol)) {
+                    None => NO_LABEL,
+                    // Numbers alone make labels.
+                    Some(Ok(Meaning::Own(what @ Poisonable::Variable(k)))) => {
+                        (sure, variable) = (self.known(what).live, k);
+                        let variable = &self.units[self.unit].variables[k as usize];
+                        if matches!(variable.captured, Some(Captured::Param(_))) {
+                            return Err(Unfit::Statement);
+                        }
+                        variable.register
+                    }
+                    Some(_) => return Err(Unfit::Statement),
+                };
+                let at = self.label_registers();
+                let top = self.here()?;
+                let exits = match condition {
+                    Some(condition) => self.condition(id, condition)?,
+                    None => Vec::new(),
+                };
+                if !sure {
+                    self.emit(ScalarOp::Label { at, variable })?;
+                }
+                let copied = if sure { label } else { NO_LABEL };
+                self.emit(ScalarOp::Turn { at, label: copied })?;
+                self.looped(at, label != NO_LABEL, body, step, |this| {
+                    this.emit(ScalarOp::Jump { to: top }).map(drop)
+                })?;
+                self.land_all(&exits)?;
+                self.breaks_here()
+            }
+            StmtKind::Break | StmtKind::Continue => {
+                if self.progress[self.unit].loops.is_empty() {
+                    // It ends the routine.
+                    return match self.unit == self.entry {
+                        true => Err(Unfit::Statement),
+                        false => self.emit(ScalarOp::Leave).map(drop),
+                    };
+                }
+                let jump = self.emit(ScalarOp::Jump { to: 0 })?;
+                let last = self.progress[self.unit].loops.last_mut().expect("there is a loop");
+                match stmt.kind {
+                    StmtKind::Break => last.breaks.push(jump),
+                    _ => last.continues.push(jump),
+                }
+                Ok(())
+            }
+            StmtKind::Return(value) => {
+                simple(self);
+                match value {
+                    Some(value) => {
+                        let a = self.value(id, value, None)?;
+                        self.emit(ScalarOp::Return { a }).map(drop)
+                    }
+                    None => self.emit(ScalarOp::Leave).map(drop),
+                }
+            }
+            StmtKind::Routine(_) => Ok(()),
+            StmtKind::Load(_) => Err(Unfit::Unit),
+            StmtKind::Object { .. }
+            | StmtKind::Param { .. }
+            | StmtKind::Foreach { .. }
+            | StmtKind::Print(_)
+            | StmtKind::Assert { .. }
+            | StmtKind::Error => Err(Unfit::Statement),
+        }
+    }
+
+    fn label_registers(&mut self) -> u16 {
+        let at = self.register(self.unit);
+        self.register(self.unit);
+        at
+    }
+
+    /// The body of a loop and what follows each turn; the loop stays open for the jumps out of it.
+    fn looped(
+        &mut self,
+        at: u16,
+        labelled: bool,
+        body: StmtId,
+        step: Option<StmtId>,
+        next: impl FnOnce(&mut Self) -> Result<(), Unfit>,
+    ) -> Result<(), Unfit> {
+        let before = self.sure();
+        let active = ActiveLoop { at, labelled };
+        let inner = LoopProgress { active, breaks: Vec::new(), continues: Vec::new() };
+        self.progress[self.unit].loops.push(inner);
+        let open = self.progress[self.unit].loops.len();
+        let outcome = self.statement(body);
+        let mut inner = match self.progress[self.unit].loops.len() == open {
+            true => self.progress[self.unit].loops.pop().expect("it was opened here"),
+            false => return Err(Unfit::Unit),
+        };
+        outcome?;
+        for jump in std::mem::take(&mut inner.continues) {
+            self.land(jump)?;
+        }
+        self.restore(&before);
+        if let Some(step) = step {
+            self.statement(step)?;
+        }
+        next(self)?;
+        self.restore(&before);
+        let done = LoopProgress { breaks: inner.breaks, ..inner };
+        self.closed.push(done.breaks);
+        Ok(())
+    }
+
+    fn breaks_here(&mut self) -> Result<(), Unfit> {
+        let breaks = self.closed.pop().unwrap_or_default();
+        self.land_all(&breaks)
+    }
+
+    fn land_all(&mut self, jumps: &[usize]) -> Result<(), Unfit> {
+        jumps.iter().try_for_each(|&jump| self.land(jump))
+    }
+
+    /// What a loop's statements declare is not sure at the head of the loop.
+    fn forget(&mut self, list: &[StmtId]) -> Result<(), Unfit> {
+        let m = self.units[self.unit].m.clone();
+        let mut all = Vec::new();
+        super::names::declared(&m, list, &mut |name, _, _| all.push(name));
+        for name in all {
+            if let Some(&what) = self.names[self.unit].get(&name) {
+                let Sure { bound, .. } = self.known(what);
+                self.set_known(what, bound, false);
+            }
+        }
+        Ok(())
+    }
+
+    fn sure(&self) -> (Vec<Sure>, Vec<Sure>) {
+        let progress = &self.progress[self.unit];
+        (progress.variables.clone(), progress.arrays.clone())
+    }
+
+    /// Back to what was sure; what was met since keeps what is known of it.
+    fn restore(&mut self, (variables, arrays): &(Vec<Sure>, Vec<Sure>)) {
+        let (n, k) = (self.units[self.unit].variables.len(), self.units[self.unit].arrays.len());
+        let captured: Vec<bool> = (0..n)
+            .map(|v| {
+                let variable = &self.units[self.unit].variables[v];
+                variable.captured.is_some() && !variable.declared
+            })
+            .collect();
+        let held: Vec<bool> = (0..k)
+            .map(|a| {
+                let array = &self.units[self.unit].arrays[a];
+                array.captured && !array.declared
+            })
+            .collect();
+        let progress = &mut self.progress[self.unit];
+        for (v, sure) in variables.iter().enumerate() {
+            if !captured.get(v).copied().unwrap_or(false) {
+                progress.variables[v] = *sure;
+            }
+        }
+        for (a, sure) in arrays.iter().enumerate() {
+            if !held.get(a).copied().unwrap_or(false) {
+                progress.arrays[a] = *sure;
+            }
+        }
+    }
+
+    /// What is sure on both ways.
+    fn meet(&mut self, (variables, arrays): &(Vec<Sure>, Vec<Sure>)) {
+        let both = |a: &mut Sure, b: &Sure| {
+            a.bound &= b.bound;
+            a.live &= b.live;
+        };
+        let progress = &mut self.progress[self.unit];
+        progress.variables.iter_mut().zip(variables).for_each(|(a, b)| both(a, b));
+        progress.arrays.iter_mut().zip(arrays).for_each(|(a, b)| both(a, b));
+    }
+
+    fn for_range(
+        &mut self,
+        id: StmtId,
+        variable: Ident,
+        bounds: [Option<ExprId>; 3],
+        body: StmtId,
+    ) -> Result<(), Unfit> {
+        let unit = self.unit;
+        let m = self.units[unit].m.clone();
+        let at = self.register(unit);
+        for _ in 0..5 {
+            self.register(unit);
+        }
+        for (k, bound) in bounds.into_iter().enumerate() {
+            let to = at + k as u16;
+            match bound {
+                Some(bound) => drop(self.value(id, bound, Some(to))?),
+                None => {
+                    let a = self.constant(T::one());
+                    self.emit(ScalarOp::Copy { to, a })?;
+                }
+            }
+        }
+        self.emit(ScalarOp::ForBegin { at })?;
+        let name = m.names[variable.symbol.0 as usize];
+        let Some(&what) = self.names[unit].get(&name).filter(|_| !self.is_hidden(unit, name))
+        else {
+            return Err(Unfit::Statement);
+        };
+        let Poisonable::Variable(number) = what else { return Err(Unfit::Statement) };
+        self.forget(&[body])?;
+        let before = self.sure();
+        let origin = self.origin(variable.span, Type::Float)?;
+        let register = self.units[unit].variables[number as usize].register;
+        let op = ScalarOp::ForTest { at, variable: number, register, origin, exit: 0 };
+        let test = self.emit(op)?;
+        self.set_known(what, true, true);
+        // Its number stands behind the four of the loop.
+        self.looped(at + 4, true, body, None, |this| {
+            this.emit(ScalarOp::ForNext { at, test: test as u16 }).map(drop)
+        })?;
+        self.restore(&before);
+        self.land(test)?;
+        self.breaks_here()
+    }
+
+    pub fn origin(&mut self, span: Span, ty: Type) -> Result<u16, Unfit> {
+        let origins = &mut self.units[self.unit].origins;
+        origins.push((span, ty));
+        u16::try_from(origins.len() - 1).map_err(|_| Unfit::Unit)
+    }
+
+    /// Jumps to patch, taken when the condition does not hold.
+    fn condition(&mut self, stmt: StmtId, condition: ExprId) -> Result<Vec<usize>, Unfit> {
+        let unit = self.unit;
+        let start = self.here()?;
+        let (notes, inner) = (self.units[unit].notes.len(), self.units[unit].inner.len());
+        let sites = self.units[unit].sites.len();
+        let mut unless = Vec::new();
+        match self.unless(stmt, condition, &mut unless) {
+            Ok(()) => Ok(unless),
+            Err(Unfit::Statement) => {
+                let m = self.units[unit].m.clone();
+                self.units[unit].code.truncate(start as usize);
+                self.units[unit].notes.truncate(notes);
+                self.units[unit].inner.truncate(inner);
+                self.units[unit].sites.truncate(sites);
+                self.progress[unit].left += 1;
+                let span = m.program[condition].span;
+                let site = self.site(stmt, Some(condition), span)?;
+                let to = self.scratch();
+                self.emit(ScalarOp::Condition { to, site })?;
+                Ok(vec![self.emit(ScalarOp::JumpUnless { a: to, to: 0 })?])
+            }
+            Err(other) => Err(other),
+        }
+    }
+
+    /// Code that goes on when the expression holds, else jumps.
+    pub fn unless(
+        &mut self,
+        stmt: StmtId,
+        id: ExprId,
+        jumps: &mut Vec<usize>,
+    ) -> Result<(), Unfit> {
+        let m = self.units[self.unit].m.clone();
+        match m.program[id].kind {
+            ExprKind::Paren(inner) => self.unless(stmt, inner, jumps),
+            ExprKind::Binary { op: BinaryOp::And, left, right } => {
+                self.unless(stmt, left, jumps)?;
+                self.unless(stmt, right, jumps)
+            }
+            ExprKind::Binary { op: BinaryOp::Or, left, right } => {
+                let mut first = Vec::new();
+                self.unless(stmt, left, &mut first)?;
+                let holds = self.emit(ScalarOp::Jump { to: 0 })?;
+                self.land_all(&first)?;
+                self.unless(stmt, right, jumps)?;
+                self.land(holds)
+            }
+            ExprKind::Unary { op: UnaryOp::Not, operand } => {
+                let mut holds_not = Vec::new();
+                self.unless(stmt, operand, &mut holds_not)?;
+                jumps.push(self.emit(ScalarOp::Jump { to: 0 })?);
+                self.land_all(&holds_not)
+            }
+            ExprKind::Binary { op, left, right } if relation(op).is_some() => {
+                let relation = relation(op).expect("asked before");
+                let (a, b) = self.both(stmt, left, right)?;
+                jumps.push(self.emit(ScalarOp::JumpIfNot { relation, a, b, to: 0 })?);
+                Ok(())
+            }
+            _ => {
+                let a = self.value(stmt, id, None)?;
+                jumps.push(self.emit(ScalarOp::JumpUnless { a, to: 0 })?);
+                Ok(())
+            }
+        }
+    }
+
+    pub fn calls_in_subscripts(&self, subs: NodeList<Subscript>) -> bool {
+        let m = &self.units[self.unit].m;
+        m.program[subs].iter().any(|sub| match sub {
+            Subscript::At(at) => self.calls(*at),
+            _ => true,
+        })
+    }
+}
+
+/// The comparison that an operator is.
+pub(super) fn relation(op: BinaryOp) -> Option<Relation> {
+    Some(match op {
+        BinaryOp::Lt => Relation::Lt,
+        BinaryOp::Gt => Relation::Gt,
+        BinaryOp::Le => Relation::Le,
+        BinaryOp::Ge => Relation::Ge,
+        BinaryOp::Eq => Relation::Eq,
+        BinaryOp::Ne => Relation::Ne,
+        _ => return None,
+    })
+}

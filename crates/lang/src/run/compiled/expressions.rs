@@ -1,0 +1,497 @@
+//! Expressions of numbers to code.
+
+use super::code::{CodeArgument, CodeNote, NO_LABEL, Poisonable, ScalarOp};
+use super::compile::{RegionCompiler, Unfit, relation};
+use super::names::Meaning;
+use crate::functions::builtins::BUILTINS;
+use crate::functions::elementary::{self, Elementary};
+use crate::value::ops;
+use moldloft_diag::Span;
+use moldloft_num::Real;
+use moldloft_registry::{Implementation, Scalar};
+use moldloft_syntax::sdl::{
+    Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, NodeList, Step, StmtId, Subscript,
+    Symbol, Type, UnaryOp,
+};
+
+/// A function of numbers that combines two, for `min`, `max` and `sum` of several arguments.
+fn combining<T: Real>(name: &str) -> Option<(&'static str, Elementary<T>)> {
+    Some(match name {
+        "min" => ("min", Elementary::Binary(T::min)),
+        "max" => ("max", Elementary::Binary(T::max)),
+        "sum" => ("sum", Elementary::Binary(|a, b| a + b)),
+        _ => return None,
+    })
+}
+
+impl<T: Scalar> RegionCompiler<'_, T> {
+    /// The register of the value; `want`, if that is given. What was in `want` stays there until the last moment.
+    pub fn value(&mut self, stmt: StmtId, id: ExprId, want: Option<u16>) -> Result<u16, Unfit> {
+        let m = self.units[self.unit].m.clone();
+        let expr = m.program[id];
+        let at = match expr.kind {
+            ExprKind::Number(literal) => self.constant(T::from(m.program[literal].value)),
+            ExprKind::Name(symbol) => self.name(symbol, expr.span)?,
+            ExprKind::Paren(inner) => return self.value(stmt, inner, want),
+            ExprKind::Magnitude(inner) => {
+                let a = self.value(stmt, inner, None)?;
+                let to = self.result(want);
+                self.emit(ScalarOp::Magnitude { to, a })?;
+                to
+            }
+            ExprKind::Unary { op, operand } => {
+                let a = self.value(stmt, operand, None)?;
+                let to = self.result(want);
+                match op {
+                    UnaryOp::Plus => a,
+                    UnaryOp::Minus => {
+                        self.emit(ScalarOp::Negate { to, a })?;
+                        to
+                    }
+                    UnaryOp::Not => {
+                        self.emit(ScalarOp::Not { to, a })?;
+                        to
+                    }
+                }
+            }
+            ExprKind::Binary { op: BinaryOp::And | BinaryOp::Or, .. } => {
+                let mut unless = Vec::new();
+                self.unless(stmt, id, &mut unless)?;
+                let to = self.scratch();
+                let [zero, one] = [T::zero(), T::one()].map(|x| self.constant(x));
+                self.emit(ScalarOp::Copy { to, a: one })?;
+                let end = self.emit(ScalarOp::Jump { to: 0 })?;
+                for jump in unless {
+                    self.land(jump)?;
+                }
+                self.emit(ScalarOp::Copy { to, a: zero })?;
+                self.land(end)?;
+                to
+            }
+            ExprKind::Binary { op, left, right } => {
+                let (a, b) = self.both(stmt, left, right)?;
+                let to = self.result(want);
+                match relation(op) {
+                    Some(relation) => {
+                        self.emit(ScalarOp::Compare { relation, to, a, b })?;
+                    }
+                    None => {
+                        let spans = [left, right].map(|e| m.program[e].span);
+                        let span = spans[0].to(spans[1]);
+                        match (op, self.whole_exponent(right)) {
+                            (BinaryOp::Caret, Some(k)) => {
+                                let note = CodeNote::Finite("^", span);
+                                let op = match k {
+                                    2 => ScalarOp::Square { to, a },
+                                    _ => ScalarOp::PowerWhole { to, a, k },
+                                };
+                                self.noted(op, note)?;
+                            }
+                            _ => self.arithmetic(op, to, a, b, span)?,
+                        }
+                    }
+                }
+                to
+            }
+            ExprKind::Chain(items) => self.chain(stmt, items)?,
+            ExprKind::Index { base, subs } => self.element(stmt, id, base, subs)?,
+            ExprKind::Member { base, name, .. } => {
+                let k = match m.program.name(name) {
+                    "d1" => 0,
+                    "d2" => 1,
+                    _ => return Err(Unfit::Statement),
+                };
+                let array = self.array(base)?;
+                let to = self.scratch();
+                self.noted(ScalarOp::Extent { to, array, k }, CodeNote::Expression(id))?;
+                to
+            }
+            ExprKind::Call { callee, args } => self.call(stmt, id, callee, args)?,
+            ExprKind::Text(_) | ExprKind::List(_) | ExprKind::Error => {
+                return Err(Unfit::Statement);
+            }
+        };
+        match want {
+            Some(to) if to != at => {
+                self.emit(ScalarOp::Copy { to, a: at })?;
+                Ok(to)
+            }
+            _ => Ok(at),
+        }
+    }
+
+    fn result(&mut self, want: Option<u16>) -> u16 {
+        want.unwrap_or_else(|| self.scratch())
+    }
+
+    /// An exponent that is a small whole number of the text.
+    fn whole_exponent(&self, id: ExprId) -> Option<i16> {
+        let m = &self.units[self.unit].m;
+        let literal = m.program.as_literal(id)?;
+        ops::whole_power(m.program[literal].value).map(|k| k as i16)
+    }
+
+    /// Two operands, the left one as it is before the right one is computed.
+    pub fn both(&mut self, stmt: StmtId, left: ExprId, right: ExprId) -> Result<(u16, u16), Unfit> {
+        let a = self.value(stmt, left, None)?;
+        let a = self.kept(a, self.calls(right))?;
+        Ok((a, self.value(stmt, right, None)?))
+    }
+
+    /// The register, or a copy when a call may change the variable that it is.
+    pub fn kept(&mut self, a: u16, copied: bool) -> Result<u16, Unfit> {
+        let variable = self.units[self.unit].variables.iter().any(|v| v.register == a);
+        if !copied || !variable {
+            return Ok(a);
+        }
+        let to = self.scratch();
+        self.emit(ScalarOp::Copy { to, a })?;
+        Ok(to)
+    }
+
+    /// True when an expression calls a routine of the program.
+    pub fn calls(&self, id: ExprId) -> bool {
+        let m = &self.units[self.unit].m;
+        let mut stack = vec![id];
+        while let Some(id) = stack.pop() {
+            match m.program[id].kind {
+                ExprKind::Paren(e) | ExprKind::Magnitude(e) => stack.push(e),
+                ExprKind::List(items) => stack.extend(&m.program[items]),
+                ExprKind::Unary { operand, .. } => stack.push(operand),
+                ExprKind::Binary { left, right, .. } => stack.extend([left, right]),
+                ExprKind::Member { base, .. } => stack.push(base),
+                ExprKind::Chain(items) => stack.extend(operands(&m.program[items])),
+                ExprKind::Index { base, subs } => {
+                    stack.push(base);
+                    for sub in &m.program[subs] {
+                        match *sub {
+                            Subscript::Whole => {}
+                            Subscript::At(at) => stack.push(at),
+                            Subscript::Range { from, to, step } => {
+                                stack.extend([from, to, step].into_iter().flatten());
+                            }
+                        }
+                    }
+                }
+                ExprKind::Call { callee, args } => {
+                    let Some(symbol) = m.program.as_name(callee) else { return true };
+                    if self.scope.routines.contains_key(&m.names[symbol.0 as usize]) {
+                        return true;
+                    }
+                    stack.extend(m.program[args].iter().map(|arg| arg.value));
+                }
+                ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Text(_) | ExprKind::Error => {}
+            }
+        }
+        false
+    }
+
+    /// The code of `a op b`, an operator that gives a number.
+    pub fn arithmetic(
+        &mut self,
+        op: BinaryOp,
+        to: u16,
+        a: u16,
+        b: u16,
+        span: Span,
+    ) -> Result<(), Unfit> {
+        let code = match op {
+            BinaryOp::Add => ScalarOp::Add { to, a, b },
+            BinaryOp::Sub => ScalarOp::Sub { to, a, b },
+            BinaryOp::Mul => ScalarOp::Mul { to, a, b },
+            BinaryOp::Div => ScalarOp::Div { to, a, b },
+            BinaryOp::Caret => ScalarOp::Power { to, a, b },
+            _ => return Err(Unfit::Statement),
+        };
+        self.noted(code, CodeNote::Finite(op.spelling(), span)).map(drop)
+    }
+
+    fn chain(&mut self, stmt: StmtId, items: NodeList<ChainItem>) -> Result<u16, Unfit> {
+        let m = self.units[self.unit].m.clone();
+        let all: Vec<ExprId> = operands(&m.program[items]).collect();
+        let mut values = Vec::with_capacity(all.len());
+        for (k, &operand) in all.iter().enumerate() {
+            let a = self.value(stmt, operand, None)?;
+            let later = all[k + 1..].iter().any(|&next| self.calls(next));
+            values.push(self.kept(a, later)?);
+        }
+        let mut next = values.into_iter();
+        let mut stack: Vec<(u16, Span)> = Vec::new();
+        for step in m.program.grouped(items, Grouping::Numbers) {
+            let entry = match step {
+                Step::Push(expr) => (next.next().ok_or(Unfit::Statement)?, m.program[expr].span),
+                Step::Unary(op, span) => {
+                    let (a, inner) = stack.pop().ok_or(Unfit::Statement)?;
+                    let to = self.scratch();
+                    match op {
+                        UnaryOp::Plus => self.emit(ScalarOp::Copy { to, a })?,
+                        UnaryOp::Minus => self.emit(ScalarOp::Negate { to, a })?,
+                        UnaryOp::Not => self.emit(ScalarOp::Not { to, a })?,
+                    };
+                    (to, span.to(inner))
+                }
+                Step::Binary(op, _) => {
+                    let (b, of_right) = stack.pop().ok_or(Unfit::Statement)?;
+                    let (a, of_left) = stack.pop().ok_or(Unfit::Statement)?;
+                    let (to, span) = (self.scratch(), of_left.to(of_right));
+                    self.arithmetic(op, to, a, b, span)?;
+                    (to, span)
+                }
+            };
+            stack.push(entry);
+        }
+        stack.pop().map(|(at, _)| at).ok_or(Unfit::Statement)
+    }
+
+    /// True when a variable has a value wherever this place of the code is reached.
+    pub fn is_live(&self, what: Meaning) -> bool {
+        match what {
+            Meaning::Own(what) => self.known(what).live,
+            Meaning::OfFile(Poisonable::Variable(k)) => {
+                let variable = &self.units[0].variables[k as usize];
+                variable.captured.is_some() && !variable.declared
+            }
+            Meaning::OfFile(Poisonable::Array(k)) => {
+                let array = &self.units[0].arrays[k as usize];
+                array.captured && !array.declared
+            }
+            Meaning::Constant(_) => true,
+        }
+    }
+
+    /// The look at a variable before it is used, where that is needed.
+    pub fn live(&mut self, what: Meaning, note: CodeNote) -> Result<(), Unfit> {
+        if self.is_live(what) {
+            return Ok(());
+        }
+        let op = match what {
+            Meaning::Own(Poisonable::Variable(variable)) => ScalarOp::Live { variable },
+            Meaning::OfFile(Poisonable::Variable(variable)) => ScalarOp::LiveFile { variable },
+            Meaning::Own(Poisonable::Array(array)) => ScalarOp::LiveArray { array },
+            Meaning::OfFile(Poisonable::Array(array)) => {
+                ScalarOp::LiveArray { array: array | super::code::OF_FILE }
+            }
+            Meaning::Constant(_) => return Ok(()),
+        };
+        self.noted(op, note).map(drop)
+    }
+
+    /// The register of what a name means.
+    pub fn name(&mut self, symbol: Symbol, span: Span) -> Result<u16, Unfit> {
+        let what = self.meaning(symbol)?;
+        self.live(what, CodeNote::Name(symbol, span))?;
+        Ok(match what {
+            Meaning::Constant(x) => self.constant(T::from(x)),
+            Meaning::Own(Poisonable::Variable(k)) => {
+                self.units[self.unit].variables[k as usize].register
+            }
+            Meaning::OfFile(Poisonable::Variable(k)) => {
+                let of_file = self.units[0].variables[k as usize].register;
+                let to = self.scratch();
+                self.emit(ScalarOp::LoadFile { to, of_file })?;
+                to
+            }
+            Meaning::Own(Poisonable::Array(_)) | Meaning::OfFile(Poisonable::Array(_)) => {
+                return Err(Unfit::Statement);
+            }
+        })
+    }
+
+    /// The number of an array that an expression names.
+    fn array(&mut self, id: ExprId) -> Result<u16, Unfit> {
+        let m = self.units[self.unit].m.clone();
+        let ExprKind::Name(symbol) = m.program[id].kind else { return Err(Unfit::Statement) };
+        let what = self.meaning(symbol)?;
+        let array = match what {
+            Meaning::Own(Poisonable::Array(k)) => k,
+            Meaning::OfFile(Poisonable::Array(k)) => k | super::code::OF_FILE,
+            _ => return Err(Unfit::Statement),
+        };
+        self.live(what, CodeNote::Name(symbol, m.program[id].span))?;
+        Ok(array)
+    }
+
+    /// An array and the registers of its subscripts.
+    pub fn places(
+        &mut self,
+        stmt: StmtId,
+        base: ExprId,
+        subs: NodeList<Subscript>,
+        note: CodeNote,
+    ) -> Result<(u16, Vec<u16>), Unfit> {
+        let m = self.units[self.unit].m.clone();
+        let array = self.array(base)?;
+        let start = self.here()?;
+        let mut places = Vec::new();
+        for sub in &m.program[subs] {
+            let Subscript::At(at) = *sub else { return Err(Unfit::Statement) };
+            places.push(self.value(stmt, at, None)?);
+        }
+        let end = self.here()?;
+        self.units[self.unit].inner.push((start, end, note));
+        Ok((array, places))
+    }
+
+    /// The element that an expression names.
+    pub fn element(
+        &mut self,
+        stmt: StmtId,
+        id: ExprId,
+        base: ExprId,
+        subs: NodeList<Subscript>,
+    ) -> Result<u16, Unfit> {
+        // A fault is looked for by evaluating it once more.
+        if self.calls_in_subscripts(subs) {
+            return Err(Unfit::Statement);
+        }
+        let note = CodeNote::Expression(id);
+        let (array, places) = self.places(stmt, base, subs, note)?;
+        let to = self.scratch();
+        let op = match places[..] {
+            [i] => ScalarOp::Load { to, array, i },
+            [i, j] => ScalarOp::Load2 { to, array, i, j },
+            _ => return Err(Unfit::Statement),
+        };
+        self.noted(op, note)?;
+        Ok(to)
+    }
+
+    fn function(&mut self, name: &'static str, f: Elementary<T>) -> Result<u16, Unfit> {
+        let at = match self.functions.iter().position(|(known, _)| *known == name) {
+            Some(at) => at,
+            None => {
+                self.functions.push((name, f));
+                self.functions.len() - 1
+            }
+        };
+        u16::try_from(at).map_err(|_| Unfit::Unit)
+    }
+
+    fn call(
+        &mut self,
+        stmt: StmtId,
+        id: ExprId,
+        callee: ExprId,
+        args: NodeList<Arg>,
+    ) -> Result<u16, Unfit> {
+        let m = self.units[self.unit].m.clone();
+        let symbol = m.program.as_name(callee).ok_or(Unfit::Statement)?;
+        let name = m.names[symbol.0 as usize];
+        if self.scope.routines.contains_key(&name) {
+            let to = self.scratch();
+            return self.routine_call(stmt, id, callee, args, Some(to)).map(|_| to);
+        }
+        if !self.is_free(symbol) || m.program[args].iter().any(|arg| arg.name.is_some()) {
+            return Err(Unfit::Statement);
+        }
+        let given: Vec<ExprId> = m.program[args].iter().map(|arg| arg.value).collect();
+        let row = m.rows[symbol.0 as usize].as_ref().ok_or(Unfit::Statement)?;
+        if !matches!(row.body, Implementation::Native { .. })
+            || BUILTINS.iter().any(|b| b.name == m.program.name(symbol))
+        {
+            return Err(Unfit::Statement);
+        }
+        let span = m.program[id].span;
+        let mut values = Vec::with_capacity(given.len());
+        let known = elementary::elementary::<T>(&row.name);
+        let several = combining::<T>(&row.name).filter(|_| (2..=4).contains(&given.len()));
+        if known.is_none() && several.is_none() {
+            return Err(Unfit::Statement);
+        }
+        for (k, &arg) in given.iter().enumerate() {
+            let a = self.value(stmt, arg, None)?;
+            let later = given[k + 1..].iter().any(|&next| self.calls(next));
+            values.push(self.kept(a, later)?);
+        }
+        let to = self.scratch();
+        match (known, &values[..]) {
+            (Some((name, f @ Elementary::Unary(_))), &[a]) => {
+                let f = self.function(name, f)?;
+                self.noted(ScalarOp::Apply { to, a, f }, CodeNote::Finite(name, span))?;
+            }
+            (Some((name, f @ Elementary::Binary(_))), &[a, b]) => {
+                let f = self.function(name, f)?;
+                self.noted(ScalarOp::Apply2 { to, a, b, f }, CodeNote::Finite(name, span))?;
+            }
+            (None, &[first, ref rest @ ..]) => {
+                let (name, f) = several.ok_or(Unfit::Statement)?;
+                let f = self.function(name, f)?;
+                let mut a = first;
+                for &b in rest {
+                    self.emit(ScalarOp::Combine { to, a, b, f })?;
+                    a = to;
+                }
+                self.noted(ScalarOp::Finite { a: to }, CodeNote::Finite(name, span))?;
+            }
+            _ => return Err(Unfit::Statement),
+        }
+        Ok(to)
+    }
+
+    /// The call of a routine of the program; its value is put into `to`, where one is wanted.
+    pub fn routine_call(
+        &mut self,
+        stmt: StmtId,
+        id: ExprId,
+        callee: ExprId,
+        args: NodeList<Arg>,
+        to: Option<u16>,
+    ) -> Result<(), Unfit> {
+        let m = self.units[self.unit].m.clone();
+        let symbol = m.program.as_name(callee).ok_or(Unfit::Statement)?;
+        let name = m.names[symbol.0 as usize];
+        let at = *self.scope.routines.get(&name).ok_or(Unfit::Statement)?;
+        if !self.is_free(symbol) || m.program[args].iter().any(|arg| arg.name.is_some()) {
+            return Err(Unfit::Statement);
+        }
+        let unit = self.routine(at)?;
+        let of = self.units[unit].m.clone();
+        let routine = of.program[at.routine];
+        let formals = &of.program[routine.formals];
+        let given: Vec<ExprId> = m.program[args].iter().map(|arg| arg.value).collect();
+        if given.len() != formals.len() || (to.is_some() && routine.result.is_none()) {
+            return Err(Unfit::Statement);
+        }
+        let mut all = Vec::with_capacity(given.len());
+        for (k, (&arg, formal)) in given.iter().zip(formals).enumerate() {
+            all.push(match formal.ty.0 {
+                Type::Int | Type::Float => {
+                    let a = self.value(stmt, arg, None)?;
+                    let later = given[k + 1..].iter().any(|&next| self.calls(next));
+                    let mut from = self.kept(a, later)?;
+                    // A fault of the conversion comes before the next argument is computed.
+                    if formal.ty.0 == Type::Int {
+                        let to = self.scratch();
+                        let note = CodeNote::Argument(m.program[arg].span, formal.ty.1);
+                        self.noted(ScalarOp::Whole { to, a: from }, note)?;
+                        from = to;
+                    }
+                    CodeArgument::Number { from }
+                }
+                _ => {
+                    // An array that a later argument may change would have to be copied now.
+                    if given[k + 1..].iter().any(|&next| self.calls(next)) {
+                        return Err(Unfit::Statement);
+                    }
+                    let from = self.array(arg)?;
+                    self.noted(ScalarOp::HasValue { array: from }, CodeNote::Expression(arg))?;
+                    CodeArgument::Array { from }
+                }
+            });
+        }
+        let site = self.site(stmt, Some(id), m.program[id].span)?;
+        let here = &mut self.units[self.unit].sites[site as usize];
+        here.unit = unit;
+        here.args = all.into();
+        here.valued = to.is_some();
+        self.emit(ScalarOp::Call { to: to.unwrap_or(NO_LABEL), site }).map(drop)
+    }
+}
+
+/// The operands of a chain, in the order of the text.
+fn operands(items: &[ChainItem]) -> impl Iterator<Item = ExprId> + '_ {
+    items.iter().filter_map(|item| match item {
+        ChainItem::Operand(operand) => Some(*operand),
+        _ => None,
+    })
+}

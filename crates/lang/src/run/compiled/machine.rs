@@ -1,0 +1,746 @@
+//! The machine that executes code.
+
+use super::code::{
+    CodeArgument, CodeNote, CodeRegion, CodeUnit, NO_LABEL, OF_FILE, Poisonable, ScalarOp,
+};
+use super::registers::{
+    ArrayItems, ArrayRegister, RegisterMachine, UNDECLARED, WaitingCall, declaration, declared_by,
+    is_live,
+};
+use crate::array::lanes::not_finite;
+use crate::functions::elementary::Elementary;
+use crate::run::interpreter::{Flow, Interpreter, MOST_CALLS, MOST_HELD, silent};
+use crate::run::usage;
+use crate::value::initialised::Known;
+use crate::value::ops;
+use crate::value::variables::{self, MOST_INT};
+use moldloft_diag::Diagnostic;
+use moldloft_num::Real;
+use moldloft_registry::{ArrayShape, Scalar, Value};
+use moldloft_syntax::sdl::{StmtKind, Type};
+
+/// So many steps, and the machine looks whether it may go on.
+const STEPS_BETWEEN_LOOKS: u64 = 256;
+
+/// How code goes on after something that is not an operation on registers.
+enum CodeOutcome<T: Scalar> {
+    Next,
+    Return(Option<Value<T>>),
+    Stop,
+}
+
+/// Why the machine leaves the operations on registers.
+enum Departure<T> {
+    /// The next step may be one too many, or it is time to look for a request to stop.
+    Look,
+    Fault,
+    Call {
+        to: u16,
+        site: u16,
+    },
+    Return(T),
+    Leave,
+    End,
+    Interpret {
+        site: u16,
+    },
+    Condition {
+        to: u16,
+        site: u16,
+    },
+}
+
+/// The place that a subscript means, from 0; as the interpreter has it.
+#[inline(always)]
+fn place(x: f64, count: usize) -> Option<usize> {
+    let at = x as usize;
+    (at as f64 == x && at >= 1 && at <= count).then(|| at - 1)
+}
+
+/// True when an int does not hold it.
+#[inline(always)]
+fn is_no_int(x: f64) -> bool {
+    x.fract() != 0.0 || x.abs() >= MOST_INT
+}
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// Executes code from the first operation of its entry to the end.
+    pub(super) fn execute(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+    ) -> Flow<T> {
+        let most = self.limits.steps;
+        let mut look_at = self.usage.steps;
+        loop {
+            let (mut steps, mut turns) = (self.usage.steps, self.turns);
+            let departure = self.of_call(region, machine, &mut steps, &mut turns, look_at);
+            self.usage.steps = steps;
+            self.turns = turns;
+            let outcome = match departure {
+                Departure::Call { to, site } => match self.enter(region, machine, to, site) {
+                    true => continue,
+                    false => CodeOutcome::Stop,
+                },
+                Departure::Return(x) => match machine.returns_plainly(region, x) {
+                    Some(held) => {
+                        self.usage.held = held;
+                        continue;
+                    }
+                    None => self.returned_from(region, machine, Some(Value::Number(x))),
+                },
+                Departure::Look => match self.may_not_go_on(region, machine) {
+                    true => CodeOutcome::Stop,
+                    false => CodeOutcome::Next,
+                },
+                Departure::Fault => self.fault(region, machine),
+                Departure::Leave => self.returned_from(region, machine, None),
+                Departure::End => return Flow::Next,
+                Departure::Interpret { site } => self.interpret(region, machine, site),
+                Departure::Condition { to, site } => {
+                    self.interpreted_condition(region, machine, to, site)
+                }
+            };
+            look_at = most.saturating_add(1).min(self.usage.steps + 1 + STEPS_BETWEEN_LOOKS);
+            match outcome {
+                CodeOutcome::Next => {}
+                CodeOutcome::Return(value) => return Flow::Return(value),
+                CodeOutcome::Stop => return Flow::Stop,
+            }
+        }
+    }
+
+    /// Executes code until something else than registers is asked for. The machine stands at the operation that asks
+    /// then.
+    fn of_call(
+        &self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        steps: &mut u64,
+        turns: &mut u64,
+        look_at: u64,
+    ) -> Departure<T> {
+        let ieee = self.arrays.ieee;
+        let code = &region.units[machine.unit];
+        let ops = &code.code[..];
+        let executed = &mut machine.executed[machine.unit][..];
+        let (file, own) = machine.registers.split_at_mut(machine.first);
+        let own = &mut own[..code.template.len()];
+        let (marks_of_file, marks) = machine.marks.split_at_mut(machine.first_mark);
+        let (arrays_of_file, arrays) = machine.arrays.split_at_mut(machine.first_array);
+        let mut now = *steps;
+        let mut pc = machine.pc;
+        macro_rules! at {
+            ($r:expr) => {
+                own[$r as usize]
+            };
+        }
+        macro_rules! array {
+            ($a:expr) => {{
+                let a = $a;
+                match a & OF_FILE {
+                    0 => &mut arrays[a as usize],
+                    _ => &mut arrays_of_file[(a & !OF_FILE) as usize],
+                }
+            }};
+        }
+        macro_rules! leave {
+            ($why:expr) => {{
+                machine.pc = pc - 1;
+                *steps = now;
+                return $why;
+            }};
+        }
+        macro_rules! fault {
+            () => {
+                leave!(Departure::Fault)
+            };
+        }
+        macro_rules! finite {
+            ($to:expr, $x:expr) => {{
+                let x = $x;
+                if !x.is_finite() && !ieee {
+                    fault!();
+                }
+                at!($to) = x;
+            }};
+        }
+        // A step is counted when it is sure that the run may go on.
+        macro_rules! step {
+            () => {{
+                if now + 1 >= look_at {
+                    leave!(Departure::Look);
+                }
+                now += 1;
+            }};
+        }
+        macro_rules! for_test {
+            ($at:expr, $variable:expr, $register:expr, $origin:expr, $exit:expr) => {{
+                let at = $at;
+                let k = at!(at + 3).re();
+                // Not a number of turns is none.
+                if k <= at!(at + 1).re() {
+                    let x = at!(at) + at!(at + 2) * k;
+                    at!($register) = x;
+                    marks[$variable as usize] = declared_by($origin);
+                    step!();
+                    *turns += 1;
+                    at!(at + 4) = x;
+                    at!(at + 5) = T::from(*turns as f64);
+                } else {
+                    pc = $exit as usize;
+                }
+            }};
+        }
+        loop {
+            let op = ops[pc];
+            pc += 1;
+            match op {
+                ScalarOp::Step(statement) => {
+                    executed[statement as usize] = true;
+                    step!();
+                }
+                ScalarOp::Steps(statement) => {
+                    executed[statement as usize] = true;
+                    if now + 2 >= look_at {
+                        step!();
+                    } else {
+                        executed[statement as usize + 1] = true;
+                        now += 2;
+                        pc += 1;
+                    }
+                }
+                ScalarOp::Copy { to, a } => at!(to) = at!(a),
+                ScalarOp::Add { to, a, b } => finite!(to, at!(a) + at!(b)),
+                ScalarOp::Sub { to, a, b } => finite!(to, at!(a) - at!(b)),
+                ScalarOp::Mul { to, a, b } => finite!(to, at!(a) * at!(b)),
+                ScalarOp::Div { to, a, b } => finite!(to, at!(a) / at!(b)),
+                ScalarOp::Power { to, a, b } => finite!(to, ops::power(at!(a), at!(b))),
+                // As `powi` does it.
+                ScalarOp::Square { to, a } => finite!(to, T::one() * (at!(a) * at!(a))),
+                ScalarOp::PowerWhole { to, a, k } => finite!(to, at!(a).powi(i32::from(k))),
+                ScalarOp::Negate { to, a } => at!(to) = -at!(a),
+                ScalarOp::Magnitude { to, a } => at!(to) = at!(a).abs(),
+                ScalarOp::Not { to, a } => {
+                    at!(to) = T::from(f64::from(u8::from(at!(a).re() == 0.0)));
+                }
+                ScalarOp::Compare { relation, to, a, b } => {
+                    let holds = relation.holds(at!(a).re(), at!(b).re());
+                    at!(to) = T::from(f64::from(u8::from(holds)));
+                }
+                ScalarOp::Apply { to, a, f } => {
+                    let Elementary::Unary(f) = region.functions[f as usize].1 else { fault!() };
+                    finite!(to, f(at!(a)));
+                }
+                ScalarOp::Apply2 { to, a, b, f } => {
+                    let Elementary::Binary(f) = region.functions[f as usize].1 else { fault!() };
+                    finite!(to, f(at!(a), at!(b)));
+                }
+                ScalarOp::Combine { to, a, b, f } => {
+                    let Elementary::Binary(f) = region.functions[f as usize].1 else { fault!() };
+                    at!(to) = f(at!(a), at!(b));
+                }
+                ScalarOp::Finite { a } => {
+                    if !at!(a).is_finite() && !ieee {
+                        fault!();
+                    }
+                }
+                ScalarOp::Jump { to } => pc = to as usize,
+                ScalarOp::JumpUnless { a, to } => {
+                    if at!(a).re() == 0.0 {
+                        pc = to as usize;
+                    }
+                }
+                ScalarOp::JumpIfNot { relation, a, b, to } => {
+                    if !relation.holds(at!(a).re(), at!(b).re()) {
+                        pc = to as usize;
+                    }
+                }
+                ScalarOp::Load { to, array, i } => {
+                    let i = at!(i).re();
+                    let array = array!(array);
+                    let ArrayShape::Row(n) = array.shape else { fault!() };
+                    let Some(k) = place(i, n) else { fault!() };
+                    at!(to) = array.read()[k];
+                }
+                ScalarOp::Load2 { to, array, i, j } => {
+                    let (i, j) = (at!(i).re(), at!(j).re());
+                    let array = array!(array);
+                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
+                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
+                    at!(to) = array.read()[i * n + j];
+                }
+                ScalarOp::Store { array, i, a } => {
+                    let (i, x) = (at!(i).re(), at!(a));
+                    let array = array!(array);
+                    let ArrayShape::Row(n) = array.shape else { fault!() };
+                    let Some(k) = place(i, n) else { fault!() };
+                    array.write()[k] = x;
+                    array.known.give_at(k);
+                }
+                ScalarOp::Store2 { array, i, j, a } => {
+                    let (i, j, x) = (at!(i).re(), at!(j).re(), at!(a));
+                    let array = array!(array);
+                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
+                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
+                    array.write()[i * n + j] = x;
+                    array.known.give_at(i * n + j);
+                }
+                ScalarOp::Extent { to, array, k } => {
+                    let array = array!(array);
+                    let n = match (array.shape, k) {
+                        (ArrayShape::Row(n), 0) | (ArrayShape::Grid(n, _), 0) => n,
+                        (ArrayShape::Grid(_, n), 1) => n,
+                        _ => fault!(),
+                    };
+                    if n == 0 {
+                        fault!();
+                    }
+                    at!(to) = T::from(n as f64);
+                }
+                ScalarOp::Whole { to, a } => {
+                    let x = at!(a);
+                    if is_no_int(x.re()) {
+                        fault!();
+                    }
+                    at!(to) = x;
+                }
+                ScalarOp::Assign { variable, to, a } => {
+                    let x = at!(a);
+                    let mark = marks[variable as usize];
+                    if type_by(code, variable, mark) == Type::Int && is_no_int(x.re()) {
+                        fault!();
+                    }
+                    at!(to) = x;
+                }
+                ScalarOp::Live { variable } => {
+                    if !is_live(marks[variable as usize]) {
+                        fault!();
+                    }
+                }
+                ScalarOp::LiveArray { array } => {
+                    if !is_live(array!(array).mark) {
+                        fault!();
+                    }
+                }
+                ScalarOp::HasValue { array } => {
+                    if matches!(array!(array).items, ArrayItems::Nothing) {
+                        fault!();
+                    }
+                }
+                ScalarOp::Declare { variable, origin } => {
+                    marks[variable as usize] = declared_by(origin);
+                }
+                ScalarOp::DeclareArray { array, m, n, origin } => {
+                    let m = at!(m).re();
+                    let n = if n == NO_LABEL { None } else { Some(at!(n).re()) };
+                    let extents = (variables::extent(m).ok(), n.map(variables::extent));
+                    let shape = match extents {
+                        (Some(m), None) => ArrayShape::Row(m),
+                        (Some(m), Some(Ok(n))) => ArrayShape::Grid(m, n),
+                        _ => fault!(),
+                    };
+                    let count = m * n.unwrap_or(1.0);
+                    let held = machine.held.saturating_add(count as usize);
+                    if count > variables::MOST_ELEMENTS || held > MOST_HELD {
+                        fault!();
+                    }
+                    machine.held = held;
+                    *array!(array) = ArrayRegister {
+                        items: ArrayItems::Owned(vec![T::zero(); count as usize]),
+                        shape,
+                        known: Known::nothing(count as usize),
+                        mark: declared_by(origin),
+                    };
+                }
+                ScalarOp::LoadFile { to, of_file } => at!(to) = file[of_file as usize],
+                ScalarOp::StoreFile { of_file, a } => file[of_file as usize] = at!(a),
+                ScalarOp::WholeFile { of_file, a } => {
+                    let x = at!(a);
+                    if is_no_int(x.re()) {
+                        fault!();
+                    }
+                    file[of_file as usize] = x;
+                }
+                ScalarOp::AssignFile { variable, of_file, a } => {
+                    let x = at!(a);
+                    let mark = marks_of_file[variable as usize];
+                    if type_by(&region.units[0], variable, mark) == Type::Int && is_no_int(x.re()) {
+                        fault!();
+                    }
+                    file[of_file as usize] = x;
+                }
+                ScalarOp::LiveFile { variable } => {
+                    if !is_live(marks_of_file[variable as usize]) {
+                        fault!();
+                    }
+                }
+                ScalarOp::ForBegin { at } => {
+                    let [from, to, step] = [at!(at), at!(at + 1), at!(at + 2)].map(T::re);
+                    if step == 0.0 || !from.is_finite() || !to.is_finite() {
+                        fault!();
+                    }
+                    // Half a millionth of a step of slack, so that 0:1:0.1 has its last turn.
+                    at!(at + 1) = T::from(((to - from) / step + 5e-7).floor());
+                    at!(at + 3) = T::zero();
+                }
+                ScalarOp::ForTest { at, variable, register, origin, exit } => {
+                    for_test!(at, variable, register, origin, exit);
+                }
+                ScalarOp::ForNext { at, test } => {
+                    at!(at + 3) = T::from(at!(at + 3).re() + 1.0);
+                    pc = test as usize + 1;
+                    if let ScalarOp::ForTest { at, variable, register, origin, exit } =
+                        ops[test as usize]
+                    {
+                        for_test!(at, variable, register, origin, exit);
+                    }
+                }
+                ScalarOp::Label { at, variable } => {
+                    let live = is_live(marks[variable as usize]);
+                    let register = code.variables[variable as usize].register;
+                    at!(at) = if live { at!(register) } else { T::from(f64::NAN) };
+                }
+                ScalarOp::Turn { at, label } => {
+                    step!();
+                    *turns += 1;
+                    if label != NO_LABEL {
+                        at!(at) = at!(label);
+                    }
+                    at!(at + 1) = T::from(*turns as f64);
+                }
+                ScalarOp::Call { to, site } => leave!(Departure::Call { to, site }),
+                ScalarOp::Return { a } => leave!(Departure::Return(at!(a))),
+                ScalarOp::Leave => leave!(Departure::Leave),
+                ScalarOp::End => leave!(Departure::End),
+                ScalarOp::Interpret { site } => leave!(Departure::Interpret { site }),
+                ScalarOp::Condition { to, site } => leave!(Departure::Condition { to, site }),
+            }
+        }
+    }
+
+    /// A routine is called; false when there are too many calls, which is reported.
+    fn enter(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        to: u16,
+        site: u16,
+    ) -> bool {
+        let code = &region.units[machine.unit];
+        let called = &code.sites[site as usize];
+        let callee = &region.units[called.unit];
+        self.usage.steps += 4;
+        let caller = WaitingCall {
+            unit: machine.unit,
+            pc: machine.pc,
+            registers: machine.first,
+            marks: machine.first_mark,
+            arrays: machine.first_array,
+            to,
+            site,
+            held: machine.held,
+            errors: self.usage.errors,
+        };
+        machine.waiting.push(caller);
+        if machine.frames + machine.waiting.len() > MOST_CALLS {
+            self.too_many_calls(called.span);
+            return false;
+        }
+        let first = machine.first + code.template.len();
+        let (end, marks) =
+            (first + callee.template.len(), machine.first_mark + code.variables.len());
+        let end_of_marks = marks + callee.variables.len();
+        if machine.registers.len() < end {
+            machine.registers.resize(2 * end, T::zero());
+        }
+        if machine.marks.len() < end_of_marks {
+            machine.marks.resize(2 * end_of_marks, UNDECLARED);
+        }
+        machine.registers[first..end].copy_from_slice(&callee.template);
+        machine.marks[marks..end_of_marks].fill(UNDECLARED);
+        let arrays = machine.arrays.len();
+        if !callee.arrays.is_empty() {
+            let none = || ArrayRegister::nothing(UNDECLARED);
+            machine.arrays.resize_with(arrays + callee.arrays.len(), none);
+        }
+        for (k, (formal, argument)) in callee.formals.iter().zip(&called.args).enumerate() {
+            let mark = declared_by(k as u16);
+            match (*formal, *argument) {
+                (Poisonable::Variable(v), CodeArgument::Number { from }) => {
+                    let register = callee.variables[v as usize].register as usize;
+                    machine.registers[first + register] =
+                        machine.registers[machine.first + from as usize];
+                    machine.marks[marks + v as usize] = mark;
+                }
+                (Poisonable::Array(a), CodeArgument::Array { from }) => {
+                    let own = machine.first_array + from as usize;
+                    let of_file = (from & !OF_FILE) as usize;
+                    let from = if from & OF_FILE == 0 { own } else { of_file };
+                    let passed = machine.arrays[from].passed(mark);
+                    machine.arrays[arrays + a as usize] = passed;
+                }
+                _ => unreachable!("arguments are of their formals' kinds"),
+            }
+        }
+        machine.unit = called.unit;
+        machine.first = first;
+        machine.first_mark = marks;
+        machine.first_array = arrays;
+        machine.pc = 0;
+        true
+    }
+
+    /// Looks whether the run must stop, which is reported then.
+    #[cold]
+    fn may_not_go_on(&mut self, region: &CodeRegion<T>, machine: &RegisterMachine<T>) -> bool {
+        let span = || region.units[machine.unit].range(machine.pc).span;
+        if self.usage.steps >= self.limits.steps {
+            return self.in_module(region, machine, |this| this.step(span()));
+        }
+        match self.inputs.budget.poll() {
+            Ok(()) => false,
+            Err(spent) => {
+                self.usage.steps += 1;
+                let diagnostic = usage::spent(spent).at(span());
+                self.in_module(region, machine, |this| this.stop(diagnostic))
+            }
+        }
+    }
+
+    fn in_module<R>(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &RegisterMachine<T>,
+        work: impl FnOnce(&mut Self) -> R,
+    ) -> R {
+        let current = std::mem::replace(&mut self.current, region.units[machine.unit].module);
+        let done = work(self);
+        self.current = current;
+        done
+    }
+
+    /// A statement that the interpreter executes.
+    fn interpret(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        site: u16,
+    ) -> CodeOutcome<T> {
+        let code = &region.units[machine.unit];
+        let site = &code.sites[site as usize];
+        let flow = self.on_enough_stack(site.span, |this| {
+            this.interpreted(region, machine, &site.loops, |this| {
+                this.statement(&code.m, site.stmt)
+            })
+        });
+        match flow.unwrap_or(Flow::Stop) {
+            Flow::Return(value) => self.returned_from(region, machine, value),
+            Flow::Stop => CodeOutcome::Stop,
+            // No statement that is left to the interpreter ends a loop of the code.
+            Flow::Next | Flow::Break | Flow::Continue => {
+                machine.pc += 1;
+                CodeOutcome::Next
+            }
+        }
+    }
+
+    fn interpreted_condition(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        to: u16,
+        site: u16,
+    ) -> CodeOutcome<T> {
+        let code = &region.units[machine.unit];
+        let site = &code.sites[site as usize];
+        let holds = self.on_enough_stack(site.span, |this| {
+            this.interpreted(region, machine, &site.loops, |this| {
+                this.condition(&code.m, site.expr)
+            })
+        });
+        match holds.unwrap_or_else(|| Err(silent())) {
+            _ if self.env.stopped => CodeOutcome::Stop,
+            Ok(holds) => {
+                let to = machine.first + to as usize;
+                machine.registers[to] = T::from(f64::from(u8::from(holds)));
+                machine.pc += 1;
+                CodeOutcome::Next
+            }
+            Err(diagnostic) => self.faulty(region, machine, diagnostic),
+        }
+    }
+
+    /// The call under way ends with a value or without.
+    fn returned_from(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        value: Option<Value<T>>,
+    ) -> CodeOutcome<T> {
+        let Some(call) = machine.waiting.pop() else { return CodeOutcome::Return(value) };
+        let depth = machine.waiting.len();
+        self.env.scope.frames.truncate(machine.frames + depth);
+        machine.framed = self.env.scope.frames.len() > machine.frames;
+        let callee = machine.unit;
+        machine.back_to(call);
+        self.usage.held = call.held;
+        let caller = &region.units[call.unit];
+        let site = &caller.sites[call.site as usize];
+        let callee = &region.units[callee];
+        let routine = callee.m.program[callee.routine.expect("a routine was called").routine];
+        let name = callee.m.program.name(routine.name.symbol);
+        let value = match (value, routine.result) {
+            (Some(value), Some((ty, asked))) => {
+                variables::converted(ty, value).map(Some).map_err(|d| {
+                    let message = format!("{name} returns another value: {}", d.message);
+                    let mut d = d.or_at(site.span).note_at(asked, "declared here");
+                    d.message = message;
+                    d
+                })
+            }
+            (value, _) => Ok(value),
+        };
+        let value = match value {
+            Err(diagnostic) => return self.faulty(region, machine, diagnostic),
+            Ok(value) => value,
+        };
+        if !site.valued {
+            machine.pc += 1;
+            return CodeOutcome::Next;
+        }
+        match value {
+            Some(Value::Number(x)) => {
+                let to = machine.first + call.to as usize;
+                machine.registers[to] = x;
+                machine.pc += 1;
+                CodeOutcome::Next
+            }
+            None if self.usage.errors > call.errors => self.faulty(region, machine, silent()),
+            _ => {
+                let diagnostic =
+                    Diagnostic::error("no-value", format!("`{name}` returns no value"))
+                        .help("it came to its end: every way through it must `return` one")
+                        .at(site.span);
+                self.faulty(region, machine, diagnostic)
+            }
+        }
+    }
+
+    /// What is wrong where the machine stands.
+    #[cold]
+    fn fault(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+    ) -> CodeOutcome<T> {
+        let code = &region.units[machine.unit];
+        let at =
+            |machine: &RegisterMachine<T>, r: u16| machine.registers[machine.first + r as usize];
+        let op = code.code[machine.pc];
+        let range = code.range(machine.pc);
+        let diagnostic = match (code.note(machine.pc), op) {
+            (Some(CodeNote::Finite(name, span)), _) => not_finite(name).at(span),
+            (Some(CodeNote::Expression(expr)), _) => {
+                self.again(region, machine, |this| this.operand(&code.m, expr).map(drop))
+            }
+            (Some(CodeNote::Target(target)), _) => {
+                self.again(region, machine, |this| this.target(&code.m, target).map(drop))
+            }
+            (Some(CodeNote::Declaration(stmt, number)), _) => {
+                let StmtKind::Declare { global, ty, items } = code.m.program[stmt].kind else {
+                    unreachable!("a declaration was noted")
+                };
+                let item = code.m.program[items][number as usize];
+                self.again(region, machine, |this| this.declare(&code.m, stmt, global, ty, &item))
+            }
+            (Some(CodeNote::Name(symbol, span)), op) => {
+                let mark = match op {
+                    ScalarOp::Live { variable } => {
+                        machine.marks[machine.first_mark + variable as usize]
+                    }
+                    ScalarOp::LiveFile { variable } => machine.marks[variable as usize],
+                    ScalarOp::LiveArray { array } => {
+                        let own = machine.first_array + array as usize;
+                        let of_file = (array & !OF_FILE) as usize;
+                        machine.arrays[if array & OF_FILE == 0 { own } else { of_file }].mark
+                    }
+                    _ => UNDECLARED,
+                };
+                match declaration(mark) {
+                    Some(_) => silent(),
+                    None => self.again(region, machine, |this| {
+                        Err(this.unknown_name(&code.m, symbol, span))
+                    }),
+                }
+            }
+            (Some(CodeNote::Convert(span)), _) => {
+                let a = match op {
+                    ScalarOp::Whole { a, .. }
+                    | ScalarOp::WholeFile { a, .. }
+                    | ScalarOp::Assign { a, .. }
+                    | ScalarOp::AssignFile { a, .. } => a,
+                    other => unreachable!("{other:?} converts nothing"),
+                };
+                no_int(at(machine, a)).or_at(span)
+            }
+            (Some(CodeNote::Argument(span, asked)), ScalarOp::Whole { a, .. }) => {
+                no_int(at(machine, a)).or_at(span).note_at(asked, "requested here")
+            }
+            (None, ScalarOp::ForBegin { at: k }) => {
+                let [from, to, step] = [k, k + 1, k + 2].map(|r| at(machine, r).re());
+                Diagnostic::error("endless-loop", "this loop cannot come to an end")
+                    .at(range.span)
+                    .expected("finite ends and a step other than 0")
+                    .found(format!("{from}:{to}:{step}"))
+            }
+            (note, op) => unreachable!("{op:?} has no such fault: {note:?}"),
+        };
+        self.faulty(region, machine, diagnostic)
+    }
+
+    /// What the interpreter says of the same, all variables where it finds them.
+    fn again(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        work: impl FnOnce(&mut Self) -> Result<(), Diagnostic>,
+    ) -> Diagnostic {
+        let outcome = self.interpreted(region, machine, &[], work);
+        outcome.expect_err("the interpreter finds the same fault")
+    }
+
+    /// Reports a fault and goes on behind its statement.
+    fn faulty(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        diagnostic: Diagnostic,
+    ) -> CodeOutcome<T> {
+        let range = region.units[machine.unit].range(machine.pc);
+        self.in_module(region, machine, |this| this.report(diagnostic.or_at(range.fault)));
+        machine.poison(region);
+        if self.env.stopped {
+            return CodeOutcome::Stop;
+        }
+        machine.pc = range.end as usize;
+        CodeOutcome::Next
+    }
+}
+
+/// The type that a variable has after it was declared in different ways.
+fn type_by<T: Real>(code: &CodeUnit<T>, variable: u16, mark: u32) -> Type {
+    match (declaration(mark), code.variables[variable as usize].captured) {
+        (Some((origin, _)), _) => code.origins[origin].1,
+        (None, Some(super::code::Captured::Number(ty))) => ty,
+        _ => Type::Float,
+    }
+}
+
+/// What is said of a number that an int does not hold.
+fn no_int<T: Real>(x: T) -> Diagnostic {
+    match variables::converted(Type::Int, Value::Number(x)) {
+        Err(diagnostic) => diagnostic,
+        Ok(_) => unreachable!("an int holds it"),
+    }
+}

@@ -1,0 +1,166 @@
+//! Code for what is done on numbers: loops and routines, one operation on registers after the other.
+//!
+//! `loop or routine -> code -> registers`
+//!
+//! A loop, or the body of a routine, is compiled when it is met, together with the routines that it calls. Names
+//! become registers; a statement that is not about numbers (whole arrays, texts, objects, files) stands in the code as
+//! one operation: the variables go to where the interpreter finds them, it executes the statement, they come back. The
+//! same happens for most faults, so that the interpreter itself says what is wrong. Code counts steps as the
+//! interpreter does, and looks for its limits and for a request to stop every few hundred steps.
+//!
+//! Invariant: a run gives the same values, bit by bit, the same diagnostics and the same count of steps with code and
+//! without; `tests/it/scalar_code.rs` of the crate `document` compares them. What code finds when it is entered is what it was
+//! compiled for: the guards of its region say so.
+
+mod assignments;
+mod code;
+mod compile;
+mod expressions;
+pub(crate) mod kept;
+mod machine;
+mod names;
+mod registers;
+
+use crate::run::interpreter::{Flow, Interpreter};
+use crate::source::module::{Module, Name};
+use code::{CodeRegion, Generation, NamePlace, RegionStart};
+use kept::RegionState;
+use moldloft_model::Extent;
+use moldloft_registry::Scalar;
+use moldloft_syntax::sdl::{RoutineId, StmtId};
+use registers::RegisterMachine;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// So many times a region is compiled, and then no more.
+const MOST_MISFITS: u8 = 6;
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// Executes a loop by its code, if it has some; its own step is counted already.
+    pub(super) fn loop_by_code(&mut self, m: &Module, stmt: StmtId) -> Option<Flow<T>> {
+        self.by_code(m, RegionStart::Loop(stmt))
+    }
+
+    /// Executes the body of a routine by its code, if it has some, in the frame of its call.
+    pub(super) fn body_by_code(&mut self, m: &Module, routine: RoutineId) -> Option<Flow<T>> {
+        self.by_code(m, RegionStart::Body(routine.0))
+    }
+
+    fn by_code(&mut self, m: &Module, start: RegionStart) -> Option<Flow<T>> {
+        if self.inputs.settings.without_code
+            || m.library
+            || self.run.extent() == Extent::Edit
+            || !self.env.scope.given.is_empty()
+            || !std::ptr::eq(&**self.modules.get(self.current), m)
+        {
+            return None;
+        }
+        let key = (self.current, start);
+        let generation = self.generation();
+        let mut misfits = 0;
+        let region = match self.code.regions.get(&key) {
+            Some(RegionState::Never(of)) if *of == generation => return None,
+            Some(RegionState::Kept(region, kept)) => match self.fits(region) {
+                true => Some(region.clone()),
+                false => {
+                    misfits = kept + 1;
+                    None
+                }
+            },
+            _ => None,
+        };
+        let region = match region {
+            Some(region) => region,
+            None => {
+                let region = match misfits < MOST_MISFITS {
+                    true => self.compiled(start),
+                    false => None,
+                };
+                match region {
+                    Some(region) => {
+                        let region = Arc::new(region);
+                        let kept = RegionState::Kept(region.clone(), misfits);
+                        self.code.regions.insert(key, kept);
+                        region
+                    }
+                    None => {
+                        self.code.regions.insert(key, RegionState::Never(generation));
+                        return None;
+                    }
+                }
+            }
+        };
+        let frames = self.env.scope.frames.len();
+        let mut machine = RegisterMachine::new(&region, frames);
+        machine.held = self.usage.held;
+        self.take_back(&region, &mut machine);
+        let flow = self.execute(&region, &mut machine);
+        machine.unwind();
+        if self.env.stopped {
+            machine.poison(&region);
+        }
+        self.env.scope.frames.truncate(frames);
+        self.usage.held = machine.held;
+        self.hand_over(&region, &mut machine);
+        for (unit, executed) in region.units.iter().zip(&machine.executed) {
+            for (&stmt, _) in unit.statements.iter().zip(executed).filter(|(_, done)| **done) {
+                self.executed.note(unit.module, stmt);
+            }
+        }
+        Some(match flow {
+            _ if self.env.stopped => Flow::Stop,
+            flow => flow,
+        })
+    }
+
+    fn generation(&self) -> Generation {
+        let scope = &self.env.scope;
+        (scope.executed.len(), scope.routines.len(), self.components.len())
+    }
+
+    /// True when names mean what they meant when the region was compiled.
+    fn fits(&self, region: &CodeRegion<T>) -> bool {
+        region.generation == self.generation()
+            && (region.entry == 0) == self.env.scope.frame().global
+            && region.guards.iter().all(|(name, place, what)| {
+                self.guarded(*name, *place == NamePlace::File) == Some(*what)
+            })
+    }
+
+    fn compiled(&mut self, start: RegionStart) -> Option<CodeRegion<T>> {
+        let generation = self.generation();
+        let known = self.code.of_file.as_ref().filter(|(of, ..)| *of == generation);
+        let (of_file, plain) = match known {
+            Some((_, of_file, plain)) => (of_file.clone(), *plain),
+            None => {
+                let (of_file, plain) = self.declared_by_routines();
+                let of_file = Arc::new(of_file);
+                self.code.of_file = Some((generation, of_file.clone(), plain));
+                (of_file, plain)
+            }
+        };
+        if !plain {
+            return None;
+        }
+        let (modules, scope) = (&*self.modules, &self.env.scope);
+        compile::compile(modules, scope, self.current, start, &of_file, generation)
+    }
+
+    /// The names that routines declare in the file, and whether they load no file.
+    fn declared_by_routines(&self) -> (HashSet<Name>, bool) {
+        let mut of_file = HashSet::new();
+        let mut plain = true;
+        for at in 0..self.modules.len() {
+            let m = self.modules.get(at);
+            for routine in m.program.routines() {
+                let list = m.program[routine.body].to_vec();
+                plain &= names::declared(m, &list, &mut |name, _, global| {
+                    if global {
+                        of_file.insert(name);
+                    }
+                });
+            }
+        }
+        (of_file, plain)
+    }
+}

@@ -1,0 +1,498 @@
+//! The registers of code under way, and how variables go from the interpreter into them and back.
+
+use super::code::{ActiveLoop, Captured, CodeRegion, NO_LABEL, Poisonable};
+use crate::run::interpreter::Interpreter;
+use crate::source::module::Name;
+use crate::source::scope::{Binding, CallFrame, LoopIteration, ScopedBinding};
+use crate::value::initialised::Known;
+use moldloft_num::Real;
+use moldloft_registry::{Array, ArrayShape, Scalar, Value};
+use moldloft_syntax::sdl::Type;
+use std::sync::Arc;
+
+/// The elements of an array in code.
+#[derive(Debug)]
+pub(super) enum ArrayItems<T> {
+    /// It has no value, or its declaration failed.
+    Nothing,
+    Owned(Vec<T>),
+    /// Something else holds it as well.
+    Shared(Arc<Array<T>>),
+}
+
+/// An array of numbers in code.
+#[derive(Debug)]
+pub(super) struct ArrayRegister<T> {
+    pub items: ArrayItems<T>,
+    pub shape: ArrayShape,
+    pub known: Known,
+    pub mark: u32,
+}
+
+/// Marks of variables: undeclared, as it was when the region began, or declared by one of the unit's
+/// declarations, which may have failed.
+pub(super) const UNDECLARED: u32 = 0;
+pub(super) const AS_BEFORE: u32 = 1;
+
+/// The mark of what that declaration made.
+#[inline(always)]
+pub(super) fn declared_by(origin: u16) -> u32 {
+    2 + 2 * u32::from(origin)
+}
+
+pub(super) fn poisoned_by(origin: u16) -> u32 {
+    3 + 2 * u32::from(origin)
+}
+
+/// The declaration of a mark, and whether it failed.
+pub(super) fn declaration(mark: u32) -> Option<(usize, bool)> {
+    (mark > AS_BEFORE).then(|| ((mark as usize - 2) / 2, mark % 2 == 1))
+}
+
+/// True when a variable of this mark has a value.
+#[inline(always)]
+pub(super) fn is_live(mark: u32) -> bool {
+    mark == AS_BEFORE || (mark > AS_BEFORE && mark & 1 == 0)
+}
+
+impl<T: Real> ArrayRegister<T> {
+    pub fn nothing(mark: u32) -> Self {
+        let (items, shape) = (ArrayItems::Nothing, ArrayShape::Row(0));
+        Self { items, shape, known: Known::default(), mark }
+    }
+
+    /// The elements, to read.
+    #[inline(always)]
+    pub fn read(&self) -> &[T] {
+        match &self.items {
+            ArrayItems::Owned(items) => items,
+            ArrayItems::Shared(array) => &array.items,
+            ArrayItems::Nothing => &[],
+        }
+    }
+
+    /// The elements, to write: nothing else holds them then.
+    #[inline(always)]
+    pub fn write(&mut self) -> &mut [T] {
+        if let ArrayItems::Shared(_) = &self.items {
+            self.own();
+        }
+        match &mut self.items {
+            ArrayItems::Owned(items) => items,
+            _ => &mut [],
+        }
+    }
+
+    #[cold]
+    fn own(&mut self) {
+        let items = std::mem::replace(&mut self.items, ArrayItems::Nothing);
+        if let ArrayItems::Shared(array) = items {
+            let items = Arc::try_unwrap(array).map_or_else(|kept| kept.items.clone(), |a| a.items);
+            self.items = ArrayItems::Owned(items);
+        }
+    }
+
+    /// Takes the value of a variable.
+    fn take(&mut self, value: &mut Value<T>, known: &mut Known) {
+        self.known = std::mem::take(known);
+        match std::mem::replace(value, Value::Unset) {
+            Value::Numbers(array) => {
+                self.shape = array.shape;
+                self.items = match Arc::try_unwrap(array) {
+                    Ok(array) => ArrayItems::Owned(array.items),
+                    Err(array) => ArrayItems::Shared(array),
+                };
+            }
+            other => {
+                *value = other;
+                (self.items, self.shape) = (ArrayItems::Nothing, ArrayShape::Row(0));
+            }
+        }
+    }
+
+    /// The value that it is, and what is known of it; the register holds nothing afterwards.
+    fn give(&mut self) -> (Value<T>, Known) {
+        let value = match std::mem::replace(&mut self.items, ArrayItems::Nothing) {
+            ArrayItems::Owned(items) => {
+                Value::Numbers(Arc::new(Array { shape: self.shape, items }))
+            }
+            ArrayItems::Shared(array) => Value::Numbers(array),
+            ArrayItems::Nothing => Value::Unset,
+        };
+        (value, std::mem::take(&mut self.known))
+    }
+
+    /// The same for a routine, which gets it by value.
+    pub fn passed(&mut self, mark: u32) -> Self {
+        if let ArrayItems::Owned(_) = &self.items
+            && let ArrayItems::Owned(items) =
+                std::mem::replace(&mut self.items, ArrayItems::Nothing)
+        {
+            self.items = ArrayItems::Shared(Arc::new(Array { shape: self.shape, items }));
+        }
+        let items = match &self.items {
+            ArrayItems::Shared(array) => ArrayItems::Shared(array.clone()),
+            _ => ArrayItems::Nothing,
+        };
+        Self { items, shape: self.shape, known: Known::default(), mark }
+    }
+}
+
+/// A call that waits for the one that it made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WaitingCall {
+    pub unit: usize,
+    pub pc: usize,
+    pub registers: usize,
+    pub marks: usize,
+    pub arrays: usize,
+    /// NamePlace the value of the call that it made goes, and its place.
+    pub to: u16,
+    pub site: u16,
+    pub held: usize,
+    pub errors: usize,
+}
+
+/// Code under way.
+#[derive(Debug)]
+pub(super) struct RegisterMachine<T> {
+    pub registers: Vec<T>,
+    pub marks: Vec<u32>,
+    pub arrays: Vec<ArrayRegister<T>>,
+    pub waiting: Vec<WaitingCall>,
+    pub unit: usize,
+    pub pc: usize,
+    /// NamePlace the registers, marks and arrays of the call under way begin.
+    pub first: usize,
+    pub first_mark: usize,
+    pub first_array: usize,
+    /// The interpreter's frames when the region began.
+    pub frames: usize,
+    /// Elements of the declared arrays.
+    pub held: usize,
+    /// True once the interpreter has a frame for a call.
+    pub framed: bool,
+    /// The statements that were executed, by unit.
+    pub executed: Vec<Vec<bool>>,
+}
+
+impl<T: Scalar> RegisterMachine<T> {
+    pub fn new(region: &CodeRegion<T>, frames: usize) -> Self {
+        let mut machine = Self {
+            registers: Vec::new(),
+            marks: Vec::new(),
+            arrays: Vec::new(),
+            waiting: Vec::new(),
+            unit: region.entry,
+            pc: 0,
+            first: 0,
+            first_mark: 0,
+            first_array: 0,
+            frames,
+            held: 0,
+            framed: false,
+            executed: region.units.iter().map(|u| vec![false; u.statements.len()]).collect(),
+        };
+        for unit in 0..=region.entry {
+            machine.first = machine.registers.len();
+            machine.first_mark = machine.marks.len();
+            machine.first_array = machine.arrays.len();
+            let code = &region.units[unit];
+            machine.registers.extend(&code.template);
+            for variable in &code.variables {
+                let before = variable.captured.is_some();
+                machine.marks.push(if before { AS_BEFORE } else { UNDECLARED });
+            }
+            for array in &code.arrays {
+                let mark = if array.captured { AS_BEFORE } else { UNDECLARED };
+                machine.arrays.push(ArrayRegister::nothing(mark));
+            }
+        }
+        machine
+    }
+
+    /// The call that waited goes on; it stands where it made the other.
+    pub fn back_to(&mut self, call: WaitingCall) {
+        self.arrays.truncate(self.first_array.max(call.arrays));
+        self.unit = call.unit;
+        self.pc = call.pc;
+        self.first = call.registers;
+        self.first_mark = call.marks;
+        self.first_array = call.arrays;
+        self.held = call.held;
+    }
+
+    /// Goes back to the call that waits with a number for a float, when no frame of the interpreter was made: the
+    /// usual case. Gives the elements that are held then.
+    #[inline]
+    pub fn returns_plainly(&mut self, region: &CodeRegion<T>, x: T) -> Option<usize> {
+        if self.result_of(region) != Some(Type::Float) || self.framed {
+            return None;
+        }
+        let call = self.waiting.pop()?;
+        self.back_to(call);
+        self.pc += 1;
+        if call.to != NO_LABEL {
+            self.registers[self.first + call.to as usize] = x;
+        }
+        Some(call.held)
+    }
+
+    fn result_of(&self, region: &CodeRegion<T>) -> Option<Type> {
+        region.units[self.unit].result
+    }
+
+    /// Takes its meaning from what the declaration under way, which fails, was to declare.
+    pub fn poison(&mut self, region: &CodeRegion<T>) {
+        let Some((what, origin)) = region.units[self.unit].range(self.pc).poison else { return };
+        match what {
+            Poisonable::Variable(k) => {
+                self.marks[self.first_mark + k as usize] = poisoned_by(origin);
+            }
+            Poisonable::Array(k) => {
+                self.arrays[self.first_array + k as usize] =
+                    ArrayRegister::nothing(poisoned_by(origin));
+            }
+        }
+    }
+
+    /// Leaves the calls under way: what is left is the region's own part.
+    pub fn unwind(&mut self) {
+        if let Some(&call) = self.waiting.first() {
+            self.back_to(call);
+            self.waiting.clear();
+        }
+    }
+
+    /// NamePlace the part of the call number `at` begins, 0 being the region's own: unit, registers, marks, arrays.
+    fn part(&self, at: usize) -> [usize; 4] {
+        match self.waiting.get(at) {
+            Some(call) => [call.unit, call.registers, call.marks, call.arrays],
+            None => [self.unit, self.first, self.first_mark, self.first_array],
+        }
+    }
+}
+
+/// A frame of the interpreter: that of the file, or a call's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum VariableFrame {
+    File,
+    Call(usize),
+}
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    fn bound_in(&mut self, frame: VariableFrame, name: Name) -> Option<&mut ScopedBinding<T>> {
+        match frame {
+            VariableFrame::File => self.env.scope.globals.get_mut(name.0 as usize)?.as_mut(),
+            VariableFrame::Call(at) => {
+                let locals = &mut self.env.scope.frames.get_mut(at)?.locals;
+                locals.iter_mut().find(|(n, _)| *n == name).map(|(_, bound)| bound)
+            }
+        }
+    }
+
+    fn bind_in(&mut self, frame: VariableFrame, name: Name, bound: ScopedBinding<T>) {
+        if let Some(old) = self.bound_in(frame, name) {
+            *old = bound;
+            return;
+        }
+        match frame {
+            VariableFrame::File => {
+                self.env.scope.make_room(self.modules.name_count());
+                self.env.scope.globals[name.0 as usize] = Some(bound);
+            }
+            VariableFrame::Call(at) => self.env.scope.frames[at].locals.push((name, bound)),
+        }
+    }
+
+    /// Puts the variables of a part into the interpreter's frame; arrays as well, if they are wanted.
+    fn put_back(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        [unit, registers, marks, arrays]: [usize; 4],
+        frame: VariableFrame,
+        with_arrays: bool,
+    ) {
+        let code = &region.units[unit];
+        for (k, variable) in code.variables.iter().enumerate() {
+            let mark = machine.marks[marks + k];
+            let value = Value::Number(machine.registers[registers + variable.register as usize]);
+            let Some((origin, failed)) = declaration(mark) else {
+                if let (AS_BEFORE, Some(Captured::Number(_))) = (mark, variable.captured)
+                    && let Some(bound) = self.bound_in(frame, variable.name)
+                    && let Binding::Variable { value: old, .. } = &mut bound.what
+                {
+                    *old = value;
+                }
+                continue;
+            };
+            let (span, ty) = code.origins[origin];
+            let what = if failed { Binding::Poisoned } else { Binding::variable(ty, value) };
+            self.bind_in(frame, variable.name, ScopedBinding { span, what });
+        }
+        if !with_arrays {
+            return;
+        }
+        for (k, array) in code.arrays.iter().enumerate() {
+            let register = &mut machine.arrays[arrays + k];
+            let mark = register.mark;
+            if mark == UNDECLARED {
+                continue;
+            }
+            let (value, known) = register.give();
+            let Some((origin, failed)) = declaration(mark) else {
+                if let Some(bound) = self.bound_in(frame, array.name)
+                    && let Binding::Variable { value: old, known: of, .. } = &mut bound.what
+                {
+                    (*old, *of) = (value, known);
+                }
+                continue;
+            };
+            let (span, ty) = code.origins[origin];
+            // An argument takes any shape, a declared array its own.
+            let fixed = !code.formals.contains(&Poisonable::Array(k as u16));
+            let what = match failed {
+                true => Binding::Poisoned,
+                false => Binding::Variable { ty, value, fixed, known },
+            };
+            self.bind_in(frame, array.name, ScopedBinding { span, what });
+        }
+    }
+
+    /// Takes the variables of a part from the interpreter's frame.
+    fn take_over(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        [unit, registers, marks, arrays]: [usize; 4],
+        frame: VariableFrame,
+    ) {
+        let code = &region.units[unit];
+        for (k, variable) in code.variables.iter().enumerate() {
+            let to = registers + variable.register as usize;
+            if let Some(Captured::Param(number)) = variable.captured {
+                machine.registers[to] = self.env.param_values[number];
+                continue;
+            }
+            if !is_live(machine.marks[marks + k]) {
+                continue;
+            }
+            match self.bound_in(frame, variable.name).map(|bound| &bound.what) {
+                Some(Binding::Variable { value: Value::Number(x), .. }) => {
+                    machine.registers[to] = *x;
+                }
+                other => unreachable!("a variable in code has become {other:?}"),
+            }
+        }
+        for (k, array) in code.arrays.iter().enumerate() {
+            let register = &mut machine.arrays[arrays + k];
+            if !is_live(register.mark) {
+                continue;
+            }
+            match self.bound_in(frame, array.name).map(|bound| &mut bound.what) {
+                Some(Binding::Variable { value, known, .. }) => register.take(value, known),
+                other => unreachable!("an array in code has become {other:?}"),
+            }
+        }
+    }
+
+    /// NamePlace the parts that the interpreter can see stand: the file's, the region's own, the call's under way.
+    fn visible(
+        &self,
+        region: &CodeRegion<T>,
+        machine: &RegisterMachine<T>,
+    ) -> Vec<([usize; 4], VariableFrame)> {
+        let mut all = vec![([0; 4], VariableFrame::File)];
+        if region.entry > 0 {
+            all.push((machine.part(0), VariableFrame::Call(machine.frames - 1)));
+        }
+        let depth = machine.waiting.len();
+        if depth > 0 {
+            all.push((machine.part(depth), VariableFrame::Call(machine.frames - 1 + depth)));
+        }
+        all
+    }
+
+    /// The loops under way at a place of a part.
+    fn loops_at(
+        &self,
+        machine: &RegisterMachine<T>,
+        registers: usize,
+        loops: &[ActiveLoop],
+    ) -> Vec<LoopIteration> {
+        let number = |at: u16| machine.registers[registers + at as usize].re();
+        loops
+            .iter()
+            .map(|l| LoopIteration {
+                label: l.labelled.then(|| number(l.at)).filter(|x| !x.is_nan()),
+                id: number(l.at + 1) as u64,
+            })
+            .collect()
+    }
+
+    /// Puts all variables to where the interpreter finds them; a frame is made for each call that has none.
+    pub(super) fn hand_over(&mut self, region: &CodeRegion<T>, machine: &mut RegisterMachine<T>) {
+        let depth = machine.waiting.len();
+        for at in self.env.scope.frames.len() - machine.frames + 1..=depth {
+            let caller = machine.waiting[at - 1];
+            let site = &region.units[caller.unit].sites[caller.site as usize];
+            let outer = self.env.scope.frame();
+            let mut frame = CallFrame::new(false, outer.prefix.clone());
+            frame.loops = outer.loops.clone();
+            frame.loops.extend(self.loops_at(machine, caller.registers, &site.loops));
+            frame.called = Some((site.span, region.units[caller.unit].module as u32));
+            self.env.scope.frames.push(frame);
+            machine.framed = true;
+            if at < depth {
+                let part = machine.part(at);
+                let frame = VariableFrame::Call(machine.frames - 1 + at);
+                self.put_back(region, machine, part, frame, false);
+            }
+        }
+        for (part, frame) in self.visible(region, machine) {
+            self.put_back(region, machine, part, frame, true);
+        }
+    }
+
+    /// Takes all variables back.
+    pub(super) fn take_back(&mut self, region: &CodeRegion<T>, machine: &mut RegisterMachine<T>) {
+        for (part, frame) in self.visible(region, machine) {
+            self.take_over(region, machine, part, frame);
+        }
+    }
+
+    /// Has the interpreter do something at a place of the code, with all variables where it finds them.
+    pub(super) fn interpreted<R>(
+        &mut self,
+        region: &CodeRegion<T>,
+        machine: &mut RegisterMachine<T>,
+        loops: &[ActiveLoop],
+        work: impl FnOnce(&mut Self) -> R,
+    ) -> R {
+        self.hand_over(region, machine);
+        self.usage.held = machine.held;
+        let inner = self.loops_at(machine, machine.first, loops);
+        let known = self.env.scope.frame().loops.len();
+        self.env.scope.frame_mut().loops.extend(inner);
+        let current = std::mem::replace(&mut self.current, region.units[machine.unit].module);
+        let done = work(self);
+        self.current = current;
+        self.env.scope.frame_mut().loops.truncate(known);
+        self.take_back(region, machine);
+        machine.held = self.usage.held;
+        done
+    }
+
+    /// What a name is bound to, as far as code can hold it.
+    pub(super) fn guarded(&self, name: Name, of_file: bool) -> Option<Captured> {
+        let bound = match of_file {
+            true => self.env.scope.global(name),
+            false => self.env.scope.frame().local(name),
+        };
+        match bound {
+            Some(bound) => super::names::held(bound),
+            None => Some(Captured::Nothing),
+        }
+    }
+}
