@@ -317,6 +317,14 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
                 "a dimension has moved lines past each other: UNDO, or change it",
             )
         }
+        NoBody::Flaw(SolidDefect::Outside { face, hole }) => {
+            let face = face.map_or_else(|| "a face".to_owned(), |f| format!("face {f}"));
+            CommandError::new(
+                701,
+                format!("{name}: the hole of point {hole} is not inside of {face}"),
+                "a dimension has moved it out: UNDO, change it, or GENERATE FACES",
+            )
+        }
         NoBody::Flaw(SolidDefect::Unresolved(e)) | NoBody::Combine(e) => combine_error(name, e),
         NoBody::Flaw(SolidDefect::NotFinite) => CommandError::new(
             300,

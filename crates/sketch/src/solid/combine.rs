@@ -82,6 +82,8 @@ struct Facetted<T> {
     sources: Vec<FacetSource<T>>,
     /// By point: whether it is a vertex of its body.
     vertex: Vec<bool>,
+    /// By point: the surfaces of its body there, by operand and tag.
+    around: Vec<BTreeSet<(usize, u32)>>,
 }
 
 fn build<T: Real>(
@@ -94,6 +96,7 @@ fn build<T: Real>(
         facets: Vec::new(),
         sources: Vec::new(),
         vertex: Vec::new(),
+        around: Vec::new(),
     };
     let mut operands: Vec<FacetSource<T>> = Vec::new();
     for (k, body) in bodies.iter().enumerate() {
@@ -130,9 +133,13 @@ fn add_facets<T: Real>(
     let outline = body.outline();
     all.points.extend_from_slice(&outline.points);
     all.vertex.extend((0..outline.points.len()).map(|k| k < body.vertices.len()));
+    all.around.resize(all.points.len(), BTreeSet::new());
     for k in 0..body.edges.len() {
         let edge = &body.edges[k];
-        let piece = if edge.trace.is_some() { None } else { Some(body.piece((k, true))) };
+        let piece = match &edge.trace {
+            Some(trace) => trace.carrier,
+            None => Some(body.piece((k, true))),
+        };
         source.edges.push((piece, Vec::new()));
     }
     let size = outline.points.iter().map(|p| p.re().distance(outline.points[0].re()));
@@ -156,6 +163,9 @@ fn add_facets<T: Real>(
                     newell(&loops[0].iter().map(at).collect::<Vec<_>>()).normalized()
                 };
                 let Some(normal) = normal else { continue };
+                for &v in loops.iter().flatten() {
+                    all.around[(v + first_point) as usize].insert((operand, tag));
+                }
                 let shift = |c: Vec<u32>| c.into_iter().map(|v| v + first_point).collect();
                 let mark = |t: u32| if t == INNER { INNER } else { t + first_edge };
                 let tags = tags.into_iter().map(|c| c.into_iter().map(mark).collect()).collect();
@@ -268,19 +278,17 @@ impl<'a, T: Real> Placing<'a, T> {
                 }
             }
         }
+        let source = |a: u32, b: u32| -> Option<(usize, u32)> {
+            let known = |e: &&(usize, u32)| self.all.sources[e.0].edges[e.1 as usize].0.is_some();
+            self.arranged.edges.get(&(a.min(b), a.max(b)))?.iter().find(known).copied()
+        };
         let kind = |a: u32, b: u32, own: usize| -> Kind {
             // Of several faces at an edge, those of the same place in both lists are neighbours.
             let place = left[&(a, b)].iter().position(|f| *f == own).unwrap_or(0);
             let other = left.get(&(b, a)).and_then(|l| l.get(place).or(l.last()));
             let other = other.copied().unwrap_or(own);
             let round = !faces[own].plane || !faces[other].plane;
-            let edge = (self.arranged.edges.get(&(a.min(b), a.max(b)))).filter(|_| round).and_then(
-                |list| {
-                    let known =
-                        |e: &&(usize, u32)| self.all.sources[e.0].edges[e.1 as usize].0.is_some();
-                    list.iter().find(known).copied()
-                },
-            );
+            let edge = if round { source(a, b) } else { None };
             (own.min(other), own.max(other), edge)
         };
         let mut corners: BTreeSet<u32> = BTreeSet::new();
@@ -308,7 +316,8 @@ impl<'a, T: Real> Placing<'a, T> {
                 let n = c.len();
                 for k in 0..n {
                     let (a, b) = (c[k], c[(k + 1) % n]);
-                    let edge = kind(a, b, f).2;
+                    // Between planes too: two that are parts of one do not fix a corner.
+                    let edge = source(a, b);
                     for v in [a, b].into_iter().filter(|v| corners.contains(v)) {
                         let entry = around.entry(v).or_default();
                         entry.0.insert(f);
@@ -427,8 +436,16 @@ impl<'a, T: Real> Placing<'a, T> {
         faces: &BTreeSet<usize>,
         edges: &BTreeSet<(usize, u32)>,
     ) -> Result<Option<Vec3<T>>, CombineError> {
-        if let Some(&k) = self.original.get(&v) {
-            return Ok(Some(self.all.points[k as usize]));
+        // A vertex of a body stays, unless a surface of the other body happens to pass through it: the
+        // corner is then where that one meets its surfaces, or it would follow the wrong one.
+        let given = self.original.get(&v).map(|&k| k as usize);
+        let foreign = |f: usize| {
+            let own = given.map(|k| &self.all.around[k]);
+            own.is_some_and(|own| !self.arranged.faces[f].sources.iter().any(|s| own.contains(s)))
+        };
+        let known = given.map(|k| self.all.points[k]);
+        if known.is_some() && !faces.iter().any(|&f| foreign(f)) {
+            return Ok(known);
         }
         let guess = self.arranged.points[v as usize];
         let parameters = |s: &FaceSurface<T>| match s {
@@ -454,6 +471,12 @@ impl<'a, T: Real> Placing<'a, T> {
             let (Some(piece), beside) = &self.all.sources[operand].edges[tag as usize] else {
                 continue;
             };
+            let across = |f: &usize| {
+                let mut sources = self.arranged.faces[*f].sources.iter();
+                !sources.any(|s| s.0 == operand && beside.contains(&s.1))
+            };
+            // Several surfaces across it: one of them may run through the edge and not move with it.
+            let alone = faces.iter().filter(|f| across(f)).count() < 2;
             let s = along(piece, guess);
             let direction = piece.velocity(T::from(s)).re().normalized().unwrap_or_default();
             for (k, &f) in faces.iter().enumerate() {
@@ -461,18 +484,26 @@ impl<'a, T: Real> Placing<'a, T> {
                 if source.0 == operand && beside.contains(&source.1) {
                     continue;
                 }
+                if known.is_some() && !foreign(f) {
+                    continue;
+                }
                 let (surface, normal, start) = surfaces[k];
-                // A little preferred: it holds where the faces beside the edge are tangent.
-                let rate = 1.5 * direction.dot(normal).abs();
+                // It holds where the faces beside the edge are tangent.
+                let preferred = if alone { 1.5 } else { 1e-4 };
+                let rate = preferred * direction.dot(normal).abs();
                 if best.as_ref().is_none_or(|b| rate > b.0) {
                     let on = vec![Carrier::Curve(piece), Carrier::Surface(surface)];
                     best = Some((rate, on, vec![[s, 0.0], start]));
                 }
             }
         }
+        let strange: Vec<bool> = faces.iter().map(|&f| foreign(f)).collect();
         for i in 0..surfaces.len() {
             for j in i + 1..surfaces.len() {
                 for k in j + 1..surfaces.len() {
+                    if known.is_some() && ![i, j, k].iter().any(|&n| strange[n]) {
+                        continue;
+                    }
                     let (a, b, c) = (&surfaces[i], &surfaces[j], &surfaces[k]);
                     let rate = a.1.dot(b.1.cross(c.1)).abs();
                     if best.as_ref().is_none_or(|b| rate > b.0) {
@@ -481,6 +512,13 @@ impl<'a, T: Real> Placing<'a, T> {
                     }
                 }
             }
+        }
+        if let Some(at) = known {
+            let met = best.filter(|b| b.0 > 1e-3);
+            let met = met.and_then(|(_, on, start)| meet(&on, guess, &start, self.scale));
+            // The place is known to the last digit; only its motion is that of the surfaces.
+            let near = met.filter(|m| m.at.re().distance(at.re()) <= 1e-7 * self.scale);
+            return Ok(Some(near.map_or(at, |m| m.at + Vec3::lifted(at.re() - m.at.re()))));
         }
         match best {
             Some((rate, on, start)) if rate > 1e-9 => {
@@ -495,6 +533,21 @@ impl<'a, T: Real> Placing<'a, T> {
 
     /// The points of an edge that is not straight, with their places on the round faces beside it.
     fn trace(&self, chain: &[u32], kind: Kind) -> Result<IntersectionEdge<T>, CombineError> {
+        let Some((operand, tag)) = kind.2 else { return self.trace_on(chain, kind) };
+        let beside = &self.all.sources[operand].edges[tag as usize].1;
+        let own = |f: usize| {
+            let mut sources = self.arranged.faces[f].sources.iter();
+            sources.any(|s| s.0 == operand && beside.contains(&s.1))
+        };
+        if own(kind.0) && own(kind.1) {
+            return self.trace_on(chain, kind);
+        }
+        // A surface of the other body happens to run through an edge: the new edge moves with both surfaces.
+        let crossing = self.trace_on(chain, (kind.0, kind.1, None));
+        crossing.or_else(|_| self.trace_on(chain, kind))
+    }
+
+    fn trace_on(&self, chain: &[u32], kind: Kind) -> Result<IntersectionEdge<T>, CombineError> {
         let rough: Vec<Vec3> = chain.iter().map(|&v| self.arranged.points[v as usize]).collect();
         let curve = kind.2.and_then(|(o, t)| self.all.sources[o].edges[t as usize].0.as_ref());
         let pair = [self.surface(kind.0), self.surface(kind.1)];
@@ -593,7 +646,8 @@ impl<'a, T: Real> Placing<'a, T> {
                 }
             }
         }
-        Ok(IntersectionEdge { points, nodes, places: round.into_iter().zip(places).collect() })
+        let places = round.into_iter().zip(places).collect();
+        Ok(IntersectionEdge { points, nodes, places, carrier: curve.copied() })
     }
 
     /// The mesh: parts of faces with their points where the exact edges run.

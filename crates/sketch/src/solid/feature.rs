@@ -109,6 +109,7 @@ impl Feature {
         };
         let mut bodies = Vec::new();
         let mut laid = Vec::new();
+        let mut empty = Vec::new();
         for operand in &self.operands {
             let inner = &operand.object;
             let prefix = operand.prefix.to_ascii_lowercase();
@@ -120,12 +121,28 @@ impl Feature {
                 || Estimate::of(&inner.drawing, &planes, inner.reference().map(|r| r.point)?);
             let own = solve(inner, &planes, &own, &estimate);
             let name = inner.name.clone();
-            let body = body(inner, &planes, &own)
-                .map_err(|why| NoBody::Operand { name, why: Box::new(why) })?;
-            bodies.push(body);
+            let body = body(inner, &planes, &own);
+            // Nothing is an operand too: what is cut from it or added to it has a body.
+            let nothing = matches!(body, Err(NoBody::Combine(CombineError::Empty)));
+            empty.push(nothing);
+            bodies.push(match body {
+                Ok(body) => body,
+                Err(_) if nothing => SketchSolid::default(),
+                Err(why) => return Err(NoBody::Operand { name, why: Box::new(why) }),
+            });
             laid.push((planes, own));
         }
+        let nothing = || NoBody::Combine(CombineError::Empty);
         match (&self.kind, &bodies[..]) {
+            (FeatureKind::Boolean(operation), [a, b]) if empty.contains(&true) => {
+                let rest =
+                    [a, b].into_iter().zip(&empty).enumerate().find(|(_, (_, none))| !**none);
+                match rest {
+                    Some((k, (body, _))) if operation.holds(k == 0, k == 1) => Ok(body.clone()),
+                    _ => Err(nothing()),
+                }
+            }
+            (_, [..]) if empty.contains(&true) => Err(nothing()),
             (FeatureKind::Boolean(operation), [a, b]) => {
                 combined([a, b], *operation).map_err(NoBody::Combine)
             }

@@ -60,6 +60,9 @@ pub struct IntersectionEdge<T> {
     pub(crate) nodes: Vec<(Vec3<T>, Vec3<T>)>,
     /// By round face beside it, u, v and the weighted change of u at the nodes.
     pub(crate) places: Vec<(usize, Vec<[T; 3]>)>,
+    /// The curve of closed form that it is a part of, where it has one: the only thing that fixes a
+    /// point of it where the surfaces beside it are tangent.
+    pub(crate) carrier: Option<SmoothPiece<T>>,
 }
 
 /// A round face that is not bounded by its own parameter lines alone.

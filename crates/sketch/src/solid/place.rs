@@ -122,6 +122,7 @@ impl<T: Real> SketchSolid<T> {
             if let Some(trace) = &mut edge.trace {
                 trace.points.iter_mut().for_each(|p| *p = place.point(*p));
                 trace.nodes.iter_mut().for_each(|n| *n = (place.point(n.0), place.vector(n.1)));
+                trace.carrier = trace.carrier.as_ref().map(|p| place.piece(p));
             }
         }
         out.trims.iter_mut().for_each(|t| t.surface = place.surface(&t.surface));

@@ -27,6 +27,13 @@ pub enum SolidDefect {
         /// Where.
         at: Vec3,
     },
+    /// A hole of a face of a section is not inside of the face's border.
+    Outside {
+        /// The face.
+        face: Option<FaceId>,
+        /// A vertex of the hole.
+        hole: PointId,
+    },
     /// It crosses itself and could not be derived anew.
     Unresolved(CombineError),
     /// A number is not finite.
@@ -42,7 +49,7 @@ pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidD
         return Err(SolidDefect::NotFinite);
     }
     if body.flat {
-        return match crossed_cycle(&body, true) {
+        return match crossed_cycle(&body, true).or_else(|| strayed_hole(&body)) {
             Some(flaw) => Err(flaw),
             None => Ok(body),
         };
@@ -167,6 +174,9 @@ fn suspect<T: Real>(body: &SketchSolid<T>) -> bool {
     if sides.iter().any(|&(a, b)| at(a).distance(at(b)) <= tolerance) {
         return true;
     }
+    if walls.iter().any(|w| strayed(w, &at).is_some()) {
+        return true;
+    }
     // Walls first, then sides, swept together.
     let mut boxes: Vec<[Vec3; 2]> = walls.iter().map(|w| [w.low, w.high]).collect();
     boxes.extend(sides.iter().map(|&(a, b)| bounds([at(a), at(b)].into_iter())));
@@ -194,6 +204,32 @@ fn suspect<T: Real>(body: &SketchSolid<T>) -> bool {
     found
 }
 
+/// A hole that is not inside of the border of its face, or inside of another hole: no side need cross
+/// another where a hole has left the face at once.
+fn strayed(wall: &CrossingFacet, at: &dyn Fn(u32) -> Vec3) -> Option<usize> {
+    (1..wall.loops.len()).find(|&k| {
+        let p = at(wall.loops[k][0]);
+        let inside = |j: usize| winding(&wall.loops[j], wall.normal, at, p) != 0;
+        !inside(0) || (1..wall.loops.len()).any(|j| j != k && inside(j))
+    })
+}
+
+/// The first hole of a section that is not where a hole can be.
+fn strayed_hole<T: Real>(body: &SketchSolid<T>) -> Option<SolidDefect> {
+    let outline = body.outline();
+    let at = |v: u32| outline.points[v as usize].re();
+    (0..body.faces.len()).find_map(|f| {
+        let loops = outline.loops(body, f).0;
+        let ring: Vec<Vec3> = loops[0].iter().map(|&v| at(v)).collect();
+        let normal = newell(&ring).normalized()?;
+        let [low, high] = bounds(loops.iter().flatten().map(|&v| at(v)));
+        let wall = CrossingFacet { normal, at: ring[0], loops, low, high };
+        let hole = wall.loops.get(strayed(&wall, &at)?)?[0] as usize;
+        let hole = body.vertices.get(hole).map_or(PointId(0), |v| v.id);
+        Some(SolidDefect::Outside { face: body.faces[f].id, hole })
+    })
+}
+
 fn own_side(wall: &CrossingFacet, a: u32, b: u32) -> bool {
     wall.loops.iter().any(|c| {
         (0..c.len()).any(|k| {
@@ -217,8 +253,6 @@ fn flat(normal: Vec3, p: Vec3) -> [f64; 2] {
 
 /// Whether a point of the plane is in a wall or on its border.
 fn covers(wall: &CrossingFacet, at: &dyn Fn(u32) -> Vec3, p: Vec3, tolerance: f64) -> bool {
-    let [x, y] = flat(wall.normal, p);
-    let mut turns = 0;
     for c in &wall.loops {
         for k in 0..c.len() {
             let (s, t) = (at(c[k]), at(c[(k + 1) % c.len()]));
@@ -227,13 +261,23 @@ fn covers(wall: &CrossingFacet, at: &dyn Fn(u32) -> Vec3, p: Vec3, tolerance: f6
             if (s + d * part).distance(p) <= tolerance {
                 return true;
             }
-            let ([ax, ay], [bx, by]) = (flat(wall.normal, s), flat(wall.normal, t));
-            if (ay > y) != (by > y) && x < ax + (y - ay) / (by - ay) * (bx - ax) {
-                turns += if by > ay { 1 } else { -1 };
-            }
         }
     }
-    turns != 0
+    wall.loops.iter().map(|c| winding(c, wall.normal, at, p)).sum::<i32>() != 0
+}
+
+/// How often a cycle in a plane of that normal goes round a point of the plane.
+fn winding(cycle: &[u32], normal: Vec3, at: &dyn Fn(u32) -> Vec3, p: Vec3) -> i32 {
+    let [x, y] = flat(normal, p);
+    let mut turns = 0;
+    for k in 0..cycle.len() {
+        let (s, t) = (at(cycle[k]), at(cycle[(k + 1) % cycle.len()]));
+        let ([ax, ay], [bx, by]) = (flat(normal, s), flat(normal, t));
+        if (ay > y) != (by > y) && x < ax + (y - ay) / (by - ay) * (bx - ax) {
+            turns += if by > ay { 1 } else { -1 };
+        }
+    }
+    turns
 }
 
 /// Whether a side in the plane of a wall runs through its inside.

@@ -224,6 +224,70 @@ fn closed_forms_of_round_bodies() {
     }
 }
 
+/// The border of a rounding is cut by a plane, and the result by another one: only the straight border of
+/// the rounding fixes the corners there.
+#[test]
+fn a_rounded_block_is_cut_again() {
+    let mut s = SketchSession::new();
+    let mut rounded = block("A", [8.0, 6.0, 4.0], [0.0; 3]);
+    for (c, corner) in [("c1", [1, 2, 3]), ("c2", [5, 6, 7])] {
+        add_curve(&mut rounded, curve(c, curve::CurveKind::Arc, &corner, &["2"]));
+    }
+    s.insert(rounded);
+    s.insert(block("B", [20.0, 20.0, 3.0], [-5.0, -5.0, 0.5]));
+    s.insert(block("C", [20.0, 20.0, 1.0], [-5.0, -5.0, 1.0]));
+    let section = 48.0 - (4.0 - PI);
+    let around = 28.0 - 4.0 + PI;
+    near(measured(&mut s, "A"), [4.0 * section, 2.0 * section + 4.0 * around], "rounded");
+    for (command, height) in [("COMMON A B INTO U", 3.0), ("COMMON U C INTO U", 1.0)] {
+        let reply = s.run_line(command);
+        assert!(!reply[0].is_error(), "{}", reply[0].text);
+        near(measured(&mut s, "U"), [height * section, 2.0 * section + height * around], command);
+    }
+}
+
+/// A plane through the seams of a bar: with the radius the seams move, the plane does not.
+#[test]
+fn derivatives_where_a_plane_meets_a_seam() {
+    let mut s = SketchSession::new();
+    s.insert(bar("A", 4.0, [0.0; 2], [0.0, 5.0]));
+    s.insert(block("B", [9.0, 20.0, 9.0], [0.0, -10.0, -2.0]));
+    s.run_text("USING A; VARIABLE Q 0; MOVE A Q 0 0; CUT A B INTO U");
+    near(measured(&mut s, "U"), [10.0 * PI, 4.0 * PI + 10.0 * PI + 20.0], "half a bar");
+    let g = s.gradient("U", &["Q".to_owned()]).unwrap();
+    // By a shift of the bar to the right the plane takes off its own area.
+    assert!((g.volume[0] + 20.0).abs() < 1e-9, "{:?}", g.volume);
+    // Two ends become smaller; the wall is upright where it meets the plane.
+    assert!((g.area[0] + 2.0 * 4.0 + 2.0 * 5.0).abs() < 1e-9, "{:?}", g.area);
+    // A notch from z = 3 up: its floor is half a circle, as the end above it was.
+    s.run_text("COPY B TO N; MOVE N 0 0 5; CUT A N INTO V");
+    near(measured(&mut s, "V"), [16.0 * PI, 8.0 * PI + 16.0 * PI + 8.0], "notch");
+    let g = s.gradient("V", &["Q".to_owned()]).unwrap();
+    assert!((g.volume[0] + 2.0 * 4.0).abs() < 1e-9, "{:?}", g.volume);
+    assert!((g.area[0] + 2.0 * 2.0).abs() < 1e-9, "{:?}", g.area);
+}
+
+/// A hole that has left its section is no hole: the section is refused, with the place.
+#[test]
+fn a_hole_outside_of_its_section() {
+    let mut s = SketchSession::new();
+    let text = "SKETCH S 2D XZ\n\
+        POINT 1 50 0; POINT 2 150 0; POINT 3 150 80; POINT 4 50 80; POLYLINE 1 2 3 4 CLOSE\n\
+        POINT 5 80 20; POINT 6 120 20; POINT 7 120 60; POINT 8 80 60; POLYLINE 5 6 7 8 CLOSE\n\
+        DIM X 1 2 10; DIM Z 1 4 8; DIM HX X 1 5 3; DIM X 5 6 4; DIM Z 1 5 2; DIM Z 5 8 4\n\
+        GENERATE FACES";
+    for reply in s.run_text(text) {
+        assert!(!reply.is_error(), "{}", reply.text);
+    }
+    assert_eq!(s.objects()[0].area, Some(64.0));
+    let replies = s.run_line("SET HX 20");
+    assert_eq!(s.objects()[0].area, None);
+    let text = "S: the hole of point 5 is not inside of face 1";
+    assert!(replies.iter().any(|r| r.code == Some(701) && r.text == text), "{replies:?}");
+    s.run_line("SET HX 1");
+    assert_eq!(s.objects()[0].area, Some(64.0));
+}
+
 /// Rhombi by equal lengths and an angle: every angle from one drawing, none folded.
 #[test]
 fn a_rhombus_through_all_angles() {

@@ -378,7 +378,7 @@ fn all_regions(
     chains: &Chains,
 ) -> Result<(Vec<ArrangedRegion>, bool), ArrangeError> {
     let mut found = Vec::new();
-    let mut cancelled = false;
+    let mut other = false;
     for (s, own) in members.iter().enumerate() {
         let sheet = &sheets[s];
         let mut graph: BTreeSet<(u32, u32)> = BTreeSet::new();
@@ -399,10 +399,12 @@ fn all_regions(
                     let along = frames[f].normal.dot(sheet.normal) > 0.0;
                     turns[facet.operand] += if along { count } else { -count };
                     covers.push(f);
+                    // Beyond its border a face is the other way round, as below a boss that overhangs.
+                    other |= count < 0;
                 }
             }
             if turns == [0, 0] {
-                cancelled |= !covers.is_empty();
+                other |= !covers.is_empty();
             } else {
                 found.push(ArrangedRegion { sheet: s, loops, turns, inner, covers });
             }
@@ -411,7 +413,7 @@ fn all_regions(
             return Err(ArrangeError::TooLarge);
         }
     }
-    Ok((found, cancelled))
+    Ok((found, other))
 }
 
 /// Joins kept regions of one surface to faces. `kept` are regions with whether their outward side is
