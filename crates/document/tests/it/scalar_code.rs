@@ -81,6 +81,9 @@ impl Programs {
                 format!("a[{}]", self.index(extent))
             }
             16 => format!("b[{}, {}]", self.index(3), self.index(4)),
+            17 if self.random.chance(50) => {
+                format!("quick({}, {})", self.number(d), self.number(d))
+            }
             17 => format!("f({}, {})", self.number(d), self.number(d)),
             18 => format!("g({})", self.number(d)),
             19 => format!("mean_of(a, {})", self.number(d)),
@@ -207,6 +210,7 @@ impl Programs {
              farray b[3,4] = 0.5; curve c[3];\n\
              function float small(float v) { while (|v| > 1e4) v /= 1024; return v; }\n\
              function float f(float m, float v) { if (m < 1) return v; if (m > 20) return 20; float w = f(m - 1, v*0.5); return w + m; }\n\
+             function float quick(float t, float r) { return sqrt(|t|)*r^2 + t/(r + 1) - mod(t, 3); }\n\
              function int h(float t) { x += 0.5; if (t > 3) return floor(t); return 1; }\n\
              function float mean_of(farray q, float t) { float s = 0; for (j = 1:q.d1) s += q[j]; if (t > 2) q[1] = t; return s/q.d1 + q[1]; }\n\
              subroutine change(returned float t) { t += 1; for (j = 1:3) t += j/4; }\n",
@@ -295,7 +299,7 @@ fn code_does_what_the_interpreter_does() {
 }
 
 /// Programs with something of their own: each was written for a rule of the language.
-const PROGRAMS: [&str; 12] = [
+const PROGRAMS: [&str; 13] = [
     // A fault in the middle of a call, of a loop, of a recursion.
     "float s = 0; farray a[3]; function float f(float k) { a[k] = k; return 1/(3 - k); } for (k = 1:5) s += f(k);",
     "function float f(float n) { if (n < 1) return sqrt(-1); return f(n - 1) + 1; } float s = 0; for (k = 1:3) s += f(k);",
@@ -316,6 +320,8 @@ const PROGRAMS: [&str; 12] = [
     "farray a, b[2,2]; float s = 0; for (k = 1:2) { s = a[1/(k - 1)]; s = b[k]; b[1, k] = 2; a[k] = 1; s += isset(b[1, 2]); a = {1, 2}; }",
     // A function that comes to its end without a value, one of no argument, `break` outside of loops.
     "function float f(float x) { if (x > 2) return x; } function int g() { return 1.5; } subroutine h(float x) { if (x > 1) break; x = 1/0; } float s = 0; for (k = 1:4) { s += f(k); s += g(); h(k); }",
+    // Short functions: steps, faults and declarations that fail in them.
+    "function float q(float t) { return 1/(t - 2); } function float f(float n) { if (n < 1) return q(2); return q(n)*f(n - 1) + q(q(2)); } for (k = 1:3) { float u = q(k) + f(k); float v = u + q(2*k); float s = v; }",
     // Subscripts of subscripts, and which fault comes first.
     "farray a[3] = 1, b[3,3] = 2; float s = 0; for (k = 1:5) { s += b[k, a[k/2]]; s += b[9, 1/0]; a[a[k]*4] = b[1/0, k]; farray q[0, 1/0]; }",
 ];
@@ -323,6 +329,10 @@ const PROGRAMS: [&str; 12] = [
 #[test]
 fn rules_of_the_language_hold_in_code() {
     for (k, text) in PROGRAMS.iter().enumerate() {
+        // The run ends at each of the first steps.
+        for most in 1..60 {
+            compare(text, most, &format!("program {k}, {most} steps"));
+        }
         compare(text, 5_000, &format!("program {k}"));
         // Objects and names in loops are those of the turn.
         let named =

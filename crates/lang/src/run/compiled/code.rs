@@ -112,6 +112,13 @@ pub(super) enum ScalarOp {
         b: u16,
         f: u16,
     },
+    /// `mod`, small whole numbers first.
+    Remainder {
+        to: u16,
+        a: u16,
+        b: u16,
+        f: u16,
+    },
     /// `Apply2` without a look at the result.
     Combine {
         to: u16,
@@ -222,12 +229,14 @@ pub(super) enum ScalarOp {
     ForBegin {
         at: u16,
     },
+    /// The number of the turn is kept when something may ask for it.
     ForTest {
         at: u16,
         variable: u16,
         register: u16,
         origin: u16,
         exit: u16,
+        kept: bool,
     },
     ForNext {
         at: u16,
@@ -247,6 +256,8 @@ pub(super) enum ScalarOp {
         to: u16,
         site: u16,
     },
+    /// A routine is called whose code stands here.
+    Called,
     Return {
         a: u16,
     },
@@ -383,7 +394,10 @@ pub(super) struct CodeUnit<T: Real> {
     pub inner: Vec<(u16, u16, CodeNote)>,
     /// NamePlace variables are declared, and as what.
     pub origins: Vec<(Span, Type)>,
-    pub statements: Vec<StmtId>,
+    /// The statements, each with its module: code of other routines may stand in that of a unit.
+    pub statements: Vec<(usize, StmtId)>,
+    /// The marks of the variables when a call begins.
+    pub marks: Vec<u32>,
     /// The type of the value that the routine returns.
     pub result: Option<Type>,
 }
@@ -407,6 +421,7 @@ impl<T: Real> CodeUnit<T> {
             inner: Vec::new(),
             origins: Vec::new(),
             statements: Vec::new(),
+            marks: Vec::new(),
         }
     }
 
@@ -415,6 +430,12 @@ impl<T: Real> CodeUnit<T> {
         let holds = |range: &&CodeRange| (range.start as usize..range.end as usize).contains(&at);
         let inner = self.ranges.iter().filter(holds).min_by_key(|range| range.end - range.start);
         *inner.expect("all code belongs to a statement")
+    }
+
+    /// What a declaration that fails at a place leaves without meaning.
+    pub fn poison(&self, at: usize) -> Option<(Poisonable, u16)> {
+        let holds = |range: &&CodeRange| (range.start as usize..range.end as usize).contains(&at);
+        self.ranges.iter().filter(holds).find_map(|range| range.poison)
     }
 
     /// What a fault at a place is.

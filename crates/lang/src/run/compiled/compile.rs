@@ -8,6 +8,7 @@ use super::code::{
     NO_LABEL, NamePlace, Poisonable, RegionStart, Relation, ScalarOp,
 };
 use super::names::{Meaning, ids};
+use super::registers::{UNDECLARED, declared_by};
 use crate::functions::elementary::Elementary;
 use crate::source::module::{Modules, Name, RoutineAt};
 use crate::source::scope::Scope;
@@ -188,6 +189,13 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             template[*register as usize] = *x;
         }
         self.units[unit].template = template;
+        let code = &mut self.units[unit];
+        code.marks = vec![UNDECLARED; code.variables.len()];
+        for (k, formal) in code.formals.iter().enumerate() {
+            if let Poisonable::Variable(v) = formal {
+                code.marks[*v as usize] = declared_by(k as u16);
+            }
+        }
         let code = &mut self.units[unit].code;
         for k in 1..code.len() {
             if let (ScalarOp::Step(a), ScalarOp::Step(b)) = (code[k - 1], code[k])
@@ -400,7 +408,8 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let counts = (self.progress[unit].compiled, self.progress[unit].left);
         let outcome = self.range(start, span, span, None, |this| {
             let number = this.units[unit].statements.len();
-            this.units[unit].statements.push(id);
+            let module = this.units[unit].module;
+            this.units[unit].statements.push((module, id));
             this.emit(ScalarOp::Step(number as u16))?;
             this.compound(id)
         });
@@ -733,7 +742,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let before = self.sure();
         let origin = self.origin(variable.span, Type::Float)?;
         let register = self.units[unit].variables[number as usize].register;
-        let op = ScalarOp::ForTest { at, variable: number, register, origin, exit: 0 };
+        let sites = self.units[unit].sites.len();
+        let kept = true;
+        let op = ScalarOp::ForTest { at, variable: number, register, origin, exit: 0, kept };
         let test = self.emit(op)?;
         self.set_known(what, true, true);
         // Its number stands behind the four of the loop.
@@ -741,6 +752,11 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             this.emit(ScalarOp::ForNext { at, test: test as u16 }).map(drop)
         })?;
         self.restore(&before);
+        if self.units[unit].sites.len() == sites
+            && let ScalarOp::ForTest { kept, .. } = &mut self.units[unit].code[test]
+        {
+            *kept = false;
+        }
         self.land(test)?;
         self.breaks_here()
     }

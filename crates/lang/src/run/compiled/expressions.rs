@@ -356,7 +356,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(to)
     }
 
-    fn function(&mut self, name: &'static str, f: Elementary<T>) -> Result<u16, Unfit> {
+    pub fn function(&mut self, name: &'static str, f: Elementary<T>) -> Result<u16, Unfit> {
         let at = match self.functions.iter().position(|(known, _)| *known == name) {
             Some(at) => at,
             None => {
@@ -411,7 +411,11 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             }
             (Some((name, f @ Elementary::Binary(_))), &[a, b]) => {
                 let f = self.function(name, f)?;
-                self.noted(ScalarOp::Apply2 { to, a, b, f }, CodeNote::Finite(name, span))?;
+                let op = match name {
+                    "mod" => ScalarOp::Remainder { to, a, b, f },
+                    _ => ScalarOp::Apply2 { to, a, b, f },
+                };
+                self.noted(op, CodeNote::Finite(name, span))?;
             }
             (None, &[first, ref rest @ ..]) => {
                 let (name, f) = several.ok_or(Unfit::Statement)?;
@@ -443,6 +447,11 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let at = *self.scope.routines.get(&name).ok_or(Unfit::Statement)?;
         if !self.is_free(symbol) || m.program[args].iter().any(|arg| arg.name.is_some()) {
             return Err(Unfit::Statement);
+        }
+        if let Some(to) = to
+            && self.stands_here(stmt, id, at, args, to)?
+        {
+            return Ok(());
         }
         let unit = self.routine(at)?;
         let of = self.units[unit].m.clone();

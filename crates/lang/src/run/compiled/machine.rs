@@ -8,7 +8,7 @@ use super::registers::{
     is_live,
 };
 use crate::array::lanes::not_finite;
-use crate::functions::elementary::Elementary;
+use crate::functions::elementary::{Elementary, small_remainder};
 use crate::run::interpreter::{Flow, Interpreter, MOST_CALLS, MOST_HELD, silent};
 use crate::run::usage;
 use crate::value::initialised::Known;
@@ -34,6 +34,7 @@ enum Departure<T> {
     /// The next step may be one too many, or it is time to look for a request to stop.
     Look,
     Fault,
+    TooDeep,
     Call {
         to: u16,
         site: u16,
@@ -53,8 +54,9 @@ enum Departure<T> {
 /// The place that a subscript means, from 0; as the interpreter has it.
 #[inline(always)]
 fn place(x: f64, count: usize) -> Option<usize> {
-    let at = x as usize;
-    (at as f64 == x && at >= 1 && at <= count).then(|| at - 1)
+    // No array has more elements than an i32 counts.
+    let at = x as i32;
+    (f64::from(at) == x && at >= 1 && at as usize <= count).then(|| at as usize - 1)
 }
 
 /// True when an int does not hold it.
@@ -94,6 +96,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     false => CodeOutcome::Next,
                 },
                 Departure::Fault => self.fault(region, machine),
+                Departure::TooDeep => {
+                    let code = &region.units[machine.unit];
+                    self.too_many_calls(code.range(machine.pc).fault);
+                    CodeOutcome::Stop
+                }
                 Departure::Leave => self.returned_from(region, machine, None),
                 Departure::End => return Flow::Next,
                 Departure::Interpret { site } => self.interpret(region, machine, site),
@@ -128,7 +135,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let own = &mut own[..code.template.len()];
         let (marks_of_file, marks) = machine.marks.split_at_mut(machine.first_mark);
         let (arrays_of_file, arrays) = machine.arrays.split_at_mut(machine.first_array);
-        let mut now = *steps;
+        let (mut now, mut turned) = (*steps, *turns);
         let mut pc = machine.pc;
         macro_rules! at {
             ($r:expr) => {
@@ -147,7 +154,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         macro_rules! leave {
             ($why:expr) => {{
                 machine.pc = pc - 1;
-                *steps = now;
+                (*steps, *turns) = (now, turned);
                 return $why;
             }};
         }
@@ -175,7 +182,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }};
         }
         macro_rules! for_test {
-            ($at:expr, $variable:expr, $register:expr, $origin:expr, $exit:expr) => {{
+            ($at:expr, $variable:expr, $register:expr, $origin:expr, $exit:expr, $kept:expr) => {{
                 let at = $at;
                 let k = at!(at + 3).re();
                 // Not a number of turns is none.
@@ -184,9 +191,19 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     at!($register) = x;
                     marks[$variable as usize] = declared_by($origin);
                     step!();
-                    *turns += 1;
-                    at!(at + 4) = x;
-                    at!(at + 5) = T::from(*turns as f64);
+                    turned += 1;
+                    if $kept {
+                        at!(at + 4) = x;
+                        at!(at + 5) = T::from(turned as f64);
+                    }
+                    // The first statement of the turn.
+                    if let ScalarOp::Step(statement) = ops[pc]
+                        && now + 1 < look_at
+                    {
+                        executed[statement as usize] = true;
+                        now += 1;
+                        pc += 1;
+                    }
                 } else {
                     pc = $exit as usize;
                 }
@@ -235,6 +252,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 ScalarOp::Apply2 { to, a, b, f } => {
                     let Elementary::Binary(f) = region.functions[f as usize].1 else { fault!() };
                     finite!(to, f(at!(a), at!(b)));
+                }
+                ScalarOp::Remainder { to, a, b, f } => {
+                    let (x, y) = (at!(a), at!(b));
+                    match small_remainder(x.re(), y.re()).filter(|_| T::PARTS == 1) {
+                        Some(rest) => at!(to) = T::from(rest),
+                        None => {
+                            let Elementary::Binary(f) = region.functions[f as usize].1 else {
+                                fault!()
+                            };
+                            finite!(to, f(x, y));
+                        }
+                    }
                 }
                 ScalarOp::Combine { to, a, b, f } => {
                     let Elementary::Binary(f) = region.functions[f as usize].1 else { fault!() };
@@ -384,16 +413,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     at!(at + 1) = T::from(((to - from) / step + 5e-7).floor());
                     at!(at + 3) = T::zero();
                 }
-                ScalarOp::ForTest { at, variable, register, origin, exit } => {
-                    for_test!(at, variable, register, origin, exit);
+                ScalarOp::ForTest { at, variable, register, origin, exit, kept } => {
+                    for_test!(at, variable, register, origin, exit, kept);
                 }
                 ScalarOp::ForNext { at, test } => {
                     at!(at + 3) = T::from(at!(at + 3).re() + 1.0);
                     pc = test as usize + 1;
-                    if let ScalarOp::ForTest { at, variable, register, origin, exit } =
+                    if let ScalarOp::ForTest { at, variable, register, origin, exit, kept } =
                         ops[test as usize]
                     {
-                        for_test!(at, variable, register, origin, exit);
+                        for_test!(at, variable, register, origin, exit, kept);
                     }
                 }
                 ScalarOp::Label { at, variable } => {
@@ -403,11 +432,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
                 ScalarOp::Turn { at, label } => {
                     step!();
-                    *turns += 1;
+                    turned += 1;
                     if label != NO_LABEL {
                         at!(at) = at!(label);
                     }
-                    at!(at + 1) = T::from(*turns as f64);
+                    at!(at + 1) = T::from(turned as f64);
+                }
+                ScalarOp::Called => {
+                    now += 4;
+                    if machine.frames + machine.waiting.len() >= MOST_CALLS {
+                        leave!(Departure::TooDeep);
+                    }
                 }
                 ScalarOp::Call { to, site } => leave!(Departure::Call { to, site }),
                 ScalarOp::Return { a } => leave!(Departure::Return(at!(a))),
@@ -458,26 +493,24 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             machine.marks.resize(2 * end_of_marks, UNDECLARED);
         }
         machine.registers[first..end].copy_from_slice(&callee.template);
-        machine.marks[marks..end_of_marks].fill(UNDECLARED);
+        machine.marks[marks..end_of_marks].copy_from_slice(&callee.marks);
         let arrays = machine.arrays.len();
         if !callee.arrays.is_empty() {
             let none = || ArrayRegister::nothing(UNDECLARED);
             machine.arrays.resize_with(arrays + callee.arrays.len(), none);
         }
         for (k, (formal, argument)) in callee.formals.iter().zip(&called.args).enumerate() {
-            let mark = declared_by(k as u16);
             match (*formal, *argument) {
                 (Poisonable::Variable(v), CodeArgument::Number { from }) => {
                     let register = callee.variables[v as usize].register as usize;
                     machine.registers[first + register] =
                         machine.registers[machine.first + from as usize];
-                    machine.marks[marks + v as usize] = mark;
                 }
                 (Poisonable::Array(a), CodeArgument::Array { from }) => {
                     let own = machine.first_array + from as usize;
                     let of_file = (from & !OF_FILE) as usize;
                     let from = if from & OF_FILE == 0 { own } else { of_file };
-                    let passed = machine.arrays[from].passed(mark);
+                    let passed = machine.arrays[from].passed(declared_by(k as u16));
                     machine.arrays[arrays + a as usize] = passed;
                 }
                 _ => unreachable!("arguments are of their formals' kinds"),

@@ -16,6 +16,7 @@ mod assignments;
 mod code;
 mod compile;
 mod expressions;
+mod inlined;
 pub(crate) mod kept;
 mod machine;
 mod names;
@@ -103,8 +104,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.usage.held = machine.held;
         self.hand_over(&region, &mut machine);
         for (unit, executed) in region.units.iter().zip(&machine.executed) {
-            for (&stmt, _) in unit.statements.iter().zip(executed).filter(|(_, done)| **done) {
-                self.executed.note(unit.module, stmt);
+            for (&(module, stmt), _) in
+                unit.statements.iter().zip(executed).filter(|(_, done)| **done)
+            {
+                self.executed.note(module, stmt);
             }
         }
         Some(match flow {

@@ -313,6 +313,16 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         free
     }
 
+    /// True when the file gives a name no meaning but possibly that of a routine.
+    pub fn is_free_in_file(&mut self, name: Name) -> bool {
+        let taken = self.names[0].contains_key(&name) || self.is_hidden(0, name);
+        if taken || self.scope.global(name).is_some() {
+            return false;
+        }
+        self.guard(name, NamePlace::File, Captured::Nothing);
+        true
+    }
+
     /// Leaves all names that a statement declares to the interpreter.
     pub fn hide_declared(&mut self, list: &[StmtId]) -> Result<(), Unfit> {
         let unit = self.unit;

@@ -244,7 +244,7 @@ impl<T: Scalar> RegisterMachine<T> {
 
     /// Takes its meaning from what the declaration under way, which fails, was to declare.
     pub fn poison(&mut self, region: &CodeRegion<T>) {
-        let Some((what, origin)) = region.units[self.unit].range(self.pc).poison else { return };
+        let Some((what, origin)) = region.units[self.unit].poison(self.pc) else { return };
         match what {
             Poisonable::Variable(k) => {
                 self.marks[self.first_mark + k as usize] = poisoned_by(origin);
