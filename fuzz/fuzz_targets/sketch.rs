@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use moldloft::sketch::{Files, Session};
+use moldloft::sketch::{Files, SketchSession};
 
 /// A world of one file, whatever its name.
 struct Only(String);
@@ -15,13 +15,13 @@ impl Files for Only {
 }
 
 fuzz_target!(|text: &str| {
-    let mut session = Session::with_files(Box::new(Only(text.to_owned())));
+    let mut session = SketchSession::with_files(Box::new(Only(text.to_owned())));
     for line in text.lines().take(400) {
         for reply in session.run_line(line) {
             assert!(!reply.text.contains("internal-error"));
         }
     }
-    let mut session = Session::with_files(Box::new(Only(text.to_owned())));
+    let mut session = SketchSession::with_files(Box::new(Only(text.to_owned())));
     for command in ["INPUT \"a.skt\"", "INPUT \"a.json\"", "IMPORT \"a.dxf\""] {
         let _ = session.run_line(command);
     }

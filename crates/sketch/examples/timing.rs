@@ -1,9 +1,9 @@
-//! Times of the sketch library, as told in `docs/performance.md`: the best of many repetitions.
+//! Times of the sketch library, as listed in `docs/performance.md`: the best of many repetitions.
 //!
 //! `cargo run --release -p moldloft-sketch --example timing`
 
 use moldloft_num::Vec3;
-use moldloft_sketch::{Planes, SketchSession, faces, solid, solve};
+use moldloft_sketch::{Estimate, Planes, PointId, SketchSession, faces, solid, solve};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::time::Instant;
@@ -40,6 +40,77 @@ fn stair(steps: usize) -> String {
         let _ = writeln!(text, "DIM H{k} Z {below} {low} = 1");
     }
     text + "EXTRUDE 5\n"
+}
+
+/// The drawing of a plate with square holes, 8 points each, placed by dimensions of their own.
+fn drawn_plate(holes: usize) -> String {
+    let (points, edges) = plate(holes);
+    let mut text = String::from("SKETCH PLATE\nAXES 345 40 90\n");
+    let angles = [345.0f64, 40.0, 90.0].map(f64::to_radians);
+    for (k, p) in points.iter().enumerate() {
+        let at = [p.x, p.y, p.z];
+        let u: f64 = at.iter().zip(angles).map(|(x, a)| 20.0 * x * a.cos()).sum();
+        let v: f64 = at.iter().zip(angles).map(|(x, a)| 20.0 * x * a.sin()).sum();
+        let _ = writeln!(text, "POINT {} AT {u:.3} {v:.3}", k + 1);
+    }
+    for [a, b] in &edges {
+        let axis = (0..3).find(|&k| (points[*a][k] - points[*b][k]).abs() > 1e-9).unwrap_or(0);
+        let _ = writeln!(text, "LINE {} {} TYPE {}", a + 1, b + 1, ["X", "Y", "Z"][axis]);
+    }
+    let side = points[2].x;
+    let _ = writeln!(text, "DIM X 1 2 {side}; DIM Y 1 4 {side}; DIM Z 1 5 1");
+    for k in 0..holes {
+        let first = 8 * (k + 1);
+        let (p, n) = (points[first], first + 1);
+        let _ = writeln!(text, "DIM PX{k} X 1 {n} {}; DIM PY{k} Y 1 {n} {}", p.x, p.y);
+        let _ = writeln!(text, "DIM W{k} X {n} {} 0.6; DIM E{k} Y {n} {} 0.6", n + 1, n + 3);
+        let _ = writeln!(text, "ALIGN Z 1 {n}; ALIGN Z 5 {}", n + 4);
+    }
+    text + "GENERATE FACES\n"
+}
+
+/// What a canvas asks of a plate of 1 000 points.
+fn canvas() {
+    let mut session = SketchSession::new();
+    for reply in session.run_text(&drawn_plate(124)) {
+        assert!(!reply.is_error(), "{}", reply.text);
+    }
+    let object = session.object("plate").expect("the plate").clone();
+    let count = object.drawing.points.len();
+    println!("a plate of {count} points, {} lines, 124 holes", object.drawing.lines.len());
+    let planes = Planes::of(&object.drawing);
+    let mut width = 0.6;
+    let t = best(100, || {
+        width += 1e-4;
+        let values = BTreeMap::from([("w3".to_owned(), width)]);
+        let layout = solve(&object, &planes, &values, &|| None);
+        assert!(solid(&object, &planes, &layout).is_some());
+    });
+    println!("a dimension changed, to the valid solid{t:8.3} ms");
+    let t = best(30, || {
+        width += 1e-4;
+        session.run_line(&format!("SET W3 {width}"));
+        assert!(session.solid("plate").is_some());
+    });
+    println!("SET as a command, to the solid         {t:8.3} ms");
+    let mut drawing = (*object.drawing).clone();
+    let t = best(10, || {
+        drawing.points.values_mut().take(1).for_each(|p| p.u += 0.01);
+        let planes = Planes::of(&drawing);
+        assert!(Estimate::of(&drawing, &planes, PointId(1)).is_some());
+    });
+    println!("the estimate after a moved point       {t:8.3} ms");
+    let mut at = 0.0;
+    let t = best(300, || {
+        at += 1.7;
+        std::hint::black_box(drawing.hit([at, 0.3 * at], 2.0));
+    });
+    println!("hit test                               {t:8.4} ms");
+    let t = best(300, || {
+        at -= 1.7;
+        std::hint::black_box(drawing.snap([at, 0.3 * at], 2.0));
+    });
+    println!("snap                                   {t:8.4} ms");
 }
 
 /// A plate with `holes` square holes: 12 + 12 holes edges.
@@ -113,6 +184,7 @@ fn main() {
         assert!(session.solid("stair").is_some_and(|s| !s.faces.is_empty()));
     });
     println!("SET as a command, to the solid         {t:8.3} ms");
+    canvas();
     for holes in [4, 14, 40] {
         let (points, edges) = plate(holes);
         let mut cells = 0;

@@ -207,9 +207,19 @@ fn suspect<T: Real>(body: &SketchSolid<T>) -> bool {
 /// A hole that is not inside of the border of its face, or inside of another hole: no side need cross
 /// another where a hole has left the face at once.
 fn strayed(wall: &CrossingFacet, at: &dyn Fn(u32) -> Vec3) -> Option<usize> {
+    if wall.loops.len() < 2 {
+        return None;
+    }
+    let boxes: Vec<[Vec3; 2]> =
+        wall.loops.iter().map(|c| bounds(c.iter().map(|&v| at(v)))).collect();
+    let margin = 1e-9 * (boxes[0][1] - boxes[0][0]).norm();
     (1..wall.loops.len()).find(|&k| {
         let p = at(wall.loops[k][0]);
-        let inside = |j: usize| winding(&wall.loops[j], wall.normal, at, p) != 0;
+        let inside = |j: usize| {
+            let [low, high] = boxes[j];
+            let near = (0..3).all(|i| low[i] - margin <= p[i] && p[i] <= high[i] + margin);
+            near && winding(&wall.loops[j], wall.normal, at, p) != 0
+        };
         !inside(0) || (1..wall.loops.len()).any(|j| j != k && inside(j))
     })
 }
