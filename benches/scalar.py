@@ -1,4 +1,4 @@
-"""Statements on numbers beside CPython: a sum, a call, an element, a branch, a loop in a loop.
+"""Statements on numbers beside CPython: a sum, a call, elements, a branch, a loop in a loop.
 
 Run with `python benches/scalar.py`. Both run on one thread, one after the other; times are the
 least of several repetitions, of processor time, for one turn of the loop: the difference of a long
@@ -54,6 +54,13 @@ def elements(n: int) -> list[float]:
     return a
 
 
+def updates(n: int) -> list[float]:
+    a = [0.0] * n
+    for i in range(n):
+        a[i] = a[i] * 0.5 + 1
+    return a
+
+
 def branches(n: int) -> float:
     s = 0.0
     for i in range(1, n + 1):
@@ -83,6 +90,11 @@ CASES: list[tuple[str, Callable[[int], object], str]] = [
         "element",
         elements,
         "farray a[100]; for (i = 0:{n}-1) a[mod(i, 100) + 1] = a[mod(i + 1, 100) + 1] + 1;",
+    ),
+    (
+        "indexed update",
+        updates,
+        "farray a[{n}]; for (i = 1:{n}) a[i] = a[i]*.5 + 1;",
     ),
     (
         "branch",

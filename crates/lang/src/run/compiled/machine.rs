@@ -210,9 +210,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }};
         }
         loop {
-            let op = ops[pc];
             pc += 1;
-            match op {
+            match ops[pc - 1] {
                 ScalarOp::Step(statement) => {
                     executed[statement as usize] = true;
                     step!();
