@@ -360,10 +360,33 @@ def test_wrong_names_of_faces_are_refused(words: str, message: str) -> None:
         moldloft.loads(program)
 
 
-def test_poles_are_refused_where_a_format_has_none() -> None:
-    text = """surface s[3,3]; for (i = 1:3) for (j = 1:3) s[i,j] = (i - 1)*{cos(j), sin(j), 0};
-    block b = {s, s + {0, 0, 1}}; write_p3d("b.x", b); %s("b", b);"""
+def test_poles_are_wedges(tmp_path: Path) -> None:
+    """A sector about an axis, and one about its other end: wedges of Gmsh's own volume."""
+    text = """surface s[3,4]; for (i = 1:3) for (j = 1:4) s[i,j] = (i - 1)*{cos(j/4), sin(j/4), 0};
+    block b = {s, s + {0, 0, 1}}; write_p3d("b.x", b); %s("b", b, "k1 = floor wall");"""
+    su2 = moldloft.loads(text % "write_su2").written["b"].decode().splitlines()
+    kinds = [line.split()[0] for line in su2[2:8]]
+    assert sorted(kinds) == ["12"] * 3 + ["13"] * 3
+    floor = su2.index("MARKER_TAG= floor")
+    assert [line.split()[0] for line in su2[floor + 2 : floor + 8]].count("5") == 3
+    # An edge alone that has no length leaves no cell of these formats.
+    odd = """surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}};
+    surface t = s + {0, 0, 1}; t[1,1] = t[1,2]; block b = {s, t}; %s("b", b);"""
     for name in ("write_su2", "write_gmsh"):
         with pytest.raises(moldloft.Error, match="collapsed"):
-            moldloft.loads(text % name)
+            moldloft.loads(odd % name)
     assert b"hex" in moldloft.loads(text % "write_blockmesh").written["b"]
+    gmsh = pytest.importorskip("gmsh")
+    path = tmp_path / "b.msh"
+    path.write_bytes(moldloft.loads(text % "write_gmsh").written["b"])
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(str(path))
+        types, tags, _ = gmsh.model.mesh.getElements(3)
+        volumes = [v for of in tags for v in gmsh.model.mesh.getElementQualities(of, "volume")]
+        assert sorted(types) == [5, 6] and min(volumes) > 0
+        # Triangles of the sector, by their sines.
+        assert sum(volumes) == pytest.approx(3 * 0.5 * 4 * np.sin(0.25))
+    finally:
+        gmsh.finalize()

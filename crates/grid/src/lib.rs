@@ -20,6 +20,7 @@ mod error;
 mod hex_mesh;
 mod lines;
 mod marching;
+mod pole_cells;
 mod quality;
 mod surface_grid;
 mod volume_elliptic;
@@ -36,6 +37,7 @@ pub use marching::{
     FailureCause, Hyperbolic, MarchBoundary, MarchFailure, MarchReport, Marched, Stop, StopReason,
     Support, hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,
 };
+pub use pole_cells::PoleCell;
 pub use quality::{QualityMetric, folded_cells, quality};
 pub use surface_grid::{GridSide, SurfaceGrid, framed};
 pub use volume_elliptic::{

@@ -1,15 +1,24 @@
 //! Meshes of hexahedra with named boundaries: SU2, Gmsh 4.1, blockMesh.
 
 use crate::WriteError;
-use moldloft_grid::HexMesh;
+use moldloft_grid::{HexMesh, PoleCell};
 use moldloft_num::Vec3;
 use std::fmt::Write;
 
-fn whole(mesh: &HexMesh, format: &'static str) -> Result<(), WriteError> {
-    if mesh.collapsed() == 0 {
-        return Ok(());
+/// The cells as what they are at poles.
+fn cells(mesh: &HexMesh, format: &'static str) -> Result<Vec<PoleCell>, WriteError> {
+    let what = "hexahedra collapsed to other cells than wedges, pyramids and tetrahedra";
+    mesh.pole_cells().ok_or(WriteError::CannotHold { format, what })
+}
+
+/// A face of the boundary without the corner that it has twice.
+fn corners(face: &[usize; 4]) -> Vec<usize> {
+    let mut around = face.to_vec();
+    around.dedup();
+    if around.first() == around.last() {
+        around.pop();
     }
-    Err(WriteError::CannotHold { format, what: "collapsed hexahedra" })
+    around
 }
 
 /// Numbers in their shortest exact spelling, apart by blanks.
@@ -23,15 +32,21 @@ fn nodes(of: &[usize], first: usize) -> String {
     all.join(" ")
 }
 
-/// A mesh of SU2 (SU2 documentation, Mesh File): hexahedra, and a marker for each boundary.
+/// A mesh of SU2 (SU2 documentation, Mesh File): cells by the numbers and the order of VTK, and a marker for each
+/// boundary.
 ///
 /// # Errors
-/// Collapsed cells, for which the format has no form.
+/// Collapsed cells for which the format has no form.
 pub fn su2(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
-    whole(mesh, "SU2")?;
     let mut out = format!("NDIME= 3\nNELEM= {}\n", mesh.cells.len());
-    for (k, cell) in mesh.cells.iter().enumerate() {
-        let _ = writeln!(out, "12 {} {k}", nodes(cell, 0));
+    for (k, cell) in cells(mesh, "SU2")?.iter().enumerate() {
+        let (kind, of): (_, &[usize]) = match cell {
+            PoleCell::Hexahedron(of) => (12, of),
+            PoleCell::Wedge(of) => (13, of),
+            PoleCell::Pyramid(of) => (14, of),
+            PoleCell::Tetrahedron(of) => (10, of),
+        };
+        let _ = writeln!(out, "{kind} {} {k}", nodes(of, 0));
     }
     let _ = writeln!(out, "NPOIN= {}", mesh.points.len());
     for (k, p) in mesh.points.iter().enumerate() {
@@ -41,7 +56,8 @@ pub fn su2(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
     for patch in &mesh.patches {
         let _ = writeln!(out, "MARKER_TAG= {}\nMARKER_ELEMS= {}", patch.name, patch.faces.len());
         for face in &patch.faces {
-            let _ = writeln!(out, "9 {}", nodes(face, 0));
+            let of = corners(face);
+            let _ = writeln!(out, "{} {}", if of.len() == 3 { 5 } else { 9 }, nodes(&of, 0));
         }
     }
     Ok(out.into_bytes())
@@ -50,9 +66,9 @@ pub fn su2(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
 /// A mesh of Gmsh, format 4.1, text: a physical surface for each boundary, and the volume "fluid".
 ///
 /// # Errors
-/// Collapsed cells, for which the format has no form.
+/// Collapsed cells for which the format has no form.
 pub fn gmsh(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
-    whole(mesh, "Gmsh")?;
+    let cells = cells(mesh, "Gmsh")?;
     let patches = mesh.patches.len();
     let mut out = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n");
     let _ = writeln!(out, "{}", patches + 1);
@@ -61,7 +77,7 @@ pub fn gmsh(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
     }
     let _ = writeln!(out, "3 {} \"fluid\"\n$EndPhysicalNames\n$Entities", patches + 1);
     let _ = writeln!(out, "0 0 {patches} 1");
-    let corners = |of: &mut dyn Iterator<Item = usize>| {
+    let bounds = |of: &mut dyn Iterator<Item = usize>| {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for n in of {
             for (axis, x) in mesh.points[n].to_array().into_iter().enumerate() {
@@ -72,12 +88,12 @@ pub fn gmsh(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
         format!("{} {}", spaced(low.into()), spaced(high.into()))
     };
     for (k, patch) in mesh.patches.iter().enumerate() {
-        let of = corners(&mut patch.faces.iter().flatten().copied());
+        let of = bounds(&mut patch.faces.iter().flatten().copied());
         let _ = writeln!(out, "{0} {of} 1 {0} 0", k + 1);
     }
-    let all: Vec<usize> = (1..=patches).collect();
-    let of = corners(&mut (0..mesh.points.len()));
-    let _ = writeln!(out, "1 {of} 1 {} {patches} {}", patches + 1, nodes(&all, 0));
+    let surfaces: Vec<usize> = (1..=patches).collect();
+    let of = bounds(&mut (0..mesh.points.len()));
+    let _ = writeln!(out, "1 {of} 1 {} {patches} {}", patches + 1, nodes(&surfaces, 0));
     let count = mesh.points.len();
     let _ = writeln!(out, "$EndEntities\n$Nodes\n1 {count} 1 {count}\n3 1 0 {count}");
     (1..=count).for_each(|n| {
@@ -86,21 +102,35 @@ pub fn gmsh(mesh: &HexMesh) -> Result<Vec<u8>, WriteError> {
     for p in &mesh.points {
         let _ = writeln!(out, "{}", spaced(*p));
     }
-    let faces: usize = mesh.patches.iter().map(|patch| patch.faces.len()).sum();
-    let total = faces + mesh.cells.len();
-    let _ = writeln!(out, "$EndNodes\n$Elements\n{} {total} 1 {total}", patches + 1);
-    let mut number = 0;
+    // The elements of each surface, then of the volume, those of one type together.
+    let mut all: Vec<(String, Vec<Vec<usize>>)> = Vec::new();
     for (k, patch) in mesh.patches.iter().enumerate() {
-        let _ = writeln!(out, "2 {} 3 {}", k + 1, patch.faces.len());
-        for face in &patch.faces {
-            number += 1;
-            let _ = writeln!(out, "{number} {}", nodes(face, 1));
+        for (kind, count) in [(3, 4), (2, 3)] {
+            let of = patch.faces.iter().map(corners).filter(|of| of.len() == count);
+            all.push((format!("2 {} {kind}", k + 1), of.collect()));
         }
     }
-    let _ = writeln!(out, "3 1 5 {}", mesh.cells.len());
-    for cell in &mesh.cells {
-        number += 1;
-        let _ = writeln!(out, "{number} {}", nodes(cell, 1));
+    for kind in [5, 6, 7, 4] {
+        let of = cells.iter().filter_map(|cell| match (kind, cell) {
+            (5, PoleCell::Hexahedron(of)) => Some(of.to_vec()),
+            // The triangle of a prism is counter-clockwise from the other one here.
+            (6, &PoleCell::Wedge([a, b, c, d, e, f])) => Some(vec![a, c, b, d, f, e]),
+            (7, PoleCell::Pyramid(of)) => Some(of.to_vec()),
+            (4, PoleCell::Tetrahedron(of)) => Some(of.to_vec()),
+            _ => None,
+        });
+        all.push((format!("3 1 {kind}"), of.collect()));
+    }
+    all.retain(|(_, of)| !of.is_empty());
+    let total: usize = all.iter().map(|(_, of)| of.len()).sum();
+    let _ = writeln!(out, "$EndNodes\n$Elements\n{} {total} 1 {total}", all.len());
+    let mut number = 0;
+    for (head, of) in &all {
+        let _ = writeln!(out, "{head} {}", of.len());
+        for element in of {
+            number += 1;
+            let _ = writeln!(out, "{number} {}", nodes(element, 1));
+        }
     }
     out.push_str("$EndElements\n");
     Ok(out.into_bytes())

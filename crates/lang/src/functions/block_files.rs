@@ -79,15 +79,15 @@ pub(crate) fn one_mesh(blocks: &[NamedBlock]) -> HexMesh {
     HexMesh::of_blocks(&volumes(blocks), &names)
 }
 
-/// A file, or that its format has no collapsed cells.
+/// A file, or that its format has no such collapsed cells.
 pub(crate) fn whole(
     made: Result<Vec<u8>, WriteError>,
     mesh: &HexMesh,
     format: &str,
 ) -> Result<Vec<u8>, Diagnostic> {
     made.map_err(|_| {
-        Diagnostic::error("cannot-write", format!("{format} has no collapsed hexahedra"))
-            .expected("cells with eight different corners")
+        Diagnostic::error("cannot-write", format!("{format} has no hexahedra collapsed like these"))
+            .expected("hexahedra, wedges, pyramids and tetrahedra")
             .found(format!("{} cells at poles", mesh.collapsed()))
             .help("leave the pole out, or write Plot3D, CGNS or VTK")
     })
