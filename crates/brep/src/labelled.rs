@@ -8,7 +8,7 @@ use crate::analytic::arc;
 use crate::crossing::crossing;
 use crate::seams::{FacetNet, ordered};
 use crate::{Brep, BrepEdge, BrepFace, Coedge, ExactCurve, SurfaceAxes, SurfaceShape, meet};
-use moldloft_num::{Pace, Vec3};
+use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
@@ -519,7 +519,7 @@ impl LabelledBody {
         let [p, q] = [chain.vertices[0], chain.vertices[n - 1]].map(|v| self.corners[&v]);
         let inner = chain.vertices[1..n - 1].iter().map(|&v| self.net.positions[v as usize]);
         match chain.exact {
-            Some(ExactCurve::Line { .. }) => Some((segment(p, q), None)),
+            Some(ExactCurve::Line { .. }) => Some((BrepEdge::segment(p, q), None)),
             Some(ellipse @ ExactCurve::Ellipse { centre, x, y }) => {
                 let start = ellipse.angle(p);
                 let wrapped = |d: f64| d - TAU * libm::round(d / TAU);
@@ -838,16 +838,4 @@ fn extent(points: impl Iterator<Item = Vec3>) -> [[f64; 3]; 2] {
         }
         [low, high]
     })
-}
-
-fn segment(a: Vec3, b: Vec3) -> Nurbs<1> {
-    Nurbs {
-        degrees: [1],
-        knots: [vec![0.0, 0.0, 1.0, 1.0]],
-        points: vec![a, b],
-        weights: None,
-        error: 0.0,
-        exact: true,
-        paces: [Pace::Even],
-    }
 }

@@ -23,7 +23,7 @@ pub use check::{Fault, ShellFacts};
 pub use labelled::{FacetFault, FacetFaultKind, LabelledFacets};
 pub use meet::{ExactCurve, meet};
 
-use moldloft_num::Vec3;
+use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 
 /// Vertices, edges, faces and the parts that they make.
@@ -169,6 +169,21 @@ pub struct Wire {
     pub layers: Vec<String>,
     /// The curve.
     pub curve: Nurbs<1>,
+}
+
+impl BrepEdge {
+    /// The curve of a straight edge, at even pace.
+    pub fn segment(a: Vec3, b: Vec3) -> Nurbs<1> {
+        Nurbs {
+            degrees: [1],
+            knots: [vec![0.0, 0.0, 1.0, 1.0]],
+            points: vec![a, b],
+            weights: None,
+            error: 0.0,
+            exact: true,
+            paces: [Pace::Even],
+        }
+    }
 }
 
 impl Brep {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 import os
 import re
 import sys
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = ["Imported", "ImportedFace", "read", "read_shape"]
+
+_PLACES = 33
+"""Places between knots at which a side is compared with an edge of the parameters."""
 
 
 @contextmanager
@@ -464,6 +468,11 @@ def _face(face: Any, edges: Any, name: str) -> ImportedFace:
     loops = [_cycle(TopoDS.Wire(wire), face, edges, frame) for wire in wires]
     traces = [trace for cycle in loops for _, _, trace in cycle]
     natural = bool(traces) and all(border(trace) for trace in traces)
+    if traces and not natural:
+        held = [[(n, b, _on_border(n, t, made, edges)) for n, b, t in cycle] for cycle in loops]
+        moved = [[(n, b, t) for n, b, t in cycle if t is not None] for cycle in held]
+        natural = sum(map(len, moved)) == len(traces)
+        loops = moved if natural else loops
     return ImportedFace(name, made, loops, natural, False)
 
 
@@ -516,6 +525,40 @@ def _chained(sides: list[tuple[int, bool, Nurbs]]) -> list[tuple[int, bool, Nurb
         away = [float(np.linalg.norm(t.points[-1 if b else 0] - end)) for _, b, t in left]
         chain.append(left.pop(int(np.argmin(away))))
     return chain
+
+
+def _on_border(number: int, trace: Nurbs, surface: Nurbs, edges: Any) -> Nurbs | None:
+    """A side as an edge of the parameters, where that is the same edge in space, or nothing.
+
+    Towards a pole one parameter has ever less effect, and programs write it with any error there.
+    """
+    from OCP.BRep import BRep_Tool
+    from OCP.TopoDS import TopoDS
+
+    if border(trace):
+        return trace
+    near = BRep_Tool.Tolerance_s(TopoDS.Edge(edges.FindKey(number)))
+    spans = itertools.pairwise(np.unique(trace.knots[0]))
+    t = np.concatenate([np.linspace(a, b, _PLACES) for a, b in spans])
+    u, v, _ = np.clip(trace(t), 0, 1).T
+    places = surface(u, v)
+    for k, end in itertools.product((0, 1), (0.0, 1.0)):
+        edge = np.full(len(t), end)
+        moved = surface(edge, v) if k == 0 else surface(u, edge)
+        if np.linalg.norm(moved - places, axis=1).max() <= near:
+            points = trace.points.copy()
+            points[:, k] = end
+            # Ends at a corner but for the same tolerance are there.
+            for last in (0, -1):
+                corner = points[last].copy()
+                corner[1 - k] = round(corner[1 - k])
+                here, there = (
+                    surface(*np.clip(p[:2, None], 0, 1))[0] for p in (points[last], corner)
+                )
+                if np.linalg.norm(here - there) <= near:
+                    points[last] = corner
+            return Nurbs(trace.degrees, trace.knots, points, trace.weights)
+    return None
 
 
 def border(trace: Nurbs) -> str:

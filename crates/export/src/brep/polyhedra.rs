@@ -4,9 +4,8 @@ use crate::ExportFailure;
 use moldloft_brep::{Brep, BrepEdge, BrepFace, Coedge, SurfaceShape};
 use moldloft_diag::Diagnostic;
 use moldloft_mesh::Mesh;
-use moldloft_num::{Pace, Vec3};
+use moldloft_num::Vec3;
 use moldloft_picture::PALETTE;
-use moldloft_spline::nurbs::Nurbs;
 use std::collections::HashMap;
 
 /// Vertices within this share of the size from a plane lie in it.
@@ -164,7 +163,11 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Ex
                 let edge = *edges.entry((a.min(b), a.max(b))).or_insert_with(|| {
                     let [p, q] = [a.min(b), a.max(b)].map(|v| brep.vertices[v]);
                     let ends = [a.min(b), a.max(b)];
-                    brep.edges.push(BrepEdge { ends, curve: segment(p, q), ellipse: None });
+                    brep.edges.push(BrepEdge {
+                        ends,
+                        curve: BrepEdge::segment(p, q),
+                        ellipse: None,
+                    });
                     brep.edges.len() - 1
                 });
                 sides.push(Coedge { edge, forward: a < b, trace: None, alike: true });
@@ -188,16 +191,4 @@ pub fn add(brep: &mut Brep, mesh: &Mesh, name: &str, size: f64) -> Result<(), Ex
         brep.gap = brep.gap.max(near);
     }
     Ok(())
-}
-
-fn segment(a: Vec3, b: Vec3) -> Nurbs<1> {
-    Nurbs {
-        degrees: [1],
-        knots: [vec![0.0, 0.0, 1.0, 1.0]],
-        points: vec![a, b],
-        weights: None,
-        error: 0.0,
-        exact: true,
-        paces: [Pace::Even],
-    }
 }
