@@ -153,10 +153,11 @@ def read(path: Path, metres: float) -> Imported:
     iges = path.suffix.lower() in (".igs", ".iges")
     text = data.decode("latin-1")
     source = IgesText.of(path, text) if iges else StepText.of(path, text)
-    found, done = _held(source, iges, metres)
+    # OCCT may end the process over an entity that is missing: it gets what needs none.
+    found, done = _held(source.sound() if isinstance(source, StepText) else source, iges, metres)
     if isinstance(source, StepText) and len(found.faces) < len(source.whole_faces):
         # One missing vertex may take a body with it.
-        rest, again = _held(source.only_faces(), iges, metres)
+        rest, again = _held(source.only_faces().sound(), iges, metres)
         if again and len(rest.faces) > len(found.faces):
             rest.remarks.append(
                 f"the {len(rest.faces)} faces that are whole are kept, their body is not"

@@ -247,6 +247,33 @@ class StepText:
         """The faces of which nothing is missing."""
         return [n for n in self.faces if not self.missing(n)]
 
+    @cached_property
+    def hurt(self) -> set[int]:
+        """The entities that need, themselves or through others, what the file does not hold."""
+        users: dict[int, list[int]] = {}
+        for n, needs in self.references.items():
+            for m in needs:
+                users.setdefault(m, []).append(n)
+        open_ = [m for m in users if m not in self.references]
+        found: set[int] = set()
+        while open_:
+            for n in users.get(open_.pop(), ()):
+                if n not in found:
+                    found.add(n)
+                    open_.append(n)
+        return found
+
+    def sound(self) -> StepText:
+        """The file without the entities that need what it does not hold."""
+        if not self.hurt:
+            return self
+
+        def kept(found: re.Match[str]) -> str:
+            return "" if int(found[1]) in self.hurt else found[0]
+
+        pattern = rf"#(\d+)\s*=\s*(?:{_STRING}|[^;'])*;"
+        return StepText(re.sub(pattern, kept, self.text), list(self.remarks), dict(self.names))
+
     def only_faces(self) -> StepText:
         """A file of the faces that are whole, as one shell; for what holds them may be lost."""
         remarks = list(self.remarks)
