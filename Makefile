@@ -1,7 +1,7 @@
 # `make demo` needs only Rust and Python >= 3.10; the workbench's page needs Node.js besides. CI runs `make test`.
 #
-# The demo and the tests run a development build of the extension, which shares all that it compiles with the Rust tests and
-# checks its own assertions, so that nothing is compiled twice; `make optimised` and `pip install .` build what users get.
+# The tests run a development build of the extension, which shares all that it compiles with the Rust tests and checks its own
+# assertions, so that nothing is compiled twice; `make optimised` and `pip install .` build what users get.
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -45,13 +45,22 @@ help: ## this list
 
 setup: $(VENV)/.with-tests $(VENV)/.with-browser ## .venv with the package and everything that the tests need
 
-# The virtual environment, with the package built from this checkout.
+# The virtual environment with the package of this checkout: as the tests need it or, for a first look, without any optimisation,
+# which takes a quarter of the time to build.
+define INSTALL
+@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+@echo "building and installing moldloft into $(VENV) (a first build takes a few minutes)"
+@$(PIP) install 'maturin>=1.10,<2'
+@PATH="$$PWD/$(BIN):$$PATH" MATURIN_PEP517_ARGS="--profile $(PROFILE)" $(PIP) install --no-build-isolation --editable .
+@touch $@
+endef
+
 $(VENV)/.installed: $(SOURCES)
-	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	@echo "building and installing moldloft into $(VENV) (a first build takes a few minutes)"
-	@$(PIP) install 'maturin>=1.10,<2'
-	@PATH="$$PWD/$(BIN):$$PATH" MATURIN_PEP517_ARGS="--profile $(PROFILE)" $(PIP) install --no-build-isolation --editable .
-	@touch $@
+	$(INSTALL)
+
+$(VENV)/.for-demo: PROFILE = demo
+$(VENV)/.for-demo: $(SOURCES)
+	$(INSTALL)
 
 $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
 	@echo "installing the packages that the tests need into $(VENV)"
@@ -89,9 +98,10 @@ $(VENV)/.with-browser:
 	fi
 	@touch $@
 
-demo: $(VENV)/.installed ## the sailing yacht of examples/sailboat as panels, files, hydrostatics and a picture
+# Where a package was built for the tests or for users, that one is used and kept.
+demo: $(or $(wildcard $(VENV)/.installed),$(VENV)/.for-demo) ## the sailing yacht of examples/sailboat as panels, files, hydrostatics and a picture
 	@$(BIN)/moldloft build examples/sailboat/hull.sdl --to gdf stl obj vtp vts p3d svg png -o out/sailboat
-	@echo "this is the development build of the package, which is slower: \`make optimised\` builds the one that users get"
+	@test -e $(VENV)/.installed || echo "this build of the package is not optimised: \`make optimised\` builds the one that users get"
 
 optimised: ## the package in .venv anew, as users get it: for benchmarks
 	@rm -f $(VENV)/.installed

@@ -36,6 +36,7 @@ WITHOUT = {
     "border-not-joined",
     "cancelled",
     "diverged",
+    "engine-ended",
     "faces-apart",
     "faces-tangled",
     "internal-error",

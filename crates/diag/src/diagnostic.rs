@@ -1,6 +1,6 @@
 //! The diagnostic and its builder.
 
-use crate::Span;
+use crate::{Sources, Span};
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
@@ -204,9 +204,7 @@ impl Diagnostic {
     /// Proposes the nearest of `candidates`, if one is near enough to `name` to be what was meant.
     #[must_use]
     pub fn suggest<'a>(self, name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
-        let near =
-            crate::nearest(name, candidates).map(|near| format!("a similar name exists: `{near}`"));
-        self.maybe_help(near)
+        self.maybe_help(crate::nearest(name, candidates).map(crate::did_you_mean))
     }
 
     /// Sets the change of the text that fixes it.
@@ -219,6 +217,25 @@ impl Diagnostic {
     ) -> Self {
         self.0.edit = Some(Edit { span, replacement: replacement.into(), title: title.into() });
         self
+    }
+
+    /// The change of the text that fixes it: its own, or the name that a help proposes in place of the one at fault.
+    pub fn correction(&self, sources: &Sources) -> Option<Edit> {
+        if self.edit.is_some() {
+            return self.edit.clone();
+        }
+        let Span { file, start, end } = self.span();
+        let there = sources.text(file)?.get(start as usize..end as usize)?;
+        // A name may be written as a text.
+        let word = there.trim_matches('"');
+        let near = self.help.iter().find_map(|help| crate::nearest::proposed(help))?;
+        crate::nearest(word, [near])?;
+        let quotes = (there.len() - word.len()) as u32 / 2;
+        Some(Edit {
+            span: Span::new(file, start + quotes, end - quotes),
+            replacement: near.to_string(),
+            title: format!("change `{word}` to `{near}`"),
+        })
     }
 
     /// Names the object it is about.
@@ -306,6 +323,6 @@ mod tests {
     #[test]
     fn suggests_the_nearest_name() {
         let d = Diagnostic::error("unknown-name", "no `hul`").suggest("hul", ["keel", "hull"]);
-        assert_eq!(d.help, ["a similar name exists: `hull`"]);
+        assert_eq!(d.help, ["did you mean `hull`?"]);
     }
 }

@@ -37,7 +37,7 @@ mod span;
 
 pub use data::{DiagnosticData, EditData, LabelData};
 pub use diagnostic::{Diagnostic, DiagnosticFields, Edit, Label, Severity};
-pub use nearest::{edit_distance, nearest};
+pub use nearest::{did_you_mean, edit_distance, nearest};
 pub use render::{render, render_all};
 pub use sources::{Location, Sources};
 pub use span::{FileId, Span};

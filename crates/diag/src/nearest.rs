@@ -29,6 +29,16 @@ pub fn edit_distance(a: &str, b: &str) -> usize {
     last[b.len()]
 }
 
+/// The help that proposes a name.
+pub fn did_you_mean(near: impl std::fmt::Display) -> String {
+    format!("did you mean `{near}`?")
+}
+
+/// The name that a help of [`did_you_mean`] proposes.
+pub(crate) fn proposed(help: &str) -> Option<&str> {
+    help.strip_prefix("did you mean `")?.strip_suffix("`?").filter(|name| !name.contains('`'))
+}
+
 /// The candidate nearest to `name` that could be what was meant: equal but for case, or within a third of its length
 /// (at least one edit). The first of equally near ones. Names longer than 100 characters have no near one.
 ///

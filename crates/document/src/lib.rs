@@ -36,7 +36,10 @@ mod solve;
 
 pub use convert::ModelFormat;
 pub use document::{Document, Panelled};
-pub use editor::{Completion, CompletionKind};
+pub use editor::{
+    ArgumentHint, CallSignature, Completion, CompletionKind, NameRole, NameToken, Workspace,
+    WorkspacePlace,
+};
 pub use measures::blocks::Blocked;
 pub use measures::contour_lines::ContourSection;
 pub use measures::floating::{FloatAnswer, FloatRequest, FlotationOptions, Immersion, WeightItem};

@@ -1,43 +1,39 @@
-//! What the server answers.
+//! The open texts and their runs: what is run when, what is reported of it, which requests wait for it.
 
-use crate::position::{offset, position, range};
+use crate::answers::{self, Answer};
+use crate::index::{Index, OpenText};
+use crate::lines::{Lines, apply};
+use crate::places::{Buffers, OpenFiles, path_of, uri_of};
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
+use lsp_types::notification as note;
+use lsp_types::notification::Notification as _;
 use moldloft::budget::Budget;
-use moldloft::diag::{DiagnosticData, LabelData, Severity};
-use moldloft::document::{CompletionKind, Document, NoFiles, World};
-use moldloft::host::FileWorld;
-use moldloft::lang::LIBRARIES;
+use moldloft::diag::{DiagnosticData, LabelData, Severity, Sources};
+use moldloft::document::{Document, NoFiles, World};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-use std::io;
+use std::collections::{BTreeMap, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::Sender;
+use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
-
-/// Code of the protocol for a method that the server does not know.
-const METHOD_NOT_FOUND: i64 = -32601;
-/// Code for what cannot be done to this text.
-const REQUEST_FAILED: i64 = -32803;
-
-/// Code for what the text was changed under.
-const CONTENT_MODIFIED: i64 = -32801;
 
 /// How long a program may run before it is stopped, so that an endless loop is reported soon.
 const STOP_TIMEOUT: Duration = Duration::from_secs(2);
 /// How long a run may take to notice that it was stopped; then it is left to itself.
 const EXIT_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Whether more messages are awaited.
-pub enum Next {
-    Message,
-    End { orderly: bool },
-}
+/// The notice of the engine that a run of a text begins or has ended.
+pub const RUNNING: &str = "$/moldloft/running";
+/// The notice to the engine that a text ended an engine and is not run before it is changed.
+pub const HELD: &str = "$/moldloft/held";
 
 /// What the server waits for.
 pub enum Event {
-    /// A message of the editor; nothing when the editor has gone.
-    Message(io::Result<Option<Value>>),
+    /// A message of the editor.
+    Message(Message),
+    /// The editor has gone.
+    Gone,
     Ran(Ran),
 }
 
@@ -50,14 +46,16 @@ pub struct Ran {
 }
 
 /// A text that an editor has open.
-struct OpenDocument {
-    text: String,
-    version: Value,
+pub struct OpenDocument {
+    pub text: String,
+    version: Option<i32>,
+    /// How often it was changed.
+    changes: u64,
     /// Other texts that diagnostics of this one were reported for.
-    told: Vec<String>,
+    reported: Vec<String>,
     state: RunState,
-    /// Requests that wait for the end of the run: id, method, parameters.
-    waiting: Vec<(Value, String, Value)>,
+    /// Requests that wait for the end of the run.
+    waiting: Vec<Request>,
 }
 
 /// What is known of a text.
@@ -96,42 +94,98 @@ impl Running {
 /// The open texts. Programs run on threads of their own: whatever a text says, the server answers.
 pub struct Server {
     open: BTreeMap<String, OpenDocument>,
-    shut_down: bool,
+    folders: Vec<PathBuf>,
+    buffers: Buffers,
+    index: Index,
     events: Sender<Event>,
     runs: u64,
-    /// Answers to requests about texts that are there no more.
-    refused: Vec<Value>,
+    /// Texts that ended an engine, and what to say of them.
+    held: HashMap<String, String>,
+    /// Messages that go out with the next.
+    out: Vec<Message>,
 }
 
 impl Server {
-    /// A server that receives the ends of its runs by these events.
-    pub fn new(events: Sender<Event>) -> Self {
-        Self { open: BTreeMap::new(), shut_down: false, events, runs: 0, refused: Vec::new() }
+    /// A server that receives the ends of its runs by these events; `folders` are those of the workspace.
+    pub fn new(events: Sender<Event>, folders: Vec<PathBuf>) -> Self {
+        Self {
+            open: BTreeMap::new(),
+            folders,
+            buffers: Buffers::default(),
+            index: Index::default(),
+            events,
+            runs: 0,
+            held: HashMap::new(),
+            out: Vec::new(),
+        }
     }
 
-    /// The messages that answer one.
-    pub fn handle(&mut self, message: &Value) -> (Vec<Value>, Next) {
-        let method = message["method"].as_str().unwrap_or("");
-        let params = &message["params"];
-        if method == "exit" {
-            return (Vec::new(), Next::End { orderly: self.shut_down });
+    /// The messages that are ready to go out.
+    pub fn take_messages(&mut self) -> Vec<Message> {
+        std::mem::take(&mut self.out)
+    }
+
+    /// Answers a request, or keeps it until the run of its text is done.
+    pub fn request(&mut self, request: Request) {
+        let uri = request.params["textDocument"]["uri"].as_str().unwrap_or("").to_string();
+        if let Some(open) = self.open.get_mut(&uri)
+            && matches!(open.state, RunState::Running(_))
+            && answers::needs_run(&request.method)
+        {
+            open.waiting.push(request);
+            return;
         }
-        let answers = match message.get("id") {
-            Some(id) if !method.is_empty() => {
-                let uri = params["textDocument"]["uri"].as_str().unwrap_or("");
-                match self.open.get_mut(uri) {
-                    Some(open)
-                        if matches!(open.state, RunState::Running(_)) && needs_run(method) =>
-                    {
-                        open.waiting.push((id.clone(), method.to_string(), params.clone()));
-                        Vec::new()
-                    }
-                    _ => vec![answered(id, self.request(method, params))],
-                }
-            }
-            _ => self.notice(method, params),
+        let answer = self.answer(&request);
+        self.respond(request.id, answer);
+    }
+
+    fn respond(&mut self, id: RequestId, answer: Answer) {
+        let response = match answer {
+            Ok(value) => Response::new_ok(id, value),
+            Err((code, text)) => Response::new_err(id, code, text),
         };
-        (answers, Next::Message)
+        self.out.push(response.into());
+    }
+
+    fn answer(&mut self, request: &Request) -> Answer {
+        let (method, params) = (request.method.as_str(), &request.params);
+        let uri = params["textDocument"]["uri"].as_str().unwrap_or("").to_string();
+        if answers::needs_workspace(method) {
+            return self.of_workspace(method, params, &uri);
+        }
+        if !method.starts_with("textDocument/") {
+            return Err(unknown(method));
+        }
+        let Some(open) = self.open.get_mut(&uri) else {
+            return Err((ErrorCode::RequestFailed as i32, format!("`{uri}` is not open")));
+        };
+        if let Some(answer) = answers::of_text(method, &open.text) {
+            return answer;
+        }
+        match &mut open.state {
+            RunState::Ready(document, _) => {
+                let folder = path_of(&uri).and_then(|path| Some(path.parent()?.to_path_buf()));
+                let asked = answers::Asked { uri: &uri, text: &open.text, folder };
+                answers::of_document(method, params, document, &asked)
+            }
+            _ if answers::needs_run(method) => {
+                Err((ErrorCode::RequestFailed as i32, stopped_text()))
+            }
+            _ => Err(unknown(method)),
+        }
+    }
+
+    /// What concerns the names of all texts of the workspace.
+    fn of_workspace(&mut self, method: &str, params: &Value, uri: &str) -> Answer {
+        let open: Vec<OpenText> =
+            self.open.iter().map(|(uri, o)| (uri.as_str(), o.changes, o.text.as_str())).collect();
+        self.index.refresh(&self.folders, &open);
+        // What a kind, a function or a library declares is known to a run alone.
+        let document = self.open.get(uri).and_then(|o| match &o.state {
+            RunState::Ready(document, _) => Some(&**document),
+            _ => None,
+        });
+        answers::of_workspace(method, params, uri, &self.index, &open, document)
     }
 
     /// When [`Self::tick`] is to be called.
@@ -144,7 +198,7 @@ impl Server {
     }
 
     /// Cancels runs over the time limit and abandons those that do not stop.
-    pub fn tick(&mut self) -> Vec<Value> {
+    pub fn tick(&mut self) {
         let now = Instant::now();
         let mut late = Vec::new();
         for (uri, open) in &mut self.open {
@@ -157,54 +211,47 @@ impl Server {
                 }
             }
         }
-        let mut answers = Vec::new();
         for (uri, outdated) in late {
             if outdated {
                 self.start(&uri, None);
                 continue;
             }
-            let Some(open) = self.open.get_mut(&uri) else { continue };
-            open.state = RunState::Unknown;
-            let place = json!({"line": 0, "character": 0});
-            let diagnostic = json!({
-                "range": {"start": place, "end": place},
-                "severity": 1,
-                "code": "cancelled",
-                "source": "moldloft",
-                "message": stopped_text(),
-            });
-            answers.push(published(&uri, &open.version, &[diagnostic]));
-            answers.extend(self.answer_waiting(&uri));
+            self.publish_one(&uri, "cancelled", &stopped_text());
+            if let Some(open) = self.open.get_mut(&uri) {
+                open.state = RunState::Unknown;
+            }
+            self.answer_waiting(&uri);
         }
-        answers
     }
 
     /// Takes what came of a run.
-    pub fn ran(&mut self, ran: Ran) -> Vec<Value> {
+    pub fn ran(&mut self, ran: Ran) {
         let Ran { uri, serial, document } = ran;
-        let Some(open) = self.open.get_mut(&uri) else { return Vec::new() };
-        let RunState::Running(running) = &open.state else { return Vec::new() };
+        self.out.push(running(&uri, serial, false));
+        let Some(open) = self.open.get_mut(&uri) else { return };
+        let RunState::Running(running) = &open.state else { return };
         if running.serial != serial {
-            return Vec::new();
+            return;
         }
         if running.outdated {
             self.start(&uri, document);
-            return Vec::new();
+            return;
         }
         let stopped = running.stopped.is_some();
         open.state = match document {
             Some(document) => RunState::Ready(document, stopped),
             None => RunState::Unknown,
         };
-        let mut answers = self.diagnostics(&uri);
-        answers.extend(self.answer_waiting(&uri));
-        answers
+        self.publish(&uri);
+        self.answer_waiting(&uri);
     }
 
-    fn answer_waiting(&mut self, uri: &str) -> Vec<Value> {
+    fn answer_waiting(&mut self, uri: &str) {
         let waiting = self.open.get_mut(uri).map(|open| std::mem::take(&mut open.waiting));
-        let waiting = waiting.unwrap_or_default().into_iter();
-        waiting.map(|(id, method, params)| answered(&id, self.request(&method, &params))).collect()
+        for request in waiting.unwrap_or_default() {
+            let answer = self.answer(&request);
+            self.respond(request.id, answer);
+        }
     }
 
     /// Runs the text that is there now, on what its last run left when there is that.
@@ -220,8 +267,9 @@ impl Server {
             stopped: None,
             outdated: false,
         });
+        self.out.push(running(uri, self.runs, true));
         let (uri, text, serial) = (uri.to_string(), open.text.clone(), self.runs);
-        let events = self.events.clone();
+        let (events, buffers) = (self.events.clone(), self.buffers.clone());
         // As much as a program's first thread has, for texts that nest deeply.
         let thread = std::thread::Builder::new().stack_size(8 << 20);
         let begun = thread.spawn(move || {
@@ -230,7 +278,7 @@ impl Server {
                     document.set_text(&text);
                     document
                 }
-                None => Box::new(opened(&uri, &text, budget)),
+                None => Box::new(opened(&uri, &text, budget, buffers)),
             });
             let document = catch_unwind(run).ok();
             moldloft::budget::settle();
@@ -251,12 +299,7 @@ impl Server {
                 running.outdated = true;
                 let late = running.deadline() <= Instant::now();
                 open.state = RunState::Running(running);
-                // What waits asked about another text.
-                let waiting = std::mem::take(&mut open.waiting);
-                let changed = |(id, ..): (Value, String, Value)| {
-                    answered(&id, Err((CONTENT_MODIFIED, "the text was changed".into())))
-                };
-                self.refused.extend(waiting.into_iter().map(changed));
+                self.refuse_waiting(uri, "the text was changed");
                 if late || afresh {
                     self.start(uri, None);
                 }
@@ -266,94 +309,170 @@ impl Server {
         }
     }
 
-    fn notice(&mut self, method: &str, params: &Value) -> Vec<Value> {
-        let uri = params["textDocument"]["uri"].as_str().unwrap_or("").to_string();
-        match method {
-            "textDocument/didOpen" => {
-                let item = &params["textDocument"];
-                let open = OpenDocument {
-                    text: item["text"].as_str().unwrap_or("").to_string(),
-                    version: item["version"].clone(),
-                    told: Vec::new(),
-                    state: RunState::Unknown,
-                    waiting: Vec::new(),
-                };
-                self.stop(&uri);
-                self.open.insert(uri.clone(), open);
-                self.start(&uri, None);
-            }
-            "textDocument/didChange" => {
-                let Some(open) = self.open.get_mut(&uri) else { return Vec::new() };
-                let text = &mut open.text;
-                for change in params["contentChanges"].as_array().into_iter().flatten() {
-                    let new = change["text"].as_str().unwrap_or("");
-                    match change.get("range") {
-                        Some(range) => {
-                            let start = offset(text, &range["start"]) as usize;
-                            let end = (offset(text, &range["end"]) as usize).max(start);
-                            text.replace_range(start..end, new);
-                        }
-                        None => *text = new.to_string(),
-                    }
-                }
-                open.version = params["textDocument"]["version"].clone();
-                self.run_again(&uri, false);
-            }
-            "textDocument/didSave" => {
-                // Other texts may load this one.
-                let all: Vec<String> = self.open.keys().filter(|o| **o != uri).cloned().collect();
-                for other in all {
-                    self.run_again(&other, true);
+    /// What waits asked about another text.
+    fn refuse_waiting(&mut self, uri: &str, why: &str) {
+        let Some(open) = self.open.get_mut(uri) else { return };
+        for request in std::mem::take(&mut open.waiting) {
+            self.respond(request.id, Err((ErrorCode::ContentModified as i32, why.into())));
+        }
+    }
+
+    /// Takes a notice; one that cannot be read is passed over, as the protocol asks.
+    pub fn notice(&mut self, notice: Notification) {
+        match notice.method.as_str() {
+            note::DidOpenTextDocument::METHOD => {
+                if let Ok(params) =
+                    serde_json::from_value::<lsp_types::DidOpenTextDocumentParams>(notice.params)
+                {
+                    self.opened(params.text_document);
                 }
             }
-            "textDocument/didClose" => {
-                self.stop(&uri);
-                let told = self.open.remove(&uri).map_or(Vec::new(), |open| open.told);
-                let all = std::iter::once(uri).chain(told);
-                let mut answers = std::mem::take(&mut self.refused);
-                answers.extend(all.map(|uri| published(&uri, &Value::Null, &[])));
-                return answers;
+            note::DidChangeTextDocument::METHOD => {
+                if let Ok(params) =
+                    serde_json::from_value::<lsp_types::DidChangeTextDocumentParams>(notice.params)
+                {
+                    self.changed(&params);
+                }
+            }
+            note::DidSaveTextDocument::METHOD => {
+                // Other texts may read what was saved by other ways than `load`.
+                let uri = notice.params["textDocument"]["uri"].as_str().unwrap_or("");
+                let all: Vec<String> = self.open.keys().filter(|o| *o != uri).cloned().collect();
+                all.iter().for_each(|other| self.run_again(other, true));
+            }
+            note::DidCloseTextDocument::METHOD => {
+                let uri = notice.params["textDocument"]["uri"].as_str().unwrap_or("");
+                self.closed(&uri.to_string());
+            }
+            note::DidChangeWorkspaceFolders::METHOD => {
+                let event = &notice.params["event"];
+                let folders = |key: &str| folders_of(&event[key]);
+                let removed = folders("removed");
+                self.folders.retain(|folder| !removed.contains(folder));
+                self.folders.extend(folders("added"));
+            }
+            HELD => {
+                let said = |key: &str| notice.params[key].as_str().unwrap_or("").to_string();
+                self.held.insert(said("uri"), said("message"));
             }
             _ => {}
         }
-        std::mem::take(&mut self.refused)
+    }
+
+    fn opened(&mut self, item: lsp_types::TextDocumentItem) {
+        let uri = item.uri.to_string();
+        self.stop(&uri);
+        let open = OpenDocument {
+            text: item.text,
+            version: Some(item.version),
+            changes: self.open.get(&uri).map_or(0, |before| before.changes + 1),
+            reported: Vec::new(),
+            state: RunState::Unknown,
+            waiting: Vec::new(),
+        };
+        self.open.insert(uri.clone(), open);
+        self.buffer(&uri);
+        match self.held.get(&uri).cloned() {
+            Some(why) => self.publish_one(&uri, "engine-ended", &why),
+            None => self.start(&uri, None),
+        }
+    }
+
+    fn changed(&mut self, params: &lsp_types::DidChangeTextDocumentParams) {
+        let uri = params.text_document.uri.to_string();
+        let Some(open) = self.open.get_mut(&uri) else { return };
+        apply(&mut open.text, &params.content_changes);
+        open.version = Some(params.text_document.version);
+        open.changes += 1;
+        self.held.remove(&uri);
+        self.buffer(&uri);
+        self.run_again(&uri, false);
+        self.run_dependents(&uri);
+    }
+
+    fn closed(&mut self, uri: &String) {
+        self.stop(uri);
+        let Some(open) = self.open.remove(uri) else { return };
+        if let Some(path) = path_of(uri).and_then(|path| path.canonicalize().ok()) {
+            self.buffers.write().unwrap_or_else(PoisonError::into_inner).remove(&path);
+        }
+        for uri in std::iter::once(uri.clone()).chain(open.reported) {
+            self.out.push(published(&uri, None, &[]));
+        }
+        // They see the file as it is saved from now on.
+        self.run_dependents(uri);
+    }
+
+    /// Other texts see what is open, not what was saved.
+    fn buffer(&mut self, uri: &str) {
+        let path = path_of(uri).and_then(|path| path.canonicalize().ok());
+        if let (Some(path), Some(open)) = (path, self.open.get(uri)) {
+            let mut buffers = self.buffers.write().unwrap_or_else(PoisonError::into_inner);
+            buffers.insert(path, open.text.as_str().into());
+        }
+    }
+
+    /// Runs the open texts again that read the file of this one.
+    fn run_dependents(&mut self, uri: &str) {
+        let Some(path) = path_of(uri).and_then(|path| path.canonicalize().ok()) else { return };
+        let reads = |document: &Document| {
+            let sources: &Sources = document.sources();
+            sources.ids().skip(1).any(|id| sources.name(id).is_some_and(|n| Path::new(n) == path))
+        };
+        let others = self.open.iter().filter(|(other, open)| {
+            other.as_str() != uri
+                && match &open.state {
+                    RunState::Ready(document, _) => reads(document),
+                    RunState::Running(_) => true,
+                    RunState::Unknown => false,
+                }
+        });
+        let others: Vec<String> = others.map(|(other, _)| other.clone()).collect();
+        others.iter().for_each(|other| self.run_again(other, true));
     }
 
     /// Stops the run of a text; nobody waits for its end.
     fn stop(&mut self, uri: &str) {
-        if let Some(open) = self.open.get_mut(uri) {
-            if let RunState::Running(running) = &mut open.state {
-                running.stop();
-            }
-            for (id, ..) in open.waiting.drain(..) {
-                let changed = Err((CONTENT_MODIFIED, "the text was closed".into()));
-                self.refused.push(answered(&id, changed));
-            }
+        if let Some(open) = self.open.get_mut(uri)
+            && let RunState::Running(running) = &mut open.state
+        {
+            running.stop();
         }
+        self.refuse_waiting(uri, "the text was closed");
     }
 
-    /// The diagnostics of a text, by the files that they are about.
-    fn diagnostics(&mut self, uri: &str) -> Vec<Value> {
-        let Some(open) = self.open.get_mut(uri) else { return Vec::new() };
-        let RunState::Ready(document, stopped) = &open.state else { return Vec::new() };
+    /// One error about a text as a whole.
+    fn publish_one(&mut self, uri: &str, code: &str, message: &str) {
+        let place = json!({"line": 0, "character": 0});
+        let diagnostic = json!({
+            "range": {"start": place, "end": place},
+            "severity": 1,
+            "code": code,
+            "source": "moldloft",
+            "message": message,
+        });
+        let version = self.open.get(uri).and_then(|open| open.version);
+        self.out.push(published(uri, version, &[diagnostic]));
+    }
+
+    /// Reports the diagnostics of a text, by the files that they are about.
+    fn publish(&mut self, uri: &str) {
+        let Some(open) = self.open.get_mut(uri) else { return };
+        let RunState::Ready(document, stopped) = &open.state else { return };
         let sources = document.sources();
         let main = sources.ids().next();
-        let main_text = &open.text;
+        let own = Lines::new(&open.text);
         let mut by_file: BTreeMap<String, Vec<Value>> = BTreeMap::new();
         by_file.insert(uri.to_string(), Vec::new());
         for diagnostic in document.diagnostics() {
             let span = diagnostic.span();
             let at_home = !span.is_known() || Some(span.file) == main;
-            let (home, text) = if at_home {
-                (uri.to_string(), main_text.clone())
+            let (home, range) = if at_home {
+                (uri.to_string(), own.range(span.start, span.end))
             } else {
                 let name = sources.name(span.file).unwrap_or("");
-                (uri_of(name), sources.text(span.file).map_or(String::new(), |t| t.to_string()))
-            };
-            let place = if span.is_known() {
-                range(&text, span)
-            } else {
-                json!({"start": position(&text, 0), "end": position(&text, 0)})
+                let text = sources.text(span.file).map_or("", |text| text);
+                (uri_of(name), Lines::new(text).range(span.start, span.end))
             };
             let data = diagnostic.to_data(sources);
             let severity = match diagnostic.severity {
@@ -364,7 +483,7 @@ impl Server {
             let related: Vec<Value> =
                 data.secondary.iter().map(|l| self::related(l, uri)).collect();
             by_file.entry(home).or_default().push(json!({
-                "range": place,
+                "range": range,
                 "severity": severity,
                 "code": data.id,
                 "source": "moldloft",
@@ -375,150 +494,32 @@ impl Server {
                 "relatedInformation": related,
             }));
         }
-        let mut answers = Vec::new();
-        let before = std::mem::take(&mut open.told);
+        let before = std::mem::take(&mut open.reported);
         for gone in before.iter().filter(|uri| !by_file.contains_key(*uri)) {
-            answers.push(published(gone, &Value::Null, &[]));
+            self.out.push(published(gone, None, &[]));
         }
         for (home, all) in &by_file {
-            let version = if home == uri { open.version.clone() } else { Value::Null };
-            answers.push(published(home, &version, all));
+            let version = open.version.filter(|_| home == uri);
+            self.out.push(published(home, version, all));
         }
-        open.told = by_file.into_keys().filter(|home| home != uri).collect();
-        answers
-    }
-
-    fn request(&mut self, method: &str, params: &Value) -> Result<Value, (i64, String)> {
-        match method {
-            "initialize" => return Ok(capabilities()),
-            "shutdown" => {
-                self.shut_down = true;
-                return Ok(Value::Null);
-            }
-            _ => {}
-        }
-        let uri = params["textDocument"]["uri"].as_str().unwrap_or("").to_string();
-        if !method.starts_with("textDocument/") {
-            return Err((METHOD_NOT_FOUND, format!("unknown method `{method}`")));
-        }
-        let Some(open) = self.open.get_mut(&uri) else {
-            return Err((REQUEST_FAILED, format!("`{uri}` is not open")));
-        };
-        let text = &open.text;
-        if method == "textDocument/formatting" {
-            return match moldloft::syntax::sdl::format(text) {
-                Ok(new) if new == *text => Ok(json!([])),
-                Ok(new) => {
-                    let whole =
-                        json!({"start": position(text, 0), "end": position(text, u32::MAX)});
-                    Ok(json!([{"range": whole, "newText": new}]))
-                }
-                Err(_) => Err((REQUEST_FAILED, "the text has errors and is left as it is".into())),
-            };
-        }
-        let RunState::Ready(document, _) = &mut open.state else {
-            return match needs_run(method) {
-                true => Err((REQUEST_FAILED, stopped_text())),
-                false => Err((METHOD_NOT_FOUND, format!("unknown method `{method}`"))),
-            };
-        };
-        let at = offset(text, &params["position"]);
-        match method {
-            "textDocument/hover" => Ok(match document.hover(at) {
-                Some((said, span)) => json!({
-                    "contents": {"kind": "markdown", "value": said},
-                    "range": range(text, span),
-                }),
-                None => Value::Null,
-            }),
-            "textDocument/completion" => {
-                let items = document.completions(at).into_iter().map(|c| {
-                    let kind = match c.kind {
-                        CompletionKind::Variable => 6,
-                        CompletionKind::Object => 21,
-                        CompletionKind::Function => 3,
-                        CompletionKind::Kind => 7,
-                        CompletionKind::Keyword => 14,
-                        CompletionKind::Member => 5,
-                    };
-                    json!({"label": c.word, "kind": kind, "detail": c.detail})
-                });
-                Ok(json!({"isIncomplete": false, "items": items.collect::<Vec<_>>()}))
-            }
-            "textDocument/definition" => Ok(match document.definition(at) {
-                Some(span) => {
-                    let sources = document.sources();
-                    if sources.ids().next() == Some(span.file) {
-                        json!({"uri": uri, "range": range(text, span)})
-                    } else {
-                        let there = sources.text(span.file).map_or("", |t| t);
-                        let name = sources.name(span.file).unwrap_or("");
-                        json!({"uri": uri_of(name), "range": range(there, span)})
-                    }
-                }
-                None => Value::Null,
-            }),
-            "textDocument/references" | "textDocument/documentHighlight" => {
-                let spans = document.references(at);
-                let places =
-                    spans.into_iter().map(|s| json!({"uri": uri, "range": range(text, s)}));
-                Ok(places.collect())
-            }
-            "textDocument/prepareRename" => match document.references(at).first() {
-                Some(_) => {
-                    let found = document.references(at);
-                    let here = found.into_iter().find(|s| s.touches(at));
-                    Ok(here.map_or(Value::Null, |span| range(text, span)))
-                }
-                None => Err((REQUEST_FAILED, "no name at this position".into())),
-            },
-            "textDocument/rename" => {
-                let new = params["newName"].as_str().unwrap_or("");
-                let spans = document.renamed(at, new).map_err(|why| (REQUEST_FAILED, why))?;
-                let edits =
-                    spans.into_iter().map(|s| json!({"range": range(text, s), "newText": new}));
-                let edits: Vec<Value> = edits.collect();
-                Ok(json!({"changes": {uri: edits}}))
-            }
-            "textDocument/documentSymbol" => {
-                let symbols = document.symbols().into_iter().map(|(name, kind, span)| {
-                    let kind = match kind {
-                        CompletionKind::Function => 12,
-                        CompletionKind::Object => 19,
-                        _ => 13,
-                    };
-                    let place = range(text, span);
-                    json!({"name": name, "kind": kind, "range": place, "selectionRange": place})
-                });
-                Ok(symbols.collect())
-            }
-            _ => Err((METHOD_NOT_FOUND, format!("unknown method `{method}`"))),
-        }
+        open.reported = by_file.into_keys().filter(|home| home != uri).collect();
     }
 }
 
-/// True for methods that are answered from what came of a text's run.
-fn needs_run(method: &str) -> bool {
-    let methods = [
-        "hover",
-        "completion",
-        "definition",
-        "references",
-        "documentHighlight",
-        "prepareRename",
-        "rename",
-        "documentSymbol",
-    ];
-    method.strip_prefix("textDocument/").is_some_and(|name| methods.contains(&name))
+/// The error for a method that the server does not know.
+pub fn unknown(method: &str) -> (i32, String) {
+    (ErrorCode::MethodNotFound as i32, format!("unknown method `{method}`"))
 }
 
-fn answered(id: &Value, answer: Result<Value, (i64, String)>) -> Value {
-    match answer {
-        Ok(result) => json!({"jsonrpc": "2.0", "id": id, "result": result}),
-        Err((code, text)) => {
-            json!({"jsonrpc": "2.0", "id": id, "error": {"code": code, "message": text}})
-        }
-    }
+/// The folders of a list of `{uri, name}`, links resolved.
+pub fn folders_of(list: &Value) -> Vec<PathBuf> {
+    let all = list.as_array().into_iter().flatten();
+    all.filter_map(|folder| path_of(folder["uri"].as_str()?)?.canonicalize().ok()).collect()
+}
+
+fn running(uri: &str, serial: u64, begins: bool) -> Message {
+    let params = json!({"uri": uri, "serial": serial, "begins": begins});
+    Notification::new(RUNNING.into(), params).into()
 }
 
 /// What is reported for a run that took too long.
@@ -530,30 +531,12 @@ fn stopped_text() -> String {
     )
 }
 
-/// What the server can do.
-fn capabilities() -> Value {
-    json!({
-        "capabilities": {
-            "textDocumentSync": {"openClose": true, "change": 2, "save": true},
-            "hoverProvider": true,
-            "completionProvider": {"triggerCharacters": ["."]},
-            "definitionProvider": true,
-            "referencesProvider": true,
-            "documentHighlightProvider": true,
-            "renameProvider": {"prepareProvider": true},
-            "documentFormattingProvider": true,
-            "documentSymbolProvider": true,
-        },
-        "serverInfo": {"name": "moldloft-lsp", "version": env!("CARGO_PKG_VERSION")},
-    })
-}
-
-fn published(uri: &str, version: &Value, all: &[Value]) -> Value {
+fn published(uri: &str, version: Option<i32>, all: &[Value]) -> Message {
     let mut params = json!({"uri": uri, "diagnostics": all});
-    if !version.is_null() {
-        params["version"] = version.clone();
+    if let Some(version) = version {
+        params["version"] = version.into();
     }
-    json!({"jsonrpc": "2.0", "method": "textDocument/publishDiagnostics", "params": params})
+    Notification::new(note::PublishDiagnostics::METHOD.into(), params).into()
 }
 
 /// The text of a diagnostic: what is wrong, what was expected, how to fix it.
@@ -587,61 +570,13 @@ fn related(label: &LabelData, uri: &str) -> Value {
 }
 
 /// The model of a text: what it loads is sought beside its file.
-fn opened(uri: &str, text: &str, budget: Arc<Budget>) -> Document {
+fn opened(uri: &str, text: &str, budget: Arc<Budget>, buffers: Buffers) -> Document {
     let (world, name): (Box<dyn World>, String) = match path_of(uri) {
         Some(path) => {
             let folder = path.parent().unwrap_or(Path::new(".")).to_path_buf();
-            (Box::new(FileWorld::new(Some(&folder), &[])), path.display().to_string())
+            (Box::new(OpenFiles::new(&folder, buffers)), path.display().to_string())
         }
         None => (Box::new(NoFiles), uri.to_string()),
     };
     Document::from_text_within(moldloft::document::registry(), world, (&name, text), budget)
-}
-
-/// The path of a file address.
-fn path_of(uri: &str) -> Option<PathBuf> {
-    let rest = uri.strip_prefix("file://")?;
-    let mut bytes = Vec::new();
-    let mut at = rest.bytes();
-    while let Some(b) = at.next() {
-        if b == b'%' {
-            let hex = [at.next()?, at.next()?];
-            let hex = std::str::from_utf8(&hex).ok()?.to_string();
-            bytes.push(u8::from_str_radix(&hex, 16).ok()?);
-        } else {
-            bytes.push(b);
-        }
-    }
-    let path = String::from_utf8(bytes).ok()?;
-    // /C:/models on Windows.
-    let drive = path.as_bytes().get(2) == Some(&b':');
-    Some(PathBuf::from(if drive { &path[1..] } else { &path }))
-}
-
-/// The address of a file; a built-in library is laid beside other temporary files to be shown.
-fn uri_of(name: &str) -> String {
-    let library = LIBRARIES.iter().find(|(file, _)| name.strip_prefix("moldloft:") == Some(file));
-    let path = match library {
-        Some((file, text)) => {
-            let folder = std::env::temp_dir().join("moldloft-libraries");
-            let path = folder.join(file);
-            let same = std::fs::read_to_string(&path).is_ok_and(|there| there == *text);
-            if !same {
-                // Without the file the editor says itself that there is none.
-                let _ = std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, text));
-            }
-            path
-        }
-        None => PathBuf::from(name),
-    };
-    let spelled = path.display().to_string().replace('\\', "/");
-    let mut uri = String::from(if spelled.starts_with('/') { "file://" } else { "file:///" });
-    for b in spelled.bytes() {
-        if b.is_ascii_alphanumeric() || b"/-._~:".contains(&b) {
-            uri.push(b as char);
-        } else {
-            uri.push_str(&format!("%{b:02X}"));
-        }
-    }
-    uri
 }

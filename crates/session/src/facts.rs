@@ -85,7 +85,7 @@ pub fn diagnostics(document: &Document, text: &str, all: &[Diagnostic]) -> Value
         let span = d.span();
         let file = data.primary.as_ref().map(|l| &l.file);
         let home = place(document, text, span);
-        let edit = d.edit.as_ref().map(|e| {
+        let edit = d.correction(sources).map(|e| {
             let at = place(document, text, e.span);
             json!({"place": at, "insert": e.replacement, "title": e.title})
         });

@@ -559,5 +559,7 @@ fn word(kind: CompletionKind) -> &'static str {
         CompletionKind::Kind => "kind",
         CompletionKind::Keyword => "keyword",
         CompletionKind::Member => "member",
+        CompletionKind::Argument => "argument",
+        CompletionKind::Word => "word",
     }
 }

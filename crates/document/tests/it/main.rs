@@ -27,3 +27,4 @@ mod sets;
 mod sketches;
 mod solve;
 mod sweeps;
+mod workspace;

@@ -3,5 +3,6 @@
 mod corpus;
 mod ebnf;
 mod mutations;
+mod outline;
 mod programs;
 mod random;

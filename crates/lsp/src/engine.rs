@@ -1,0 +1,106 @@
+//! The engine: the process that runs the texts. It ends when the editor's side closes, or when a text ends it.
+
+use crate::answers::capabilities;
+use crate::server::{Event, Server, folders_of};
+use lsp_server::{Connection, ErrorCode, Message, Response};
+use moldloft::budget::Limits;
+use serde_json::json;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Instant;
+
+/// The most memory that the engine takes for the texts that are open.
+const MEMORY: u64 = 2 << 30;
+
+/// Serves until the connection ends.
+pub fn run() -> ExitCode {
+    let memory = moldloft::budget::usual_memory().min(MEMORY);
+    moldloft::budget::set_limits(Limits { memory, ..Limits::USUAL });
+    limit(memory);
+    let (connection, threads) = Connection::stdio();
+    let orderly = serve(&connection);
+    drop(connection);
+    let flushed = threads.join().is_ok();
+    if orderly && flushed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Beyond the budget, which counts what the program holds, the system refuses memory to this process.
+#[cfg(unix)]
+fn limit(memory: u64) {
+    /// Code, stacks of threads and what allocators keep.
+    const OWN: u64 = 2 << 30;
+    // Where a limit cannot be set, the budget alone holds.
+    let _ = rlimit::setrlimit(rlimit::Resource::AS, memory + OWN, memory + OWN);
+    let _ = rlimit::setrlimit(rlimit::Resource::CORE, 0, 0);
+}
+
+#[cfg(not(unix))]
+fn limit(_: u64) {}
+
+/// True when the editor said goodbye as the protocol asks.
+fn serve(connection: &Connection) -> bool {
+    let Ok((id, params)) = connection.initialize_start() else { return false };
+    let told = json!({
+        "capabilities": capabilities(),
+        "serverInfo": {"name": "moldloft-lsp", "version": env!("CARGO_PKG_VERSION")},
+    });
+    if connection.initialize_finish(id, told).is_err() {
+        return false;
+    }
+    let mut folders = folders_of(&params["workspaceFolders"]);
+    if folders.is_empty() && params["rootUri"].is_string() {
+        folders = folders_of(&json!([{"uri": params["rootUri"]}]));
+    }
+    let (sender, events) = mpsc::channel();
+    let (messages, incoming) = (sender.clone(), connection.receiver.clone());
+    std::thread::spawn(move || {
+        for message in incoming {
+            if messages.send(Event::Message(message)).is_err() {
+                return;
+            }
+        }
+        let _ = messages.send(Event::Gone);
+    });
+    let mut server = Server::new(sender, folders);
+    let mut leaving = false;
+    loop {
+        let event = match server.deadline() {
+            None => events.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            Some(at) => events.recv_timeout(at.saturating_duration_since(Instant::now())),
+        };
+        match event {
+            Ok(Event::Message(Message::Request(request))) => {
+                if request.method == "shutdown" {
+                    leaving = true;
+                    let response = Response::new_ok(request.id, ());
+                    let _ = connection.sender.send(response.into());
+                    continue;
+                }
+                let id = request.id.clone();
+                // A fault of an answer is an answer; the texts are as before.
+                if catch_unwind(AssertUnwindSafe(|| server.request(request))).is_err() {
+                    let code = ErrorCode::InternalError as i32;
+                    let response = Response::new_err(id, code, "the answer failed".into());
+                    let _ = connection.sender.send(response.into());
+                }
+            }
+            Ok(Event::Message(Message::Notification(notice))) => {
+                if notice.method == "exit" {
+                    return leaving;
+                }
+                server.notice(notice);
+            }
+            Ok(Event::Message(Message::Response(_))) => {}
+            Ok(Event::Ran(ran)) => server.ran(ran),
+            Err(RecvTimeoutError::Timeout) => server.tick(),
+            // The editor has gone without a word.
+            Ok(Event::Gone) | Err(RecvTimeoutError::Disconnected) => return false,
+        }
+        for message in server.take_messages() {
+            if connection.sender.send(message).is_err() {
+                return false;
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Files and addresses: what an editor calls a file, where texts find the files that they load.
+
+use moldloft::host::FileWorld;
+use moldloft::lang::{LIBRARIES, ReadText, TextReadError, World};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, PoisonError, RwLock};
+
+/// The texts that an editor has open and may not have saved, by their paths with links resolved.
+pub type Buffers = Arc<RwLock<HashMap<PathBuf, Arc<str>>>>;
+
+/// The files beside a text; of those that are open the texts that the editor shows.
+pub struct OpenFiles {
+    files: FileWorld,
+    buffers: Buffers,
+}
+
+impl OpenFiles {
+    /// The files in `folder`.
+    pub fn new(folder: &Path, buffers: Buffers) -> Self {
+        Self { files: FileWorld::new(Some(folder), &[]), buffers }
+    }
+}
+
+impl World for OpenFiles {
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError> {
+        let found = self.files.read(path, from)?;
+        let buffers = self.buffers.read().unwrap_or_else(PoisonError::into_inner);
+        match buffers.get(Path::new(&found.name)) {
+            Some(text) => Ok(ReadText { name: found.name, bytes: text.as_bytes().into() }),
+            None => Ok(found),
+        }
+    }
+}
+
+/// The path of a file address.
+pub fn path_of(uri: &str) -> Option<PathBuf> {
+    let rest = uri.strip_prefix("file://")?;
+    let mut bytes = Vec::new();
+    let mut at = rest.bytes();
+    while let Some(b) = at.next() {
+        if b == b'%' {
+            let hex = [at.next()?, at.next()?];
+            let hex = std::str::from_utf8(&hex).ok()?.to_string();
+            bytes.push(u8::from_str_radix(&hex, 16).ok()?);
+        } else {
+            bytes.push(b);
+        }
+    }
+    let path = String::from_utf8(bytes).ok()?;
+    // /C:/models on Windows.
+    let drive = path.as_bytes().get(2) == Some(&b':');
+    Some(PathBuf::from(if drive { &path[1..] } else { &path }))
+}
+
+/// The address of a file; a built-in library is laid beside other temporary files to be shown.
+pub fn uri_of(name: &str) -> String {
+    let library = LIBRARIES.iter().find(|(file, _)| name.strip_prefix("moldloft:") == Some(file));
+    let path = match library {
+        Some((file, text)) => {
+            let folder = std::env::temp_dir().join("moldloft-libraries");
+            let path = folder.join(file);
+            let same = std::fs::read_to_string(&path).is_ok_and(|there| there == *text);
+            if !same {
+                // Without the file the editor says itself that there is none.
+                let _ = std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, text));
+            }
+            path
+        }
+        None => PathBuf::from(name),
+    };
+    let spelled = path.display().to_string().replace('\\', "/");
+    let mut uri = String::from(if spelled.starts_with('/') { "file://" } else { "file:///" });
+    for b in spelled.bytes() {
+        if b.is_ascii_alphanumeric() || b"/-._~:".contains(&b) {
+            uri.push(b as char);
+        } else {
+            uri.push_str(&format!("%{b:02X}"));
+        }
+    }
+    uri
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_and_paths_go_both_ways() {
+        for path in ["/models/hull.sdl", "/a b/ü#?%.sdl"] {
+            assert_eq!(path_of(&uri_of(path)), Some(PathBuf::from(path)), "{path}");
+        }
+        assert_eq!(path_of("file:///C:/a.sdl"), Some(PathBuf::from("C:/a.sdl")));
+        assert_eq!(path_of("untitled:Untitled-1"), None);
+        assert_eq!(path_of("file:///a%2"), None);
+    }
+}
