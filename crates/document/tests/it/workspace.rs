@@ -11,7 +11,7 @@ use std::fmt::Write;
 const NAMES: [&str; 6] = ["a", "b", "beam", "c", "draft", "x"];
 
 fn name(random: &mut Random) -> &'static str {
-    random.pick(&NAMES)
+    NAMES[random.below(NAMES.len())]
 }
 
 /// The text of file `k`, which may load and insert earlier files.
