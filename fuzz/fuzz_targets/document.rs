@@ -4,7 +4,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use moldloft::document::{Document, Format, NoFiles, registry};
+use moldloft::document::{Document, ModelFormat, NoFiles, registry};
 
 fuzz_target!(|text: &str| {
     for name in ["fuzz.sdl", "fuzz.ms2"] {
@@ -13,7 +13,7 @@ fuzz_target!(|text: &str| {
             let _ = moldloft::diag::render(&diagnostic, document.sources());
         }
         let _ = document.panelled();
-        let _ = document.convert(Format::Sdl);
-        let _ = document.convert(Format::ModelFile);
+        let _ = document.convert(ModelFormat::Sdl);
+        let _ = document.convert(ModelFormat::ModelFile);
     }
 });

@@ -1,9 +1,30 @@
-//! The examples of the facade run.
+//! The examples of the facade run; the fuzz targets hold.
+
+// The name under which the fuzz targets ask for their macro.
+extern crate self as libfuzzer_sys;
 
 #[path = "../../examples/derivative.rs"]
 mod derivative;
+mod fuzz;
 #[path = "../../examples/hull_to_gdf.rs"]
 mod hull_to_gdf;
+
+// Behind the module that asks for it by its path.
+/// The macro of libFuzzer, for one function from bytes.
+#[macro_export]
+macro_rules! fuzz_target {
+    (|$input:ident: &str| $body:block) => {
+        pub fn run(bytes: &[u8]) {
+            fn body($input: &str) $body
+            if let Ok(text) = std::str::from_utf8(bytes) {
+                body(text);
+            }
+        }
+    };
+    (|$input:ident: &[u8]| $body:block) => {
+        pub fn run($input: &[u8]) $body
+    };
+}
 
 #[test]
 fn derivatives_equal_differences() {

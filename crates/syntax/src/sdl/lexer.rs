@@ -68,7 +68,8 @@ impl Lexer<'_> {
                     self.new_line = true;
                     self.at += 1;
                 }
-                b' ' | b'\t' | b'\r' => self.at += 1,
+                // Old programs divide their pages by form feeds.
+                b' ' | b'\t' | b'\r' | b'\x0c' => self.at += 1,
                 b'#' => self.comment(),
                 byte if starts_word(byte) => self.word(),
                 b'0'..=b'9' => self.number(),
@@ -296,7 +297,9 @@ impl Lexer<'_> {
     fn bad(&mut self) {
         let start = self.at;
         for c in self.text[start..].chars() {
-            if c.is_ascii() && (c.is_ascii_graphic() || c.is_ascii_whitespace()) && !is_foreign(c) {
+            let known = c.is_ascii_graphic() || c.is_ascii_whitespace();
+            // The first is taken whatever it is: who came here knows no meaning of it.
+            if self.at > start && known && !is_foreign(c) {
                 break;
             }
             self.at += c.len_utf8();

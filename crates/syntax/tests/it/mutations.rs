@@ -147,3 +147,18 @@ fn damaged_model_files() {
         }
     }
 }
+
+#[test]
+fn each_single_character_is_read_and_a_form_feed_is_a_blank() {
+    for c in (0..=0x2fff).filter_map(char::from_u32) {
+        for text in [c.to_string(), format!("{c}{c}"), format!("float a{c}= 1;{c}\n")] {
+            let (program, _) = moldloft_syntax::sdl::parse(text.as_str(), moldloft_diag::FileId(0));
+            assert_eq!(program.text_with_edits(), text);
+            let _ = moldloft_syntax::sdl::format(&text);
+            let (_, _) =
+                moldloft_syntax::model_file::parse(text.as_str(), moldloft_diag::FileId(0));
+        }
+    }
+    let pages = "float a = 1;\n\x0c\nfloat b = 2;\n";
+    assert_eq!(moldloft_syntax::sdl::format(pages).unwrap(), "float a = 1;\n\nfloat b = 2;\n");
+}
