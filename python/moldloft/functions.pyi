@@ -4891,6 +4891,24 @@ def write_vts(
         surface s[3,2] = {1, 2, 3}; write_vts("s.vts", s);
     """
     ...
+def plot(
+    *args: object,
+) -> AnyShape:
+    """Draws curves, surfaces and blocks to a .png or .svg; plot(name, view, ...) looks from "x", "-y", "z", "iso" ...
+
+    Called as `plot(name, s1, s2, ...)`.
+
+    Returns
+    -------
+    value
+
+    Notes
+    -----
+    In the language::
+
+        curve c[30]; c.x = uniform(0, 1, 30); c.y = c.x^2; plot("parabola.svg", c);
+    """
+    ...
 def write_stl(
     *args: object,
 ) -> AnyShape:

@@ -128,7 +128,9 @@ def test_every_dependency_has_a_why() -> None:
     used = set()
     for manifest in [*_manifests().values(), (ROOT / "Cargo.toml").read_text(encoding="utf-8")]:
         for section in re.findall(
-            r"^\[(?:workspace\.)?(?:build-)?dependencies\]\n(.*?)(?=^\[|\Z)", manifest, re.M | re.S
+            r"^\[(?:workspace\.|target\..*\.)?(?:build-)?dependencies\]\n(.*?)(?=^\[|\Z)",
+            manifest,
+            re.M | re.S,
         ):
             used |= {
                 n for n in re.findall(r"^([\w-]+)", section, re.M) if not n.startswith("moldloft")

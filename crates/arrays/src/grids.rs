@@ -265,6 +265,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
         };
         let grid = self.s.0;
         grid.re().check_edges().map_err(|error| fault(error, Self::S))?;
+        extended(&grid.planes, Self::S)?;
         let own;
         let on: Option<(&dyn Surface<T>, [Vec<T>; 2])> = match &self.on {
             Some(surface) => Some((&**surface, on_surface(&grid, surface)?)),
@@ -305,6 +306,18 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
         }
         Ok(surface(smoothed))
     }
+}
+
+/// Refuses points that are all at one place: nothing can be smoothed, as where no element was set.
+pub(crate) fn extended<T: Real>(planes: &[Vec<T>; 3], field: FieldId) -> Result<(), CallError> {
+    let still = |plane: &Vec<T>| plane.iter().all(|x| x.re() == plane[0].re());
+    if !planes.iter().all(still) {
+        return Ok(());
+    }
+    Err(CallError::new("coincident-points", "all points of the grid are at one place")
+        .expected("a grid with an extent")
+        .help("set its edges and fill it first, as `transfinite` does")
+        .in_field(field))
 }
 
 /// What a smoothing that has not converged came to.

@@ -29,7 +29,7 @@ mod spline;
 mod value;
 mod volumes;
 
-pub use value::type_name;
+pub use value::{gathered, type_name};
 
 use moldloft_registry::Row;
 use moldloft_registry::export::StaticRow;

@@ -1,6 +1,6 @@
 //! Arrays made of arrays: turned round, joined, spread, stacked.
 
-use crate::value::{Items, Points, farray, vectors};
+use crate::value::{Items, Points, farray, gathered, vectors};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value,
@@ -283,7 +283,7 @@ impl<T: Scalar> Build<T> for Stack<T> {
 }
 
 fn extents<T: Scalar>(a: &Value<T>, field: FieldId) -> Result<ArrayShape, CallError> {
-    match a {
+    match &*gathered(a) {
         Value::Numbers(a) => Ok(a.shape),
         Value::Vectors(a) => Ok(a.shape),
         other => {

@@ -5,6 +5,7 @@ use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     Array, ArrayShape, CallError, Class, FromValue, Scalar, Value, Vectors as Planes,
 };
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A row or grid of numbers.
@@ -218,6 +219,51 @@ pub fn farray<T: Real>(items: Vec<T>) -> Value<T> {
     numbers(ArrayShape::Row(items.len()), items)
 }
 
+/// A list of numbers, of vectors, or of rows of equal length, as the array that it spells; anything else as it is.
+pub fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
+    let Value::List(items) = value else { return Cow::Borrowed(value) };
+    let all_numbers: Option<Vec<T>> = items
+        .iter()
+        .map(|item| if let Value::Number(x) = item { Some(*x) } else { None })
+        .collect();
+    if let Some(items) = all_numbers.filter(|items| !items.is_empty()) {
+        return Cow::Owned(farray(items));
+    }
+    let all_vectors: Option<Vec<Vec3<T>>> = items
+        .iter()
+        .map(|item| match item {
+            Value::Vector(v) => Some(*v),
+            Value::Point(p) => Some(p.xyz),
+            _ => None,
+        })
+        .collect();
+    if let Some(items) = all_vectors.filter(|items| !items.is_empty()) {
+        return Cow::Owned(vectors(ArrayShape::Row(items.len()), items));
+    }
+    let mut width = None;
+    let mut row = |shape: ArrayShape| match shape {
+        ArrayShape::Row(n) if width.is_none_or(|width| width == n) => {
+            width = Some(n);
+            true
+        }
+        _ => false,
+    };
+    let (mut flat, mut points) = (Vec::new(), Vec::new());
+    for item in items.iter() {
+        match item {
+            Value::Numbers(a) if points.is_empty() && row(a.shape) => flat.extend(&a.items),
+            Value::Vectors(a) if flat.is_empty() && row(a.shape) => points.extend(a.points()),
+            _ => return Cow::Borrowed(value),
+        }
+    }
+    let Some(n) = width else { return Cow::Borrowed(value) };
+    let shape = ArrayShape::Grid(items.len(), n);
+    Cow::Owned(match points.is_empty() {
+        true => numbers(shape, flat),
+        false => vectors(shape, points),
+    })
+}
+
 /// A vector, a curve or a surface: what is moved keeps its shape.
 pub enum Shaped<T> {
     One(Vec3<T>),
@@ -268,9 +314,9 @@ pub enum Items<T> {
 impl<T: Scalar> FromValue<T> for Items<T> {
     const CLASS: Class = Class::Any;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
-        match value {
-            Value::Numbers(_) => Ok(Self::Numbers(FromValue::from_value(value)?)),
-            Value::Vectors(_) => Ok(Self::Vectors(FromValue::from_value(value)?)),
+        match &*gathered(value) {
+            numbers @ Value::Numbers(_) => Ok(Self::Numbers(FromValue::from_value(numbers)?)),
+            vectors @ Value::Vectors(_) => Ok(Self::Vectors(FromValue::from_value(vectors)?)),
             other => {
                 let found = other.class().with_article();
                 let message = format!("expected an array, found {found}");

@@ -149,6 +149,7 @@ impl<T: Scalar> Build<T> for EllipticBlock<T> {
             omega: self.omega.re(),
             walls,
         };
+        crate::grids::extended(&grid.planes, Self::LAYERS)?;
         let done = elliptic_volume_until(&grid, &options, &context.budget)
             .map_err(|error| fault(error, Self::LAYERS))?;
         if !done.converged && self.n > 0 {

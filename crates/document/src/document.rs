@@ -54,6 +54,8 @@ pub struct Document {
     /// What calls keep, of the plain run and of those with derivatives alike.
     kept: Kept,
     pub(crate) settings: Settings,
+    /// True when what can be understood of a text with faults is run.
+    tolerant: bool,
 }
 
 /// Where the objects come from.
@@ -124,6 +126,19 @@ impl Document {
         document
     }
 
+    /// As [`Self::from_text_within`], of a text that is being written: what can be understood of it is run, whatever
+    /// is at fault elsewhere, so that names have values while one types.
+    pub fn edited(
+        registry: Registry,
+        world: Box<dyn World>,
+        (name, text): (&str, &str),
+        budget: Arc<Budget>,
+    ) -> Self {
+        let mut document = Self { budget, tolerant: true, ..Self::empty(registry, world) };
+        document.take_text(name, text.to_string());
+        document
+    }
+
     fn empty(registry: Registry, world: Box<dyn World>) -> Self {
         Self {
             registry,
@@ -150,6 +165,7 @@ impl Document {
             cut_short: false,
             kept: Kept::default(),
             settings: Settings::default(),
+            tolerant: false,
         }
     }
 
@@ -270,7 +286,10 @@ impl Document {
             sketch,
             converted: moldloft_lang::model_file::converted,
         };
+        // A program with a fault in its text is another one than was meant.
+        let faulty = !self.tolerant && self.text_diagnostics.iter().any(Diagnostic::is_error);
         let applied = match &self.source {
+            ObjectSource::Program if faulty => evaluation.graph.apply(Extent::Whole, |_| ()).1,
             ObjectSource::Program | ObjectSource::Sketch(_) => {
                 program.run(evaluation, inputs, &mut found)
             }

@@ -1,7 +1,7 @@
 //! What the server answers: each method from the text, from what came of its run, or from the names of the workspace.
 
 use crate::index::{Index, MOST_FILES, OpenText};
-use crate::lines::Lines;
+use crate::lines::LineIndex;
 use crate::places::uri_of;
 use crate::server::unknown;
 use lsp_server::ErrorCode;
@@ -122,13 +122,13 @@ pub fn of_text(method: &str, text: &str) -> Option<Answer> {
         ask::Formatting::METHOD => Some(match sdl::format(text) {
             Ok(new) if new == *text => Ok(json!([])),
             Ok(new) => {
-                let whole = Lines::new(text).range(0, u32::MAX);
+                let whole = LineIndex::new(text).range(0, u32::MAX);
                 Ok(json!([{"range": whole, "newText": new}]))
             }
             Err(_) => Err(failed("the text has errors and is left as it is")),
         }),
         ask::FoldingRangeRequest::METHOD => {
-            let lines = Lines::new(text);
+            let lines = LineIndex::new(text);
             let one = |fold: sdl::Fold| {
                 let (start, end) = (lines.position(fold.start), lines.position(fold.end));
                 // The line of a closing bracket stays.
@@ -153,7 +153,7 @@ pub fn of_document(
     document: &mut Document,
     asked: &Asked<'_>,
 ) -> Answer {
-    let lines = Lines::new(asked.text);
+    let lines = LineIndex::new(asked.text);
     match method {
         ask::HoverRequest::METHOD => {
             let at = lines.offset(position_of(params)?);
@@ -287,7 +287,7 @@ fn signature(found: moldloft::document::CallSignature) -> SignatureHelp {
 }
 
 /// The corrections of what is at fault in a range.
-fn actions(document: &Document, lines: &Lines<'_>, range: Range, uri: &str) -> Answer {
+fn actions(document: &Document, lines: &LineIndex<'_>, range: Range, uri: &str) -> Answer {
     let sources = document.sources();
     let main = sources.ids().next();
     let (from, to) = (lines.offset(range.start), lines.offset(range.end));
@@ -319,7 +319,7 @@ fn actions(document: &Document, lines: &Lines<'_>, range: Range, uri: &str) -> A
 }
 
 /// The names of a text, each by its distance from the last, as the protocol asks.
-fn tokens(document: &Document, text: &str, lines: &Lines<'_>) -> SemanticTokens {
+fn tokens(document: &Document, text: &str, lines: &LineIndex<'_>) -> SemanticTokens {
     let mut data = Vec::new();
     let mut last = Position::default();
     for token in document.name_tokens() {
@@ -362,7 +362,7 @@ fn located(places: &[WorkspacePlace], open: &[OpenText<'_>]) -> Vec<(String, Ran
                 (uri_of(file), saved.as_str())
             }
         };
-        let lines = Lines::new(text);
+        let lines = LineIndex::new(text);
         found.extend(group.iter().map(|place| (uri.clone(), lines.range(place.1, place.2))));
     }
     found
@@ -391,7 +391,7 @@ pub fn of_workspace(
         return Err(failed(format!("`{uri}` is not open")));
     };
     let file = Index::name_of(uri);
-    let lines = Lines::new(text);
+    let lines = LineIndex::new(text);
     let at = lines.offset(position_of(params)?);
     match method {
         ask::GotoDefinition::METHOD => {
@@ -404,7 +404,7 @@ pub fn of_workspace(
             Ok(document.definition(at).map_or(Value::Null, |span| {
                 let there = sources.text(span.file).map_or("", |t| t);
                 let name = sources.name(span.file).unwrap_or("");
-                let range = Lines::new(there).range(span.start, span.end);
+                let range = LineIndex::new(there).range(span.start, span.end);
                 json!({"uri": uri_of(name), "range": range})
             }))
         }

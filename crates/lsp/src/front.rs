@@ -20,7 +20,7 @@ const BEGIN_AGAIN: &str = "moldloft-begin-again";
 /// Ends of engines without a message of the editor between them, after which no other is started.
 const MOST_ENDS: u32 = 5;
 
-enum Event {
+enum FrontEvent {
     Editor(Message),
     EditorGone,
     /// A message of the engine of that number.
@@ -29,14 +29,14 @@ enum Event {
 }
 
 /// The engine that is running.
-struct Engine {
+struct EngineProcess {
     number: u32,
     child: Child,
     input: BufWriter<ChildStdin>,
 }
 
-impl Engine {
-    fn start(number: u32, events: &Sender<Event>) -> std::io::Result<Self> {
+impl EngineProcess {
+    fn start(number: u32, events: &Sender<FrontEvent>) -> std::io::Result<Self> {
         let mut child = Command::new(std::env::current_exe()?)
             .arg("--engine")
             .stdin(Stdio::piped())
@@ -48,11 +48,11 @@ impl Engine {
         let events = events.clone();
         std::thread::spawn(move || {
             while let Ok(Some(message)) = Message::read(&mut output) {
-                if events.send(Event::Engine(number, message)).is_err() {
+                if events.send(FrontEvent::Engine(number, message)).is_err() {
                     return;
                 }
             }
-            let _ = events.send(Event::EngineGone(number));
+            let _ = events.send(FrontEvent::EngineGone(number));
         });
         Ok(Self { number, child, input })
     }
@@ -74,10 +74,10 @@ impl Engine {
 }
 
 /// What an engine must be given to go on where another ended.
-struct Front<'c> {
+struct EditorFront<'c> {
     editor: &'c Connection,
-    engine: Engine,
-    events: Sender<Event>,
+    engine: EngineProcess,
+    events: Sender<FrontEvent>,
     begin: Option<Request>,
     begun: bool,
     texts: BTreeMap<String, TextDocumentItem>,
@@ -99,20 +99,20 @@ pub fn run() -> ExitCode {
     let (messages, incoming) = (events.clone(), connection.receiver.clone());
     std::thread::spawn(move || {
         for message in incoming {
-            if messages.send(Event::Editor(message)).is_err() {
+            if messages.send(FrontEvent::Editor(message)).is_err() {
                 return;
             }
         }
-        let _ = messages.send(Event::EditorGone);
+        let _ = messages.send(FrontEvent::EditorGone);
     });
-    let engine = match Engine::start(0, &events) {
+    let engine = match EngineProcess::start(0, &events) {
         Ok(engine) => engine,
         Err(error) => {
             eprintln!("error: the engine cannot be started: {error}");
             return ExitCode::FAILURE;
         }
     };
-    let mut front = Front {
+    let mut front = EditorFront {
         editor: &connection,
         engine,
         events,
@@ -130,7 +130,7 @@ pub fn run() -> ExitCode {
     let mut read_out = true;
     for event in received {
         match event {
-            Event::Editor(message) => {
+            FrontEvent::Editor(message) => {
                 if let Message::Notification(notice) = &message
                     && notice.method == note::Exit::METHOD
                 {
@@ -139,18 +139,18 @@ pub fn run() -> ExitCode {
                 }
                 front.take_editors(message);
             }
-            Event::Engine(number, message) if number == front.engine.number => {
+            FrontEvent::Engine(number, message) if number == front.engine.number => {
                 front.take_engines(message);
             }
-            Event::EngineGone(number) if number == front.engine.number && !front.leaving => {
+            FrontEvent::EngineGone(number) if number == front.engine.number && !front.leaving => {
                 if !front.begin_again() {
                     read_out = false;
                     break;
                 }
             }
             // The editor has gone without a word.
-            Event::EditorGone => break,
-            Event::Engine(..) | Event::EngineGone(_) => {}
+            FrontEvent::EditorGone => break,
+            FrontEvent::Engine(..) | FrontEvent::EngineGone(_) => {}
         }
     }
     front.engine.ended();
@@ -159,7 +159,7 @@ pub fn run() -> ExitCode {
     if orderly && written { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-impl Front<'_> {
+impl EditorFront<'_> {
     fn to_editor(&self, message: impl Into<Message>) {
         // An editor that has gone is noticed by the end of its messages.
         let _ = self.editor.sender.send(message.into());
@@ -241,7 +241,7 @@ impl Front<'_> {
     /// Starts another engine in place of the one that ended; false when that makes no sense.
     fn begin_again(&mut self) -> bool {
         self.ends += 1;
-        let started = Engine::start(self.engine.number + 1, &self.events);
+        let started = EngineProcess::start(self.engine.number + 1, &self.events);
         let Ok(engine) = started else {
             eprintln!("error: the engine ended and another cannot be started");
             return false;

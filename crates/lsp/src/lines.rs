@@ -4,12 +4,12 @@ use lsp_types::{Position, Range};
 
 /// Where the lines of a text begin.
 #[derive(Debug)]
-pub struct Lines<'t> {
+pub struct LineIndex<'t> {
     text: &'t str,
     starts: Vec<u32>,
 }
 
-impl<'t> Lines<'t> {
+impl<'t> LineIndex<'t> {
     /// The lines of a text.
     pub fn new(text: &'t str) -> Self {
         let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
@@ -57,7 +57,7 @@ pub fn apply(text: &mut String, changes: &[lsp_types::TextDocumentContentChangeE
     for change in changes {
         match change.range {
             Some(range) => {
-                let lines = Lines::new(text);
+                let lines = LineIndex::new(text);
                 let start = lines.offset(range.start) as usize;
                 let end = (lines.offset(range.end) as usize).max(start);
                 text.replace_range(start..end, &change.text);
@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn places_go_both_ways() {
         let text = "aé𝄞b\r\nc";
-        let lines = Lines::new(text);
+        let lines = LineIndex::new(text);
         for (at, line, character) in
             [(0, 0, 0), (1, 0, 1), (3, 0, 2), (7, 0, 4), (10, 1, 0), (11, 1, 1)]
         {
@@ -86,6 +86,6 @@ mod tests {
         assert_eq!(lines.offset(Position { line: 0, character: 99 }), 8);
         assert_eq!(lines.offset(Position { line: 9, character: 0 }), 11);
         assert_eq!(lines.position(5), Position { line: 0, character: 2 });
-        assert_eq!(Lines::new("").position(7), Position { line: 0, character: 0 });
+        assert_eq!(LineIndex::new("").position(7), Position { line: 0, character: 0 });
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::answers::{self, Answer};
 use crate::index::{Index, OpenText};
-use crate::lines::{Lines, apply};
+use crate::lines::{LineIndex, apply};
 use crate::places::{Buffers, OpenFiles, path_of, uri_of};
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
 use lsp_types::notification as note;
@@ -461,7 +461,7 @@ impl Server {
         let RunState::Ready(document, stopped) = &open.state else { return };
         let sources = document.sources();
         let main = sources.ids().next();
-        let own = Lines::new(&open.text);
+        let own = LineIndex::new(&open.text);
         let mut by_file: BTreeMap<String, Vec<Value>> = BTreeMap::new();
         by_file.insert(uri.to_string(), Vec::new());
         for diagnostic in document.diagnostics() {
@@ -472,7 +472,7 @@ impl Server {
             } else {
                 let name = sources.name(span.file).unwrap_or("");
                 let text = sources.text(span.file).map_or("", |text| text);
-                (uri_of(name), Lines::new(text).range(span.start, span.end))
+                (uri_of(name), LineIndex::new(text).range(span.start, span.end))
             };
             let data = diagnostic.to_data(sources);
             let severity = match diagnostic.severity {
@@ -578,5 +578,5 @@ fn opened(uri: &str, text: &str, budget: Arc<Budget>, buffers: Buffers) -> Docum
         }
         None => (Box::new(NoFiles), uri.to_string()),
     };
-    Document::from_text_within(moldloft::document::registry(), world, (&name, text), budget)
+    Document::edited(moldloft::document::registry(), world, (&name, text), budget)
 }

@@ -92,7 +92,7 @@ impl Session {
 
     /// As [`Self::new`]; `budget` is what its work may use; it cancels what is under way.
     pub fn within(world: Box<dyn World>, name: &str, text: &str, budget: Arc<Budget>) -> Self {
-        let document = Document::from_text_within(registry(), world, (name, text), budget.clone());
+        let document = Document::edited(registry(), world, (name, text), budget.clone());
         Self {
             document,
             text: text.into(),

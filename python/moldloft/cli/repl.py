@@ -70,10 +70,14 @@ class Session:
         printed = len(model.printed)
         start = text if not text or text.endswith("\n") else text + "\n"
         # A statement is closed for whoever forgot it.
-        closed = entry if entry.rstrip().endswith((";", "}")) else entry.rstrip() + ";"
+        closed = entry.rstrip()
+        closed = closed if closed.endswith((";", "}")) else closed + ";"
         known = {(d.id, d.message) for d in model.diagnostics}
         try:
             model.text = start + closed + "\n"
+            # A brace ends a block, or a value of a statement that is open still.
+            if closed.endswith("}") and "missing-semicolon" in {d.id for d in model.diagnostics}:
+                model.text = start + closed + ";\n"
         except KeyboardInterrupt:
             model.text = text
             raise

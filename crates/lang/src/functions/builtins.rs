@@ -45,7 +45,7 @@ pub(crate) enum Action {
 }
 
 /// All built-in functions, in the order of the reference.
-pub const BUILTINS: [Builtin; 27] = [
+pub const BUILTINS: [Builtin; 28] = [
     Builtin {
         name: "format",
         arguments: (1, usize::MAX),
@@ -183,6 +183,14 @@ pub const BUILTINS: [Builtin; 27] = [
         example: "surface s[3,2] = {1, 2, 3}; write_vts(\"s.vts\", s);",
     },
     Builtin {
+        name: "plot",
+        arguments: (2, usize::MAX),
+        action: Action::WriteGrids(GridFormat::Plot),
+        signature: "plot(name, s1, s2, ...)",
+        doc: "Draws curves, surfaces and blocks to a .png or .svg; plot(name, view, ...) looks from \"x\", \"-y\", \"z\", \"iso\" ...",
+        example: "curve c[30]; c.x = uniform(0, 1, 30); c.y = c.x^2; plot(\"parabola.svg\", c);",
+    },
+    Builtin {
         name: "write_stl",
         arguments: (2, usize::MAX),
         action: Action::WriteGrids(GridFormat::Stl),
@@ -275,6 +283,8 @@ pub(crate) enum GridFormat {
     Su2,
     Gmsh,
     BlockMesh,
+    /// A picture.
+    Plot,
 }
 
 impl GridFormat {

@@ -322,7 +322,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let Some((name, all, read)) = multiple else {
             if builtin.action == Action::Count {
                 let value = self.operand(m, arg)?;
-                match &*crate::value::ops::gathered(&value) {
+                match &*moldloft_arrays::gathered(&value) {
                     Value::Numbers(a) => {
                         let held = a.items.iter().filter(|x| x.re() != 0.0).count();
                         return Ok(Value::Number(T::from(held as f64)));

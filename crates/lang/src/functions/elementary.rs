@@ -34,6 +34,21 @@ fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> CallError {
         .in_field(field_id(position))
 }
 
+/// The row of numbers that braces spell: `{1, 2, 3}`, of any length.
+fn spelled<T: Real>(value: &Value<T>) -> Option<Value<T>> {
+    match value {
+        Value::Vector(v) => {
+            let (shape, items) = (ArrayShape::Row(3), vec![v.x, v.y, v.z]);
+            Some(Value::Numbers(Arc::new(Array { shape, items })))
+        }
+        Value::List(_) => match moldloft_arrays::gathered(value).into_owned() {
+            row @ Value::Numbers(_) => Some(row),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
 fn each<T: Real>(name: &str, value: &Value<T>, f: &dyn Fn(T) -> T) -> Result<Value<T>, CallError> {
     if let Some(field) = crate::value::implicit::function(name, value) {
         return field;
@@ -44,9 +59,10 @@ fn each<T: Real>(name: &str, value: &Value<T>, f: &dyn Fn(T) -> T) -> Result<Val
             let items = a.items.iter().map(|&x| f(x)).collect();
             Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items })))
         }
-        other => match blocks::by_layer(other, |layer| each(name, layer, f)) {
-            Some(layers) => layers,
-            None => Err(not_a_number(other, 0)),
+        other => match (spelled(other), blocks::by_layer(other, |layer| each(name, layer, f))) {
+            (Some(row), _) => each(name, &row, f),
+            (None, Some(layers)) => layers,
+            (None, None) => Err(not_a_number(other, 0)),
         },
     }
 }
@@ -80,8 +96,14 @@ fn pairs<T: Real>(
             format!("shapes differ: {} and {}", a.shape, b.shape),
         )
         .expected("equal shapes, or a single number on one side")),
-        (Value::Number(_) | Value::Numbers(_), other) => Err(not_a_number(other, 1)),
-        (other, _) => Err(not_a_number(other, 0)),
+        (Value::Number(_) | Value::Numbers(_), other) => match spelled(other) {
+            Some(row) => pairs(a, &row, f),
+            None => Err(not_a_number(other, 1)),
+        },
+        (other, _) => match spelled(other) {
+            Some(row) => pairs(&row, b, f),
+            None => Err(not_a_number(other, 0)),
+        },
     }
 }
 
@@ -102,7 +124,7 @@ fn reduced<T: Real>(
         .iter()
         .enumerate()
         .filter(|(_, arg)| !matches!(arg, Value::Unset))
-        .map(|(k, arg)| (k, crate::value::ops::gathered(arg)))
+        .map(|(k, arg)| (k, moldloft_arrays::gathered(arg)))
         .collect();
     if let ([(_, value)], Value::Unset) = (&given[..], axis)
         && let Some(flat) = blocks::flat(value)
@@ -406,7 +428,7 @@ pub fn rows() -> Vec<Row> {
         reduced("sum", args, |a, b| a + b)
     }
     fn average<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
-        let gathered = crate::value::ops::gathered(&args[0]);
+        let gathered = moldloft_arrays::gathered(&args[0]);
         let shape = match &*gathered {
             Value::Numbers(a) => Some(a.shape),
             Value::Vectors(a) => Some(a.shape),

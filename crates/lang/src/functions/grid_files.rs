@@ -5,6 +5,7 @@
 
 use crate::functions::block_files::{CgnsBlocks, NamedBlock, face_names, joined, one_mesh, whole};
 use crate::functions::builtins::{GridFormat, RowFormat};
+use crate::functions::plots::plot;
 use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::value::variables;
@@ -252,6 +253,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     self.env.files.put(&name, file.bytes).map_err(at)?;
                 }
                 Ok(())
+            }
+            GridFormat::Plot => {
+                let bytes = plot(&path, &words, &blocks, &names).map_err(|d| {
+                    let place = if d.id == "unknown-word" { words_at } else { at_name };
+                    d.or_at(place)
+                })?;
+                self.env.files.put(&path, bytes).map_err(at)
             }
             GridFormat::Stl => {
                 let flip = nothing_of(&words, "flip")?;

@@ -8,4 +8,5 @@ pub(crate) mod elementary;
 pub mod files;
 pub(crate) mod format;
 mod grid_files;
+mod plots;
 mod shape_measures;

@@ -570,10 +570,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         // Of numbers and points it is their mean, of a surface alone the mean curvature.
         if &*row.name == "mean"
-            && given.positional.first().is_some_and(|value| match &*ops::gathered(value) {
-                Value::Number(_) | Value::Numbers(_) | Value::Vector(_) => true,
-                Value::Vectors(a) => matches!(a.shape, ArrayShape::Row(_)) || args.len() > 1,
-                _ => false,
+            && given.positional.first().is_some_and(|value| {
+                match &*moldloft_arrays::gathered(value) {
+                    Value::Number(_) | Value::Numbers(_) | Value::Vector(_) => true,
+                    Value::Vectors(a) => matches!(a.shape, ArrayShape::Row(_)) || args.len() > 1,
+                    _ => false,
+                }
             })
             && let Some(average) = self.loader.registry.get("average")
         {

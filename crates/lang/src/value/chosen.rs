@@ -2,7 +2,6 @@
 //!
 //! A mask has the shape of what it chooses from and holds 0 and 1 alone; anything else is an index: positions from 1.
 
-use crate::value::ops;
 use crate::value::subarray::Selection;
 use crate::value::variables::{self, Called as _};
 use moldloft_diag::Diagnostic;
@@ -42,7 +41,7 @@ pub(crate) struct Chosen {
 
 /// The numbers of what stands for an index or a mask; `None` of anything else.
 pub(crate) fn index_array<T: Real>(value: &Value<T>) -> Option<Array<T>> {
-    match &*ops::gathered(value) {
+    match &*moldloft_arrays::gathered(value) {
         Value::Numbers(a) => Some((**a).clone()),
         Value::Vector(v) => Some(Array::row(v.to_array().to_vec())),
         _ => None,
@@ -147,7 +146,7 @@ impl Chosen {
             Value::List(_) | Value::Vector(_) if numbers => {
                 variables::converted(Type::Farray, value)?
             }
-            Value::List(_) => ops::gathered(&value).into_owned(),
+            Value::List(_) => moldloft_arrays::gathered(&value).into_owned(),
             Value::Point(p) => Value::Vector(p.xyz),
             other => other,
         };

@@ -6,6 +6,7 @@ use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Value, Vectors as Planes};
 use moldloft_syntax::sdl::{BinaryOp, UnaryOp};
+
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -167,51 +168,6 @@ fn rules<T: Real>(op: BinaryOp) -> Option<Rules<T>> {
     })
 }
 
-/// A list of numbers, of vectors, or of rows of equal length, as the array that it spells; anything else as it is.
-pub(crate) fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
-    let Value::List(items) = value else { return Cow::Borrowed(value) };
-    let all_numbers: Option<Vec<T>> = items
-        .iter()
-        .map(|item| if let Value::Number(x) = item { Some(*x) } else { None })
-        .collect();
-    if let Some(items) = all_numbers.filter(|items| !items.is_empty()) {
-        return Cow::Owned(numbers(Array { shape: ArrayShape::Row(items.len()), items }));
-    }
-    let all_vectors: Option<Vec<Vec3<T>>> = items
-        .iter()
-        .map(|item| match item {
-            Value::Vector(v) => Some(*v),
-            Value::Point(p) => Some(p.xyz),
-            _ => None,
-        })
-        .collect();
-    if let Some(items) = all_vectors.filter(|items| !items.is_empty()) {
-        return Cow::Owned(vectors(Array { shape: ArrayShape::Row(items.len()), items }));
-    }
-    let mut width = None;
-    let mut row = |shape: ArrayShape| match shape {
-        ArrayShape::Row(n) if width.is_none_or(|width| width == n) => {
-            width = Some(n);
-            true
-        }
-        _ => false,
-    };
-    let (mut flat, mut points) = (Vec::new(), Vec::new());
-    for item in items.iter() {
-        match item {
-            Value::Numbers(a) if points.is_empty() && row(a.shape) => flat.extend(&a.items),
-            Value::Vectors(a) if flat.is_empty() && row(a.shape) => points.extend(a.points()),
-            _ => return Cow::Borrowed(value),
-        }
-    }
-    let Some(n) = width else { return Cow::Borrowed(value) };
-    let shape = ArrayShape::Grid(items.len(), n);
-    Cow::Owned(match points.is_empty() {
-        true => numbers(Array { shape, items: flat }),
-        false => vectors(Array { shape, items: points }),
-    })
-}
-
 /// `a and b`, `a or b` by element, one of them an array.
 pub(crate) fn logical<T: Real>(
     op: BinaryOp,
@@ -272,7 +228,7 @@ pub(crate) fn binary<T: Real>(
     if let Some(layers) = blocks::by_layers(a, b, |a, b| binary(op, a, b), differ) {
         return layers;
     }
-    let (a, b) = (&*gathered(a), &*gathered(b));
+    let (a, b) = (&*moldloft_arrays::gathered(a), &*moldloft_arrays::gathered(b));
     let (a, b) = (&*beside(op, a, b), &*beside(op, b, a));
     let word = op.spelling();
     let Some(r) = rules::<T>(op) else { return compare(op, a, b) };
@@ -393,7 +349,7 @@ pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
     if let Some(layers) = blocks::by_layer(a, negated) {
         return layers;
     }
-    Ok(match elements(&gathered(a), "-")? {
+    Ok(match elements(&moldloft_arrays::gathered(a), "-")? {
         Elements::Number(x) => Value::Number(-x),
         Elements::Vector(v) => Value::Vector(-v),
         Elements::Numbers(a) => numbers(mapped(a, |x| -x)),

@@ -31,7 +31,7 @@ pub struct Fold {
 }
 
 /// A bracket that is open.
-struct Open {
+struct OpenBracket {
     kind: Kind,
     callee: Option<(u32, u32)>,
     argument: usize,
@@ -46,7 +46,7 @@ struct Open {
 /// ```
 pub fn call_around(text: &str, offset: u32) -> Option<OpenCall> {
     let lexed = lex(text, FileId(0));
-    let mut open: Vec<Open> = Vec::new();
+    let mut open: Vec<OpenBracket> = Vec::new();
     let tokens: Vec<Token> = lexed.tokens.into_iter().filter(|t| t.kind != Kind::End).collect();
     for (k, token) in tokens.iter().enumerate() {
         if token.start >= offset {
@@ -75,7 +75,7 @@ pub fn text_around(text: &str, offset: u32) -> Option<u32> {
     (text.kind == Kind::Text && inside).then_some(text.start + 1)
 }
 
-fn step(open: &mut Vec<Open>, tokens: &[Token], k: usize) {
+fn step(open: &mut Vec<OpenBracket>, tokens: &[Token], k: usize) {
     let token = tokens[k];
     let before = |n: usize| k.checked_sub(n).map(|at| tokens[at]);
     match token.kind {
@@ -126,8 +126,8 @@ fn step(open: &mut Vec<Open>, tokens: &[Token], k: usize) {
     }
 }
 
-fn opened(token: Token, callee: Option<(u32, u32)>) -> Open {
-    Open { kind: token.kind, callee, argument: 0, name: None }
+fn opened(token: Token, callee: Option<(u32, u32)>) -> OpenBracket {
+    OpenBracket { kind: token.kind, callee, argument: 0, name: None }
 }
 
 /// The parts of a text that fold: brackets over several lines, and comments of several lines.
