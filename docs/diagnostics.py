@@ -37,6 +37,7 @@ WITHOUT = {
     "cancelled",
     "diverged",
     "engine-ended",
+    "units-differ",
     "faces-apart",
     "faces-tangled",
     "internal-error",

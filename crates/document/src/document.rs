@@ -712,6 +712,7 @@ impl Document {
     pub fn units(&self) -> String {
         match &self.source {
             ObjectSource::ModelFile(source) => source.units(),
+            ObjectSource::Sketch(sketch) => sketch.unit().unwrap_or_default(),
             _ => moldloft_lang::model_file::header::text(&self.plain.graph, "units"),
         }
     }

@@ -266,3 +266,18 @@ fn the_body_is_an_exact_set() {
     let chords = number(&mut m, "bracket.solid.volume");
     assert!((chords - exact).abs() < 1e-9);
 }
+
+#[test]
+fn a_sketch_has_the_unit_that_it_states_and_only_one() {
+    const SHED: &str = include_str!("../../../../examples/sketch/shed.skt");
+    let open = |text: &str| Document::from_text(registry(), Box::new(NoFiles), "shed.skt", text);
+    assert_eq!(open(SHED).units(), "m");
+    assert_eq!(open(&SHED.replace("SET UNITS M\n", "SET UNITS FT\n")).units(), "ft");
+    assert_eq!(open(&SHED.replace("SET UNITS M\n", "")).units(), "");
+    // The second object is the first under another name, in another unit.
+    let other = SHED.replace("SKETCH SHED", "SKETCH BARN").replace("UNITS M\n", "UNITS FT\n");
+    let both = open(&format!("{SHED}\n{other}"));
+    let found = both.diagnostics();
+    let fault = found.iter().find(|d| d.id == "units-differ").expect("the fault");
+    assert!(fault.message.contains("SHED") && fault.message.contains("FT"), "{}", fault.message);
+}

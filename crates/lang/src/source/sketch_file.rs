@@ -138,7 +138,7 @@ impl SketchFile {
                     let text = format!("{beyond} more replies of the sketch are not listed");
                     faults.push(Diagnostic::warning("too-many-errors", text).at(whole));
                 }
-                let objects = (session.names().iter())
+                let objects: Vec<Drawn> = (session.names().iter())
                     .filter_map(|name| session.object(name))
                     .map(|object| Drawn {
                         planes: Planes::of(&object.drawing),
@@ -146,6 +146,7 @@ impl SketchFile {
                         estimate: OnceLock::new(),
                     })
                     .collect();
+                faults.extend(different_units(&objects).map(|fault| fault.at(whole)));
                 return SketchFile { path: path.into(), file, objects, faults };
             };
             let read = world.read(&name, Some(path)).map_err(|e| e.message).and_then(|read| {
@@ -160,6 +161,12 @@ impl SketchFile {
         SketchFile { path: path.into(), file, objects: Vec::new(), faults: vec![fault] }
     }
 
+    /// The unit of length that the objects state, as models spell it; `None` when none is stated.
+    pub fn unit(&self) -> Option<String> {
+        let stated = self.objects.iter().find_map(|drawn| drawn.object.units.as_ref())?;
+        Some(stated.to_ascii_lowercase())
+    }
+
     /// The name of an object in the model: how the file is called when it has this one object of that
     /// name, else the object's own.
     pub fn prefix(&self, drawn: &Drawn) -> String {
@@ -170,6 +177,20 @@ impl SketchFile {
             if self.objects.len() == 1 && stem.eq_ignore_ascii_case(name) { stem } else { name };
         crate::model_file::names::identifier(chosen)
     }
+}
+
+/// The fault of objects whose numbers are not of one unit: together they are no model.
+fn different_units(objects: &[Drawn]) -> Option<Diagnostic> {
+    let mut stated =
+        objects.iter().filter_map(|d| Some((&d.object.name, d.object.units.as_ref()?)));
+    let (first, unit) = stated.next()?;
+    let (other, another) = stated.find(|(_, other)| *other != unit)?;
+    let message = format!("`{first}` is in {unit}, `{other}` in {another}");
+    Some(
+        Diagnostic::error("units-differ", message)
+            .expected("one unit for all objects of a sketch")
+            .help(format!("SET UNITS {unit} CONVERT in `{other}` converts its numbers")),
+    )
 }
 
 /// A reply as a diagnostic; notes are nothing wrong.
