@@ -38,7 +38,7 @@ WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
 ENGINE := python/moldloft/workbench/wasm/engine.wasm.gz
 WASM := wasm32-unknown-unknown
 
-.PHONY: setup demo optimised web engine test check reference site release soak clean help
+.PHONY: setup demo optimised web engine test check reference site release soak fuzz clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -131,6 +131,9 @@ release: ## wheel with language server and page, sdist, notices, bill of materia
 
 soak: export MOLDLOFT_SOAK = 1
 soak: test ## the long random tests in full
+
+fuzz: $(VENV)/.with-tests ## coverage-guided fuzzing, SECONDS (600) for each target; needs a C++ compiler
+	@$(BIN)/python tools/fuzz.py --seconds $(or $(SECONDS),600)
 
 clean: ## removes what was built
 	rm -rf $(VENV) out dist target web/node_modules python/moldloft/workbench/page python/moldloft/workbench/wasm

@@ -184,7 +184,7 @@ def test_repl_goes_on_after_an_interrupt() -> None:
         until(b"> ")
         os.write(terminal, b"float x = 2;\r")
         until(b"> ")
-        os.write(terminal, b"while (1) { x += 1; }\r")
+        os.write(terminal, b"farray a[1000000]; while (1) { a = sin(a) + x; }\r")
         until(b"}")
         time.sleep(0.5)
         os.write(terminal, b"\x03")

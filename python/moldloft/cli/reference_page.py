@@ -76,7 +76,7 @@ FUNCTIONS = (
         "Files",
         "open close read write more next rewind read_p3d read_points read_aerofoil write_p3d "
         "write_vts write_stl write_cgns write_su2 write_gmsh write_blockmesh count_p3d "
-        "write_csv",
+        "write_csv plot",
     ),
 )
 
