@@ -289,7 +289,10 @@ impl Document {
         // A program with a fault in its text is another one than was meant.
         let faulty = !self.tolerant && self.text_diagnostics.iter().any(Diagnostic::is_error);
         let applied = match &self.source {
-            ObjectSource::Program if faulty => evaluation.graph.apply(Extent::Whole, |_| ()).1,
+            ObjectSource::Program if faulty => {
+                evaluation.env = Default::default();
+                evaluation.graph.apply(Extent::Whole, |_| ()).1
+            }
             ObjectSource::Program | ObjectSource::Sketch(_) => {
                 program.run(evaluation, inputs, &mut found)
             }

@@ -297,7 +297,11 @@ fn endless_programs_do_not_occupy_the_server() {
         let notice = json!({"textDocument": id, "contentChanges": changes});
         client.tell("textDocument/didChange", notice);
         std::thread::sleep(Duration::from_millis(300));
-        let found = client.change(4, json!([{"text": "print y;\n"}]));
+        let mut found = client.change(4, json!([{"text": "print y;\n"}]));
+        if found[0]["code"] == "too-many-steps" {
+            // What came to the limit before the change had been reported.
+            found = client.published();
+        }
         assert_eq!(found[0]["code"], "unknown-name", "{found:?}");
     }
 }
