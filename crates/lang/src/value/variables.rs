@@ -109,7 +109,7 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
         }
         (Type::Int, Value::Number(x)) if x.re().abs() >= MOST_INT => {
             return Err(Diagnostic::error("int-overflow", "an int holds whole numbers below 2^53")
-                .expected("a whole number between -9007199254740992 and 9007199254740992")
+                .expected("a whole number between -9007199254740991 and 9007199254740991")
                 .found(moldloft_syntax::number::plain(x.re()))
                 .help(
                     "beyond them not every whole number has its own digits; a float is rounded",
