@@ -17,6 +17,10 @@ fn engine_of(client: &Client) -> u32 {
     all.split_whitespace().next().expect("an engine").parse().unwrap()
 }
 
+/// Runs until it is stopped: the limit of steps is far, as one call does all.
+const LONG: &str = "surface s[300, 300];\nfor (i = 1:300) for (j = 1:300) s[i, j] = {i, j, 0};\n\
+    s[2:299, 2:299].x += 0.2;\ns = elliptic(s, 1000000, 0);\n";
+
 fn kill(engine: u32) {
     let done = Command::new("kill").args(["-9", &engine.to_string()]).status().unwrap();
     assert!(done.success());
@@ -50,9 +54,9 @@ fn a_text_that_ends_its_engine_waits_until_it_is_changed() {
     let other = "file:///nowhere/other.sdl";
     client.open_of(other, "float calm = 2;\n");
     // It runs for two seconds, if nothing ends it.
-    let item = json!({"uri": URI, "languageId": "sdl", "version": 1, "text": "while (1) { }\n"});
+    let item = json!({"uri": URI, "languageId": "sdl", "version": 1, "text": LONG});
     client.tell("textDocument/didOpen", json!({"textDocument": item}));
-    std::thread::sleep(std::time::Duration::from_millis(300));
+    std::thread::sleep(std::time::Duration::from_millis(700));
     kill(engine_of(&client));
     let found = client.published();
     assert_eq!(found[0]["code"], "engine-ended", "{found:?}");
@@ -70,14 +74,14 @@ fn a_text_that_ends_its_engine_waits_until_it_is_changed() {
 #[test]
 fn requests_of_an_engine_that_ended_are_refused() {
     let mut client = Client::start();
-    let item = json!({"uri": URI, "languageId": "sdl", "version": 1, "text": "while (1) { }\n"});
+    let item = json!({"uri": URI, "languageId": "sdl", "version": 1, "text": LONG});
     client.tell("textDocument/didOpen", json!({"textDocument": item}));
     let place = json!({"line": 0, "character": 1});
     let params = json!({"textDocument": {"uri": URI}, "position": place});
     client.send(
         &json!({"jsonrpc": "2.0", "id": 77, "method": "textDocument/hover", "params": params}),
     );
-    std::thread::sleep(std::time::Duration::from_millis(300));
+    std::thread::sleep(std::time::Duration::from_millis(700));
     kill(engine_of(&client));
     loop {
         let message = client.next();
