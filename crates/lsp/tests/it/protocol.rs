@@ -1,111 +1,8 @@
-//! Speaks the protocol to the program itself.
+//! A session with one text: what each method answers, what is reported as one types.
 
+use crate::client::{Client, URI, words};
 use serde_json::{Value, json};
-use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Duration;
-
-struct Client {
-    child: Child,
-    input: Option<ChildStdin>,
-    output: BufReader<ChildStdout>,
-    asked: u64,
-}
-
-const URI: &str = "file:///nowhere/hull%20one.sdl";
-
-impl Client {
-    fn start() -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_moldloft-lsp"))
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("the server starts");
-        let input = child.stdin.take();
-        let output = BufReader::new(child.stdout.take().unwrap());
-        let mut client = Self { child, input, output, asked: 0 };
-        let answer = client.ask("initialize", json!({"capabilities": {}}));
-        assert_eq!(answer["serverInfo"]["name"], "moldloft-lsp");
-        assert_eq!(answer["capabilities"]["hoverProvider"], true);
-        client.tell("initialized", json!({}));
-        client
-    }
-
-    fn send(&mut self, message: &Value) {
-        let text = message.to_string();
-        let input = self.input.as_mut().unwrap();
-        write!(input, "Content-Length: {}\r\n\r\n{text}", text.len()).unwrap();
-        input.flush().unwrap();
-    }
-
-    fn tell(&mut self, method: &str, params: Value) {
-        self.send(&json!({"jsonrpc": "2.0", "method": method, "params": params}));
-    }
-
-    fn next(&mut self) -> Value {
-        let mut length = 0;
-        loop {
-            let mut line = String::new();
-            self.output.read_line(&mut line).unwrap();
-            if line.trim().is_empty() {
-                break;
-            }
-            if let Some(n) = line.strip_prefix("Content-Length: ") {
-                length = n.trim().parse().unwrap();
-            }
-        }
-        let mut bytes = vec![0; length];
-        self.output.read_exact(&mut bytes).unwrap();
-        serde_json::from_slice(&bytes).unwrap()
-    }
-
-    fn answer(&mut self, method: &str, params: Value) -> Value {
-        self.asked += 1;
-        let id = self.asked;
-        self.send(&json!({"jsonrpc": "2.0", "id": id, "method": method, "params": params}));
-        let answer = self.next();
-        assert_eq!(answer["id"], id, "{answer}");
-        answer
-    }
-
-    fn ask(&mut self, method: &str, params: Value) -> Value {
-        let answer = self.answer(method, params);
-        assert!(answer.get("error").is_none(), "{answer}");
-        answer["result"].clone()
-    }
-
-    fn at(&mut self, method: &str, line: u64, character: u64) -> Value {
-        let place = json!({"line": line, "character": character});
-        self.ask(method, json!({"textDocument": {"uri": URI}, "position": place}))
-    }
-
-    /// The diagnostics of the text after it was opened or changed.
-    fn open(&mut self, text: &str) -> Vec<Value> {
-        let item = json!({"uri": URI, "languageId": "sdl", "version": 1, "text": text});
-        self.tell("textDocument/didOpen", json!({"textDocument": item}));
-        self.published()
-    }
-
-    fn change(&mut self, version: u64, changes: Value) -> Vec<Value> {
-        let id = json!({"uri": URI, "version": version});
-        self.tell("textDocument/didChange", json!({"textDocument": id, "contentChanges": changes}));
-        self.published()
-    }
-
-    fn published(&mut self) -> Vec<Value> {
-        let message = self.next();
-        assert_eq!(message["method"], "textDocument/publishDiagnostics", "{message}");
-        assert_eq!(message["params"]["uri"], URI);
-        message["params"]["diagnostics"].as_array().unwrap().clone()
-    }
-}
-
-impl Drop for Client {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
 
 const TEXT: &str = "\
 load \"stdsubs.sdl\"
@@ -117,11 +14,6 @@ AbsPoint P(r, 0, 0);
 function float twice(float x) { float y = 2*x; return y; }
 float x = twice(c[1].x);
 ";
-
-fn words(completions: &Value) -> Vec<String> {
-    let items = completions["items"].as_array().unwrap();
-    items.iter().map(|i| i["label"].as_str().unwrap().to_string()).collect()
-}
 
 #[test]
 fn a_session() {
