@@ -58,13 +58,13 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// Fills in the orders of the program that computes the roots; `check` gives the number of the check
-    /// of an instruction that has one.
+    /// Fills in the orders of the program that computes the roots; `check` is true of instructions whose
+    /// results must be finite.
     pub fn plan<T>(
         &mut self,
         code: &[Instr],
         roots: &[Src],
-        check: impl Fn(usize) -> Option<u16>,
+        check: impl Fn(usize) -> bool,
         program: &mut VmProgram<T>,
     ) {
         let n = code.len();
@@ -87,7 +87,7 @@ impl Planner {
         }
         for k in (0..n).rev() {
             // Uses by what is itself used; roots and checked instructions always are.
-            self.nodes[k].own |= check(k).is_some();
+            self.nodes[k].own |= check(k);
             if !self.is_wanted(k) {
                 continue;
             }
@@ -374,7 +374,7 @@ impl Planner {
         &mut self,
         Instr { code, of: [a, b] }: Instr,
         step: EmittedOp,
-        check: Option<u16>,
+        check: bool,
         program: &mut VmProgram<T>,
     ) -> VmInstruction {
         match step {

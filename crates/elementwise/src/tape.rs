@@ -126,8 +126,8 @@ pub struct Tape<T: Real> {
     /// Cells that were the same array when the tape was made.
     pub aliases: Vec<[Cell; 2]>,
     code: Vec<Instr>,
-    /// Instructions whose results must be finite, in order, and their shapes.
-    checked: Vec<(u16, ArrayShape)>,
+    /// Instructions whose results must be finite, in order, and how many elements they have.
+    checked: Vec<(u16, usize)>,
     planner: Planner,
     program: VmProgram<T>,
 }
@@ -231,56 +231,42 @@ impl<T: Real> Tape<T> {
         &mut self.program.consts
     }
 
-    fn push(&mut self, instr: Instr) -> Src {
+    /// The same instruction is recorded once, and so is its check.
+    fn push(&mut self, instr: Instr, checked: Option<ArrayShape>) -> Src {
         let from = self.code.len().saturating_sub(ALIKE);
         if let Some(at) = self.code[from..].iter().position(|i| *i == instr) {
             return Src::Reg((from + at) as u16);
         }
+        let at = self.code.len() as u16;
         self.code.push(instr);
-        Src::Reg((self.code.len() - 1) as u16)
-    }
-
-    /// The result of an operation on two operands; the same operation is recorded once.
-    pub fn op(&mut self, code: Code, a: Src, b: Src) -> Src {
-        self.push(Instr { code, of: [a, b] })
-    }
-
-    /// The result of an operation on one operand.
-    pub fn op1(&mut self, code: Code, a: Src) -> Src {
-        self.push(Instr { code, of: [a, a] })
-    }
-
-    /// A quotient; it must be finite when there is a shape.
-    pub fn quotient(&mut self, a: Src, b: Src, checked: Option<ArrayShape>) -> Src {
-        let before = self.code.len();
-        let at = self.push(Instr { code: Code::Div, of: [a, b] });
-        // One that was recorded before was checked then.
-        if let Some(shape) = checked.filter(|_| self.code.len() > before) {
-            self.checked.push((before as u16, shape));
+        if let Some(shape) = checked {
+            self.checked.push((at, shape.count()));
         }
-        at
+        Src::Reg(at)
+    }
+
+    /// The result of an operation on two operands; it must be finite when there is a shape.
+    pub fn op(&mut self, code: Code, a: Src, b: Src, checked: Option<ArrayShape>) -> Src {
+        self.push(Instr { code, of: [a, b] }, checked)
+    }
+
+    /// The result of an operation on one operand that is as finite as that one.
+    pub fn op1(&mut self, code: Code, a: Src) -> Src {
+        self.push(Instr { code, of: [a, a] }, None)
     }
 
     /// The function of each element; its results must be finite when there is a shape.
     pub fn unary(&mut self, f: fn(T) -> T, a: Src, checked: Option<ArrayShape>) -> Src {
         self.program.unary.push(f);
         let code = Code::Unary((self.program.unary.len() - 1) as u16);
-        let at = self.push(Instr { code, of: [a, a] });
-        if let Some(shape) = checked {
-            self.checked.push(((self.code.len() - 1) as u16, shape));
-        }
-        at
+        self.push(Instr { code, of: [a, a] }, checked)
     }
 
     /// The function of each pair of elements; its results must be finite when there is a shape.
     pub fn binary(&mut self, f: fn(T, T) -> T, a: Src, b: Src, checked: Option<ArrayShape>) -> Src {
         self.program.binary.push(f);
         let code = Code::Binary((self.program.binary.len() - 1) as u16);
-        let at = self.push(Instr { code, of: [a, b] });
-        if let Some(shape) = checked {
-            self.checked.push(((self.code.len() - 1) as u16, shape));
-        }
-        at
+        self.push(Instr { code, of: [a, b] }, checked)
     }
 
     /// How many checks there are so far.
@@ -288,34 +274,68 @@ impl<T: Real> Tape<T> {
         self.checked.len()
     }
 
-    /// The first check that fails, when nothing but the checks is asked for.
-    pub fn first_failure(&mut self) -> Option<usize> {
-        let mut shapes: Vec<ArrayShape> = Vec::new();
-        for (_, shape) in &self.checked {
-            if !shapes.contains(shape) {
-                shapes.push(*shape);
-            }
-        }
-        let mut failure = |shape| self.run(&[], shape, &mut []).err();
-        shapes.into_iter().filter_map(&mut failure).min()
+    /// The first check that fails, whatever of the tape is asked for.
+    pub fn first_failure(&self) -> Option<usize> {
+        let rows: SmallVec<[&Vec<T>; 16]> = self.planes.iter().map(NumberSource::numbers).collect();
+        let mut counts: Vec<usize> = self.checked.iter().map(|(_, count)| *count).collect();
+        counts.sort_unstable();
+        counts.dedup();
+        counts.into_iter().filter_map(|count| self.failure(&rows, count)).min()
     }
 
-    /// A whole power, by the same multiplications as [`Real::powi`]; the reciprocal of a negative one must be finite
-    /// when there is a shape.
+    /// The first check that fails, in the order of the instructions, of those with so many elements: every
+    /// instruction by itself, which the machine has no time for.
+    fn failure(&self, planes: &[&Vec<T>], count: usize) -> Option<usize> {
+        let mut first = self.checked.len();
+        // Of operands that are shorter there is nothing.
+        let mut results: Vec<Option<T>> = vec![None; self.code.len()];
+        for element in 0..count {
+            let mut check = 0;
+            for (k, instr) in self.code.iter().enumerate() {
+                let [a, b] = instr.of.map(|src| match src {
+                    Src::Plane(p) => planes[p as usize].get(element).copied(),
+                    Src::Const(c) => Some(self.program.consts[c as usize]),
+                    Src::Reg(r) => results[r as usize],
+                });
+                results[k] = a.zip(b).map(|(a, b)| match instr.code {
+                    Code::Add => a + b,
+                    Code::Sub => a - b,
+                    Code::Mul => a * b,
+                    Code::Div => a / b,
+                    Code::Neg => -a,
+                    Code::Abs => a.abs(),
+                    Code::Sqrt => a.sqrt(),
+                    Code::Unary(f) => self.program.unary[f as usize](a),
+                    Code::Binary(f) => self.program.binary[f as usize](a, b),
+                });
+                let Some((at, of)) = self.checked.get(check) else { continue };
+                if *at as usize == k {
+                    if check < first && *of == count && results[k].is_some_and(|x| !x.is_finite()) {
+                        first = check;
+                    }
+                    check += 1;
+                }
+            }
+        }
+        (first < self.checked.len()).then_some(first)
+    }
+
+    /// A whole power, by the same multiplications as [`Real::powi`], which must be finite when there is a
+    /// shape.
     pub fn powi(&mut self, a: Src, exponent: i32, checked: Option<ArrayShape>) -> Src {
         let one = self.constant(T::one(), Origin::FIXED);
-        let mut base = if exponent < 0 { self.quotient(one, a, checked) } else { a };
+        let mut base = if exponent < 0 { self.op(Code::Div, one, a, checked) } else { a };
         let mut left = exponent.unsigned_abs();
         let mut power = one;
         while left > 0 {
             if left & 1 == 1 {
                 // 1 * x is x for plain numbers; a derivative of minus zero would lose its sign.
                 let skip = power == one && T::PARTS == 1;
-                power = if skip { base } else { self.op(Code::Mul, power, base) };
+                power = if skip { base } else { self.op(Code::Mul, power, base, checked) };
             }
             left >>= 1;
             if left > 0 {
-                base = self.op(Code::Mul, base, base);
+                base = self.op(Code::Mul, base, base, checked);
             }
         }
         power
@@ -332,11 +352,15 @@ impl<T: Real> Tape<T> {
         outs: &mut [Vec<T>],
     ) -> Result<(), usize> {
         let Self { code, checked, planner, program, .. } = self;
+        // Infinite sums and products show in the results, or in the quotients and functions that read them.
         let check = |k: usize| {
-            let at = checked.binary_search_by_key(&(k as u16), |c| c.0).ok()?;
-            (checked[at].1 == shape).then_some(at as u16)
+            !matches!(code[k].code, Code::Add | Code::Sub | Code::Mul)
+                && checked
+                    .binary_search_by_key(&(k as u16), |c| c.0)
+                    .is_ok_and(|at| checked[at].1 == shape.count())
         };
         planner.plan(code, roots, check, program);
+        program.finite = !checked.is_empty();
         let rows: SmallVec<[&Vec<T>; 16]> = self.planes.iter().map(NumberSource::numbers).collect();
         self.execute(&rows, roots, shape.count(), outs)
     }
@@ -353,8 +377,10 @@ impl<T: Real> Tape<T> {
         count: usize,
         outs: &mut [Vec<T>],
     ) -> Result<(), usize> {
-        if let Some(check) = self.program.run(planes, outs, count) {
-            return Err(check as usize);
+        if !self.program.run(planes, outs, count)
+            && let Some(check) = self.failure(planes, count)
+        {
+            return Err(check);
         }
         // Roots that are no result of their own: sources, constants, the same result twice.
         for (k, root) in roots.iter().enumerate() {

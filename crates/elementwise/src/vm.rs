@@ -70,19 +70,20 @@ pub enum VmInstruction {
     Shifted(Term, Sign, u16),
     /// c - x
     From(u16, Term),
-    /// x / y. The last number is that of a check, here and below: results must be finite.
-    Ratio(RowLocation, RowLocation, Option<u16>),
+    /// x / y. The last is true for a check, here and below: results must be finite, and so what is
+    /// read, since these make finite numbers of infinite ones.
+    Ratio(RowLocation, RowLocation, bool),
     /// x / c
-    Part(RowLocation, u16, Option<u16>),
+    Part(RowLocation, u16, bool),
     /// c / x
-    Over(u16, RowLocation, Option<u16>),
+    Over(u16, RowLocation, bool),
     Neg(RowLocation),
     Abs(RowLocation),
     Sqrt(RowLocation),
     /// A function of each element.
-    Unary(u16, Operand, Option<u16>),
+    Unary(u16, Operand, bool),
     /// A function of two.
-    Binary(u16, [Operand; 2], Option<u16>),
+    Binary(u16, [Operand; 2], bool),
 }
 
 /// Orders with what they refer to.
@@ -95,6 +96,8 @@ pub struct VmProgram<T> {
     pub binary: Vec<fn(T, T) -> T>,
     /// How many slots the orders use.
     pub slots: usize,
+    /// True when the results must be finite.
+    pub finite: bool,
 }
 
 impl<T> Default for VmProgram<T> {
@@ -105,14 +108,15 @@ impl<T> Default for VmProgram<T> {
             unary: Vec::new(),
             binary: Vec::new(),
             slots: 0,
+            finite: false,
         }
     }
 }
 
 impl<T: Real> VmProgram<T> {
     /// Carries the orders out for the first `count` elements of the planes and results; planes that are
-    /// shorter are not used by the orders. The number of the first check that failed.
-    pub fn run(&self, planes: &[&Vec<T>], outs: &mut [Vec<T>], count: usize) -> Option<u16> {
+    /// shorter are not used by the orders. False when something that must be finite is not.
+    pub fn run(&self, planes: &[&Vec<T>], outs: &mut [Vec<T>], count: usize) -> bool {
         // The processor does not change, and asking it takes longer than a short row.
         static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
         thread_local! {
@@ -120,7 +124,7 @@ impl<T: Real> VmProgram<T> {
             static MEMORY: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
         }
         if count == 0 {
-            return None;
+            return true;
         }
         if let Some(program) = (self as &dyn Any).downcast_ref::<VmProgram<f64>>() {
             // Numbers without derivatives, so all rows are of those.
@@ -136,9 +140,9 @@ impl<T: Real> VmProgram<T> {
             });
             let mut memory = MEMORY.take();
             let rows = Rows { planes: planes.collect(), outs: outs.collect(), count };
-            let failed = ARCH.dispatch(Wide { program, rows, memory: &mut memory });
+            let sound = ARCH.dispatch(Wide { program, rows, memory: &mut memory });
             MEMORY.set(memory);
-            return failed;
+            return sound;
         }
         let planes = planes.iter().map(|row| row.get(..count).unwrap_or(&[]));
         let outs = outs.iter_mut().map(|row| &mut row[..count]);
@@ -162,10 +166,10 @@ struct Wide<'a> {
 }
 
 impl WithSimd for Wide<'_> {
-    type Output = Option<u16>;
+    type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Option<u16> {
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
         go(Packed(simd), self.program, self.rows, self.memory)
     }
 }
@@ -325,7 +329,7 @@ fn go<P: Packs>(
     program: &VmProgram<P::Number>,
     rows: Rows<'_, P::Number>,
     memory: &mut Vec<P::Number>,
-) -> Option<u16> {
+) -> bool {
     let Rows { planes, outs, count } = rows;
     let zero = <P::Number as From<f64>>::from(0.0);
     let block = BLOCK * P::LANES;
@@ -348,7 +352,7 @@ fn go<P: Packs>(
     let cells = Cell::from_mut(packs.as_chunks_mut::<BLOCK>().0).as_slice_of_cells();
     let mut consts: SmallVec<[P::Pack; 16]> = SmallVec::new();
     consts.extend(program.consts.iter().map(|x| p.of(*x)));
-    let mut failed = None;
+    let mut failed = false;
     let length = blocks * block;
     let whole = count - count % length;
     let mut left: SmallVec<[&mut [P::Number]; 3]> = SmallVec::new();
@@ -384,7 +388,7 @@ fn go<P: Packs>(
             to.copy_from_slice(&P::numbers_mut(&mut packs)[..to.len()]);
         }
     }
-    failed
+    !failed
 }
 
 /// What the orders of a stretch work on.
@@ -472,7 +476,7 @@ fn carry_out<P: Packs>(
     p: P,
     program: &VmProgram<P::Number>,
     m: &Machine<'_, P>,
-    failed: &mut Option<u16>,
+    failed: &mut bool,
 ) {
     for &(order, to) in &program.orders {
         let to = m.row(to);
@@ -591,20 +595,26 @@ fn carry_out<P: Packs>(
                 let y = &m.row(y)[..to.len()];
                 let x = &m.row(x)[..to.len()];
                 set!(|k| {
-                    let (x, y) = (x[k].get(), y[k].get());
+                    let (x, mut y) = (x[k].get(), y[k].get());
+                    *failed |= check && !all_finite::<P>(&mut y);
                     packs!(x[j] = p.div(x[j], y[j]))
                 });
-                tested_row::<P>(to, check, failed);
+                *failed |= check && !row_is_finite::<P>(to);
             }
             VmInstruction::Part(x, c, check) => {
                 let c = m.consts[c as usize];
                 row!(x, |x| packs!(x[j] = p.div(x[j], c)));
-                tested_row::<P>(to, check, failed);
+                *failed |= check && !row_is_finite::<P>(to);
             }
             VmInstruction::Over(c, x, check) => {
                 let c = m.consts[c as usize];
-                row!(x, |x| packs!(x[j] = p.div(c, x[j])));
-                tested_row::<P>(to, check, failed);
+                let x = &m.row(x)[..to.len()];
+                set!(|k| {
+                    let mut x = x[k].get();
+                    *failed |= check && !all_finite::<P>(&mut x);
+                    packs!(x[j] = p.div(c, x[j]))
+                });
+                *failed |= check && !row_is_finite::<P>(to);
             }
             VmInstruction::Neg(x) => row!(x, |x| packs!(x[j] = p.neg(x[j]))),
             VmInstruction::Abs(x) => row!(x, |x| packs!(x[j] = p.abs(x[j]))),
@@ -613,11 +623,12 @@ fn carry_out<P: Packs>(
                 let f = program.unary[f as usize];
                 for k in 0..to.len() {
                     let mut x = operand(m, x, k);
+                    *failed |= check && !all_finite::<P>(&mut x);
                     let numbers = P::numbers_mut(&mut x);
                     for x in &mut *numbers {
                         *x = f(*x);
                     }
-                    tested(numbers, check, failed);
+                    *failed |= check && !all_finite::<P>(&mut x);
                     to[k].set(x);
                 }
             }
@@ -625,14 +636,20 @@ fn carry_out<P: Packs>(
                 let f = program.binary[f as usize];
                 for k in 0..to.len() {
                     let [mut x, mut y] = [operand(m, of[0], k), operand(m, of[1], k)];
+                    *failed |= check && !(all_finite::<P>(&mut x) && all_finite::<P>(&mut y));
                     let (numbers, y) = (P::numbers_mut(&mut x), P::numbers_mut(&mut y));
                     for (x, y) in numbers.iter_mut().zip(y) {
                         *x = f(*x, *y);
                     }
-                    tested(numbers, check, failed);
+                    *failed |= check && !all_finite::<P>(&mut x);
                     to[k].set(x);
                 }
             }
+        }
+    }
+    if program.finite {
+        for out in 0..m.outs.len() {
+            *failed |= !row_is_finite::<P>(m.row(RowLocation::Out(out as u16)));
         }
     }
 }
@@ -646,29 +663,14 @@ fn operand<P: Packs>(m: &Machine<'_, P>, x: Operand, k: usize) -> [P::Pack; BLOC
     }
 }
 
-/// [`tested`] of a row that was just written.
+/// True when all numbers of a row are finite.
 #[inline(always)]
-fn tested_row<P: Packs>(
-    to: &[Cell<[P::Pack; BLOCK]>],
-    check: Option<u16>,
-    failed: &mut Option<u16>,
-) {
-    if check.is_some() {
-        for to in to {
-            let mut packs = to.get();
-            tested(P::numbers_mut(&mut packs), check, failed);
-        }
-    }
+fn row_is_finite<P: Packs>(row: &[Block<P>]) -> bool {
+    row.iter().fold(true, |finite, block| finite & all_finite::<P>(&mut block.get()))
 }
 
-/// Notes the check when it is the first that fails.
+/// True when all numbers of a block are finite: without an early exit, so that the loop is of whole packs.
 #[inline(always)]
-fn tested<T: Real>(numbers: &[T], check: Option<u16>, failed: &mut Option<u16>) {
-    if let Some(check) = check
-        && failed.is_none_or(|first| check < first)
-        // Without an early exit, so that the loop is of whole packs.
-        && numbers.iter().fold(false, |bad, x| bad | !x.is_finite())
-    {
-        *failed = Some(check);
-    }
+fn all_finite<P: Packs>(block: &mut [P::Pack; BLOCK]) -> bool {
+    P::numbers_mut(block).iter().fold(true, |finite, x| finite & x.is_finite())
 }

@@ -269,7 +269,7 @@ fn compute<'v, T: Real>(entry: &Entry<T>, of: impl Fn(Cell) -> &'v Value<T>) -> 
         // What is not finite is judged by the tree.
         .filter(Value::is_finite),
         Entry::Negated(a) => ops::negated(of(a)).ok(),
-        Entry::Magnitude(a) => ops::magnitude(of(a)).ok(),
+        Entry::Magnitude(a) => ops::magnitude(of(a)).ok().filter(Value::is_finite),
         Entry::Component(a, axis) => variables::component(of(a), axis),
         Entry::Braces(all) => ops::braces(all.map(|cell| of(cell).clone()).to_vec()).ok(),
         Entry::Function(name, f, args) => {

@@ -71,6 +71,7 @@ pub(crate) fn not_finite(name: &str) -> Diagnostic {
         "+" | "-" | "*" | "." | ".*" => {
             ("the result is not a finite number".into(), "finite numbers below 1.8e308")
         }
+        "||" => ("the magnitude is not a finite number".into(), "components below 1e154"),
         name => (
             format!("the result of {name} is not a finite number"),
             "arguments inside the function's domain",

@@ -223,17 +223,23 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Paren(inner) => self.operated(m, inner, work),
             ExprKind::Magnitude(inner) => {
                 let operand = self.operated(m, inner, work)?;
-                let plain = self.arrays.plain_operators;
-                Ok(match operand {
-                    LoweredOperand::Value(ref value, cell) => match work.lanes(value, cell, !plain)
-                    {
-                        Some(lanes) => LoweredOperand::Lanes(work.magnitude(lanes)),
-                        None => {
-                            let cell = work.noted(|r| r.magnitude(cell));
-                            LoweredOperand::Value(ops::magnitude(value)?, cell)
+                let lanes = match &operand {
+                    LoweredOperand::Lanes(lanes) => Some(*lanes),
+                    LoweredOperand::Value(value, cell) => {
+                        work.lanes(value, *cell, !self.arrays.plain_operators)
+                    }
+                };
+                Ok(match (lanes, operand) {
+                    (None, LoweredOperand::Value(value, cell)) => {
+                        let cell = work.noted(|r| r.magnitude(cell));
+                        let value = ops::magnitude(&value)?;
+                        if !self.arrays.ieee && !value.is_finite() {
+                            return Err(not_finite("||").at(span));
                         }
-                    },
-                    LoweredOperand::Lanes(lanes) => LoweredOperand::Lanes(work.magnitude(lanes)),
+                        LoweredOperand::Value(value, cell)
+                    }
+                    (None, lanes) => lanes,
+                    (Some(lanes), _) => LoweredOperand::Lanes(work.magnitude(lanes, span)),
                 })
             }
             ExprKind::Unary { op, operand } => {
@@ -480,15 +486,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let cell = work.noted(|r| r.binary(op, cells[0], cells[1]));
         let value = ops::binary(op, &a, &b)
             .map_err(|d| self.differing(m, d, spans, [&shape_text(&a), &shape_text(&b)]))?;
-        // Of arrays the operators that have no value for some numbers, as a tape checks them.
-        let judged = match value {
-            Value::Number(_) | Value::Vector(_) => true,
-            Value::Numbers(_) | Value::Vectors(_) => {
-                matches!(op, BinaryOp::Div | BinaryOp::Caret)
-            }
-            _ => false,
-        };
-        if judged && !self.arrays.ieee && !value.is_finite() {
+        if !self.arrays.ieee && !value.is_finite() {
             return Err(not_finite(op.spelling()).at(spans[0].to(spans[1])));
         }
         Ok(LoweredOperand::Value(value, cell))
@@ -826,22 +824,23 @@ impl<T: Real> TapeBuilder<T> {
         TapeArray { what, ..lanes }
     }
 
-    fn magnitude(&mut self, lanes: TapeArray) -> TapeArray {
+    fn magnitude(&mut self, lanes: TapeArray, span: Span) -> TapeArray {
         let what = match lanes.what {
             What::Number(a) => What::Number(self.tape.op1(Code::Abs, a)),
             What::Vector(v) => {
-                let square = self.dot(v, v);
+                let square = self.dot(v, v, self.checked(lanes.shape));
+                self.name_checks(span, "||");
                 What::Number(self.tape.op1(Code::Sqrt, square))
             }
         };
         TapeArray { what, ..lanes }
     }
 
-    fn dot(&mut self, a: [Src; 3], b: [Src; 3]) -> Src {
-        let mut product = |c: usize| self.tape.op(Code::Mul, a[c], b[c]);
+    fn dot(&mut self, a: [Src; 3], b: [Src; 3], checked: Option<ArrayShape>) -> Src {
+        let mut product = |c: usize| self.tape.op(Code::Mul, a[c], b[c], checked);
         let (x, y, z) = (product(0), product(1), product(2));
-        let xy = self.tape.op(Code::Add, x, y);
-        self.tape.op(Code::Add, xy, z)
+        let xy = self.tape.op(Code::Add, x, y, checked);
+        self.tape.op(Code::Add, xy, z, checked)
     }
 
     /// `a op b` where at least one is an array and the shapes agree; `None` where the operator is
@@ -851,10 +850,10 @@ impl<T: Real> TapeBuilder<T> {
         let shape = a.0.or(b.0)?;
         let checked = self.checked(shape);
         let apply = |this: &mut Self, x: Src, y: Src| match op {
-            BinaryOp::Add => this.tape.op(Code::Add, x, y),
-            BinaryOp::Sub => this.tape.op(Code::Sub, x, y),
-            BinaryOp::Mul => this.tape.op(Code::Mul, x, y),
-            _ => this.tape.quotient(x, y, checked),
+            BinaryOp::Add => this.tape.op(Code::Add, x, y, checked),
+            BinaryOp::Sub => this.tape.op(Code::Sub, x, y, checked),
+            BinaryOp::Mul => this.tape.op(Code::Mul, x, y, checked),
+            _ => this.tape.op(Code::Div, x, y, checked),
         };
         let what = match (op, a.1, b.1) {
             (
@@ -883,15 +882,15 @@ impl<T: Real> TapeBuilder<T> {
             }
             (BinaryOp::Dot, Vector(v), Vector(w)) => {
                 let (v, w) = (v.map(|x| self.src(&x)), w.map(|x| self.src(&x)));
-                What::Number(self.dot(v, w))
+                What::Number(self.dot(v, w, checked))
             }
             (BinaryOp::Cross, Vector(v), Vector(w)) => {
                 let (v, w) = (v.map(|x| self.src(&x)), w.map(|x| self.src(&x)));
                 What::Vector([0, 1, 2].map(|c| {
                     let (i, j) = ((c + 1) % 3, (c + 2) % 3);
-                    let plus = self.tape.op(Code::Mul, v[i], w[j]);
-                    let minus = self.tape.op(Code::Mul, v[j], w[i]);
-                    self.tape.op(Code::Sub, plus, minus)
+                    let plus = self.tape.op(Code::Mul, v[i], w[j], checked);
+                    let minus = self.tape.op(Code::Mul, v[j], w[i], checked);
+                    self.tape.op(Code::Sub, plus, minus, checked)
                 }))
             }
             (BinaryOp::Caret, Number(x), Number(y)) => {
