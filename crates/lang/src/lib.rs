@@ -25,6 +25,19 @@ pub use source::env::{Evaluation, Param, SolveStatus};
 pub use source::{LIBRARIES, NoFiles, ReadText, TextReadError, World};
 pub use value::display;
 
+/// Inner parts, for the tests of this crate: unit tests would compile all of it once more.
+#[doc(hidden)]
+pub mod parts {
+    pub use crate::functions::elementary::{remainder, small_remainder};
+    pub use crate::functions::files::inside;
+    pub use crate::functions::format::{FormatArgument, format};
+    pub use crate::value::subarray::{ArraySection, Selection, picked, put};
+    /// Attributes of panels in model files.
+    pub mod panel_attributes {
+        pub use crate::model_file::panel_attributes::{read, written};
+    }
+}
+
 use moldloft_registry::Registry;
 
 /// All rows of the project: every crate's list, joined.

@@ -39,6 +39,14 @@ mod third_derivatives;
 pub use search::{distance_from_curve, distance_from_surface, separation};
 pub use snake::edge;
 
+/// Inner parts, for the tests of this crate: unit tests would compile all of it once more.
+#[doc(hidden)]
+pub mod parts {
+    pub use crate::chebyshev::{ChebyshevPiece, PiecewiseChebyshev, nodes};
+    pub use crate::search::Table;
+    pub use crate::third_derivatives::{slope, tangent};
+}
+
 use moldloft_registry::Row;
 use moldloft_registry::export::StaticRow;
 

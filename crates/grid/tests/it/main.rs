@@ -5,5 +5,6 @@
 
 mod grids;
 mod marching;
+mod pole_cells;
 mod volumes;
 mod walls;

@@ -76,7 +76,7 @@ impl OpenMode {
 }
 
 /// A name of a file inside the program's folder, `/` between its parts.
-fn inside(path: &str) -> Result<String, Diagnostic> {
+pub fn inside(path: &str) -> Result<String, Diagnostic> {
     let outside = |why: &str| {
         Diagnostic::error("outside-folder", format!("cannot write `{path}`: {why}"))
             .expected("the name of a file in the program's own folder")
@@ -311,18 +311,4 @@ fn not_open(unit: u32) -> Diagnostic {
     Diagnostic::error("not-open", format!("unit {unit} is not open"))
         .expected("a file that open() gave")
         .found(format!("unit {unit}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_stay_inside() {
-        assert_eq!(inside("a/./b.x").unwrap(), "a/b.x");
-        assert_eq!(inside("a\\b.x").unwrap(), "a/b.x");
-        for bad in ["/a", "../a", "a/../../b", "", ".", "a/", "C:/a", "a\nb"] {
-            assert_eq!(inside(bad).unwrap_err().id, "outside-folder", "{bad:?}");
-        }
-    }
 }

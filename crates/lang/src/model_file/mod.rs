@@ -8,7 +8,7 @@ mod divisions;
 mod formula;
 pub mod header;
 pub(crate) mod names;
-mod panel_attributes;
+pub(crate) mod panel_attributes;
 mod producer;
 mod relations;
 mod reread;

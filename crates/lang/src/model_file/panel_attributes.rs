@@ -7,7 +7,7 @@ use moldloft_registry::{Attributes, PanelAttributes, Value};
 use std::fmt::Write;
 
 /// The attributes of a model file's line that say what a head says of its panels.
-pub(crate) fn written(panels: &PanelAttributes) -> String {
+pub fn written(panels: &PanelAttributes) -> String {
     let mut out = String::new();
     if panels.size.iter().any(Option::is_some) {
         let [u, v] = panels.size.map(|s| s.map_or("auto".into(), |s| s.to_string()));
@@ -25,7 +25,7 @@ pub(crate) fn written(panels: &PanelAttributes) -> String {
 }
 
 /// Takes over what an attribute says of panels; false when it says nothing of them.
-pub(crate) fn read(head: &mut Attributes, name: &str, text: &str) -> bool {
+pub fn read(head: &mut Attributes, name: &str, text: &str) -> bool {
     let argument = match name {
         "Size" => "size",
         "Spacing" => "spacing",
@@ -39,38 +39,4 @@ pub(crate) fn read(head: &mut Attributes, name: &str, text: &str) -> bool {
     let value = Value::list(words);
     let counts = matches!(&value, Value::List(items) if name == "Tags" || items.len() == 2);
     counts && head.set(argument, &value).is_ok()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use moldloft_registry::Class;
-
-    #[test]
-    fn what_is_written_is_read() {
-        let mut head = Attributes::of(Class::Surface);
-        let words = |words: &[&str]| Value::<f64>::list(words.iter().map(|w| Value::text(w)));
-        head.set("size", &Value::list([Value::Number(0.5), Value::Number(0.0)])).unwrap();
-        let spacing = [Value::<f64>::text("cosine"), Value::Number(1.25)];
-        head.set("spacing", &Value::list(spacing)).unwrap();
-        head.set("tags", &words(&["wetted", "keel"])).unwrap();
-        let text = written(head.panels.as_ref().unwrap());
-        assert_eq!(text, " A:Size(0.5 auto) A:Spacing(cosine 1.25) A:Tags(wetted keel)");
-        let mut again = Attributes::of(Class::Surface);
-        for part in text.trim().trim_end_matches(')').split(") ") {
-            let (name, value) = part.trim_start_matches("A:").split_once('(').unwrap();
-            assert!(read(&mut again, name, value));
-        }
-        assert_eq!(again.panels, head.panels);
-    }
-
-    #[test]
-    fn others_of_the_name_are_left_alone() {
-        let mut head = Attributes::of(Class::Surface);
-        for (name, text) in [("Size", "big"), ("Spacing", "1 2 3"), ("Size", "-1 2"), ("Note", "x")]
-        {
-            assert!(!read(&mut head, name, text), "{name}({text})");
-        }
-        assert_eq!(head, Attributes::of(Class::Surface));
-    }
 }

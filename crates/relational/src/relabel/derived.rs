@@ -284,24 +284,3 @@ impl<T: Real> Build<T> for ComposeRelabel<T> {
         }))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use moldloft_num::inv_reparametrization;
-
-    #[test]
-    fn continuations_are_straight() {
-        let law = ReparametrizationRef::new(
-            spline::ReparametrizationForm::<f64>::geometric(4.0).unwrap(),
-            0,
-        );
-        let inverse = Inverse { law: law.clone() };
-        let slope = 1.0 / law.jet(1.0, Order::First)[1];
-        let jet = inverse.jet(1.5, Order::Second);
-        assert!((jet[0] - (1.0 + 0.5 * slope)).abs() < 1e-15 && jet[2] == 0.0);
-        assert!(
-            (inv_reparametrization(&inverse, 0.3) - law.jet(0.3, Order::Zero)[0]).abs() < 1e-14
-        );
-    }
-}

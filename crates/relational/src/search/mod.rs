@@ -27,3 +27,4 @@ pub use intersect_snake::{IntCurve, IntSnake};
 pub use magnets::{IntMagnet, ProjMagnet, ProxMagnet, TanMagnet, XYZMagnet};
 pub use points::ProjPoint;
 pub use project_snake::{ProjCurve, ProjSnake};
+pub use table::Table;

@@ -13,7 +13,7 @@ const MOST_HALVINGS: u32 = 5;
 const CHECKS: [f64; 4] = [-1.0, -0.3, 0.62, 1.0];
 
 /// N unknowns along a parameter from 0 to 1.
-pub(super) struct Table<const N: usize> {
+pub struct Table<const N: usize> {
     spans: Vec<TableSpan<N>>,
 }
 
@@ -42,6 +42,11 @@ fn sum<const N: usize>(terms: &[[f64; N]; NODES], y: f64) -> [f64; N] {
 }
 
 impl<const N: usize> Table<N> {
+    /// The stretches, each with whether it is left to the search.
+    pub fn stretches(&self) -> impl Iterator<Item = (f64, f64, bool)> {
+        self.spans.iter().map(|span| (span.from, span.until, span.terms.is_none()))
+    }
+
     /// The table of `solved` between the ascending `ends`, 0 and 1 included. `same` says whether two
     /// values are one place.
     pub fn new(
@@ -98,34 +103,5 @@ impl<const N: usize> Table<N> {
         let span = self.spans.get(k)?;
         let y = (2.0 * t - span.from - span.until) / (span.until - span.from);
         Some(sum(span.terms.as_ref()?, y))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A smooth way near the edge of a surface is read to rounding everywhere; one with a corner is
-    /// solved for around that only.
-    #[test]
-    fn smooth_ways_need_no_search() {
-        let way = |t: f64| [0.97 + 0.02 * (3.0 * t).sin(), 0.4 + 0.3 * (2.0 * t).cos(), 7.0 * t];
-        let same = |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() <= 1e-14);
-        let table = Table::new(&[0.0, 1.0], |t| Some(way(t)), same);
-        assert!(table.spans.len() <= 8);
-        for k in 0..=1000 {
-            let t = f64::from(k) / 1000.0;
-            let (found, exact) = (table.at(t).unwrap(), way(t));
-            assert!(
-                (0..3).all(|k| (found[k] - exact[k]).abs() <= 2e-14),
-                "{t} {found:?} {exact:?}"
-            );
-        }
-        assert!(table.at(-0.1).is_none() && table.at(1.1).is_none());
-        let bent = |t: f64| Some([(t - 0.3).abs()]);
-        let table = Table::new(&[0.0, 1.0], bent, |a, b| (a[0] - b[0]).abs() <= 1e-14);
-        let open: Vec<_> = table.spans.iter().filter(|s| s.terms.is_none()).collect();
-        assert!(open.len() == 1 && open[0].from < 0.3 && open[0].until > 0.3);
-        assert!(table.at(0.3).is_none() && table.at(0.5).is_some());
     }
 }
