@@ -1,7 +1,7 @@
 //! One export: the document, the name of the main file, what was asked for, and what rows of the
 //! table ask of it.
 
-use crate::formats::Encoder;
+use crate::format::Encoder;
 use crate::{Format, Holds, SymmetryPlanes, length_unit};
 use moldloft_diag::Diagnostic;
 use moldloft_document::{Document, Panelled, PatchAnalysis};

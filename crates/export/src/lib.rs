@@ -25,6 +25,7 @@
 
 mod brep;
 mod export;
+mod format;
 mod formats;
 mod kind_picture;
 mod lines_drawing;
@@ -37,7 +38,8 @@ pub use brep::brep;
 pub use export::{
     Export, ExportFailure, FileName, WriteOptions, tagged, write, write_blocks, write_grids,
 };
-pub use formats::{Encoder, FORMATS, Format, Holds, Lids, SymmetryPlanes, format_named};
+pub use format::{Encoder, Format, Holds, Lids, SymmetryPlanes};
+pub use formats::{FORMATS, format_named};
 pub use kind_picture::kind_picture;
 pub use moldloft_io::vtk::NamedFile;
 pub use picture::picture;

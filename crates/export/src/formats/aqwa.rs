@@ -1,6 +1,6 @@
 //! AQWA's geometry decks, always cut at the water: the code takes no panel across it.
 
-use super::Format;
+use crate::format::Format;
 use crate::{Export, ExportFailure};
 use moldloft_io::aqwa;
 use moldloft_io::vtk::NamedFile;

@@ -1,6 +1,6 @@
 //! WAMIT's low-order panels.
 
-use super::Format;
+use crate::format::Format;
 use crate::{Export, ExportFailure, GRAVITY};
 use moldloft_io::gdf::{self, Header};
 use moldloft_io::vtk::NamedFile;

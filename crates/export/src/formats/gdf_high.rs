@@ -1,6 +1,6 @@
 //! WAMIT's high-order geometry: the surfaces themselves as B-spline patches.
 
-use super::{Format, Holds, Lids, SymmetryPlanes};
+use crate::format::{Format, Holds, Lids, SymmetryPlanes};
 use crate::spline_patches::spline_patches;
 use crate::{Export, ExportFailure, GRAVITY};
 use moldloft_io::gdf::{self, Header};

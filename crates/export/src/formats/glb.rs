@@ -1,6 +1,6 @@
 //! Panels with names and colours as binary glTF.
 
-use super::Format;
+use crate::format::Format;
 use crate::{Export, ExportFailure};
 use moldloft_io::gltf;
 use moldloft_io::vtk::NamedFile;

@@ -1,6 +1,6 @@
 //! HAMS's panels, and the lids that it reads from a file of their own.
 
-use super::{Format, Lids};
+use crate::format::{Format, Lids};
 use crate::{Export, ExportFailure};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{PanelFileOptions, hams};

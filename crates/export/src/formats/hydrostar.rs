@@ -1,6 +1,6 @@
 //! HydroStar's panels.
 
-use super::{Format, SymmetryPlanes};
+use crate::format::{Format, SymmetryPlanes};
 use crate::{Export, ExportFailure};
 use moldloft_io::hydrostar;
 use moldloft_io::vtk::NamedFile;

@@ -1,7 +1,7 @@
 //! The shape itself as IGES.
 
-use super::{Format, Holds};
 use crate::brep::{brep, metres};
+use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_io::iges::{self, IgesHeader};
 use moldloft_io::vtk::NamedFile;

@@ -1,6 +1,6 @@
 //! The model as a MultiSurf model file.
 
-use super::{Format, Holds};
+use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_document::ModelFormat as Form;
 use moldloft_io::vtk::NamedFile;

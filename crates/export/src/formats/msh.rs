@@ -1,6 +1,6 @@
 //! Panels as Gmsh's format, a physical group for each patch.
 
-use super::Format;
+use crate::format::Format;
 use crate::{Export, ExportFailure};
 use moldloft_io::msh;
 use moldloft_io::vtk::NamedFile;

@@ -1,6 +1,6 @@
 //! Nemoh's panels.
 
-use super::{Format, SymmetryPlanes};
+use crate::format::{Format, SymmetryPlanes};
 use crate::{Export, ExportFailure};
 use moldloft_io::nemoh;
 use moldloft_io::vtk::NamedFile;

@@ -1,6 +1,6 @@
 //! Panels, wires and points as Wavefront OBJ.
 
-use super::{Format, Holds};
+use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_io::obj;
 use moldloft_io::vtk::NamedFile;

@@ -1,6 +1,6 @@
 //! Panels as OFF, which programs of computational geometry read.
 
-use super::Format;
+use crate::format::Format;
 use crate::{Export, ExportFailure};
 use moldloft_io::off;
 use moldloft_io::vtk::NamedFile;

@@ -1,7 +1,7 @@
 //! Structured patches as Plot3D.
 
-use super::{Format, Holds};
 use crate::export::FileName;
+use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_io::plot3d::{self, Variant, write_mesh};
 use moldloft_io::vtk::NamedFile;

@@ -1,6 +1,6 @@
 //! Panels as binary PLY.
 
-use super::Format;
+use crate::format::Format;
 use crate::{Export, ExportFailure};
 use moldloft_io::ply;
 use moldloft_io::vtk::NamedFile;

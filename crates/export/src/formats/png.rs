@@ -1,6 +1,6 @@
 //! A picture of the panels.
 
-use super::{Format, Holds};
+use crate::format::{Format, Holds};
 use crate::picture::picture;
 use crate::{Export, ExportFailure};
 use moldloft_io::vtk::NamedFile;

@@ -1,7 +1,7 @@
 //! The shape itself as STEP.
 
-use super::{Format, Holds};
 use crate::brep::{brep, metres};
+use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_io::step::{self, Protocol, StepHeader};
 use moldloft_io::vtk::NamedFile;

@@ -1,7 +1,7 @@
 //! Triangles as binary STL.
 
-use super::Format;
 use crate::export::FileName;
+use crate::format::Format;
 use crate::{Export, ExportFailure};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{StructuredGrid, WriteError, stl};

@@ -1,6 +1,6 @@
 //! Triangles as text STL, a solid for each patch.
 
-use super::Format;
+use crate::format::Format;
 use crate::{Export, ExportFailure};
 use moldloft_io::stl;
 use moldloft_io::vtk::NamedFile;

@@ -1,6 +1,6 @@
 //! Panels as SU2's format, a marker for each patch.
 
-use super::Format;
+use crate::format::Format;
 use crate::{Export, ExportFailure};
 use moldloft_io::su2;
 use moldloft_io::vtk::NamedFile;

@@ -1,6 +1,6 @@
 //! The lines drawing: body plan, waterlines and buttocks, a sheet each.
 
-use super::{Format, Holds};
+use crate::format::{Format, Holds};
 use crate::lines_drawing::lines_drawing;
 use crate::{Export, ExportFailure};
 use moldloft_io::vtk::NamedFile;

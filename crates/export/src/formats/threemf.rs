@@ -1,6 +1,6 @@
 //! Triangles with names and colours as 3MF.
 
-use super::Format;
+use crate::format::Format;
 use crate::units::threemf_unit;
 use crate::{Export, ExportFailure};
 use moldloft_io::threemf;

@@ -1,7 +1,7 @@
 //! The cells of solids as Plot3D.
 
-use super::Format;
 use crate::export::FileName;
+use crate::format::Format;
 use moldloft_io::WriteError;
 use moldloft_io::plot3d::{Variant, write_blocks};
 use moldloft_io::vtk::NamedFile;

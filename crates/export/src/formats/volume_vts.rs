@@ -1,7 +1,7 @@
 //! The cells of solids as VTK structured grids.
 
-use super::Format;
 use crate::export::FileName;
+use crate::format::Format;
 use moldloft_io::WriteError;
 use moldloft_io::vtk::{self, NamedFile};
 use moldloft_mesh::Blocks;

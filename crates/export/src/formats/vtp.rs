@@ -1,6 +1,6 @@
 //! Panels, wires and points as VTK polygons, with the fields of surfaces.
 
-use super::{Format, Holds};
+use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_io::vtk::{self, NamedFile};
 

@@ -1,7 +1,7 @@
 //! Structured patches as VTK structured grids, with the fields of surfaces.
 
-use super::{Format, Holds};
 use crate::export::FileName;
+use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_io::vtk::{self, NamedFile};
 use moldloft_io::{StructuredGrid, WriteError};

@@ -1,0 +1,152 @@
+//! What a format is: its names, what its files hold, how a model is written in it.
+
+use crate::export::FileName;
+use crate::{Export, ExportFailure};
+use moldloft_io::vtk::NamedFile;
+use moldloft_io::{StructuredGrid, WriteError};
+use moldloft_mesh::Blocks;
+
+/// What a format is, and how a model is written in it.
+pub struct Format {
+    /// Its name in commands and calls.
+    pub name: &'static str,
+    /// Other names that mean it.
+    pub aliases: &'static [&'static str],
+    /// The end of its files' names, without the dot.
+    pub suffix: &'static str,
+    /// Another end that its files are known by, which does not tell the format.
+    pub other_suffix: &'static str,
+    /// A line about it.
+    pub about: &'static str,
+    /// What of a model its files hold.
+    pub holds: Holds,
+    /// The planes x = 0 and y = 0 that its files can name as planes of symmetry.
+    pub symmetry: SymmetryPlanes,
+    /// What becomes of lids.
+    pub lids: Lids,
+    /// The immersed part alone can be written.
+    pub immersed: bool,
+    /// The main file is text.
+    pub text: bool,
+    /// Makes the files. The main one is named [`Export::main`].
+    pub write: fn(&mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure>,
+    /// Makes the files of grids of points, where the format holds such.
+    pub grids: Option<Encoder<[StructuredGrid]>>,
+    /// Makes the files of the cells of solids, where the format holds such.
+    pub volume: Option<Encoder<Blocks>>,
+}
+
+/// Makes files of something, the main one of a given name.
+pub type Encoder<T> = fn(&T, &FileName<'_>) -> Result<Vec<NamedFile>, WriteError>;
+
+impl Format {
+    /// What most formats are: panels of all patches, one side as it is, binary.
+    pub const PANELS: Self = Self {
+        name: "",
+        aliases: &[],
+        suffix: "",
+        other_suffix: "",
+        about: "",
+        holds: Holds::Panels,
+        symmetry: SymmetryPlanes::None,
+        lids: Lids::Patches,
+        immersed: false,
+        text: false,
+        write: |_| Ok(Vec::new()),
+        grids: None,
+        volume: None,
+    };
+
+    /// What formats of the cells of solids are.
+    pub const VOLUME: Self =
+        Self { holds: Holds::Volumes, write: |e| e.write_volume(), ..Self::PANELS };
+
+    /// What files of panel codes are: text, the skin, lids when asked for, both planes of symmetry.
+    pub const PANEL_CODE: Self = Self {
+        holds: Holds::Panels,
+        symmetry: SymmetryPlanes::Both,
+        lids: Lids::Asked,
+        immersed: true,
+        text: true,
+        ..Self::PANELS
+    };
+
+    /// True when lids are written only when asked for.
+    pub fn asks_for_lids(&self) -> bool {
+        self.lids != Lids::Patches
+    }
+
+    /// The name of the main file of a model.
+    pub fn file_name(&self, stem: &str) -> String {
+        format!("{stem}.{}", self.suffix)
+    }
+}
+
+/// What of a model the files of a format hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holds {
+    /// Panels.
+    Panels,
+    /// Panels, and the wires and points of bodies.
+    PanelsAndLines,
+    /// Structured patches.
+    Grids,
+    /// The surfaces themselves.
+    Surfaces,
+    /// The cells of solids.
+    Volumes,
+    /// What is seen of it.
+    Drawing,
+    /// The model itself.
+    Model,
+}
+
+impl Holds {
+    /// The word for tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Panels => "panels",
+            Self::PanelsAndLines => "panels, lines, points",
+            Self::Grids => "grids",
+            Self::Surfaces => "surfaces",
+            Self::Volumes => "volumes",
+            Self::Drawing => "drawing",
+            Self::Model => "model",
+        }
+    }
+}
+
+/// The planes of symmetry that a file can name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SymmetryPlanes {
+    /// None: one side is written as it is.
+    None,
+    /// y = 0; a model that is mirrored in x = 0 is written with its image.
+    Y,
+    /// y = 0, or both; a model that is mirrored in x = 0 alone is written with its image.
+    YThenX,
+    /// Either, or both.
+    Both,
+}
+
+impl SymmetryPlanes {
+    /// True when a file can name x = 0, for a model that is mirrored in y = 0 or is not.
+    pub fn names_x(self, mirror_y: bool) -> bool {
+        match self {
+            Self::None | Self::Y => false,
+            Self::YThenX => mirror_y,
+            Self::Both => true,
+        }
+    }
+}
+
+/// What becomes of lids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lids {
+    /// They are patches as others.
+    Patches,
+    /// They are written when asked for.
+    Asked,
+    /// They are written to a file of their own when asked for.
+    OwnFile,
+}
