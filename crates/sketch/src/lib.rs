@@ -98,3 +98,9 @@ pub use solid::gradient::{SolidGradient, Swept, gradient};
 pub use solid::mass::Mass;
 pub use solid::ruled_faces::RoundFace;
 pub use solid::{SketchSolid, curve, faces, merge, solid};
+
+/// Inner parts, for the tests of this crate: unit tests would compile all of it once more.
+#[doc(hidden)]
+pub mod parts {
+    pub use crate::format::svg::apart;
+}

@@ -1,11 +1,20 @@
 //! The tests of the crate, one program.
 
+mod apart;
 mod boolean;
 mod common;
 mod dimensions;
+mod dxf_lines;
 mod errors;
+mod expressions;
 mod faces;
 mod generators;
+mod gradient;
+mod json;
+mod letters;
+mod projection;
 mod session;
 mod solids;
+mod verbs;
+mod words;
 mod work;
