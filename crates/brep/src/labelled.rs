@@ -32,8 +32,8 @@ pub struct LabelledFacets {
     pub triangles: Vec<[u32; 3]>,
     /// The surface of each triangle.
     pub labels: Vec<u32>,
-    /// The surfaces.
-    pub surfaces: Vec<SurfaceShape>,
+    /// The surfaces, where formats have one.
+    pub surfaces: Vec<Option<SurfaceShape>>,
     /// Their names.
     pub names: Vec<String>,
     /// Their colours.
@@ -66,6 +66,10 @@ pub enum FacetFaultKind {
     Edge,
     /// The surfaces round a vertex have no common point near it.
     Vertex,
+    /// A surface is none of those that formats have.
+    Surface,
+    /// No patches come within the accuracy of the surface, or they fold.
+    Patch,
 }
 
 /// Sides of triangles between the same two faces, from corner to corner.
@@ -125,6 +129,11 @@ struct LabelledBody {
 impl LabelledBody {
     fn new(facets: LabelledFacets, accuracy: f64, size: f64) -> Result<Self, FacetFault> {
         let LabelledFacets { positions, triangles, mut labels, surfaces, names, .. } = facets;
+        let place = positions.first().copied().unwrap_or_default();
+        let Some(surfaces) = surfaces.into_iter().collect::<Option<Vec<SurfaceShape>>>() else {
+            let kind = FacetFaultKind::Surface;
+            return Err(FacetFault { kind, surfaces: Vec::new(), place });
+        };
         let near = NEAR * size;
         let first: Vec<u32> = (0..surfaces.len())
             .map(|k| {
@@ -133,7 +142,6 @@ impl LabelledBody {
             })
             .collect();
         labels.iter_mut().for_each(|l| *l = first[*l as usize]);
-        let place = positions.first().copied().unwrap_or_default();
         let Some(net) = FacetNet::new(positions, triangles, labels) else {
             let kind = FacetFaultKind::NotClosed;
             return Err(FacetFault { kind, surfaces: Vec::new(), place });
@@ -612,13 +620,13 @@ impl LabelledBody {
             brep.edges.push(BrepEdge { ends, curve, ellipse });
         }
         brep.gap = brep.gap.max(gap);
-        let cavities = self.cavities();
+        let cavities = self.net.cavities();
         let mut by_group: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (k, g) in self.net.groups.iter().enumerate() {
             by_group.entry(*g).or_default().push(k);
         }
         for (group, members) in by_group {
-            let mut loops = self.loops(&members, &border, &first, &edges);
+            let mut loops = self.net.loops(&members, &border, &first, &edges);
             let size = |cycle: &Vec<Coedge>| {
                 let points = cycle.iter().flat_map(|side| &brep.edges[side.edge].curve.points);
                 let [low, high] = extent(points.copied());
@@ -646,57 +654,6 @@ impl LabelledBody {
             both.into_iter().flatten().fold(0.0f64, |m, d| m.max(d.abs()))
         };
         places.iter().map(far).fold(0.0, f64::max)
-    }
-
-    /// The loops of a face: its border sides, each followed by the next one round its end within the face.
-    fn loops(
-        &self,
-        members: &[usize],
-        border: &FxHashSet<(u32, u32)>,
-        first: &FxHashMap<(u32, u32), (usize, bool)>,
-        edges: &[usize],
-    ) -> Vec<Vec<Coedge>> {
-        let mut seen: FxHashSet<(u32, u32)> = FxHashSet::default();
-        let mut loops = Vec::new();
-        for &k in members {
-            let t = self.net.triangles[k];
-            for i in 0..3 {
-                let start = (t[i], t[(i + 1) % 3]);
-                if !border.contains(&start) || seen.contains(&start) {
-                    continue;
-                }
-                let mut cycle = Vec::new();
-                let mut side = start;
-                while seen.insert(side) {
-                    if let Some(&(chain, forward)) = first.get(&side)
-                        && edges[chain] != usize::MAX
-                    {
-                        cycle.push(Coedge {
-                            edge: edges[chain],
-                            forward,
-                            trace: None,
-                            alike: true,
-                        });
-                    }
-                    // The next side of the triangle, and of those round the vertex, until one is a border.
-                    let mut turn = side;
-                    loop {
-                        let t = self.net.triangles[self.net.across[&turn] as usize];
-                        let i = (0..3).find(|&i| t[i] == turn.0).unwrap_or(0);
-                        let out = (t[(i + 1) % 3], t[(i + 2) % 3]);
-                        if border.contains(&out) {
-                            side = out;
-                            break;
-                        }
-                        turn = (out.1, out.0);
-                    }
-                }
-                if !cycle.is_empty() {
-                    loops.push(cycle);
-                }
-            }
-        }
-        loops
     }
 
     fn face(
@@ -749,36 +706,6 @@ impl LabelledBody {
             extent: Some((extent, cavity)),
         }
     }
-
-    /// For each triangle whether it bounds a cavity.
-    fn cavities(&self) -> Vec<bool> {
-        let mut shell = vec![usize::MAX; self.net.triangles.len()];
-        let mut volumes = Vec::new();
-        for start in 0..shell.len() {
-            if shell[start] != usize::MAX {
-                continue;
-            }
-            let own = volumes.len();
-            let origin = self.net.corners(start)[0];
-            let mut volume = 0.0;
-            shell[start] = own;
-            let mut queue = vec![start];
-            while let Some(k) = queue.pop() {
-                let [a, b, c] = self.net.corners(k).map(|p| p - origin);
-                volume += a.dot(b.cross(c));
-                let t = self.net.triangles[k];
-                for i in 0..3 {
-                    let other = self.net.across[&(t[(i + 1) % 3], t[i])] as usize;
-                    if shell[other] == usize::MAX {
-                        shell[other] = own;
-                        queue.push(other);
-                    }
-                }
-            }
-            volumes.push(volume);
-        }
-        shell.into_iter().map(|s| volumes[s] < 0.0).collect()
-    }
 }
 
 /// The point near another that is on all surfaces: that of the three that cross best, if it is on the others, too.
@@ -830,7 +757,7 @@ fn common_point(shapes: &[SurfaceShape], start: Vec3, near: f64) -> Option<Vec3>
 }
 
 /// The box round points.
-fn extent(points: impl Iterator<Item = Vec3>) -> [[f64; 3]; 2] {
+pub fn extent(points: impl Iterator<Item = Vec3>) -> [[f64; 3]; 2] {
     points.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[mut low, mut high], p| {
         for k in 0..3 {
             low[k] = low[k].min(p[k]);

@@ -16,12 +16,15 @@ mod crossing;
 mod image;
 mod labelled;
 mod meet;
+mod patch;
+mod patches;
 mod seams;
 
 pub use analytic::SurfaceAxes;
 pub use check::{Fault, ShellFacts};
 pub use labelled::{FacetFault, FacetFaultKind, LabelledFacets};
 pub use meet::{ExactCurve, meet};
+pub use patch::SurfaceField;
 
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;

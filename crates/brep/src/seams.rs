@@ -3,7 +3,7 @@
 //! A face needs no cut where an angle about its axis is free of it; else its triangles are divided along a half-plane
 //! through the axis, which becomes an edge with the face on both sides. A pole inside a face becomes a vertex.
 
-use crate::{SurfaceAxes, SurfaceShape};
+use crate::{Coedge, SurfaceAxes, SurfaceShape};
 use moldloft_num::Vec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
@@ -124,7 +124,7 @@ impl FacetNet {
     }
 
     /// Puts a vertex on a side.
-    fn split(&mut self, a: u32, b: u32, at: Vec3) -> u32 {
+    pub fn split(&mut self, a: u32, b: u32, at: Vec3) -> u32 {
         let m = self.positions.len() as u32;
         self.positions.push(at);
         for (x, y) in [(a, b), (b, a)] {
@@ -494,6 +494,87 @@ impl FacetNet {
             }
         }
         SurfaceAxes::about(axes.origin, best.1)
+    }
+
+    /// The loops of a face: its border sides, each followed by the next one round its end within the face.
+    pub fn loops(
+        &self,
+        members: &[usize],
+        border: &FxHashSet<(u32, u32)>,
+        first: &FxHashMap<(u32, u32), (usize, bool)>,
+        edges: &[usize],
+    ) -> Vec<Vec<Coedge>> {
+        let mut seen: FxHashSet<(u32, u32)> = FxHashSet::default();
+        let mut loops = Vec::new();
+        for &k in members {
+            let t = self.triangles[k];
+            for i in 0..3 {
+                let start = (t[i], t[(i + 1) % 3]);
+                if !border.contains(&start) || seen.contains(&start) {
+                    continue;
+                }
+                let mut cycle = Vec::new();
+                let mut side = start;
+                while seen.insert(side) {
+                    if let Some(&(chain, forward)) = first.get(&side)
+                        && edges[chain] != usize::MAX
+                    {
+                        cycle.push(Coedge {
+                            edge: edges[chain],
+                            forward,
+                            trace: None,
+                            alike: true,
+                        });
+                    }
+                    // The next side of the triangle, and of those round the vertex, until one is a border.
+                    let mut turn = side;
+                    loop {
+                        let t = self.triangles[self.across[&turn] as usize];
+                        let i = (0..3).find(|&i| t[i] == turn.0).unwrap_or(0);
+                        let out = (t[(i + 1) % 3], t[(i + 2) % 3]);
+                        if border.contains(&out) {
+                            side = out;
+                            break;
+                        }
+                        turn = (out.1, out.0);
+                    }
+                }
+                if !cycle.is_empty() {
+                    loops.push(cycle);
+                }
+            }
+        }
+        loops
+    }
+
+    /// For each triangle whether it bounds a cavity.
+    pub fn cavities(&self) -> Vec<bool> {
+        let mut shell = vec![usize::MAX; self.triangles.len()];
+        let mut volumes = Vec::new();
+        for start in 0..shell.len() {
+            if shell[start] != usize::MAX {
+                continue;
+            }
+            let own = volumes.len();
+            let origin = self.corners(start)[0];
+            let mut volume = 0.0;
+            shell[start] = own;
+            let mut queue = vec![start];
+            while let Some(k) = queue.pop() {
+                let [a, b, c] = self.corners(k).map(|p| p - origin);
+                volume += a.dot(b.cross(c));
+                let t = self.triangles[k];
+                for i in 0..3 {
+                    let other = self.across[&(t[(i + 1) % 3], t[i])] as usize;
+                    if shell[other] == usize::MAX {
+                        shell[other] = own;
+                        queue.push(other);
+                    }
+                }
+            }
+            volumes.push(volume);
+        }
+        shell.into_iter().map(|s| volumes[s] < 0.0).collect()
     }
 }
 

@@ -20,6 +20,8 @@ class IgesText:
     """What is doubtful or lost."""
     names: dict[int, str] = field(default_factory=dict)
     """Faces by number: none, for OCCT keeps their names itself."""
+    resolution: float = 0.0
+    """The least distance of points that the file tells apart, in metres; 0 when it says none."""
 
     @classmethod
     def of(cls, path: object, text: str) -> IgesText:
@@ -42,7 +44,7 @@ class IgesText:
         for line in lines:
             if len(line) >= 73 and line[72] in sections:
                 sections[line[72]].append(line)
-        made = cls(text)
+        made = cls(text, resolution=_resolution(sections["G"]))
         listed, given = _directory(sections["D"]), sections["P"]
         whole = bool(sections["T"])
         if not whole and not given:
@@ -79,6 +81,40 @@ class IgesText:
 
 _MOST = 20
 """Remarks of one kind that are written out."""
+
+
+_METRES = {
+    1: 0.0254, 2: 0.001, 4: 0.3048, 5: 1609.344, 6: 1.0, 7: 1000.0, 8: 2.54e-5, 9: 1e-6, 10: 0.01,
+    11: 2.54e-8,
+}  # fmt: skip
+"""Units of length by their flags."""
+
+
+def _resolution(lines: list[str]) -> float:
+    """The resolution that the global section states, in metres."""
+    text = "".join(line[:72] for line in lines)
+    values: list[str] = []
+    comma, end = ",", ";"
+    while text and len(values) < 19:
+        if string := re.match(r"\s*(\d+)H", text):
+            last = string.end() + int(string[1])
+            values.append(text[string.end() : last])
+            text = text[last:].lstrip()
+            if len(values) == 1 and len(values[0]) == 1:
+                comma = values[0]
+            elif len(values) == 2 and len(values[1]) == 1:
+                end = values[1]
+        else:
+            at = min((k for k in (text.find(comma), text.find(end)) if k >= 0), default=len(text))
+            values.append(text[:at].strip())
+            text = text[at:]
+        if text[:1] == end:
+            break
+        text = text[1:]
+    try:
+        return float(values[18].upper().replace("D", "E")) * _METRES.get(int(values[13]), 0.0)
+    except (IndexError, ValueError):
+        return 0.0
 
 
 def _whole_number(text: str) -> int:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.cad.apart import read
 from moldloft.cad.joining import joins
-from moldloft.cad.occt import Imported, ImportedFace, read
+from moldloft.cad.occt import Imported, ImportedFace
 from moldloft.errors import Error
 from moldloft.nurbs import Nurbs, _braced, _plain, _wrapped
 

@@ -19,6 +19,7 @@ import numpy as np
 from moldloft.cad import identifier, needed
 from moldloft.cad.iges_text import IgesText
 from moldloft.cad.part21 import StepText
+from moldloft.cad.sewing import Sewn, faces_of, map_of
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs
 from moldloft.storage import read_bytes
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Imported", "ImportedFace", "read", "read_shape"]
+__all__ = ["Imported", "ImportedFace", "of_part", "read_shape"]
 
 _PLACES = 33
 """Places between knots at which a side is compared with an edge of the parameters."""
@@ -129,8 +130,8 @@ class Imported:
     """What was left out or is doubtful."""
 
 
-def read(path: Path, metres: float) -> Imported:
-    """The faces and curves of a STEP or IGES file, in units of so many metres.
+def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
+    """The faces and curves of a STEP or IGES file, in units of so many metres, in this process.
 
     Of a file that is cut short the faces that are whole are read, with remarks.
 
@@ -140,6 +141,8 @@ def read(path: Path, metres: float) -> Imported:
         The file.
     metres
         The unit of length of what is returned.
+    numbers
+        The faces of a STEP file that are wanted, by the numbers of their entities; None for all.
 
     Raises
     ------
@@ -153,11 +156,14 @@ def read(path: Path, metres: float) -> Imported:
     iges = path.suffix.lower() in (".igs", ".iges")
     text = data.decode("latin-1")
     source = IgesText.of(path, text) if iges else StepText.of(path, text)
+    if isinstance(source, StepText) and numbers is not None:
+        source = source.only_faces(numbers)
     # OCCT may end the process over an entity that is missing: it gets what needs none.
-    found, done = _held(source.sound() if isinstance(source, StepText) else source, iges, metres)
-    if isinstance(source, StepText) and len(found.faces) < len(source.whole_faces):
+    found, done = _held(source.sound() if isinstance(source, StepText) else source, metres)
+    fewer = isinstance(source, StepText) and len(found.faces) < len(source.whole_faces)
+    if isinstance(source, StepText) and fewer and numbers is None:
         # One missing vertex may take a body with it.
-        rest, again = _held(source.only_faces().sound(), iges, metres)
+        rest, again = _held(source.only_faces().sound(), metres)
         if again and len(rest.faces) > len(found.faces):
             rest.remarks.append(
                 f"the {len(rest.faces)} faces that are whole are kept, their body is not"
@@ -168,12 +174,6 @@ def read(path: Path, metres: float) -> Imported:
     if not done:
         kind = "an IGES" if iges else "a STEP"
         raise FileError(f"cannot read `{path}`: not {kind} file that OCCT takes")
-    numbers = [n for face in found.faces for n in {n for own in face.loops for n, _, _ in own}]
-    if iges and len(found.faces) > 1 and len({*numbers}) == len(numbers):
-        found.remarks.append(
-            "no two faces share an edge in this file, as in IGES they seldom do: they are not "
-            "joined; STEP keeps what is joined"
-        )
     hollow = 0 if iges else len(re.findall(r"=\s*BREP_WITH_VOIDS\s*\(", text))
     if hollow:
         found.remarks.append(
@@ -185,13 +185,21 @@ def read(path: Path, metres: float) -> Imported:
     return found
 
 
-def _held(source: StepText | IgesText, iges: bool, metres: float) -> tuple[Imported, bool]:
+def _held(source: StepText | IgesText, metres: float) -> tuple[Imported, bool]:
     """What OCCT makes of a file's text, and whether it can be read."""
     found = Imported(metres=metres, remarks=list(source.remarks))
     document = _document(metres)
+    iges = isinstance(source, IgesText)
     done = _transferred(source.text.encode("latin-1"), iges, document)
     if done:
-        _collect(document, found, source.names)
+        shapes = _free(document)
+        if isinstance(source, IgesText) and shapes:
+            # Faces of IGES do not share their edges.
+            whole = Sewn.of(_compound(document), source.resolution / metres)
+            _collect(document, [whole], found, source.names)
+            whole.say(found.remarks)
+        else:
+            _collect(document, [Sewn(shape) for shape in shapes], found, source.names)
     return found, done
 
 
@@ -219,14 +227,14 @@ def _transferred(data: bytes, iges: bool, document: Any) -> bool:
         return str(status).endswith("RetDone") and reader.Transfer(document)
 
 
-def _collect(document: Any, found: Imported, numbered: dict[int, str]) -> None:
+def _collect(document: Any, shapes: list[Sewn], found: Imported, numbered: dict[int, str]) -> None:
     """The faces and curves of a document; faces of STEP files are called by their numbers there."""
     named = _Names(document)
     taken: set[str] = set()
     seen: set[int] = set()
     known = 0
     originals = 0
-    for shape in _free(document):
+    for shape in shapes:
         labels = _Labels(named, numbered, taken.copy(), seen, len(found.faces))
         faces, count, left_out = _shape_faces(shape, labels, False)
         if any(not face.natural and _own_seam(face) for face in faces):
@@ -241,7 +249,7 @@ def _collect(document: Any, found: Imported, numbered: dict[int, str]) -> None:
             face.loops = [[(n + known, back, t) for n, back, t in own] for own in face.loops]
         found.faces += faces
         known += count
-        for edge in _loose_edges(shape):
+        for edge in _loose_edges(shape.shape):
             label = named.of(edge) or f"curve{len(found.curves) + 1}"
             curve = _space_curve(edge)
             if curve is not None:
@@ -282,7 +290,7 @@ class _Labels:
 
 
 def _shape_faces(
-    shape: Any, labels: _Labels, divided: bool
+    sewn: Sewn, labels: _Labels, divided: bool
 ) -> tuple[list[ImportedFace], int, list[str]]:
     """The faces of a shape, how many edges they have, and remarks; closed faces may be halved."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
@@ -290,18 +298,19 @@ def _shape_faces(
     from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED
     from OCP.TopoDS import TopoDS
 
-    originals = _unique(shape, TopAbs_FACE)
-    parts = {k: [original] for k, original in enumerate(originals)}
-    whole = shape
+    originals = faces_of(sewn.shape, TopAbs_FACE)
+    held = [sewn.face(original) for original in originals]
+    parts = {k: [face] for k, face in enumerate(held)}
+    whole = sewn.whole
     if divided:
-        divide = ShapeUpgrade_ShapeDivideClosed(shape)
+        divide = ShapeUpgrade_ShapeDivideClosed(whole)
         with _quiet():
             divide.Perform()
         whole = divide.Result()
         context = divide.GetContext()
-        parts = {k: _unique(context.Apply(f), TopAbs_FACE) for k, f in enumerate(originals)}
+        parts = {k: faces_of(context.Apply(f), TopAbs_FACE) for k, f in enumerate(held)}
     convert = BRepBuilderAPI_NurbsConvert(whole, True)
-    edges = _map(convert.Shape(), TopAbs_EDGE)
+    edges = map_of(convert.Shape(), TopAbs_EDGE)
     faces: list[ImportedFace] = []
     remarks = []
     for k, original in enumerate(originals):
@@ -332,20 +341,6 @@ def _own_seam(face: ImportedFace) -> bool:
     """Whether a face meets itself along an edge."""
     numbers = [n for cycle in face.loops for n, _, _ in cycle]
     return len({*numbers}) < len(numbers)
-
-
-def _map(shape: Any, kind: Any) -> Any:
-    from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
-    from OCP.TopExp import TopExp
-
-    shapes = Shapes()
-    TopExp.MapShapes_s(shape, kind, shapes)
-    return shapes
-
-
-def _unique(shape: Any, kind: Any) -> list[Any]:
-    shapes = _map(shape, kind)
-    return [shapes.FindKey(k) for k in range(1, shapes.Extent() + 1)]
 
 
 def _loose_edges(shape: Any) -> list[Any]:
@@ -463,7 +458,7 @@ def _face(face: Any, edges: Any, name: str) -> ImportedFace:
     surface.Segment(u0, u1, v0, v1, 1e-12, 1e-12)
     made = _surface(surface)
     outer = BRepTools.OuterWire_s(face)
-    wires = _unique(face, TopAbs_WIRE)
+    wires = faces_of(face, TopAbs_WIRE)
     wires.sort(key=lambda w: not w.IsSame(outer))
     frame = np.array([u0, v0, 0.0]), np.array([u1 - u0, v1 - v0, 1.0])
     loops = [_cycle(TopoDS.Wire(wire), face, edges, frame) for wire in wires]

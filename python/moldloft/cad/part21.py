@@ -84,6 +84,8 @@ class StepText:
             raise FileError(
                 f"cannot read `{path}`: not a STEP file (it must begin with ISO-10303-21)"
             )
+        # A comment may hold what looks like an entity, and half a string.
+        text = re.sub(rf"({_STRING})|/\*.*?(?:\*/|\Z)", _no_comment, text, flags=re.DOTALL)
         whole = re.search(r"END-ISO-10303-21\s*;", re.sub(_STRING, "''", text)) is not None
         made = cls(text if whole else _ended(text))
         made._look_at_references()
@@ -108,7 +110,6 @@ class StepText:
     def entities(self) -> dict[int, str]:
         """The entities of the text as it was, by number, without the words in their strings."""
         plain = re.sub(_STRING, "''", self.text)
-        plain = re.sub(r"/\*.*?\*/", "", plain, flags=re.DOTALL)
         found = re.findall(r"#(\d+)\s*=\s*([^;]*);", plain)
         return {int(n): body.strip() for n, body in found}
 
@@ -173,6 +174,8 @@ class StepText:
             ]
             if _kind(body) != "ORIENTED_EDGE" or len(edges) != 1:
                 return True
+            if len(self.references[edges[0]]) < 2:
+                return True
             start, end = self.references[edges[0]][:2]
             ends.append((start, end) if body.rstrip(" )").endswith(".T.") else (end, start))
         return all(end == ends[(k + 1) % len(ends)][0] for k, (_, end) in enumerate(ends))
@@ -226,8 +229,10 @@ class StepText:
             )
         return ""
 
-    def _factor(self, number: int) -> float | None:
-        """The SI units of a unit by conversion."""
+    def _factor(self, number: int, deep: int = 0) -> float | None:
+        """The SI units of a unit by conversion; units that go round in a circle have none."""
+        if deep > _DEEPEST:
+            return None
         for measure in self.references[number]:
             body = self.entities.get(measure, "")
             value = re.search(r"_MEASURE\s*\(\s*([-+\d.Ee]+)\s*\)", body)
@@ -237,7 +242,7 @@ class StepText:
                 si = re.search(r"SI_UNIT\s*\(\s*([^,]*?)\s*,", self.entities.get(base, ""))
                 if si and si[1] in _PREFIXES:
                     return float(value[1]) * _PREFIXES[si[1]]
-                inner = self._factor(base) if base in self.entities and base != number else None
+                inner = self._factor(base, deep + 1) if base in self.entities else None
                 if inner is not None:
                     return float(value[1]) * inner
         return None
@@ -274,10 +279,16 @@ class StepText:
         pattern = rf"#(\d+)\s*=\s*(?:{_STRING}|[^;'])*;"
         return StepText(re.sub(pattern, kept, self.text), list(self.remarks), dict(self.names))
 
-    def only_faces(self) -> StepText:
-        """A file of the faces that are whole, as one shell; for what holds them may be lost."""
+    def only_faces(self, numbers: list[int] | None = None) -> StepText:
+        """A file of the faces that are whole, as one shell; for what holds them may be lost.
+
+        Parameters
+        ----------
+        numbers
+            The faces that are wanted; None for all.
+        """
         remarks = list(self.remarks)
-        whole = self.whole_faces
+        whole = [n for n in self.whole_faces if numbers is None or n in numbers]
         last = max(self.entities)
         contexts = [
             n
@@ -332,10 +343,17 @@ class StepText:
         self.text = re.sub(pattern, marked, self.text)
 
 
+_DEEPEST = 8
+"""Units that others are stated by, one by the next."""
+
 _MOST = 20
 """Remarks of one kind that are written out."""
 
 _END = "ENDSEC;\nEND-ISO-10303-21;\n"
+
+
+def _no_comment(found: re.Match[str]) -> str:
+    return found[1] or " "
 
 
 def _kind(body: str) -> str:

@@ -1,6 +1,9 @@
-//! Bodies of sets as exact faces: planes, cylinders, cones, spheres and tori where these are what shows.
+//! Bodies of sets as exact faces where these are planes, cylinders, cones, spheres and tori, else as patches.
 //!
 //! `set -> facets, each with its primitive -> faces, edges, vertices -> places on the border of the set?`
+//!
+//! A body with any other surface, as an ellipsoid or a blend, has exact plane faces, and patches of splines that are
+//! within the accuracy elsewhere.
 //!
 //! Facets say what hangs together only; where a place of an edge or face then is not on the border of the set, the
 //! facets have missed something, and finer ones are made, or the body is refused with the place.
@@ -19,8 +22,9 @@ use moldloft_picture::PALETTE;
 use moldloft_registry::{FromValue, Point, Value};
 use std::collections::HashMap;
 
-/// Levels of cells that are tried.
+/// Levels of cells that are tried for exact faces, and for patches.
 const LEVELS: std::ops::RangeInclusive<u32> = 6..=8;
+const PATCH_LEVELS: std::ops::RangeInclusive<u32> = 4..=7;
 
 /// Places along an edge that are compared with the set, for the length of a cell.
 const PLACES: f64 = 6.0;
@@ -31,7 +35,7 @@ const HELP: &str = "write it as stl, 3mf or obj, or hide it";
 /// Adds the faces of the body of that name, if it is one of a set; false for other bodies.
 ///
 /// # Errors
-/// Primitives that are no plane, cylinder, cone, sphere or torus; parts that are thinner than the finest cells.
+/// Surfaces with a kink, or that no patches come near enough to; parts that are thinner than the finest cells.
 pub fn add(
     brep: &mut Brep,
     document: &Document,
@@ -45,26 +49,102 @@ pub fn add(
     if set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
         return Ok(false);
     }
-    let mut last = None;
-    for level in LEVELS {
+    let body = SetOfBody { set: &set, over: &over, name, mesh };
+    let exact = body.exact(brep, accuracy, size)?;
+    let Some(refused) = exact else { return Ok(true) };
+    match body.patches(brep, accuracy, size)? {
+        None => Ok(true),
+        // A body of such faces alone is told by them.
+        Some(patches) => Err(refused.unwrap_or(patches).into()),
+    }
+}
+
+/// What is written.
+struct SetOfBody<'a> {
+    set: &'a Set,
+    over: &'a Box3,
+    name: &'a str,
+    mesh: &'a Mesh,
+}
+
+impl SetOfBody<'_> {
+    fn facets(&self, level: u32) -> Result<Facets, ExportFailure> {
         let options = FacetOptions::new(Resolution::Level(level));
-        let facets = facet(&set, &over, &options).map_err(|e| {
-            Diagnostic::error("cannot-write", format!("`{name}` has no facets: {e}"))
-        })?;
-        let (labelled, step) = (labelled(&facets, mesh, name)?, facets.step);
-        let mut made = Brep::default();
-        match made.add_facets(labelled, accuracy, size) {
-            Err(fault) => last = Some(told(name, &fault)),
-            Ok(places) => match elsewhere(&made, &set, &over, places, step, [accuracy, size]) {
-                Some(place) => last = Some(missed(name, place, step)),
+        facet(self.set, self.over, &options).map_err(|e| {
+            Diagnostic::error("cannot-write", format!("`{}` has no facets: {e}", self.name)).into()
+        })
+    }
+
+    /// Adds the body as exact faces; else why it has none, without a reason where a surface is of another form.
+    fn exact(
+        &self,
+        brep: &mut Brep,
+        accuracy: f64,
+        size: f64,
+    ) -> Result<Option<Option<Diagnostic>>, ExportFailure> {
+        let mut last = None;
+        for level in LEVELS {
+            let facets = self.facets(level)?;
+            let (labelled, step) = (labelled(&facets, self.mesh, self.name), facets.step);
+            if labelled.surfaces.iter().any(Option::is_none) {
+                return Ok(Some(None));
+            }
+            let mut made = Brep::default();
+            let places = made.add_facets(labelled, accuracy, size);
+            match self.judged(&made, places, step, [accuracy, size]) {
                 None => {
                     brep.append(made);
-                    return Ok(true);
+                    return Ok(None);
                 }
-            },
+                fault => last = fault,
+            }
+        }
+        Ok(Some(last))
+    }
+
+    /// Adds the body with patches; else why not.
+    fn patches(
+        &self,
+        brep: &mut Brep,
+        accuracy: f64,
+        size: f64,
+    ) -> Result<Option<Diagnostic>, ExportFailure> {
+        let mut last = None;
+        for level in PATCH_LEVELS {
+            let facets = self.facets(level)?;
+            let leaf = |k: u32| &facets.leaves[facets.patch_leaves[k as usize]].primitive;
+            let field = |k: u32, p: Vec3| {
+                let g = leaf(k).gradient(p);
+                (g.value, g.slope)
+            };
+            let mut made = Brep::default();
+            let labelled = labelled(&facets, self.mesh, self.name);
+            let places = made.add_patches(labelled, &field, accuracy, size);
+            match self.judged(&made, places, facets.step, [accuracy, size]) {
+                None => {
+                    brep.append(made);
+                    return Ok(None);
+                }
+                fault => last = fault,
+            }
+        }
+        Ok(last)
+    }
+
+    /// What is wrong with faces.
+    fn judged(
+        &self,
+        made: &Brep,
+        places: Result<Vec<Vec3>, FacetFault>,
+        step: f64,
+        scale: [f64; 2],
+    ) -> Option<Diagnostic> {
+        match places {
+            Err(fault) => Some(told(self.name, &fault)),
+            Ok(places) => elsewhere(made, self.set, self.over, places, step, scale)
+                .map(|place| missed(self.name, place, step)),
         }
     }
-    Err(last.unwrap_or_else(|| Diagnostic::error("cannot-write", "no cells")).into())
 }
 
 /// The set and the box of a body of facets.
@@ -88,7 +168,7 @@ fn set_and_box(document: &Document, object: &Object<f64>) -> Option<(Set, Box3)>
     Some((set, over))
 }
 
-fn labelled(facets: &Facets, shown: &Mesh, name: &str) -> Result<LabelledFacets, ExportFailure> {
+fn labelled(facets: &Facets, shown: &Mesh, name: &str) -> LabelledFacets {
     let mesh = &facets.mesh;
     let (mut triangles, mut labels) = (Vec::new(), Vec::new());
     let (mut surfaces, mut names, mut colours, mut layers) =
@@ -104,10 +184,7 @@ fn labelled(facets: &Facets, shown: &Mesh, name: &str) -> Result<LabelledFacets,
         *count += 1;
         let full =
             if *count == 1 { format!("{name}.{own}") } else { format!("{name}.{own}.{count}") };
-        let Some(surface) = surface(facets.form(k)) else {
-            return Err(curved(name, own, facets.form(k).name()).into());
-        };
-        surfaces.push(surface);
+        surfaces.push(surface(facets.form(k)));
         // As its panels are shown; those of a face that their cells miss as the first of the body.
         let prefix = format!("{name}.");
         let patches = || shown.patches().iter().map(|p| &p.info);
@@ -121,7 +198,7 @@ fn labelled(facets: &Facets, shown: &Mesh, name: &str) -> Result<LabelledFacets,
     }
     let positions = mesh.positions().to_vec();
     let step = facets.step;
-    Ok(LabelledFacets { positions, triangles, labels, surfaces, names, colours, layers, step })
+    LabelledFacets { positions, triangles, labels, surfaces, names, colours, layers, step }
 }
 
 /// The surface of a primitive, where CAD formats have one.
@@ -188,15 +265,6 @@ fn elsewhere(
     places.iter().zip(&values).find(|pair| !on(*pair)).map(|pair| *pair.0)
 }
 
-fn curved(name: &str, part: &str, kind: &str) -> Diagnostic {
-    Diagnostic::error(
-        "curved-body",
-        format!("`{part}` of `{name}` is not a plane, cylinder, cone, sphere or torus"),
-    )
-    .found(format!("a {kind}"))
-    .help(HELP)
-}
-
 fn place_of(p: Vec3) -> String {
     format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
 }
@@ -218,6 +286,8 @@ fn told(name: &str, fault: &FacetFault) -> Diagnostic {
         FacetFaultKind::Seam => "goes round its axis without room for a seam",
         FacetFaultKind::Edge => "meet, or touch, in an edge that is not found",
         FacetFaultKind::Vertex => "meet in a corner that is not found",
+        FacetFaultKind::Surface => "is none of the surfaces that formats have",
+        FacetFaultKind::Patch => "has a kink, or turns too fast for patches,",
     };
     Diagnostic::error("curved-body", format!("{of} {what} near {}", place_of(fault.place)))
         .help(HELP)

@@ -1,0 +1,202 @@
+//! Patches of one polynomial on surfaces that are known by a function: their nets, how far they are off, whether they fold.
+
+use moldloft_num::{Pace, Vec3};
+use moldloft_spline::nurbs::Nurbs;
+use std::f64::consts::PI;
+
+/// Places at which the distance of a patch is taken, along each parameter.
+const DISTANCES: usize = 8;
+
+/// A surface's function and its gradient at a point, by the number of the surface.
+pub type SurfaceField<'a> = dyn Fn(u32, Vec3) -> (f64, Vec3) + Sync + 'a;
+
+/// Polynomials of one degree through points at fixed places.
+pub struct PatchBasis {
+    pub degree: usize,
+    /// The places: denser towards the ends.
+    pub at: Vec<f64>,
+    /// Control points of the values there.
+    inverse: Vec<Vec<f64>>,
+    /// The Bernstein polynomials where distances are taken.
+    rows: Vec<Vec<f64>>,
+}
+
+/// A patch and what is known of it.
+#[derive(Clone)]
+pub struct FittedPatch {
+    /// Control points, the second parameter's fastest.
+    pub net: Vec<Vec3>,
+    /// A bound of its distance from its surface.
+    pub error: f64,
+    /// True where its normal turns against that of the surface.
+    pub folded: bool,
+}
+
+impl PatchBasis {
+    pub fn new(degree: usize) -> Self {
+        let at: Vec<f64> = (0..=degree)
+            .map(|k| 0.5 * (1.0 - libm::cos(PI * k as f64 / degree as f64)))
+            .collect();
+        let inverse = inverted(at.iter().map(|t| bernstein(degree, *t)).collect());
+        let rows = (0..DISTANCES)
+            .map(|k| bernstein(degree, 0.5 * (1.0 - libm::cos(PI * (k as f64 + 0.5) / DISTANCES as f64))))
+            .collect();
+        Self { degree, at, inverse, rows }
+    }
+
+    /// The control points of a curve through points at the places.
+    pub fn curve(&self, through: &[Vec3]) -> Vec<Vec3> {
+        let mut net: Vec<Vec3> = self
+            .inverse
+            .iter()
+            .map(|row| row.iter().zip(through).fold(Vec3::zero(), |sum, (w, p)| sum + *p * *w))
+            .collect();
+        // Ends are vertices, bit for bit.
+        (net[0], net[self.degree]) = (through[0], through[self.degree]);
+        net
+    }
+
+    /// The point of a curve.
+    pub fn on_curve(&self, net: &[Vec3], t: f64) -> Vec3 {
+        let row = bernstein(self.degree, t);
+        row.iter().zip(net).fold(Vec3::zero(), |sum, (w, p)| sum + *p * *w)
+    }
+
+    /// The patch through points at the places, with these control points along its sides u = 0 and 1, v = 0 and 1.
+    pub fn patch(&self, through: &[Vec<Vec3>], sides: [&[Vec3]; 4]) -> Vec<Vec3> {
+        let d = self.degree;
+        let rows: Vec<Vec<Vec3>> = through.iter().map(|line| self.curve(line)).collect();
+        let mut net = vec![Vec3::zero(); (d + 1) * (d + 1)];
+        for j in 0..=d {
+            let line: Vec<Vec3> = rows.iter().map(|row| row[j]).collect();
+            for (i, p) in self.curve(&line).into_iter().enumerate() {
+                net[i * (d + 1) + j] = p;
+            }
+        }
+        // What neighbours share is the same to the last bit.
+        for k in 0..=d {
+            net[k] = sides[0][k];
+            net[d * (d + 1) + k] = sides[1][k];
+            net[k * (d + 1)] = sides[2][k];
+            net[k * (d + 1) + d] = sides[3][k];
+        }
+        net
+    }
+
+    /// A bound of the distance of a patch from a surface, |f| / |f'|: the sum of its Chebyshev coefficients, the last
+    /// two orders counted three times for those that are not known.
+    pub fn distance(&self, net: &[Vec3], surface: u32, field: &SurfaceField<'_>) -> f64 {
+        let n = DISTANCES;
+        let mut values = vec![0.0; n * n];
+        for (i, u) in self.rows.iter().enumerate() {
+            for (j, v) in self.rows.iter().enumerate() {
+                let p = self.blend(net, u, v);
+                let (f, slope) = field(surface, p);
+                values[i * n + j] = if f == 0.0 { 0.0 } else { f / slope.norm() };
+            }
+        }
+        let cosine = |k: usize, i: usize| libm::cos(PI * k as f64 * (i as f64 + 0.5) / n as f64);
+        let scale = |k: usize| if k == 0 { 1.0 } else { 2.0 } / n as f64;
+        let half: Vec<f64> = (0..n * n)
+            .map(|at| {
+                let (k, j) = (at / n, at % n);
+                scale(k) * (0..n).map(|i| cosine(k, i) * values[i * n + j]).sum::<f64>()
+            })
+            .collect();
+        let mut bound = 0.0;
+        for k in 0..n {
+            for l in 0..n {
+                let c = scale(l) * (0..n).map(|j| cosine(l, j) * half[k * n + j]).sum::<f64>();
+                bound += c.abs() * if k + 2 >= n || l + 2 >= n { 3.0 } else { 1.0 };
+            }
+        }
+        if bound.is_finite() { bound } else { f64::INFINITY }
+    }
+
+    /// True where the patch's normal is not on the surface's side that `sign` says.
+    pub fn folds(&self, net: &[Vec3], surface: u32, sign: f64, field: &SurfaceField<'_>) -> bool {
+        const PLACES: [f64; 5] = [0.04, 0.3, 0.5, 0.7, 0.96];
+        const LEAST: f64 = 0.3;
+        let rows: Vec<[Vec<f64>; 2]> =
+            PLACES.iter().map(|t| [bernstein(self.degree, *t), slope(self.degree, *t)]).collect();
+        rows.iter().any(|[u, du]| {
+            rows.iter().any(|[v, dv]| {
+                let normal = self.blend(net, du, v).cross(self.blend(net, u, dv));
+                let along = field(surface, self.blend(net, u, v)).1;
+                let cosine = normal.dot(along) * sign;
+                !(cosine > LEAST * normal.norm() * along.norm())
+            })
+        })
+    }
+
+    /// The middle of a patch.
+    pub fn middle(&self, net: &[Vec3]) -> Vec3 {
+        let row = bernstein(self.degree, 0.5);
+        self.blend(net, &row, &row)
+    }
+
+    fn blend(&self, net: &[Vec3], u: &[f64], v: &[f64]) -> Vec3 {
+        let n = self.degree + 1;
+        let line = |i: usize| {
+            net[i * n..(i + 1) * n].iter().zip(v).fold(Vec3::zero(), |sum, (p, w)| sum + *p * *w)
+        };
+        (0..n).fold(Vec3::zero(), |sum, i| sum + line(i) * u[i])
+    }
+
+    /// A curve or patch as a NURBS.
+    pub fn nurbs<const D: usize>(&self, net: Vec<Vec3>, error: f64) -> Nurbs<D> {
+        let ends = [0.0, 1.0].map(|t| vec![t; self.degree + 1]);
+        Nurbs {
+            degrees: [self.degree; D],
+            knots: std::array::from_fn(|_| ends.concat()),
+            points: net,
+            weights: None,
+            error,
+            exact: false,
+            paces: std::array::from_fn(|_| Pace::Even),
+        }
+    }
+}
+
+fn bernstein(degree: usize, t: f64) -> Vec<f64> {
+    let mut row = vec![1.0];
+    for n in 1..=degree {
+        row.push(0.0);
+        for k in (0..=n).rev() {
+            let before = if k > 0 { row[k - 1] } else { 0.0 };
+            row[k] = row[k] * (1.0 - t) + before * t;
+        }
+    }
+    row
+}
+
+/// The derivatives of the Bernstein polynomials.
+fn slope(degree: usize, t: f64) -> Vec<f64> {
+    let lower = bernstein(degree - 1, t);
+    let at = |k: usize| lower.get(k).copied().unwrap_or(0.0);
+    (0..=degree)
+        .map(|k| degree as f64 * (if k > 0 { at(k - 1) } else { 0.0 } - at(k)))
+        .collect()
+}
+
+/// The inverse of a small matrix, by elimination with pivots.
+fn inverted(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let n = rows.len();
+    for (i, row) in rows.iter_mut().enumerate() {
+        row.extend((0..n).map(|k| f64::from(u8::from(k == i))));
+    }
+    for i in 0..n {
+        let pivot = (i..n).max_by(|&a, &b| rows[a][i].abs().total_cmp(&rows[b][i].abs()));
+        rows.swap(i, pivot.unwrap_or(i));
+        let scale = 1.0 / rows[i][i];
+        rows[i].iter_mut().for_each(|x| *x *= scale);
+        let own = rows[i].clone();
+        for (k, row) in rows.iter_mut().enumerate() {
+            if k != i {
+                let by = row[i];
+                row.iter_mut().zip(&own).for_each(|(x, y)| *x -= by * y);
+            }
+        }
+    }
+    rows.into_iter().map(|row| row[n..].to_vec()).collect()
+}

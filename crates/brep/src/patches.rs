@@ -1,0 +1,608 @@
+//! Bodies with faces on any surfaces: plane faces, and elsewhere small patches that lie on the surface within an accuracy.
+//!
+//! `triangles, each with its surface -> vertices and sides on their surfaces -> quadrilaterals and triangles -> patches`
+//!
+//! Patches that are off by more than the accuracy, or fold, have their longest side halved, with the neighbour's.
+//! What two patches share is one edge with the same control points.
+
+use crate::labelled::extent;
+use crate::patch::{FittedPatch, PatchBasis, SurfaceField};
+use crate::seams::{FacetNet, ordered};
+use crate::{
+    Brep, BrepEdge, BrepFace, Coedge, FacetFault, FacetFaultKind, LabelledFacets, SurfaceShape,
+};
+use moldloft_num::{Pace, Vec3};
+use moldloft_spline::nurbs::Nurbs;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
+
+/// Most triangles that a body is divided into.
+const MOST: usize = 60_000;
+
+/// How often sides are halved.
+const ROUNDS: usize = 24;
+
+/// The least sine of the corners of a quadrilateral.
+const LEAST_CORNER: f64 = 0.25;
+
+/// Degrees of patches; the higher one where more is asked than this share of the size.
+const DEGREES: [usize; 2] = [3, 5];
+const FINE: f64 = 3e-8;
+
+impl Brep {
+    /// Adds the faces of a body whose surfaces need not be planes, cylinders, cones, spheres or tori; gives places on
+    /// them.
+    ///
+    /// # Errors
+    /// Vertices and sides that are not on their surfaces; surfaces that no patches come near enough to.
+    pub fn add_patches(
+        &mut self,
+        facets: LabelledFacets,
+        field: &SurfaceField<'_>,
+        accuracy: f64,
+        size: f64,
+    ) -> Result<Vec<Vec3>, FacetFault> {
+        let mut body = PatchedBody::new(facets, field, accuracy, size)?;
+        let patches = body.fit()?;
+        body.into_brep(self, patches)
+    }
+}
+
+/// A patch by its corners; of a triangle the first one twice.
+type Corners = [u32; 4];
+
+struct PatchedBody<'a> {
+    net: FacetNet,
+    facets: LabelledFacets,
+    field: &'a SurfaceField<'a>,
+    basis: PatchBasis,
+    accuracy: f64,
+    size: f64,
+    /// Control points of sides, from the lower vertex.
+    sides: FxHashMap<(u32, u32), Vec<Vec3>>,
+}
+
+impl<'a> PatchedBody<'a> {
+    fn new(
+        mut facets: LabelledFacets,
+        field: &'a SurfaceField<'a>,
+        accuracy: f64,
+        size: f64,
+    ) -> Result<Self, FacetFault> {
+        let degree = DEGREES[usize::from(accuracy < FINE * size)];
+        let positions = std::mem::take(&mut facets.positions);
+        let place = positions.first().copied().unwrap_or_default();
+        let triangles = std::mem::take(&mut facets.triangles);
+        let labels = std::mem::take(&mut facets.labels);
+        let Some(net) = FacetNet::new(positions, triangles, labels) else {
+            let kind = FacetFaultKind::NotClosed;
+            return Err(FacetFault { kind, surfaces: Vec::new(), place });
+        };
+        let basis = PatchBasis::new(degree);
+        let mut body = Self { net, facets, field, basis, accuracy, size, sides: FxHashMap::default() };
+        body.place_vertices()?;
+        Ok(body)
+    }
+
+    fn plane(&self, triangle: usize) -> Option<&SurfaceShape> {
+        let surface = self.facets.surfaces[self.net.labels[triangle] as usize].as_ref();
+        surface.filter(|s| matches!(s, SurfaceShape::Plane { .. }))
+    }
+
+    fn fault(&self, kind: FacetFaultKind, labels: &[u32], place: Vec3) -> FacetFault {
+        let mut surfaces: Vec<String> = Vec::new();
+        for &label in labels {
+            let name = &self.facets.names[label as usize];
+            if !surfaces.contains(name) {
+                surfaces.push(name.clone());
+            }
+        }
+        FacetFault { kind, surfaces, place }
+    }
+
+    /// Moves all vertices onto the surfaces of their triangles.
+    fn place_vertices(&mut self) -> Result<(), FacetFault> {
+        let mut labels: Vec<Vec<u32>> = vec![Vec::new(); self.net.positions.len()];
+        for (t, label) in self.net.triangles.iter().zip(&self.net.labels) {
+            for &v in t {
+                let own = &mut labels[v as usize];
+                if !own.contains(label) {
+                    own.push(*label);
+                }
+            }
+        }
+        for (v, own) in labels.iter().enumerate() {
+            let start = self.net.positions[v];
+            match self.foot(own, start, self.facets.step) {
+                Some(p) => self.net.positions[v] = p,
+                None => return Err(self.fault(FacetFaultKind::Vertex, own, start)),
+            }
+        }
+        Ok(())
+    }
+
+    /// The point near another that is on all these surfaces within the accuracy.
+    fn foot(&self, labels: &[u32], start: Vec3, reach: f64) -> Option<Vec3> {
+        const STEPS: usize = 60;
+        // Surfaces that touch have no point of their own along the common tangent.
+        const LEAST: f64 = 1e-10;
+        let off = |p: Vec3| {
+            labels.iter().map(move |&l| {
+                let (f, slope) = (self.field)(l, p);
+                let norm = slope.norm();
+                (f / norm, slope / norm)
+            })
+        };
+        let worst = |p: Vec3| off(p).fold(0.0f64, |m, (d, _)| if d.is_nan() { f64::INFINITY } else { m.max(d.abs()) });
+        let mut p = start;
+        let mut best = (worst(start), start);
+        for _ in 0..STEPS {
+            let mut m = [[LEAST, 0.0, 0.0], [0.0, LEAST, 0.0], [0.0, 0.0, LEAST]];
+            let mut r = Vec3::zero();
+            for (d, n) in off(p) {
+                r += n * d;
+                let n = n.to_array();
+                for i in 0..3 {
+                    for j in 0..3 {
+                        m[i][j] += n[i] * n[j];
+                    }
+                }
+            }
+            let [a, b, c] = m.map(Vec3::from);
+            let det = a.dot(b.cross(c));
+            let step = (b.cross(c) * r.x + c.cross(a) * r.y + a.cross(b) * r.z) / det;
+            if !step.is_finite() || step.norm() > reach {
+                break;
+            }
+            p -= step;
+            let now = worst(p);
+            if now < best.0 {
+                best = (now, p);
+            }
+            if now <= 1e-15 * self.size || step.norm() <= 1e-16 * self.size {
+                break;
+            }
+        }
+        let (off, p) = best;
+        (off <= 0.5 * self.accuracy && p.distance(start) <= reach).then_some(p)
+    }
+
+    /// The surfaces on both sides of a side.
+    fn both(&self, a: u32, b: u32) -> Vec<u32> {
+        let mut labels: Vec<u32> = [(a, b), (b, a)]
+            .iter()
+            .map(|side| self.net.labels[self.net.across[side] as usize])
+            .collect();
+        labels.dedup();
+        labels
+    }
+
+    /// Both faces of a side are plane: it is straight.
+    fn straight(&self, a: u32, b: u32) -> bool {
+        [(a, b), (b, a)].iter().all(|s| self.plane(self.net.across[s] as usize).is_some())
+    }
+
+    /// Makes the curve of a side, if it is not known.
+    fn make_side(&mut self, a: u32, b: u32) -> Result<(), FacetFault> {
+        let key = ordered(a, b);
+        if self.sides.contains_key(&key) {
+            return Ok(());
+        }
+        let [p, q] = [key.0, key.1].map(|v| self.net.positions[v as usize]);
+        let labels = self.both(a, b);
+        let straight = self.straight(a, b);
+        let last = self.basis.degree;
+        let mut through = Vec::with_capacity(last + 1);
+        for (k, t) in self.basis.at.iter().enumerate() {
+            let chord = p + (q - p) * *t;
+            let place = match k {
+                0 => Some(p),
+                k if k == last => Some(q),
+                _ if straight => Some(chord),
+                _ => self.foot(&labels, chord, 0.5 * p.distance(q)),
+            };
+            let Some(place) = place else {
+                return Err(self.fault(FacetFaultKind::Edge, &labels, chord));
+            };
+            through.push(place);
+        }
+        let net = self.basis.curve(&through);
+        self.sides.insert(key, net);
+        Ok(())
+    }
+
+    /// The control points of a side from one vertex to the other.
+    fn side(&self, a: u32, b: u32) -> Vec<Vec3> {
+        if a == b {
+            return vec![self.net.positions[a as usize]; self.basis.degree + 1];
+        }
+        let mut net = self.sides[&ordered(a, b)].clone();
+        if a > b {
+            net.reverse();
+        }
+        net
+    }
+
+    /// Quadrilaterals of two triangles of one surface, the best first, and the triangles that are left.
+    fn pairs(&self, apart: &FxHashSet<Corners>) -> Vec<(Corners, u32)> {
+        let at = |v: u32| self.net.positions[v as usize];
+        let mut candidates: Vec<(f64, Corners, [usize; 2])> = Vec::new();
+        for (k, t) in self.net.triangles.iter().enumerate() {
+            if self.plane(k).is_some() {
+                continue;
+            }
+            for i in 0..3 {
+                let [a, b, c] = [0, 1, 2].map(|j| t[(i + j) % 3]);
+                let other = self.net.across[&(b, a)] as usize;
+                if a > b || self.net.labels[other] != self.net.labels[k] {
+                    continue;
+                }
+                let Some(d) = self.net.triangles[other].iter().copied().find(|v| *v != a && *v != b)
+                else {
+                    continue;
+                };
+                let corners = [a, d, b, c];
+                if d == c || apart.contains(&corners) {
+                    continue;
+                }
+                let p = corners.map(at);
+                let normal = (p[2] - p[0]).cross(p[3] - p[1]).normalized().unwrap_or_default();
+                let sine = |i: usize| {
+                    let [u, v] = [p[(i + 1) % 4] - p[i], p[(i + 3) % 4] - p[i]];
+                    u.cross(v).dot(normal) / (u.norm() * v.norm())
+                };
+                let least = (0..4).map(sine).fold(f64::INFINITY, f64::min);
+                if least > LEAST_CORNER {
+                    candidates.push((least, corners, [k, other]));
+                }
+            }
+        }
+        candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut used = vec![false; self.net.triangles.len()];
+        let mut made = Vec::new();
+        for (_, corners, [k, l]) in candidates {
+            if !used[k] && !used[l] {
+                (used[k], used[l]) = (true, true);
+                made.push((corners, k as u32));
+            }
+        }
+        for (k, t) in self.net.triangles.iter().enumerate() {
+            if !used[k] && self.plane(k).is_none() {
+                made.push((self.corners_of(*t), k as u32));
+            }
+        }
+        made
+    }
+
+    /// A triangle as a quadrilateral that begins where its corner is sharpest.
+    fn corners_of(&self, t: [u32; 3]) -> Corners {
+        let at = |i: usize| self.net.positions[t[i % 3] as usize];
+        let cosine = |i: usize| {
+            let [u, v] = [at(i + 1) - at(i), at(i + 2) - at(i)];
+            u.dot(v) / (u.norm() * v.norm())
+        };
+        let i = (0..3).max_by(|&a, &b| cosine(a).total_cmp(&cosine(b))).unwrap_or(0);
+        [t[i], t[i], t[(i + 1) % 3], t[(i + 2) % 3]]
+    }
+
+    fn patch(&mut self, corners: Corners, label: u32) -> Result<FittedPatch, FacetFault> {
+        let [a, b, c, d] = corners;
+        for (u, v) in [(a, b), (b, c), (c, d), (d, a)] {
+            if u != v {
+                self.make_side(u, v)?;
+            }
+        }
+        let [low, right, high, left] =
+            [self.side(a, b), self.side(b, c), self.side(d, c), self.side(a, d)];
+        let n = self.basis.degree;
+        let line = |net: &[Vec3]| -> Vec<Vec3> {
+            self.basis.at.iter().map(|t| self.basis.on_curve(net, *t)).collect()
+        };
+        let [l, r, h, e] = [line(&low), line(&right), line(&high), line(&left)];
+        let reach = [a, b, c, d]
+            .map(|v| self.net.positions[v as usize].distance(self.net.positions[c as usize]))
+            .into_iter()
+            .fold(0.0, f64::max);
+        let mut through = vec![vec![Vec3::zero(); n + 1]; n + 1];
+        for (i, &u) in self.basis.at.iter().enumerate() {
+            for (j, &v) in self.basis.at.iter().enumerate() {
+                through[i][j] = if i == 0 {
+                    e[j]
+                } else if i == n {
+                    r[j]
+                } else if j == 0 {
+                    l[i]
+                } else if j == n {
+                    h[i]
+                } else {
+                    let bilinear = l[0] * ((1.0 - u) * (1.0 - v))
+                        + l[n] * (u * (1.0 - v))
+                        + h[0] * ((1.0 - u) * v)
+                        + h[n] * (u * v);
+                    let guess = l[i] * (1.0 - v) + h[i] * v + e[j] * (1.0 - u) + r[j] * u - bilinear;
+                    match self.foot(&[label], guess, reach) {
+                        Some(p) => p,
+                        // Told by its distance.
+                        None => guess,
+                    }
+                };
+            }
+        }
+        let net = self.basis.patch(&through, [&left, &right, &low, &high]);
+        let error = self.basis.distance(&net, label, self.field);
+        let [p, q, s, t] = corners.map(|v| self.net.positions[v as usize]);
+        let out = (s - p).cross(t - q);
+        let (_, slope) = (self.field)(label, self.basis.middle(&net));
+        let sign = if out.dot(slope) < 0.0 { -1.0 } else { 1.0 };
+        let folded = self.basis.folds(&net, label, sign, self.field);
+        Ok(FittedPatch { net, error, folded })
+    }
+
+    /// Patches that are near enough, with sides halved until they are.
+    fn fit(&mut self) -> Result<Vec<(Corners, u32, FittedPatch)>, FacetFault> {
+        let mut known: FxHashMap<Corners, FittedPatch> = FxHashMap::default();
+        let mut apart: FxHashSet<Corners> = FxHashSet::default();
+        let mut last = None;
+        for _ in 0..ROUNDS {
+            let all = self.pairs(&apart);
+            let mut halved: Vec<(f64, (u32, u32))> = Vec::new();
+            let mut before = apart.len();
+            for (corners, triangle) in &all {
+                let label = self.net.labels[*triangle as usize];
+                let patch = match known.get(corners) {
+                    Some(patch) => patch.clone(),
+                    None => match self.patch(*corners, label) {
+                        Ok(patch) => patch,
+                        Err(fault) => {
+                            last = Some(fault);
+                            let (net, error) = (Vec::new(), f64::INFINITY);
+                            FittedPatch { net, error, folded: false }
+                        }
+                    },
+                };
+                let near = patch.error <= self.accuracy;
+                let quadrilateral = corners[0] != corners[1];
+                if near && patch.folded && quadrilateral {
+                    apart.insert(*corners);
+                } else if !near || patch.folded {
+                    let side = self.longest(*corners);
+                    let [p, q] = [side.0, side.1].map(|v| self.net.positions[v as usize]);
+                    let long = p.distance(q);
+                    if long < 1e-7 * self.size {
+                        return Err(self.fault(FacetFaultKind::Patch, &[label], p));
+                    }
+                    if last.is_none() {
+                        last = Some(self.fault(FacetFaultKind::Patch, &[label], p));
+                    }
+                    halved.push((long, side));
+                }
+                known.insert(*corners, patch);
+            }
+            if halved.is_empty() && before == apart.len() {
+                return Ok(all
+                    .into_iter()
+                    .map(|(corners, k)| (corners, k, known[&corners].clone()))
+                    .collect());
+            }
+            before = self.net.triangles.len();
+            self.halve(halved)?;
+            if self.net.triangles.len() > MOST {
+                break;
+            }
+            if self.net.triangles.len() > before {
+                last = None;
+            }
+        }
+        let place = self.net.positions.first().copied().unwrap_or_default();
+        Err(last.unwrap_or_else(|| self.fault(FacetFaultKind::Patch, &[], place)))
+    }
+
+    fn longest(&self, [a, b, c, d]: Corners) -> (u32, u32) {
+        let at = |v: u32| self.net.positions[v as usize];
+        let long = |s: &(u32, u32)| at(s.0).distance(at(s.1));
+        let sides = [(a, b), (b, c), (c, d), (d, a)];
+        let side = sides.into_iter().max_by(|s, t| long(s).total_cmp(&long(t))).unwrap_or((a, c));
+        ordered(side.0, side.1)
+    }
+
+    /// Puts a vertex on the sides, the longest first, on at most one of each triangle.
+    fn halve(&mut self, mut sides: Vec<(f64, (u32, u32))>) -> Result<(), FacetFault> {
+        sides.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        sides.dedup();
+        let mut touched: FxHashSet<u32> = FxHashSet::default();
+        for (long, (a, b)) in sides {
+            let Some((&k, &l)) = self.net.across.get(&(a, b)).zip(self.net.across.get(&(b, a))) else {
+                continue;
+            };
+            if touched.contains(&k) || touched.contains(&l) {
+                continue;
+            }
+            let labels = self.both(a, b);
+            let [p, q] = [a, b].map(|v| self.net.positions[v as usize]);
+            let start = match self.sides.get(&ordered(a, b)) {
+                Some(net) => self.basis.on_curve(net, 0.5),
+                None => (p + q) * 0.5,
+            };
+            let Some(place) = self.foot(&labels, start, long) else {
+                return Err(self.fault(FacetFaultKind::Edge, &labels, start));
+            };
+            let count = self.net.triangles.len() as u32;
+            self.net.split(a, b, place);
+            touched.extend([k, l, count, count + 1]);
+            self.sides.remove(&ordered(a, b));
+        }
+        Ok(())
+    }
+
+    fn into_brep(
+        mut self,
+        brep: &mut Brep,
+        patches: Vec<(Corners, u32, FittedPatch)>,
+    ) -> Result<Vec<Vec3>, FacetFault> {
+        let places = patches.iter().map(|(.., patch)| self.basis.middle(&patch.net)).collect();
+        // Faces: those that are plane, by triangles that hang together, and each patch.
+        let mut group = self.net.connected();
+        let plane_groups = group.iter().max().map_or(0, |g| g + 1);
+        for (number, (corners, triangle, _)) in patches.iter().enumerate() {
+            let own = plane_groups + number as u32;
+            group[*triangle as usize] = own;
+            if corners[0] != corners[1] {
+                let [a, _, b, _] = *corners;
+                group[self.net.across[&(a, b)] as usize] = own;
+                group[self.net.across[&(b, a)] as usize] = own;
+            }
+        }
+        self.net.groups = group;
+        let chains = self.chains();
+        let mut vertices: BTreeMap<u32, usize> = BTreeMap::new();
+        let mut first: FxHashMap<(u32, u32), (usize, bool)> = FxHashMap::default();
+        let mut border: FxHashSet<(u32, u32)> = FxHashSet::default();
+        let mut edges = Vec::with_capacity(chains.len());
+        for (k, chain) in chains.iter().enumerate() {
+            let n = chain.len();
+            border.extend(chain.windows(2).flat_map(|w| [(w[0], w[1]), (w[1], w[0])]));
+            first.insert((chain[0], chain[1]), (k, true));
+            first.insert((chain[n - 1], chain[n - 2]), (k, false));
+            let ends = [chain[0], chain[n - 1]].map(|v| {
+                *vertices.entry(v).or_insert_with(|| {
+                    brep.vertices.push(self.net.positions[v as usize]);
+                    brep.vertices.len() - 1
+                })
+            });
+            let [p, q] = ends.map(|v| brep.vertices[v]);
+            let curve = if self.straight(chain[0], chain[1]) {
+                BrepEdge::segment(p, q)
+            } else {
+                self.make_side(chain[0], chain[1])?;
+                self.basis.nurbs(self.side(chain[0], chain[1]), 0.0)
+            };
+            edges.push(brep.edges.len());
+            brep.edges.push(BrepEdge { ends, curve, ellipse: None });
+        }
+        let cavities = self.net.cavities();
+        let mut by_group: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (k, g) in self.net.groups.iter().enumerate() {
+            by_group.entry(*g).or_default().push(k);
+        }
+        let mut gap = 1e-14 * self.size;
+        for (own, members) in by_group {
+            let label = self.net.labels[members[0]] as usize;
+            let extent = extent(members.iter().flat_map(|&k| self.net.corners(k)));
+            let patch = own.checked_sub(plane_groups).map(|k| &patches[k as usize]);
+            let (surface, loops, error) = match patch {
+                Some((corners, _, patch)) => {
+                    let surface = self.basis.nurbs(patch.net.clone(), patch.error);
+                    let cycle = self.round(*corners, &first, &edges);
+                    (SurfaceShape::Nurbs(Box::new(surface)), vec![cycle], patch.error)
+                }
+                None => {
+                    let mut loops = self.net.loops(&members, &border, &first, &edges);
+                    loops.sort_by(|a, b| long(brep, b).total_cmp(&long(brep, a)));
+                    let area = |&k: &usize| {
+                        let [a, b, c] = self.net.corners(k);
+                        (b - a).cross(c - a)
+                    };
+                    let out = members.iter().map(area).fold(Vec3::zero(), |s, a| s + a);
+                    let Some(SurfaceShape::Plane { origin, normal, axis }) = self.plane(members[0])
+                    else {
+                        return Err(self.fault(FacetFaultKind::NotClosed, &[], extent[0].into()));
+                    };
+                    let normal = if normal.dot(out) < 0.0 { -*normal } else { *normal };
+                    for side in loops.iter().flatten() {
+                        for p in &brep.edges[side.edge].curve.points {
+                            gap = gap.max((*p - *origin).dot(normal).abs());
+                        }
+                    }
+                    (SurfaceShape::Plane { origin: *origin, normal, axis: *axis }, loops, 0.0)
+                }
+            };
+            brep.faces.push(BrepFace {
+                name: self.facets.names[label].clone(),
+                colour: self.facets.colours[label],
+                layers: self.facets.layers[label].clone(),
+                surface,
+                reversed: false,
+                loops,
+                error,
+                exact: patch.is_none(),
+                extent: Some((extent, cavities[members[0]])),
+            });
+        }
+        brep.gap = brep.gap.max(gap);
+        Ok(places)
+    }
+
+    /// The sides between faces; those between two planes in one, from corner to corner.
+    fn chains(&self) -> Vec<Vec<u32>> {
+        let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (&(a, b), &k) in &self.net.across {
+            let other = self.net.across[&(b, a)];
+            if self.net.groups[k as usize] != self.net.groups[other as usize] {
+                next.entry(a).or_default().push(b);
+            }
+        }
+        next.values_mut().for_each(|n| n.sort_unstable());
+        let through = |v: u32| {
+            let around = &next[&v];
+            around.len() == 2 && around.iter().all(|w| self.straight(v, *w))
+        };
+        let mut chains = Vec::new();
+        for (&start, around) in &next {
+            if through(start) {
+                continue;
+            }
+            for &to in around {
+                let mut chain = vec![start, to];
+                while let Some(&here) = chain.last()
+                    && through(here)
+                {
+                    let before = chain[chain.len() - 2];
+                    let Some(&on) = next[&here].iter().find(|w| **w != before) else { break };
+                    chain.push(on);
+                }
+                // Each is found from both ends.
+                if chain[0] < chain[chain.len() - 1]
+                    || (chain[0] == chain[chain.len() - 1] && chain[1] < chain[chain.len() - 2])
+                {
+                    chains.push(chain);
+                }
+            }
+        }
+        chains
+    }
+
+    /// The loop of a patch, with its straight curves in parameters.
+    fn round(
+        &self,
+        [a, b, c, d]: Corners,
+        first: &FxHashMap<(u32, u32), (usize, bool)>,
+        edges: &[usize],
+    ) -> Vec<Coedge> {
+        let uv = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[u, v]| Vec3::of(u, v, 0.0));
+        let corners = [a, b, c, d];
+        let mut cycle = Vec::new();
+        for k in 0..4 {
+            let next = (k + 1) % 4;
+            let Some(&(chain, forward)) = first.get(&(corners[k], corners[next])) else { continue };
+            let [from, to] = if forward { [uv[k], uv[next]] } else { [uv[next], uv[k]] };
+            let trace = Nurbs {
+                degrees: [1],
+                knots: [vec![0.0, 0.0, 1.0, 1.0]],
+                points: vec![from, to],
+                weights: None,
+                error: 0.0,
+                exact: true,
+                paces: [Pace::Even],
+            };
+            cycle.push(Coedge { edge: edges[chain], forward, trace: Some(trace), alike: true });
+        }
+        cycle
+    }
+}
+
+/// The size of a loop.
+fn long(brep: &Brep, cycle: &[Coedge]) -> f64 {
+    let points = cycle.iter().flat_map(|side| &brep.edges[side.edge].curve.points);
+    let [low, high] = extent(points.copied());
+    Vec3::from(high).distance(low.into())
+}

@@ -1,0 +1,314 @@
+"""STEP and IGES files read in a process of their own, bounded in time and memory.
+
+OCCT can end the process over a damaged file. The faces that it ends over are then found by halves,
+named, and left out; of IGES files it is an error.
+"""
+
+from __future__ import annotations
+
+import atexit
+import json
+import math
+import os
+import signal
+import struct
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from moldloft.budget import limits
+from moldloft.cad import needed
+from moldloft.cad.occt import Imported, ImportedFace, of_part
+from moldloft.cad.part21 import StepText
+from moldloft.errors import Error, FileError
+from moldloft.nurbs import Nurbs
+from moldloft.storage import read_bytes
+
+__all__ = ["read"]
+
+SECONDS = 600.0
+"""Time for one file, unless the limits of this process say less."""
+
+_IDLE = 30.0
+"""After so many seconds without a request the other process ends."""
+
+_TRIES = 24
+"""How often a file is read in parts to find what OCCT ends over."""
+
+
+def read(path: Path, metres: float) -> Imported:
+    """The faces and curves of a STEP or IGES file, in units of so many metres.
+
+    Parameters
+    ----------
+    path
+        The file.
+    metres
+        The unit of length of what is returned.
+
+    Raises
+    ------
+    FileError
+        When the file is not of its format, holds no shape, or OCCT ends over it.
+    """
+    needed("OCP", "cadquery-ocp-novtk", "reading STEP and IGES")
+    if not sys.executable:
+        # A program that has Python inside: there is none to start.
+        return of_part(path, metres, None)
+    answer = _asked(path, metres, None)
+    if isinstance(answer, Imported):
+        return answer
+    numbers: list[int] = []
+    if path.suffix.lower() in (".step", ".stp"):
+        numbers = StepText.of(path, read_bytes(path).decode("latin-1")).whole_faces
+    parts, lost, _ = _by_halves(path, metres, numbers, _TRIES) if numbers else ([], numbers, 0)
+    if not parts:
+        raise FileError(f"cannot read `{path}`: {answer}")
+    found = _together(parts, metres)
+    few = ", ".join(f"#{n}" for n in lost[:20]) + (", ..." if len(lost) > 20 else "")
+    found.remarks.insert(
+        0,
+        f"{answer}; {len(numbers) - len(lost)} of {len(numbers)} faces were read in "
+        f"{len(parts)} parts, which are not joined; left out: {few or 'none'}",
+    )
+    return found
+
+
+def _by_halves(
+    path: Path, metres: float, numbers: list[int], tries: int
+) -> tuple[list[Imported], list[int], int]:
+    """What can be read of some faces, the faces that cannot, and how many tries are left."""
+    if not numbers or tries <= 0:
+        return [], numbers, tries
+    answer = _asked(path, metres, numbers)
+    if isinstance(answer, Imported):
+        return [answer], [], tries - 1
+    if len(numbers) == 1:
+        return [], numbers, tries - 1
+    middle = len(numbers) // 2
+    low, lost, tries = _by_halves(path, metres, numbers[:middle], tries - 1)
+    high, more, tries = _by_halves(path, metres, numbers[middle:], tries)
+    return low + high, lost + more, tries
+
+
+def _together(parts: list[Imported], metres: float) -> Imported:
+    found = Imported(metres=metres)
+    taken: set[str] = set()
+    first = 0
+    for part in parts:
+        last = first
+        for face in part.faces:
+            name = face.name
+            while name in taken:
+                name += "_"
+            taken.add(name)
+            face.name = name
+            face.loops = [[(n + first, b, t) for n, b, t in cycle] for cycle in face.loops]
+            last = max([last, *(n for cycle in face.loops for n, _, _ in cycle)])
+        found.faces += part.faces
+        found.remarks += [r for r in part.remarks if r not in found.remarks]
+        first = last + 1
+    return found
+
+
+class _Worker:
+    """A process that reads files, one after the other; it ends when nobody asks for a while."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def ask(self, request: dict[str, Any]) -> bytes | str:
+        """What it answers, or how it ended."""
+        message = json.dumps(request).encode()
+        with self._lock:
+            for _ in range(2):
+                process = self._process
+                old = process is not None and process.poll() is None
+                if process is None or not old:
+                    process = self._process = self._begun()
+                answer = self._answered(process, message, request["seconds"])
+                # It may have ended by itself just then.
+                if isinstance(answer, bytes) or not old or process.returncode != 0:
+                    return answer
+            return answer
+
+    def _begun(self) -> subprocess.Popen[bytes]:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "moldloft.cad.apart"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+        atexit.register(process.kill)
+        return process
+
+    def _answered(
+        self, process: subprocess.Popen[bytes], message: bytes, seconds: float
+    ) -> bytes | str:
+        assert process.stdin is not None and process.stdout is not None
+        late = threading.Event()
+
+        def end() -> None:
+            late.set()
+            process.kill()
+
+        timer = threading.Timer(seconds, end)
+        timer.daemon = True
+        timer.start()
+        try:
+            process.stdin.write(struct.pack("<Q", len(message)) + message)
+            process.stdin.flush()
+            head = process.stdout.read(8)
+            if len(head) == 8:
+                (length,) = struct.unpack("<Q", head)
+                body = process.stdout.read(length)
+                if len(body) == length:
+                    return body
+        except BrokenPipeError:
+            pass
+        except BaseException:
+            process.kill()
+            raise
+        finally:
+            timer.cancel()
+        process.wait()
+        self._process = None
+        if late.is_set():
+            return f"OCCT was ended: it took longer than {seconds:g} s"
+        number = -process.returncode
+        known = number in {*signal.Signals}
+        name = signal.Signals(number).name if known else f"status {process.returncode}"
+        return f"OCCT ended over the file ({name})"
+
+
+_worker = _Worker()
+
+
+def _asked(path: Path, metres: float, numbers: list[int] | None) -> Imported | str:
+    """What another process reads, of these faces or of all, or how it ended."""
+    own = limits()
+    request = {
+        "path": str(path.absolute()),
+        "called": str(path),
+        "metres": metres,
+        "faces": numbers,
+        "memory": own.memory,
+        "seconds": min(SECONDS, own.seconds),
+    }
+    sent = _worker.ask(request)
+    if isinstance(sent, str):
+        return sent
+    answer: dict[str, Any] = json.loads(sent)
+    if "error" in answer:
+        raise FileError(answer["error"].replace(request["path"], request["called"]))
+    if "fault" in answer:
+        return f"OCCT cannot read the file ({answer['fault']})"
+    return _imported(answer, metres)
+
+
+def _sent(shape: Nurbs) -> dict[str, Any]:
+    return {
+        "degrees": shape.degrees,
+        "knots": [k.tolist() for k in shape.knots],
+        "points": shape.points.tolist(),
+        "weights": None if shape.weights is None else shape.weights.tolist(),
+    }
+
+
+def _nurbs(sent: dict[str, Any]) -> Nurbs:
+    weights = sent["weights"]
+    return Nurbs(
+        tuple(sent["degrees"]),
+        tuple(np.array(k) for k in sent["knots"]),
+        np.array(sent["points"]),
+        None if weights is None else np.array(weights),
+    )
+
+
+def _imported(answer: dict[str, Any], metres: float) -> Imported:
+    faces = [
+        ImportedFace(
+            face["name"],
+            _nurbs(face["surface"]),
+            [[(n, back, _nurbs(t)) for n, back, t in cycle] for cycle in face["loops"]],
+            face["natural"],
+            face["reversed"],
+        )
+        for face in answer["faces"]
+    ]
+    curves = {name: _nurbs(curve) for name, curve in answer["curves"].items()}
+    return Imported(faces, curves, metres, answer["remarks"])
+
+
+def _answer(request: dict[str, Any]) -> dict[str, Any]:
+    """What is read, as data; the largest part is numbers."""
+    try:
+        found = of_part(Path(request["path"]), request["metres"], request["faces"])
+    except Error as error:
+        return {"error": str(error)}
+    except MemoryError:
+        return {"fault": f"more than {request['memory'] / 2**30:.3g} GiB are needed"}
+    except Exception as error:
+        # OCCT's own exceptions have no common class here.
+        return {"fault": f"{type(error).__name__}: {error}".splitlines()[0][:200]}
+    faces = [
+        {
+            "name": face.name,
+            "surface": _sent(face.surface),
+            "loops": [[(n, bool(b), _sent(t)) for n, b, t in cycle] for cycle in face.loops],
+            "natural": bool(face.natural),
+            "reversed": bool(face.reversed),
+        }
+        for face in found.faces
+    ]
+    curves = {name: _sent(curve) for name, curve in found.curves.items()}
+    return {"faces": faces, "curves": curves, "remarks": found.remarks}
+
+
+def _bounded(memory: int, seconds: float) -> None:
+    """Bounds what this process takes from now on, where the system can."""
+    try:
+        import resource
+    except ImportError:
+        return
+    _, most = resource.getrlimit(resource.RLIMIT_AS)
+    held = memory if most == resource.RLIM_INFINITY else min(memory, most)
+    resource.setrlimit(resource.RLIMIT_AS, (held, most))
+    # Should nobody wait for it any more.
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    until = math.ceil(used.ru_utime + used.ru_stime + seconds) + 1
+    resource.setrlimit(resource.RLIMIT_CPU, (until, resource.getrlimit(resource.RLIMIT_CPU)[1]))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def _main() -> None:
+    # What OCCT prints goes nowhere.
+    answers = os.dup(1)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with os.fdopen(answers, "wb") as target:
+        while True:
+            timer = threading.Timer(_IDLE, os._exit, (0,))
+            timer.daemon = True
+            timer.start()
+            head = sys.stdin.buffer.read(8)
+            timer.cancel()
+            if len(head) < 8:
+                # OCCT's own destructors are not waited for.
+                os._exit(0)
+            (length,) = struct.unpack("<Q", head)
+            request = json.loads(sys.stdin.buffer.read(length))
+            _bounded(request["memory"], request["seconds"])
+            answer = json.dumps(_answer(request)).encode()
+            target.write(struct.pack("<Q", len(answer)) + answer)
+            target.flush()
+
+
+if __name__ == "__main__":
+    _main()

@@ -1,0 +1,139 @@
+"""Faces that do not share their edges, sewn where these are one within a tolerance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = ["Sewn", "faces_of", "map_of"]
+
+_LEAST = 1e-6
+_MOST = 1e-4
+"""The tolerance, as a share of the size."""
+
+
+def map_of(shape: Any, kind: Any) -> Any:
+    """The parts of a shape of a kind, each once."""
+    from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
+    from OCP.TopExp import TopExp
+
+    shapes = Shapes()
+    TopExp.MapShapes_s(shape, kind, shapes)
+    return shapes
+
+
+def faces_of(shape: Any, kind: Any) -> list[Any]:
+    """The same as a list."""
+    shapes = map_of(shape, kind)
+    return [shapes.FindKey(k) for k in range(1, shapes.Extent() + 1)]
+
+
+@dataclass
+class Sewn:
+    """A shape, and what became of it when its faces were sewn."""
+
+    shape: Any
+    """As it was read."""
+    sewing: Any = None
+    """What sewed it; None where nothing had to be sewn."""
+    body: Any = None
+    """Its faces with the edges that they share."""
+    tolerance: float = 0.0
+    """How far apart edges may be that became one."""
+
+    @classmethod
+    def of(cls, shape: Any, resolution: float) -> Sewn:
+        """The faces of a shape, sewn.
+
+        Parameters
+        ----------
+        shape
+            A compound of faces.
+        resolution
+            The least distance of two points that the file tells apart.
+        """
+        from OCP.Bnd import Bnd_Box
+        from OCP.BRepBndLib import BRepBndLib
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+        from OCP.TopAbs import TopAbs_FACE
+
+        faces = faces_of(shape, TopAbs_FACE)
+        if len(faces) < 2:
+            return cls(shape)
+        box = Bnd_Box()
+        BRepBndLib.Add_s(shape, box)
+        size = box.SquareExtent() ** 0.5
+        tolerance = min(max(resolution, _LEAST * size), _MOST * size)
+        sewing = BRepBuilderAPI_Sewing(tolerance)
+        for face in faces:
+            sewing.Add(face)
+        sewing.Perform()
+        return cls(shape, sewing, _outward(sewing.SewedShape()), tolerance)
+
+    @property
+    def whole(self) -> Any:
+        """The shape that its faces are parts of."""
+        return self.shape if self.body is None else self.body
+
+    def face(self, original: Any) -> Any:
+        """A face of the shape as it is in the whole."""
+        from OCP.TopAbs import TopAbs_FACE
+
+        if self.sewing is None:
+            return original
+        made = self.sewing.Modified(original) if self.sewing.IsModified(original) else original
+        faces = map_of(self.body, TopAbs_FACE)
+        number = faces.FindIndex(made)
+        return faces.FindKey(number) if number else made
+
+    def say(self, remarks: list[str]) -> None:
+        """Says how many edges were found to be one, and how many are open.
+
+        Parameters
+        ----------
+        remarks
+            What is said of the file.
+        """
+        from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
+
+        if self.sewing is None:
+            return
+        edges = map_of(self.body, TopAbs_EDGE)
+        uses = [0] * (edges.Extent() + 1)
+        for face in faces_of(self.body, TopAbs_FACE):
+            for edge in faces_of(face, TopAbs_EDGE):
+                uses[edges.FindIndex(edge)] += 1
+        shared = sum(n > 1 for n in uses)
+        if shared:
+            remarks.append(
+                f"IGES does not say which faces hang together: {shared} edges of two faces are "
+                f"within {self.tolerance:.2g} of one another and are taken as one"
+            )
+
+
+def _outward(shape: Any) -> Any:
+    """The same with solids in the place of closed shells, so that their faces look outward."""
+    from OCP.BRep import BRep_Builder, BRep_Tool
+    from OCP.BRepLib import BRepLib
+    from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL
+    from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Solid
+
+    compound = TopoDS_Compound()
+    builder = BRep_Builder()
+    builder.MakeCompound(compound)
+    held = set()
+    for found in faces_of(shape, TopAbs_SHELL):
+        shell = TopoDS.Shell(found)
+        held |= {hash(face) for face in faces_of(shell, TopAbs_FACE)}
+        if not BRep_Tool.IsClosed_s(shell):
+            builder.Add(compound, shell)
+            continue
+        solid = TopoDS_Solid()
+        builder.MakeSolid(solid)
+        builder.Add(solid, shell)
+        BRepLib.OrientClosedSolid_s(solid)
+        builder.Add(compound, solid)
+    for face in faces_of(shape, TopAbs_FACE):
+        if hash(face) not in held:
+            builder.Add(compound, face)
+    return compound
