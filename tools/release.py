@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import gzip
 import hashlib
+import importlib.util
 import json
 import os
 import platform
@@ -194,12 +195,18 @@ def write_papers() -> list[dict[str, Any]]:
 
 
 def maturin() -> list[str]:
-    """The command of maturin: of this Python, or of an environment made for it."""
-    try:
-        import maturin  # noqa: F401
-    except ImportError:
-        run(sys.executable, "-m", "pip", "install", "--quiet", "maturin>=1.10,<2")
-    return [sys.executable, "-m", "maturin"]
+    """The command of maturin: of this Python, or of an environment made for it.
+
+    Nothing is installed into a Python of the user's.
+    """
+    if importlib.util.find_spec("maturin"):
+        return [sys.executable, "-m", "maturin"]
+    tools = TARGET / "release-tools"
+    python = tools / ("Scripts" if WINDOWS else "bin") / f"python{EXE}"
+    if not python.is_file():
+        venv.create(tools, with_pip=True)
+    run(python, "-m", "pip", "install", "--quiet", "maturin>=1.10,<2")
+    return [str(python), "-m", "maturin"]
 
 
 def engine() -> None:

@@ -19,9 +19,11 @@
 //!     render(&diagnostic, &sources),
 //!     "error[unknown-name]: no object called `Q`
 //!  --> boat.sdl:2:11
+//!   |
 //! 2 | BCurve C({Q}, degree = 2);
 //!   |           ^ expected the name of a point, found `Q`
-//! help: a name with a similar spelling exists: `P`
+//!   |
+//!   = help: a name with a similar spelling exists: `P`
 //! "
 //! );
 //! ```

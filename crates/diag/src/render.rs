@@ -1,20 +1,19 @@
-//! Printing for a terminal, without colours.
+//! Printing for a terminal, without colours: the layout, folding and widths of characters are those of `annotate-snippets`.
 
-use crate::{Diagnostic, Label, Location, Sources};
+use crate::{Diagnostic, FileId, Label, Severity, Sources};
+use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 use std::fmt::Write;
+use std::ops::Range;
 
-/// Tabs are printed as this many blanks, whatever their column, so that the marks stand under the text.
-const TAB: &str = "    ";
-/// Characters of a source line that are shown; of a longer line a piece around the place is shown.
-const LINE_LIMIT: usize = 160;
+/// Columns of a printed line; of a longer source line the piece around the marks is shown.
+const WIDTH: usize = 140;
+/// A place that runs over more lines than this is marked on its first alone.
+const MOST_LINES: u32 = 8;
 
 /// The diagnostic as text with its source lines, ending with a line end.
 ///
-/// A place that spans several lines is marked on its first line, up to that line's end, with a trailing `…`.
+/// A place that spans several lines is marked from its first to its last; one of more than eight lines on its first alone.
 pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
-    let mut out = String::new();
-    let _ = writeln!(out, "{}[{}]: {}", diagnostic.severity, diagnostic.id, diagnostic.message);
-
     let expectation = diagnostic.expectation();
     let primary = diagnostic.primary.as_ref().map(|label| {
         let text = if label.text.is_empty() {
@@ -26,41 +25,56 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
     });
     let said = primary.as_ref().is_some_and(|label| Some(&label.text) == expectation.as_ref());
 
-    let places: Vec<LabelPlace> = primary
+    let level = match diagnostic.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
+    };
+    let mut group =
+        Group::with_title(level.primary_title(&*diagnostic.message).id(&*diagnostic.id));
+
+    let places: Vec<Place> = primary
         .iter()
-        .map(|label| (label, '^'))
-        .chain(diagnostic.secondary.iter().map(|label| (label, '-')))
-        .filter_map(|(label, mark)| LabelPlace::find(label, mark, sources))
+        .map(|label| (label, AnnotationKind::Primary))
+        .chain(diagnostic.secondary.iter().map(|label| (label, AnnotationKind::Context)))
+        .filter_map(|(label, kind)| Place::find(label, kind, sources))
         .collect();
-    let gutter = places.iter().map(|place| digits(place.start.line)).max().unwrap_or(1);
-
-    let mut shown: Option<&LabelPlace> = None;
-    for place in &places {
-        let same_file = shown.is_some_and(|last| last.label.span.file == place.label.span.file);
-        if !same_file {
-            let arrow = if shown.is_none() { "-->" } else { ":::" };
-            let (name, at) = (place.name, place.start);
-            let _ = writeln!(out, "{:gutter$}{arrow} {name}:{}:{}", "", at.line, at.column);
+    let mut left: Vec<&Place> = places.iter().collect();
+    while let Some(first) = left.first() {
+        let file = first.file;
+        let (of_file, others): (Vec<&Place>, Vec<&Place>) =
+            left.into_iter().partition(|place| place.file == file);
+        left = others;
+        if let Some(snippet) = snippet(&of_file, sources) {
+            group = group.element(snippet);
         }
-        let same_line = same_file
-            && shown.is_some_and(|last| last.start.line == place.start.line && !last.clipped);
-        place.print(&mut out, gutter, same_line);
-        shown = Some(place);
     }
 
-    if let (Some(text), false) = (&expectation, said) {
-        let _ = writeln!(out, "note: {text}");
+    let mut below: Vec<(Level, String)> = Vec::new();
+    if let (Some(text), false) = (expectation, said) {
+        below.push((Level::NOTE, text));
     }
-    if places.is_empty() && diagnostic.object.is_some() {
-        let _ =
-            writeln!(out, "note: this is about `{}`", diagnostic.object.as_deref().unwrap_or(""));
+    if let (true, Some(object)) = (places.is_empty(), &diagnostic.object) {
+        below.push((Level::NOTE, format!("this is about `{object}`")));
     }
-    for text in &diagnostic.notes {
-        let _ = writeln!(out, "note: {text}");
+    below.extend(diagnostic.notes.iter().map(|text| (Level::NOTE, text.clone())));
+    below.extend(diagnostic.help.iter().map(|text| (Level::HELP, text.clone())));
+    if places.is_empty() {
+        // Without a source there is no margin to hang them on.
+        let mut out = Renderer::plain().render(&[group]) + "\n";
+        for (level, text) in below {
+            let word = if level == Level::HELP { "help" } else { "note" };
+            let _ = writeln!(out, "{word}: {}", clean(&text));
+        }
+        return out;
     }
-    for text in &diagnostic.help {
-        let _ = writeln!(out, "help: {text}");
+    for (level, text) in below {
+        group = group.element(level.message(clean(&text)));
     }
+    let mut out = Renderer::plain().term_width(WIDTH).render(&[group]);
+    // Lines carry no blanks at their ends.
+    out = out.lines().map(str::trim_end).collect::<Vec<_>>().join("\n");
+    out.push('\n');
     out
 }
 
@@ -74,77 +88,71 @@ pub fn render_all<'a>(
     texts.join("\n")
 }
 
-fn digits(line: u32) -> usize {
-    line.checked_ilog10().unwrap_or(0) as usize + 1
-}
-
-struct LabelPlace<'a> {
+/// A label whose place exists.
+struct Place<'a> {
     label: &'a Label,
-    mark: char,
-    name: &'a str,
-    line: &'a str,
-    start: Location,
-    end: Location,
-    clipped: bool,
+    kind: AnnotationKind,
+    file: FileId,
+    /// Bytes of the text, on the boundaries of characters.
+    bytes: Range<usize>,
+    /// First and last line, from 1.
+    lines: [u32; 2],
 }
 
-impl<'a> LabelPlace<'a> {
-    fn find(label: &'a Label, mark: char, sources: &'a Sources) -> Option<LabelPlace<'a>> {
+impl<'a> Place<'a> {
+    fn find(label: &'a Label, kind: AnnotationKind, sources: &Sources) -> Option<Place<'a>> {
         let span = label.span;
-        let start = sources.locate(span.file, span.start)?;
-        let end = sources.locate(span.file, span.end.max(span.start))?;
-        let line = sources.line(span.file, start.line)?;
-        let clipped = line.chars().count() > LINE_LIMIT;
-        Some(LabelPlace { label, mark, name: sources.name(span.file)?, line, start, end, clipped })
+        let text = sources.text(span.file)?;
+        let start = boundary(text, span.start as usize);
+        let mut end = boundary(text, (span.end as usize).max(start));
+        let first = sources.locate(span.file, start as u32)?.line;
+        let mut last = sources.locate(span.file, end as u32)?.line;
+        if last - first >= MOST_LINES {
+            last = first;
+            end = start + text[start..].find(['\r', '\n']).unwrap_or(text.len() - start);
+        }
+        Some(Place { label, kind, file: span.file, bytes: start..end, lines: [first, last] })
     }
+}
 
-    fn print(&self, out: &mut String, gutter: usize, line_is_shown: bool) {
-        let first = self.start.column as usize - 1;
-        let line_chars = self.line.chars().count();
-        let last = if self.end.line == self.start.line {
-            self.end.column as usize - 1
-        } else {
-            line_chars
-        };
+/// A text without what moves a cursor or turns the direction of writing, but for line ends.
+fn clean(text: &str) -> String {
+    let turns = |c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let shown = |c: char| if (c.is_control() && c != '\n') || turns(c) { '\u{fffd}' } else { c };
+    text.chars().map(shown).collect()
+}
 
-        // The piece of the line that is shown, in characters.
-        let from = if self.clipped { first.saturating_sub(LINE_LIMIT / 4) } else { 0 };
-        let to = if self.clipped { (from + LINE_LIMIT).min(line_chars) } else { line_chars };
-
-        let mut text = String::new();
-        let mut before_mark = 0;
-        let mut marks = 0;
-        if from > 0 {
-            text.push('…');
-            before_mark += 1;
-        }
-        for (at, c) in self.line.chars().enumerate().skip(from).take(to - from) {
-            let width = if c == '\t' { TAB.len() } else { 1 };
-            match c {
-                '\t' => text.push_str(TAB),
-                // Control characters would move the cursor or be invisible.
-                c if c.is_control() => text.push('\u{fffd}'),
-                c => text.push(c),
-            }
-            if at < first {
-                before_mark += width;
-            } else if at < last {
-                marks += width;
-            }
-        }
-        if to < line_chars {
-            text.push('…');
-        }
-        if !line_is_shown {
-            let shown = format!("{:>gutter$} | {text}", self.start.line);
-            let _ = writeln!(out, "{}", shown.trim_end());
-        }
-        let underline: String = std::iter::repeat_n(self.mark, marks.max(1)).collect();
-        let more = if self.end.line > self.start.line || last > to { "…" } else { "" };
-        let marked =
-            format!("{:gutter$} | {:before_mark$}{underline}{more} {}", "", "", self.label.text);
-        let _ = writeln!(out, "{}", marked.trim_end());
+/// The last boundary between characters that is not after `at`.
+fn boundary(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
     }
+    at
+}
+
+/// The lines of one file with their marks; only these lines are handed on, however long the file is.
+fn snippet<'a>(places: &[&'a Place], sources: &'a Sources) -> Option<Snippet<'a, Annotation<'a>>> {
+    let file = places.first()?.file;
+    let text: &str = sources.text(file)?;
+    let from_line = places.iter().map(|place| place.lines[0]).min()?;
+    let start = text[..places.iter().map(|place| place.bytes.start).min()?]
+        .rfind('\n')
+        .map_or(0, |at| at + 1);
+    let last = places.iter().map(|place| place.bytes.end).max()?;
+    let end = last + text[last..].find('\n').unwrap_or(text.len() - last);
+    let end = if text[last..end].ends_with('\r') { end - 1 } else { end };
+    let mut snippet = Snippet::source(&text[start..end])
+        .line_start(from_line as usize)
+        .path(sources.name(file)?)
+        .fold(true);
+    for place in places {
+        let within = place.bytes.start - start..place.bytes.end - start;
+        let words = clean(&place.label.text).replace('\n', " ");
+        let words = Some(words).filter(|words| !words.is_empty());
+        snippet = snippet.annotation(place.kind.span(within).label(words));
+    }
+    Some(snippet)
 }
 
 #[cfg(test)]
@@ -176,11 +184,14 @@ mod tests {
             "\
 error[wrong-parent]: a bead needs a curve, but `hull` is a surface
   --> boat.srf:14:14
-14 | bead b1 = on(hull, 0.5)
-   |              ^^^^ expected a curve, found a surface
+   |
  9 | surface hull = loft(m1, m2, m3)
    |         ---- `hull` is defined here
-help: for a point on a surface write `magnet b1 = on(hull, 0.5, v)`
+...
+14 | bead b1 = on(hull, 0.5)
+   |              ^^^^ expected a curve, found a surface
+   |
+   = help: for a point on a surface write `magnet b1 = on(hull, 0.5, v)`
 "
         );
     }
@@ -196,8 +207,11 @@ help: for a point on a surface write `magnet b1 = on(hull, 0.5, v)`
             "\
 error[open-magnitude]: this magnitude is never closed
  --> t.sdl:1:6
-1 |     é = |x;
-  |         ^^^…
+  |
+1 |       é = |x;
+  |  _________^
+2 | | next
+  | |_^
 "
         );
     }
@@ -217,13 +231,18 @@ error[open-magnitude]: this magnitude is never closed
             "\
 warning[shapes-differ]: shapes differ
  --> a.sdl:1:5
+  |
 1 | x = y + z;
-  |     ^ curve[60]
-  |         - curve[59]
+  |     ^   - curve[59]
+  |     |
+  |     curve[60]
+  |
  ::: b.sdl:1:7
+  |
 1 | float y;
   |       - declared here
-note: expected equal shapes
+  |
+  = note: expected equal shapes
 "
         );
     }
@@ -236,8 +255,9 @@ note: expected equal shapes
         let text = render(&d, &sources);
         assert!(text.lines().all(|line| line.chars().count() < 200), "{text}");
         let lines: Vec<&str> = text.lines().collect();
-        let at = lines[2].chars().position(|c| c == '@').unwrap();
-        assert_eq!(lines[3].chars().nth(at), Some('^'));
+        let shown = lines.iter().position(|line| line.contains('@')).unwrap();
+        let at = lines[shown].chars().position(|c| c == '@').unwrap();
+        assert_eq!(lines[shown + 1].chars().nth(at), Some('^'));
 
         let bare = Diagnostic::error("no-file", "no such file").object("hull").help("look again");
         assert_eq!(
@@ -246,5 +266,70 @@ note: expected equal shapes
         );
         let past = Diagnostic::error("odd", "past the end").at(Span::new(file, 99_999, 100_000));
         assert!(render(&past, &sources).contains("long.sdl:1:10002"));
+    }
+
+    #[test]
+    fn marks_stand_under_wide_characters() {
+        let mut sources = Sources::new();
+        let file = sources.add("t.sdl", "# 船体 x\n船 = y;");
+        let d = Diagnostic::error("odd", "odd").at(Span::new(file, 9, 10));
+        let text = render(&d, &sources);
+        // Two columns for each of the two characters.
+        assert!(text.contains("1 | # 船体 x\n  |        ^\n"), "{text}");
+    }
+
+    #[test]
+    fn a_place_of_many_lines_is_marked_on_its_first() {
+        let mut sources = Sources::new();
+        let file = sources.add("t.sdl", "line\n".repeat(20_000));
+        let d = Diagnostic::error("odd", "odd").at(Span::new(file, 10, 90_000));
+        assert_eq!(
+            render(&d, &sources),
+            "error[odd]: odd\n --> t.sdl:3:1\n  |\n3 | line\n  | ^^^^\n"
+        );
+    }
+
+    /// Any places in any text: marks within the text or past it, inside of characters, at line ends.
+    #[test]
+    fn any_place_can_be_printed() {
+        let pieces = [
+            "a",
+            "\t",
+            "\n",
+            "\r\n",
+            "\r",
+            "é",
+            "船",
+            "\u{1b}[31m",
+            "\u{202e}",
+            "e\u{301}",
+            "",
+            " ",
+            "\0",
+        ];
+        let mut state = 1_u64;
+        let mut below = |n: usize| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % n
+        };
+        for _ in 0..4000 {
+            let text: String = (0..below(30)).map(|_| pieces[below(pieces.len())]).collect();
+            let mut sources = Sources::new();
+            let files = [sources.add("a", text.clone()), sources.add("b", text.clone())];
+            let mut span = || {
+                let start = below(text.len() + 3) as u32;
+                Span::new(files[below(2)], start, start + below(12) as u32)
+            };
+            let d = Diagnostic::error("odd", text.clone())
+                .labelled(span(), "first\nsecond")
+                .note_at(span(), "")
+                .note_at(span(), "here")
+                .help(text.clone());
+            let out = render(&d, &sources);
+            assert!(out.starts_with("error[odd]:") && out.ends_with('\n'), "{out}");
+            assert!(!out.contains(['\u{1b}', '\u{202e}', '\0']), "{out:?}");
+        }
     }
 }

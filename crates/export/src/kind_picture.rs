@@ -3,14 +3,17 @@
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 use moldloft_mesh::{Mesh, MeshError, PatchInfo, TopologyBuilder};
+use moldloft_model::Object;
 use moldloft_num::{Box3, Order, Plane, Solid, Vec3};
-use moldloft_picture::{Options, PatchStyle, StyledPolyline, render};
+use moldloft_picture::{Label, Options, PatchStyle, StyledPolyline, render};
 use moldloft_registry::Value;
 
 /// What the picture is about.
 const SUBJECT: [u8; 3] = [0xc2, 0x41, 0x2d];
 /// What it is made of.
 const OTHER: [u8; 3] = [0x5d, 0x6b, 0x7a];
+/// Names of what it is made of.
+const NAME: [u8; 3] = [0x2f, 0x3a, 0x46];
 /// The way to a point.
 const WAY: [u8; 3] = [0xa9, 0xb4, 0xbf];
 /// Surfaces of the subject, and others.
@@ -67,16 +70,22 @@ pub fn kind_picture(
         for object in objects.iter().filter(|o| (o.row.name == kind) == own) {
             let width = if own { 2.4 } else { 1.2 };
             let mut line = |points: Vec<Vec3>, width: f32| {
-                lines.push(StyledPolyline { points, colour, width });
+                lines.push(StyledPolyline { points, colour, width, on_surface: false });
             };
             match object.value() {
                 Some(Value::Point(p)) => {
-                    line(vec![p.xyz; 2], if own { 6.0 } else { 4.0 });
+                    line(vec![p.xyz; 2], if own { 9.0 } else { 5.0 });
                     if points_only {
                         let Vec3 { x, y, .. } = p.xyz;
                         let turns = [Vec3::zero(), Vec3::of(x, 0.0, 0.0), Vec3::of(x, y, 0.0)];
                         let way = turns.into_iter().chain([p.xyz]).collect();
-                        lines.push(StyledPolyline { points: way, colour: WAY, width: 1.0 });
+                        let way = StyledPolyline {
+                            points: way,
+                            colour: WAY,
+                            width: 1.0,
+                            on_surface: false,
+                        };
+                        lines.push(way);
                     }
                 }
                 Some(Value::Curve(c)) => {
@@ -93,11 +102,12 @@ pub fn kind_picture(
             }
         }
     }
+    let labels = labels(&objects, kind);
     for section in document.sections() {
         for points in section.lines.iter().flat_map(|(_, lines)| lines) {
             let again = points.points.first().filter(|_| points.closed);
             let points = points.points.iter().chain(again).copied().collect();
-            lines.push(StyledPolyline { points, colour: SUBJECT, width: 2.0 });
+            lines.push(StyledPolyline { points, colour: SUBJECT, width: 2.0, on_surface: true });
         }
     }
     let graph = document.graph();
@@ -110,9 +120,29 @@ pub fn kind_picture(
     let patches = mesh.patches();
     let look = |own: bool| PatchStyle { colour: SURFACES[usize::from(!own)], raised: own };
     let looks = patches.iter().map(|p| look(of_kind(&p.info.name))).collect();
-    let options = Options { width, height, looks: Some(looks), ..Options::default() };
+    let options = Options { width, height, looks: Some(looks), labels, ..Options::default() };
     render(&mesh, &lines, &options)
         .map_err(|error| vec![Diagnostic::error("no-picture", error.to_string())])
+}
+
+/// The names of the objects: those of the kind first, and of these and of the others points before lines and surfaces.
+fn labels(objects: &[&Object<f64>], kind: &str) -> Vec<Label> {
+    let middle = 0.5;
+    let mut all = Vec::new();
+    for object in objects {
+        let (rank, at) = match object.value() {
+            Some(Value::Point(p)) => (0, p.xyz),
+            Some(Value::Frame(frame)) => (1, frame.origin),
+            Some(Value::Curve(c)) => (2, c.jet(middle, Order::Zero)[0]),
+            Some(Value::Surface(s)) => (3, s.jet(middle, middle, Order::Zero).p),
+            _ => continue,
+        };
+        let own = object.row.name == kind;
+        let colour = if own { SUBJECT } else { NAME };
+        all.push(((!own, rank), Label { at, text: object.name.to_string(), colour }));
+    }
+    all.sort_by_key(|(rank, _)| *rank);
+    all.into_iter().map(|(_, label)| label).collect()
 }
 
 /// The mesh and the faces of solids, as patches of their names.

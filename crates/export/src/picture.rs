@@ -31,6 +31,7 @@ pub fn picture(
         points,
         colour: WIRE_COLOUR,
         width: WIRE_WIDTH,
+        on_surface: false,
     }));
     let symmetry = document.symmetry();
     let mirrors = ['x', 'y', 'z'].map(|axis| symmetry.contains(axis));
@@ -47,6 +48,7 @@ fn drawn(section: &ContourSection) -> Vec<StyledPolyline> {
             points: points(line),
             colour: CONTOUR_COLOUR,
             width: CONTOUR_WIDTH,
+            on_surface: true,
         })
         .collect()
 }

@@ -26,10 +26,12 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod camera;
+mod lettering;
 mod palette;
 mod raster;
 mod render;
 
 pub use camera::Camera;
+pub use lettering::Label;
 pub use palette::{PALETTE, patch_colour};
 pub use render::{Options, PatchStyle, PictureError, StyledPolyline, encoded, render};

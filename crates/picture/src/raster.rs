@@ -106,13 +106,14 @@ impl Raster {
         }
     }
 
-    /// Draws a line of `half_width` samples, where it is not hidden by more than `slack` of nearness.
+    /// Draws a line of `half_width` samples, where it is hidden by no more than the first of `depths` and is before
+    /// what is seen there by no more than the second, in nearness.
     pub fn line(
         &mut self,
         a: ScreenPoint,
         b: ScreenPoint,
         half_width: f32,
-        slack: f32,
+        [slack, before]: [f32; 2],
         colour: [u8; 3],
     ) {
         let (dx, dy) = (b.x - a.x, b.y - a.y);
@@ -145,7 +146,7 @@ impl Raster {
                 let cover = (half_width + 0.5 - distance).clamp(0.0, 1.0);
                 let k = y * self.width + x;
                 let near = a.near + t * (b.near - a.near);
-                if cover > 0.0 && near + slack >= self.near[k] {
+                if cover > 0.0 && near + slack >= self.near[k] && near - self.near[k] <= before {
                     for (old, new) in self.colour[k].iter_mut().zip(colour) {
                         *old =
                             (f32::from(*old) * (1.0 - cover) + f32::from(new) * cover + 0.5) as u8;

@@ -1,6 +1,7 @@
 //! The picture of a mesh and some lines as a PNG file. The same input gives the same bytes; no display is needed.
 
 use crate::camera::{Aimed, Camera, ScreenPoint};
+use crate::lettering::{self, Label};
 use crate::palette::{Gamma, patch_colour};
 use crate::raster::{PanelSides, Raster, ShadedVertex, length};
 use moldloft_mesh::{Mesh, Tag, is_triangle};
@@ -16,6 +17,8 @@ pub struct StyledPolyline {
     pub colour: [u8; 3],
     /// Width in picture points.
     pub width: f32,
+    /// It lies on the panelled surface, as a contour does: not drawn where it stands out of the panels' outline.
+    pub on_surface: bool,
 }
 
 /// How a patch looks.
@@ -50,6 +53,8 @@ pub struct Options {
     pub background: [[u8; 3]; 2],
     /// How the patches look, in their order, instead of their own colours.
     pub looks: Option<Vec<PatchStyle>>,
+    /// Names beside points, the most important first; not on mirror images.
+    pub labels: Vec<Label>,
 }
 
 impl Default for Options {
@@ -66,6 +71,7 @@ impl Default for Options {
             axes: true,
             background: [[0xfc, 0xfd, 0xfe], [0xe2, 0xe8, 0xee]],
             looks: None,
+            labels: Vec::new(),
         }
     }
 }
@@ -148,38 +154,83 @@ pub fn render(
     let gamma = Gamma::new();
     let mut raster = Raster::new(2 * width, 2 * height, top, bottom, Gamma::new());
     let diagonal = Box3::around(all.iter().copied()).diagonal();
-    let painter = Painter { mesh, aimed: &aimed, gamma: &gamma, options, lift: 1e-3 * diagonal };
+    let lift = f64::max(1e-3 * diagonal, 2.0 * sagitta(mesh));
+    let painter = Painter { mesh, aimed: &aimed, gamma: &gamma, options, lift };
     for &side in &sides {
         painter.panels(&mut raster, side);
     }
     let rims = if options.borders { mesh.topology().borders() } else { Vec::new() };
     for &side in &sides {
-        let mut stroke = |p: Vec3, q: Vec3, half_width: f32, slack: f64, colour: [u8; 3]| {
+        // The depths, in diagonals: by how much panels may hide a line, and how far before them it may be.
+        let mut stroke = |p: Vec3, q: Vec3, half_width: f32, depths: [f64; 2], colour: [u8; 3]| {
             let (p, q) = (image(p, side), image(q, side));
             let middle = (p + q) * 0.5;
-            let nearer = aimed.see(middle + aimed.towards(middle) * (slack * diagonal));
-            let slack = nearer.near - aimed.see(middle).near;
-            raster.line(aimed.see(p), aimed.see(q), half_width, slack, colour);
+            let depths = depths.map(|depth| {
+                if depth.is_infinite() {
+                    return f32::INFINITY;
+                }
+                let nearer = aimed.see(middle + aimed.towards(middle) * (depth * diagonal));
+                nearer.near - aimed.see(middle).near
+            });
+            raster.line(aimed.see(p), aimed.see(q), half_width, depths, colour);
         };
         for ends in &rims {
             let [p, q] = ends.map(|v| mesh.positions()[v as usize]);
             // Where a half meets its image the surface goes on.
             let within = |k: usize| options.mirrors[k] && p[k] == 0.0 && q[k] == 0.0;
             if !(0..3).any(within) {
-                stroke(p, q, 0.75, 4e-4, RIM);
+                stroke(p, q, 0.75, [4e-4, f64::INFINITY], RIM);
             }
         }
         for line in lines {
+            // A line on the surface lies within its panels' sagitta of them; near the outline the panels turn away from it.
+            let depths = [2e-3, if line.on_surface { 2e-2 } else { f64::INFINITY }];
             for ends in line.points.windows(2).filter(|w| w.iter().all(|p| p.is_finite())) {
-                // A line on the surface lies within its panels' sagitta of them.
-                stroke(ends[0], ends[1], line.width, 2e-3, line.colour);
+                stroke(ends[0], ends[1], line.width, depths, line.colour);
             }
         }
     }
+    let labels: Vec<(&Label, [f32; 2])> = options
+        .labels
+        .iter()
+        .filter(|label| label.at.is_finite())
+        .map(|label| (label, aimed.see(label.at)))
+        .map(|(label, seen)| (label, [seen.x, seen.y]))
+        .collect();
+    lettering::write(&mut raster, &labels, 2.0 * width as f32, 2.0 * height as f32);
     if options.axes {
         axes(&mut raster, &aimed, width, height);
     }
     encoded(&raster.halved(), width, height)
+}
+
+/// About how far a surface is from its panels at most: an edge of length l between normals at an angle a is a l / 8 from its arc.
+/// Creases do not count.
+fn sagitta(mesh: &Mesh) -> f64 {
+    let positions = mesh.positions();
+    let mut most = 0.0_f64;
+    let mut normals = vec![Vec3::zero(); positions.len()];
+    for patch in mesh.patches() {
+        let faces = &mesh.faces()[patch.faces.clone()];
+        faces.iter().flatten().for_each(|&v| normals[v as usize] = Vec3::zero());
+        for &face in faces {
+            let [a, b, c, d] = face.map(|v| positions[v as usize]);
+            let normal = (c - a).cross(d - b);
+            face.iter().for_each(|&v| normals[v as usize] += normal);
+        }
+        for &face in faces {
+            for (v, w) in face.into_iter().zip(face.into_iter().cycle().skip(1)) {
+                let (v, w) = (v as usize, w as usize);
+                let ends = [normals[v], normals[w]].map(Vec3::normalized);
+                let [Some(m), Some(n)] = ends else { continue };
+                let angle = (m - n).norm();
+                if angle < 0.68 {
+                    most = most.max(angle * (positions[v] - positions[w]).norm() / 8.0);
+                }
+            }
+        }
+    }
+    most
 }
 
 /// The signs of the coordinates in a model and its mirror images.
@@ -314,6 +365,7 @@ fn breadth([a, b, c, d]: [ScreenPoint; 4]) -> f32 {
 /// The directions of x, y and z in the lower left corner.
 fn axes(raster: &mut Raster, aimed: &Aimed, width: usize, height: usize) {
     let size = 2.0 * (width.min(height) as f64) * 0.045;
+    let open = [0.0, f32::INFINITY];
     let (x0, y0) = (1.9 * size, 2.0 * height as f64 - 1.9 * size);
     let at =
         |x: f64, y: f64| ScreenPoint { x: (x0 + x) as f32, y: (y0 - y) as f32, near: f32::MAX };
@@ -329,14 +381,14 @@ fn axes(raster: &mut Raster, aimed: &Aimed, width: usize, height: usize) {
     order.sort_by(|&a, &b| aimed.turned(unit[a])[2].total_cmp(&aimed.turned(unit[b])[2]));
     for k in order {
         let [right, up, _] = aimed.turned(unit[k]);
-        raster.line(at(0.0, 0.0), at(size * right, size * up), 1.6, 0.0, colours[k]);
+        raster.line(at(0.0, 0.0), at(size * right, size * up), 1.6, open, colours[k]);
         let reach = libm::hypot(right, up).max(0.25);
         let (cx, cy) = (right * (1.0 + 0.28 / reach) * size, up * (1.0 + 0.28 / reach) * size);
         let letter = 0.11 * size;
         for [x1, y1, x2, y2] in letters[k] {
             let (p, q) =
                 (at(cx + letter * x1, cy + letter * y1), at(cx + letter * x2, cy + letter * y2));
-            raster.line(p, q, 1.2, 0.0, colours[k]);
+            raster.line(p, q, 1.2, open, colours[k]);
         }
     }
 }

@@ -316,6 +316,7 @@ impl PySketch {
                     points: solid.polyline(e, 24),
                     colour: EDGE_COLOUR,
                     width: EDGE_WIDTH,
+                    on_surface: false,
                 })
                 .collect();
             let camera =

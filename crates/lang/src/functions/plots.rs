@@ -170,6 +170,7 @@ fn png(
                 points,
                 colour: CURVE_COLOUR,
                 width: CURVE_WIDTH,
+                on_surface: false,
             }));
             continue;
         }

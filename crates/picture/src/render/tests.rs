@@ -73,6 +73,7 @@ fn same_input_same_bytes() {
         points: vec![Vec3::zero(), Vec3::of(1.0, 1.0, 0.2)],
         colour: [0; 3],
         width: 1.5,
+        on_surface: false,
     };
     let options = Options {
         mirrors: [false, true, false],
@@ -103,11 +104,58 @@ fn impossible_requests_are_refused() {
 fn nothing_and_a_single_point_are_pictures_too() {
     let none = Mesh::new(TopologyBuilder::new().build().into(), vec![]).unwrap();
     assert!(render(&none, &[], &small()).is_ok());
-    let line =
-        StyledPolyline { points: vec![Vec3::zero(), Vec3::zero()], colour: [0; 3], width: 2.0 };
+    let points = vec![Vec3::zero(), Vec3::zero()];
+    let line = StyledPolyline { points, colour: [0; 3], width: 2.0, on_surface: false };
     for view_angle_deg in [None, Some(20.0)] {
         let camera = Camera { view_angle_deg, ..Camera::default() };
         let line = std::slice::from_ref(&line);
         assert!(render(&none, line, &Options { camera, ..small() }).is_ok());
     }
+}
+
+/// A sphere of few panels and its exact equator: nothing of it is drawn beside the panels.
+#[test]
+fn lines_on_surfaces_stay_within_the_outline() {
+    let at = |k: usize, n: usize| std::f64::consts::TAU * k as f64 / n as f64;
+    let mut builder = TopologyBuilder::new();
+    builder.add_vertices(16).unwrap();
+    builder
+        .add_faces(PatchInfo::new("wall"), (0..8).map(|k| [k, (k + 1) % 8, 8 + (k + 1) % 8, 8 + k]))
+        .unwrap();
+    let ring = |z: f64| (0..8).map(move |k| Vec3::of(libm::cos(at(k, 8)), libm::sin(at(k, 8)), z));
+    let wall = Mesh::new(builder.build().into(), ring(-1.0).chain(ring(1.0)).collect()).unwrap();
+    let camera = Camera { azimuth_deg: 11.25, elevation_deg: 0.0, view_angle_deg: None };
+    let options = Options { camera, ..small() };
+    let dark = |on_surface: bool| {
+        let points = (0..=90).map(|k| Vec3::of(libm::cos(at(k, 90)), libm::sin(at(k, 90)), 0.0));
+        let line =
+            StyledPolyline { points: points.collect(), colour: [0; 3], width: 1.5, on_surface };
+        let with = pixels(&render(&wall, &[line], &options).unwrap());
+        let without = pixels(&render(&wall, &[], &options).unwrap());
+        // Where the background was.
+        let outside = |p: &[u8; 3]| p.iter().all(|&c| c > 200);
+        let beside = with.iter().zip(&without).filter(|(p, q)| outside(q) && p[0] < 100).count();
+        (beside, with.iter().filter(|p| p[0] < 100).count())
+    };
+    let (beside, all) = dark(true);
+    assert_eq!(beside, 0);
+    assert!(all > 40, "{all}");
+    assert!(dark(false).0 > 0);
+}
+
+#[test]
+fn names_are_written_beside_their_points() {
+    let name = |text: &str| Label { at: Vec3::zero(), text: text.into(), colour: [0xc0, 0, 0] };
+    let red = |labels: Vec<Label>| {
+        let picture = pixels(&render(&sheet(2), &[], &Options { labels, ..small() }).unwrap());
+        picture.iter().filter(|p| p[0] > 150 && p[1] < 100).count()
+    };
+    assert_eq!(red(Vec::new()), 0);
+    let one = red(vec![name("P")]);
+    assert!(one > 5, "{one}");
+    // Four places, none over another; the fifth name has no room.
+    let four = red(vec![name("P"); 4]);
+    assert_eq!(red(vec![name("P"); 5]), four);
+    assert!(four > one);
+    assert_eq!(red(vec![Label { at: Vec3::of(f64::NAN, 0.0, 0.0), ..name("P") }]), 0);
 }

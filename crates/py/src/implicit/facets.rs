@@ -247,6 +247,7 @@ impl PyFacets {
             points: points.clone(),
             colour: [0x30, 0x36, 0x40],
             width: 3.0,
+            on_surface: false,
         };
         let lines: Vec<StyledPolyline> = self.loose.wires.iter().map(line).collect();
         let options = Options { width, height, edges: false, ..Options::default() };
