@@ -23,6 +23,7 @@ __all__ = [
     "encode_plot3d",
     "encoded",
     "read_aerofoil",
+    "read_cgns",
     "read_plot3d",
     "read_points",
     "write",
@@ -162,6 +163,54 @@ def decode_plot3d(
         ]
     names = ("layout", "double", "multi", "three", "big_endian", "mark", "planes")
     return surfaces, Plot3DVariant(**{name: found[name] for name in names}), blanks
+
+
+def read_cgns(path: str | Path) -> dict[str, NDArray[np.float64]]:
+    """The points of the structured zones of a CGNS file, by name.
+
+    Files are HDF5, what the CGNS library writes unless asked for the older ADF; h5py is not needed.
+    Boundaries, solutions and interfaces are left out.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    dict
+        Arrays (ni, nj, 3), or (ni, nj, nk, 3) of blocks, in the order in which the zones were made
+        where the file kept it, else by names. A second zone of one name, in another base, is
+        ``name~2``.
+
+    Raises
+    ------
+    FileError
+        For other files, unstructured zones, compressed coordinates and those in other files.
+
+    Examples
+    --------
+    >>> from moldloft import grids
+    >>> import numpy as np, tempfile
+    >>> flat = np.zeros((4, 3, 3))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = grids.write_cgns(folder + "/flat.cgns", [flat], ["flat"])
+    ...     zones = grids.read_cgns(file)
+    >>> {name: grid.shape for name, grid in zones.items()}
+    {'Z_flat': (4, 3, 3)}
+    """
+    try:
+        zones = _core.read_cgns(_read(path))
+    except FormatError as error:
+        raise _named(path, error) from error
+    found: dict[str, NDArray[np.float64]] = {}
+    for name, grid in zones:
+        spelled, k = name, 1
+        while spelled in found:
+            k += 1
+            spelled = f"{name}~{k}"
+        found[spelled] = grid[:, :, 0, :] if grid.shape[2] == 1 else grid
+    return found
 
 
 def write_plot3d(

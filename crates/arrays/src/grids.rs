@@ -321,7 +321,7 @@ pub(crate) fn extended<T: Real>(planes: &[Vec<T>; 3], field: FieldId) -> Result<
 }
 
 /// What a smoothing that has not converged came to.
-fn unsettled<T: Real>(done: &Smoothed<T>) -> String {
+pub(crate) fn unsettled<T: Real>(done: &Smoothed<T>) -> String {
     use std::fmt::Write;
     let Smoothed { sweeps, change, walls, .. } = done;
     let mut text = format!(
@@ -604,24 +604,28 @@ fn metric(word: &str, field: FieldId) -> Result<QualityMetric, CallError> {
     })
 }
 
-/// The quality of the cells of a grid [m,n]: numbers [m-1,n-1].
+/// The quality of the cells of a grid [m,n]: numbers [m-1,n-1]; of a block [l,m,n]: numbers [l-1,m-1,n-1].
 ///
 /// "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative where a corner is
 /// turned over; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best;
 /// "growth_i", "growth_j": ratio of neighbouring cells' lengths, 1 at best; "warp": distance of the
 /// corners from a plane over the size; "turn": the greatest angle by which grid lines turn there;
 /// "area". Cells at poles count as triangles.
+///
+/// Of blocks: "sj", the least triple product of the unit edges at a corner, negative where it is turned over against
+/// the block's own hand; "skew" of all angles of faces; "aspect" of the lines between the middles of opposite faces;
+/// "edge_ratio", "growth_i", "growth_j", "growth_k", "volume". Corners at edges without length do not count.
 #[derive(Kind)]
 #[kind(
-    class = Numbers,
+    class = Any,
     function,
     name = "quality",
     example = "surface s = spread_i(list(0, 1, 2), 4) * {1, 0, 0} + spread_j(list(0, 1, 2, 3), 3) * {0, 1, 0}; \
                assert min(quality(s, \"sj\")) == 1;"
 )]
 pub struct QualityOf<T: Scalar> {
-    /// The grid.
-    s: GridArg<T>,
+    /// The grid, or the layers of a block.
+    s: Value<T>,
     /// The metric.
     #[field(default = "sj")]
     metric: Arc<str>,
@@ -629,8 +633,13 @@ pub struct QualityOf<T: Scalar> {
 
 impl<T: Scalar> Build<T> for QualityOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        if let Value::List(layers) = &self.s {
+            let block = crate::volumes::volume(layers, Self::S)?;
+            return crate::volumes::quality(&block, &self.metric, Self::METRIC);
+        }
         let metric = metric(&self.metric, Self::METRIC)?;
-        let grid = self.s.0;
+        let GridArg(grid) =
+            GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
         if grid.m.min(grid.n) < 2 {
             return Err(fault(
                 GridError::TooFew { expected: 2, actual: [grid.m, grid.n] },

@@ -23,6 +23,7 @@ mod locate;
 mod masks;
 mod moves;
 mod reduce;
+mod section_grids;
 mod shape;
 mod spacing;
 mod spline;
@@ -127,8 +128,9 @@ pub fn rows() -> Vec<Row> {
         grids::EllipticGrid,
         grids::HyperbolicGrid,
         volumes::EllipticBlock,
-        volumes::OGrid,
-        volumes::CGrid,
+        section_grids::OGrid,
+        section_grids::CGrid,
+        section_grids::HGrid,
         grids::QualityOf,
         grids::Folds,
         grids::Report,

@@ -1,13 +1,14 @@
-//! Blocks of the language, lists of layers: smoothed and measured; grids round sections in one call.
+//! Blocks of the language, lists of layers: smoothed and measured.
 
 use crate::grids::fault;
-use crate::value::{Farray, GridArg, Points, surface};
+use crate::value::{GridArg, surface};
 use moldloft_grid::{
-    EllipticVolume, FaceWall, GridError, GridFace, HexMesh, Hyperbolic, MarchBoundary, SurfaceGrid,
-    VolumeGrid, elliptic_volume_until, hyperbolic_curve_until,
+    BlockMetric, EllipticVolume, FaceWall, GridFace, HexMesh, SurfaceGrid, VolumeGrid,
+    block_quality, elliptic_volume_until,
 };
-use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value};
+use moldloft_registry::{
+    ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value,
+};
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -43,6 +44,30 @@ pub fn folded<T: Scalar>(grid: &VolumeGrid<T>) -> usize {
     let [ni, nj, nk] = grid.size;
     let mirrored = VolumeGrid::from_fn([ni, nj, nk], |i, j, k| grid.at(ni - 1 - i, j, k));
     mirrored.cell_quality().iter().filter(|[jacobian, _]| !(*jacobian > 0.0)).count()
+}
+
+/// A metric of the cells of a block, layer by layer.
+pub fn quality<T: Scalar>(
+    grid: &VolumeGrid<T>,
+    word: &str,
+    field: FieldId,
+) -> Result<Value<T>, CallError> {
+    let Some(metric) = BlockMetric::ALL.into_iter().find(|metric| metric.word() == word) else {
+        let words: Vec<String> =
+            BlockMetric::ALL.iter().map(|m| format!("\"{}\"", m.word())).collect();
+        let message = format!("blocks have no metric \"{word}\"");
+        return Err(CallError::new("unknown-word", message)
+            .expected(words.join(", "))
+            .found(format!("\"{word}\""))
+            .in_field(field));
+    };
+    let values = block_quality(grid, metric);
+    let [ci, cj, ck] = grid.size.map(|n| n - 1);
+    let layer = |k: usize| {
+        let values = (0..ci * cj).map(|cell| values[cell * ck + k]).collect();
+        crate::value::numbers(ArrayShape::Grid(ci, cj), values)
+    };
+    Ok(Value::list((0..ck).map(layer)))
 }
 
 /// The figures of a block, by the rules of OpenFOAM's checkMesh and beyond them.
@@ -176,190 +201,5 @@ impl<T: Scalar> Build<T> for EllipticBlock<T> {
                 .in_field(Self::LAYERS));
         }
         Ok(Value::list(done.grid.layers().into_iter().map(surface)))
-    }
-}
-
-/// A section as a closed curve in z = const, clockwise from its tail, so that the left of it is outside; a blunt tail
-/// is closed with `base` cells.
-fn closed_section<T: Real>(
-    mut points: Vec<Vec3<T>>,
-    base: usize,
-    field: FieldId,
-) -> Result<Vec<Vec3<T>>, CallError> {
-    if points.len() < 5 {
-        return Err(CallError::new("too-few-items", "a section has at least 5 points")
-            .expected("at least 5 points")
-            .found(points.len().to_string())
-            .in_field(field));
-    }
-    let origin = points[0].re();
-    let size = points.iter().map(|p| p.re().distance(origin)).fold(0.0, f64::max);
-    if points.iter().any(|p| (p.re().z - origin.z).abs() > 1e-9 * size) {
-        return Err(CallError::new(
-            "wrong-shape",
-            "the section does not lie in a plane of constant z",
-        )
-        .expected("a section in x and y")
-        .in_field(field));
-    }
-    let n = points.len();
-    let area: f64 = (0..n)
-        .map(|k| {
-            let (a, b) = (points[k].re() - origin, points[(k + 1) % n].re() - origin);
-            a.x * b.y - a.y * b.x
-        })
-        .sum();
-    if area > 0.0 {
-        points.reverse();
-    }
-    let (first, last) = (points[0], points[n - 1]);
-    let gap = first.re().distance(last.re());
-    if gap <= 1e-10 * size {
-        points[n - 1] = first;
-    } else {
-        for k in 1..=base {
-            points.push(last.lerp(first, T::from(k as f64 / base as f64)));
-        }
-        *points.last_mut().expect("it has points") = first;
-    }
-    Ok(points)
-}
-
-fn up<T: Real>() -> Vec3<T> {
-    Vec3::of(0.0, 0.0, 1.0)
-}
-
-struct PlanarSupport;
-
-impl<T: Real> moldloft_grid::Support<T> for PlanarSupport {
-    fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)> {
-        points.iter().map(|p| (*p, up())).collect()
-    }
-}
-
-fn marched<T: Scalar>(
-    curve: &[Vec3<T>],
-    heights: Farray<T>,
-    ends: MarchBoundary,
-    [s, field]: [FieldId; 2],
-    context: &Context,
-) -> Result<Value<T>, CallError> {
-    let heights = heights.row().map_err(|fault| fault.in_field(field))?;
-    let options = Hyperbolic::new(heights).with_sides([ends; 4]);
-    let marched = hyperbolic_curve_until(curve, &PlanarSupport, &options, &context.budget)
-        .map_err(|error| match error {
-            GridError::Heights { .. } => fault(error, field),
-            error => fault(error, s),
-        })?;
-    let mut grids = marched.layers.into_iter().map(surface);
-    Ok(grids.next().expect("one grid off a curve"))
-}
-
-/// An O-grid round a section in x and y: the surface whose line g[k,] is layer k, its first and last columns the same
-/// line from the tail.
-///
-/// The section is given once round, from the tail to the tail, either way; the gap of a blunt tail is closed with
-/// `base` cells. At a sharp tail the least scaled Jacobian is the sine of half its angle: a C-grid has better cells
-/// there.
-#[derive(Kind)]
-#[kind(
-    class = Vectors,
-    function,
-    name = "o_grid",
-    example = "curve c = points({1, 0, 0}, {0.5, 0.1, 0}, {0, 0, 0}, {0.5, -0.1, 0}, {1, 0, 0}); \
-               surface g = o_grid(c, list(0, 0.01, 0.03, 0.07)); assert g.d1 == 4 and folds(g) == 0;"
-)]
-pub struct OGrid<T: Scalar> {
-    /// The section.
-    section: Points<T>,
-    /// The distances of the layers, the first 0.
-    heights: Farray<T>,
-    /// Cells across a blunt tail.
-    #[field(default = 4, min = 1, max = 1e4)]
-    base: usize,
-}
-
-impl<T: Scalar> Build<T> for OGrid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let curve = closed_section(self.section.0, self.base, Self::SECTION)?;
-        marched(
-            &curve,
-            self.heights,
-            MarchBoundary::Periodic,
-            [Self::SECTION, Self::HEIGHTS],
-            context,
-        )
-    }
-}
-
-/// A C-grid round a section in x and y: the surface whose line g[k,] is layer k, from the far end of the wake below
-/// the section round its nose to the far end above it.
-///
-/// The section is given once round, from the tail to the tail, either way, the tail at its greatest x. The wake runs
-/// along x for the length `wake` in `n` cells that grow from the cell at the tail; both its sides have the same
-/// points, to the bit. A blunt tail is an error: close it, or make an O-grid.
-#[derive(Kind)]
-#[kind(
-    class = Vectors,
-    function,
-    name = "c_grid",
-    example = "curve c = points({1, 0, 0}, {0.5, 0.1, 0}, {0, 0, 0}, {0.5, -0.1, 0}, {1, 0, 0}); \
-               surface g = c_grid(c, list(0, 0.01, 0.03, 0.07), 2, 6); assert g.d2 == 5 + 12;"
-)]
-pub struct CGrid<T: Scalar> {
-    /// The section.
-    section: Points<T>,
-    /// The distances of the layers, the first 0.
-    heights: Farray<T>,
-    /// The length of the wake.
-    #[field(min = 0)]
-    wake: T,
-    /// The cells along it.
-    #[field(min = 1, max = 1e6)]
-    n: usize,
-}
-
-impl<T: Scalar> Build<T> for CGrid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
-        let count = self.section.0.len();
-        let section = closed_section(self.section.0, 1, Self::SECTION)?;
-        if section.len() != count {
-            let gap = section[count - 1].re().distance(section[count].re());
-            return Err(CallError::new(
-                "edges-apart",
-                format!("the tail is blunt, {gap:.3e} thick"),
-            )
-            .expected("a section that ends in its first point")
-            .help("close the tail, or make an O-grid: o_grid(section, heights)")
-            .in_field(Self::SECTION));
-        }
-        let tail = section[0];
-        let first = (section[1] - tail).norm();
-        if !(self.wake.re() > 0.0) {
-            return Err(CallError::new("out-of-range", "a wake has a length")
-                .expected("a positive length")
-                .found(self.wake.re().to_string())
-                .in_field(Self::WAKE));
-        }
-        let steps =
-            moldloft_spline::distribution::geometric(T::zero(), self.wake, first, self.n + 1)
-                .map_err(|_| {
-                    CallError::new(
-                        "out-of-range",
-                        "no wake grows from the cell at the tail to that length",
-                    )
-                    .expected("a longer wake, or more cells")
-                    .in_field(Self::WAKE)
-                })?;
-        let wake = steps[1..].iter().map(|s| tail + Vec3::new(*s, T::zero(), T::zero()));
-        let wake: Vec<Vec3<T>> = wake.collect();
-        let curve: Vec<Vec3<T>> = wake.iter().rev().chain(&section).chain(&wake).copied().collect();
-        marched(
-            &curve,
-            self.heights,
-            MarchBoundary::Symmetry(0),
-            [Self::SECTION, Self::HEIGHTS],
-            context,
-        )
     }
 }

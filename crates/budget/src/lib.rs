@@ -23,7 +23,8 @@ use std::time::{Duration, Instant};
 pub struct Limits {
     /// Bytes on the heap of the process; none without a counting allocator.
     pub memory: u64,
-    /// Statements and calls of a program, and the elements of its values.
+    /// Statements and calls of a program, and the elements of its values; what loops and routines on numbers do in code
+    /// counts a sixteenth, as it takes so much less time.
     pub steps: u64,
     /// Objects of a model.
     pub objects: u64,

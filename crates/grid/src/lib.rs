@@ -14,6 +14,7 @@
 
 mod blend;
 mod block;
+mod block_quality;
 mod control;
 mod elliptic;
 mod error;
@@ -29,6 +30,7 @@ mod zebra;
 
 pub use blend::{Blend, transfinite};
 pub use block::{Faces, transfinite_block};
+pub use block_quality::{BlockMetric, block_quality};
 pub use control::{WallReport, wall_cells};
 pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};

@@ -19,6 +19,7 @@
 //! | STL, text | [`stl::write_text`] | [`stl::read`] |
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`], [`vtk::grid_files`] | – |
 //! | Plot3D, all variants | [`plot3d::write`], [`plot3d::write_mesh`], [`plot3d::write_blocks`] | [`plot3d::read`] |
+//! | CGNS, structured zones | by the Python package | [`cgns::read`] |
 //! | points in text | [`points::write`], [`points::write_csv`] | [`points::read`] |
 //! | aerofoil sections | – | [`section::read_aerofoil`] |
 //! | SVG lines drawings | [`drawing::draw`] | – |
@@ -37,11 +38,13 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod error;
+mod hdf5;
 mod solver;
 mod structured_grid;
 mod text;
 
 pub mod aqwa;
+pub mod cgns;
 pub mod drawing;
 pub mod gdf;
 pub mod gltf;

@@ -74,6 +74,17 @@ pub fn read_plot3d<'py>(
     Ok((blocks.iter().map(|b| array(py, b)).collect(), dict))
 }
 
+/// The zones of a CGNS file: names and arrays (ni, nj, nk, 3).
+#[pyfunction]
+pub fn read_cgns<'py>(
+    py: Python<'py>,
+    data: &[u8],
+) -> PyResult<Vec<(String, Bound<'py, PyArray4<f64>>)>> {
+    let data = data.to_vec();
+    let zones = unlocked(py, move || moldloft_io::cgns::read(&data))?.map_err(format_error)?;
+    Ok(zones.iter().map(|zone| (zone.name.clone(), array(py, &zone.grid))).collect())
+}
+
 /// A Plot3D file of arrays (ni, nj, nk, 3).
 #[pyfunction]
 #[pyo3(signature = (blocks, layout, double, multi, three, iblank, big_endian, mark, planes))]

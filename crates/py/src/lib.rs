@@ -60,8 +60,8 @@ mod _core {
     use crate::formats::{formats, spline_patch_grid, spline_patch_knots};
     #[pymodule_export]
     use crate::grids::{
-        grid_with_fields, grids_as_stl, points_csv, points_text, read_aerofoil, read_plot3d,
-        read_points, write_grids, write_plot3d,
+        grid_with_fields, grids_as_stl, points_csv, points_text, read_aerofoil, read_cgns,
+        read_plot3d, read_points, write_grids, write_plot3d,
     };
     #[pymodule_export]
     use crate::implicit::{PyFacets, PyField, PySet};
@@ -72,7 +72,7 @@ mod _core {
     #[pymodule_export]
     use crate::nurbs::{brep, length_unit, nurbs};
     #[pymodule_export]
-    use crate::reference::{keywords, reference, statements};
+    use crate::reference::{keywords, libraries, reference, statements};
     #[pymodule_export]
     use crate::search::{intersect, intersect_plane, nearest};
     #[pymodule_export]

@@ -12,6 +12,12 @@ pub fn reference(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     rows.chain(moldloft::lang::BUILTINS.iter().map(|b| describe_builtin(py, b))).collect()
 }
 
+/// Name and text of each library that comes with the program.
+#[pyfunction]
+pub fn libraries() -> Vec<(&'static str, &'static str)> {
+    moldloft::lang::LIBRARIES.to_vec()
+}
+
 /// The words of the language.
 #[pyfunction]
 pub fn keywords() -> Vec<&'static str> {
@@ -44,6 +50,7 @@ fn describe_builtin<'py>(
     dict.set_item("is_kind", false)?;
     dict.set_item("summary", builtin.doc)?;
     dict.set_item("doc", format!("{}\n\nCalled as `{}`.", builtin.doc, builtin.signature))?;
+    dict.set_item("signature", builtin.signature)?;
     dict.set_item("fields", Vec::<Bound<'py, PyDict>>::new())?;
     dict.set_item("columns", py.None())?;
     dict.set_item("example", builtin.example)?;

@@ -38,10 +38,10 @@ macro_rules! foil_kind {
             #[field(min_items = 3)]
             $items: Vec<$Item>,
             /// Thickness form: "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A",
-            /// "64A", "65A" or "66tmb", or its number in this list.
+            /// "64A", "65A", "66tmb" or "67", or its number in this list.
             #[field(default = "4-digit")]
             family: crate::arguments::NamedOption,
-            /// Mean line: "flat", "parabolic", "210" to "250", "221" to "241", "a" or "a modified"; "" is
+            /// Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; "" is
             /// the usual one of the family.
             #[field(default = "")]
             mean: std::sync::Arc<str>,

@@ -9,6 +9,7 @@ from typing import Any
 from moldloft.cli.console import print_json
 from moldloft.cli.reference_page import example_lines, markdown, signature, synonyms
 from moldloft.errors import UnknownNameError
+from moldloft.library import picture, pictured, routines
 from moldloft.spelling import nearest
 from moldloft.text_table import table
 
@@ -40,12 +41,14 @@ def run(options: argparse.Namespace) -> int:
     from moldloft.language import attributes, guides, reference, search, statements
 
     rows = reference()
+    libraries = routines()
     if options.markdown:
-        print(markdown(rows, _pictured), end="")
+        print(markdown(rows, _pictured, libraries), end="")
         return 0
     if options.pictures and options.name is None:
-        _draw(rows, options.pictures)
+        _draw([*rows, *libraries], options.pictures)
         return 0
+    rows = [*rows, *libraries]
     if options.name is None:
         if options.json:
             print_json(rows)
@@ -144,6 +147,8 @@ _SHAPES = {
 
 
 def _pictured(row: dict[str, Any]) -> bool:
+    if "library" in row:
+        return pictured(row) is not None
     return bool(row["is_kind"] and row["example"] and row["class"] in _SHAPES)
 
 
@@ -156,6 +161,9 @@ def _draw(rows: list[dict[str, Any]], folder: str) -> None:
 
     outputs = []
     for row in filter(_pictured, rows):
+        if "library" in row:
+            outputs.append(Output(f"{row['name']}.png", picture(row) or b""))
+            continue
         model = moldloft.loads(row["example"], name=f"{row['name']}.sdl")
         portrait = model.kind_picture(row["name"], 360, 240)
         outputs.append(Output(f"{row['name']}.png", portrait))
@@ -184,7 +192,10 @@ def _first_line(text: str) -> str:
 
 
 def _page(row: dict[str, Any]) -> str:
-    lines = [signature(row), "", str(row["doc"]), ""]
+    lines = [signature(row), "", str(row["doc"]).partition("\n\nCalled as ")[0], ""]
+    if "library" in row:
+        lines[2] = fill(lines[2], 96)
+        lines[3:] = ["", f'A routine of a library: load "{row["library"]}";', ""]
     rows = [
         [f"  {f['name']}", f"{f['class']}{' list' if f['many'] else ''}"] for f in row["fields"]
     ]

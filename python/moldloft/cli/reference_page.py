@@ -61,7 +61,7 @@ FUNCTIONS = (
     ("Searches", "closest project intersect intersections"),
     (
         "Structured grids",
-        "tfi elliptic elliptic_block hyperbolic o_grid c_grid check_edges folds quality",
+        "tfi elliptic elliptic_block hyperbolic o_grid c_grid h_grid check_edges folds quality",
     ),
     (
         "Fields",
@@ -75,7 +75,7 @@ FUNCTIONS = (
     (
         "Files",
         "open close read write more next rewind read_p3d read_points read_aerofoil write_p3d "
-        "write_vts write_stl write_cgns write_su2 write_gmsh write_blockmesh count_p3d "
+        "write_vts write_stl write_cgns write_su2 write_gmsh write_blockmesh count_p3d read_cgns count_cgns names_cgns "
         "write_csv plot",
     ),
 )
@@ -99,6 +99,8 @@ def _argument(field: Row) -> str:
 
 def signature(row: Row) -> str:
     """How a kind or function is written."""
+    if row.get("signature"):
+        return str(row["signature"])
     name = f"{row['name']} name" if row["is_kind"] else row["name"]
     return f"{name}({', '.join(_argument(field) for field in row['fields'])})"
 
@@ -186,7 +188,7 @@ def _entry(row: Row, rows: list[Row], pictured: Callable[[Row], bool]) -> list[s
     lines = ["", f"### {row['name']}", "", f"`{signature(row)}` → {row['class']}", ""]
     if pictured(row):
         lines += [f"![{row['name']}](kinds/{row['name']}.png)", ""]
-    lines += [str(row["doc"]).strip()]
+    lines += [str(row["doc"]).partition("\n\nCalled as ")[0].strip()]
     if row["fields"]:
         lines += ["", "| argument | class | default | meaning |", "| --- | --- | --- | --- |"]
     for field in row["fields"]:
@@ -211,8 +213,8 @@ def _entry(row: Row, rows: list[Row], pictured: Callable[[Row], bool]) -> list[s
     return lines
 
 
-def markdown(rows: list[Row], pictured: Callable[[Row], bool]) -> str:
-    """The page, made from the declarations."""
+def markdown(rows: list[Row], pictured: Callable[[Row], bool], libraries: list[Row]) -> str:
+    """The page, made from the declarations and from the libraries' routines."""
     lines = [
         "# Reference of kinds and functions",
         "",
@@ -229,6 +231,13 @@ def markdown(rows: list[Row], pictured: Callable[[Row], bool]) -> str:
             if chosen and chosen[0]["is_kind"] is kinds:
                 links = " ".join(f"[{r['name']}](#{_anchor(r, rows)})" for r in chosen)
                 lines += [f"- **{name}**: {links}"]
+    files = list(dict.fromkeys(row["library"] for row in libraries))
+    by_file = {file: [row for row in libraries if row["library"] == file] for file in files}
+    every = [*rows, *libraries]
+    lines += ["", "**Libraries**", ""]
+    for file, chosen in by_file.items():
+        links = " ".join(f"[{r['name']}](#{_anchor(r, every)})" for r in chosen)
+        lines += [f"- **{file}**: {links}"]
     lines += [
         "",
         "## Arguments of every kind",
@@ -250,4 +259,13 @@ def markdown(rows: list[Row], pictured: Callable[[Row], bool]) -> str:
         lines += ["", about] if about else []
         for row in chosen:
             lines += _entry(row, rows, pictured)
+    for file, chosen in by_file.items():
+        lines += [
+            "",
+            f"## Library {file}",
+            "",
+            f'Routines of the language, after `load "{file}";`.',
+        ]
+        for row in chosen:
+            lines += _entry(row, every, pictured)
     return "\n".join(lines) + "\n"

@@ -41,11 +41,14 @@ pub(crate) enum Action {
     WriteGrids(GridFormat),
     ReadPlot3d,
     CountPlot3d,
+    ReadCgns,
+    CountCgns,
+    NamesCgns,
     ReadRows(RowFormat),
 }
 
 /// All built-in functions, in the order of the reference.
-pub const BUILTINS: [Builtin; 28] = [
+pub const BUILTINS: [Builtin; 31] = [
     Builtin {
         name: "format",
         arguments: (1, usize::MAX),
@@ -253,6 +256,30 @@ pub const BUILTINS: [Builtin; 28] = [
         signature: "count_p3d(name)",
         doc: "The number of surfaces and blocks of a Plot3D file.",
         example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", s, s); assert count_p3d(\"s.x\") == 2;",
+    },
+    Builtin {
+        name: "read_cgns",
+        arguments: (1, 2),
+        action: Action::ReadCgns,
+        signature: "read_cgns(name, zone)",
+        doc: "A structured zone of a CGNS file (HDF5) as surface or block, by its number (1) or its name.",
+        example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s); surface t = read_cgns(\"s.cgns\", \"s\"); assert t.d1 == 3;",
+    },
+    Builtin {
+        name: "count_cgns",
+        arguments: (1, 1),
+        action: Action::CountCgns,
+        signature: "count_cgns(name)",
+        doc: "The number of zones of a CGNS file.",
+        example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s, s); assert count_cgns(\"s.cgns\") == 2;",
+    },
+    Builtin {
+        name: "names_cgns",
+        arguments: (1, 1),
+        action: Action::NamesCgns,
+        signature: "names_cgns(name)",
+        doc: "The names of the zones of a CGNS file, in their order.",
+        example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s); string names[1] = names_cgns(\"s.cgns\"); print names[1];",
     },
     Builtin {
         name: "read_points",

@@ -167,6 +167,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             Action::ReadPlot3d => self.read_p3d(m, &given),
             Action::CountPlot3d => self.count_p3d(m, given[0]),
+            Action::ReadCgns => self.read_cgns(m, &given),
+            Action::CountCgns => self.count_cgns(m, given[0]),
+            Action::NamesCgns => self.names_cgns(m, given[0]),
             Action::ReadRows(format) => self.read_rows(m, format, &given),
         }
     }

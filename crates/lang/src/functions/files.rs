@@ -199,6 +199,11 @@ impl RunFiles {
         Ok(())
     }
 
+    /// What is known of the blocks of a file that the host makes CGNS of.
+    pub(crate) fn cgns_of(&self, path: &str) -> Option<&CgnsBlocks> {
+        self.cgns.get(&inside(path).ok()?)
+    }
+
     /// The files that the host makes CGNS of: what was written is Plot3D.
     pub fn cgns(&self) -> impl Iterator<Item = (&str, &CgnsBlocks)> {
         self.cgns.iter().map(|(name, blocks)| (name.as_str(), blocks))

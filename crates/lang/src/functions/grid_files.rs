@@ -314,7 +314,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    fn bytes_of(&mut self, m: &Module, arg: ExprId) -> Result<(Arc<str>, Vec<u8>), Diagnostic> {
+    pub(crate) fn bytes_of(
+        &mut self,
+        m: &Module,
+        arg: ExprId,
+    ) -> Result<(Arc<str>, Vec<u8>), Diagnostic> {
         let path = self.text(m, arg)?;
         let from = self.modules.get(0).path.clone();
         let bytes = self.env.files.bytes(self.loader.world, &from, &path);
@@ -338,12 +342,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .expected(format!("a block from 1 to {}", blocks.len()))
                 .found(number.to_string()));
         };
+        Ok(self.grid_value(block))
+    }
+
+    /// A surface, or the layers of a block.
+    pub(crate) fn grid_value(&self, block: &StructuredGrid) -> Value<T> {
         let [ni, nj, nk] = block.size;
         let layer = |k: usize| {
             let points = block.layer(k).into_iter().map(Vec3::lifted).collect();
             self.points(ArrayShape::Grid(ni, nj), points)
         };
-        Ok(if nk == 1 { layer(0) } else { Value::list((0..nk).map(layer)) })
+        if nk == 1 { layer(0) } else { Value::list((0..nk).map(layer)) }
     }
 
     /// `count_p3d("body.x")`.

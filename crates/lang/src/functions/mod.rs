@@ -3,6 +3,7 @@
 
 pub mod block_files;
 pub mod builtins;
+mod cgns_files;
 pub mod context;
 pub(crate) mod elementary;
 pub mod files;

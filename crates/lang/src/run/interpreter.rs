@@ -74,7 +74,7 @@ pub struct Settings {
     pub plain_operators: bool,
     /// True to execute every statement by the interpreter: the reference that code is tested against.
     pub without_code: bool,
-    /// As many steps instead of those that the limits allow, for tests.
+    /// As many steps instead of those that the limits allow, those of code counted in full, for tests.
     pub most_steps: Option<u64>,
 }
 
@@ -262,7 +262,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             Value::List(items) => 4 * items.len(),
             _ => return Ok(()),
         } as u64;
-        if self.usage.steps > self.limits.steps && self.step(span) {
+        if self.usage.cost() > self.limits.steps && self.step(span) {
             return Err(silent());
         }
         Ok(())
@@ -270,7 +270,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     /// True when the elements of another value will not stop the run.
     pub fn has_room(&self, count: usize) -> bool {
-        self.usage.steps + count as u64 <= self.limits.steps
+        self.usage.cost() + count as u64 <= self.limits.steps
     }
 
     /// Counts a call of a function that takes longer than a statement: about as long as so many.
@@ -315,11 +315,15 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             return true;
         }
         let most = self.limits.steps;
-        if self.usage.steps > most {
+        if self.usage.cost() > most {
             return self.stop(
                 Diagnostic::error("too-many-steps", "the program takes too many steps")
                     .at(span)
-                    .expected(format!("at most {most} statements, calls and elements of values"))
+                    .expected(format!(
+                        "at most {most} statements, calls and elements of values, {} of them as one in loops on \
+                         numbers",
+                        usage::STEPS_OF_CODE
+                    ))
                     .help("look for a loop whose condition always holds, or for arrays too large")
                     .help("allow more: `--limit steps=1e9`, `moldloft.limits(steps=...)`"),
             );

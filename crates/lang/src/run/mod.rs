@@ -17,6 +17,7 @@ mod semantics;
 mod sketches;
 pub(crate) mod solve_set;
 pub(crate) mod tables;
+mod unused;
 pub(crate) mod usage;
 pub mod weight;
 pub mod whole;

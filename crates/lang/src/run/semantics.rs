@@ -8,6 +8,7 @@
 
 use crate::functions::builtins::BUILTINS;
 use crate::functions::files::predeclared;
+use crate::run::unused;
 use crate::source::module::{Module, Modules, Name, RoutineAt};
 use crate::value::variables::described;
 use moldloft_diag::{Diagnostic, Span, nearest};
@@ -116,6 +117,12 @@ impl<'a> Semantics<'a> {
             self.globals = globals;
         }
         let nothing = HashMap::new();
+        let main = modules.get(0);
+        let uncalled = !self.open && run.contains(&0) && unused::does_something(main);
+        let mentioned: HashSet<Name> = match uncalled {
+            true => run.iter().flat_map(|&at| unused::mentioned(modules.get(at))).collect(),
+            false => HashSet::new(),
+        };
         for &at in &run {
             let m = modules.get(at);
             if m.library || m.path.to_ascii_lowercase().ends_with(".ms2") {
@@ -127,6 +134,15 @@ impl<'a> Semantics<'a> {
             let of_file = variables_of_file(m);
             for routine in m.program.routines() {
                 self.routine(m, at, &of_file, routine);
+                let name = m.names[routine.name.symbol.0 as usize];
+                if at == 0 && uncalled && !mentioned.contains(&name) {
+                    let word = m.program.name(routine.name.symbol);
+                    self.say(
+                        Diagnostic::remark("unused", format!("nothing calls `{word}`"))
+                            .at(routine.name.span)
+                            .help("leave it out, or move it to a file that others load"),
+                    );
+                }
             }
         }
         self.found
@@ -148,6 +164,7 @@ impl<'a> Semantics<'a> {
         self.list(&place, routine.body);
         self.declared_again(m, routine.body);
         self.shadows(m, of_file, routine.body);
+        self.found.extend(unused::unread(m, routine));
         let word = m.program.name(routine.name.symbol);
         if routine.result.is_some() && !ends(m, routine.body) {
             self.say(

@@ -3,11 +3,16 @@
 use moldloft_budget::Spent;
 use moldloft_diag::Diagnostic;
 
+/// So many steps of code take the time of one that the interpreter does.
+pub(crate) const STEPS_OF_CODE: u64 = 16;
+
 /// Counts of a run, compared with its limits.
 #[derive(Debug, Default)]
 pub(crate) struct Usage {
     /// Statements and calls, and the elements of values.
     pub steps: u64,
+    /// Those of them that code did, where they count for less.
+    pub quick: u64,
     /// How deep statements, expressions and calls nest.
     pub depth: u32,
     /// Elements of the declared arrays.
@@ -16,6 +21,14 @@ pub(crate) struct Usage {
     pub printed: usize,
     /// Errors that were reported.
     pub errors: usize,
+}
+
+impl Usage {
+    /// The steps as the limit counts them: by the time that they take, the same on every machine.
+    #[inline]
+    pub fn cost(&self) -> u64 {
+        self.steps - self.quick + self.quick / STEPS_OF_CODE
+    }
 }
 
 /// Why a run ended before it was done.

@@ -80,13 +80,13 @@ pub struct Section<T: Real> {
 
 impl<T: Real> Section<T> {
     /// The names of the thickness forms.
-    pub const FAMILIES: [&'static str; 12] = [
+    pub const FAMILIES: [&'static str; 13] = [
         "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A", "64A", "65A",
-        "66tmb",
+        "66tmb", "67",
     ];
 
     /// The names of the mean lines.
-    pub const MEANS: [&'static str; 12] = [
+    pub const MEANS: [&'static str; 13] = [
         "flat",
         "parabolic",
         "210",
@@ -97,6 +97,7 @@ impl<T: Real> Section<T> {
         "221",
         "231",
         "241",
+        "251",
         "a",
         "a modified",
     ];

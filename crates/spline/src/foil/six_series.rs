@@ -12,7 +12,7 @@ pub(super) const STEPS: usize = 128;
 
 /// Ratios at which forms are computed; between them forms are the polynomial through these, which is
 /// within 1e-8 of what the mapping gives there (tested) and smooth, so that lofts are.
-const NODES: usize = 20;
+const NODES: usize = 26;
 
 /// Ratios of thickness that the scale polynomials serve; beyond, the nearest form is stretched.
 const RATIOS: (f64, f64) = (0.02, 0.24);

@@ -77,7 +77,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         loop {
             let (mut steps, mut turns) = (self.usage.steps, self.turns);
             let departure = self.of_call(region, machine, &mut steps, &mut turns, look_at);
-            self.usage.steps = steps;
+            self.quick(steps - self.usage.steps);
             self.turns = turns;
             let outcome = match departure {
                 Departure::Call { to, site } => match self.enter(region, machine, to, site) {
@@ -108,12 +108,22 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     self.interpreted_condition(region, machine, to, site)
                 }
             };
-            look_at = most.saturating_add(1).min(self.usage.steps + 1 + STEPS_BETWEEN_LOOKS);
+            let rest = most.saturating_sub(self.usage.cost());
+            look_at = self.usage.steps + 1 + rest.min(STEPS_BETWEEN_LOOKS);
             match outcome {
                 CodeOutcome::Next => {}
                 CodeOutcome::Return(value) => return Flow::Return(value),
                 CodeOutcome::Stop => return Flow::Stop,
             }
+        }
+    }
+
+    /// Counts steps of code.
+    #[inline]
+    fn quick(&mut self, steps: u64) {
+        self.usage.steps += steps;
+        if self.inputs.settings.most_steps.is_none() {
+            self.usage.quick += steps;
         }
     }
 
@@ -464,7 +474,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let code = &region.units[machine.unit];
         let called = &code.sites[site as usize];
         let callee = &region.units[called.unit];
-        self.usage.steps += 4;
+        self.quick(4);
         let caller = WaitingCall {
             unit: machine.unit,
             pc: machine.pc,
@@ -527,7 +537,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     #[cold]
     fn may_not_go_on(&mut self, region: &CodeRegion<T>, machine: &RegisterMachine<T>) -> bool {
         let span = || region.units[machine.unit].range(machine.pc).span;
-        if self.usage.steps >= self.limits.steps {
+        if self.usage.cost() >= self.limits.steps {
             return self.in_module(region, machine, |this| this.step(span()));
         }
         match self.inputs.budget.poll() {

@@ -1,0 +1,100 @@
+"""The routines of the libraries that come with the program, as rows of the reference."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from moldloft import _core
+
+__all__ = ["picture", "routines"]
+
+_ROUTINE = re.compile(r"(?:subroutine|function (\w+)) (\w+)\((.*)\) \{$")
+_ARGUMENT = re.compile(r"(returned )?(\w+) (\w+)(\.\.\.)?$")
+_ARRAY = re.compile(r"\b(?:curve|surface) (\w+)\[")
+
+
+def routines() -> list[dict[str, Any]]:
+    """A row for each routine with an example in its comment, in the order of the files.
+
+    Rows have the keys of :func:`moldloft.language.reference`, the file that is loaded for them as
+    ``library``, and ``signature``, how they are called. Routines without an example serve others of
+    their file.
+
+    >>> row = next(row for row in routines() if row["name"] == "naca4")
+    >>> row["library"], row["signature"]
+    ('naca.sdl', 'naca4(returned curve c, float m, float p, float t)')
+    """
+    rows: list[dict[str, Any]] = []
+    for library, text in _core.libraries():
+        comment: list[str] = []
+        for line in text.splitlines():
+            found = _ROUTINE.match(line)
+            if line.startswith("#"):
+                comment.append(line[1:].removeprefix(" "))
+                continue
+            example = [part.strip() for part in comment if part.startswith("  ")]
+            if found and example:
+                result, name, arguments = found.groups()
+                doc = " ".join(part for part in comment if not part.startswith("  ")).strip()
+                rows.append(
+                    {
+                        "name": name,
+                        "class": result or "subroutine",
+                        "is_kind": False,
+                        "summary": doc,
+                        "doc": doc,
+                        "fields": [_field(text) for text in arguments.split(", ") if text],
+                        "columns": None,
+                        "example": f'load "{library}"; ' + " ".join(example),
+                        "signature": f"{name}({arguments})",
+                        "library": library,
+                    }
+                )
+            comment = []
+    return rows
+
+
+def _field(text: str) -> dict[str, Any]:
+    found = _ARGUMENT.match(text)
+    assert found is not None, text
+    returned, kind, name, many = found.groups()
+    return {
+        "name": name,
+        "class": kind,
+        "many": bool(many),
+        "required": not many,
+        "default": None,
+        "help": "Filled by the routine." if returned else "",
+    }
+
+
+def picture(row: dict[str, Any]) -> bytes | None:
+    """A PNG of the curve or surface that a routine's example fills; none of examples without.
+
+    Parameters
+    ----------
+    row
+        A row of :func:`routines`.
+    """
+    import moldloft
+
+    name = pictured(row)
+    if name is None:
+        return None
+    view = '"iso", ' if f"surface {name}[" in row["example"] else ""
+    program = f'{row["example"]} plot("picture.png", {view}{name});'
+    model = moldloft.loads(program, name=f"{row['name']}.sdl")
+    return bytes(model.written["picture.png"])
+
+
+def pictured(row: dict[str, Any]) -> str | None:
+    """The last curve or surface that a routine's example declares.
+
+    Parameters
+    ----------
+    row
+        A row of :func:`routines`.
+    """
+    names = _ARRAY.findall(row["example"])
+    return names[-1] if names else None
