@@ -8,4 +8,5 @@ mod faces;
 mod generators;
 mod session;
 mod solids;
+mod treatments;
 mod work;
