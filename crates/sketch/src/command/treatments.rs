@@ -48,7 +48,10 @@ impl SketchSession {
         if object.drawing.section.is_some() {
             return Err(CommandError::new(
                 114,
-                format!("{} is a cross section; only solids have such edges and faces", object.name),
+                format!(
+                    "{} is a cross section; only solids have such edges and faces",
+                    object.name
+                ),
                 "EXTRUDE or REVOLVE it first; ARC rounds a corner of a section",
             ));
         }

@@ -90,7 +90,8 @@ pub(crate) fn blended<T: Real>(
     for (&e, &first) in &chosen {
         let frame = body.edge_frame(e, &work.sides[e], first)?;
         if uneven && first.is_none() {
-            let next = "choose edges OF a face, or BETWEEN two: the first distance is in the first face";
+            let next =
+                "choose edges OF a face, or BETWEEN two: the first distance is in the first face";
             let at = Some(frame.start.re());
             return Err(TreatmentFault::new("two distances need a first face", at, next).into());
         }
@@ -158,7 +159,11 @@ fn neighbour<T: Real>(body: &SketchSolid<T>, side: &EdgeSide, next: bool) -> (us
         match (&edge.trace, edge.piece) {
             (None, Some(_)) => {
                 let piece = body.piece(h);
-                piece.velocity(T::from(if end { 1.0 } else { 0.0 })).re().normalized().unwrap_or_default()
+                piece
+                    .velocity(T::from(if end { 1.0 } else { 0.0 }))
+                    .re()
+                    .normalized()
+                    .unwrap_or_default()
             }
             _ => {
                 let m = way.len();
@@ -166,10 +171,7 @@ fn neighbour<T: Real>(body: &SketchSolid<T>, side: &EdgeSide, next: bool) -> (us
             }
         }
     };
-    let (here, there) = (
-        tangent(cycle[side.place], &own, next),
-        tangent(cycle[at], &other, !next),
-    );
+    let (here, there) = (tangent(cycle[side.place], &own, next), tangent(cycle[at], &other, !next));
     let traced = [cycle[side.place].0, cycle[at].0].iter().any(|e| body.edges[*e].trace.is_some());
     // A chord of 5 degrees leaves its curve by half of them.
     let limit = if traced { 0.06 } else { 1e-7 };
@@ -237,7 +239,12 @@ impl<T: Real> Blending<'_, T> {
             return Ok(square);
         }
         let refuse = |text: &str| -> Result<Station<T>, NoBody> {
-            Err(TreatmentFault::new(text, Some(at.re()), "choose the other edges of the corner as well, or none of them").into())
+            Err(TreatmentFault::new(
+                text,
+                Some(at.re()),
+                "choose the other edges of the corner as well, or none of them",
+            )
+            .into())
         };
         let chosen = next.map(|n| self.edges.get(&n.0));
         let mixed = chosen.iter().flatten().any(|o| o.frame.convex != frame.convex);
@@ -257,23 +264,26 @@ impl<T: Real> Blending<'_, T> {
                 return Ok(Station::Plane { along, at: centre, normal: along });
             }
             let shared = match chosen {
-                [Some(o), None] if open < 0.0 => Some((o, 0)),
-                [None, Some(o)] if open < 0.0 => Some((o, 1)),
+                [Some(o), None] => Some((o, 0)),
+                [None, Some(o)] => Some((o, 1)),
                 [Some(_), Some(_)] if open < 0.0 => {
                     return refuse("three edges of a corner that stands in");
                 }
                 _ => None,
             };
-            let Some((other, k)) = shared else {
-                return Ok(Station::Plane { along, at: base, normal });
-            };
-            return self.mitre(edge, other, k, at, next[1 - k].0);
+            let to_face = Station::Plane { along, at: base, normal };
+            let Some((other, k)) = shared else { return Ok(to_face) };
+            // Where the corner stands out, blends of different sizes cross each other.
+            let mitre = self.mitre(edge, other, k, at, next[1 - k].0);
+            return if open > 0.0 { Ok(mitre.unwrap_or(to_face)) } else { mitre };
         }
         // Beyond the end there is nothing: as far as the other faces may reach.
         let mut length = 0.0f64;
         for &h in &others {
             let normal = self.body.surface_normal(h, at);
-            let Some(normal) = normal else { return refuse("an edge ends in a face without a normal") };
+            let Some(normal) = normal else {
+                return refuse("an edge ends in a face without a normal");
+            };
             let steep = match self.body.form(h) {
                 FaceForm::Plane { .. } => outward * normal.dot(out).re(),
                 _ => normal.dot(out).re().abs(),
@@ -304,7 +314,8 @@ impl<T: Real> Blending<'_, T> {
             _ => {
                 let surface = self.body.surface(face)?;
                 let far = 2.0 * self.size;
-                let line = SmoothPiece::straight(from - out * T::from(far), from + out * T::from(far));
+                let line =
+                    SmoothPiece::straight(from - out * T::from(far), from + out * T::from(far));
                 let start = surface.parameters(p);
                 let on = [Carrier::Curve(&line), Carrier::Surface(&surface)];
                 let met = meet(&on, p, &[[0.5, 0.0], start], self.size)?;
@@ -323,7 +334,11 @@ impl<T: Real> Blending<'_, T> {
         third: usize,
     ) -> Result<Station<T>, NoBody> {
         let fault = |text: &str| {
-            NoBody::from(TreatmentFault::new(text, Some(at.re()), "choose equal sizes, or edges that meet at equal angles"))
+            NoBody::from(TreatmentFault::new(
+                text,
+                Some(at.re()),
+                "choose equal sizes, or edges that meet at equal angles",
+            ))
         };
         let face = edge.frame.sides[k].face;
         let along = edge.frame.along;
@@ -361,7 +376,11 @@ impl<T: Real> Blending<'_, T> {
     fn ball(&self, v: usize, r: T) -> Result<BallCorner<T>, NoBody> {
         let corner = self.body.vertices[v].at;
         let fault = || {
-            NoBody::from(TreatmentFault::new("three fillets meet where no ball touches all faces", Some(corner.re()), SMALLER))
+            NoBody::from(TreatmentFault::new(
+                "three fillets meet where no ball touches all faces",
+                Some(corner.re()),
+                SMALLER,
+            ))
         };
         let faces: Vec<usize> = self.around[&v].iter().copied().collect();
         let &[a, b, c] = &faces[..] else { return Err(fault()) };
@@ -438,12 +457,18 @@ impl<T: Real> Blending<'_, T> {
                 };
                 if !inside(p) && !(beyond && past) {
                     let width = edge.reach[k].re();
-                    let text = format!("a blend that reaches {width} from its edge leaves the face beside it");
+                    let text = format!(
+                        "a blend that reaches {width} from its edge leaves the face beside it"
+                    );
                     return Err(TreatmentFault::new(text, Some(p), SMALLER).into());
                 }
             }
             let [s, e] = stations.each_ref().map(|s| s.point(edge.section.corners[0]).re());
-            strips.push(Strip { face, kind: StripKind::Quad([s, e, b, a]), middle: a.lerp(b, 0.5) });
+            strips.push(Strip {
+                face,
+                kind: StripKind::Quad([s, e, b, a]),
+                middle: a.lerp(b, 0.5),
+            });
         }
         Ok(())
     }
@@ -451,9 +476,7 @@ impl<T: Real> Blending<'_, T> {
     /// Whether a point of a plane face's plane is inside of its outer loop, or near it.
     fn within(&self, face: usize, p: Vec3) -> bool {
         let FaceForm::Plane { normal, .. } = self.body.form(face) else { return true };
-        let axis = (0..3).max_by(|&a, &b| {
-            normal[a].re().abs().total_cmp(&normal[b].re().abs())
-        });
+        let axis = (0..3).max_by(|&a, &b| normal[a].re().abs().total_cmp(&normal[b].re().abs()));
         let (i, j) = match axis {
             Some(0) => (1, 2),
             Some(1) => (2, 0),
@@ -491,9 +514,13 @@ impl<T: Real> Blending<'_, T> {
             .map(|(k, e)| (*k, e))
             .collect();
         let outline = self.body.outline();
-        let flat = |e: &BlendEdge<T>| usize::from(!matches!(self.body.form(e.frame.sides[0].face), FaceForm::Plane { .. }));
+        let flat = |e: &BlendEdge<T>| {
+            usize::from(!matches!(self.body.form(e.frame.sides[0].face), FaceForm::Plane { .. }))
+        };
         let same = |a: &BlendEdge<T>, b: &BlendEdge<T>| {
-            let [p, q] = [a, b].map(|e| e.frame.axis.unwrap_or(Line { point: Vec3::zero(), direction: Vec3::zero() }));
+            let [p, q] = [a, b].map(|e| {
+                e.frame.axis.unwrap_or(Line { point: Vec3::zero(), direction: Vec3::zero() })
+            });
             a.frame.sides[flat(a)].face == b.frame.sides[flat(b)].face
                 && p.direction.re().cross(q.direction.re()).norm() < 1e-9
                 && p.foot(q.point).re().distance(q.point.re()) <= 1e-9 * self.size
@@ -505,7 +532,9 @@ impl<T: Real> Blending<'_, T> {
             // Back to the start of the run, then along it.
             let before = |e: usize, left: &BTreeSet<usize>| {
                 let start = round[&e].frame.ends[0];
-                left.iter().copied().find(|o| *o != e && round[o].frame.ends[1] == start && same(round[o], round[&e]))
+                left.iter().copied().find(|o| {
+                    *o != e && round[o].frame.ends[1] == start && same(round[o], round[&e])
+                })
             };
             let mut head = first;
             while let Some(b) = before(head, &left) {
@@ -518,7 +547,10 @@ impl<T: Real> Blending<'_, T> {
             left.remove(&head);
             loop {
                 let last = round[&run[run.len() - 1]];
-                let next = left.iter().copied().find(|o| round[o].frame.ends[0] == last.frame.ends[1] && same(round[o], last));
+                let next = left
+                    .iter()
+                    .copied()
+                    .find(|o| round[o].frame.ends[0] == last.frame.ends[1] && same(round[o], last));
                 let Some(next) = next else { break };
                 left.remove(&next);
                 run.push(next);
@@ -561,7 +593,10 @@ impl<T: Real> Blending<'_, T> {
 
     /// Refuses an arc that ends where its blend would not.
     fn ends_of_arc(&self, edge: &BlendEdge<T>, end: usize) -> Result<(), NoBody> {
-        let flat = usize::from(!matches!(self.body.form(edge.frame.sides[0].face), FaceForm::Plane { .. }));
+        let flat = usize::from(!matches!(
+            self.body.form(edge.frame.sides[0].face),
+            FaceForm::Plane { .. }
+        ));
         let side = &edge.frame.sides[flat];
         let (other, tangent) = neighbour(self.body, side, end == 1);
         if tangent && self.edges.contains_key(&other) {
@@ -595,7 +630,8 @@ impl<T: Real> Blending<'_, T> {
         let turned = |p: Vec3<T>, a: f64| axis.rotated(p, T::from(a)).re();
         let fault = |k: usize, p: Vec3| {
             let width = edge.reach[k].re();
-            let text = format!("a blend that reaches {width} from its edge leaves the face beside it");
+            let text =
+                format!("a blend that reaches {width} from its edge leaves the face beside it");
             NoBody::from(TreatmentFault::new(text, Some(p), SMALLER))
         };
         let own = radius(start);

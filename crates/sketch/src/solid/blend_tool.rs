@@ -247,24 +247,21 @@ impl<T: Real> BallCorner<T> {
     /// The body; `None` when the ball touches the planes along one line.
     pub fn solid(&self) -> Option<SketchSolid<T>> {
         let [e, f] = [self.on_edges, self.feet];
-        let mut parts =
-            ToolParts::new(vec![self.corner, e[0], e[1], e[2], f[0], f[1], f[2]]);
+        let mut parts = ToolParts::new(vec![self.corner, e[0], e[1], e[2], f[0], f[1], f[2]]);
         let straight = |parts: &mut ToolParts<T>, a: usize, b: usize| {
             parts.edge(vec![a as u32, b as u32], None)
         };
         let spokes = [0, 1, 2].map(|k| straight(&mut parts, 0, 1 + k));
         // From the point on edge k to the foot in plane i, by k and whether i is the first of the two others.
-        let ribs = [0, 1, 2].map(|k| {
-            [(k + 1) % 3, (k + 2) % 3].map(|i| straight(&mut parts, 1 + k, 4 + i))
-        });
+        let ribs = [0, 1, 2]
+            .map(|k| [(k + 1) % 3, (k + 2) % 3].map(|i| straight(&mut parts, 1 + k, 4 + i)));
         let mut arcs = [0; 3];
         for (k, arc) in arcs.iter_mut().enumerate() {
             let [i, j] = [(k + 1) % 3, (k + 2) % 3];
             let [a, to] = [f[i] - self.centre, f[j] - self.centre];
             let side = (to - a * (a.dot(to) / a.norm_sq())).normalized()?;
             let sweep = a.cross(to).norm().atan2(a.dot(to));
-            let piece =
-                SmoothPiece::Conic { centre: self.centre, a, b: side * a.norm(), sweep };
+            let piece = SmoothPiece::Conic { centre: self.centre, a, b: side * a.norm(), sweep };
             let n = by_angle(&piece);
             let mut chain = vec![4 + i as u32];
             for s in 1..n {
@@ -311,7 +308,8 @@ impl<T: Real> BallCorner<T> {
         }
         let towards: Vec<Vec3<T>> =
             border.iter().map(|&v| parts.mesh.points[v as usize] - self.centre).collect();
-        let widest = towards.iter().map(|d| d.re().normalized().unwrap_or_default().dot(middle.re()));
+        let widest =
+            towards.iter().map(|d| d.re().normalized().unwrap_or_default().dot(middle.re()));
         let widest = libm::acos(widest.fold(1.0, f64::min)).to_degrees();
         let rows = (widest / 5.0).ceil().max(1.0) as usize;
         let mut triangles = Vec::new();

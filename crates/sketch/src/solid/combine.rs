@@ -8,7 +8,7 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::curve::SmoothPiece;
-use super::surface::{Carrier, FaceSurface, Met, meet};
+use super::surface::{Carrier, FaceSurface, Jet, Met, meet};
 use super::{IntersectionEdge, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
 use crate::PointId;
 use crate::solid::operation::Operation;
@@ -778,17 +778,19 @@ pub(super) fn located<T: Real>(
         }
     }
     let lifted = at.map(T::from);
-    let [s, du, dv] = surface.jet(lifted[0], lifted[1]);
-    let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
-    let det = a * c - b * b;
-    if det.re() <= 0.0 {
+    let step = |[_, du, dv]: Jet<T>, r: Vec3<T>| {
+        let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
+        let det = a * c - b * b;
+        let (x, y) = (du.dot(r), dv.dot(r));
+        (det.re() > 0.0).then(|| [(c * x - b * y) / det, (a * y - b * x) / det])
+    };
+    let jet = surface.jet(lifted[0], lifted[1]);
+    let Some(last) = step(jet, p - jet[0]) else {
         // At a pole: the direction does not matter there.
         return Some([lifted[0], lifted[1], T::zero()]);
-    }
-    let step = |r: Vec3<T>| {
-        let (x, y) = (du.dot(r), dv.dot(r));
-        [(c * x - b * y) / det, (a * y - b * x) / det]
     };
-    let last = step(p - s);
-    Some([lifted[0] + last[0], lifted[1] + last[1], step(by)[0]])
+    let [u, v] = [lifted[0] + last[0], lifted[1] + last[1]];
+    // The way along the surface where the place has moved to, or the rate would not follow it.
+    let by = step(surface.jet(u, v), by).map_or(T::zero(), |d| d[0]);
+    Some([u, v, by])
 }

@@ -98,7 +98,9 @@ impl<T: Real> SketchSolid<T> {
         let [first, last] = [way[0], way[way.len() - 1]];
         let length = first.distance(last);
         length > 0.0
-            && way.iter().all(|p| (*p - first).cross(last - first).norm() <= 1e-10 * length * length)
+            && way
+                .iter()
+                .all(|p| (*p - first).cross(last - first).norm() <= 1e-10 * length * length)
     }
 
     /// What a face is.
@@ -225,10 +227,14 @@ impl<T: Real> SketchSolid<T> {
         let (FaceForm::Plane { normal, .. }, FaceForm::Straight(axis)) =
             (forms[flat], forms[1 - flat])
         else {
-            return refuse("an edge is neither between planes nor between a plane and a cylinder or cone");
+            return refuse(
+                "an edge is neither between planes nor between a plane and a cylinder or cone",
+            );
         };
         if normal.re().cross(axis.direction.re()).norm() > 1e-9 {
-            return refuse("an edge lies in a plane that is not square to the axis of the round face");
+            return refuse(
+                "an edge lies in a plane that is not square to the axis of the round face",
+            );
         }
         let ends = ends(&sides[flat]);
         let way = run(&sides[flat]);
@@ -241,7 +247,9 @@ impl<T: Real> SketchSolid<T> {
         let direction = if forward { axis.direction } else { -axis.direction };
         let along = direction.cross(radial);
         let flat_into = normal.cross(along);
-        let Some(flat_into) = flat_into.normalized() else { return refuse("an edge has no radius") };
+        let Some(flat_into) = flat_into.normalized() else {
+            return refuse("an edge has no radius");
+        };
         let Some(ruling) = self.ruling(sides[1 - flat].face, start) else {
             return refuse("an edge has no ruling beside it");
         };
@@ -319,7 +327,8 @@ impl<T: Real> SketchSolid<T> {
                     for e in 0..self.edges.len() {
                         let [p, q] = self.edges[e].ends.map(|v| self.vertices[v].at.re());
                         let along = (q - p).normalized().unwrap_or_default();
-                        if self.is_straight(e) && along[axis.index()].abs() > 1.0 - 1e-9 && sharp(e) {
+                        if self.is_straight(e) && along[axis.index()].abs() > 1.0 - 1e-9 && sharp(e)
+                        {
                             found.push((e, None));
                         }
                     }
@@ -407,7 +416,8 @@ fn ruled_form<T: Real>(near: &SmoothPiece<T>, far: &SmoothPiece<T>) -> FaceForm<
     let (other, fits) = match *far {
         SmoothPiece::Conic { centre: c, a: p, b: q, .. } => {
             // The same circle but for its size.
-            let alike = (p.re().cross(a.re()).norm() + q.re().cross(b.re()).norm()) <= 1e-10 * size * size;
+            let alike =
+                (p.re().cross(a.re()).norm() + q.re().cross(b.re()).norm()) <= 1e-10 * size * size;
             (c, alike && round(p, q))
         }
         SmoothPiece::Cubic([p, _, _, e]) => (p, p.re().distance(e.re()) <= 1e-12 * size),

@@ -37,7 +37,9 @@ pub(crate) fn shelled<T: Real>(
         left_out.extend(body.chosen_faces(choice)?);
     }
     if left_out.len() == body.faces.len() {
-        return Err(TreatmentFault::new("no face is left for a wall", None, "open fewer faces").into());
+        return Err(
+            TreatmentFault::new("no face is left for a wall", None, "open fewer faces").into()
+        );
     }
     let shift = |f: usize| if left_out.contains(&f) { T::zero() } else { -thickness };
     let other = moved(body, &|f| Ok(shift(f)))?;
@@ -83,13 +85,23 @@ pub(crate) fn drafted<T: Real>(
         let FaceForm::Plane { at: base, normal } = body.form(f) else {
             let place = body.faces[f].loops.iter().flatten().next();
             let place = place.map(|h| body.vertices[body.edges[h.0].ends[0]].at.re());
-            return Err(TreatmentFault::new("a round face is not drafted", place, "draft the body before its edges are rounded").into());
+            return Err(TreatmentFault::new(
+                "a round face is not drafted",
+                place,
+                "draft the body before its edges are rounded",
+            )
+            .into());
         };
         let plane = if chosen.contains(&f) {
             let up = (unit - normal * normal.dot(unit)).normalized().filter(|u| u[k].re() > 1e-9);
             let Some(up) = up else {
                 let text = format!("a face square to {axis} is not drafted along it");
-                return Err(TreatmentFault::new(text, Some(base.re()), "choose faces along the axis").into());
+                return Err(TreatmentFault::new(
+                    text,
+                    Some(base.re()),
+                    "choose faces along the axis",
+                )
+                .into());
             };
             let neutral = base + up * ((at - base[k]) / up[k]);
             (neutral, normal * angle.cos() + up * angle.sin())
@@ -112,7 +124,9 @@ fn whole<T: Real>(body: SketchSolid<T>) -> Result<SketchSolid<T>, NoBody> {
     let made = valid(body).map_err(NoBody::Flaw)?;
     if made.faces.len() != faces {
         let next = "make it smaller, or change the dimensions";
-        return Err(TreatmentFault::new("faces pass each other when they are moved", None, next).into());
+        return Err(
+            TreatmentFault::new("faces pass each other when they are moved", None, next).into()
+        );
     }
     Ok(made)
 }
@@ -150,7 +164,11 @@ fn common_point<T: Real>(
         }
     }
     let fault = |text: &str| {
-        NoBody::from(TreatmentFault::new(text, Some(old.re()), "change the faces that meet there, or move fewer of them"))
+        NoBody::from(TreatmentFault::new(
+            text,
+            Some(old.re()),
+            "change the faces that meet there, or move fewer of them",
+        ))
     };
     let Some((det, [a, b, c])) = best.filter(|b| b.0 > 1e-9) else {
         return Err(fault("a corner has not three faces across each other"));
@@ -177,12 +195,17 @@ fn moved<T: Real>(
     for (v, vertex) in body.vertices.iter().enumerate() {
         let p = vertex.at;
         let fault = |text: &str| {
-            NoBody::from(TreatmentFault::new(text, Some(p.re()), "change the faces that meet there, or open other faces"))
+            NoBody::from(TreatmentFault::new(
+                text,
+                Some(p.re()),
+                "change the faces that meet there, or open other faces",
+            ))
         };
         // Normals at the vertex, tangent faces once.
         let mut normals: Vec<(Vec3<T>, T)> = Vec::new();
         for &f in &around[v] {
-            let normal = outward_normal(body, f, p).ok_or_else(|| fault("a face has no normal in a corner"))?;
+            let normal = outward_normal(body, f, p)
+                .ok_or_else(|| fault("a face has no normal in a corner"))?;
             let by = shift(f)?;
             let same = normals.iter().find(|(n, _)| n.re().distance(normal.re()) < 1e-7);
             match same {
@@ -219,7 +242,9 @@ fn moved<T: Real>(
                 let way = sum / a.0.dot(b.0.cross(c.0));
                 let most = normals.iter().map(|n| n.1.re().abs()).fold(0.0, f64::max);
                 if normals.iter().any(|(n, by)| (n.dot(way) - *by).re().abs() > 1e-9 * most) {
-                    return Err(fault("more than three faces meet in a corner and part when they are moved"));
+                    return Err(fault(
+                        "more than three faces meet in a corner and part when they are moved",
+                    ));
                 }
                 way
             }
@@ -240,7 +265,8 @@ fn outward_normal<T: Real>(body: &SketchSolid<T>, face: usize, p: Vec3<T>) -> Op
             let ring: Vec<Vec3<T>> =
                 body.faces[face].loops[0].iter().flat_map(|&h| body.run(h)).collect();
             let sum = super::combine::newell(&ring);
-            let middle = ring.iter().fold(Vec3::<f64>::zero(), |s, q| s + (q.re() - axis.foot(*q).re()));
+            let middle =
+                ring.iter().fold(Vec3::<f64>::zero(), |s, q| s + (q.re() - axis.foot(*q).re()));
             Some(if sum.re().dot(middle) > 0.0 { radial } else { -radial })
         }
         FaceForm::Other => None,
@@ -260,7 +286,10 @@ fn rebuilt<T: Real>(body: &SketchSolid<T>, at: Vec<Vec3<T>>) -> Result<SketchSol
         };
         if body.is_straight(e) {
             if (q - p).re().dot((to - from).re()) <= 0.0 {
-                return Err(fault("an edge vanishes when the faces are moved", "make it smaller, or change the dimensions"));
+                return Err(fault(
+                    "an edge vanishes when the faces are moved",
+                    "make it smaller, or change the dimensions",
+                ));
             }
             edges.push(SolidEdge { ends: edge.ends, piece: None, curve: None, trace: None });
             continue;
@@ -286,7 +315,12 @@ fn rebuilt<T: Real>(body: &SketchSolid<T>, at: Vec<Vec3<T>>) -> Result<SketchSol
                 && (pattern == [true, false, true, false] || pattern == [false, true, false, true]);
             if !patch {
                 let place = body.vertices[body.edges[loops[0][0].0].ends[0]].at.re();
-                return Err(TreatmentFault::new("a round face is not a cylinder between two arcs", Some(place), PLAIN).into());
+                return Err(TreatmentFault::new(
+                    "a round face is not a cylinder between two arcs",
+                    Some(place),
+                    PLAIN,
+                )
+                .into());
             }
             if !pattern[0] {
                 loops[0].rotate_left(1);
@@ -314,7 +348,11 @@ fn arc<T: Real>(
     });
     let [a, b] = [p, q].map(|x| x - axis.foot(x));
     let alike = (a.re().norm() - b.re().norm()).abs() <= 1e-9 * radius;
-    if !round || !alike || a.re().dot(arm(old[0])) <= 0.0 || body.edges[edge].ends[0] == body.edges[edge].ends[1] {
+    if !round
+        || !alike
+        || a.re().dot(arm(old[0])) <= 0.0
+        || body.edges[edge].ends[0] == body.edges[edge].ends[1]
+    {
         return None;
     }
     let turn = axis.direction.re().dot(arm(old[0]).cross(arm(old[1])));

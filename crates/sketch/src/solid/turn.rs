@@ -213,7 +213,13 @@ fn caps<T: Real>(
         .map(|c| c.iter().filter_map(|&s| Some((edge(s, steps)?, true))).collect::<Vec<_>>());
     let end: Vec<_> = end.collect();
     for (loops, name) in [(start, "START"), (end, "END")] {
-        out.faces.push(SolidFace { id: None, ruled: false, loops, trim: None, names: vec![name.into()] });
+        out.faces.push(SolidFace {
+            id: None,
+            ruled: false,
+            loops,
+            trim: None,
+            names: vec![name.into()],
+        });
     }
 }
 
