@@ -2,7 +2,7 @@
 
 use crate::object::SketchObject;
 use crate::solid::operation::Operation;
-use crate::{CoordinateAxis, DimensionExpr, PointId};
+use crate::{CoordinateAxis, DimensionExpr, LineId, PointId};
 use std::sync::Arc;
 
 /// A change of place.
@@ -30,6 +30,66 @@ pub enum Placement {
     Scale(DimensionExpr),
 }
 
+/// Faces by what outlasts a change of dimensions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FaceChoice {
+    /// Those of a name.
+    Named(String),
+    /// The plane ones square to an axis that lie farthest along it, or least.
+    Extreme {
+        /// The axis.
+        axis: CoordinateAxis,
+        /// Whether farthest.
+        top: bool,
+    },
+}
+
+impl std::fmt::Display for FaceChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            FaceChoice::Named(name) => f.write_str(name),
+            FaceChoice::Extreme { axis, top: true } => write!(f, "TOP {axis}"),
+            FaceChoice::Extreme { axis, top: false } => write!(f, "BOTTOM {axis}"),
+        }
+    }
+}
+
+/// Edges by what outlasts a change of dimensions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EdgeChoice {
+    /// All that are not smooth.
+    All,
+    /// That of a line of the drawing.
+    Line(LineId),
+    /// The straight ones parallel to an axis.
+    Along(CoordinateAxis),
+    /// Those of faces.
+    Of(FaceChoice),
+    /// Those between two faces.
+    Between(FaceChoice, FaceChoice),
+}
+
+impl std::fmt::Display for EdgeChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            EdgeChoice::All => f.write_str("ALL"),
+            EdgeChoice::Line(l) => write!(f, "LINE {l}"),
+            EdgeChoice::Along(axis) => write!(f, "ALONG {axis}"),
+            EdgeChoice::Of(face) => write!(f, "OF {face}"),
+            EdgeChoice::Between(a, b) => write!(f, "BETWEEN {a} {b}"),
+        }
+    }
+}
+
+/// What edges become.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EdgeBlend {
+    /// A plane or cone through lines at these distances from the edge, in its first face and its second.
+    Chamfer([DimensionExpr; 2]),
+    /// A part of the ball of this radius that rolls along the edge.
+    Fillet(DimensionExpr),
+}
+
 /// How a feature is made of its operands.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FeatureKind {
@@ -50,6 +110,31 @@ pub enum FeatureKind {
         step: Placement,
         /// How many there are.
         count: u32,
+    },
+    /// Edges bevelled or rounded.
+    Blend {
+        /// What they become.
+        blend: EdgeBlend,
+        /// Which.
+        edges: Vec<EdgeChoice>,
+    },
+    /// A body hollowed to a wall.
+    Shell {
+        /// Its thickness; negative for a wall outside of the body's faces.
+        thickness: DimensionExpr,
+        /// The faces that have none.
+        open: Vec<FaceChoice>,
+    },
+    /// Plane faces inclined about where they meet a plane square to an axis.
+    Draft {
+        /// The angle in degrees; positive where the body becomes narrower along the axis.
+        angle: DimensionExpr,
+        /// The axis.
+        axis: CoordinateAxis,
+        /// The coordinate of the plane that does not change.
+        at: DimensionExpr,
+        /// The faces; those parallel to the axis when there are none.
+        faces: Vec<FaceChoice>,
     },
 }
 

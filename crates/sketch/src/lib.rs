@@ -88,12 +88,14 @@ pub use drawing::{
     Align, Drawing, DrawingHit, DrawnLine, DrawnPoint, FaceId, LineId, LineTypeSource, PointId,
     Snap,
 };
-pub use feature::{Feature, FeatureKind, FeatureOperand, Placement};
+pub use feature::{
+    EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, FeatureOperand, Placement,
+};
 pub use format::script::script;
 pub use format::{dxf, export, json, json_format};
 pub use moldloft_mesh::triangulate;
 pub use object::{Reference, SketchFace, SketchObject};
-pub use solid::feature::{NoBody, body};
+pub use solid::feature::{NoBody, TreatmentFault, body};
 pub use solid::gradient::{SolidGradient, Swept, gradient};
 pub use solid::mass::Mass;
 pub use solid::ruled_faces::RoundFace;

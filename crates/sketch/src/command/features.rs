@@ -60,7 +60,7 @@ impl SketchSession {
     }
 
     /// `INTO name`, or the name itself.
-    fn target(&self, args: &mut Args, default: &str) -> Result<String, CommandError> {
+    pub(super) fn target(&self, args: &mut Args, default: &str) -> Result<String, CommandError> {
         let target = if args.take_short("INTO") {
             args.name("a name")?
         } else {
@@ -98,7 +98,19 @@ impl SketchSession {
         target: &str,
         refused: impl Fn(&NoBody) -> Option<CommandError>,
     ) -> Result<(), CommandError> {
-        let made = feature.object(target);
+        self.make_with(feature, Vec::new(), target, refused)
+    }
+
+    /// The same with numbers of the feature itself.
+    pub(super) fn make_with(
+        &mut self,
+        feature: Feature,
+        own: Vec<crate::Variable>,
+        target: &str,
+        refused: impl Fn(&NoBody) -> Option<CommandError>,
+    ) -> Result<(), CommandError> {
+        let mut made = feature.object(target);
+        made.variables.extend(own.into_iter().map(|v| (v.name.to_ascii_lowercase(), v)));
         let (view, layout) = self.laid_out(&made);
         let solid = match body(&made, &view.planes, &layout) {
             Ok(solid) => solid,
@@ -339,6 +351,10 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             format!("{name} reads {reads}, which has no value"),
             format!("VARIABLE {reads} defines it"),
         ),
+        NoBody::Treatment(fault) => {
+            let place = fault.at.map(|p| format!(" at {}", place_text(p))).unwrap_or_default();
+            CommandError::new(701, format!("{name}: {}{place}", fault.text), fault.next)
+        }
         NoBody::Axis => CommandError::new(
             701,
             format!("{name}: the section lies on both sides of the line it is turned about"),

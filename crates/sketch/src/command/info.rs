@@ -437,6 +437,15 @@ impl SketchSession {
                     .collect();
                 rows.push(format!("face {id}: {}", cycles.join(" HOLE ")));
             }
+            if object.feature.is_some()
+                && let Ok(solid) = self.worked(&std::sync::Arc::new(object.clone())).body()
+            {
+                rows.extend((0..solid.faces.len()).map(|f| {
+                    let (text, at) = solid.face_text(f);
+                    let place = at.to_array().map(|x| plain(super::dims::rounded(x))).join(" ");
+                    format!("{text} from {place}")
+                }));
+            }
         }
         if on("CURVES") {
             for c in object.curves.values() {

@@ -13,6 +13,7 @@ mod question;
 mod sensitivity;
 mod session;
 mod solids;
+mod treatments;
 pub mod verbs;
 pub mod words;
 

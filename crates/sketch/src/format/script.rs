@@ -1,6 +1,6 @@
 //! An object as the commands that make it: the file format.
 
-use crate::feature::{Feature, FeatureKind, Placement};
+use crate::feature::{EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, Placement};
 use crate::solid::curve::{CurveKind, SketchCurve};
 use crate::{
     CoordinateAxis, DimensionExpr, DimensionRole, LineTypeSource, MeasuredQuantity, SketchObject,
@@ -37,6 +37,23 @@ fn range_text(range: Option<[f64; 2]>) -> String {
     range.map_or(String::new(), |[a, b]| format!(" IN {} {}", plain(a), plain(b)))
 }
 
+/// A face as commands name it: in quotes where its name could be another word.
+fn face_text(face: &FaceChoice) -> String {
+    match face {
+        FaceChoice::Named(name) if name.parse::<u32>().is_ok() => name.clone(),
+        FaceChoice::Named(name) => format!("\"{name}\""),
+        FaceChoice::Extreme { .. } => face.to_string(),
+    }
+}
+
+fn edge_text(edge: &EdgeChoice) -> String {
+    match edge {
+        EdgeChoice::Of(face) => format!("OF {}", face_text(face)),
+        EdgeChoice::Between(a, b) => format!("BETWEEN {} {}", face_text(a), face_text(b)),
+        other => other.to_string(),
+    }
+}
+
 /// The commands that make an object. Running them gives the same object.
 pub fn script(object: &SketchObject) -> String {
     let mut out = String::new();
@@ -63,6 +80,15 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
         }
         Placement::Mirror { axis, at } => format!("{axis} {}", value(at)),
         Placement::Scale(factor) => value(factor),
+    };
+    // What a number of the feature itself is, which its command names anew.
+    let own_value = |e: &DimensionExpr| {
+        let known = object.variables.get(&e.text().to_ascii_lowercase());
+        value(known.map_or(e, |v| &v.value))
+    };
+    let list = |word: &str, faces: &[FaceChoice]| {
+        let all: Vec<String> = faces.iter().map(face_text).collect();
+        if all.is_empty() { String::new() } else { format!(" {word} {}", all.join(" ")) }
     };
     // Numbers of the feature itself may stand in its command.
     let own: Vec<&crate::Variable> = object.variables.values().collect();
@@ -95,6 +121,25 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
                 _ => rest,
             };
             format!("PATTERN {parts} {word} {rest} INTO {name}")
+        }
+        FeatureKind::Blend { blend, edges } => {
+            let edges: Vec<String> = edges.iter().map(edge_text).collect();
+            let (word, size) = match blend {
+                EdgeBlend::Chamfer([a, b]) if a == b => ("CHAMFER", own_value(a)),
+                EdgeBlend::Chamfer([a, b]) => {
+                    ("CHAMFER", format!("{} {}", own_value(a), own_value(b)))
+                }
+                EdgeBlend::Fillet(radius) => ("FILLET", own_value(radius)),
+            };
+            format!("{word} {parts} {size} EDGES {} INTO {name}", edges.join(" "))
+        }
+        FeatureKind::Shell { thickness, open } => {
+            let open = list("OPEN", open);
+            format!("SHELL {parts} {}{open} INTO {name}", own_value(thickness))
+        }
+        FeatureKind::Draft { angle, axis, at, faces } => {
+            let (angle, at, faces) = (own_value(angle), own_value(at), list("FACES", faces));
+            format!("DRAFT {parts} {axis} {angle} AT {at}{faces} INTO {name}")
         }
     };
     writeln!(out, "{command}")?;

@@ -8,7 +8,7 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::curve::SmoothPiece;
-use super::surface::{Carrier, FaceSurface, Met, meet};
+use super::surface::{Carrier, FaceSurface, Jet, Met, meet};
 use super::{IntersectionEdge, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
 use crate::PointId;
 use crate::solid::operation::Operation;
@@ -16,6 +16,7 @@ use moldloft_mesh::triangulate;
 use moldloft_num::GAUSS_8_UNIT;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// Why bodies cannot be combined.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +49,24 @@ pub fn combined<T: Real>(
     operation: Operation,
 ) -> Result<SketchSolid<T>, CombineError> {
     let rule = move |w: [i32; 2]| operation.holds(w[0] > 0, w[1] > 0);
-    build(&bodies, false, &rule).map(|b| b.0)
+    build(&bodies, &[0, 1], [false; 2], &rule).map(|b| b.0)
+}
+
+/// The body of one and any number of tools, which may cross each other, by an operation. Edges of tools that lie in
+/// faces of the body are edges of the result, so that faces may be tangent along them.
+///
+/// # Errors
+/// [`CombineError`], with the place.
+pub fn combined_with<T: Real>(
+    body: &SketchSolid<T>,
+    tools: &[SketchSolid<T>],
+    operation: Operation,
+) -> Result<SketchSolid<T>, CombineError> {
+    let rule = move |w: [i32; 2]| operation.holds(w[0] > 0, w[1] > 0);
+    let bodies: Vec<&SketchSolid<T>> = std::iter::once(body).chain(tools).collect();
+    let mut operands = vec![1; bodies.len()];
+    operands[0] = 0;
+    build(&bodies, &operands, [true; 2], &rule).map(|b| b.0)
 }
 
 /// The body that a surface encloses where it winds around once or more: for one that crosses itself.
@@ -57,7 +75,7 @@ pub fn combined<T: Real>(
 /// # Errors
 /// [`CombineError`], with the place.
 pub fn resolved<T: Real>(body: &SketchSolid<T>) -> Result<(SketchSolid<T>, bool), CombineError> {
-    build(&[body], true, &|w| w[0] > 0)
+    build(&[body], &[0], [true, false], &|w| w[0] > 0)
 }
 
 /// The union of any number of bodies, in one step.
@@ -65,12 +83,14 @@ pub fn resolved<T: Real>(body: &SketchSolid<T>) -> Result<(SketchSolid<T>, bool)
 /// # Errors
 /// [`CombineError`], with the place.
 pub fn united<T: Real>(bodies: &[&SketchSolid<T>]) -> Result<SketchSolid<T>, CombineError> {
-    build(bodies, true, &|w| w[0] > 0).map(|b| b.0)
+    build(bodies, &vec![0; bodies.len()], [true, false], &|w| w[0] > 0).map(|b| b.0)
 }
 
 /// What facets of the bodies stand for.
 struct FacetSource<T> {
     surfaces: Vec<FaceSurface<T>>,
+    /// By surface: the names of its face.
+    names: Vec<Vec<Arc<str>>>,
     /// By edge: its curve where it has a closed form, and the surfaces beside it.
     edges: Vec<(Option<SmoothPiece<T>>, Vec<u32>)>,
 }
@@ -88,7 +108,8 @@ struct Facetted<T> {
 
 fn build<T: Real>(
     bodies: &[&SketchSolid<T>],
-    crossing: bool,
+    operand_of: &[usize],
+    [crossing, fitted]: [bool; 2],
     rule: &dyn Fn([i32; 2]) -> bool,
 ) -> Result<(SketchSolid<T>, bool), CombineError> {
     let mut all = Facetted {
@@ -99,11 +120,14 @@ fn build<T: Real>(
         around: Vec::new(),
     };
     let mut operands: Vec<FacetSource<T>> = Vec::new();
-    for (k, body) in bodies.iter().enumerate() {
-        // United bodies are one operand; their faces and edges are numbered on.
-        let operand = if crossing { 0 } else { k };
+    for (body, &operand) in bodies.iter().zip(operand_of) {
+        // The faces and edges of bodies of one operand are numbered on.
         if operand >= operands.len() {
-            operands.push(FacetSource { surfaces: Vec::new(), edges: Vec::new() });
+            operands.push(FacetSource {
+                surfaces: Vec::new(),
+                names: Vec::new(),
+                edges: Vec::new(),
+            });
         }
         add_facets(body, operand, &mut operands[operand], &mut all);
     }
@@ -117,7 +141,7 @@ fn build<T: Real>(
         let far = plain.iter().map(|p| p.distance(plain[0]));
         far.fold(0.0, f64::max).max(f64::MIN_POSITIVE)
     };
-    let body = Placing::new(&all, &arranged, scale).finish(bodies[0].flat)?;
+    let body = Placing::new(&all, &arranged, scale, fitted).finish(bodies[0].flat)?;
     Ok((body, arranged.changed))
 }
 
@@ -174,6 +198,11 @@ fn add_facets<T: Real>(
             }
         };
     for f in 0..body.faces.len() {
+        while source.names.len() < source.surfaces.len() {
+            // A face that is not plane has one surface for each of its triangles.
+            let last = f.checked_sub(1).map(|f| body.faces[f].names.clone());
+            source.names.push(last.unwrap_or_default());
+        }
         let at = |v: u32| outline.points[v as usize];
         if let Some(surface) = body.surface(f) {
             put(source, surface, outline.strips(body, f));
@@ -202,6 +231,8 @@ fn add_facets<T: Real>(
             put(source, FaceSurface::Plane { at: ring[0], normal }, vec![facet]);
         }
     }
+    let last = body.faces.last().map(|f| f.names.clone()).unwrap_or_default();
+    source.names.resize(source.surfaces.len(), last);
 }
 
 /// The loops of a facet, and the edge of the body for each side.
@@ -245,6 +276,9 @@ struct Placing<'a, T> {
     all: &'a Facetted<T>,
     arranged: &'a Arrangement,
     scale: f64,
+    /// Whether edges of the second operand are those of the result where they run: tools that touch the
+    /// first one's faces along them.
+    fitted: bool,
     /// The number of the given point of a vertex of a body, by point of the arrangement.
     original: HashMap<u32, u32>,
     /// By point of the arrangement, where it is when it is on an edge.
@@ -252,14 +286,14 @@ struct Placing<'a, T> {
 }
 
 impl<'a, T: Real> Placing<'a, T> {
-    fn new(all: &'a Facetted<T>, arranged: &'a Arrangement, scale: f64) -> Self {
+    fn new(all: &'a Facetted<T>, arranged: &'a Arrangement, scale: f64, fitted: bool) -> Self {
         let mut original = HashMap::new();
         for (k, &v) in arranged.given.iter().enumerate() {
             if all.vertex[k] {
                 original.entry(v).or_insert(k as u32);
             }
         }
-        Placing { all, arranged, scale, original, placed: HashMap::new() }
+        Placing { all, arranged, scale, fitted, original, placed: HashMap::new() }
     }
 
     fn surface(&self, face: usize) -> &'a FaceSurface<T> {
@@ -280,7 +314,9 @@ impl<'a, T: Real> Placing<'a, T> {
         }
         let source = |a: u32, b: u32| -> Option<(usize, u32)> {
             let known = |e: &&(usize, u32)| self.all.sources[e.0].edges[e.1 as usize].0.is_some();
-            self.arranged.edges.get(&(a.min(b), a.max(b)))?.iter().find(known).copied()
+            let all = self.arranged.edges.get(&(a.min(b), a.max(b)))?;
+            let tool = |e: &&(usize, u32)| self.fitted && e.0 == 1 && known(e);
+            all.iter().find(tool).or_else(|| all.iter().find(known)).copied()
         };
         let kind = |a: u32, b: u32, own: usize| -> Kind {
             // Of several faces at an edge, those of the same place in both lists are neighbours.
@@ -396,7 +432,15 @@ impl<'a, T: Real> Placing<'a, T> {
                 trims.push(Trim { surface: *self.surface(f), face: f });
                 trims.len() - 1
             });
-            out.push(SolidFace { id: None, ruled: false, loops, trim });
+            let mut names: Vec<Arc<str>> = Vec::new();
+            for &(operand, tag) in &face.sources {
+                for name in &self.all.sources[operand].names[tag as usize] {
+                    if !names.contains(name) {
+                        names.push(name.clone());
+                    }
+                }
+            }
+            out.push(SolidFace { id: None, ruled: false, loops, trim, names });
         }
         let facets = (!trims.is_empty()).then(|| self.facets(&chains, &number, &vertices));
         let mut solid = SketchSolid { vertices, edges, faces: out, flat, ..SketchSolid::default() };
@@ -539,7 +583,7 @@ impl<'a, T: Real> Placing<'a, T> {
             let mut sources = self.arranged.faces[f].sources.iter();
             sources.any(|s| s.0 == operand && beside.contains(&s.1))
         };
-        if own(kind.0) && own(kind.1) {
+        if (self.fitted && operand == 1) || (own(kind.0) && own(kind.1)) {
             return self.trace_on(chain, kind);
         }
         // A surface of the other body happens to run through an edge: the new edge moves with both surfaces.
@@ -734,17 +778,19 @@ pub(super) fn located<T: Real>(
         }
     }
     let lifted = at.map(T::from);
-    let [s, du, dv] = surface.jet(lifted[0], lifted[1]);
-    let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
-    let det = a * c - b * b;
-    if det.re() <= 0.0 {
+    let step = |[_, du, dv]: Jet<T>, r: Vec3<T>| {
+        let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
+        let det = a * c - b * b;
+        let (x, y) = (du.dot(r), dv.dot(r));
+        (det.re() > 0.0).then(|| [(c * x - b * y) / det, (a * y - b * x) / det])
+    };
+    let jet = surface.jet(lifted[0], lifted[1]);
+    let Some(last) = step(jet, p - jet[0]) else {
         // At a pole: the direction does not matter there.
         return Some([lifted[0], lifted[1], T::zero()]);
-    }
-    let step = |r: Vec3<T>| {
-        let (x, y) = (du.dot(r), dv.dot(r));
-        [(c * x - b * y) / det, (a * y - b * x) / det]
     };
-    let last = step(p - s);
-    Some([lifted[0] + last[0], lifted[1] + last[1], step(by)[0]])
+    let [u, v] = [lifted[0] + last[0], lifted[1] + last[1]];
+    // The way along the surface where the place has moved to, or the rate would not follow it.
+    let by = step(surface.jet(u, v), by).map_or(T::zero(), |d| d[0]);
+    Some([u, v, by])
 }

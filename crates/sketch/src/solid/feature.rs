@@ -1,11 +1,14 @@
 //! Features: objects that are made of others and computed again with every change.
 
+use super::blend::{BlendSize, blended};
 use super::combine::{CombineError, combined, united};
+pub use super::edges::TreatmentFault;
+use super::offset::{drafted, shelled};
 use super::place::Similarity;
 use super::turn::turned;
 use super::validity::{SolidDefect, valid};
 use super::{SketchSolid, unchecked};
-use crate::feature::{Feature, FeatureKind, FeatureOperand, Placement};
+use crate::feature::{EdgeBlend, Feature, FeatureKind, FeatureOperand, Placement};
 use crate::{DimensionExpr, DimensionLayout, Estimate, Planes, SketchObject, Variable, solve};
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
@@ -29,6 +32,8 @@ pub enum NoBody {
     },
     /// A number of the feature has no value.
     NoValue(String),
+    /// Edges or faces cannot be treated as asked.
+    Treatment(TreatmentFault),
     /// The section lies on both sides of the line it is turned about, or the line has no length.
     Axis,
 }
@@ -45,7 +50,8 @@ pub fn body<T: Real>(
     match &object.feature {
         Some(feature) => feature.body(layout),
         None => {
-            let body = unchecked(object, planes, layout).ok_or(NoBody::Unfinished)?;
+            let mut body = unchecked(object, planes, layout).ok_or(NoBody::Unfinished)?;
+            body.name_faces(object);
             valid(body).map_err(NoBody::Flaw)
         }
     }
@@ -121,7 +127,10 @@ impl Feature {
                 || Estimate::of(&inner.drawing, &planes, inner.reference().map(|r| r.point)?);
             let own = solve(inner, &planes, &own, &estimate);
             let name = inner.name.clone();
-            let body = body(inner, &planes, &own);
+            let body = body(inner, &planes, &own).map(|mut body| {
+                body.prefix_names(&operand.prefix);
+                body
+            });
             // Nothing is an operand too: what is cut from it or added to it has a body.
             let nothing = matches!(body, Err(NoBody::Combine(CombineError::Empty)));
             empty.push(nothing);
@@ -152,7 +161,8 @@ impl Feature {
                 let [Some(p), Some(q)] = ends else { return Err(NoBody::Unfinished) };
                 let angle = value(angle)? * (std::f64::consts::PI / 180.0);
                 one_side(section, [p.re(), q.re()]).then_some(()).ok_or(NoBody::Axis)?;
-                let body = turned(section, [p, q], angle).ok_or(NoBody::Axis)?;
+                let name = |e: usize| side_name(&self.operands[0].object, section, e);
+                let body = turned(section, [p, q], angle, &name).ok_or(NoBody::Axis)?;
                 valid(body).map_err(NoBody::Flaw)
             }
             (FeatureKind::Place(place), [body]) => Ok(body.placed(&place.similarity(&value)?)),
@@ -160,14 +170,73 @@ impl Feature {
                 let step = step.similarity(&value)?;
                 let mut place = Similarity::identity();
                 let mut copies = vec![body.clone()];
-                for _ in 1..*count {
+                for k in 1..*count {
                     place = place.then(&step);
-                    copies.push(body.placed(&place));
+                    let mut copy = body.placed(&place);
+                    copy.prefix_names(&format!("COPY{}.", k + 1));
+                    copies.push(copy);
                 }
                 let all: Vec<&SketchSolid<T>> = copies.iter().collect();
                 united(&all).map_err(NoBody::Combine)
             }
+            (FeatureKind::Blend { blend, edges }, [body]) => {
+                let size = match blend {
+                    EdgeBlend::Chamfer([a, b]) => BlendSize::Chamfer([value(a)?, value(b)?]),
+                    EdgeBlend::Fillet(radius) => BlendSize::Fillet(value(radius)?),
+                };
+                blended(body, &self.operands[0].object, size, edges)
+            }
+            (FeatureKind::Shell { thickness, open }, [body]) => {
+                shelled(body, value(thickness)?, open)
+            }
+            (FeatureKind::Draft { angle, axis, at, faces }, [body]) => {
+                let angle = value(angle)? * (std::f64::consts::PI / 180.0);
+                drafted(body, angle, *axis, value(at)?, faces)
+            }
             _ => Err(NoBody::Unfinished),
+        }
+    }
+}
+
+/// The name of the face that an edge of a section becomes when it is turned: its curve's, or `L` and the number
+/// of its line.
+fn side_name<T: Real>(
+    object: &SketchObject,
+    section: &SketchSolid<T>,
+    edge: usize,
+) -> Option<Arc<str>> {
+    let edge = &section.edges[edge];
+    if let Some((_, curve)) = edge.curve.and_then(|k| object.curves.get_index(k)) {
+        return Some(curve.name.as_str().into());
+    }
+    let ends = edge.ends.map(|v| section.vertices[v].id);
+    let line = object.drawing.line_between(ends[0], ends[1]);
+    line.map(|l| format!("L{l}").into())
+}
+
+impl<T: Real> SketchSolid<T> {
+    /// Names the faces of a drawing: by their numbers, those of curves by the curves.
+    fn name_faces(&mut self, object: &SketchObject) {
+        for k in 0..self.faces.len() {
+            let face = &self.faces[k];
+            let name: Option<Arc<str>> = match face.id {
+                Some(id) => Some(id.to_string().into()),
+                None => {
+                    let curve = face.loops.iter().flatten().find_map(|h| self.edges[h.0].curve);
+                    let curve = curve.and_then(|c| object.curves.get_index(c));
+                    curve.map(|(_, c)| c.name.as_str().into())
+                }
+            };
+            self.faces[k].names = name.into_iter().collect();
+        }
+    }
+
+    /// What all names of faces begin with from now on.
+    fn prefix_names(&mut self, prefix: &str) {
+        if !prefix.is_empty() {
+            for name in self.faces.iter_mut().flat_map(|f| &mut f.names) {
+                *name = format!("{prefix}{name}").into();
+            }
         }
     }
 }

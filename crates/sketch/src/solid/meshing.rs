@@ -196,7 +196,7 @@ fn mesh_from<T: Real>(places: Vec<Vec3<T>>, parts: Vec<(String, Vec<[u32; 4]>)>)
 }
 
 /// A chord for each 5° of a round curve, 20 for a cubic that is not straight.
-fn by_angle<T: Real>(piece: &SmoothPiece<T>) -> usize {
+pub(super) fn by_angle<T: Real>(piece: &SmoothPiece<T>) -> usize {
     match piece {
         SmoothPiece::Conic { sweep, .. } => {
             let n = (sweep.re().abs().to_degrees() / 5.0 - 1e-9).ceil();

@@ -6,14 +6,18 @@
 //! its other end has the same arc, a cone when it has none).
 
 pub mod arrangement;
+mod blend;
+mod blend_tool;
 pub mod combine;
 pub mod curve;
+pub(crate) mod edges;
 pub mod faces;
 pub mod feature;
 pub(crate) mod gradient;
 pub(crate) mod mass;
 pub mod merge;
 mod meshing;
+mod offset;
 pub mod operation;
 mod outline;
 pub mod place;
@@ -27,6 +31,7 @@ use crate::solid::mass::{DirectedEdge, Mass, MassIntegrals};
 use crate::{DimensionLayout, FaceId, Planes, PointId, SketchObject};
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 use surface::FaceSurface;
 
 /// A vertex of a solid.
@@ -96,6 +101,8 @@ pub struct SolidFace {
     pub loops: Vec<Vec<(usize, bool)>>,
     /// For a round face that is not a ruled patch between its edges, its index in [`SketchSolid::trims`].
     pub trim: Option<usize>,
+    /// Its names in a feature, which outlast changes of dimensions: those of the faces that it is a part of.
+    pub names: Vec<Arc<str>>,
 }
 
 /// A curve that could not be built in.
@@ -481,7 +488,7 @@ impl<T: Real> SolidBuilder<'_, T> {
                     }
                 }
                 let ruled = ruled == Some(true);
-                faces.push(SolidFace { id: Some(id), ruled, loops, trim: None });
+                faces.push(SolidFace { id: Some(id), ruled, loops, trim: None, names: vec![] });
             }
         }
         faces.extend(self.patches(&mut out, &seams));
@@ -646,7 +653,8 @@ impl<T: Real> SolidBuilder<'_, T> {
             cycle.push(run(b, far_b));
             cycle.extend(far);
             cycle.push(run(far_a, a));
-            faces.push(SolidFace { id: None, ruled: true, loops: vec![cycle], trim: None });
+            let loops = vec![cycle];
+            faces.push(SolidFace { id: None, ruled: true, loops, trim: None, names: vec![] });
         }
         faces
     }

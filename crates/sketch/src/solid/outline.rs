@@ -98,6 +98,11 @@ impl<T: Real> Outline<T> {
         self.strips[face].clone()
     }
 
+    /// The points along an edge as it is run.
+    pub fn way(&self, h: (usize, bool)) -> Vec<u32> {
+        directed(&self.chains, h)
+    }
+
     /// The loops of a plane face with the edge of each side.
     pub fn loops(&self, body: &SketchSolid<T>, face: usize) -> LoopsAndTags {
         let SolidFace { loops, .. } = &body.faces[face];

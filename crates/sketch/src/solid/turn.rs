@@ -6,20 +6,24 @@ use super::{SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
 use crate::PointId;
 use moldloft_num::{Axis as Line, Real, Vec3};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A directed side of the section: its ends as numbers, and its curve.
 struct SectionSide<T> {
     ends: [usize; 2],
     piece: SmoothPiece<T>,
     straight: bool,
+    name: Option<Arc<str>>,
 }
 
 /// Turns a flat body about a line by an angle in radians; a full turn when it is 2π or more. `None` when
 /// the line has no length or the section nothing on its side.
+/// `name` names the faces that edges of the section become.
 pub fn turned<T: Real>(
     section: &SketchSolid<T>,
     line: [Vec3<T>; 2],
     angle: T,
+    name: &dyn Fn(usize) -> Option<Arc<str>>,
 ) -> Option<SketchSolid<T>> {
     const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
     let axis = Line::through(line[0], line[1])?;
@@ -40,6 +44,7 @@ pub fn turned<T: Real>(
             continue;
         }
         let edge = &section.edges[e];
+        let name = name(e);
         let ends = if forward { edge.ends } else { [edge.ends[1], edge.ends[0]] };
         let (piece, straight) = (section.piece((e, forward)), edge.piece.is_none());
         if !straight && ends.iter().all(|&v| on_axis(at[v])) {
@@ -47,10 +52,11 @@ pub fn turned<T: Real>(
             let [first, second] = halves(&piece);
             at.push(piece.at(T::from(0.5)));
             let middle = at.len() - 1;
-            sides.push(SectionSide { ends: [ends[0], middle], piece: first, straight });
-            sides.push(SectionSide { ends: [middle, ends[1]], piece: second, straight });
+            let half = name.clone();
+            sides.push(SectionSide { ends: [ends[0], middle], piece: first, straight, name: half });
+            sides.push(SectionSide { ends: [middle, ends[1]], piece: second, straight, name });
         } else {
-            sides.push(SectionSide { ends, piece, straight });
+            sides.push(SectionSide { ends, piece, straight, name });
         }
     }
     let rings = if full { steps } else { steps + 1 };
@@ -146,7 +152,8 @@ pub fn turned<T: Real>(
                 out.trims.push(Trim { surface, face: out.faces.len() });
                 Some(out.trims.len() - 1)
             };
-            out.faces.push(SolidFace { id: None, ruled: false, loops: vec![cycle], trim });
+            let (loops, names) = (vec![cycle], side.name.iter().cloned().collect());
+            out.faces.push(SolidFace { id: None, ruled: false, loops, trim, names });
         }
     }
     if !full {
@@ -205,8 +212,14 @@ fn caps<T: Real>(
         .iter()
         .map(|c| c.iter().filter_map(|&s| Some((edge(s, steps)?, true))).collect::<Vec<_>>());
     let end: Vec<_> = end.collect();
-    for loops in [start, end] {
-        out.faces.push(SolidFace { id: None, ruled: false, loops, trim: None });
+    for (loops, name) in [(start, "START"), (end, "END")] {
+        out.faces.push(SolidFace {
+            id: None,
+            ruled: false,
+            loops,
+            trim: None,
+            names: vec![name.into()],
+        });
     }
 }
 

@@ -15,6 +15,7 @@ mod letters;
 mod projection;
 mod session;
 mod solids;
+mod treatments;
 mod verbs;
 mod words;
 mod work;
