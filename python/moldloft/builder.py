@@ -188,7 +188,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is none of the language.
+            When the name is not one of the language.
 
         Examples
         --------
@@ -224,7 +224,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is none of the language.
+            When the name is not one of the language.
 
         Examples
         --------
@@ -264,7 +264,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is none of the language.
+            When the name is not one of the language.
 
         Examples
         --------
@@ -317,7 +317,7 @@ class Builder:
         Raises
         ------
         ArgumentError
-            When the name is none of the language, or the default out of the range.
+            When the name is not one of the language, or the default out of the range.
 
         Examples
         --------

@@ -238,7 +238,7 @@ class Hydrostatics:
         Raises
         ------
         Error
-            When a word is no unit, or the model states none to convert from.
+            When a word is not a unit, or the model states none to convert from.
         """
         to = Units.parse(to) if isinstance(to, str) else to
         changed: dict[str, Any] = {}

@@ -439,7 +439,7 @@ class Model(Floating, Adapted):
         Raises
         ------
         ModelError
-            When the text is no expression, or has no value; the diagnostics have its place.
+            When the text is not an expression, or has no value; the diagnostics have its place.
 
         Warns
         -----
@@ -609,7 +609,7 @@ class Model(Floating, Adapted):
         Raises
         ------
         ModelError
-            When the expression is none, or has no number as value.
+            When the text is not an expression, or has no number as value.
         UnknownNameError
             When there is no such parameter or number.
 
@@ -640,7 +640,7 @@ class Model(Floating, Adapted):
         Raises
         ------
         ModelError
-            When an expression is none, or has no number as value.
+            When a text is not an expression, or has no number as value.
         UnknownNameError
             When there is no such parameter or number.
 

@@ -176,7 +176,7 @@ class Object:
         Raises
         ------
         ModelError
-            When the name is none of the language, or used already.
+            When the name is not one of the language, or used already.
 
         Examples
         --------

@@ -479,6 +479,13 @@ class Sketch:
     def __repr__(self) -> str:
         return f"<Sketch: {', '.join(self.names) or 'no objects'}>"
 
+    def _repr_png_(self) -> bytes | None:
+        # A notebook shows the body; without one its text.
+        try:
+            return self.picture(480, 320)
+        except Error:
+            return None
+
     def _name(self, name: str | None) -> str:
         found = name or self._session.active()
         if found is None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.arguments import explain
+from moldloft.errors import Error
 from moldloft.implicit.answers import (
     Attributes,
     Distance,
@@ -139,7 +140,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When the colour is none of the palette, or the tolerance negative.
+            When the colour is not of the palette, or the tolerance negative.
 
         Examples
         --------
@@ -356,7 +357,7 @@ class Set(Moving, Edged, Pictured):
         Raises
         ------
         ArgumentError
-            When that is no name.
+            When that is not a name.
         Error
             When a primitive is a function from outside, which has no text.
 
@@ -807,6 +808,13 @@ class Set(Moving, Edged, Pictured):
             return "<empty set>"
         count = self._core.contents
         return f"<set of {count} primitive{'s' if count != 1 else ''}>"
+
+    def _repr_png_(self) -> bytes | None:
+        # A notebook shows what has an end; of other sets their text.
+        try:
+            return self.picture(size=(360, 270))
+        except Error:
+            return None
 
 
 def loads(text: str) -> Set:
