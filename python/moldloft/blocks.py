@@ -229,12 +229,19 @@ class Blocks:
         -------
         list of pathlib.Path
             The files written; ``vts`` takes several.
+
+        Raises
+        ------
+        FileError
+            When there is no such folder, or it cannot be written to.
+        FormatError
+            When the format is unknown or cannot hold the blocks.
         """
         from moldloft.files import commit
 
         path = Path(path)
         ending = "blockmesh" if path.name.endswith("blockMeshDict") else path.suffix.lstrip(".")
-        return commit(path.parent, self.outputs((format or ending).lower(), path))
+        return commit(path.parent, self.outputs((format or ending).lower(), path), make=False)
 
     def outputs(self, format: str, path: Path) -> list[Output]:
         """The files of a format, with names after ``path``.
@@ -245,6 +252,16 @@ class Blocks:
             The name of a format, see :data:`moldloft.files.FORMATS`.
         path
             Gives the names of the files; nothing is written.
+
+        Returns
+        -------
+        list of Output
+            Names with bytes.
+
+        Raises
+        ------
+        FormatError
+            When the format is unknown or cannot hold the blocks.
         """
         from moldloft.files import Output
 

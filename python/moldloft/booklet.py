@@ -195,7 +195,7 @@ def write_booklet(
         data = _pdf(title, _parts(model, stability, **asked))
     else:
         data = booklet(model, stability, title=title, **options).encode()
-    return commit(path.parent, [Output(path.name, data)])[0]
+    return commit(path.parent, [Output(path.name, data)], make=False)[0]
 
 
 def _short(value: float | None) -> str:

@@ -132,7 +132,18 @@ class Builder:
 
     @classmethod
     def current(cls) -> Builder:
-        """The builder whose ``with`` block or model function is running."""
+        """The builder whose ``with`` block or model function is running.
+
+        Returns
+        -------
+        Builder
+            The innermost.
+
+        Raises
+        ------
+        RuntimeError
+            When none is running.
+        """
         builder = cls._current.get()
         if builder is None:
             raise RuntimeError(
@@ -168,6 +179,24 @@ class Builder:
             The arguments by position.
         named
             The arguments by name.
+
+        Returns
+        -------
+        Handle
+            What later objects are made of.
+
+        Raises
+        ------
+        ArgumentError
+            When the name is not one of the language.
+
+        Examples
+        --------
+        >>> from moldloft.builder import Builder
+        >>> b = Builder()
+        >>> _ = b.declare("AbsPoint", "P", (1, 2, 3), {})
+        >>> b.model()["P"].y
+        2.0
         """
         _check_name(name)
         self._lines.append(f"{kind} {name}({arguments(args, named)});")
@@ -186,6 +215,16 @@ class Builder:
             The name of the field.
         value
             The field.
+
+        Returns
+        -------
+        FieldShape
+            What sets are made of.
+
+        Raises
+        ------
+        ArgumentError
+            When the name is not one of the language.
 
         Examples
         --------
@@ -216,6 +255,25 @@ class Builder:
             The name of the set.
         value
             The set.
+
+        Returns
+        -------
+        SetShape
+            What bodies are made of.
+
+        Raises
+        ------
+        ArgumentError
+            When the name is not one of the language.
+
+        Examples
+        --------
+        >>> from moldloft import functions as f
+        >>> from moldloft.builder import Builder
+        >>> with Builder() as b:
+        ...     ball = b.set("ball", f.set(f.sphere([0, 0, 0], 1)))
+        >>> print(b.text, end="")
+        set ball = set(sphere({0, 0, 0}, 1));
         """
         self._implicit("set", name, value)
         return SetShape(name)
@@ -250,8 +308,27 @@ class Builder:
             Whole numbers only.
         value
             Its value in this run.
+
+        Returns
+        -------
+        Expr
+            A number for arithmetic, which stays an expression in the text.
+
+        Raises
+        ------
+        ArgumentError
+            When the name is not one of the language, or the default out of the range.
+
+        Examples
+        --------
+        >>> from moldloft.builder import Builder
+        >>> b = Builder()
+        >>> half = b.param("beam", 4, 3, 5) / 2
+        >>> half, half.value
+        (Expr('beam / 2'), 2.0)
         """
         _check_name(name)
+        _check_range(name, float(default), low, high)
         text = f"param {'int' if whole else 'float'} {name} = {literal(float(default))}"
         if low is not None and high is not None:
             text += f" in [{literal(float(low))}, {literal(float(high))}]"
@@ -259,7 +336,26 @@ class Builder:
         return Expr(name, float(default if value is None else value))
 
     def model(self) -> Model:
-        """The model of what was declared."""
+        """The model of what was declared.
+
+        Returns
+        -------
+        Model
+            It has been run.
+
+        Raises
+        ------
+        ModelError
+            When it has an error; places are those of :attr:`text`.
+
+        Examples
+        --------
+        >>> from moldloft.builder import Builder
+        >>> b = Builder()
+        >>> _ = b.param("beam", 4, 3, 5)
+        >>> b.model()["beam"]
+        4.0
+        """
         from moldloft.loading import loads
 
         return loads(self.text, name="model.py.sdl")
@@ -270,6 +366,11 @@ def _check_name(name: str) -> None:
         raise ValueError(
             f"{name!r} is not a valid name: expected a letter, then letters, digits and _"
         )
+
+
+def _check_range(name: str, default: float, low: float | None, high: float | None) -> None:
+    if low is not None and high is not None and not low <= default <= high:
+        raise ValueError(f"`{name}` = {default:g} is not in its range {low:g} .. {high:g}")
 
 
 @dataclass(frozen=True)
@@ -301,9 +402,25 @@ def param(
         The greatest value.
     whole
         Whole numbers only.
+
+    Returns
+    -------
+    Range
+        To be the default of an argument.
+
+    Raises
+    ------
+    ValueError
+        When one end of the range is missing, or the default out of it.
+
+    Examples
+    --------
+    >>> param(4, 3, 5)
+    Range(default=4.0, low=3, high=5, whole=False)
     """
     if (low is None) != (high is None):
         raise ValueError("give both ends of the range, or none")
+    _check_range("default", float(default), low, high)
     return Range(float(default), low, high, whole)
 
 
@@ -382,6 +499,16 @@ def model(function: Callable[P, object]) -> ModelFunction[P]:
     ----------
     function
         The function; its defaults come from :func:`param` or are numbers.
+
+    Returns
+    -------
+    ModelFunction
+        Called with values of its parameters it returns a :class:`Model`.
+
+    Raises
+    ------
+    TypeError
+        When an argument has no number as its default.
 
     Examples
     --------

@@ -74,6 +74,18 @@ class Floating:
             The requested relative error, 1e-12 to 0.1. The bound that was reached is in
             ``bounds``.
 
+        Returns
+        -------
+        Hydrostatics
+            Figures in the units of the model, with their bounds; angles in radians.
+
+        Raises
+        ------
+        Error
+            When a density or accuracy is out of its range, or both level and draft are given.
+        ModelError
+            When the model has no surfaces, or cannot float so.
+
         Examples
         --------
         >>> import moldloft
@@ -143,6 +155,14 @@ class Floating:
         ------
         ModelError
             When the body cannot carry the mass.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> from moldloft.starter import BOX
+        >>> rest = moldloft.loads(BOX).equilibrium(40, density=1)
+        >>> round(rest.volume, 6)
+        40.0
         """
         of_weights = displacement is None
         if displacement is None:
@@ -209,6 +229,26 @@ class Floating:
             Names of parameters.
         accuracy
             The relative accuracy of the figures.
+
+        Returns
+        -------
+        HydrostaticTable
+            A row for each draft.
+
+        Raises
+        ------
+        Error
+            When a density or accuracy is out of its range, or both level and draft are given.
+        ModelError
+            When the model has no surfaces, or cannot float so.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> from moldloft.starter import BOX
+        >>> table = moldloft.loads(BOX).hydrostatic_table([0.5, 1.0])
+        >>> (table.column("volume")[1] / table.column("volume")[0]).round(6).item()
+        2.0
         """
         rows = [("draft", float(draft), float(trim), 0.0, False, False) for draft in drafts]
         return HydrostaticTable(self._floating(rows, cg, density, gravity, sides, by, accuracy))
@@ -240,6 +280,24 @@ class Floating:
             Whether the body trims freely at each heel, else the trim it keeps.
         density, gravity, by, accuracy
             As for :meth:`hydrostatics`.
+
+        Returns
+        -------
+        RightingCurve
+            A row for each heel.
+
+        Raises
+        ------
+        ModelError
+            When the body cannot carry the mass.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> from moldloft.starter import BOX
+        >>> curve = moldloft.loads(BOX).righting_curve([0.0, 0.2], 40, cg=(0, 0, 0.4), density=1)
+        >>> bool(abs(curve.column("gz")[0]) < 1e-9)
+        True
         """
         rows = [
             ("displacement", float(displacement), float(trim), float(heel), free_trim, False)
@@ -309,12 +367,28 @@ class Floating:
         ----------
         mass
             A mass in the model's unit.
+
+        Returns
+        -------
+        float or None
+            Tonnes.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> moldloft.loads('Model info(units = "m kg");').tonnes(2500)
+        2.5
         """
         units = self.units.complete()
         return mass * units.kilograms / 1000 if units.mass else None
 
     def weights(self) -> WeightTable:
         """The weights that the model declares, by group, with their sum.
+
+        Returns
+        -------
+        WeightTable
+            Empty where the model declares none.
 
         Examples
         --------
@@ -351,6 +425,18 @@ class Floating:
             Points by name through which water enters: the angle of flooding.
         gravity, accuracy
             As for :meth:`hydrostatics`.
+
+        Returns
+        -------
+        Stability
+            Evaluated on demand: the arms, angles and criteria are its methods.
+
+        Raises
+        ------
+        Error
+            Without a mass, a centre of gravity or a density.
+        ModelError
+            When the body cannot carry the mass.
 
         Examples
         --------
@@ -416,6 +502,11 @@ class Floating:
         accuracy
             The relative accuracy of the areas.
 
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(stations, levels)``.
+
         Examples
         --------
         >>> import moldloft
@@ -440,6 +531,11 @@ class Floating:
         ----------
         level
             Height of the water, in model units.
+
+        Returns
+        -------
+        dict
+            Areas and the volume in the model's unit of length.
         """
         names = ("volume", "wetted_area", "waterplane_area")
         return dict(zip(names, self._document.panel_figures(float(level)), strict=True))

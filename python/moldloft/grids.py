@@ -287,7 +287,7 @@ def encode_plot3d(
 
 def _commit(path: str | Path, data: bytes) -> Path:
     target = Path(path)
-    return commit(target.parent, [Output(target.name, data)])[0]
+    return commit(target.parent, [Output(target.name, data)], make=False)[0]
 
 
 def write(
@@ -312,7 +312,7 @@ def write(
     """
     target = Path(path)
     files = encoded(target.name, grids, names)
-    return commit(target.parent, [Output(name, data) for name, data in files.items()])
+    return commit(target.parent, [Output(name, data) for name, data in files.items()], make=False)
 
 
 def encoded(
@@ -350,7 +350,7 @@ def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
     """
     target = Path(path)
     files = _core.write_grids(_grids(grids), "vts", target.name)
-    return commit(target.parent, [Output(name, data) for name, data in files])
+    return commit(target.parent, [Output(name, data) for name, data in files], make=False)
 
 
 def write_cgns(

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from moldloft.arguments import explain
-from moldloft.errors import Error
+from moldloft.errors import Error, UnknownNameError
 from moldloft.units import DIMENSIONS, Units, header, shown
 
 if TYPE_CHECKING:
@@ -180,7 +180,13 @@ class Hydrostatics:
         return lines
 
     def as_dict(self) -> dict[str, Any]:
-        """All figures that have a meaning, by name, in a fixed order."""
+        """All figures that have a meaning, by name, in a fixed order.
+
+        Returns
+        -------
+        dict
+            Numbers, vectors as lists; in the units of :attr:`units`.
+        """
         pairs = ((field.name, getattr(self, field.name)) for field in fields(self))
         kept = {name: value for name, value in pairs if value is not None}
         del kept["units"]
@@ -200,7 +206,20 @@ class Hydrostatics:
         ----------
         figure
             The name of a figure, such as ``"volume"``.
+
+        Returns
+        -------
+        str
+            Such as ``"m³"``.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such figure.
         """
+        if figure not in {each.name for each in fields(self)}:
+            known = ", ".join(_NUMBERS)
+            raise UnknownNameError(f"unknown figure `{figure}`; expected one of: {known}")
         return self.units.of(figure)
 
     def converted(self, to: Units | str) -> Hydrostatics:
@@ -210,6 +229,16 @@ class Hydrostatics:
         ----------
         to
             Units, such as ``"m t kN"``.
+
+        Returns
+        -------
+        Hydrostatics
+            A new one; this stays as it is.
+
+        Raises
+        ------
+        Error
+            When a word is not a unit, or the model states none to convert from.
         """
         to = Units.parse(to) if isinstance(to, str) else to
         changed: dict[str, Any] = {}
@@ -258,19 +287,61 @@ class _Rows:
         return iter(self.rows)
 
     def column(self, name: str) -> NDArray[np.float64]:
-        """One figure of all rows; ``nan`` where it has no meaning."""
+        """One figure of all rows; ``nan`` where it has no meaning.
+
+        Parameters
+        ----------
+        name
+            The name of a figure, such as ``"volume"``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(rows,)``, in the units of :attr:`units`, angles in radians.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such figure.
+        """
         import numpy as np
 
         if name not in _NUMBERS:
             known = ", ".join(_NUMBERS)
-            raise Error(f"unknown figure `{name}`; expected one of: {known}")
+            raise UnknownNameError(f"unknown figure `{name}`; expected one of: {known}")
         values = [getattr(row, name) for row in self.rows]
         return np.array([math.nan if v is None else v for v in values], dtype=np.float64)
 
     def derivative(self, name: str, by: str) -> NDArray[np.float64]:
-        """The derivative of one figure by a parameter in all rows; ``nan`` where it has none."""
+        """The derivative of one figure by a parameter in all rows; ``nan`` where it has none.
+
+        Parameters
+        ----------
+        name
+            The name of a figure, such as ``"volume"``.
+        by
+            One of the parameters that were asked for.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(rows,)``, per unit of the parameter.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such figure, or no derivatives by this parameter were asked for.
+        """
         import numpy as np
 
+        self.column(name)
+        got = (each for row in self for some in row.derivatives.values() for each in some)
+        known = list(dict.fromkeys(got))
+        if by not in known:
+            raise UnknownNameError(
+                f"no derivatives by `{by}` were asked for; there are those by: "
+                + (", ".join(known) or "none")
+            )
         rows = [row.derivatives.get(name, {}).get(by, math.nan) for row in self.rows]
         return np.array(rows, dtype=np.float64)
 
@@ -291,7 +362,13 @@ class _Rows:
         return f"<{type(self).__name__}: {len(self.rows)} rows>"
 
     def as_list(self) -> list[dict[str, Any]]:
-        """The rows as dictionaries."""
+        """The rows as dictionaries.
+
+        Returns
+        -------
+        list of dict
+            As of :meth:`Hydrostatics.as_dict`.
+        """
         return [row.as_dict() for row in self.rows]
 
     def csv(self, columns: Sequence[str] | None = None) -> str:
@@ -301,6 +378,16 @@ class _Rows:
         ----------
         columns
             Which figures; by default all that have a meaning in some row.
+
+        Returns
+        -------
+        str
+            A line for each row, ended by CR LF.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such figure.
         """
         wanted = columns or [n for n in _NUMBERS if any(getattr(r, n) is not None for r in self)]
         for name in wanted:
@@ -314,11 +401,27 @@ class _Rows:
         return text.getvalue()
 
     def write_csv(self, path: str | os.PathLike[str]) -> Path:
-        """Write :meth:`csv` to a file, whole or not at all."""
+        """Write :meth:`csv` to a file, whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        FileError
+            When there is no such folder, or it cannot be written to.
+        """
         from moldloft.files import Output, commit
 
         path = Path(path)
-        return commit(path.parent, [Output(path.name, self.csv().encode())])[0]
+        return commit(path.parent, [Output(path.name, self.csv().encode())], make=False)[0]
 
 
 class HydrostaticTable(_Rows):
@@ -338,6 +441,18 @@ class HydrostaticTable(_Rows):
         ----------
         path
             The file.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        Error
+            When matplotlib knows no such ending.
+        FileError
+            When there is no such folder, or it cannot be written to.
         """
         figure, axes = _axes(3)
         draft = self.column("draft")
@@ -400,6 +515,11 @@ class RightingCurve(_Rows):
             The lesser heel, radians.
         high
             The greater heel, radians.
+
+        Returns
+        -------
+        float
+            Length times radians.
         """
         import numpy as np
 
@@ -421,6 +541,18 @@ class RightingCurve(_Rows):
         ----------
         path
             The file.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        Error
+            When matplotlib knows no such ending.
+        FileError
+            When there is no such folder, or it cannot be written to.
         """
         figure, (axis,) = _axes(1)
         axis.plot([math.degrees(heel) for heel in self.heels], self.gz, label="GZ")
@@ -486,7 +618,7 @@ def _save(figure: Any, path: str | os.PathLike[str]) -> Path:
     # Without a date the same figures give the same file.
     metadata = {"Date": None} if kind == "svg" else None
     figure.savefig(drawn, format=kind, metadata=metadata)
-    return commit(path.parent, [Output(path.name, drawn.getvalue())])[0]
+    return commit(path.parent, [Output(path.name, drawn.getvalue())], make=False)[0]
 
 
 explain(globals())

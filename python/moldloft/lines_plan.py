@@ -727,7 +727,7 @@ def draw(model: Model, path: str | os.PathLike[str], **options: Any) -> Path:
         raise Error(f"no lines plan ends in `{path.suffix}`; expected one of: {', '.join(writers)}")
     plan = lines_plan(model, **options)
     data = writers[path.suffix.lower()](plan)
-    return commit(path.parent, [Output(path.name, data)])[0]
+    return commit(path.parent, [Output(path.name, data)], make=False)[0]
 
 
 explain(globals())

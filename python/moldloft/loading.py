@@ -89,12 +89,26 @@ def load(
         Whether errors raise. Without it they are in :attr:`Model.diagnostics` only, and
         what does not depend on a failed object lives on.
 
+    Returns
+    -------
+    Model
+        It has been run: parameters have their stated values.
+
     Raises
     ------
     ModelError
         When the model has an error.
     FileError
         When the file cannot be read, or states a later version of the language.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "point.sdl"
+    ...     _ = path.write_text("AbsPoint P(1, 2, 3);")
+    ...     load(path)["P"].z
+    3.0
     """
     folders = [os.fspath(folder) for folder in library]
     place = Path(path)
@@ -133,6 +147,11 @@ def loads(
         As for :func:`load`.
     strict
         As for :func:`load`.
+
+    Returns
+    -------
+    Model
+        It has been run: parameters have their stated values.
 
     Raises
     ------

@@ -115,6 +115,27 @@ class Mesh:
         ----------
         name
             The name of a surface.
+
+        Returns
+        -------
+        Patch
+            Its panels and what is known of them.
+
+        Raises
+        ------
+        UnknownNameError
+            When no surface of this name has panels.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m.mesh().patch("plate").name
+        'plate'
         """
         for patch in self.patches:
             if patch.name == name:
@@ -127,6 +148,13 @@ class Mesh:
     def quality(self) -> Quality:
         """How well shaped the panels are, by patch: see :attr:`Patch.quality`.
 
+        Returns
+        -------
+        Quality
+            By patch, and in it by measure: the figures of all panels.
+
+        Examples
+        --------
         >>> import moldloft
         >>> m = moldloft.loads('''
         ... AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(2, 1, 0);
@@ -154,6 +182,17 @@ class Mesh:
             model's mirror image and a lid at ``level`` close. ``edges``: the open ones with
             ``patch``, ``edge`` (``"v = 0"`` and so on), ``closed_by`` (``"mirror y"``, ``"lid"`` or
             None), ``panels``, ``length``, ``low`` and ``high``, the corners of the box around it.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m.mesh().closure(level=None)["closed"]
+        False
         """
         return self._core.closure(self._symmetry, level)
 

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
+from moldloft.adapted import Adapted
 from moldloft.arguments import explain
-from moldloft.errors import FileError, ModelError, UnknownNameError
+from moldloft.errors import Error, FileError, ModelError, UnknownNameError
 from moldloft.floating import Floating
 from moldloft.objects import object_of, wrapped
 
@@ -46,7 +47,7 @@ class Param:
     """True when it takes whole numbers only."""
 
 
-class Model(Floating):
+class Model(Floating, Adapted):
     """A model: named objects that depend on each other, and the text that declares them.
 
     ``m["beam"]`` is a parameter's value and ``m["hull"]`` an object; ``m["beam"] = 4.5`` changes
@@ -95,6 +96,11 @@ class Model(Floating):
 
     def copy(self) -> Model:
         """An independent model in the same state: text, parameters, Python functions.
+
+        Returns
+        -------
+        Model
+            One that shares nothing with this.
 
         Examples
         --------
@@ -182,6 +188,17 @@ class Model(Floating):
         ------
         UnknownNameError
             When there is no such object.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m.facts("plate")["parents"]
+        ['low', 'high']
         """
         return self._document.object(name)
 
@@ -192,6 +209,17 @@ class Model(Floating):
         ----------
         line
             The text up to the cursor.
+
+        Returns
+        -------
+        list of str
+            Kinds, functions, names of objects and arguments, in alphabetical order.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> moldloft.loads("").completions("BSu")
+        ['BSubCurve', 'BSubSnake', 'BSurf']
         """
         return self._document.complete(line)
 
@@ -251,7 +279,24 @@ class Model(Floating):
         ----------
         times
             The level, 0 for the sizes as written.
+
+        Raises
+        ------
+        Error
+            When the level is negative.
+        ModelError
+            When it is too fine.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("int n = refined(3);")
+        >>> m.refine(1)
+        >>> m.eval("n")
+        5.0
         """
+        if times < 0:
+            raise Error(f"the level of refinement is 0 or more, not {times}")
         self._document.refine(times)
         self._refined = times
 
@@ -265,7 +310,18 @@ class Model(Floating):
         self._document.set_text(text)
 
     def check(self) -> None:
-        """Raise :class:`ModelError` with all diagnostics when the model has an error."""
+        """Raise :class:`ModelError` with all diagnostics when the model has an error.
+
+        Raises
+        ------
+        ModelError
+            With all diagnostics, when one is an error.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> moldloft.loads("AbsPoint P(1, 2, 3);").check()
+        """
         if self._document.has_errors():
             diagnostics = self._document.diagnostics()
             raise ModelError("\n".join(map(str, diagnostics)).rstrip(), diagnostics)
@@ -287,6 +343,13 @@ class Model(Floating):
     def keys(self) -> list[str]:
         """The names of all parameters and objects.
 
+        Returns
+        -------
+        list of str
+            In the order of the text, parameters first.
+
+        Examples
+        --------
         >>> import moldloft
         >>> moldloft.loads("param float a = 1 in [0, 2]; AbsPoint P(a, 0, 0);").keys()
         ['a', 'P']
@@ -336,6 +399,18 @@ class Model(Floating):
         ModelError
             When a value is not a number or out of its range, or a name unknown; nothing is
             changed then.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m.set({"b": 3, "B.x": 5})
+        >>> m["b"], m["B"].x
+        (3.0, 5.0)
         """
         numbers = []
         for name, value in values.items():
@@ -360,6 +435,11 @@ class Model(Floating):
         float, str, numpy.ndarray, list, Field or Set
             A vector as an array ``(3,)``; rows and grids as arrays; fields and sets as
             :class:`moldloft.implicit.Field` and :class:`moldloft.implicit.Set`.
+
+        Raises
+        ------
+        ModelError
+            When the text is not an expression, or has no value; the diagnostics have its place.
 
         Warns
         -----
@@ -387,6 +467,27 @@ class Model(Floating):
         tags
             Only the patches that carry one of these tags, such as ``"lid"`` or a name of your
             own; by default all patches.
+
+        Returns
+        -------
+        Mesh
+            Quadrilaterals and triangles, joined where patches share curves.
+
+        Raises
+        ------
+        ModelError
+            When no patch has such a tag.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m.mesh().vertices.shape, m.mesh().faces.shape
+        ((9, 3), (4, 4))
         """
         from moldloft.mesh import Mesh
 
@@ -397,11 +498,32 @@ class Model(Floating):
         """Edges of patches in one place, and corners on edges of others, that are not joined.
 
         Each is an error: the mesh is open where the shape is closed.
+
+        Returns
+        -------
+        list of Diagnostic
+            Empty for a mesh that is joined wherever its patches meet.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m.junctions()
+        []
         """
         return self._document.junctions()
 
     def blocks(self) -> Blocks:
         """Hexahedra of all shown solids, for the current model.
+
+        Returns
+        -------
+        Blocks
+            Vertices and cells, with the faces that blocks share.
 
         Raises
         ------
@@ -419,6 +541,18 @@ class Model(Floating):
         ----------
         by
             Parameters, or literals such as ``"P21.x"``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(n, 3, len(by))``: the change of each vertex per unit of each parameter.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such parameter or number.
+        ModelError
+            As for :meth:`blocks`.
         """
         return self._document.block_jacobian(list(by))
 
@@ -434,6 +568,11 @@ class Model(Floating):
         -------
         numpy.ndarray
             Shape ``(vertices, 3, len(by))``.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such parameter or number.
 
         Examples
         --------
@@ -462,6 +601,18 @@ class Model(Floating):
         by
             A parameter, or a literal such as ``"P21.y"``.
 
+        Returns
+        -------
+        float or numpy.ndarray
+            Of the shape of the value, per unit of the parameter.
+
+        Raises
+        ------
+        ModelError
+            When the text is not an expression, or has no number as value.
+        UnknownNameError
+            When there is no such parameter or number.
+
         Examples
         --------
         >>> import moldloft
@@ -480,6 +631,30 @@ class Model(Floating):
             Expressions of the language with a number or a vector as value.
         by
             Names of parameters.
+
+        Returns
+        -------
+        list of list
+            A row for each expression, in it a number or array for each parameter.
+
+        Raises
+        ------
+        ModelError
+            When a text is not an expression, or has no number as value.
+        UnknownNameError
+            When there is no such parameter or number.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> [[change]] = m.derivatives(["plate.area"], ["b"])
+        >>> round(change, 9)
+        4.0
         """
         return self._document.derivatives(list(expressions), list(by))
 
@@ -534,6 +709,19 @@ class Model(Floating):
             When there is no such folder, or it cannot be written to.
         FormatError
             When the format is unknown or cannot hold the model.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> import tempfile, pathlib
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     [path.name for path in m.write(pathlib.Path(folder) / "plate.stl")]
+        ['plate.stl']
         """
         from moldloft.files import commit, ending, produce
 
@@ -553,7 +741,7 @@ class Model(Floating):
             whole=whole,
             triangles=triangles,
         )
-        return commit(path.parent, files)
+        return commit(path.parent, files, make=False)
 
     def encoded(
         self,
@@ -590,6 +778,27 @@ class Model(Floating):
             Both sides of a symmetric model, in files of plain panels.
         triangles
             Triangles only, in files of plain panels.
+
+        Returns
+        -------
+        dict
+            The bytes of each file by its name.
+
+        Raises
+        ------
+        Error
+            When the format is unknown or cannot hold the model.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> sorted(m.encoded("off", "plate.off"))
+        ['plate.off']
         """
         files = self._document.write(
             format, name, lids, immersed, list(tags), tolerance, whole, triangles
@@ -608,88 +817,6 @@ class Model(Floating):
 
     # -- for other packages ----------------------------------------------------------------
 
-    def to_pyvista(self, *, tags: str | Sequence[str] = ()) -> Any:
-        """The panels as ``pyvista.PolyData``; see :func:`moldloft.adapters.to_pyvista`.
-
-        Parameters
-        ----------
-        tags
-            Only patches with one of these tags; by default all.
-        """
-        from moldloft.adapters import to_pyvista
-
-        return to_pyvista(self, tags=tags)
-
-    def to_trimesh(self, *, tags: str | Sequence[str] = ()) -> Any:
-        """The panels as ``trimesh.Trimesh``; see :func:`moldloft.adapters.to_trimesh`.
-
-        Parameters
-        ----------
-        tags
-            Only patches with one of these tags; by default all.
-        """
-        from moldloft.adapters import to_trimesh
-
-        return to_trimesh(self, tags=tags)
-
-    def to_meshio(self, *, tags: str | Sequence[str] = ()) -> Any:
-        """The panels as ``meshio.Mesh``; see :func:`moldloft.adapters.to_meshio`.
-
-        Parameters
-        ----------
-        tags
-            Only patches with one of these tags; by default all.
-        """
-        from moldloft.adapters import to_meshio
-
-        return to_meshio(self, tags=tags)
-
-    def to_capytaine(self, *, lids: bool = False, name: str = "model") -> Any:
-        """The wetted panels for Capytaine; see :func:`moldloft.adapters.to_capytaine`.
-
-        Parameters
-        ----------
-        lids
-            Include lids.
-        name
-            What Capytaine calls the body.
-        """
-        from moldloft.adapters import to_capytaine
-
-        return to_capytaine(self, lids=lids, name=name)
-
-    def to_ocp(self, *, accuracy: float | None = None) -> Any:
-        """The exact surfaces as an OCCT shape; see :func:`moldloft.adapters.to_ocp`.
-
-        Parameters
-        ----------
-        accuracy
-            The largest error of fitted surfaces; exact ones have none.
-        """
-        from moldloft.adapters import to_ocp
-
-        return to_ocp(self, accuracy=accuracy)
-
-    def to_gmsh(self, *, accuracy: float | None = None, name: str = "moldloft") -> list[Any]:
-        """Adds the exact surfaces to Gmsh; see :func:`moldloft.adapters.to_gmsh`.
-
-        Parameters
-        ----------
-        accuracy
-            The largest error of fitted surfaces; exact ones have none.
-        name
-            The name of Gmsh's model.
-        """
-        from moldloft.adapters import to_gmsh
-
-        return to_gmsh(self, accuracy=accuracy, name=name)
-
-    def to_pandas(self) -> Any:
-        """The parameters as a ``pandas.DataFrame``; see :func:`moldloft.adapters.to_pandas`."""
-        from moldloft.adapters import to_pandas
-
-        return to_pandas(self)
-
     def picture(self, width: int = 1280, height: int = 720) -> bytes:
         """A picture of the panels, contours and wires, as PNG.
 
@@ -697,6 +824,27 @@ class Model(Floating):
         ----------
         width, height
             In points of the picture.
+
+        Returns
+        -------
+        bytes
+            The PNG file.
+
+        Raises
+        ------
+        ModelError
+            When a side is not 1 to 8192.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m.picture(64, 48)[1:4]
+        b'PNG'
         """
         return bytes(self._document.picture(width, height))
 
@@ -711,7 +859,38 @@ class Model(Floating):
             Width of the picture, pixels.
         height
             Height of the picture, pixels.
+
+        Returns
+        -------
+        bytes
+            The PNG file.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such kind.
+        ModelError
+            When a side is not 1 to 8192.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m.kind_picture("RuledSurf", 64, 48)[1:4]
+        b'PNG'
         """
+        from moldloft.language import reference
+        from moldloft.spelling import nearest
+
+        known = [row["name"] for row in reference() if row["is_kind"]]
+        if kind not in known:
+            near = nearest(kind, known)
+            hint = f"; did you mean `{near}`?" if near else ""
+            raise UnknownNameError(f"unknown kind `{kind}`{hint}")
         return bytes(self._document.portrait(kind, width, height))
 
     def convert(self, to: str) -> str:
@@ -727,6 +906,16 @@ class Model(Floating):
         ----------
         to
             ``"sdl"`` or ``"ms2"``.
+
+        Returns
+        -------
+        str
+            The text.
+
+        Raises
+        ------
+        Error
+            When ``to`` is another word, or an object would come back as another.
 
         Warns
         -----

@@ -112,6 +112,11 @@ class Nurbs:
         *parameters
             Parameters of the NURBS, one array for each direction; they are broadcast.
 
+        Returns
+        -------
+        tuple of numpy.ndarray
+            One for each direction, of the broadcast shape.
+
         Examples
         --------
         >>> import moldloft
@@ -145,6 +150,16 @@ class Nurbs:
         ----------
         name
             The name of the object.
+
+        Returns
+        -------
+        str
+            One statement.
+
+        Raises
+        ------
+        Error
+            For a solid, for which the language has no such kind.
 
         Examples
         --------

@@ -148,7 +148,21 @@ class Object:
         return wrapped(self._document.eval(self.name))
 
     def delete(self) -> None:
-        """Removes the object from the model and its text; refused while others depend on it."""
+        """Removes the object from the model and its text; refused while others depend on it.
+
+        Raises
+        ------
+        ModelError
+            While other objects are made of it.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("AbsPoint P(1, 2, 3);")
+        >>> m["P"].delete()
+        >>> m.keys()
+        []
+        """
         self._document.delete(self.name)
 
     def rename(self, name: str) -> None:
@@ -158,6 +172,19 @@ class Object:
         ----------
         name
             The new name.
+
+        Raises
+        ------
+        ModelError
+            When the name is not one of the language, or used already.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("AbsPoint P(1, 2, 3); AbsPoint Q(P.x, 0, 0);")
+        >>> m["P"].rename("stem")
+        >>> print(m.text)
+        AbsPoint stem(1, 2, 3); AbsPoint Q(stem.x, 0, 0);
         """
         self._document.rename(self.name, name)
         object.__setattr__(self, "name", name)
@@ -355,6 +382,11 @@ class _Located(Object):
         degree
             The degree along parameters in which the shape is not polynomial, 1 to 9.
 
+        Returns
+        -------
+        Nurbs
+            Knots, control points, weights and the proved error.
+
         Raises
         ------
         ModelError
@@ -456,6 +488,22 @@ class Surface(_Located):
         -------
         numpy.ndarray or tuple of two
             Shape ``(nu, nv, 3)``.
+
+        Raises
+        ------
+        Error
+            When a number is below 2.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m["plate"].grid(3, 5).shape
+        (3, 5, 3)
         """
         for name, count in (("nu", nu), ("nv", nv)):
             if not 0 < count < 1 << 31:
@@ -471,6 +519,27 @@ class Surface(_Located):
         ----------
         u, v
             Parameters in [0, 1] along each direction, or numbers of even ones.
+
+        Returns
+        -------
+        Look
+            Arrays ``(m, n)`` and ``(m, n, 3)``; NaN where the surface is singular.
+
+        Raises
+        ------
+        FairingError
+            For fewer than two parameters along a direction.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float b = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... ''')
+        >>> m["plate"].look(3, 5).normals[0, 0].tolist()
+        [0.0, 0.0, 1.0]
         """
         from moldloft.fairing.surface import Look, _parameters
 
@@ -494,6 +563,11 @@ class Solid(Object):
             The largest error of a fit, by default 1e-6 of the shape's diagonal.
         degree
             The degree along parameters in which the shape is not polynomial, 1 to 9.
+
+        Returns
+        -------
+        Nurbs
+            Knots, control points, weights and the proved error.
 
         Raises
         ------

@@ -155,6 +155,11 @@ class Sketch:
         strict
             Raise when a command is refused, instead of going on.
 
+        Returns
+        -------
+        Sketch
+            It has been run.
+
         Raises
         ------
         FileError
@@ -212,13 +217,25 @@ class Sketch:
         ----------
         path
             The file.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        SketchError
+            When there is nothing to save.
+        FileError
+            When there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
 
         path = Path(path)
         reply = self.run(f'SAVE AS "{path.name}"')[-1]
         assert reply.file is not None
-        return commit(path.parent, [Output(path.name, reply.file[1])])[0]
+        return commit(path.parent, [Output(path.name, reply.file[1])], make=False)[0]
 
     def export(
         self, path: str | os.PathLike[str], *, format: str | None = None, name: str | None = None
@@ -233,6 +250,20 @@ class Sketch:
             By default what the file's name ends in.
         name
             The object; by default the active one.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such object, or none is active.
+        SketchError
+            When it has no body to write.
+        FileError
+            When there is no such folder, or it cannot be written to.
         """
         from moldloft.files import Output, commit
 
@@ -244,7 +275,7 @@ class Sketch:
             reply = self.run(f'EXPORT {wanted} "{self._name(name)}" "{path.name}"')[-1]
             assert reply.file is not None
             data = reply.file[1]
-        return commit(path.parent, [Output(path.name, data)])[0]
+        return commit(path.parent, [Output(path.name, data)], make=False)[0]
 
     # -- objects -----------------------------------------------------------------------------
 
@@ -320,6 +351,16 @@ class Sketch:
         tolerance
             How far chords may miss curves; by default a thousandth of the body's size.
 
+        Returns
+        -------
+        tuple of two numpy.ndarray
+            Positions, and numbers of the corners of each face.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such object, or none is active.
+
         Notes
         -----
         A triangle has its last vertex twice.
@@ -335,6 +376,16 @@ class Sketch:
             Dimensions and variables; by default all that have a value.
         name
             The object; by default the active one.
+
+        Returns
+        -------
+        Gradient
+            For each dimension the change of each figure for a change of 1.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such object or dimension.
         """
         of = self._name(name)
         if by is None:
@@ -354,6 +405,16 @@ class Sketch:
             Its values, ``(n,)``.
         name
             The object; by default the active one.
+
+        Returns
+        -------
+        numpy.ndarray
+            A row for each value: volume, area, centroid x, y, z.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such object or dimension.
         """
         wanted = np.asarray(values, dtype=np.float64).ravel().tolist()
         return self._session.sweep(self._name(name), by, wanted)
@@ -381,6 +442,16 @@ class Sketch:
             Direction of the view about z, degrees.
         elevation
             Height of the view, degrees.
+
+        Returns
+        -------
+        bytes
+            The PNG file.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such object, or none is active.
         """
         return self._session.picture(self._name(name), width, height, azimuth, elevation)
 
@@ -407,6 +478,13 @@ class Sketch:
 
     def __repr__(self) -> str:
         return f"<Sketch: {', '.join(self.names) or 'no objects'}>"
+
+    def _repr_png_(self) -> bytes | None:
+        # A notebook shows the body; without one its text.
+        try:
+            return self.picture(480, 320)
+        except Error:
+            return None
 
     def _name(self, name: str | None) -> str:
         found = name or self._session.active()

@@ -511,7 +511,7 @@ class CrossCurves:
         from moldloft.files import Output, commit
 
         path = Path(path)
-        return commit(path.parent, [Output(path.name, self.csv().encode())])[0]
+        return commit(path.parent, [Output(path.name, self.csv().encode())], make=False)[0]
 
     def plot(self, path: str | os.PathLike[str]) -> Path:
         """Draw the arms over the displaced volume, a curve for each heel.

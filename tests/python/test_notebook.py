@@ -178,6 +178,16 @@ def test_what_a_notebook_shows(hull) -> None:
     assert "error" in shown(broken) and "<)" in shown(broken)
 
 
+def test_sets_and_sketches_are_pictures_where_they_have_a_body() -> None:
+    from moldloft import implicit as im
+
+    half = im.plane((0, 0, 1), (0, 0, 0))
+    assert (im.Set(half) & im.sphere((0, 0, 0), 1))._repr_png_().startswith(b"\x89PNG")
+    assert im.Set(half)._repr_png_() is None
+    sketch = moldloft.Sketch()
+    assert sketch._repr_png_() is None
+
+
 def test_drawings_of_objects_are_svg(hull) -> None:
     from moldloft.display import object_svg
 

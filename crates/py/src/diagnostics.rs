@@ -85,6 +85,12 @@ impl PyDiagnostic {
         self.severity == moldloft::diag::Severity::Error.word()
     }
 
+    /// The facts as plain data, as `moldloft check --json` prints them.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     Fields by name; labels and the correction are dictionaries, absent facts None.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let labels = |labels: &[PyLabel]| -> PyResult<Vec<Bound<'py, PyDict>>> {
             labels.iter().map(|label| label.to_dict(py)).collect()

@@ -359,7 +359,7 @@ class GridFile:
         where the blocks have as many points as those read.
         """
         path = Path(path)
-        commit(path.parent, [Output(path.name, self._encoded(grids))])
+        commit(path.parent, [Output(path.name, self._encoded(grids))], make=False)
         return path
 
     def _encoded(self, grids: Sequence[Floats]) -> bytes:
@@ -440,4 +440,4 @@ def write_vts(path: str | os.PathLike[str], points: Floats, fields: dict[str, An
     path = Path(path)
     named = [(name, shaped(values)) for name, values in fields.items()]
     data = _core.grid_with_fields(shaped(points), named)
-    commit(path.parent, [Output(path.name, data)])
+    commit(path.parent, [Output(path.name, data)], make=False)

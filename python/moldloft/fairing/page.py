@@ -499,4 +499,4 @@ def write_page(
     path = Path(path)
     if path.suffix.lower() not in (".html", ".htm"):
         raise Error(f"a page is .html, not `{path}`")
-    return commit(path.parent, [Output(path.name, page(fairing, title).encode())])[0]
+    return commit(path.parent, [Output(path.name, page(fairing, title).encode())], make=False)[0]

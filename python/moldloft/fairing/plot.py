@@ -76,7 +76,7 @@ def _saved(draw: Any, size: tuple[float, float], path: str | PathLike[str]) -> N
         # No date: the same fairing gives the same file.
         metadata = {"Date": None} if kind == "svg" else {"Software": None}
         figure.savefig(data, format=kind, dpi=150, metadata=metadata)
-    commit(path.parent, [Output(path.name, data.getvalue())])
+    commit(path.parent, [Output(path.name, data.getvalue())], make=False)
 
 
 def _plane(points: Floats) -> tuple[int, int]:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, overload
 
 from moldloft import _core
 from moldloft.arguments import explain
-from moldloft.implicit.fields import Field, triple
+from moldloft.implicit.fields import Field
+from moldloft.implicit.moving import triple
 
 if TYPE_CHECKING:
     from moldloft.implicit.sets import Set

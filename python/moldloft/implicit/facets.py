@@ -255,7 +255,7 @@ class Facets:
         point
             A point of the plane, ``(3,)``.
         """
-        from moldloft.implicit.fields import triple
+        from moldloft.implicit.moving import triple
 
         found = self._core.section(triple(normal, "normal"), triple(point, "point"))
         return [Contour(points, closed) for points, closed in found]
@@ -298,7 +298,7 @@ class Facets:
         target = Path(path)
         wanted = (format or target.suffix.lstrip(".")).lower()
         data = self._core.write(wanted, target.stem)
-        return commit(target.parent, [Output(target.name, data)])[0]
+        return commit(target.parent, [Output(target.name, data)], make=False)[0]
 
     def picture(
         self, path: str | os.PathLike[str] | None = None, *, size: tuple[int, int] = (1200, 800)
@@ -317,7 +317,7 @@ class Facets:
             from moldloft.files import Output, commit
 
             target = Path(path)
-            commit(target.parent, [Output(target.name, png)])
+            commit(target.parent, [Output(target.name, png)], make=False)
         return png
 
     def __repr__(self) -> str:

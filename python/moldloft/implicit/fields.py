@@ -9,6 +9,7 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.arguments import explain
+from moldloft.implicit.moving import Moving, box_of, triple
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -19,14 +20,6 @@ if TYPE_CHECKING:
 __all__ = ["Field"]
 
 
-def triple(x: Sequence[float] | Floats, what: str) -> list[float]:
-    """Three numbers as a list."""
-    values = [float(v) for v in x]
-    if len(values) != 3:
-        raise ValueError(f"the {what} has three coordinates, found {len(values)}")
-    return values
-
-
 def points_of(points: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
     """Points as a contiguous array (n, 3), and the shape without the last extent."""
     array = np.asarray(points, dtype=np.float64)
@@ -35,7 +28,7 @@ def points_of(points: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
     return np.ascontiguousarray(array.reshape(-1, 3)), array.shape[:-1]
 
 
-class Field:
+class Field(Moving):
     """An implicit function f(x, y, z): solid where negative, zero on the surface, air elsewhere.
 
     Fields are combined by ``+ - * / %`` with fields and numbers, ``**`` a whole number and the
@@ -73,6 +66,22 @@ class Field:
         ----------
         points
             Points ``(…, 3)``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape of the points; along x, y and z.
+
+        Raises
+        ------
+        ArgumentError
+            When the points have another shape.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> im.sphere((0, 0, 0), 1).gradient((1, 2, 3))
+        array([2., 4., 6.])
         """
         flat, shape = points_of(points)
         return self._core.gradients(flat)[1].reshape(*shape, 3)
@@ -84,6 +93,22 @@ class Field:
         ----------
         points
             Points ``(…, 3)``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(…, 3, 3)``, symmetric.
+
+        Raises
+        ------
+        ArgumentError
+            When the points have another shape.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> im.sphere((0, 0, 0), 1).hessian((1, 2, 3)).diagonal().tolist()
+        [2.0, 2.0, 2.0]
         """
         flat, shape = points_of(points)
         return self._core.hessians(flat).reshape(*shape, 3, 3)
@@ -97,8 +122,25 @@ class Field:
             The low corner of a box, ``(3,)``.
         high
             The high corner of a box, ``(3,)``.
+
+        Returns
+        -------
+        tuple of float
+            A number that no value is below, and one that none is above.
+
+        Raises
+        ------
+        ArgumentError
+            When the low corner is not below the high one, or a coordinate is not finite.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> low, high = im.sphere((0, 0, 0), 1).range((-1, -1, -1), (1, 1, 1))
+        >>> bool(low <= -1 and high >= 2)
+        True
         """
-        return self._core.range(triple(low, "low corner"), triple(high, "high corner"))
+        return self._core.range(*box_of(low, high))
 
     @property
     def degree(self) -> int:
@@ -131,56 +173,19 @@ class Field:
         ----------
         other
             The other field.
+
+        Returns
+        -------
+        bool
+            Two that are written differently, as ``x + y`` and ``y + x``, are not the same.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> im.sphere((0, 0, 0), 1).same(im.sphere((0, 0, 0), 1))
+        True
         """
         return self._core.same(other._core)
-
-    def translated(self, by: Triple) -> Field:
-        """The field moved by a vector.
-
-        Parameters
-        ----------
-        by
-            The vector, ``(3,)``.
-        """
-        return self.mapped(np.eye(3), by)
-
-    def turned(self, point: Triple, direction: Triple, angle: float) -> Field:
-        """The field turned about a line, right-handed, by an angle in radians.
-
-        Parameters
-        ----------
-        point
-            A point of the axis, ``(3,)``.
-        direction
-            A direction of any length, ``(3,)``.
-        angle
-            Angle, radians.
-        """
-        return self.mapped(*turn(point, direction, angle))
-
-    def mirrored(self, normal: Triple, point: Triple = (0, 0, 0)) -> Field:
-        """The mirror image in a plane.
-
-        Parameters
-        ----------
-        normal
-            A normal of any length, ``(3,)``; it points from solid to air.
-        point
-            A point, ``(3,)``.
-        """
-        return self.mapped(*reflection(normal, point))
-
-    def scaled(self, factor: float, centre: Triple = (0, 0, 0)) -> Field:
-        """The field scaled about a point.
-
-        Parameters
-        ----------
-        factor
-            The factor, not zero.
-        centre
-            The centre, ``(3,)``.
-        """
-        return self.mapped(*scaling(factor, centre))
 
     def mapped(self, matrix: ArrayLike, shift: Triple = (0, 0, 0)) -> Field:
         """The field moved by the affine map X -> matrix X + shift.
@@ -191,6 +196,22 @@ class Field:
             Matrix ``(3, 3)``.
         shift
             Translation after the matrix, ``(3,)``.
+
+        Returns
+        -------
+        Field
+            A new one; this stays as it is.
+
+        Raises
+        ------
+        Error
+            When the matrix is singular.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> im.sphere((0, 0, 0), 1).mapped([[4, 0, 0], [0, 1, 0], [0, 0, 1]])((3, 0, 0)) < 0
+        True
         """
         rows = np.asarray(matrix, dtype=np.float64)
         if rows.shape != (3, 3):
@@ -209,6 +230,11 @@ class Field:
         z
             The third field.
 
+        Returns
+        -------
+        Field
+            A new one; this stays as it is.
+
         Examples
         --------
         >>> from moldloft import implicit as im
@@ -219,7 +245,25 @@ class Field:
         return Field(self._core.remapped(x._core, y._core, z._core))
 
     def dumps(self) -> str:
-        """The field as text, from which :func:`loads` makes the same one, bit for bit."""
+        """The field as text, from which :func:`loads` makes the same one, bit for bit.
+
+        Returns
+        -------
+        str
+            One line a value.
+
+        Raises
+        ------
+        Error
+            When a part is a function from outside, which has no text.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.sphere((0, 0, 0), 1)
+        >>> im.loads(im.Set(ball).dumps()).member((0, 0, 0))
+        -1
+        """
         return self._core.to_text()
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -293,37 +337,6 @@ def _required(x: object) -> Field:
     if field is None:
         raise TypeError(f"expected a field or a number, found {type(x).__name__}")
     return field
-
-
-def turn(point: Triple, direction: Triple, angle: float) -> tuple[Floats, list[float]]:
-    """The map of a turn (Rodrigues' formula)."""
-    angle = float(angle)
-    d = np.array(triple(direction, "direction"))
-    size = float(np.linalg.norm(d))
-    if not size > 0 or not np.isfinite(size):
-        raise ValueError("the direction of the axis has no length")
-    d /= size
-    cross = np.array([[0, -d[2], d[1]], [d[2], 0, -d[0]], [-d[1], d[0], 0]])
-    matrix = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
-    p = np.array(triple(point, "point"))
-    return matrix, list(p - matrix @ p)
-
-
-def reflection(normal: Triple, point: Triple) -> tuple[Floats, list[float]]:
-    """The map of a mirror."""
-    n = np.array(triple(normal, "normal"))
-    size = float(np.linalg.norm(n))
-    if not size > 0 or not np.isfinite(size):
-        raise ValueError("the normal of the mirror has no length")
-    n /= size
-    p = np.array(triple(point, "point"))
-    return np.eye(3) - 2 * np.outer(n, n), list(2 * n * (n @ p))
-
-
-def scaling(factor: float, centre: Triple) -> tuple[Floats, list[float]]:
-    """The map of a scaling."""
-    c = np.array(triple(centre, "centre"))
-    return np.eye(3) * float(factor), list(c * (1 - float(factor)))
 
 
 def axes() -> tuple[Field, Field, Field]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from moldloft import _core
 from moldloft.arguments import explain
-from moldloft.implicit.fields import triple
+from moldloft.implicit.moving import triple
 from moldloft.implicit.sets import Set
 
 if TYPE_CHECKING:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-import math
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -13,25 +11,23 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.arguments import explain
+from moldloft.errors import Error
 from moldloft.implicit.answers import (
     Attributes,
     Distance,
     Hit,
-    Lamp,
     Leaf,
     Mass,
     Nearest,
-    Sun,
 )
+from moldloft.implicit.edges import Edged
 from moldloft.implicit.facets import Facets
 from moldloft.implicit.fields import (
     Field,
     points_of,
-    reflection,
-    scaling,
-    triple,
-    turn,
 )
+from moldloft.implicit.moving import Moving, box_of, corners_of, triple
+from moldloft.implicit.pictures import Pictured
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -56,15 +52,7 @@ def _whole(value: int | None, what: str, least: int) -> int | None:
     return int(value)
 
 
-def _corners(low: Triple | None, high: Triple | None) -> tuple[list[float], list[float]] | None:
-    if low is None and high is None:
-        return None
-    if low is None or high is None:
-        raise ValueError("a box has two corners: give both low and high, or neither")
-    return triple(low, "low corner"), triple(high, "high corner")
-
-
-class Set:
+class Set(Moving, Edged, Pictured):
     """A set of points: the solid sides of fields under ``|``, ``&``, ``-``, ``^`` and complement.
 
     Sets never change and share their parts, so holding on to an operand is all that undo needs.
@@ -115,6 +103,8 @@ class Set:
     ) -> _core.Set:
         if colour is not None and colour not in range(16):
             raise ValueError(f"a palette colour is a whole number from 0 to 15, found {colour}")
+        if tolerance is not None and not 0 <= tolerance < np.inf:
+            raise ValueError(f"a tolerance is a length of 0 or more, found {tolerance}")
         words = {str(k): str(v) for k, v in (tags or {}).items()}
         return self._core.with_attributes(name, colour, material, tolerance, words)
 
@@ -134,13 +124,30 @@ class Set:
         name
             A name.
         colour
-            Colour index, 0 to 255.
+            Colour of the palette, 0 to 15.
         material
             Name of a material.
         tolerance
             How near to the surface a point counts as on it.
         tags
             Texts by name.
+
+        Returns
+        -------
+        Set
+            A new one; this stays as it is.
+
+        Raises
+        ------
+        ArgumentError
+            When the colour is not of the palette, or the tolerance negative.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> ball.with_attributes(name="buoy", colour=3).member((0, 0, 0))
+        -1
         """
         return Set(self._with(name, colour, material, tolerance, tags))
 
@@ -172,11 +179,37 @@ class Set:
         return Set(self._core.complement())
 
     def thin(self) -> Set:
-        """The faces as sheets, without the inside; of sets whose primitives meet."""
+        """The faces as sheets, without the inside; of sets whose primitives meet.
+
+        Returns
+        -------
+        Set
+            A set without volume: its facets are sheets.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> ball.thin().mass().volume
+        0.0
+        """
         return Set(self._core.skin())
 
     def regularized(self) -> Set:
-        """An equal set without parts that combine to nothing new, such as A | A."""
+        """An equal set without parts that combine to nothing new, such as A | A.
+
+        Returns
+        -------
+        Set
+            A new one; this stays as it is.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> (ball | ball).regularized()
+        <set of 1 primitive>
+        """
         return Set(self._core.regularized())
 
     def pruned(self, low: Triple, high: Triple) -> Set:
@@ -188,56 +221,25 @@ class Set:
             The low corner of a box, ``(3,)``.
         high
             The high corner of a box, ``(3,)``.
+
+        Returns
+        -------
+        Set
+            The same inside of the box, and unspecified outside.
+
+        Raises
+        ------
+        ArgumentError
+            When the low corner is not below the high one, or a coordinate is not finite.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> (ball | im.sphere((9, 0, 0), 1)).pruned((-2, -2, -2), (2, 2, 2))
+        <set of 1 primitive>
         """
-        return Set(self._core.pruned(triple(low, "low corner"), triple(high, "high corner")))
-
-    def translated(self, by: Triple) -> Set:
-        """The set moved by a vector.
-
-        Parameters
-        ----------
-        by
-            The vector, ``(3,)``.
-        """
-        return self.mapped(np.eye(3), by)
-
-    def turned(self, point: Triple, direction: Triple, angle: float) -> Set:
-        """The set turned about a line, right-handed, by an angle in radians.
-
-        Parameters
-        ----------
-        point
-            A point of the axis, ``(3,)``.
-        direction
-            A direction of any length, ``(3,)``.
-        angle
-            Angle, radians.
-        """
-        return self.mapped(*turn(point, direction, angle))
-
-    def mirrored(self, normal: Triple, point: Triple = (0, 0, 0)) -> Set:
-        """The mirror image in a plane.
-
-        Parameters
-        ----------
-        normal
-            A normal of any length, ``(3,)``; it points from solid to air.
-        point
-            A point, ``(3,)``.
-        """
-        return self.mapped(*reflection(normal, point))
-
-    def scaled(self, factor: float, centre: Triple = (0, 0, 0)) -> Set:
-        """The set scaled about a point.
-
-        Parameters
-        ----------
-        factor
-            The factor, not zero.
-        centre
-            The centre, ``(3,)``.
-        """
-        return self.mapped(*scaling(factor, centre))
+        return Set(self._core.pruned(*box_of(low, high)))
 
     def mapped(self, matrix: ArrayLike, shift: Triple = (0, 0, 0)) -> Set:
         """The set moved by the affine map X -> matrix X + shift.
@@ -248,6 +250,23 @@ class Set:
             Matrix ``(3, 3)``.
         shift
             Translation after the matrix, ``(3,)``.
+
+        Returns
+        -------
+        Set
+            A new one; this stays as it is.
+
+        Raises
+        ------
+        Error
+            When the matrix is singular.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> ball.mapped([[4, 0, 0], [0, 1, 0], [0, 0, 1]]).member((3, 0, 0))
+        -1
         """
         rows = np.asarray(matrix, dtype=np.float64)
         if rows.shape != (3, 3):
@@ -265,114 +284,31 @@ class Set:
             The second field.
         z
             The third field.
+
+        Returns
+        -------
+        Set
+            A new one; this stays as it is.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> x, y, z = im.axes()
+        >>> ball.remapped(x, y, z / 2).member((0, 0, 1.5))
+        -1
         """
         return Set(self._core.remapped(x._core, y._core, z._core))
-
-    def offset(self, distance: float) -> Set:
-        """The set grown by a distance, or shrunk by a negative one; edges stay sharp.
-
-        Parameters
-        ----------
-        distance
-            By how much it grows; negative: shrinks.
-
-        Examples
-        --------
-        >>> from moldloft import implicit as im
-        >>> round(im.cuboid((0, 0, 0), (1, 1, 1)).offset(0.1).mass().volume, 9)
-        1.728
-        """
-        return Set(self._core.offset(float(distance)))
-
-    def shell(self, thickness: float) -> Set:
-        """The wall of that thickness inside of the surface.
-
-        Parameters
-        ----------
-        thickness
-            Thickness of the wall, in model units.
-        """
-        return Set(self._core.shell(float(thickness)))
-
-    def rounded(
-        self, width: float, *, lam: float = 2 / 3, edges: Sequence[Sequence[str]] | None = None
-    ) -> Set:
-        """The set with its convex edges rounded, of setback ``width`` on both faces.
-
-        ``edges`` are pairs of the names of faces, by default all; ``lam`` shapes the round between
-        0 (a chamfer) and 1 (the edge), 2/3 is an arc between perpendicular planes.
-
-        Parameters
-        ----------
-        width
-            Setback on both faces, in model units.
-        lam
-            Shape of the blend, between 0 and 1.
-        edges
-            Pairs of names of faces; by default all edges.
-        """
-        return Set(self._core.rounded(float(width), float(lam), _pairs(edges)))
-
-    def filleted(
-        self,
-        other: Set | Field,
-        width: float,
-        other_width: float | None = None,
-        *,
-        lam: float = 2 / 3,
-        edges: Sequence[Sequence[str]] | None = None,
-    ) -> Set:
-        """The union with another set, with fillets of setback ``width`` where their faces meet.
-
-        ``edges`` are pairs of the names of a face of this set and one of the other, by default all.
-        The faces are planes, balls, cylinders, cones and tori.
-
-        Parameters
-        ----------
-        other
-            The set that is joined.
-        width
-            Setback on this set, in model units.
-        other_width
-            Setback on the other set; by default the same.
-        lam
-            Shape of the blend, between 0 and 1.
-        edges
-            Pairs of a face of this set and one of the other; by default all.
-
-        Examples
-        --------
-        >>> from moldloft import implicit as im
-        >>> plate, post = im.cuboid((-2, -2, -1), (2, 2, 0)), im.cuboid((-1, -1, -1), (1, 1, 2))
-        >>> round(plate.filleted(post, 0.5).mass().volume - 24, 2) > 0
-        True
-        """
-        o = Set(other) if isinstance(other, Field) else other
-        widths = [float(width), float(width if other_width is None else other_width)]
-        return Set(self._core.filleted(o._core, widths, float(lam), _pairs(edges)))
-
-    def chamfered(self, width: float, *, edges: Sequence[Sequence[str]] | None = None) -> Set:
-        """The set with its convex edges chamfered, of setback ``width`` on both faces.
-
-        Parameters
-        ----------
-        width
-            Setback on both faces, in model units.
-        edges
-            Pairs of names of faces; by default all edges.
-
-        Examples
-        --------
-        >>> from moldloft import implicit as im
-        >>> round(im.cuboid((0, 0, 0), (10, 6, 4)).chamfered(1).mass().volume, 6)
-        206.0
-        """
-        return Set(self._core.rounded(float(width), None, _pairs(edges)))
 
     # -- kept ------------------------------------------------------------------------------
 
     def dumps(self) -> str:
         """The set as text, from which :func:`loads` makes the same one, bit for bit.
+
+        Returns
+        -------
+        str
+            A line for each primitive and each combination.
 
         Raises
         ------
@@ -395,6 +331,11 @@ class Set:
         ----------
         path
             The file.
+
+        Raises
+        ------
+        FileError
+            When there is no such folder, or it cannot be written to.
         """
         from moldloft.storage import put
 
@@ -407,6 +348,25 @@ class Set:
         ----------
         name
             The name that the program declares it under.
+
+        Returns
+        -------
+        str
+            A program.
+
+        Raises
+        ------
+        ArgumentError
+            When that is not a name.
+        Error
+            When a primitive is a function from outside, which has no text.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> ball.sdl("ball").splitlines()[-1]
+        'set ball = ball_11;'
         """
         if not name.isidentifier():
             raise ValueError(f"a set is declared under a name, found {name!r}")
@@ -456,6 +416,18 @@ class Set:
         ----------
         other
             The other set.
+
+        Returns
+        -------
+        bool
+            Sets that hold the same points may be combined differently, and are then not the same.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> ball.same(im.Set(im.sphere((0, 0, 0), 1))), ball.same(ball | ball)
+        (True, False)
         """
         return self._core.same(other._core)
 
@@ -481,6 +453,23 @@ class Set:
             The distance from the surface within which a point is on it.
         known
             Fields whose leaves are taken to be zero.
+
+        Returns
+        -------
+        int or numpy.ndarray
+            Whole numbers of the shape of the points without the last extent.
+
+        Raises
+        ------
+        ArgumentError
+            When the points have another shape.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> ball.member([[0, 0, 0], [1, 0, 0], [2, 0, 0]]).tolist()
+        [-1, 0, 1]
         """
         flat, shape = points_of(points)
         cores = [field._core for field in known]
@@ -494,6 +483,23 @@ class Set:
         ----------
         points
             Points ``(…, 3)``.
+
+        Returns
+        -------
+        int or numpy.ndarray
+            Whole numbers of the shape of the points without the last extent.
+
+        Raises
+        ------
+        ArgumentError
+            When the points have another shape.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> (ball | im.sphere((5, 0, 0), 1)).winner([(0, 0, 1), (5, 0, 1)]).tolist()
+        [0, 1]
         """
         flat, shape = points_of(points)
         winners = self._core.winners(flat).reshape(shape)
@@ -508,8 +514,26 @@ class Set:
             The low corner of a box, ``(3,)``.
         high
             The high corner of a box, ``(3,)``.
+
+        Returns
+        -------
+        tuple of float
+            A number that no value is below, and one that none is above.
+
+        Raises
+        ------
+        ArgumentError
+            When the low corner is not below the high one, or a coordinate is not finite.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> low, high = ball.range((2, 2, 2), (3, 3, 3))
+        >>> low > 0
+        True
         """
-        return self._core.range(triple(low, "low corner"), triple(high, "high corner"))
+        return self._core.range(*box_of(low, high))
 
     def bounds(self, accuracy: float = 1e-3) -> tuple[Floats, Floats] | None:
         """A box that is proved to contain the set, ``low, high``; None for an empty set.
@@ -519,10 +543,22 @@ class Set:
         accuracy
             The largest error, in the unit of the result.
 
+        Returns
+        -------
+        tuple of two numpy.ndarray, or None
+            The low and the high corner, ``(3,)`` each.
+
         Raises
         ------
         Error
             When the set has no end.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> [side.round(2).tolist() for side in ball.bounds()]
+        [[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]
         """
         found = self._core.bounds(float(accuracy))
         return None if found is None else (np.array(found[0]), np.array(found[1]))
@@ -553,6 +589,12 @@ class Set:
         cells
             The most cells by which the accuracy is sought, by default 400 000.
 
+        Returns
+        -------
+        Mass
+            ``volume``, ``centroid`` ``(3,)`` and ``inertia`` ``(3, 3)`` for density 1, each with
+            its bracket.
+
         Raises
         ------
         Error
@@ -568,7 +610,7 @@ class Set:
         if depth is not None and accuracy is not None:
             raise ValueError("give a depth or an accuracy, not both")
         depth = _whole(depth, "depth", 0)
-        facts = self._core.mass(_corners(low, high), depth, accuracy, _whole(cells, "cells", 1))
+        facts = self._core.mass(corners_of(low, high), depth, accuracy, _whole(cells, "cells", 1))
         return Mass(
             volume=facts["volume"],
             volume_bracket=facts["volume_bracket"],
@@ -600,8 +642,25 @@ class Set:
             The high corner of a box, ``(3,)``.
         accuracy
             How much nearer another point may be.
+
+        Returns
+        -------
+        Nearest or None
+            The point, its distance, and a proved lower bound of the distance.
+
+        Raises
+        ------
+        Error
+            When the set has no end and no box is given.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> round(ball.nearest((3, 0, 0)).distance, 6)
+        2.0
         """
-        found = self._core.nearest(triple(point, "point"), _corners(low, high), accuracy)
+        found = self._core.nearest(triple(point, "point"), corners_of(low, high), accuracy)
         if found is None:
             return None
         at, distance, at_least = found
@@ -630,6 +689,16 @@ class Set:
         accuracy
             The largest error of the distance.
 
+        Returns
+        -------
+        Distance or None
+            The distance, the two points, and a proved lower bound.
+
+        Raises
+        ------
+        Error
+            When a set has no end and no box is given.
+
         Examples
         --------
         >>> from moldloft import implicit as im
@@ -638,7 +707,7 @@ class Set:
         3.0
         """
         o = Set(other) if isinstance(other, Field) else other
-        found = self._core.distance(o._core, _corners(low, high), accuracy)
+        found = self._core.distance(o._core, corners_of(low, high), accuracy)
         if found is None:
             return None
         distance, at_least, first, second = found
@@ -655,6 +724,24 @@ class Set:
             A direction of any length, ``(3,)``.
         length
             How far the ray goes, in model units.
+
+        Returns
+        -------
+        list of Hit
+            Each with the length ``t`` along the ray, the point, the outward normal and the
+            primitive's number.
+
+        Raises
+        ------
+        Error
+            When the direction or the length is 0.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> [round(hit.t, 9) for hit in ball.hits((0, 0, -3), (0, 0, 1))]
+        [2.0, 4.0]
         """
         rays = self._core.hits(
             triple(start, "start"), triple(direction, "direction"), float(length)
@@ -688,101 +775,31 @@ class Set:
             not change are taken over. The result is the same, bit for bit.
         limit
             The most cells that the surface may pass through.
+
+        Returns
+        -------
+        Facets
+            Triangles counter-clockwise from outside; ``closed`` where the set is a solid.
+
+        Raises
+        ------
+        Error
+            When the set has no end and no box is given, or more cells are needed than ``limit``.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> facets = ball.facets(depth=4)
+        >>> abs(facets.volume - 4.19) < 0.1
+        True
         """
         if depth is not None and accuracy is not None:
             raise ValueError("give a depth or an accuracy, not both")
         depth = _whole(depth, "depth", 0)
         old = None if before is None else before._core
-        core = self._core.facets(_corners(low, high), depth, accuracy, float(limit), old)
+        core = self._core.facets(corners_of(low, high), depth, accuracy, float(limit), old)
         return Facets(core)
-
-    def picture(
-        self,
-        path: str | os.PathLike[str] | None = None,
-        low: Triple | None = None,
-        high: Triple | None = None,
-        *,
-        size: tuple[int, int] = (800, 600),
-        eye: Triple | None = None,
-        centre: Triple | None = None,
-        up: Triple = (0, 0, 1),
-        angle: float = 0.6,
-        lights: Sequence[Sun | Lamp] | None = None,
-        ambient: float = 0.22,
-        shadows: bool = True,
-        shine: float = 0.15,
-        samples: int = 1,
-    ) -> bytes:
-        """A ray-traced picture, a PNG file: exact surfaces with lights, shadows and colours.
-
-        Parameters
-        ----------
-        path
-            Where to write it too.
-        low, high
-            The box that is shown.
-        size
-            Picture points across and down.
-        eye, centre, up
-            From where to where one looks; by default from the front, right and above.
-        angle
-            Angle of view from top to bottom, in radians.
-        lights
-            :class:`Sun` and :class:`Lamp`; by default a sun over the left shoulder and a weak one
-            from the right.
-        ambient
-            Light from everywhere.
-        shadows
-            Whether things throw shadows.
-        shine
-            Strength of highlights, 0 to 1.
-        samples
-            Rays along each side of a picture point.
-        """
-        if not 0 < angle < math.pi:
-            raise ValueError(f"the angle of view must be between 0 and pi radians, found {angle}")
-        if min(size) < 1:
-            raise ValueError(f"a picture is 1 to 8192 points wide and high, found {size}")
-        if samples < 1:
-            raise ValueError(f"a picture point takes at least one sample, found {samples}")
-        corners = _corners(low, high) or self._core.around()
-        box = np.array(corners)
-        target = np.array(triple(centre, "centre")) if centre is not None else box.mean(axis=0)
-        if eye is not None:
-            place = np.array(triple(eye, "eye"))
-        else:
-            away = np.array([-0.62, -0.68, 0.42])
-            away /= np.linalg.norm(away)
-            place = target + away * _reach(box, target, away, triple(up, "up"), angle, size)
-        if lights is None:
-            ahead = (target - place) / np.linalg.norm(target - place)
-            right = np.cross(ahead, np.array(triple(up, "up")))
-            lights = [
-                Sun(tuple(ahead + 0.5 * right - 0.9 * np.array(up)), (0.75, 0.74, 0.7)),
-                Sun(tuple(ahead - 1.2 * right - 0.2 * np.array(up)), (0.16, 0.18, 0.22)),
-            ]
-        rows: list[tuple[list[float] | None, list[float], list[float]]] = []
-        for light in lights:
-            colour = triple(light.colour, "colour")
-            if isinstance(light, Sun):
-                rows.append((triple(light.direction, "direction"), [0.0, 0.0, 0.0], colour))
-            else:
-                rows.append((None, triple(light.place, "place"), colour))
-        png = self._core.picture(
-            corners,
-            [int(size[0]), int(size[1])],
-            (list(place), list(target), triple(up, "up"), float(angle)),
-            rows,
-            [float(ambient)] * 3,
-            [[0xFC, 0xFD, 0xFE], [0xE2, 0xE8, 0xEE]],
-            (shadows, [float(shine), 40.0], int(samples)),
-        )
-        if path is not None:
-            from moldloft.files import Output, commit
-
-            target_path = Path(path)
-            commit(target_path.parent, [Output(target_path.name, png)])
-        return png
 
     def __repr__(self) -> str:
         if self.is_everything:
@@ -792,16 +809,12 @@ class Set:
         count = self._core.contents
         return f"<set of {count} primitive{'s' if count != 1 else ''}>"
 
-
-def _pairs(edges: Sequence[Sequence[str]] | None) -> list[list[str]] | None:
-    """Edges by the names of two faces each."""
-    if edges is None:
-        return None
-    pairs = [[str(name) for name in edge] for edge in edges]
-    for pair in pairs:
-        if len(pair) != 2:
-            raise ValueError(f"an edge is named by two faces, found {len(pair)}")
-    return pairs
+    def _repr_png_(self) -> bytes | None:
+        # A notebook shows what has an end; of other sets their text.
+        try:
+            return self.picture(size=(360, 270))
+        except Error:
+            return None
 
 
 def loads(text: str) -> Set:
@@ -826,27 +839,6 @@ def load(path: str | os.PathLike[str]) -> Set:
     from moldloft.storage import read_text
 
     return loads(read_text(path))
-
-
-def _reach(
-    box: Floats,
-    target: Floats,
-    away: Floats,
-    up: Sequence[float],
-    angle: float,
-    size: tuple[int, int],
-) -> float:
-    """How far away one sees all of a box, with a little room about it."""
-    right = np.cross(np.array(up), away)
-    if not np.linalg.norm(right) > 0:
-        right = np.array([1.0, 0.0, 0.0])
-    right /= np.linalg.norm(right)
-    corners = np.array(list(itertools.product(*box.T))) - target
-    across, along = np.abs(corners @ right), corners @ away
-    upward = np.abs(corners @ np.cross(away, right))
-    slope = 0.92 * math.tan(angle / 2)
-    wide = slope * size[0] / size[1]
-    return float(max((upward / slope + along).max(), (across / wide + along).max()))
 
 
 explain(globals())

@@ -54,7 +54,7 @@ class _Entry:
     digest: str
 
 
-def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
+def commit(folder: Path, outputs: Sequence[Output], *, make: bool = True) -> list[Path]:
     """Write all files or none: as drafts first, synced, then renamed.
 
     Who reads them by :func:`read_set` meanwhile sees all old or all new ones. Mode, owner and links
@@ -63,9 +63,11 @@ def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
     Parameters
     ----------
     folder
-        Where to; made when it is not there.
+        Where to.
     outputs
         What to write.
+    make
+        Make the folder when it is not there, as commands do with the folder of ``-o``.
 
     Raises
     ------
@@ -75,6 +77,8 @@ def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
     if not outputs:
         return []
     folder = Path(folder)
+    if not make and not folder.is_dir():
+        raise FileError(f"cannot write `{folder / outputs[0].name}`: there is no folder `{folder}`")
     paths = [folder / output.name for output in outputs]
     made: list[Path] = []
     try:

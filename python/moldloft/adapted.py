@@ -1,0 +1,179 @@
+"""The methods of a model that hand it to other Python packages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+from moldloft.arguments import explain
+
+if TYPE_CHECKING:
+    from moldloft.models import Model
+
+__all__ = ["Adapted"]
+
+
+class Adapted:
+    """What :mod:`moldloft.adapters` does, as methods; packages are imported on first use."""
+
+    def to_pyvista(self, *, tags: str | Sequence[str] = ()) -> Any:
+        """The panels as ``pyvista.PolyData``; see :func:`moldloft.adapters.to_pyvista`.
+
+        Parameters
+        ----------
+        tags
+            Only patches with one of these tags; by default all.
+
+        Returns
+        -------
+        pyvista.PolyData
+            Panels, with the number of their patch.
+
+        Raises
+        ------
+        ModelError
+            When no patch has such a tag.
+        Error
+            Without PyVista.
+        """
+        from moldloft.adapters import to_pyvista
+
+        return to_pyvista(cast("Model", self), tags=tags)
+
+    def to_trimesh(self, *, tags: str | Sequence[str] = ()) -> Any:
+        """The panels as ``trimesh.Trimesh``; see :func:`moldloft.adapters.to_trimesh`.
+
+        Parameters
+        ----------
+        tags
+            Only patches with one of these tags; by default all.
+
+        Returns
+        -------
+        trimesh.Trimesh
+            Triangles.
+
+        Raises
+        ------
+        ModelError
+            When no patch has such a tag.
+        Error
+            Without trimesh.
+        """
+        from moldloft.adapters import to_trimesh
+
+        return to_trimesh(cast("Model", self), tags=tags)
+
+    def to_meshio(self, *, tags: str | Sequence[str] = ()) -> Any:
+        """The panels as ``meshio.Mesh``; see :func:`moldloft.adapters.to_meshio`.
+
+        Parameters
+        ----------
+        tags
+            Only patches with one of these tags; by default all.
+
+        Returns
+        -------
+        meshio.Mesh
+            Vertices ``(n, 3)``, triangles and quadrilaterals.
+
+        Raises
+        ------
+        ModelError
+            When no patch has such a tag.
+        Error
+            Without meshio.
+        """
+        from moldloft.adapters import to_meshio
+
+        return to_meshio(cast("Model", self), tags=tags)
+
+    def to_capytaine(self, *, lids: bool = False, name: str = "model") -> Any:
+        """The wetted panels for Capytaine; see :func:`moldloft.adapters.to_capytaine`.
+
+        Parameters
+        ----------
+        lids
+            Include lids.
+        name
+            What Capytaine calls the body.
+
+        Returns
+        -------
+        capytaine.FloatingBody
+            With the wetted panels as its mesh.
+
+        Raises
+        ------
+        Error
+            Without Capytaine.
+        """
+        from moldloft.adapters import to_capytaine
+
+        return to_capytaine(cast("Model", self), lids=lids, name=name)
+
+    def to_ocp(self, *, accuracy: float | None = None) -> Any:
+        """The exact surfaces as an OCCT shape; see :func:`moldloft.adapters.to_ocp`.
+
+        Parameters
+        ----------
+        accuracy
+            The largest error of fitted surfaces; exact ones have none.
+
+        Returns
+        -------
+        OCP.TopoDS.TopoDS_Shape
+            Shells and solids, in millimetres where the model states its unit.
+
+        Raises
+        ------
+        Error
+            Without OCP.
+        """
+        from moldloft.adapters import to_ocp
+
+        return to_ocp(cast("Model", self), accuracy=accuracy)
+
+    def to_gmsh(self, *, accuracy: float | None = None, name: str = "moldloft") -> list[Any]:
+        """Adds the exact surfaces to Gmsh; see :func:`moldloft.adapters.to_gmsh`.
+
+        Parameters
+        ----------
+        accuracy
+            The largest error of fitted surfaces; exact ones have none.
+        name
+            The name of Gmsh's model.
+
+        Returns
+        -------
+        list
+            Pairs ``(dimension, tag)`` of Gmsh's entities.
+
+        Raises
+        ------
+        Error
+            Without Gmsh.
+        """
+        from moldloft.adapters import to_gmsh
+
+        return to_gmsh(cast("Model", self), accuracy=accuracy, name=name)
+
+    def to_pandas(self) -> Any:
+        """The parameters as a ``pandas.DataFrame``; see :func:`moldloft.adapters.to_pandas`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each parameter: name, value, range.
+
+        Raises
+        ------
+        Error
+            Without pandas.
+        """
+        from moldloft.adapters import to_pandas
+
+        return to_pandas(cast("Model", self))
+
+
+explain(globals())

@@ -1,0 +1,162 @@
+"""Ray-traced pictures of sets."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from moldloft._core import Set as Core
+from moldloft.arguments import explain
+from moldloft.implicit.answers import Lamp, Sun
+from moldloft.implicit.moving import corners_of, triple
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Triple = Sequence[float]
+
+__all__ = ["Pictured"]
+
+
+class Pictured:
+    """What can be seen."""
+
+    _core: Core
+
+    def picture(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        low: Triple | None = None,
+        high: Triple | None = None,
+        *,
+        size: tuple[int, int] = (800, 600),
+        eye: Triple | None = None,
+        centre: Triple | None = None,
+        up: Triple = (0, 0, 1),
+        angle: float = 0.6,
+        lights: Sequence[Sun | Lamp] | None = None,
+        ambient: float = 0.22,
+        shadows: bool = True,
+        shine: float = 0.15,
+        samples: int = 1,
+    ) -> bytes:
+        """A ray-traced picture, a PNG file: exact surfaces with lights, shadows and colours.
+
+        Parameters
+        ----------
+        path
+            Where to write it too.
+        low, high
+            The box that is shown.
+        size
+            Picture points across and down.
+        eye, centre, up
+            From where to where one looks; by default from the front, right and above.
+        angle
+            Angle of view from top to bottom, in radians.
+        lights
+            :class:`Sun` and :class:`Lamp`; by default a sun over the left shoulder and a weak one
+            from the right.
+        ambient
+            Light from everywhere.
+        shadows
+            Whether things throw shadows.
+        shine
+            Strength of highlights, 0 to 1.
+        samples
+            Rays along each side of a picture point.
+
+        Returns
+        -------
+        bytes
+            The PNG file.
+
+        Raises
+        ------
+        Error
+            When the set has no end and no box is given.
+        FileError
+            When it cannot be written to ``path``.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1))
+        >>> ball.picture(size=(32, 24))[1:4]
+        b'PNG'
+        """
+        if not 0 < angle < math.pi:
+            raise ValueError(f"the angle of view must be between 0 and pi radians, found {angle}")
+        if min(size) < 1:
+            raise ValueError(f"a picture is 1 to 8192 points wide and high, found {size}")
+        if samples < 1:
+            raise ValueError(f"a picture point takes at least one sample, found {samples}")
+        corners = corners_of(low, high) or self._core.around()
+        box = np.array(corners)
+        target = np.array(triple(centre, "centre")) if centre is not None else box.mean(axis=0)
+        if eye is not None:
+            place = np.array(triple(eye, "eye"))
+        else:
+            away = np.array([-0.62, -0.68, 0.42])
+            away /= np.linalg.norm(away)
+            place = target + away * _reach(box, target, away, triple(up, "up"), angle, size)
+        if lights is None:
+            ahead = (target - place) / np.linalg.norm(target - place)
+            right = np.cross(ahead, np.array(triple(up, "up")))
+            lights = [
+                Sun(tuple(ahead + 0.5 * right - 0.9 * np.array(up)), (0.75, 0.74, 0.7)),
+                Sun(tuple(ahead - 1.2 * right - 0.2 * np.array(up)), (0.16, 0.18, 0.22)),
+            ]
+        rows: list[tuple[list[float] | None, list[float], list[float]]] = []
+        for light in lights:
+            colour = triple(light.colour, "colour")
+            if isinstance(light, Sun):
+                rows.append((triple(light.direction, "direction"), [0.0, 0.0, 0.0], colour))
+            else:
+                rows.append((None, triple(light.place, "place"), colour))
+        png = self._core.picture(
+            corners,
+            [int(size[0]), int(size[1])],
+            (list(place), list(target), triple(up, "up"), float(angle)),
+            rows,
+            [float(ambient)] * 3,
+            [[0xFC, 0xFD, 0xFE], [0xE2, 0xE8, 0xEE]],
+            (shadows, [float(shine), 40.0], int(samples)),
+        )
+        if path is not None:
+            from moldloft.files import Output, commit
+
+            target_path = Path(path)
+            commit(target_path.parent, [Output(target_path.name, png)], make=False)
+        return png
+
+
+def _reach(
+    box: Floats,
+    target: Floats,
+    away: Floats,
+    up: Sequence[float],
+    angle: float,
+    size: tuple[int, int],
+) -> float:
+    """How far away one sees all of a box, with a little room about it."""
+    right = np.cross(np.array(up), away)
+    if not np.linalg.norm(right) > 0:
+        right = np.array([1.0, 0.0, 0.0])
+    right /= np.linalg.norm(right)
+    corners = np.array(list(itertools.product(*box.T))) - target
+    across, along = np.abs(corners @ right), corners @ away
+    upward = np.abs(corners @ np.cross(away, right))
+    slope = 0.92 * math.tan(angle / 2)
+    wide = slope * size[0] / size[1]
+    return float(max((upward / slope + along).max(), (across / wide + along).max()))
+
+
+explain(globals())
