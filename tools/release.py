@@ -278,6 +278,10 @@ def editor() -> None:
     path = DIST / f"moldloft-{version()}-{target}.vsix"
     try:
         shutil.copy2(server(), inside)
+        workbench = ROOT / "python" / "moldloft" / "workbench"
+        shutil.copytree(workbench / "page", folder / "page", dirs_exist_ok=True)
+        for packed in (workbench / "wasm").glob("engine.wasm.*"):
+            shutil.copy2(packed, folder / "page")
         for name in ("LICENSE-MIT", "LICENSE-APACHE", "CHANGELOG.md"):
             shutil.copy2(ROOT / name, folder)
         run(npm, "install", "--no-audit", "--no-fund", "--loglevel=error", cwd=folder)
@@ -285,11 +289,13 @@ def editor() -> None:
         run(shutil.which("npx") or "npx", *options, "-o", path, cwd=folder)
     finally:
         shutil.rmtree(inside)
+        shutil.rmtree(folder / "page", ignore_errors=True)
         for name in ("LICENSE-MIT", "LICENSE-APACHE", "CHANGELOG.md"):
             (folder / name).unlink(missing_ok=True)
     with zipfile.ZipFile(path) as archive:
         names = archive.namelist()
-    for wanted in (f"extension/server/moldloft-lsp{EXE}", "extension/src/extension.js"):
+    for wanted in (f"extension/server/moldloft-lsp{EXE}", "extension/src/extension.js",
+                   "extension/src/view.js", "extension/page/index.html"):
         if wanted not in names:
             raise SystemExit(f"{path.name} lacks {wanted}")
     print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")

@@ -6,7 +6,7 @@ import { defaultKeymap, history, historyKeymap, indentLess, indentMore, isolateH
 import { bracketMatching, foldGutter, indentOnInput, StreamLanguage, syntaxHighlighting, type StreamParser } from '@codemirror/language'
 import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint'
 import { highlightSelectionMatches, searchKeymap, search } from '@codemirror/search'
-import { Annotation, ChangeSet, Compartment, EditorState, StateEffect, StateField, Transaction } from '@codemirror/state'
+import { Annotation, ChangeSet, Compartment, EditorState, StateEffect, StateField, Transaction, type Text } from '@codemirror/state'
 import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type DecorationSet } from '@codemirror/view'
 import { classHighlighter } from '@lezer/highlight'
 import { h } from './dom'
@@ -19,6 +19,8 @@ export interface Edit {
 }
 
 const fromOutside = Annotation.define<boolean>()
+/** A change that the host of the page made: the engine hears it, the host knows it. */
+const fromHost = Annotation.define<boolean>()
 const mark = StateEffect.define<{ from: number; to: number } | null>()
 
 const marks = StateField.define<DecorationSet>({
@@ -91,6 +93,9 @@ export class Editor {
   onPending: (pending: boolean) => void = () => {}
   onCursor: (offset: number) => void = () => {}
   onTrouble: (words: string) => void = () => {}
+  /** What a hand on the page changed: places in the text before it, and what is there now. */
+  onEdit: (before: Text, changes: Edit[]) => void = () => {}
+  onShow: (place: [number, number], focus: boolean) => void = () => {}
 
   constructor(host: HTMLElement, private readonly link: Link, nonce: string, private readonly keys: { key: string; run: () => boolean }[]) {
     this.view = new EditorView({ parent: host, state: this.state('', nonce) })
@@ -118,7 +123,14 @@ export class Editor {
           ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...completionKeymap,
         ]),
         EditorView.updateListener.of((update) => {
-          if (update.docChanged && !update.transactions.some((t) => t.annotation(fromOutside))) this.push()
+          if (update.docChanged && !update.transactions.some((t) => t.annotation(fromOutside))) {
+            if (!update.transactions.some((t) => t.annotation(fromHost))) {
+              const made: Edit[] = []
+              update.changes.iterChanges((from, to, _a, _b, insert) => made.push({ from, to, insert: insert.toString() }))
+              this.onEdit(update.startState.doc, made)
+            }
+            this.push()
+          }
           if (update.selectionSet && !update.docChanged) this.onCursor(update.state.selection.main.head)
         }),
         EditorView.domEventHandlers({
@@ -184,7 +196,7 @@ export class Editor {
   }
 
   /** The least change that makes the text this one. */
-  replace(text: string, silently: boolean): void {
+  replace(text: string, silently: boolean, host = false): void {
     const old = this.text
     if (old === text) return
     let start = 0
@@ -194,7 +206,7 @@ export class Editor {
     while (end < most - start && old.charCodeAt(old.length - 1 - end) === text.charCodeAt(text.length - 1 - end)) end++
     this.view.dispatch({
       changes: { from: start, to: old.length - end, insert: text.slice(start, text.length - end) },
-      annotations: silently ? [Transaction.addToHistory.of(false), fromOutside.of(true)] : [isolateHistory.of('full')],
+      annotations: host ? [Transaction.addToHistory.of(false), fromHost.of(true)] : silently ? [Transaction.addToHistory.of(false), fromOutside.of(true)] : [isolateHistory.of('full')],
     })
   }
 
@@ -295,6 +307,7 @@ export class Editor {
       this.view.dispatch({ effects: mark.of(null) })
       return
     }
+    this.onShow(place, focus)
     const effects = [mark.of({ from: place[0], to: place[1] }), EditorView.scrollIntoView(place[0], { y: 'center' })]
     this.view.dispatch(focus ? { effects, selection: { anchor: place[0] } } : { effects })
     if (focus) this.view.focus()

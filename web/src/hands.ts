@@ -37,16 +37,26 @@ interface Drag {
   onSurface: boolean
   moved: boolean
   ready: boolean
+  /** Settles when the engine has said what moves the place; false when nothing does. */
+  begun: Promise<boolean>
+  /** True when the pointer has been followed since the drag was ready. */
+  aimed: boolean
+  /** True for a drag by the keys of the keyboard. */
+  keys: boolean
   last: [number, number]
 }
 
 const AXES = ['x', 'y', 'z']
+const STEPS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
 const unit = (k: number) => new Vector3().setComponent(k, 1)
 
 export class Hands {
   measuring = false
   private places: Vector3[] = []
+  private under: [number, number] | null = null
   private drag: Drag | null = null
+  /** Settles when the engine has heard the end of the last drag. */
+  private ended: Promise<void> = Promise.resolve()
   private readonly pointers = new Map<number, [number, number]>()
   private pressed: { x: number; y: number; button: number; shift: boolean; moved: boolean } | null = null
   private readonly requests: Newest<() => Promise<unknown>>
@@ -72,6 +82,9 @@ export class Hands {
     })
     c.addEventListener('keydown', (e) => this.key(e))
     this.entry.addEventListener('keydown', (e) => this.entered(e))
+    this.entry.addEventListener('blur', () => {
+      if (!this.entry.hidden && this.drag) void this.finish(this.drag.moved)
+    })
   }
 
   private at(e: MouseEvent): [number, number] {
@@ -87,31 +100,53 @@ export class Hands {
     this.view.canvas.focus({ preventScroll: true })
     this.view.canvas.setPointerCapture(e.pointerId)
     const [x, y] = this.at(e)
+    if (this.drag?.keys) void this.finish(this.drag.moved)
     this.pointers.set(e.pointerId, [x, y])
     this.pressed = { x, y, button: e.button, shift: e.shiftKey, moved: false }
     if (e.button !== 0 || e.shiftKey || this.measuring || this.pointers.size > 1 || this.link.still) return
     const item = this.view.near(x, y, e.pointerType === 'touch' ? 18 : 10)
-    if (item) void this.grab(item, x, y)
+    if (item) this.grab(item, x, y)
   }
 
-  private async grab(item: Drawn, x: number, y: number): Promise<void> {
+  private grab(item: Drawn, x: number, y: number, keys = false): void {
     this.act.select(item.object)
     const start = this.view.place(item)
-    const drag: Drag = { item, start, target: start.clone(), handles: [], own: [], names: [], axis: null, plane: null, onSurface: false, moved: false, ready: false, last: [x, y] }
+    const drag: Drag = {
+      item, start, target: start.clone(), handles: [], own: [], names: [], axis: null, plane: null, onSurface: false,
+      moved: false, ready: false, begun: Promise.resolve(false), aimed: false, keys, last: [x, y],
+    }
     this.drag = drag
+    drag.begun = this.begin(drag)
+  }
+
+  private async begin(drag: Drag): Promise<boolean> {
+    const { object } = drag.item
     try {
+      await this.ended
       await this.act.synced()
-      const { head } = await this.link.ask('drag_begin', { object: item.object })
-      if (this.drag !== drag) return
+      const { head } = await this.link.ask('drag_begin', { object })
       Object.assign(drag, { handles: head.handles, own: head.own, ready: true })
       drag.names = this.chosen(drag)
-      const said = drag.own.length ? `${item.object}: ${drag.own.join(', ')}` : `${item.object} follows from an expression: choose what moves it`
-      this.act.status(`${said} · X Y Z lock an axis, S keeps it on the surface below, digits enter a value, Esc takes it back`)
-      if (drag.moved) this.aim(...drag.last, false)
+      const said = drag.own.length ? `${object}: ${drag.own.join(', ')}` : `${object} follows from an expression: choose what moves it`
+      if (this.drag === drag) {
+        this.act.status(`${said} · ${drag.keys ? 'arrows move it, Enter ends, ' : ''}X Y Z lock an axis, S keeps it on the surface below, digits enter a value, Esc takes it back`)
+        if (drag.moved) this.aim(drag, false)
+      }
+      return true
     } catch (error) {
       if (this.drag === drag) this.drag = null
       if (error instanceof Refused) this.act.status(error.message)
+      return false
     }
+  }
+
+  /** A drag of the selected point by keys: arrows instead of the pointer. */
+  take(object: string): void {
+    const item = [...this.view.items.values()].find((i) => i.object === object && i.kind === 'point' && this.view.seen(i))
+    if (!item) return this.act.status(object ? `${object} is no point that can be moved: select one` : 'Select a point first')
+    if (this.drag || this.link.still) return
+    this.view.canvas.focus({ preventScroll: true })
+    this.grab(item, ...this.view.project(this.view.place(item)), true)
   }
 
   /** The object's own numbers; for an expression the parameter that moves it most within its range. */
@@ -147,7 +182,7 @@ export class Hands {
     const [x, y] = this.at(e)
     const before = this.pointers.get(e.pointerId)
     if (!this.pressed || !before) {
-      if (e.pointerType === 'mouse') this.hover(x, y)
+      if (e.pointerType === 'mouse') this.hovering(x, y)
       return
     }
     const [dx, dy] = [x - before[0], y - before[1]]
@@ -159,9 +194,11 @@ export class Hands {
     if (!this.pressed.moved && Math.hypot(x - this.pressed.x, y - this.pressed.y) < 4) return
     this.pressed.moved = true
     if (this.drag) {
+      // While a number is typed the pointer does not speak.
+      if (!this.entry.hidden) return
       this.drag.moved = true
       this.drag.last = [x, y]
-      this.aim(x, y, e.altKey)
+      this.aim(this.drag, e.altKey)
       return
     }
     const { camera } = this.view
@@ -183,10 +220,22 @@ export class Hands {
     this.view.draw()
   }
 
+  /** What is under the pointer is looked for once a frame. */
+  private hovering(x: number, y: number): void {
+    const waits = this.under !== null
+    this.under = [x, y]
+    if (waits) return
+    requestAnimationFrame(() => {
+      const [px, py] = this.under ?? [x, y]
+      this.under = null
+      if (!this.pressed) this.hover(px, py)
+    })
+  }
+
   private hover(x: number, y: number): void {
     const point = this.view.near(x, y, 10)
     this.view.canvas.style.cursor = point ? 'grab' : this.measuring ? 'crosshair' : ''
-    const hit = point ? { object: point.object, point: this.view.place(point), value: undefined } : this.view.items.size < 400 ? this.view.pick(x, y) : null
+    const hit = point ? { object: point.object, point: this.view.place(point), value: undefined } : this.view.pick(x, y)
     this.act.hover(hit?.object ?? '')
     if (!hit) {
       this.tip.hidden = true
@@ -200,11 +249,12 @@ export class Hands {
   }
 
   /** From the pointer to a place, and from that to numbers. */
-  private aim(x: number, y: number, free: boolean): void {
-    const drag = this.drag
-    if (!drag || !drag.ready) return
+  private aim(drag: Drag, free: boolean): void {
+    if (!drag.ready) return
+    drag.aimed = true
     this.tip.hidden = true
     const { camera } = this.view
+    const [x, y] = drag.last
     const { ray } = this.view.ray(x, y)
     let basis = [camera.right, camera.up]
     let snapped = ''
@@ -235,8 +285,8 @@ export class Hands {
     // What was moved before the lock goes back: the place itself is to be on the axis or in the plane.
     const whole = drag.names.every((n) => drag.own.includes(n))
     if (whole && (drag.axis !== null || drag.plane !== null)) basis = [unit(0), unit(1), unit(2)]
-    const { target } = drag
-    if (!drag.own.length) this.offer(drag)
+    const target = drag.target.clone()
+    if (!drag.own.length && this.drag === drag) this.offer(drag)
     this.requests.push(async () => {
       try {
         const { head } = await this.link.ask('drag_to', {
@@ -257,7 +307,8 @@ export class Hands {
     const pressed = this.pressed
     if (this.pointers.size === 0) this.pressed = null
     if (this.drag) {
-      void this.finish(this.drag.moved)
+      // A number that is being typed ends the drag by itself.
+      if (this.entry.hidden && !this.drag.keys) void this.finish(this.drag.moved)
       return
     }
     if (!pressed || pressed.moved || pressed.button !== 0) return
@@ -267,13 +318,22 @@ export class Hands {
     else this.act.select(hit?.object ?? '')
   }
 
-  private async finish(commit: boolean): Promise<void> {
+  /** Ends the drag; what the hand does from now on is another one. */
+  private finish(commit: boolean): Promise<void> {
     const drag = this.drag
-    if (!drag) return
-    await this.requests.settled()
+    if (!drag) return this.ended
+    this.drag = null
     this.chooser.hidden = true
     this.entry.hidden = true
-    this.drag = null
+    this.ended = this.end(drag, commit)
+    return this.ended
+  }
+
+  private async end(drag: Drag, commit: boolean): Promise<void> {
+    if (!(await drag.begun)) return
+    // A flick that was over before the engine was ready counts as well.
+    if (commit && drag.moved && !drag.aimed) this.aim(drag, false)
+    await this.requests.settled()
     try {
       const { head } = await this.link.ask('drag_end', { commit })
       if (commit) this.act.apply(head.edits ?? [], head.version)
@@ -305,16 +365,21 @@ export class Hands {
     const drag = this.drag
     if (drag) {
       const axis = AXES.indexOf(e.key.toLowerCase())
-      if (e.key.toLowerCase() === 's') drag.onSurface = !drag.onSurface
-      else if (axis >= 0 && !e.shiftKey) drag.axis = drag.axis === axis ? null : axis
+      const step = STEPS[e.key]
+      if (step && drag.keys) drag.last = [drag.last[0] + step[0] * (e.shiftKey ? 10 : 1), drag.last[1] + step[1] * (e.shiftKey ? 10 : 1)]
+      else if (e.key.toLowerCase() === 's') drag.onSurface = !drag.onSurface
+      else if (axis >= 0 && !e.shiftKey) [drag.axis, drag.plane] = [drag.axis === axis ? null : axis, null]
       else if (axis >= 0) [drag.axis, drag.plane] = [null, drag.plane === axis ? null : axis]
-      else if (e.key === 'Escape') return this.cancel()
+      else if (e.key === 'Enter' && drag.keys) void this.finish(drag.moved)
+      else if (e.key === 'Escape') this.cancel()
       else if (/^[\d=.\-]$/.test(e.key)) return this.enter(drag, e)
       else return
       e.preventDefault()
       e.stopPropagation()
+      if (this.drag !== drag) return
       drag.moved = true
-      this.aim(...drag.last, e.altKey)
+      // Points are not snapped to by keys: a step is a step.
+      this.aim(drag, e.altKey || drag.keys)
       return
     }
     const turn: Record<string, [number, number]> = { ArrowLeft: [-15, 0], ArrowRight: [15, 0], ArrowUp: [0, -15], ArrowDown: [0, 15] }
@@ -332,6 +397,7 @@ export class Hands {
   /** A number typed while dragging. */
   private enter(drag: Drag, e: KeyboardEvent): void {
     e.preventDefault()
+    e.stopPropagation()
     const names = drag.names.length ? drag.names : drag.own
     const name = names.find((n) => drag.axis !== null && n.endsWith(`.${AXES[drag.axis]}`)) ?? names[0]
     if (!name) return
@@ -348,9 +414,8 @@ export class Hands {
   private entered(e: KeyboardEvent): void {
     e.stopPropagation()
     if (e.key === 'Escape') {
-      this.entry.hidden = true
-      this.view.canvas.focus()
-      return this.cancel()
+      this.cancel()
+      return this.view.canvas.focus()
     }
     if (e.key !== 'Enter' && e.key !== 'Tab') return
     e.preventDefault()
@@ -358,28 +423,29 @@ export class Hands {
     const x = Number(this.entry.value.replace(',', '.'))
     if (!name || !Number.isFinite(x) || this.entry.value.trim() === '') return
     this.requests.push(() => this.link.ask('set', { values: { [name]: x } }).catch((error) => this.act.status(error.message)))
+    if (this.drag) this.drag.moved = this.drag.aimed = true
     if (e.key === 'Tab') {
       const all = (names ?? '').split('\n')
       this.entry.dataset.name = this.entry.placeholder = all[(all.indexOf(name) + 1) % all.length]
       this.entry.value = ''
     } else {
-      this.view.canvas.focus()
       void this.finish(true)
+      this.view.canvas.focus()
     }
   }
 
+  /** Two places have a distance, a third one makes an angle at the second. */
   private measure(p: Vector3 | null): void {
     if (!p) return
-    const near = this.places.length === 1 ? this.places : []
-    this.places = [...near, p.clone()]
-    if (this.places.length < 2) {
-      this.view.overlay('measure', null)
-      this.act.status(`from (${p.toArray().map((x) => shown(x)).join(', ')}): click a second place`)
-      return
-    }
-    const [a, b] = this.places
+    this.places = [...(this.places.length < 3 ? this.places : []), p.clone()]
+    const [a, b, c] = this.places
+    const coordinates = (q: Vector3) => `(${q.toArray().map((x) => shown(x)).join(', ')})`
+    this.view.overlay('measure', b ? [this.places.flatMap((q) => q.toArray())] : null, 0xe8711a)
+    if (!b) return this.act.status(`from ${coordinates(a)}: click a second place`)
     const d = b.clone().sub(a)
-    this.view.overlay('measure', [[...a.toArray(), ...b.toArray()]], 0xe8711a)
-    this.act.status(`distance ${shown(d.length())} ${model.unit}   Δx ${shown(d.x)}   Δy ${shown(d.y)}   Δz ${shown(d.z)}`)
+    const distance = `distance ${shown(d.length())} ${model.unit}   Δx ${shown(d.x)}   Δy ${shown(d.y)}   Δz ${shown(d.z)}`
+    if (!c) return this.act.status(`${distance} · a third place measures the angle`)
+    const angle = (a.clone().sub(b).angleTo(c.clone().sub(b)) * 180) / Math.PI
+    this.act.status(`angle ${shown(angle)}° at ${coordinates(b)}   ${distance}   then ${shown(c.distanceTo(b))} ${model.unit}`)
   }
 }

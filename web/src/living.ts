@@ -26,7 +26,7 @@ interface Job {
 }
 
 /** As in the hub: requests of which only the newest counts. */
-const NEWEST = new Set(['set', 'drag_to', 'sync', 'hover', 'complete', 'inspect', 'section', 'field', 'combs', 'deviation', 'measure'])
+const NEWEST = new Set(['set', 'drag_to', 'sync', 'hover', 'complete', 'inspect', 'section', 'field', 'combs', 'deviation', 'measure', 'blocks'])
 
 /** What a new engine must hear before it is asked anything else. */
 const STATE = ['show', 'watch']
@@ -50,9 +50,10 @@ export class LivingLink implements Link {
   private opened = false
   private recovered = false
 
-  constructor(private readonly hello: Facts, private readonly first: ArrayBuffer | null, private readonly engine: Engine) {
+  /** `drafts`: whether what is typed is kept in this browser. */
+  constructor(private readonly hello: Facts, private readonly first: ArrayBuffer | null, private readonly engine: Engine, private readonly drafts = true) {
     this.original = hello.text
-    const kept = stored<{ from: string; text: string } | null>(this.key, null)
+    const kept = !drafts ? null : stored<{ from: string; text: string } | null>(this.key, null)
     if (kept && kept.from === digest(this.original) && kept.text !== this.original) {
       this.recovered = true
       hello = { ...hello, text: kept.text }
@@ -146,6 +147,13 @@ export class LivingLink implements Link {
     await this.again()
   }
 
+  /** Begins again with the text as it is: the files beside it have changed. */
+  async restart(): Promise<void> {
+    if (!this.running) return
+    await this.again()
+    void this.pump()
+  }
+
   private async again(): Promise<void> {
     try {
       await this.engine.begin(this.text.toString())
@@ -181,7 +189,7 @@ export class LivingLink implements Link {
     for (const u of updates) this.text = ChangeSet.fromJSON(u.changes).apply(this.text)
     const from = this.version
     this.version += updates.length
-    store(this.key, this.dirty ? { from: digest(this.original), text: this.text.toString() } : null)
+    if (this.drafts) store(this.key, this.dirty ? { from: digest(this.original), text: this.text.toString() } : null)
     this.onMessage({ kind: 'updates', from, updates, dirty: this.dirty })
     const changes = updates.map((u) => u.changes)
     if (this.running) {
@@ -223,8 +231,17 @@ export class WorkerEngine implements Engine {
   private worker: Worker | null = null
   private waiting: { resolve: (data: any) => void; reject: (error: Error) => void; timer: number } | null = null
   private again: string | null = null
+  private files: unknown[] | null = null
+  private asked = ''
+  /** Called when the model asks for files that are not here; those that `give` gets are there for the next beginning. */
+  onMissing: (files: [string, string | null][]) => void = () => {}
 
-  constructor(private readonly make: () => Worker, private readonly beginning: () => Promise<Facts>) {}
+  constructor(private readonly make: () => Worker | Promise<Worker>, private readonly beginning: () => Promise<Facts>) {}
+
+  /** All files that the model may read from now on. */
+  give(files: unknown[]): void {
+    this.files = files
+  }
 
   async begin(text: string): Promise<void> {
     if (this.worker) {
@@ -232,7 +249,7 @@ export class WorkerEngine implements Engine {
       this.again = text
       return
     }
-    const worker = this.make()
+    const worker = await this.make()
     this.worker = worker
     worker.onmessage = ({ data }) => {
       const waiting = this.waiting
@@ -244,14 +261,18 @@ export class WorkerEngine implements Engine {
     }
     worker.onerror = (event) => this.fail(event.message || 'the worker cannot be started')
     const beginning = await this.beginning()
-    await this.send({ begin: { ...beginning, text } }, 4 * BUDGET)
+    await this.send({ begin: { ...beginning, files: this.files ?? beginning.files ?? [], text } }, 4 * BUDGET)
     this.again = null
   }
 
   async ask(request: string): Promise<ArrayBuffer> {
-    const message = this.again === null ? { ask: request } : { ask: request, again: this.again }
+    const message: Facts = this.again === null ? { ask: request } : { ask: request, again: this.again }
+    if (this.again !== null && this.files) message.files = this.files
     this.again = null
     const data = await this.send(message, BUDGET)
+    const asked = JSON.stringify(data.missing ?? [])
+    if (asked !== this.asked && data.missing?.length) this.onMissing(data.missing)
+    this.asked = asked
     return data.frame
   }
 

@@ -2,10 +2,12 @@
 
 import './style.css'
 import { Editor } from './editor'
+import { BlockPlanes } from './blocks'
 import { ramp, type Scale } from './colour'
 import { h, shown, store, stored } from './dom'
 import type { Frame } from './frame'
 import { Hands } from './hands'
+import { door, Host } from './host'
 import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
 import { LivingLink, WorkerEngine } from './living'
 import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
@@ -15,12 +17,24 @@ import { View, type Paint, type Style } from './view'
 import type { Standard } from './camera'
 
 const nonce = document.querySelector<HTMLMetaElement>('meta[name=nonce]')?.content ?? ''
+/** The editor that the page is inside of, if any: the text is there. */
+let host = null as Host | null
 
 /** The link: a server has an engine; a file carries its last scene, and an engine where the package has one. */
 function linked(): Link & { start(): Promise<void> } {
   const carried = document.getElementById('moldloft-model')
   if (!carried?.textContent) return new SocketLink()
-  const { hello, frames, files } = JSON.parse(carried.textContent)
+  const { hello, frames, files, host: where } = JSON.parse(carried.textContent)
+  const api = where ? door() : null
+  if (api) {
+    host = new Host(api, hello, where)
+    document.body.dataset.host = 'editor'
+    host.link.onReady = () => {
+      document.body.dataset.engine = 'ready'
+      showSaved()
+    }
+    return host.link
+  }
   const bytes = (text: string) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer as ArrayBuffer
   const first: Record<string, ArrayBuffer> = Object.fromEntries(Object.entries(frames as Record<string, string>).map(([k, v]) => [k, bytes(v)]))
   const part = (id: string) => document.getElementById(id)?.textContent ?? ''
@@ -41,6 +55,7 @@ function linked(): Link & { start(): Promise<void> } {
 }
 
 const link = linked()
+const inside = () => host
 let selected = ''
 let dirty = false
 let online = false
@@ -75,14 +90,15 @@ const tabs = $('div', { class: 'tabs', role: 'tablist', 'aria-label': 'what is s
 const legend = $('div', { class: 'legend', hidden: true })
 const axes = $('canvas', { class: 'axes', width: 144, height: 144, 'aria-hidden': 'true' })
 const section = $('div', { class: 'section', hidden: true })
+const planesHost = $('div', { class: 'section', role: 'group', 'aria-label': 'plane of a block', hidden: true })
 const status = $('output', { class: 'status', 'aria-live': 'polite' })
 const params = $('section', { class: 'card', 'aria-label': 'parameters' })
 const tree = $('section', { class: 'card tall', 'aria-label': 'model objects' })
 const inspector = $('section', { class: 'card', 'aria-label': 'inspector' })
 const footer = $('footer', { class: 'strip' })
 const left = $('div', { class: 'left' }, editorHost, $('div', { class: 'grip row', 'data-size': 'messages', role: 'separator', 'aria-orientation': 'horizontal', tabindex: 0, 'aria-label': 'height of messages' }), messagesHost)
-const middle = $('main', { class: 'middle' }, tabs, $('div', { class: 'stage' }, viewHost, toolbar, legend, axes, section, sheetHost), status)
-const right = $('div', { class: 'right' }, $('h2', {}, 'Parameters'), params, $('h2', {}, 'Objects'), tree, $('h2', {}, 'Inspector'), inspector)
+const middle = $('main', { class: 'middle' }, tabs, $('div', { class: 'stage' }, viewHost, toolbar, legend, axes, $('div', { class: 'sections' }, section, planesHost), sheetHost), status)
+const right = $('div', { class: 'right' }, ...[['Parameters', params], ['Objects', tree], ['Inspector', inspector]].map(([words, part]) => $('div', { class: 'panel' }, $('h2', {}, words), part)))
 const grip = (side: string) => $('div', { class: 'grip', 'data-size': side, role: 'separator', 'aria-orientation': 'vertical', tabindex: 0, 'aria-label': `width of ${side}` })
 const body = $('div', { class: 'body' }, left, grip('left'), middle, grip('right'), right)
 document.getElementById('app')!.append(header, banner, body, footer)
@@ -316,6 +332,10 @@ strip(footer, actions)
 
 function showSaved(): void {
   const waits = editor.pending
+  if (host) {
+    saved.textContent = document.body.dataset.engine === 'ready' ? '' : 'the engine starts…'
+    return
+  }
   if (link.local && !link.still) {
     const running = document.body.dataset.engine === 'ready'
     saved.textContent = !running ? 'the engine starts…' : !dirty ? 'as it was' : keeps() ? 'changed, kept in this browser' : 'changed, not saved'
@@ -333,6 +353,7 @@ function keeps(): boolean {
 }
 
 async function save(force = false): Promise<void> {
+  if (host) return host.save()
   try {
     await editor.synced()
     const answer = await link.tell({ kind: 'save', force })
@@ -389,6 +410,7 @@ function take(frame: Frame): void {
   if (scene && combs.size) combing.push(undefined)
   if (scene && view.clip) sectioning.push(undefined)
   if (scene && foreign.length) deviating.push(undefined)
+  if (head.rev !== undefined && head.rev !== model.rev) planes.refresh()
   if (head.rev !== undefined && head.rev !== model.rev) {
     model.rev = head.rev
     changed('rev')
@@ -479,7 +501,7 @@ async function begin(hello: any): Promise<void> {
     const usual = view.items.size && [...view.items.values()].some((i) => i.kind === 'patch') ? ['mesh.area', 'hydrostatics.displacement', 'hydrostatics.lcb', 'hydrostatics.kmt'] : []
     const watched = stored<string[]>(`watch.${model.name}`, usual)
     if (!link.still) await link.ask('watch', { expressions: watched })
-    if (!again && !link.local) editor.words((await link.ask('words')).head.words)
+    if (!again && !hello.words && !link.still) editor.words((await link.ask('words')).head.words)
   } catch (error) {
     if (error instanceof Refused) say(error.message)
   }
@@ -502,12 +524,12 @@ const fields = new Newest<void>(async () => {
 })
 
 function showLegend(): void {
-  const s = view.paint === 'field' ? view.fieldScale : deviation
+  const s = view.paint === 'field' ? view.fieldScale : deviation ?? planes.scale
   legend.hidden = !s
   if (!s) return
   const bar = $('div', { class: 'ramp' })
   bar.style.background = ramp(s.signed)
-  const name = view.paint !== 'field' ? `deviation, ${model.unit}` : field === 'derivative' ? `motion by ${by}` : field.replace('_', ' ')
+  const name = view.paint !== 'field' ? (deviation ? `deviation, ${model.unit}` : 'scaled Jacobian') : field === 'derivative' ? `motion by ${by}` : field.replace('_', ' ')
   legend.replaceChildren($('span', { class: 'key' }, name), bar, $('span', { class: 'mono low' }, shown(s.low, 3)), $('span', { class: 'mono high' }, shown(s.high, 3)))
 }
 
@@ -615,6 +637,8 @@ viewHost.addEventListener('drop', (e) => {
   if (!link.still) for (const f of e.dataTransfer?.files ?? []) void lay(f)
 })
 
+const planes = new BlockPlanes(planesHost, view, link, { say, legend: showLegend })
+
 const sectioning = new Newest<void>(async () => {
   if (!view.clip) return view.overlay('section', null)
   const frame = await link.ask('section', { axis: view.clip.axis, value: view.clip.value })
@@ -687,6 +711,7 @@ async function download(kind: string): Promise<void> {
   }
 }
 function give(blob: Blob, name: string): void {
+  if (host) return void host.give(blob, name)
   const a = $('a', { download: name })
   a.href = URL.createObjectURL(blob)
   a.click()
@@ -711,6 +736,7 @@ function commands(): Command[] {
     { name: 'Colour: patches apart', run: () => paint('patches') },
     { name: 'Colour: of the model', run: () => paint('model') },
     { name: 'Colour: zebra stripes', keys: 'Z', run: () => paint(view.paint === 'zebra' ? 'patches' : 'zebra') },
+    { name: 'Colour: reflection lines', run: () => paint('reflection') },
     { name: 'Colour: isophotes', run: () => paint('isophotes') },
     { name: 'Colour: highlight lines', run: () => paint('highlight') },
     { name: 'Colour: Gaussian curvature', run: () => paint('field', 'gaussian_curvature') },
@@ -724,9 +750,10 @@ function commands(): Command[] {
     { name: 'Hide or show the selected object', keys: 'H', run: () => selected && actions.toggle(selected) },
     { name: 'Isolate the selected object', keys: 'I', run: () => selected && actions.isolate(selected) },
     { name: 'Show all', keys: 'Shift+H', run: () => actions.isolate(null) },
-    { name: 'Measure between two places', keys: 'D', run: () => {
+    { name: 'Move the selected point by keys', keys: 'G', run: () => hands.take(selected) },
+    { name: 'Measure between places', keys: 'D', run: () => {
       hands.measuring = !hands.measuring
-      say(hands.measuring ? 'Measure: click two places; D or Esc ends' : '')
+      say(hands.measuring ? 'Measure: click two or three places; D or Esc ends' : '')
       if (!hands.measuring) view.overlay('measure', null)
       buildToolbar()
     } },
@@ -734,6 +761,7 @@ function commands(): Command[] {
     { name: 'Remove what lies over the model', run: () => void unlay().catch((e) => say(e.message)) },
     { name: 'Curvature comb of the selected curve', keys: 'K', run: comb },
     ...[0, 1, 2].map((k) => ({ name: `Section across ${'xyz'[k]}`, keys: `Shift+${'XYZ'[k]}`, run: () => cut(view.clip?.axis === k ? null : k) })),
+    { name: 'Plane of a volume block, folded cells', keys: 'B', run: () => planes.toggle() },
     ...SHEETS.map(([n, words], k) => ({ name: `Sheet: ${words}`, keys: `Alt+${k + 1}`, run: () => sheet(n) })),
     { name: 'Go to the program', keys: 'Ctrl+1', run: () => editor.view.focus() },
     { name: 'Go to the model', keys: 'Ctrl+2', run: () => canvas.focus() },
@@ -770,9 +798,9 @@ function buildToolbar(): void {
     }, view.camera.perspective),
     choice('style', view.style, styles.map(([n, w]) => [n, w]), (v) => setStyle(v as Style)),
     choice('colour', value, [
-      ['patches', 'Patches apart'], ['model', 'Colours of the model'], ['zebra', 'Zebra'], ['isophotes', 'Isophotes'], ['highlight', 'Highlight lines'],
+      ['patches', 'Patches apart'], ['model', 'Colours of the model'], ['zebra', 'Zebra'], ['reflection', 'Reflection lines'], ['isophotes', 'Isophotes'], ['highlight', 'Highlight lines'],
       ...(link.still ? [] : ([['gaussian_curvature', 'Gaussian curvature'], ['mean_curvature', 'Mean curvature'], ['largest_curvature', 'Largest curvature'], ['smallest_curvature', 'Smallest curvature'], ['aspect', 'Panel aspect'], ['skew', 'Panel skewness'], ['warp', 'Panel warp'], ['jump', 'Jump of panel area'], ...model.params.map((p) => [`d:${p.name}`, `Motion by ${p.name}`])] as [string, string][])),
-    ], (v) => (['patches', 'model', 'zebra', 'isophotes', 'highlight'].includes(v) ? paint(v as Paint) : v.startsWith('d:') ? paint('field', 'derivative', v.slice(2)) : paint('field', v))),
+    ], (v) => (['patches', 'model', 'zebra', 'reflection', 'isophotes', 'highlight'].includes(v) ? paint(v as Paint) : v.startsWith('d:') ? paint('field', 'derivative', v.slice(2)) : paint('field', v))),
     button('•', 'Points (.)', () => layer('point'), view.layers.point),
     button('∿', 'Curves (,)', () => layer('curve'), view.layers.curve),
     button('≋', 'Contours (C)', () => layer('contour'), view.layers.contour),
@@ -844,7 +872,8 @@ addEventListener('keydown', (e) => {
   }
   if (name === 'Ctrl+Z' && !typing) {
     e.preventDefault()
-    editor.view.focus()
+    if (host) host.undo()
+    else editor.view.focus()
     return
   }
   const command = commands().find((c) => c.keys === name)
@@ -852,6 +881,7 @@ addEventListener('keydown', (e) => {
     if (hands.busy) hands.cancel()
     else if (hands.measuring) commands().find((c) => c.keys === 'D')!.run()
     else if (view.clip) cut(null)
+    else if (planes.shown) planes.close()
     else actions.select('', 'view')
     return
   }
@@ -906,4 +936,5 @@ Object.assign(window, {
   },
 })
 
+inside()?.begin({ editor: () => editor, say, cursor: (offset) => editor.onCursor(offset) })
 void link.start().catch((error) => warn(error.message))

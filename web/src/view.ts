@@ -2,7 +2,7 @@
 
 import {
   BufferAttribute, BufferGeometry, Box3, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, Plane, Points, PointsMaterial,
-  Raycaster, Scene, ShaderMaterial, Vector2, Vector3, WebGLRenderer,
+  type Ray, Matrix4, Raycaster, Scene, ShaderMaterial, Vector2, Vector3, WebGLRenderer,
 } from 'three'
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js'
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js'
@@ -10,14 +10,12 @@ import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeome
 import { Camera } from './camera'
 import { coloured, hex, HUES, scale, type Scale } from './colour'
 import type { Frame, Part } from './frame'
+import { hit, type Hit } from './pick'
 
 export type Style = 'shaded' | 'panels' | 'smooth' | 'wire' | 'xray'
-export type Paint = 'patches' | 'model' | 'zebra' | 'isophotes' | 'highlight' | 'field'
+export type Paint = 'patches' | 'model' | 'zebra' | 'reflection' | 'isophotes' | 'highlight' | 'field'
 
-/** Whose a mesh is, be it the original or its mirror image. */
-const owners = new WeakMap<object, Drawn>()
-
-const MODES: Record<string, number> = { zebra: 1, isophotes: 2, highlight: 3 }
+const MODES: Record<string, number> = { zebra: 1, isophotes: 2, highlight: 3, reflection: 4 }
 
 const VERTEX = `
 #include <clipping_planes_pars_vertex>
@@ -48,6 +46,8 @@ void main() {
   if (mode == 1) { vec3 r = 2.0 * dot(n, eye) * n - eye; base = mix(vec3(0.13, 0.15, 0.18), vec3(0.96), stripe(stripes * atan(dot(r, upward), dot(r, right)) / 6.2831853)); }
   if (mode == 2) base = mix(vec3(0.16, 0.3, 0.52), vec3(0.95, 0.94, 0.9), stripe(stripes * acos(clamp(n.z, -1.0, 1.0)) / 3.14159265));
   if (mode == 3) { vec3 s = vec3(1.0, 0.0, 0.0); vec3 c = cross(s, n); float d = dot(c, centre + vec3(0.0, 0.0, size) - vWorld) / max(length(c), 1e-6); base = mix(vec3(0.2, 0.24, 0.3), vec3(0.97), stripe(0.5 * stripes * d / size)); }
+  // Parallel lights along x on a ceiling over the model, as the eye sees them in it (Klass 1980).
+  if (mode == 4) { vec3 r = 2.0 * dot(n, eye) * n - eye; float way = (centre.z + 3.0 * size - vWorld.z) / max(r.z, 1e-3); float y = vWorld.y + way * r.y - centre.y; base = mix(vec3(0.17, 0.2, 0.25), vec3(0.98), r.z > 1e-3 ? stripe(0.35 * stripes * y / size) : 0.0); }
   vec3 key = normalize(-0.45 * right + 0.7 * upward + 0.55 * towards);
   float diffuse = 0.52 + 0.16 * (0.5 + 0.5 * n.z) + 0.24 * max(dot(n, eye), 0.0) + 0.30 * max(dot(n, key), 0.0);
   float gloss = 0.09 * pow(max(dot(n, normalize(key + eye)), 0.0), 40.0);
@@ -82,6 +82,11 @@ export interface Drawn {
   box: Box3
 }
 
+interface Met {
+  item: Drawn
+  hit: Hit
+}
+
 export interface Picked {
   object: string
   kind: string
@@ -109,6 +114,7 @@ export class View {
   private readonly image = new Group()
   private readonly extras = new Group()
   private readonly others = new Group()
+  private readonly cut = new Group()
   private readonly dots: Points
   private dotItems: Drawn[] = []
   private readonly resolution = new Vector2(1, 1)
@@ -129,7 +135,7 @@ export class View {
     this.canvas = this.renderer.domElement
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
     host.append(this.canvas)
-    this.scene.add(this.model, this.image, this.extras, this.others)
+    this.scene.add(this.model, this.image, this.extras, this.others, this.cut)
     const material = new ShaderMaterial({
       uniforms: { pixels: { value: 7 * this.renderer.getPixelRatio() } },
       vertexShader: `attribute vec3 tint; varying vec3 vTint; uniform float pixels; attribute float big;
@@ -230,7 +236,6 @@ export class View {
         g.setIndex(new BufferAttribute(item.triangle, 1))
         for (const o of [item.mesh, item.lines.edge, item.lines.rim]) if (o) item.group.remove(o)
         item.mesh = new Mesh(g, this.material('', 0, 1))
-        owners.set(item.mesh, item)
         const edges = new BufferGeometry()
         edges.setAttribute('position', g.getAttribute('position'))
         edges.setIndex(new BufferAttribute(item.edge, 1))
@@ -410,7 +415,6 @@ export class View {
       for (const child of item.group.children) {
         if (!child.visible || (child as any).isLineSegments2 && item.kind === 'patch') continue
         const copy = child.clone() as any
-        owners.set(copy, item)
         twin.add(copy)
       }
       image.add(twin)
@@ -499,14 +503,51 @@ export class View {
     return span
   }
 
+  /** Panels that lie in the model, coloured by numbers at their corners. */
+  plane(of: { position: Float32Array; triangle: Uint32Array; edge: Uint32Array; value: Float32Array } | null): Scale | null {
+    this.cut.clear()
+    let span: Scale | null = null
+    if (of) {
+      span = scale([of.value], false)
+      const g = new BufferGeometry()
+      const tint = new Float32Array(of.position.length)
+      for (let k = 0; k < of.value.length; k++) tint.set(coloured(of.value[k], span), 3 * k)
+      g.setAttribute('position', new BufferAttribute(of.position, 3))
+      g.setAttribute('tint', new BufferAttribute(tint, 3))
+      g.setIndex(new BufferAttribute(of.triangle, 1))
+      g.computeVertexNormals()
+      const edges = new BufferGeometry()
+      edges.setAttribute('position', g.getAttribute('position'))
+      edges.setIndex(new BufferAttribute(of.edge, 1))
+      this.cut.add(new Mesh(g, this.material('plane', 0, 1, 1)), new LineSegments(edges, this.line('edge') as LineBasicMaterial))
+    }
+    this.draw()
+    return span
+  }
+
   /** The place of a surface under a place of the picture, but not of an object. */
   surfaceAt(x: number, y: number, but: string): Picked | null {
-    const hits = this.ray(x, y).intersectObjects([this.model], true)
-    for (const hit of hits) {
-      const item = hit.object instanceof Mesh && !(hit.object as any).isLineSegments2 && hit.object.visible ? owners.get(hit.object) : undefined
-      if (item && item.object !== but) return { object: item.object, kind: item.kind, point: hit.point }
+    const { ray } = this.ray(x, y)
+    const found = this.met(ray, [1, 1, 1], null, but)
+    return found && { object: found.item.object, kind: found.item.kind, point: ray.at(found.hit.t, new Vector3()) }
+  }
+
+  /** The first patch that a ray meets, of those that are drawn; those of a mirror image by its signs. */
+  private met(ray: Ray, signs: number[], before: Met | null, but = ''): Met | null {
+    const turned = (v: Vector3) => v.toArray().map((x, c) => signs[c] * x) as [number, number, number]
+    const [o, d] = [turned(ray.origin), turned(ray.direction)]
+    const { clip } = this
+    const kept = clip
+      ? (t: number) => (clip.flip ? 1 : -1) * (ray.origin.getComponent(clip.axis) + t * ray.direction.getComponent(clip.axis) - clip.value) >= 0
+      : undefined
+    let best = before
+    for (const item of this.items.values()) {
+      if (item.kind !== 'patch' || !item.group.visible || !item.mesh?.visible || item.object === but) continue
+      const from = o.map((x, c) => x - item.origin.getComponent(c)) as [number, number, number]
+      const found = hit(item, from, d, best?.hit.t, kept)
+      if (found) best = { item, hit: found }
     }
-    return null
+    return best
   }
 
   /** Lines that are drawn besides: combs, sections, measures, arrows. */
@@ -610,37 +651,50 @@ export class View {
     const point = this.near(x, y, 9)
     if (point) return { object: point.object, kind: point.kind, point: this.place(point) }
     const line = this.nearLine(x, y, 6)
-    const caster = this.ray(x, y)
-    const hits = this.style === 'wire' ? [] : caster.intersectObjects([this.model, ...(this.image.visible ? [this.image] : [])], true)
-    const kept = (p: Vector3) => !this.clip || (this.clip.flip ? 1 : -1) * (p.getComponent(this.clip.axis) - this.clip.value) >= 0
-    const hit = hits.find((k) => k.object instanceof Mesh && !(k.object as any).isLineSegments2 && k.object.visible && kept(k.point))
-    if (line && (!hit || line.depth <= caster.ray.origin.distanceTo(hit.point) * (1 + 1e-3) + 1e-9)) return line
-    if (!hit) return null
-    const item = owners.get(hit.object)!
-    let value: number[] | undefined
-    if (item.field && this.paint === 'field' && hit.face) {
-      const at = hit.face.a * item.components
-      value = Array.from(item.field.slice(at, at + item.components))
+    const { ray } = this.ray(x, y)
+    let found: Met | null = null
+    if (this.style !== 'wire') {
+      found = this.met(ray, [1, 1, 1], null)
+      if (this.image.visible) for (const image of this.image.children) found = this.met(ray, image.scale.toArray(), found)
     }
-    return { object: item.object, kind: item.kind, point: hit.point, value }
+    if (line && (!found || line.depth <= found.hit.t * (1 + 1e-3) + 1e-9)) return line
+    if (!found) return null
+    const { item } = found
+    let value: number[] | undefined
+    if (item.field && this.paint === 'field') {
+      const { field, components, triangle } = item
+      const { at, weights } = found.hit
+      value = Array.from({ length: components }, (_, c) => weights.reduce((sum, w, k) => sum + w * field[triangle[at + k] * components + c], 0))
+    }
+    return { object: item.object, kind: item.kind, point: ray.at(found.hit.t, new Vector3()), value }
   }
 
   private nearLine(x: number, y: number, within: number): (Picked & { depth: number }) | null {
     let best: (Picked & { depth: number }) | null = null
     let least = within
     const eye = this.ray(x, y).ray
+    const { projectionMatrix, matrixWorldInverse } = this.camera.three
+    const m = new Matrix4().multiplyMatrices(projectionMatrix, matrixWorldInverse).elements
+    const [w, h] = [this.resolution.x / 2, this.resolution.y / 2]
     for (const item of this.items.values()) {
       if (item.kind === 'patch' || item.kind === 'point' || item.kind === 'grid' || !item.group.visible) continue
-      const at = (k: number) => new Vector3().fromArray(item.position, 3 * k).add(item.origin)
-      for (let k = 0; k < item.edge.length; k += 2) {
-        const [p, q] = [at(item.edge[k]), at(item.edge[k + 1])]
-        const [a, b] = [this.projected(p), this.projected(q)]
-        const [dx, dy] = [b[0] - a[0], b[1] - a[1]]
-        const t = Math.max(0, Math.min(1, ((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy || 1)))
-        const d = Math.hypot(a[0] + t * dx - x, a[1] + t * dy - y)
+      const { origin, position, edge } = item
+      const flat = new Float64Array((2 * position.length) / 3)
+      for (let k = 0; 3 * k < position.length; k++) {
+        const [px, py, pz] = [position[3 * k] + origin.x, position[3 * k + 1] + origin.y, position[3 * k + 2] + origin.z]
+        const scale = 1 / (m[3] * px + m[7] * py + m[11] * pz + m[15])
+        flat[2 * k] = w + w * scale * (m[0] * px + m[4] * py + m[8] * pz + m[12])
+        flat[2 * k + 1] = h - h * scale * (m[1] * px + m[5] * py + m[9] * pz + m[13])
+      }
+      for (let k = 0; k < edge.length; k += 2) {
+        const [a, b] = [2 * edge[k], 2 * edge[k + 1]]
+        const [dx, dy] = [flat[b] - flat[a], flat[b + 1] - flat[a + 1]]
+        const t = Math.max(0, Math.min(1, ((x - flat[a]) * dx + (y - flat[a + 1]) * dy) / (dx * dx + dy * dy || 1)))
+        const d = Math.hypot(flat[a] + t * dx - x, flat[a + 1] + t * dy - y)
         if (d < least) {
           least = d
-          const point = p.lerp(q, t)
+          const at = (v: number) => new Vector3().fromArray(position, 3 * v).add(origin)
+          const point = at(edge[k]).lerp(at(edge[k + 1]), t)
           best = { object: item.object, kind: item.kind, point, depth: eye.origin.distanceTo(point) }
         }
       }

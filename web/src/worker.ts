@@ -7,6 +7,7 @@ interface Engine {
   start(): number
   answer(): number
   reply(): number
+  missing(): number
 }
 
 export interface Beginning {
@@ -14,7 +15,14 @@ export interface Beginning {
   packed: string | ArrayBuffer
   name: string
   text: string
-  files: { path: string; from: string | null; name: string; data: string }[]
+  files: Carried[]
+}
+
+export interface Carried {
+  path: string
+  from: string | null
+  name: string
+  data: string
 }
 
 const scope = self as unknown as { postMessage(message: unknown, moved?: Transferable[]): void; onmessage: ((e: MessageEvent) => void) | null }
@@ -70,6 +78,12 @@ function begin(text: string): void {
   engine = made
 }
 
+/** The files that the model asked for and the page does not carry. */
+function missing(): [string, string | null][] {
+  const length = engine!.missing()
+  return JSON.parse(new TextDecoder().decode(new Uint8Array(engine!.memory.buffer, engine!.reply(), length)))
+}
+
 /** Why it failed, in words for a person. */
 function reason(error: unknown): string {
   if (error instanceof RangeError) return 'the text nests deeper than a page has room for'
@@ -87,12 +101,13 @@ scope.onmessage = async ({ data }: MessageEvent) => {
       scope.postMessage({ ready: true })
       return
     }
+    if (data.files) beginning!.files = data.files
     if (typeof data.again === 'string') begin(data.again)
     const request = new TextEncoder().encode(data.ask)
     put(engine!, request)
     const length = engine!.answer()
     const frame = engine!.memory.buffer.slice(engine!.reply(), engine!.reply() + length) as ArrayBuffer
-    scope.postMessage({ frame }, [frame])
+    scope.postMessage({ frame, missing: missing() }, [frame])
   } catch (error) {
     engine = null
     scope.postMessage({ lost: reason(error) })

@@ -736,13 +736,21 @@ impl Document {
             |f: moldloft_registry::CallError| moldloft_lang::source::fault_location::unplaced(&f);
         let before = self.panelled.as_ref().map(|(_, p)| p.clone());
         let before = before.as_ref().map(|p| &p.panelling);
+        // Where lengths decided before they most likely do again: the counts to be kept are at hand then.
+        let mut nominal = match before {
+            Some(before) if before.is_measured() => self.nominal(),
+            _ => None,
+        };
+        let graph = &self.plain.graph;
         let mut panelling =
-            Panelling::renewed(&self.plain.graph, None, before).map_err(unplaced)?;
-        if panelling.is_measured()
-            && let Some(nominal) = self.nominal()
-        {
-            let graph = &self.plain.graph;
-            panelling = Panelling::renewed(graph, Some(&nominal), before).map_err(unplaced)?;
+            Panelling::renewed(graph, nominal.as_ref(), before).map_err(unplaced)?;
+        if panelling.is_measured() && nominal.is_none() {
+            nominal = self.nominal();
+            if nominal.is_some() {
+                let graph = &self.plain.graph;
+                panelling =
+                    Panelling::renewed(graph, nominal.as_ref(), before).map_err(unplaced)?;
+            }
         }
         let mesh = panelling.own_mesh().ok_or_else(|| {
             Diagnostic::error("no-mesh", "the model has no panels").help("show a surface")

@@ -28,8 +28,8 @@ pub(crate) type Node = usize;
 #[derive(Clone, Debug)]
 pub(crate) struct Sum {
     pub whole: Node,
-    /// Two or more, with the weights by which they share a whole that is known.
-    pub parts: Vec<(Node, f64)>,
+    /// Two or more.
+    pub parts: Vec<Node>,
 }
 
 /// The counts, what they must fulfil and what is wished of them.
@@ -106,6 +106,9 @@ struct CountClass {
 
 struct CountSolver<'d> {
     sums: &'d [Sum],
+    /// The weights by which the parts of a sum share a whole that is known: asked for where there is something to share.
+    weights: &'d dyn Fn(usize) -> Vec<f64>,
+    weighed: Vec<Option<Vec<f64>>>,
     class_of: Vec<usize>,
     classes: Vec<CountClass>,
     /// The sums that a class takes part in.
@@ -128,8 +131,9 @@ impl CountProblem {
         self.stated.len() - 1
     }
 
-    /// The counts. Takes time linear in nodes, links and sums but for chains in rings.
-    pub fn solve(&self) -> CountSolution {
+    /// The counts. Takes time linear in nodes, links and sums but for chains in rings. `weights` has, for a sum, those
+    /// by which its parts share a whole that is known; it is asked only where that is to be decided.
+    pub fn solve(&self, weights: &dyn Fn(usize) -> Vec<f64>) -> CountSolution {
         let mut conflicts = Vec::new();
         let (class_of, count) = self.classes(&mut conflicts);
         let free = CountClass { low: 1, high: MOST, wish: None, usual: None, stated: false };
@@ -145,7 +149,7 @@ impl CountProblem {
         }
         let mut in_sums = vec![Vec::new(); count];
         for (k, sum) in self.sums.iter().enumerate() {
-            for node in sum.parts.iter().map(|p| p.0).chain([sum.whole]) {
+            for node in sum.parts.iter().copied().chain([sum.whole]) {
                 in_sums[class_of[node]].push(k);
             }
         }
@@ -153,6 +157,8 @@ impl CountProblem {
         let sums = self.sums.len();
         let mut solver = CountSolver {
             sums: &self.sums,
+            weights,
+            weighed: vec![None; sums],
             class_of,
             classes,
             in_sums,
@@ -312,7 +318,7 @@ impl CountSolver<'_> {
         let Sum { whole, parts } = &self.sums[sum];
         let whole = self.class_of[*whole];
         let mut terms: Vec<(usize, u64)> = Vec::with_capacity(parts.len());
-        for (node, _) in parts {
+        for node in parts {
             let class = self.class_of[*node];
             match terms.iter_mut().find(|t| t.0 == class) {
                 Some(term) => term.1 += 1,
@@ -356,7 +362,7 @@ impl CountSolver<'_> {
         self.share();
         let mut is_part = vec![false; self.classes.len()];
         for (k, sum) in self.sums.iter().enumerate() {
-            for (node, _) in &sum.parts {
+            for node in &sum.parts {
                 is_part[self.class_of[*node]] |= !self.broken[k];
             }
         }
@@ -400,13 +406,13 @@ impl CountSolver<'_> {
     fn excess(&self, sum: usize) -> i64 {
         let value = |node: Node| i64::from(self.class(node).low);
         let Sum { whole, parts } = &self.sums[sum];
-        value(*whole) - parts.iter().map(|p| value(p.0)).sum::<i64>()
+        value(*whole) - parts.iter().map(|&p| value(p)).sum::<i64>()
     }
 
     /// How often a class counts in the excess of a sum: 1 as its whole, less than 0 as its part.
     fn weight(&self, sum: usize, class: usize) -> i64 {
         let Sum { whole, parts } = &self.sums[sum];
-        let parts = parts.iter().filter(|p| self.class_of[p.0] == class).count() as i64;
+        let parts = parts.iter().filter(|&&p| self.class_of[p] == class).count() as i64;
         i64::from(self.class_of[*whole] == class) - parts
     }
 
@@ -428,7 +434,7 @@ impl CountSolver<'_> {
         while at < visits.len() && visits.len() < REACH {
             let Visit { sum, by, class: came_by, .. } = visits[at];
             let Sum { whole, parts } = &self.sums[sum];
-            let nodes: Vec<Node> = parts.iter().map(|p| p.0).chain([*whole]).collect();
+            let nodes: Vec<Node> = parts.iter().copied().chain([*whole]).collect();
             for node in nodes {
                 let class = self.class_of[node];
                 let weight = self.weight(sum, class);
@@ -515,18 +521,19 @@ impl CountSolver<'_> {
                 continue;
             }
             let mut rest = f64::from(self.class(*whole).low);
-            let mut weight = 0.0;
-            let mut first = None;
-            for &(node, w) in parts {
+            let mut free = Vec::new();
+            for (at, &node) in parts.iter().enumerate() {
                 if self.known(node) {
                     rest -= f64::from(self.class(node).low);
                 } else {
-                    weight += w;
-                    first = first.or(Some((node, w)));
+                    free.push(at);
                 }
             }
-            let Some((node, w)) = first else { continue };
-            let share = if weight > 0.0 { (rest * w / weight).round() } else { 1.0 };
+            let Some(&first) = free.first() else { continue };
+            let node = parts[first];
+            let weights = self.weighed[sum].get_or_insert_with(|| (self.weights)(sum));
+            let weight: f64 = free.iter().fold(0.0, |sum, &at| sum + weights[at]);
+            let share = if weight > 0.0 { (rest * weights[first] / weight).round() } else { 1.0 };
             self.to_share.insert(sum);
             self.assign(self.class_of[node], share.clamp(1.0, f64::from(MOST)) as u32);
         }
@@ -536,6 +543,13 @@ impl CountSolver<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    impl CountProblem {
+        /// With equal weights.
+        fn solved(&self) -> CountSolution {
+            self.solve(&|sum| vec![1.0; self.sums[sum].parts.len()])
+        }
+    }
 
     fn divider(
         stated: &[Option<u32>],
@@ -551,7 +565,7 @@ mod tests {
             .iter()
             .map(|(whole, parts)| Sum {
                 whole: *whole,
-                parts: parts.iter().map(|&p| (p, 1.0)).collect(),
+                parts: parts.to_vec(),
             })
             .collect();
         d
@@ -559,25 +573,25 @@ mod tests {
 
     #[test]
     fn counts_flow_along_links() {
-        let d = divider(&[None, Some(5), None, None], &[(0, 1), (0, 2)], &[]).solve();
+        let d = divider(&[None, Some(5), None, None], &[(0, 1), (0, 2)], &[]).solved();
         assert_eq!(d.counts, [5, 5, 5, 8]);
         assert!(d.conflicts.is_empty());
     }
 
     #[test]
     fn a_sum_gives_and_takes() {
-        let d = divider(&[None, Some(4), Some(3)], &[], &[(0, &[1, 2])]).solve();
+        let d = divider(&[None, Some(4), Some(3)], &[], &[(0, &[1, 2])]).solved();
         assert_eq!(d.counts, [7, 4, 3]);
-        let d = divider(&[Some(9), Some(4), None], &[], &[(0, &[1, 2])]).solve();
+        let d = divider(&[Some(9), Some(4), None], &[], &[(0, &[1, 2])]).solved();
         assert_eq!(d.counts, [9, 4, 5]);
-        let d = divider(&[Some(10), None, None, None], &[], &[(0, &[1, 2, 3])]).solve();
+        let d = divider(&[Some(10), None, None, None], &[], &[(0, &[1, 2, 3])]).solved();
         assert_eq!(d.counts, [10, 3, 4, 3]);
         // The same part twice, and one that is shared by two sums.
         let d =
-            divider(&[Some(8), None, Some(5), None], &[], &[(0, &[1, 1]), (2, &[1, 3])]).solve();
+            divider(&[Some(8), None, Some(5), None], &[], &[(0, &[1, 1]), (2, &[1, 3])]).solved();
         assert_eq!(d.counts, [8, 4, 5, 1]);
         // Nothing is said: the whole has its usual count.
-        let d = divider(&[None, None, None], &[], &[(0, &[1, 2])]).solve();
+        let d = divider(&[None, None, None], &[], &[(0, &[1, 2])]).solved();
         assert_eq!(d.counts, [8, 4, 4]);
     }
 
@@ -585,7 +599,7 @@ mod tests {
     fn a_later_sum_has_its_say_in_time() {
         // 10 = a + b and 4 = a + c: an equal share of the ten would leave c nothing.
         let sums: [(Node, &[Node]); 2] = [(0, &[2, 3]), (1, &[2, 4])];
-        let d = divider(&[Some(10), Some(4), None, None, None], &[], &sums).solve();
+        let d = divider(&[Some(10), Some(4), None, None, None], &[], &sums).solved();
         assert_eq!((d.counts[2] + d.counts[3], d.counts[2] + d.counts[4]), (10, 4));
         assert!(d.conflicts.is_empty());
     }
@@ -593,13 +607,13 @@ mod tests {
     #[test]
     fn contradictions_are_told_and_do_not_spread() {
         let links = [(0, 1), (1, 2), (2, 3), (3, 4)];
-        let d = divider(&[Some(5), None, None, None, Some(7)], &links, &[]).solve();
+        let d = divider(&[Some(5), None, None, None, Some(7)], &links, &[]).solved();
         assert_eq!(d.counts, [5, 5, 5, 7, 7]);
         assert_eq!(d.conflicts, [Conflict::Chain(vec![0, 1, 2, 3, 4])]);
-        let d = divider(&[Some(5), Some(4), Some(3), None], &[], &[(0, &[1, 2])]).solve();
+        let d = divider(&[Some(5), Some(4), Some(3), None], &[], &[(0, &[1, 2])]).solved();
         assert_eq!((d.counts, d.conflicts), (vec![5, 4, 3, 8], vec![Conflict::Sum(0)]));
         // Too few for three pieces.
-        let d = divider(&[Some(2), None, None, None], &[], &[(0, &[1, 2, 3])]).solve();
+        let d = divider(&[Some(2), None, None, None], &[], &[(0, &[1, 2, 3])]).solved();
         assert_eq!(d.conflicts, [Conflict::Sum(0)]);
     }
 
@@ -609,7 +623,7 @@ mod tests {
         // two (0, 1) and of the upper two (2, 3) are chosen apart from each other, and 9 is stated.
         let sums: [(Node, &[Node]); 4] = [(0, &[4, 5]), (1, &[6, 7]), (2, &[4]), (3, &[5, 6, 7])];
         let d = divider(&[Some(9), Some(3), None, Some(4), None, None, None, None], &[], &sums);
-        let d = d.solve();
+        let d = d.solved();
         assert!(d.conflicts.is_empty(), "{d:?}");
         assert_eq!((d.counts[4] + d.counts[5], d.counts[5] + d.counts[6] + d.counts[7]), (9, 4));
     }
@@ -617,9 +631,9 @@ mod tests {
     #[test]
     fn chains_in_rings_end() {
         // A whole that is its own part, directly and round a corner.
-        let d = divider(&[None, None], &[], &[(0, &[0, 1])]).solve();
+        let d = divider(&[None, None], &[], &[(0, &[0, 1])]).solved();
         assert_eq!(d.conflicts, [Conflict::Sum(0)]);
-        let d = divider(&[None; 4], &[], &[(0, &[1, 2]), (1, &[0, 3])]).solve();
+        let d = divider(&[None; 4], &[], &[(0, &[1, 2]), (1, &[0, 3])]).solved();
         assert_eq!(d.conflicts.len(), 1);
         assert!(d.counts.iter().all(|&n| n >= 1));
     }
@@ -632,9 +646,9 @@ mod tests {
             let _ = d.node((k == 0).then_some(3), Some(8));
         });
         d.links = (1..n).map(|k| (k - 1, k)).collect();
-        assert!(d.solve().counts.iter().all(|&c| c == 3));
+        assert!(d.solved().counts.iter().all(|&c| c == 3));
         d.stated[n - 1] = Some(4);
-        let cut = d.solve();
+        let cut = d.solved();
         assert!(matches!(&cut.conflicts[..], [Conflict::Chain(path)] if path.len() == n));
         // All alone, all sums.
         let mut d = CountProblem::default();
@@ -642,8 +656,8 @@ mod tests {
             let _ = d.node(None, Some(8));
         });
         d.sums = (0..n / 3)
-            .map(|k| Sum { whole: 3 * k, parts: vec![(3 * k + 1, 1.0), (3 * k + 2, 1.0)] })
+            .map(|k| Sum { whole: 3 * k, parts: vec![3 * k + 1, 3 * k + 2] })
             .collect();
-        assert!(d.solve().conflicts.is_empty());
+        assert!(d.solved().conflicts.is_empty());
     }
 }

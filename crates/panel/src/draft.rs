@@ -20,6 +20,9 @@ pub(crate) fn indices([nu, nv]: [usize; 2], part: u8) -> impl Iterator<Item = us
     (i0..=i1).flat_map(move |i| (j0..=j1).map(move |j| i * (nv + 1) + j))
 }
 
+/// The longest chain of images whose first surface is looked for.
+const MOST_IMAGES: usize = 1000;
+
 pub(crate) fn surface_of<T: Scalar>(object: &Object<T>) -> Option<&SurfaceRef<T>> {
     match object.value()? {
         Value::Surface(surface) => Some(surface),
@@ -40,6 +43,39 @@ pub fn divisions<T: Scalar>(graph: &Graph<T>, object: &Object<T>) -> [u32; 2] {
     at.head.own_divisions()
 }
 
+/// The parameters u and v of the knuckles of a surface.
+pub(crate) type Knuckles = Arc<[Vec<f64>; 2]>;
+
+/// The knuckles of surfaces; an image breaks where its original does.
+struct KnuckleFinder<'g> {
+    graph: &'g Graph<f64>,
+    /// Those of an earlier state, and what the graph called its last change then.
+    before: Option<(&'g HashMap<Key, Knuckles>, u64)>,
+    found: HashMap<Key, Knuckles>,
+}
+
+impl<'g> KnuckleFinder<'g> {
+    fn of(&mut self, object: &'g Object<f64>, surface: &SurfaceRef<f64>) -> Knuckles {
+        // Down to the surface that is no image; a ring of images ends where it began.
+        let (mut at, mut shape, mut steps) = (object, surface, 0);
+        while let Some((key, _)) = shape.image_of()
+            && let Some(original) = self.graph.get(key)
+            && let Some(surface) = surface_of(original)
+            && steps < MOST_IMAGES
+        {
+            (at, shape, steps) = (original, surface, steps + 1);
+        }
+        if let Some(known) = self.found.get(&at.key) {
+            return known.clone();
+        }
+        let earlier = self.before.filter(|(_, clock)| at.changed_at <= *clock);
+        let earlier = earlier.and_then(|(known, _)| known.get(&at.key));
+        let made = earlier.cloned().unwrap_or_else(|| Arc::new(knuckles(&**shape)));
+        self.found.insert(at.key, made.clone());
+        made
+    }
+}
+
 /// A surface to be panelled, or the hem of a sheet.
 pub(crate) struct Draft<'g> {
     pub object: &'g Object<f64>,
@@ -47,7 +83,7 @@ pub(crate) struct Draft<'g> {
     pub border_curve: Option<BorderCounts>,
     pub edges: Edges<f64>,
     /// The parameters u and v of its knuckles.
-    pub knuckles: [Vec<f64>; 2],
+    pub knuckles: Knuckles,
     /// The draft of which it is the image, and the number of the map.
     pub image: Option<(usize, u32)>,
     /// False for a hidden surface of which a shown one is the image.
@@ -80,16 +116,21 @@ impl Draft<'_> {
 
 /// The surfaces that take part, in the order of declaration, hidden ones after them, and the hems of
 /// sheets last.
-pub(crate) fn drafts(graph: &Graph<f64>) -> Vec<Draft<'_>> {
+/// `before`: the knuckles of an earlier state of the graph, and what it called its last change then.
+pub(crate) fn drafts<'g>(
+    graph: &'g Graph<f64>,
+    before: Option<(&'g HashMap<Key, Knuckles>, u64)>,
+) -> Vec<Draft<'g>> {
     let mut drafts: Vec<Draft> = Vec::new();
-    let draft = |object, meshed| {
+    let mut finder = KnuckleFinder { graph, before, found: HashMap::new() };
+    let mut draft = |object: &'g Object<f64>, meshed| {
         let surface = surface_of(object)?.clone();
         let (mut edges, reversed) = (surface.edges(), reversed(graph, object));
         // Corners that are no point objects go by their own names.
         for (k, corner) in edges.corners.iter_mut().enumerate() {
             *corner = corner.or_else(|| object.key.corner(k));
         }
-        let knuckles = knuckles(&*surface);
+        let knuckles = finder.of(object, &surface);
         let border_curve = None;
         Some(Draft {
             object,

@@ -9,7 +9,7 @@
 //! same stretch, or lie at the same point object ([`crate::join`]); never because they look close. The
 //! position of a shared vertex is computed once, by the first patch in the order of declaration.
 
-use crate::draft::{drafts, indices};
+use crate::draft::{Knuckles, drafts, indices};
 use crate::edges::{self, EdgePlan, along_edge};
 use crate::identity::Identities;
 use crate::joined_patches::JoinedPatches;
@@ -81,6 +81,8 @@ pub struct Panelling {
     pub(crate) names: Arc<HashMap<Key, Arc<str>>>,
     remarks: Vec<PanelNote>,
     measured: bool,
+    /// The knuckles of the surfaces.
+    knuckles: HashMap<Key, Knuckles>,
     /// What the graph called its last change then.
     clock: u64,
 }
@@ -94,7 +96,7 @@ impl Panelling {
         Self::renewed(graph, None, None)
     }
 
-    /// The same with the counts of `nominal` wherever nothing else determines them. Of `before`, a
+    /// The same with the counts of `nominal` where lengths would decide them. Of `before`, a
     /// panelling of the same graph at an earlier state, what has not changed is taken over; the
     /// result is the same without it.
     ///
@@ -105,11 +107,13 @@ impl Panelling {
         nominal: Option<&Nominal>,
         before: Option<&Panelling>,
     ) -> Result<Self, CallError> {
-        let mut drafts = drafts(graph);
+        let mut drafts = drafts(graph, before.map(|b| (&b.knuckles, b.clock)));
         let identities = Identities::new(graph, &drafts);
         identities.collapse(&mut drafts);
         let roots = RootTable::new(graph, &drafts, identities);
         let made = topology::solve(graph, roots, &drafts, nominal);
+        let knuckles = drafts.iter().filter(|d| d.border_curve.is_none());
+        let knuckles = knuckles.map(|d| (d.object.key, d.knuckles.clone())).collect();
         let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
         let mut bodies = triangle_bodies::bodies(graph);
         let total = made.structure.patches.iter().map(count).sum::<u64>()
@@ -191,6 +195,7 @@ impl Panelling {
             names,
             remarks,
             measured: made.measured,
+            knuckles,
             clock: graph.last_change(),
         })
     }
@@ -205,7 +210,7 @@ impl Panelling {
         &self.remarks
     }
 
-    /// True when some count follows from lengths, so that it may change with the shape.
+    /// True when some count may follow from lengths, so that it may change with the shape.
     pub fn is_measured(&self) -> bool {
         self.measured
     }
@@ -221,7 +226,7 @@ impl Panelling {
             });
             ((frame.name.clone(), frame.border_curve), Counts { divisions: frame.divisions, edges })
         });
-        Nominal(counts.collect())
+        Nominal(Arc::new(counts.collect()))
     }
 
     /// The names of the patches' surfaces, in the order of the topology's patches; bodies of

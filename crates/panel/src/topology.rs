@@ -10,6 +10,7 @@ use moldloft_model::Graph;
 use moldloft_num::trace::{Edge, Key, Named, Root};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::Spacing;
+use smallvec::SmallVec;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
@@ -91,8 +92,17 @@ pub(crate) struct PanelTopology {
 pub(crate) struct SolvedTopology {
     pub structure: PanelTopology,
     pub remarks: Vec<PanelNote>,
-    /// True when some count follows from lengths, so that it may change with any parameter.
+    /// True when some count may follow from lengths, so that it may change with any parameter.
     pub measured: bool,
+}
+
+/// What the parts of a sum are weighed by: the lengths of a patch's lines between parameters, or, without lines, the
+/// parameters themselves.
+struct PartLengths {
+    patch: usize,
+    /// Edges 0..4; the longest counts.
+    lines: SmallVec<[usize; 2]>,
+    ranges: Vec<[f64; 2]>,
 }
 
 /// Direction 0 (u) or 1 (v) of a patch, as a node of the divider.
@@ -106,7 +116,7 @@ type IntervalShares = HashMap<(IntervalId, u32), (bool, Shares)>;
 
 /// The counts of divisions of another state of a model, to be kept where they are free.
 #[derive(Clone, Debug, Default)]
-pub struct Nominal(pub(crate) HashMap<(Arc<str>, Option<u32>), Counts>);
+pub struct Nominal(pub(crate) Arc<HashMap<(Arc<str>, Option<u32>), Counts>>);
 
 #[derive(Clone, Debug)]
 pub(crate) struct Counts {
@@ -122,11 +132,11 @@ struct TopologySolver<'a, 'g> {
     divider: CountProblem,
     /// The patch and edge of each sum.
     summed: Vec<(usize, usize)>,
+    lengths: Vec<PartLengths>,
     /// For each link: true when the two run in opposite directions.
     turned: Vec<bool>,
     /// For each patch, the nodes of its stretches between knuckles along u and along v.
     stretches: Vec<[Vec<Node>; 2]>,
-    measured: bool,
 }
 
 pub(crate) fn solve<'g>(
@@ -151,18 +161,18 @@ pub(crate) fn solve<'g>(
         spans,
         divider: CountProblem::default(),
         summed: Vec::new(),
+        lengths: Vec::new(),
         turned: Vec::new(),
         stretches: vec![Default::default(); drafts.len()],
-        measured: false,
     };
     maker.state();
-    match nominal {
+    let measured = maker.is_measured();
+    match nominal.filter(|_| measured) {
         Some(nominal) => maker.recall(nominal),
         None => maker.wish(),
     }
-    let divided = maker.divider.solve();
+    let divided = maker.divider.solve(&|sum| maker.weights(sum));
     let remarks = maker.reported(&divided.conflicts, &divided.counts);
-    let measured = maker.measured;
     SolvedTopology { structure: maker.finish(&divided.counts), remarks, measured }
 }
 
@@ -211,11 +221,12 @@ impl TopologySolver<'_, '_> {
                     [] => {}
                     [(interval, backwards)] => self.link(whole, self.interval(interval), backwards),
                     _ => {
-                        let weights = self.weights(patch, k);
-                        let nodes = along.iter().map(|s| self.interval(s.0));
-                        let parts = nodes.zip(weights).collect();
-                        self.divider.sums.push(Sum { whole, parts });
-                        self.summed.push((patch, k));
+                        let parts = along.iter().map(|s| self.interval(s.0)).collect();
+                        let stops = self.stops(patch, k);
+                        let ranges = stops.windows(2).zip(spans);
+                        let ranges = ranges.filter(|(_, span)| span.interval.is_some());
+                        let ranges = ranges.map(|(w, _)| [w[0], w[1]]).collect();
+                        self.sum(whole, parts, (patch, k), &[k], ranges);
                     }
                 }
             }
@@ -230,7 +241,32 @@ impl TopologySolver<'_, '_> {
                 }
             }
         }
-        self.measured = !self.summed.is_empty();
+    }
+
+    /// A count that is the sum of others, which share it by lengths where it is known.
+    fn sum(
+        &mut self,
+        whole: Node,
+        parts: Vec<Node>,
+        (patch, k): (usize, usize),
+        lines: &[usize],
+        ranges: Vec<[f64; 2]>,
+    ) {
+        self.divider.sums.push(Sum { whole, parts });
+        self.summed.push((patch, k));
+        self.lengths.push(PartLengths { patch, lines: lines.into(), ranges });
+    }
+
+    /// True when lengths may decide some count.
+    fn is_measured(&self) -> bool {
+        !self.summed.is_empty()
+            || self.drafts.iter().enumerate().any(|(patch, draft)| {
+                let Some(panels) = &draft.object.head.panels else { return false };
+                (0..2).any(|direction| {
+                    let stated = self.divider.stated[side(patch, direction)];
+                    panels.size[direction].is_some() && stated.is_none()
+                })
+            })
     }
 
     /// The stretches of a patch between its knuckles, which both of its edges across them have alike: they
@@ -249,25 +285,20 @@ impl TopologySolver<'_, '_> {
             let chained = sides.iter().any(
                 |&k| matches!(&self.drafts[patch].edges.edges[k], Edge::Pieces(p) if p.len() > 1),
             );
-            let length = |w: &[f64]| {
-                let lengths = sides.iter().map(|&k| self.length(patch, k, w[0], w[1]));
-                if chained { lengths.fold(0.0, f64::max) } else { w[1] - w[0] }
-            };
-            let weights: Vec<f64> = ends.windows(2).map(length).collect();
-            let parts = nodes.iter().copied().zip(weights).collect();
-            self.divider.sums.push(Sum { whole: side(patch, direction), parts });
-            self.summed.push((patch, k));
+            let lines: &[usize] = if chained { &sides } else { &[] };
+            let ranges = ends.windows(2).map(|w| [w[0], w[1]]).collect();
+            self.sum(side(patch, direction), nodes.clone(), (patch, k), lines, ranges);
             self.stretches[patch][direction] = nodes;
         }
         let stops = self.stops(patch, k);
         let spans = self.spans[patch][k].as_deref().unwrap_or_default();
-        let mut within: Vec<Vec<(IntervalId, bool, f64)>> = vec![Vec::new(); knuckles.len() + 1];
+        let mut within: Vec<Vec<(IntervalId, bool, [f64; 2])>> =
+            vec![Vec::new(); knuckles.len() + 1];
         for (span, stop) in spans.iter().zip(stops.windows(2)) {
             let Some(interval) = span.interval else { continue };
             let middle = 0.5 * (stop[0] + stop[1]);
             let at = knuckles.partition_point(|&b| b <= middle);
-            let length = self.length(patch, k, stop[0], stop[1]);
-            within[at].push((interval, span.backwards, length));
+            within[at].push((interval, span.backwards, [stop[0], stop[1]]));
         }
         for (at, intervals) in within.into_iter().enumerate() {
             let whole = self.stretches[patch][direction][at];
@@ -275,12 +306,9 @@ impl TopologySolver<'_, '_> {
                 [] => {}
                 [(interval, backwards, _)] => self.link(whole, self.interval(interval), backwards),
                 _ => {
-                    let parts = intervals
-                        .iter()
-                        .map(|&(i, _, length)| (self.interval(i), length))
-                        .collect();
-                    self.divider.sums.push(Sum { whole, parts });
-                    self.summed.push((patch, k));
+                    let parts = intervals.iter().map(|&(i, ..)| self.interval(i)).collect();
+                    let ranges = intervals.iter().map(|&(_, _, range)| range).collect();
+                    self.sum(whole, parts, (patch, k), &[k], ranges);
                 }
             }
         }
@@ -314,12 +342,14 @@ impl TopologySolver<'_, '_> {
         stops
     }
 
-    /// The lengths of the stretches of an edge.
-    fn weights(&self, patch: usize, k: usize) -> Vec<f64> {
-        let stops = self.stops(patch, k);
-        let spans = self.spans[patch][k].iter().flatten();
-        let within = stops.windows(2).zip(spans).filter(|(_, span)| span.interval.is_some());
-        within.map(|(w, _)| self.length(patch, k, w[0], w[1])).collect()
+    /// The weights of the parts of a sum.
+    fn weights(&self, sum: usize) -> Vec<f64> {
+        let PartLengths { patch, lines, ranges } = &self.lengths[sum];
+        let weight = |&[from, to]: &[f64; 2]| {
+            let lengths = lines.iter().map(|&k| self.length(*patch, k, from, to));
+            if lines.is_empty() { to - from } else { lengths.fold(0.0, f64::max) }
+        };
+        ranges.iter().map(weight).collect()
     }
 
     /// The length of an edge (0..4) or middle line (4 along u, 5 along v) between two parameters.
@@ -354,14 +384,12 @@ impl TopologySolver<'_, '_> {
                 let length = lines.map(|k| self.length(patch, k, 0.0, 1.0)).into_iter();
                 let count = count_of(length.fold(0.0, f64::max), size, panels.spacing[direction]);
                 self.divider.wished[side(patch, direction)] = Some(count);
-                self.measured = true;
             }
         }
     }
 
     /// The counts of another state of the model, where they are free.
     fn recall(&mut self, nominal: &Nominal) {
-        self.measured = true;
         for (patch, draft) in self.drafts.iter().enumerate() {
             let Some(counts) = nominal.0.get(&draft.identity()) else { continue };
             for direction in 0..2 {
@@ -429,7 +457,7 @@ impl TopologySolver<'_, '_> {
         let patches = 2 * self.drafts.len();
         let pieces = parts
             .iter()
-            .map(|&(node, _)| {
+            .map(|&node| {
                 let words = if self.is_interval(node) {
                     self.curve((node - patches) as IntervalId)
                 } else {

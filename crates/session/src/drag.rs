@@ -112,10 +112,7 @@ impl Drag {
         }
         let direct = names.iter().all(|n| self.own.contains(n));
         for name in &names {
-            if !self.moved.iter().any(|(n, _)| n == name) {
-                let (value, _) = state(document, name).ok_or(format!("no number `{name}`"))?;
-                self.moved.push((name.clone(), value));
-            }
+            self.keep(document, name)?;
         }
         let left = |place: Vec3| basis.iter().map(|b| b.dot(target - place)).collect::<Vec<_>>();
         let size = |r: &[f64]| r.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -197,6 +194,18 @@ impl Drag {
         }
         document.set(&values).ok()?;
         self.place(document).ok()
+    }
+
+    /// Remembers what a number was before the drag, so that its end finds what has changed.
+    ///
+    /// # Errors
+    /// That there is no such number.
+    pub fn keep(&mut self, document: &Document, name: &str) -> Result<(), String> {
+        if !self.moved.iter().any(|(n, _)| n == name) {
+            let (value, _) = state(document, name).ok_or(format!("no number `{name}`"))?;
+            self.moved.push((name.into(), value));
+        }
+        Ok(())
     }
 
     /// The numbers that are not what they were before the drag, and their values.

@@ -34,6 +34,7 @@ mod request;
 mod scene;
 mod session;
 mod text;
+mod volume;
 
 pub use drag::round_to;
 pub use fields::FIELDS;

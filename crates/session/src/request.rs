@@ -133,6 +133,18 @@ pub enum Ask {
         /// The coordinate.
         value: f64,
     },
+    /// Volume blocks with their quality, the cells that are folded, and a plane of one of them.
+    Blocks {
+        /// The block of the plane; none without one.
+        #[serde(default)]
+        block: Option<String>,
+        /// The axis along which the plane has one number: 0, 1 or 2.
+        #[serde(default)]
+        axis: usize,
+        /// That number, from 0.
+        #[serde(default)]
+        index: usize,
+    },
     /// Lays a foreign mesh or a table of points over the model; the reply has the overlays.
     Overlay {
         /// The name of the file: its ending says what it is.

@@ -8,6 +8,7 @@ use crate::overlay::Overlays;
 use crate::request::{Ask, Request};
 use crate::scene::Scene;
 use crate::text::{byte, changed, difference, unit};
+use crate::volume::{self, GridPlane};
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
 use moldloft_document::{CompletionKind, Document, World, registry};
@@ -289,6 +290,10 @@ impl Session {
             }
             Ask::Combs { names } => self.combs(&names, frame),
             Ask::Section { axis, value } => self.section(axis, value, frame)?,
+            Ask::Blocks { block, axis, index } => {
+                let plane = block.map(|block| GridPlane { block, axis, index });
+                volume::put(&mut self.document, plane.as_ref(), frame)?;
+            }
             Ask::Overlay { name, data } => {
                 self.overlays.add(&name, &data)?;
                 self.overlays.put(&mut self.document, frame, true);
@@ -376,6 +381,12 @@ impl Session {
 
     fn set(&mut self, values: BTreeMap<String, f64>) -> Answer {
         let values: Vec<(String, f64)> = values.into_iter().collect();
+        // A number that is typed during a drag is part of it.
+        if let Some(drag) = &mut self.drag {
+            for (name, _) in &values {
+                drag.keep(&self.document, name)?;
+            }
+        }
         self.document.set(&values)?;
         self.rev += 1;
         Ok(())

@@ -6,6 +6,9 @@
 //! `answer` returns is the length of the frame at `reply`. The message of `start` is
 //! `u32 length, JSON, bytes of the files`; that of `answer` is a request in JSON.
 //!
+//! Files that the model asked for and the page does not carry are listed by `missing`, so that a page whose
+//! host has them can begin again.
+//!
 //! What goes wrong inside ends the instance, after `env.panicked` was given the words: the page makes
 //! another one of the same text.
 //!
@@ -15,12 +18,12 @@
 #![cfg(target_arch = "wasm32")]
 #![allow(unsafe_code)]
 
-use moldloft_lang::{ReadError, ReadText, World};
+use moldloft_lang::{ReadText, TextReadError, World};
 use moldloft_session::Session;
 use serde::Deserialize;
 use std::cell::RefCell;
-use std::collections::HashMap;
-use std::sync::Arc;
+use std::collections::{BTreeSet, HashMap};
+use std::sync::{Arc, Mutex, PoisonError};
 
 #[link(wasm_import_module = "env")]
 unsafe extern "C" {
@@ -55,15 +58,25 @@ struct Carried {
     count: usize,
 }
 
+/// A file by the path that a text asks for, and the name of that text.
+type Asked = (String, Option<String>);
+
 /// The files that the page carries, and no others.
-struct CarriedFiles(HashMap<(String, Option<String>), ReadText>);
+struct CarriedFiles {
+    files: HashMap<Asked, ReadText>,
+    missing: Arc<Mutex<BTreeSet<Asked>>>,
+}
 
 impl World for CarriedFiles {
-    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, ReadError> {
-        let known = self.0.get(&(path.to_owned(), from.map(str::to_owned)));
-        known.cloned().ok_or_else(|| ReadError {
-            message: format!("cannot read `{path}`: this page does not carry it"),
-            help: Some("`moldloft view` reads the files beside the model".into()),
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, TextReadError> {
+        let asked = (path.to_owned(), from.map(str::to_owned));
+        let known = self.files.get(&asked).cloned();
+        known.ok_or_else(|| {
+            self.missing.lock().unwrap_or_else(PoisonError::into_inner).insert(asked);
+            TextReadError {
+                message: format!("cannot read `{path}`: this page does not carry it"),
+                help: Some("`moldloft view` reads the files beside the model".into()),
+            }
         })
     }
 }
@@ -73,6 +86,7 @@ struct Engine {
     input: Vec<u8>,
     session: Option<Session>,
     reply: Vec<u8>,
+    missing: Arc<Mutex<BTreeSet<Asked>>>,
 }
 
 thread_local! {
@@ -99,12 +113,12 @@ pub extern "C" fn start() -> bool {
     }));
     ENGINE.with_borrow_mut(|engine| {
         let input = std::mem::take(&mut engine.input);
-        engine.session = begun(&input);
+        engine.session = begun(&input, engine.missing.clone());
         engine.session.is_some()
     })
 }
 
-fn begun(message: &[u8]) -> Option<Session> {
+fn begun(message: &[u8], missing: Arc<Mutex<BTreeSet<Asked>>>) -> Option<Session> {
     let (length, rest) = message.split_first_chunk::<4>()?;
     let (json, bytes) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
     let start: InitialModel = serde_json::from_slice(json).ok()?;
@@ -114,7 +128,8 @@ fn begun(message: &[u8]) -> Option<Session> {
         let read = ReadText { name: file.name, bytes: Arc::from(data) };
         files.insert((file.path, file.from), read);
     }
-    Some(Session::new(Box::new(CarriedFiles(files)), &start.name, &start.text))
+    let world = CarriedFiles { files, missing };
+    Some(Session::new(Box::new(world), &start.name, &start.text))
 }
 
 /// Answers the request of the message; the length of the frame.
@@ -134,4 +149,14 @@ pub extern "C" fn answer() -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn reply() -> *const u8 {
     ENGINE.with_borrow(|engine| engine.reply.as_ptr())
+}
+
+/// Makes a reply of the files that were asked for and are not carried, as JSON `[[path, asker], ...]`; its length.
+#[unsafe(no_mangle)]
+pub extern "C" fn missing() -> usize {
+    ENGINE.with_borrow_mut(|engine| {
+        let asked = engine.missing.lock().unwrap_or_else(PoisonError::into_inner);
+        engine.reply = serde_json::json!(&*asked).to_string().into_bytes();
+        engine.reply.len()
+    })
 }

@@ -1,10 +1,11 @@
-// Starts the language server and connects the editor to it.
+// Starts the language server and connects the editor to it; shows models beside their texts.
 "use strict";
 
 const fs = require("fs");
 const path = require("path");
 const vscode = require("vscode");
 const { LanguageClient } = require("vscode-languageclient/node");
+const { view } = require("./view");
 
 let client;
 
@@ -26,6 +27,7 @@ function activate(context) {
     { run: server, debug: server },
     { documentSelector: [{ language: "sdl" }] },
   );
+  context.subscriptions.push(vscode.commands.registerCommand("moldloft.view", () => view(context)));
   context.subscriptions.push({ dispose: () => client.stop() });
   return client.start();
 }

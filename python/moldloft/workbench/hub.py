@@ -31,7 +31,7 @@ Send = Callable[["str | bytes"], Awaitable[None]]
 #: Requests of which only the newest of a tab counts.
 NEWEST = {
     "set", "drag_to", "sync", "hover", "complete", "inspect", "section", "field", "combs",
-    "deviation", "measure",
+    "deviation", "measure", "blocks",
 }  # fmt: skip
 
 #: What a page may ask of the engine.
