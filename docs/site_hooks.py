@@ -130,6 +130,21 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
     return _LINK.sub(moved, markdown)
 
 
+#: What the theme loads from another server when the site is opened from a folder; without it there is no search there.
+_SHIM = re.compile(r'(<script src=")https://unpkg\.com/iframe-worker/shim(")')
+
+
+def on_post_page(output: str, page: Any, config: Any) -> str:
+    """Takes the script for searching in a folder from the site itself."""
+    up = "../" * page.url.count("/")
+    return _SHIM.sub(rf"\g<1>{up}iframe-worker.js\g<2>", output)
+
+
+def on_post_template(output_content: str, template_name: str, config: Any) -> str:
+    """The same for the page about addresses that do not exist."""
+    return _SHIM.sub(r"\g<1>/iframe-worker.js\g<2>", output_content)
+
+
 def on_post_build(config: Any) -> None:
     """Writes the pages of the gallery's models beside its page."""
     if not LIVING:

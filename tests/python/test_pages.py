@@ -208,6 +208,33 @@ def test_the_naval_architects_commands_run(cli, workplace: Path) -> None:
         cli(*words)
 
 
+def searched(page: Path, word: str) -> str | None:
+    """What the search of a page opened from its folder says; None where there is no browser."""
+    names = ("chromium", "chromium-browser", "google-chrome")
+    browser = next(filter(None, map(shutil.which, names)), None)
+    if browser is None:
+        return None
+    playwright = pytest.importorskip("playwright.sync_api")
+    with playwright.sync_playwright() as p:
+        running = p.chromium.launch(executable_path=browser, args=["--no-sandbox"])
+        view = running.new_page()
+        remote: list[str] = []
+        view.on("request", lambda r: remote.append(r.url) if r.url.startswith("http") else None)
+        view.goto(page.as_uri())
+        view.wait_for_function("typeof __index == 'object' && document.querySelector('iframe')")
+        said = view.locator(".md-search-result__meta")
+        view.click("input.md-search__input")
+        view.keyboard.type(word)
+        for _ in range(300):
+            if "matching" in said.inner_text():
+                break
+            view.wait_for_timeout(100)
+        text = str(said.inner_text())
+        running.close()
+    assert not remote
+    return text
+
+
 def test_the_site_is_whole(tmp_path: Path) -> None:
     """Built strictly: no page without a place, no link or anchor that is not there."""
     pytest.importorskip("mkdocs")
@@ -229,10 +256,11 @@ def test_the_site_is_whole(tmp_path: Path) -> None:
     for name, word in (("nc", "AbsPoint"), ("nv", "arch"), ("c1", "# halfway"), ("k", "assert")):
         assert f'<span class="{name}">{word}</span>' in relational, word
     # It opens from a folder: nothing is fetched from elsewhere.
-    for page in (tmp_path / "index.html", tmp_path / "relational.html"):
+    for page in pages:
         text = page.read_text(encoding="utf-8")
-        remote = r'(?:src|href)="https?://(?!github\.com)[^"]*\.(?:js|css|woff2?)'
-        assert not re.findall(remote, text)
+        assert not re.findall(r'(?:src|<link[^>]*href)="https?://[^"]*', text), page.name
+    found = searched(tmp_path / "tutorials" / "dam.html", "geodesic")
+    assert found is None or "matching document" in found
     nav = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
     for page in PAGES:
         assert named(page) in nav, f"{named(page)} is on no menu"

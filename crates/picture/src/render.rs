@@ -184,9 +184,12 @@ pub fn render(
         }
         for line in lines {
             // A line on the surface lies within its panels' sagitta of them; near the outline the panels turn away from it.
-            let depths = [2e-3, if line.on_surface { 2e-2 } else { f64::INFINITY }];
+            let before = if line.on_surface { 2e-2 } else { f64::INFINITY };
             for ends in line.points.windows(2).filter(|w| w.iter().all(|p| p.is_finite())) {
-                stroke(ends[0], ends[1], line.width, depths, line.colour);
+                // A dot is a disc across the line of sight: a surface through its middle would hide half of it.
+                let breadth = f64::from(line.width) / width.min(height) as f64;
+                let hidden = if ends[0] == ends[1] { breadth.min(0.1) } else { 2e-3 };
+                stroke(ends[0], ends[1], line.width, [hidden, before], line.colour);
             }
         }
     }

@@ -159,3 +159,15 @@ fn names_are_written_beside_their_points() {
     assert!(four > one);
     assert_eq!(red(vec![Label { at: Vec3::of(f64::NAN, 0.0, 0.0), ..name("P") }]), 0);
 }
+
+#[test]
+fn a_dot_on_a_surface_is_whole() {
+    let red = |elevation_deg: f64| {
+        let camera = Camera { azimuth_deg: 20.0, elevation_deg, view_angle_deg: None };
+        let points = vec![Vec3::of(0.5, 0.5, 0.0); 2];
+        let dot = StyledPolyline { points, colour: [0xc0, 0, 0], width: 9.0, on_surface: false };
+        let picture = pixels(&render(&sheet(2), &[dot], &Options { camera, ..small() }).unwrap());
+        picture.iter().filter(|p| p[0] > 150 && p[1] < 100).count()
+    };
+    assert!(red(25.0).abs_diff(red(90.0)) < 12, "{} {}", red(25.0), red(90.0));
+}
