@@ -204,3 +204,108 @@ def test_any_line_may_be_missing(name: str, tmp_path: Path) -> None:
         words = rf"#{numbers[line][0]}\b"
         assert not used or any(re.search(words, r) for r in remarks), (line, remarks)
         assert len(model.mesh().patches) >= whole, (line, remarks)
+
+
+def altered(text: str, rng: random.Random) -> str:
+    """A file with one statement changed so that all it refers to is there."""
+    lines = re.findall(r"^#\d+=.*;\n", text, re.M)
+    numbers = [line.split("=")[0] for line in lines]
+    line = rng.choice(lines)
+    head, body = line.split("=", 1)
+    match rng.randrange(5):
+        case 0:
+            # Another entity of any kind.
+            places = [m.span() for m in re.finditer(r"#\d+", body)]
+            if not places:
+                return altered(text, rng)
+            at = rng.choice(places)
+            body = body[: at[0]] + rng.choice(numbers) + body[at[1] :]
+        case 1:
+            places = [m.span() for m in re.finditer(r"-?\d+\.\d*(?:E-?\d+)?", body)]
+            if not places:
+                return altered(text, rng)
+            at = rng.choice(places)
+            new = rng.choice(["0.", "-1.", "1.E300", "1.E-300", "-1.E9", "NAN", "1.E999"])
+            body = body[: at[0]] + new + body[at[1] :]
+        case 2:
+            places = [m.span() for m in re.finditer(r"(?<=[(,])\d+(?=[,)])", body)]
+            if not places:
+                return altered(text, rng)
+            at = rng.choice(places)
+            body = body[: at[0]] + rng.choice(["0", "-3", "7", "99", "2000000000"]) + body[at[1] :]
+        case 3:
+            other = rng.choice(lines).split("=", 1)[1]
+            body = other
+        case _:
+            # A list that lost or doubled an item.
+            items = [m.span() for m in re.finditer(r"#\d+,", body)]
+            if not items:
+                return altered(text, rng)
+            at = rng.choice(items)
+            kept = "" if rng.random() < 0.5 else 2 * body[at[0] : at[1]]
+            body = body[: at[0]] + kept + body[at[1] :]
+    return text.replace(line, f"{head}={body}", 1)
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_files_that_keep_their_references_do_not_end_the_process(name: str, tmp_path: Path) -> None:
+    text = step_of(tmp_path, BODIES[name])
+    rng = random.Random(name)
+    for _ in range(400 if os.environ.get("MOLDLOFT_SOAK") == "1" else 12):
+        changed = altered(text, rng)
+        try:
+            _, remarks = read_back(tmp_path, changed)
+        except moldloft.Error as error:
+            assert "Traceback" not in str(error)
+        else:
+            assert all(len(remark) < 1000 for remark in remarks)
+
+
+def test_a_face_that_ends_the_reader_is_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from moldloft.cad import apart
+
+    path = tmp_path / "part.step"
+    path.write_text(step_of(tmp_path))
+    bad = 0
+    asked = apart._asked
+
+    def ends(path: Path, metres: float, numbers: list[int] | None) -> object:
+        nonlocal bad
+        if numbers is None or bad in numbers:
+            return "OCCT ended over the file (SIGSEGV)"
+        return asked(path, metres, numbers)
+
+    bad = int(entity(path.read_text(), "ADVANCED_FACE", 2)[0][1:])
+    monkeypatch.setattr(apart, "_asked", ends)
+    found = apart.read(path, 1.0)
+    assert len(found.faces) == 5
+    assert found.remarks[0].startswith("OCCT ended over the file (SIGSEGV); 5 of 6 faces were read")
+    assert found.remarks[0].endswith(f"left out: #{bad}")
+
+
+def test_the_reader_is_bounded_in_time_and_memory(tmp_path: Path) -> None:
+    path = tmp_path / "part.step"
+    path.write_text(step_of(tmp_path))
+    from moldloft.cad.importing import program
+
+    before = moldloft.limits()
+    try:
+        moldloft.limits(seconds=1e-3)
+        with pytest.raises(moldloft.Error, match=r"part.step`: OCCT was ended: it took longer"):
+            program(path)
+    finally:
+        moldloft.limits(seconds=before.seconds)
+    assert program(path)[1] == []
+
+
+def test_comments_are_no_entities(tmp_path: Path) -> None:
+    text = step_of(tmp_path)
+    line = entity(text, "ADVANCED_FACE", 1)[1]
+    comment = f"/* it's {line} and #9=#99999999; */ "
+    model, remarks = read_back(tmp_path, text.replace(line, comment + line))
+    assert not remarks and model.mesh().closed
+    # A string that looks like one is kept.
+    named = text.replace(line, re.sub(r"'[^']*'", "'a /* b */'", line, count=1))
+    assert not read_back(tmp_path, named)[1]

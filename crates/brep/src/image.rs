@@ -1,6 +1,6 @@
 //! Mirror images of boundary representations in coordinate planes, sewn to their originals there.
 
-use crate::{Brep, BrepEdge, BrepFace, ExactCurve, SurfaceAxes, SurfaceShape};
+use crate::{Brep, BrepEdge, BrepFace, ExactCurve, FacetedPart, SurfaceAxes, SurfaceShape};
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 
@@ -26,6 +26,28 @@ fn flat(face: &BrepFace, axis: usize, near: f64) -> bool {
         }
         SurfaceShape::Nurbs(n) => n.points.iter().all(|p| p[axis].abs() <= near),
         _ => false,
+    }
+}
+
+impl FacetedPart {
+    /// Adds the image: vertices in the plane are shared, triangles that close a half there are left out.
+    fn add_image(&mut self, axis: usize) {
+        let most = |p: &Vec3| p.to_array().iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let near = IN_PLANE * self.positions.iter().map(most).fold(0.0, f64::max);
+        let level: Vec<bool> = self.positions.iter().map(|p| p[axis].abs() <= near).collect();
+        self.triangles.retain(|t| !t.iter().all(|v| level[*v as usize]));
+        let twin: Vec<u32> = (0..level.len())
+            .map(|v| {
+                if level[v] {
+                    return v as u32;
+                }
+                self.positions.push(mirrored(self.positions[v], axis));
+                self.positions.len() as u32 - 1
+            })
+            .collect();
+        let images = self.triangles.iter().map(|&[a, b, c]| [c, b, a].map(|v| twin[v as usize]));
+        let images: Vec<[u32; 3]> = images.collect();
+        self.triangles.extend(images);
     }
 }
 
@@ -119,6 +141,9 @@ impl Brep {
                 cycle.reverse();
             }
             self.faces.push(face);
+        }
+        for part in &mut self.faceted {
+            part.add_image(axis);
         }
         self
     }

@@ -42,6 +42,8 @@ pub struct Brep {
     pub parts: Vec<Part>,
     /// A bound of the distances between edges, vertices and the surfaces that they lie on.
     pub gap: f64,
+    /// Bodies that have no faces on surfaces, as triangles.
+    pub faceted: Vec<FacetedPart>,
 }
 
 /// An edge from a vertex to a vertex.
@@ -139,6 +141,23 @@ pub enum SurfaceShape {
     Nurbs(Box<Nurbs<2>>),
 }
 
+/// A body of triangles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FacetedPart {
+    /// Its name.
+    pub name: String,
+    /// Its colour, sRGB.
+    pub colour: Option<[u8; 3]>,
+    /// The layers that it is on.
+    pub layers: Vec<String>,
+    /// Positions of the vertices.
+    pub positions: Vec<Vec3>,
+    /// The triangles, counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// How far the middles of triangles are from the surface, where that is known.
+    pub error: Option<f64>,
+}
+
 /// A named thing: shells, or curves and points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
@@ -172,6 +191,16 @@ pub struct Wire {
     pub layers: Vec<String>,
     /// The curve.
     pub curve: Nurbs<1>,
+}
+
+impl FacetedPart {
+    /// True when each side has two triangles that run along it in opposite senses.
+    pub fn closed(&self) -> bool {
+        let mut sides = std::collections::HashSet::new();
+        let all = self.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+        let once = all.into_iter().all(|side| sides.insert(side));
+        once && sides.iter().all(|&(a, b)| sides.contains(&(b, a)))
+    }
 }
 
 impl BrepEdge {
@@ -224,6 +253,7 @@ impl Brep {
             face
         }));
         self.gap = self.gap.max(other.gap);
+        self.faceted.extend(other.faceted);
     }
 
     /// True when all faces are exact but for rounding.

@@ -34,12 +34,13 @@ pub struct FittedPatch {
 
 impl PatchBasis {
     pub fn new(degree: usize) -> Self {
-        let at: Vec<f64> = (0..=degree)
-            .map(|k| 0.5 * (1.0 - libm::cos(PI * k as f64 / degree as f64)))
-            .collect();
+        let at: Vec<f64> =
+            (0..=degree).map(|k| 0.5 * (1.0 - libm::cos(PI * k as f64 / degree as f64))).collect();
         let inverse = inverted(at.iter().map(|t| bernstein(degree, *t)).collect());
         let rows = (0..DISTANCES)
-            .map(|k| bernstein(degree, 0.5 * (1.0 - libm::cos(PI * (k as f64 + 0.5) / DISTANCES as f64))))
+            .map(|k| {
+                bernstein(degree, 0.5 * (1.0 - libm::cos(PI * (k as f64 + 0.5) / DISTANCES as f64)))
+            })
             .collect();
         Self { degree, at, inverse, rows }
     }
@@ -174,9 +175,7 @@ fn bernstein(degree: usize, t: f64) -> Vec<f64> {
 fn slope(degree: usize, t: f64) -> Vec<f64> {
     let lower = bernstein(degree - 1, t);
     let at = |k: usize| lower.get(k).copied().unwrap_or(0.0);
-    (0..=degree)
-        .map(|k| degree as f64 * (if k > 0 { at(k - 1) } else { 0.0 } - at(k)))
-        .collect()
+    (0..=degree).map(|k| degree as f64 * (if k > 0 { at(k - 1) } else { 0.0 } - at(k))).collect()
 }
 
 /// The inverse of a small matrix, by elimination with pivots.

@@ -79,7 +79,8 @@ impl<'a> PatchedBody<'a> {
             return Err(FacetFault { kind, surfaces: Vec::new(), place });
         };
         let basis = PatchBasis::new(degree);
-        let mut body = Self { net, facets, field, basis, accuracy, size, sides: FxHashMap::default() };
+        let mut body =
+            Self { net, facets, field, basis, accuracy, size, sides: FxHashMap::default() };
         body.place_vertices()?;
         Ok(body)
     }
@@ -123,43 +124,43 @@ impl<'a> PatchedBody<'a> {
 
     /// The point near another that is on all these surfaces within the accuracy.
     fn foot(&self, labels: &[u32], start: Vec3, reach: f64) -> Option<Vec3> {
-        const STEPS: usize = 60;
-        // Surfaces that touch have no point of their own along the common tangent.
-        const LEAST: f64 = 1e-10;
+        const STEPS: usize = 80;
         let off = |p: Vec3| {
             labels.iter().map(move |&l| {
                 let (f, slope) = (self.field)(l, p);
                 let norm = slope.norm();
-                (f / norm, slope / norm)
+                if f == 0.0 {
+                    (0.0, slope / norm.max(f64::MIN_POSITIVE))
+                } else {
+                    (f / norm, slope / norm)
+                }
             })
         };
-        let worst = |p: Vec3| off(p).fold(0.0f64, |m, (d, _)| if d.is_nan() { f64::INFINITY } else { m.max(d.abs()) });
+        let worst = |p: Vec3| {
+            let far = |m: f64, (d, _): (f64, Vec3)| {
+                if d.is_nan() { f64::INFINITY } else { m.max(d.abs()) }
+            };
+            off(p).fold(0.0f64, far)
+        };
         let mut p = start;
         let mut best = (worst(start), start);
         for _ in 0..STEPS {
-            let mut m = [[LEAST, 0.0, 0.0], [0.0, LEAST, 0.0], [0.0, 0.0, LEAST]];
-            let mut r = Vec3::zero();
-            for (d, n) in off(p) {
-                r += n * d;
-                let n = n.to_array();
-                for i in 0..3 {
-                    for j in 0..3 {
-                        m[i][j] += n[i] * n[j];
-                    }
-                }
-            }
-            let [a, b, c] = m.map(Vec3::from);
-            let det = a.dot(b.cross(c));
-            let step = (b.cross(c) * r.x + c.cross(a) * r.y + a.cross(b) * r.z) / det;
-            if !step.is_finite() || step.norm() > reach {
+            let rows: Vec<(f64, Vec3)> = off(p).collect();
+            let mut step = nearest_step(&rows);
+            if !step.is_finite() {
                 break;
+            }
+            // Far from surfaces that nearly touch the first steps are too long.
+            let long = step.norm();
+            if long > 0.5 * reach {
+                step = step * (0.5 * reach / long);
             }
             p -= step;
             let now = worst(p);
             if now < best.0 {
                 best = (now, p);
             }
-            if now <= 1e-15 * self.size || step.norm() <= 1e-16 * self.size {
+            if now <= 1e-15 * self.size || long <= 1e-16 * self.size {
                 break;
             }
         }
@@ -237,7 +238,8 @@ impl<'a> PatchedBody<'a> {
                 if a > b || self.net.labels[other] != self.net.labels[k] {
                     continue;
                 }
-                let Some(d) = self.net.triangles[other].iter().copied().find(|v| *v != a && *v != b)
+                let Some(d) =
+                    self.net.triangles[other].iter().copied().find(|v| *v != a && *v != b)
                 else {
                     continue;
                 };
@@ -319,7 +321,8 @@ impl<'a> PatchedBody<'a> {
                         + l[n] * (u * (1.0 - v))
                         + h[0] * ((1.0 - u) * v)
                         + h[n] * (u * v);
-                    let guess = l[i] * (1.0 - v) + h[i] * v + e[j] * (1.0 - u) + r[j] * u - bilinear;
+                    let guess =
+                        l[i] * (1.0 - v) + h[i] * v + e[j] * (1.0 - u) + r[j] * u - bilinear;
                     match self.foot(&[label], guess, reach) {
                         Some(p) => p,
                         // Told by its distance.
@@ -411,7 +414,8 @@ impl<'a> PatchedBody<'a> {
         sides.dedup();
         let mut touched: FxHashSet<u32> = FxHashSet::default();
         for (long, (a, b)) in sides {
-            let Some((&k, &l)) = self.net.across.get(&(a, b)).zip(self.net.across.get(&(b, a))) else {
+            let Some((&k, &l)) = self.net.across.get(&(a, b)).zip(self.net.across.get(&(b, a)))
+            else {
                 continue;
             };
             if touched.contains(&k) || touched.contains(&l) {
@@ -597,6 +601,38 @@ impl<'a> PatchedBody<'a> {
             cycle.push(Coedge { edge: edges[chain], forward, trace: Some(trace), alike: true });
         }
         cycle
+    }
+}
+
+/// The least step that takes a point onto planes at these distances along these normals, or nearly so where two of them
+/// nearly are one: surfaces that touch have no point of their own along the common tangent.
+fn nearest_step(rows: &[(f64, Vec3)]) -> Vec3 {
+    const LEAST_OF_TWO: f64 = 1e-10;
+    const LEAST: f64 = 1e-6;
+    match rows {
+        [] => Vec3::zero(),
+        [(d, n)] => *n * *d,
+        [(d, n), (e, m)] => {
+            let (a, c) = (1.0 + LEAST_OF_TWO, n.dot(*m));
+            let det = a * a - c * c;
+            *n * ((a * d - c * e) / det) + *m * ((a * e - c * d) / det)
+        }
+        more => {
+            let mut m = [[LEAST, 0.0, 0.0], [0.0, LEAST, 0.0], [0.0, 0.0, LEAST]];
+            let mut r = Vec3::zero();
+            for (d, n) in more {
+                r += *n * *d;
+                let n = n.to_array();
+                for i in 0..3 {
+                    for j in 0..3 {
+                        m[i][j] += n[i] * n[j];
+                    }
+                }
+            }
+            let [a, b, c] = m.map(Vec3::from);
+            let det = a.dot(b.cross(c));
+            (b.cross(c) * r.x + c.cross(a) * r.y + a.cross(b) * r.z) / det
+        }
     }
 }
 

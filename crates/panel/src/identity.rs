@@ -435,9 +435,14 @@ impl<'g> IdentityFinder<'g> {
             let [Some(a), Some(b)] = [0, 1].map(|k| edges[k].pieces().first().copied()) else {
                 continue;
             };
-            let ends = [edges[0].end(0.0), edges[0].end(1.0), edges[1].end(0.0), edges[1].end(1.0)];
-            let alike = ends[0].distance(ends[2]) + ends[1].distance(ends[3]);
-            let against = ends[0].distance(ends[3]) + ends[1].distance(ends[2]);
+            // Rings begin and end in one place: which way they run shows between.
+            const PLACES: [f64; 5] = [0.0, 0.21, 0.5, 0.79, 1.0];
+            let place = |k: usize, t: f64| edges[k].jet(t, Order::Zero)[0];
+            let apart = |turned: bool| -> f64 {
+                let other = |t: f64| if turned { 1.0 - t } else { t };
+                PLACES.iter().map(|&t| place(0, t).distance(place(1, other(t)))).sum()
+            };
+            let (alike, against) = (apart(false), apart(true));
             let turned = (against < alike) ^ (a.from.t > a.to.t) ^ (b.from.t > b.to.t);
             self.join_line(a.root, b.root, turned);
             let (root, _) = self.found.root(a.root);

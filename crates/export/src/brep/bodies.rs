@@ -148,7 +148,7 @@ impl SetOfBody<'_> {
 }
 
 /// The set and the box of a body of facets.
-fn set_and_box(document: &Document, object: &Object<f64>) -> Option<(Set, Box3)> {
+pub fn set_and_box(document: &Document, object: &Object<f64>) -> Option<(Set, Box3)> {
     if object.row.name != "SetBody" {
         return None;
     }

@@ -8,6 +8,7 @@
 mod bodies;
 mod edges;
 mod faces;
+mod faceted;
 mod parents;
 mod polyhedra;
 mod wires;
@@ -29,12 +30,29 @@ const SIDE: f64 = 1e-6;
 /// that shows no surface gives its shown curves.
 ///
 /// # Errors
-/// Panels that cannot be made; an accuracy that is not positive; surfaces that no fit comes near enough to.
+/// Panels that cannot be made; an accuracy that is not positive; surfaces that no fit comes near enough to; bodies that
+/// have no faces on surfaces.
 pub fn brep(
     document: &mut Document,
     accuracy: Option<f64>,
     stem: &str,
 ) -> Result<Brep, ExportFailure> {
+    let (brep, refused) = brep_or_facets(document, accuracy, stem)?;
+    match refused.into_iter().next() {
+        None => Ok(brep),
+        Some(fault) => Err(fault.into()),
+    }
+}
+
+/// As [`brep`], with bodies that have no faces on surfaces as triangles; and why each of these has none.
+///
+/// # Errors
+/// As [`brep`], but for such bodies.
+pub fn brep_or_facets(
+    document: &mut Document,
+    accuracy: Option<f64>,
+    stem: &str,
+) -> Result<(Brep, Vec<Diagnostic>), ExportFailure> {
     let panelled = document.panelled();
     let size = match &panelled {
         Ok(p) if p.mesh.bounds().diagonal() > 0.0 => p.mesh.bounds().diagonal(),
@@ -58,9 +76,23 @@ pub fn brep(
     let faces = faces::all(&outlines, accuracy)?;
     let mut brep = Sewing::new(&outlines, &faces, positions, accuracy, size).finish()?;
     let panelled = document.panelled()?;
+    let mut refused = Vec::new();
     for name in bodies {
-        if !bodies::add(&mut brep, document, &panelled.mesh, &name, [accuracy, size])? {
-            polyhedra::add(&mut brep, &panelled.mesh, &name, size)?;
+        let mesh = &panelled.mesh;
+        let made = match bodies::add(&mut brep, document, mesh, &name, [accuracy, size]) {
+            Ok(true) => Ok(()),
+            Ok(false) => polyhedra::add(&mut brep, mesh, &name, size),
+            Err(fault) => Err(fault),
+        };
+        if let Err(fault) = made {
+            let told = fault.diagnostics("step");
+            // What ran out of its limits, or has no facets either, is an error.
+            let held = told.iter().all(|d| matches!(&*d.id, "curved-body" | "thin-part"));
+            if !held || told.is_empty() {
+                return Err(ExportFailure::from(told));
+            }
+            brep.faceted.push(faceted::part(document, mesh, &name));
+            refused.extend(told.into_iter().take(1));
         }
     }
     for (axis, letter) in ['x', 'y', 'z'].into_iter().enumerate() {
@@ -71,8 +103,10 @@ pub fn brep(
     }
     let shells = brep.shells();
     brep.parts = named(&brep, shells, stem)?;
-    wires::add(&mut brep, document, accuracy)?;
-    Ok(brep)
+    if brep.faceted.is_empty() {
+        wires::add(&mut brep, document, accuracy)?;
+    }
+    Ok((brep, refused))
 }
 
 /// Refuses faces of a half that reach to both sides of its plane of symmetry, or lie on both: their images would

@@ -1,8 +1,9 @@
 //! The shape itself as STEP.
 
-use crate::brep::{brep, metres};
+use crate::brep::{brep_or_facets, metres};
 use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
+use moldloft_diag::Diagnostic;
 use moldloft_io::step::{self, Protocol, StepHeader};
 use moldloft_io::vtk::NamedFile;
 
@@ -20,7 +21,26 @@ pub const FORMAT: Format = Format {
 
 fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let stem = export.stem().to_string();
-    let brep = brep(export.document, export.options.tolerance, &stem)?;
+    let (brep, refused) = brep_or_facets(export.document, export.options.tolerance, &stem)?;
+    let told = brep.faceted.iter().zip(&refused).map(|(part, why)| {
+        let count = part.triangles.len();
+        let remark = Diagnostic::warning(
+            "as-triangles",
+            format!("`{}` is written as {count} triangles, without surfaces", part.name),
+        )
+        .found(why.message.clone())
+        .help(
+            "programs without AP242 tessellation pass it over; 3mf and stl hold the same triangles",
+        );
+        match part.error {
+            Some(error) => {
+                remark.note(format!("their middles are up to {error:.2e} from the shape"))
+            }
+            None => remark,
+        }
+    });
+    let told = told.collect();
+    export.document.set_export_remarks(told);
     let header = StepHeader {
         title: &stem,
         metres: metres(export.document),

@@ -77,13 +77,34 @@ pub fn write(brep: &Brep, header: &StepHeader<'_>) -> Result<Vec<u8>, WriteError
     let mut products = Vec::new();
     for part in &brep.parts {
         let items = shapes.part(&mut file, part);
-        products.push(context.product(&mut file, &part.name, &items, brep));
+        let (words, error) = if brep.exact() {
+            ("exact".to_string(), None)
+        } else {
+            (format!("fitted within {}", real(brep.error())), Some(brep.error()))
+        };
+        products.push(context.product(&mut file, &part.name, &items, &words, error));
+    }
+    for part in &brep.faceted {
+        if header.protocol != Protocol::Ap242 {
+            let what = "a body of triangles (AP242 has them)";
+            return Err(WriteError::CannotHold { format: "step", what });
+        }
+        let items = shapes.facets(&mut file, part);
+        let words = match part.error {
+            Some(error) => format!(
+                "{} triangles, no surfaces; their middles are within {} of the shape",
+                part.triangles.len(),
+                real(error)
+            ),
+            None => format!("{} triangles, no surfaces", part.triangles.len()),
+        };
+        products.push(context.product(&mut file, &part.name, &items, &words, part.error));
     }
     if products.len() > 1 {
         context.assembly(&mut file, header.title, &products, brep);
     }
     shapes.presentation(&mut file, context.space);
-    Ok(file.finished(header, brep.error(), brep.exact()))
+    Ok(file.finished(header, brep.error(), brep.exact(), brep.faceted.len()))
 }
 
 /// What all representations refer to.
@@ -145,7 +166,8 @@ impl RepresentationContext {
         file: &mut Part21,
         name: &str,
         items: &RepresentationItems,
-        brep: &Brep,
+        words: &str,
+        error: Option<f64>,
     ) -> Product {
         let all: Vec<usize> = [self.axis].into_iter().chain(items.items.iter().copied()).collect();
         // Sets of curves have no axis.
@@ -154,14 +176,9 @@ impl RepresentationContext {
         let name_text = text(name);
         let representation =
             file.add(format!("{}({name_text},{},#{})", items.kind, list(all), self.space));
-        let words = if brep.exact() {
-            "exact".to_string()
-        } else {
-            format!("fitted within {}", real(brep.error()))
-        };
-        let definition = self.definition(file, name, &words, representation);
-        if !brep.exact() {
-            self.accuracy(file, definition, brep.error());
+        let definition = self.definition(file, name, words, representation);
+        if let Some(error) = error {
+            self.accuracy(file, definition, error);
         }
         Product { definition, representation, name: name.into() }
     }
@@ -213,7 +230,8 @@ impl RepresentationContext {
             list(&all),
             self.space
         ));
-        let words = if brep.exact() { "exact" } else { "fitted" };
+        let exact = brep.exact() && brep.faceted.is_empty();
+        let words = if exact { "exact" } else { "fitted" };
         let parent = self.definition(file, title, words, representation);
         for (k, (product, placement)) in products.iter().zip(&placements).enumerate() {
             let name = text(&product.name);
@@ -237,7 +255,8 @@ impl RepresentationContext {
 /// The stated uncertainty: a little more than the gap, and no less than rounding.
 fn uncertainty(brep: &Brep) -> f64 {
     let most = |p: &moldloft_num::Vec3| p.to_array().iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    let size = brep.vertices.iter().map(most).fold(0.0, f64::max);
+    let faceted = brep.faceted.iter().flat_map(|part| &part.positions);
+    let size = brep.vertices.iter().chain(faceted).map(most).fold(0.0, f64::max);
     let least = 1e-9 * if size > 0.0 { size } else { 1.0 };
     // Two digits, rounded up.
     let wanted = (1.5 * brep.gap).max(least);

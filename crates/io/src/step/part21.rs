@@ -19,12 +19,23 @@ impl Part21 {
     }
 
     /// The file.
-    pub fn finished(self, header: &StepHeader<'_>, error: f64, exact: bool) -> Vec<u8> {
+    pub fn finished(
+        self,
+        header: &StepHeader<'_>,
+        error: f64,
+        exact: bool,
+        faceted: usize,
+    ) -> Vec<u8> {
         let [schema, ..] = header.protocol.words();
         let about = if exact {
             "surfaces exact but for rounding".to_string()
         } else {
             format!("surfaces within {} of the model", real(error))
+        };
+        let about = match faceted {
+            0 => about,
+            1 => format!("{about}; 1 body of triangles"),
+            n => format!("{about}; {n} bodies of triangles"),
         };
         let mut out = String::with_capacity(self.data.len() + 600);
         out.push_str("ISO-10303-21;\nHEADER;\n");

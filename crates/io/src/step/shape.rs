@@ -3,7 +3,7 @@
 use super::RepresentationItems;
 use super::part21::{Part21, joined, list, real, reals, text};
 use crate::WriteError;
-use moldloft_brep::{Brep, BrepFace, ExactCurve, Part, Shell, SurfaceAxes, SurfaceShape, Wire};
+use moldloft_brep::{Brep, ExactCurve, FacetedPart, Part, Shell, SurfaceAxes, SurfaceShape, Wire};
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 use std::collections::BTreeMap;
@@ -14,7 +14,11 @@ const HIGHEST_DEGREE: usize = 25;
 /// Refuses what readers would drop without a word.
 pub fn check(brep: &Brep, format: &'static str) -> Result<(), WriteError> {
     let empty = brep.parts.iter().all(|p| p.shells.is_empty() && p.wires.is_empty());
-    if empty {
+    let positions = brep.faceted.iter().flat_map(|part| &part.positions);
+    if positions.into_iter().any(|p| !p.is_finite()) {
+        return Err(WriteError::CannotHold { format, what: "a number that is not finite" });
+    }
+    if empty && brep.faceted.is_empty() {
         return Err(WriteError::CannotHold { format, what: "a model without surfaces and curves" });
     }
     let curves = brep.edges.iter().map(|e| &e.curve);
@@ -326,7 +330,7 @@ impl<'a> Shapes<'a> {
             list(&bounds),
             logical(!face.reversed)
         ));
-        self.style(file, face, number);
+        self.style(file, face.colour, &face.layers, number);
         number
     }
 
@@ -396,11 +400,17 @@ impl<'a> Shapes<'a> {
         })
     }
 
-    fn style(&mut self, file: &mut Part21, face: &BrepFace, number: usize) {
-        for layer in &face.layers {
+    fn style(
+        &mut self,
+        file: &mut Part21,
+        colour: Option<[u8; 3]>,
+        layers: &[String],
+        number: usize,
+    ) {
+        for layer in layers {
             self.layers.entry(layer.clone()).or_default().push(number);
         }
-        let Some(rgb) = face.colour else { return };
+        let Some(rgb) = colour else { return };
         let colour = self.colour(file, rgb);
         let fill = file.add(format!("FILL_AREA_STYLE_COLOUR('',#{colour})"));
         let fill = file.add(format!("FILL_AREA_STYLE('',(#{fill}))"));
@@ -409,6 +419,24 @@ impl<'a> Shapes<'a> {
         let usage = file.add(format!("SURFACE_STYLE_USAGE(.BOTH.,#{side})"));
         let style = file.add(format!("PRESENTATION_STYLE_ASSIGNMENT((#{usage}))"));
         self.styled.push(file.add(format!("STYLED_ITEM('color',(#{style}),#{number})")));
+    }
+
+    /// A body of triangles.
+    pub fn facets(&mut self, file: &mut Part21, part: &FacetedPart) -> RepresentationItems {
+        let name = text(&part.name);
+        let count = part.positions.len();
+        let positions = joined(part.positions.iter().map(|p| reals(p.to_array())));
+        let list = file.add(format!("COORDINATES_LIST({name},{count},{positions})"));
+        let triangles = joined(part.triangles.iter().map(|[a, b, c]| {
+            let [a, b, c] = [a, b, c].map(|v| v + 1);
+            format!("({a},{b},{c})")
+        }));
+        let face =
+            file.add(format!("TRIANGULATED_FACE({name},#{list},{count},(),$,(),{triangles})"));
+        let kind = if part.closed() { "TESSELLATED_SOLID" } else { "TESSELLATED_SHELL" };
+        let body = file.add(format!("{kind}({name},(#{face}),$)"));
+        self.style(file, part.colour, &part.layers, body);
+        RepresentationItems { items: vec![body], kind: "TESSELLATED_SHAPE_REPRESENTATION" }
     }
 
     /// Colours and layers.

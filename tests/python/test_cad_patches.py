@@ -1,0 +1,207 @@
+"""Bodies of sets on any surfaces to STEP and IGES as patches, else as triangles; judged by OCCT.
+
+`MOLDLOFT_SOAK=1` draws 60 bodies.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.random import Generator
+
+import moldloft
+
+pytest.importorskip("OCP")
+
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
+
+XYZ = (
+    "field x = plane({1, 0, 0}, {0, 0, 0}), y = plane({0, 1, 0}, {0, 0, 0}); "
+    "field z = plane({0, 0, 1}, {0, 0, 0}); "
+)
+
+
+def _numbers(rng: Generator, low: float, high: float, count: int) -> list[float]:
+    return [float(round(v, 3)) for v in rng.uniform(low, high, count)]
+
+
+def ellipsoid(rng: Generator) -> tuple[str, float | None]:
+    """A whole ellipsoid, its volume by formula."""
+    a, b, c = _numbers(rng, 0.6, 1.6, 3)
+    p, q, r = _numbers(rng, -2, 2, 3)
+    text = f"field e = ((x-{p})/{a})^2 + ((y-{q})/{b})^2 + ((z-{r})/{c})^2 - 1; set s = set(e);"
+    return text.replace("--", "+"), 4 / 3 * math.pi * a * b * c
+
+
+def half_ellipsoid(rng: Generator) -> tuple[str, float | None]:
+    """The part of an ellipsoid below a plane, with a box cut out."""
+    a, b, c = _numbers(rng, 0.8, 1.6, 3)
+    h, w = _numbers(rng, 0.1, 0.4, 2)
+    return (
+        f"field e = (x/{a})^2 + (y/{b})^2 + (z/{c})^2 - 1; "
+        f"set s = set(e) & set(plane({{0, 0, 1}}, {{0, 0, {h}}}))"
+        f" - cuboid({{-{w}, -{w}, -3}}, {{{w}, {w}, 3}});",
+        None,
+    )
+
+
+def cushion(rng: Generator) -> tuple[str, float | None]:
+    """A superellipsoid with a bore."""
+    a, r = _numbers(rng, 0.9, 1.3, 1) + _numbers(rng, 0.15, 0.4, 1)
+    return (
+        f"field e = (x/{a})^4 + y^4 + z^4 - 1; Line l({{0, 0, 0}}, {{0, 0, 1}}); "
+        f"set s = set(e) - set(cylinder(l, {r}));",
+        None,
+    )
+
+
+def oval_bar(rng: Generator) -> tuple[str, float | None]:
+    """An elliptic cylinder between two planes, one of them oblique."""
+    a, b, t = _numbers(rng, 0.5, 1.2, 2) + _numbers(rng, 0, 0.4, 1)
+    return (
+        f"field e = (x/{a})^2 + (y/{b})^2 - 1; "
+        f"set s = set(e) & set(plane({{0, 0, -1}}, {{0, 0, 0}}))"
+        f" & set(plane({{{t}, 0, 1}}, {{0, 0, 2}}));",
+        math.pi * a * b * 2,
+    )
+
+
+def blend(rng: Generator) -> tuple[str, float | None]:
+    """Two rods that flow into one another."""
+    r, q, k = _numbers(rng, 0.3, 0.5, 2) + _numbers(rng, 0.005, 0.02, 1)
+    return (
+        f"field f = (y^2 + z^2 - {r}^2)*(x^2 + z^2 - {q}^2) - {k}; "
+        "set s = set(f) & cuboid({-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5})"
+        " & set(sphere({0, 0, 0}, 1.4));",
+        None,
+    )
+
+
+def two_ellipsoids(rng: Generator) -> tuple[str, float | None]:
+    """Two ellipsoids as one body."""
+    a, b, d = _numbers(rng, 0.7, 1.2, 2) + _numbers(rng, 0.5, 0.9, 1)
+    return (
+        f"field e = (x/{a})^2 + y^2 + (z/0.8)^2 - 1; "
+        f"field g = ((x-{d})/0.7)^2 + ((y-0.1)/{b})^2 + ((z-0.2)/0.9)^2 - 1; "
+        "set s = set(e) | set(g);",
+        None,
+    )
+
+
+KINDS: tuple[Callable[[Generator], tuple[str, float | None]], ...] = (
+    ellipsoid, half_ellipsoid, cushion, oval_bar, blend, two_ellipsoids,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(60 if SOAK else len(KINDS)))
+def test_bodies_on_any_surfaces_are_valid_solids_of_the_stated_accuracy(
+    seed: int, tmp_path: Path
+) -> None:
+    from cad_reading import read
+
+    text, volume = KINDS[seed % len(KINDS)](np.random.default_rng(seed))
+    model = moldloft.loads(XYZ + text + "SetBody b(s);")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        (step,) = model.write(tmp_path / "b.step")
+        (iges,) = model.write(tmp_path / "b.igs")
+    written = step.read_text()
+    stated = re.search(r"'deviation',LENGTH_MEASURE\(([^)]*)\)", written)
+    assert stated
+    error = float(stated[1])
+    assert 0 < error <= 1e-6 * 10
+    found = read(step, accuracy=1e-7)
+    flat = read(iges, accuracy=1e-7)
+    assert found.valid and flat.valid
+    assert found.solids >= 1 and found.closed == found.shells
+    assert found.faces == flat.faces == written.count("=ADVANCED_FACE(")
+    assert flat.area == pytest.approx(found.area, rel=1e-6)
+    # A shell of that thickness on either side, and the certified bracket of the set.
+    slack = error * found.area + 2e-7 * found.volume
+    low, high = model.eval("volume_bracket(s)")
+    assert low - slack <= found.volume <= high + slack
+    if volume is not None:
+        assert abs(found.volume - volume) <= slack
+
+
+def test_a_smaller_tolerance_is_kept(tmp_path: Path) -> None:
+    from cad_reading import read
+
+    text = XYZ + "field e = (x/2)^2 + y^2 + (z/0.7)^2 - 1; SetBody b(set(e));"
+    errors = []
+    for tolerance in (1e-3, 1e-5, 1e-8):
+        (file,) = moldloft.loads(text).write(tmp_path / "b.step", tolerance=tolerance)
+        found = read(file, accuracy=1e-9)
+        assert found.valid and found.closed == 1
+        errors.append(abs(found.volume - 4 / 3 * math.pi * 1.4))
+        assert errors[-1] <= tolerance * found.area + 1e-9
+    assert errors[2] < errors[0]
+
+
+def test_plane_faces_of_such_bodies_are_planes_and_names_are_there(tmp_path: Path) -> None:
+    from cad_reading import read
+
+    text = XYZ + (
+        "field bump = x^4 + y^4 + z^4 - 1; "
+        "set s = attributes(set(bump), colour = 12) & cuboid({-2, -2, 0}, {2, 2, 2}); SetBody b(s);"
+    )
+    (file,) = moldloft.loads(text).write(tmp_path / "b.step")
+    assert file.read_text().count("=PLANE(") == 1
+    found = read(file, accuracy=1e-7)
+    assert found.valid and found.solids == 1
+    assert "b.bump" in found.names and found.colours
+
+
+def test_such_bodies_come_back(tmp_path: Path) -> None:
+    from moldloft.cad.importing import program
+
+    text = XYZ + "field e = (x/2)^2 + y^2 + (z/0.7)^2 - 1; SetBody b(set(e));"
+    (file,) = moldloft.loads(text).write(tmp_path / "b.step", tolerance=1e-2)
+    source, remarks = program(file)
+    mesh = moldloft.loads(source).mesh()
+    assert not remarks and mesh.closed
+    assert mesh.volume == pytest.approx(4 / 3 * math.pi * 1.4, rel=0.05)
+
+
+#: A kink, a sheet, a cone's tip at the end of an ellipsoid's field.
+WITHOUT = {
+    "kink": "field k = abs(x)*1.0 + 0.3*x + y^2 + z^2 - 1; SetBody b(set(k), depth = 5);",
+    "sheet": "field q = z - 0.2*x*y; SetBody b(set(abs(q)), {-1, -1, -1}, {1, 1, 1}, depth = 5);",
+}
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_what_has_no_patches_is_triangles_and_says_so(name: str, tmp_path: Path) -> None:
+    from OCP.BRep import BRep_Tool
+    from OCP.TopAbs import TopAbs_FACE
+    from OCP.TopLoc import TopLoc_Location
+    from OCP.TopoDS import TopoDS
+
+    from cad_reading import read
+    from moldloft.cad.sewing import faces_of
+
+    model = moldloft.loads(XYZ + WITHOUT[name])
+    with pytest.warns(UserWarning, match=r"`b` is written as \d+ triangles, without surfaces"):
+        (file,) = model.write(tmp_path / "b.step")
+    text = file.read_text()
+    kind = "SHELL" if name == "sheet" else "SOLID"
+    assert f"=TESSELLATED_{kind}('b'" in text and "1 body of triangles" in text
+    assert "triangles, no surfaces; their middles are within" in text
+    # OCCT has them all, where they were.
+    shape = read(file).shape
+    faces = [
+        BRep_Tool.Triangulation_s(TopoDS.Face(f), TopLoc_Location())
+        for f in faces_of(shape, TopAbs_FACE)
+    ]
+    assert sum(f.NbTriangles() for f in faces) == model.mesh().triangles().shape[0]
+    # Formats without triangles refuse by name.
+    with pytest.raises(moldloft.Error, match="`b`") as caught:
+        model.write(tmp_path / "b.igs")
+    assert {d.id for d in caught.value.diagnostics} == {"curved-body"}
