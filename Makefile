@@ -38,7 +38,7 @@ WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
 ENGINE := python/moldloft/workbench/wasm/engine.wasm.gz
 WASM := wasm32-unknown-unknown
 
-.PHONY: setup demo optimised web engine test check reference site release soak fuzz clean help
+.PHONY: setup demo optimised web engine test check bits reference site release soak fuzz clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -128,6 +128,9 @@ site: $(VENV)/.with-tests ## the documentation with living models, in out/site
 
 release: ## wheel with language server and page, sdist, notices, bill of materials; in dist/
 	@$(PYTHON) tools/release.py
+
+bits: ## tests/bits.txt anew, after a change of results
+	@cargo run --quiet -p moldloft --example bits > tests/bits.txt
 
 soak: export MOLDLOFT_SOAK = 1
 soak: test ## the long random tests in full

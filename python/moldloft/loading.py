@@ -33,6 +33,8 @@ class Origin:
     """Further folders."""
     functions: dict[str, Any] = field(default_factory=dict)
     """Python functions by the names that the text calls them."""
+    edited: bool = False
+    """Whether the text is being written: what can be understood of a faulty one is run."""
 
 
 def _absolute(folders: Sequence[str]) -> tuple[str, ...]:
@@ -54,7 +56,9 @@ def restored(origin: Origin | None, text: str, values: Mapping[str, float], refi
         The refinement level.
     """
     origin = origin or Origin("model.sdl")
-    document = _core.Document.from_text(origin.name, text, origin.folder, list(origin.library))
+    document = _core.Document.from_text(
+        origin.name, text, origin.folder, list(origin.library), origin.edited
+    )
     model = Model(document, origin)
     _add_functions(model, origin.functions)
     if refined:
@@ -70,6 +74,7 @@ def load(
     library: Sequence[str | os.PathLike[str]] = (),
     functions: Mapping[str, Callable[..., Any] | Field | Set] | None = None,
     strict: bool = True,
+    edited: bool = False,
 ) -> Model:
     """Load a model from a file.
 
@@ -87,7 +92,11 @@ def load(
         called without arguments: ``field f = scan();``.
     strict
         Whether errors raise. Without it they are in :attr:`Model.diagnostics` only, and
-        what does not depend on a failed object lives on.
+        what does not depend on a failed object lives on. Of a text that cannot be parsed
+        nothing is run.
+    edited
+        Whether the text is being written, as in an editor: what can be understood of one that
+        cannot be parsed is run. Then nothing raises.
 
     Returns
     -------
@@ -113,11 +122,11 @@ def load(
     folders = [os.fspath(folder) for folder in library]
     place = Path(path)
     origin = Origin(
-        place.name, os.fspath(place.parent.absolute()), _absolute(folders), dict(functions or {})
+        place.name, os.fspath(place.parent.absolute()), _absolute(folders), dict(functions or {}), edited
     )
-    model = Model(_core.Document.open(os.fspath(path), folders), origin)
+    model = Model(_core.Document.open(os.fspath(path), folders, edited), origin)
     _add_functions(model, functions)
-    if strict:
+    if strict and not edited:
         unread = [d for d in model.diagnostics if d.id == "cannot-read"]
         if unread and not model.text:
             raise FileError(str(unread[0]).rstrip(), unread)
@@ -132,6 +141,7 @@ def loads(
     library: Sequence[str | os.PathLike[str]] = (),
     functions: Mapping[str, Callable[..., Any] | Field | Set] | None = None,
     strict: bool = True,
+    edited: bool = False,
 ) -> Model:
     """Load a model from a text.
 
@@ -145,7 +155,7 @@ def loads(
         Folders from which the text may load.
     functions
         As for :func:`load`.
-    strict
+    strict, edited
         As for :func:`load`.
 
     Returns
@@ -171,10 +181,10 @@ def loads(
     (3.0, 0.25)
     """
     folders = [os.fspath(folder) for folder in library]
-    origin = Origin(name, None, _absolute(folders), dict(functions or {}))
-    model = Model(_core.Document.from_text(name, text, None, folders), origin)
+    origin = Origin(name, None, _absolute(folders), dict(functions or {}), edited)
+    model = Model(_core.Document.from_text(name, text, None, folders, edited), origin)
     _add_functions(model, functions)
-    if strict:
+    if strict and not edited:
         model.check()
     return model
 

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
 
 from moldloft.errors import FileError
-from moldloft.storage import Lock, Output, commit, digest, digest_of, read_bytes
+from moldloft.storage import Lock, Output, commit, digest, digest_of, make_folders, read_bytes
 
 __all__ = ["RECORD", "check_not_source", "checked_name", "write_outputs"]
 
@@ -142,9 +142,9 @@ def write_outputs(
         if not (folder / plain).resolve().is_relative_to(root):
             raise FileError(f"cannot write `{name}`: a link leads out of `{folder}`")
         check_not_source(folder / plain, sources, force=force)
-    made = [path for path in [folder, *folder.parents] if not path.exists()]
+    made = []
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        made = make_folders(folder)
         with Lock(folder / f"{RECORD}.lock", str(folder), wait=60.0):
             return _write(folder, {names[name]: data for name, data in files.items()}, force)
     except OSError as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,18 @@ ROOT = Path(__file__).resolve().parents[2]
 SAILBOAT = ROOT / "examples" / "sailboat"
 
 Run = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """A panic fails every test, also where it was caught and reported as a fault of an object."""
+    report = yield
+    if report.passed and "panicked at" in report.capstderr:
+        report.outcome = "failed"
+        report.longrepr = f"{item.nodeid} panicked:\n{report.capstderr[-4000:]}"
+    return report
 
 
 @pytest.fixture
@@ -31,6 +43,7 @@ def cli(tmp_path: Path) -> Run:
         )
         assert "Traceback" not in done.stderr, done.stderr
         assert "panicked" not in done.stderr, done.stderr
+        assert "internal-error" not in done.stdout + done.stderr, done.stdout + done.stderr
         assert done.returncode == status, (done.returncode, done.stdout, done.stderr)
         return done
 

@@ -601,7 +601,7 @@ def test_a_journal_leaves_out_what_its_file_holds(tmp_path: Path) -> None:
     kept.append(["one"])
     kept.saving("new")
     kept.append(["two"])
-    assert journal.read(path, "old") == journal.Left(path, ["one", "two"], True, 0, now(path))
+    assert journal.read(path, "old") == journal.Left(path, ["one", "two"], False, 0, now(path))
     assert journal.read(path, "new") == journal.Left(path, ["two"], False, 0, now(path))
     assert journal.read(path, "other") == journal.Left(path, ["one", "two"], True, 0, now(path))
     kept.close(keep=False)

@@ -8,11 +8,13 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod confine;
 mod machine;
 mod memory;
 
+pub use confine::confine;
 pub use machine::usual_memory;
-pub use memory::{Counting, FLUSH, held, settle};
+pub use memory::{Counting, FLUSH, RESERVE, held, settle};
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -74,6 +76,8 @@ pub enum Spent {
         /// Bytes that are allowed.
         allowed: u64,
     },
+    /// The system refuses memory that the budget allows.
+    Refused,
     /// The time is over.
     Time {
         /// Seconds that were allowed.
@@ -86,7 +90,7 @@ impl Spent {
     pub fn id(self) -> &'static str {
         match self {
             Self::Cancelled => "cancelled",
-            Self::Memory { .. } => "out-of-memory",
+            Self::Memory { .. } | Self::Refused => "out-of-memory",
             Self::Time { .. } => "out-of-time",
         }
     }
@@ -103,6 +107,7 @@ impl Spent {
             Self::Memory { .. } => {
                 "make it coarser, or allow more: `--limit memory=8G`, `moldloft.limits(memory=...)`"
             }
+            Self::Refused => "make it coarser, or end other programs",
             Self::Time { .. } => {
                 "make it coarser, or allow more: `--limit seconds=600`, `moldloft.limits(seconds=...)`"
             }
@@ -123,6 +128,7 @@ impl std::fmt::Display for Spent {
                     gib(allowed)
                 )
             }
+            Self::Refused => write!(f, "the system has no more memory for this"),
             Self::Time { allowed } => {
                 write!(f, "this takes longer than the {allowed} s that are allowed")
             }
@@ -164,6 +170,7 @@ pub struct Timed<'a>(&'a Budget);
 impl Drop for Timed<'_> {
     fn drop(&mut self) {
         self.0.deadline.store(0, Ordering::Relaxed);
+        memory::leave();
     }
 }
 
@@ -183,8 +190,10 @@ impl Budget {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Begins to count the time of a request, where time is limited, until the answer is dropped.
+    /// A request begins, until the answer is dropped: its time is counted, where time is limited, and memory is kept back
+    /// for its end when the system refuses more.
     pub fn timed(&self) -> Timed<'_> {
+        memory::enter();
         let seconds = limits().seconds;
         if let Ok(allowed) = Duration::try_from_secs_f64(seconds) {
             let end = origin().elapsed() + allowed;
@@ -222,6 +231,9 @@ impl Budget {
     /// [`Spent::Memory`].
     #[inline]
     pub fn grow(&self, bytes: u64) -> Result<(), Spent> {
+        if memory::refused() {
+            return Err(Spent::Refused);
+        }
         let (needed, allowed) = (held().saturating_add(bytes), MEMORY.load(Ordering::Relaxed));
         if needed > allowed { Err(Spent::Memory { needed, allowed }) } else { Ok(()) }
     }

@@ -92,18 +92,31 @@ impl Document {
         path: &str,
         budget: Arc<Budget>,
     ) -> Self {
-        let mut document = Self { budget, ..Self::empty(registry, world) };
-        match document.world.read(path, None) {
+        Self { budget, ..Self::empty(registry, world) }.opened(path)
+    }
+
+    /// As [`Self::open_within`], of a text that is being written: run as [`Self::edited`] does.
+    pub fn open_edited(
+        registry: Registry,
+        world: Box<dyn World>,
+        path: &str,
+        budget: Arc<Budget>,
+    ) -> Self {
+        Self { budget, tolerant: true, ..Self::empty(registry, world) }.opened(path)
+    }
+
+    fn opened(mut self, path: &str) -> Self {
+        match self.world.read(path, None) {
             Ok(read) => match moldloft_syntax::decode(&read.bytes, &read.name) {
-                Ok(text) => document.take_text(&read.name, text.to_string()),
-                Err(diagnostic) => document.text_diagnostics.push(diagnostic),
+                Ok(text) => self.take_text(&read.name, text.to_string()),
+                Err(diagnostic) => self.text_diagnostics.push(diagnostic),
             },
             Err(error) => {
                 let diagnostic = Diagnostic::error("cannot-read", error.message);
-                document.text_diagnostics.push(diagnostic.maybe_help(error.help));
+                self.text_diagnostics.push(diagnostic.maybe_help(error.help));
             }
         }
-        document
+        self
     }
 
     /// A model from a text; the ending of `name` distinguishes a model file (`.ms2`) from a program;

@@ -21,7 +21,7 @@ use std::process::ExitCode;
 
 /// Counts the bytes that are held, for [`moldloft::budget::Budget`].
 #[global_allocator]
-static ALLOCATOR: moldloft::budget::Counting = moldloft::budget::Counting;
+static ALLOCATOR: moldloft::budget::Counting = moldloft::budget::Counting::new();
 
 fn main() -> ExitCode {
     match std::env::args().nth(1).as_deref() {

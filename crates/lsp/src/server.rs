@@ -273,12 +273,15 @@ impl Server {
         // As much as a program's first thread has, for texts that nest deeply.
         let thread = std::thread::Builder::new().stack_size(8 << 20);
         let begun = thread.spawn(move || {
-            let run = AssertUnwindSafe(|| match document {
-                Some(mut document) => {
-                    document.set_text(&text);
-                    document
+            let run = AssertUnwindSafe(|| {
+                let _timed = budget.timed();
+                match document {
+                    Some(mut document) => {
+                        document.set_text(&text);
+                        document
+                    }
+                    None => Box::new(opened(&uri, &text, budget.clone(), buffers)),
                 }
-                None => Box::new(opened(&uri, &text, budget, buffers)),
             });
             let document = catch_unwind(run).ok();
             moldloft::budget::settle();

@@ -149,28 +149,36 @@ impl PyDocument {
 #[pymethods]
 impl PyDocument {
     #[staticmethod]
-    fn open(py: Python<'_>, path: String, library: Vec<String>) -> PyResult<Self> {
+    #[pyo3(signature = (path, library, edited = false))]
+    fn open(
+        py: Python<'_>,
+        path: String,
+        library: Vec<String>,
+        edited: bool,
+    ) -> PyResult<Self> {
         let world = Box::new(FileWorld::around(&path, &library));
         let budget = Arc::<Budget>::default();
         let own = budget.clone();
-        let open = move || Document::open_within(moldloft::document::registry(), world, &path, own);
+        let open = if edited { Document::open_edited } else { Document::open_within };
+        let open = move || open(moldloft::document::registry(), world, &path, own);
         interruptible(py, &budget, open).map(Self::new)
     }
 
     #[staticmethod]
+    #[pyo3(signature = (name, text, folder, library, edited = false))]
     fn from_text(
         py: Python<'_>,
         name: String,
         text: String,
         folder: Option<String>,
         library: Vec<String>,
+        edited: bool,
     ) -> PyResult<Self> {
         let world = Box::new(FileWorld::new(folder.as_deref().map(Path::new), &library));
         let budget = Arc::<Budget>::default();
         let own = budget.clone();
-        let open = move || {
-            Document::from_text_within(moldloft::document::registry(), world, (&name, &text), own)
-        };
+        let begin = if edited { Document::edited } else { Document::from_text_within };
+        let open = move || begin(moldloft::document::registry(), world, (&name, &text), own);
         interruptible(py, &budget, open).map(Self::new)
     }
 

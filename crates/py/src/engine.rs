@@ -22,9 +22,17 @@ const CANCEL: &[u8] = br#"{"kind":"cancel"}"#;
 /// Stack of the working thread, for texts that nest deeply.
 const STACK: usize = 64 << 20;
 
-/// Answers requests until standard input ends. The first message is the text.
+/// Confines the process to so many bytes for models, and answers requests until standard input ends. The first message
+/// is the text.
 #[pyfunction]
-pub fn engine(py: Python<'_>, name: String, folder: Option<String>, library: Vec<String>) {
+pub fn engine(
+    py: Python<'_>,
+    memory: u64,
+    name: String,
+    folder: Option<String>,
+    library: Vec<String>,
+) {
+    moldloft::budget::confine(memory);
     py.detach(|| {
         let worker = std::thread::Builder::new().stack_size(STACK);
         let run = worker.spawn(move || serve(&name, folder.as_deref(), &library));
@@ -50,10 +58,14 @@ fn serve(name: &str, folder: Option<&str>, library: &[String]) {
     });
     let Ok(text) = requests.recv() else { return };
     let world = Box::new(FileWorld::new(folder.map(Path::new), library));
-    let mut session = Session::within(world, name, &text, budget);
+    let begun = budget.timed();
+    let mut session = Session::within(world, name, &text, budget.clone());
+    drop(begun);
     let mut output = std::io::stdout().lock();
     for request in requests {
+        let timed = budget.timed();
         let frame = session.answer(&request);
+        drop(timed);
         let length = (frame.len() as u32).to_le_bytes();
         let sent = output.write_all(&length).and_then(|()| output.write_all(&frame));
         if sent.and_then(|()| output.flush()).is_err() {

@@ -32,7 +32,7 @@ use pyo3::pymodule;
 
 /// Counts the bytes that the extension holds, for [`moldloft::budget::Budget`].
 #[global_allocator]
-static ALLOCATOR: moldloft::budget::Counting = moldloft::budget::Counting;
+static ALLOCATOR: moldloft::budget::Counting = moldloft::budget::Counting::new();
 
 /// The compiled part of Moldloft.
 #[pymodule]

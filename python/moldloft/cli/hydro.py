@@ -76,7 +76,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="RULE",
         nargs="?",
         const="is-code-2008",
-        help="intact criteria: is-code-2008 (the default), fishing, timber, or a .json file",
+        help="intact criteria: is-code-2008 (the default), fishing, timber, or a .json file; status "
+        "1 unless all that apply are passed",
     )
     parser.add_argument(
         "--wind",
@@ -316,14 +317,14 @@ def _criteria(model: Any, options: argparse.Namespace) -> int:
     found = stability.assess(options.criteria, wind=wind)
     if options.json:
         print_json({"rule": found.rule, "passed": found.passed, "checks": found.as_list()})
-        return 0
-    if options.csv:
+    elif options.csv:
         _write_csv(options, found.csv())
-        return 0
-    print(stability.summary())
-    print()
-    print(found)
-    return 0
+    else:
+        print(stability.summary())
+        print()
+        print(found)
+    # For scripts: a clause that fails, or that cannot be judged, is no success.
+    return 0 if found.passed else 1
 
 
 def _booklet(model: Any, options: argparse.Namespace) -> int:

@@ -1,8 +1,9 @@
 """All writing of the package: whole or not at all, with owners, and nothing left behind.
 
-``system < reading < locks < replacing < sets``, and journals beside them.
+``system < reading < locks < replacing < sets``, folders, and journals beside them.
 """
 
+from moldloft.storage.folders import make_folders
 from moldloft.storage.locks import BusyError, Lock, Owner
 from moldloft.storage.reading import LARGEST, digest, digest_of, read_bytes, read_text
 from moldloft.storage.replacing import ChangedError, put
@@ -21,6 +22,7 @@ __all__ = [
     "commit",
     "digest",
     "digest_of",
+    "make_folders",
     "put",
     "read_bytes",
     "read_set",

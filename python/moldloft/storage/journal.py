@@ -20,6 +20,7 @@ from pathlib import Path
 
 from moldloft.errors import FileError
 from moldloft.storage import system
+from moldloft.storage.folders import make_folders
 from moldloft.storage.locks import BusyError, Lock
 from moldloft.storage.reading import read_bytes
 from moldloft.storage.replacing import put
@@ -104,7 +105,7 @@ def read(path: Path, present: str | None = None) -> Left | None:
     if version != "2":
         raise FileError(f"`{path}` is a journal of a later version of moldloft: {version}")
     commands: list[str] = []
-    stale, good = False, 0
+    names_files, found, good = False, False, 0
     for number, line in enumerate(lines):
         command = line[9:]
         if line != _checked(seed, number, command):
@@ -114,10 +115,11 @@ def read(path: Path, present: str | None = None) -> Left | None:
             commands.append(command)
         elif present is not None and command == _IN_FILE + present:
             # The file holds what came before.
-            commands, stale = [], False
-        elif present is not None:
-            # So it is when no later line names the present content.
-            stale = True
+            commands, found = [], True
+        else:
+            # Another content: that before a save, or one that was not written any more.
+            names_files = True
+    stale = present is not None and names_files and not found
     return Left(path, commands, stale, len(lines) - good, when)
 
 
@@ -174,7 +176,7 @@ class Journal:
         held: Lock | None = None,
     ) -> None:
         self.path = path
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folders(path.parent)
         self._lock = held or lock(path)
         self._file = -1
         self._begin([*([] if base is None else [_IN_FILE + base]), *begin])

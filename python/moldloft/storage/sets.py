@@ -22,6 +22,7 @@ from pathlib import Path
 
 from moldloft.errors import FileError
 from moldloft.storage import system
+from moldloft.storage.folders import make_folders
 from moldloft.storage.locks import LOCK, BusyError, folder_lock
 from moldloft.storage.reading import digest, digest_of, read_bytes
 from moldloft.storage.replacing import ABANDONED, Draft, Target, beside, put
@@ -82,7 +83,7 @@ def commit(folder: Path, outputs: Sequence[Output], *, make: bool = True) -> lis
     paths = [folder / output.name for output in outputs]
     made: list[Path] = []
     try:
-        made = _make_folders(folder)
+        made = make_folders(folder)
         recover(folder)
         if len(outputs) == 1:
             put(paths[0], outputs[0].data)
@@ -96,32 +97,6 @@ def commit(folder: Path, outputs: Sequence[Output], *, make: bool = True) -> lis
             raise FileError(f"cannot write in `{folder}`: {system.reason(error)}") from error
         raise
     return paths
-
-
-def _make_folders(folder: Path) -> list[Path]:
-    """Makes a folder; the new ones, innermost first."""
-    made: list[Path] = []
-    missing: list[Path] = []
-    at = folder
-    while not at.exists() and at != at.parent:
-        missing.append(at)
-        at = at.parent
-    try:
-        for new in reversed(missing):
-            with contextlib.suppress(FileExistsError):
-                system.make_folder(new)
-                made.insert(0, new)
-        if not folder.is_dir():
-            raise FileError(f"cannot make the folder `{folder}`: a file has that name")
-    except OSError as error:
-        for new in made:
-            with contextlib.suppress(OSError):
-                system.remove_folder(new)
-        if isinstance(error, FileError):
-            raise
-        why = system.reason(error)
-        raise FileError(f"cannot make the folder `{folder}`: {why}") from error
-    return made
 
 
 class _Set:

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 from moldloft.errors import Error, FileError
-from moldloft.storage import BusyError, Lock, put, read_bytes, recover, remove
+from moldloft.storage import BusyError, Lock, make_folders, put, read_bytes, recover, remove
 from moldloft.storage.journal import state_folder
 
 __all__ = ["Draft"]
@@ -41,7 +41,7 @@ class Draft:
                 # The folder cannot be written: the draft is among those of prompts.
                 name = "%".join(target.parts[1:])[-180:] + ".draft"
                 folder = state_folder().parent / "drafts"
-                folder.mkdir(parents=True, exist_ok=True)
+                make_folders(folder)
                 self._own(folder / name)
         except BusyError as busy:
             by = f": {busy.owner}" if busy.owner else ""

@@ -4,7 +4,7 @@ use moldloft_budget::{Budget, Counting, FLUSH, Limits, Spent, held, limits, set_
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: Counting = Counting::new();
 
 /// Limits and counts are the process's: one test at a time.
 fn alone() -> MutexGuard<'static, ()> {

@@ -3,6 +3,8 @@
 // The name under which the fuzz targets ask for their macro.
 extern crate self as libfuzzer_sys;
 
+#[path = "../../examples/bits.rs"]
+mod bits;
 #[path = "../../examples/derivative.rs"]
 mod derivative;
 mod fuzz;
@@ -29,6 +31,23 @@ macro_rules! fuzz_target {
 #[test]
 fn derivatives_equal_differences() {
     derivative::main().unwrap();
+}
+
+/// Results are the same bits as on the machine that wrote the file; in a long run those of the examples, too.
+#[test]
+fn results_have_the_bits_of_the_file() {
+    let file = std::fs::read_to_string(bits::root().join("tests/bits.txt")).unwrap();
+    let examples = moldloft_testing::soak();
+    let there: Vec<&str> = file.lines().filter(|l| examples || !l.starts_with("example")).collect();
+    let here = bits::lines(examples);
+    let different: Vec<&String> = here.iter().filter(|l| !there.contains(&l.as_str())).collect();
+    assert!(
+        different.is_empty() && here.len() == there.len(),
+        "{} of {} results differ from tests/bits.txt, which has {}; after a change of results `make bits`\n{different:#?}",
+        different.len(),
+        here.len(),
+        there.len()
+    );
 }
 
 #[test]
