@@ -10,6 +10,7 @@ mod edges;
 mod faces;
 mod parents;
 mod polyhedra;
+mod sketches;
 mod wires;
 
 use crate::{ExportFailure, length_unit};
@@ -59,7 +60,9 @@ pub fn brep(
     let mut brep = Sewing::new(&outlines, &faces, positions, accuracy, size).finish()?;
     let panelled = document.panelled()?;
     for name in bodies {
-        if !bodies::add(&mut brep, document, &panelled.mesh, &name, [accuracy, size])? {
+        let known = sketches::add(&mut brep, document, &panelled.mesh, &name, accuracy)?
+            || bodies::add(&mut brep, document, &panelled.mesh, &name, [accuracy, size])?;
+        if !known {
             polyhedra::add(&mut brep, &panelled.mesh, &name, size)?;
         }
     }

@@ -20,6 +20,15 @@ pub trait Files: Send + Sync {
     /// # Errors
     /// The reason in words.
     fn read(&self, name: &str) -> Result<String, String>;
+
+    /// A boundary representation as a STEP file, of a title and the unit of length in metres, for hosts that
+    /// can write one.
+    ///
+    /// # Errors
+    /// The reason in words.
+    fn step(&self, _: &moldloft_brep::Brep, _: &str, _: f64) -> Result<Vec<u8>, String> {
+        Err("STEP is not written here".to_owned())
+    }
 }
 
 /// A world without files.
@@ -181,7 +190,7 @@ pub struct SketchSession {
     redo: Vec<SessionState>,
     history: Vec<String>,
     journal: Vec<String>,
-    files: Box<dyn Files>,
+    pub(super) files: Box<dyn Files>,
     pub(crate) question: Option<Question>,
     begun: String,
     views: Vec<Arc<DrawingCache>>,

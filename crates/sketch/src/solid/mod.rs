@@ -23,6 +23,7 @@ mod outline;
 pub mod place;
 pub(crate) mod ruled_faces;
 pub mod surface;
+mod shapes;
 mod turn;
 pub mod validity;
 
@@ -32,6 +33,7 @@ use crate::{DimensionLayout, FaceId, Planes, PointId, SketchObject};
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
+pub use shapes::ShapeFault;
 use surface::FaceSurface;
 
 /// A vertex of a solid.
