@@ -9,4 +9,5 @@ mod generators;
 mod session;
 mod solids;
 mod treatments;
+mod typed;
 mod work;
