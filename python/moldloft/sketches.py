@@ -240,7 +240,7 @@ class Sketch:
     def export(
         self, path: str | os.PathLike[str], *, format: str | None = None, name: str | None = None
     ) -> Path:
-        """Write an object: STL, OBJ, glTF, 3MF, DXF, SVG, JSON or PNG.
+        """Write an object: STEP, STL, OBJ, glTF, GLB, 3MF, DXF, SVG, JSON or PNG.
 
         Parameters
         ----------

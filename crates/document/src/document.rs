@@ -18,6 +18,7 @@ use moldloft_model::{Applied, Extent, Graph};
 use moldloft_num::Dual4;
 use moldloft_panel::{Nominal, Panelling};
 use moldloft_registry::{Kept, Registry, Role, Row, Scalar, Value};
+use moldloft_sketch::SketchSolid;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -599,6 +600,11 @@ impl Document {
     /// The objects.
     pub fn graph(&self) -> &Graph<f64> {
         &self.plain.graph
+    }
+
+    /// The finished body of a sketch, by the name of its mesh.
+    pub fn sketch_body(&self, name: &str) -> Option<&SketchSolid<f64>> {
+        self.plain.env.sketch_bodies.get(name).map(|body| &**body)
     }
 
     /// What the last change did.

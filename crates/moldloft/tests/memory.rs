@@ -37,7 +37,8 @@ fn refuses(size: usize) -> bool {
         CEILING.store(HELD.load(Ordering::Relaxed), Ordering::Relaxed);
     }
     let refused = (here && FULL.load(Ordering::Relaxed) == 0)
-        || HELD.load(Ordering::Relaxed).saturating_add(size as i64) > CEILING.load(Ordering::Relaxed);
+        || HELD.load(Ordering::Relaxed).saturating_add(size as i64)
+            > CEILING.load(Ordering::Relaxed);
     REFUSALS.fetch_add(u64::from(refused), Ordering::Relaxed);
     refused
 }
@@ -162,7 +163,8 @@ const OPERATIONS: &[Operation] = &[
 /// Words that say that memory or time was the reason, and what follows from that.
 fn is_refusal(found: &[String]) -> bool {
     let spent = |id: &String| id == "out-of-memory";
-    found.iter().any(spent) && found.iter().all(|id| spent(id) || id == "blocked" || id == "no-mesh")
+    found.iter().any(spent)
+        && found.iter().all(|id| spent(id) || id == "blocked" || id == "no-mesh")
 }
 
 /// Numbers at which to refuse: all of the first, then ever fewer, so many in all.
@@ -216,7 +218,11 @@ fn of_documents(points: usize, tally: &mut Tally) {
                 // Everything as before: the same model goes on and gives the same, and so does a new one.
                 request();
                 document.set_text(text);
-                assert_eq!(operation(&mut document).as_ref(), Ok(&right), "{name} after {at}, full {full}");
+                assert_eq!(
+                    operation(&mut document).as_ref(),
+                    Ok(&right),
+                    "{name} after {at}, full {full}"
+                );
                 // A model that is opened meanwhile.
                 let (_, _, outcome) = armed(at, full, || {
                     let _timed = Budget::default().timed();
@@ -250,7 +256,8 @@ fn of_sessions(points: usize, tally: &mut Tally) {
                 let mut session = fresh();
                 (frames(&mut session), session)
             });
-            let (found, mut session) = outcome.unwrap_or_else(|| panic!("session at {at}: a panic"));
+            let (found, mut session) =
+                outcome.unwrap_or_else(|| panic!("session at {at}: a panic"));
             let refused = String::from_utf8_lossy(&found).contains("out-of-memory");
             assert!(found == right || refused, "session at {at}, full {full}");
             tally.points += 1;
@@ -301,7 +308,11 @@ fn of_great_work(tally: &mut Tally) {
         let _timed = Budget::default().timed();
         let mut document = model(&text);
         document.panelled().map(|_| String::new()).map_err(|fault| ids(&[fault])).and_then(|_| {
-            if document.has_errors() { Err(ids(&document.diagnostics())) } else { Ok(String::new()) }
+            if document.has_errors() {
+                Err(ids(&document.diagnostics()))
+            } else {
+                Ok(String::new())
+            }
         })
     });
     tally.points += 1;

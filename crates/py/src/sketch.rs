@@ -3,9 +3,11 @@
 use crate::arrays;
 use crate::error::{plain_error, unknown_name};
 use crate::work::interruptible;
+use moldloft::brep::Brep;
 use moldloft::budget::Budget;
 use moldloft::diag::Severity;
 use moldloft::host::{FileWorld, read_regular};
+use moldloft::io::step::{self, Protocol, StepHeader};
 use moldloft::lang::World;
 use moldloft::mesh::Mesh;
 use moldloft::num::Vec3;
@@ -48,6 +50,12 @@ impl Files for Disk {
         let path = beside.unwrap_or_else(|| PathBuf::from(name));
         let bytes = read_regular(&path).map_err(|fault| fault.to_string())?;
         text(&bytes)
+    }
+
+    fn step(&self, brep: &Brep, title: &str, metres: f64) -> Result<Vec<u8>, String> {
+        let version = env!("CARGO_PKG_VERSION");
+        let header = StepHeader { title, metres, version, protocol: Protocol::Ap242 };
+        step::write(brep, &header).map_err(|error| error.to_string())
     }
 }
 

@@ -71,7 +71,8 @@ mod object;
 pub mod solid;
 
 pub use command::{
-    CommandError, CommandReply, Files, NullFiles, OutFile, SketchSession, Suggestion,
+    CommandError, CommandReply, CommandReport, Files, NullFiles, ObjectChange, OutFile,
+    SketchCommand, SketchSession, Suggestion,
 };
 pub use dimension::expr::{DimensionExpr, FUNCTIONS, NoValue};
 pub use dimension::layout::{

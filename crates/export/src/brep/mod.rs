@@ -11,6 +11,7 @@ mod faces;
 mod faceted;
 mod parents;
 mod polyhedra;
+mod sketches;
 mod wires;
 
 use crate::{ExportFailure, length_unit};
@@ -19,6 +20,7 @@ use moldloft_brep::{Brep, Part, Shell};
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 use moldloft_io::WriteError;
+use moldloft_mesh::Mesh;
 
 /// Accuracy of fits, as a share of the model's diagonal, when none is asked for.
 const ACCURACY: f64 = 1e-6;
@@ -79,11 +81,7 @@ pub fn brep_or_facets(
     let mut refused = Vec::new();
     for name in bodies {
         let mesh = &panelled.mesh;
-        let made = match bodies::add(&mut brep, document, mesh, &name, [accuracy, size]) {
-            Ok(true) => Ok(()),
-            Ok(false) => polyhedra::add(&mut brep, mesh, &name, size),
-            Err(fault) => Err(fault),
-        };
+        let made = exact_body(&mut brep, document, mesh, &name, [accuracy, size]);
         if let Err(fault) = made {
             let told = fault.diagnostics("step");
             // What ran out of its limits, or has no facets either, is an error.
@@ -107,6 +105,22 @@ pub fn brep_or_facets(
         wires::add(&mut brep, document, accuracy)?;
     }
     Ok((brep, refused))
+}
+
+/// Adds a body as faces on surfaces: those of a sketch, those of a set, or the planes of its facets.
+fn exact_body(
+    brep: &mut Brep,
+    document: &Document,
+    mesh: &Mesh,
+    name: &str,
+    [accuracy, size]: [f64; 2],
+) -> Result<(), ExportFailure> {
+    if sketches::add(brep, document, mesh, name, accuracy)?
+        || bodies::add(brep, document, mesh, name, [accuracy, size])?
+    {
+        return Ok(());
+    }
+    polyhedra::add(brep, mesh, name, size)
 }
 
 /// Refuses faces of a half that reach to both sides of its plane of symmetry, or lie on both: their images would

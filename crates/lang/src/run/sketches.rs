@@ -310,6 +310,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Value::Vector(mass.centroid),
         ];
         let key = self.part(names, "solid", "MeshBody", args, true);
+        if let Some(plain) = (body as &dyn std::any::Any).downcast_ref::<SketchSolid<f64>>()
+            && key.is_some()
+            && !body.flat
+        {
+            let full = format!("{}.solid", names.prefix);
+            self.env.sketch_bodies.insert(full, Arc::new(plain.clone()));
+        }
         // A set of faces knows cylinders and cones by their straight borders only, so a body with
         // round faces that others have cut has none.
         let plain = !body.flat && body.trims.is_empty() && mesh.report().closed;

@@ -8,7 +8,9 @@ use crate::format::json::Json;
 use crate::format::json_format::{ObjectData, from_json, object_data, to_json};
 pub(super) use crate::format::script::measure_text;
 use crate::format::script::script;
-use crate::{Dimension, DimensionRole, MeasuredQuantity, SketchObject, Variable, export};
+use crate::{
+    Dimension, DimensionRole, MeasuredQuantity, SketchObject, SketchSolid, Variable, export,
+};
 use moldloft_syntax::number::plain;
 use std::sync::Arc;
 
@@ -251,14 +253,11 @@ impl SketchSession {
     }
 
     pub(super) fn export(&mut self, args: &mut Args) -> Result<(), CommandError> {
-        const FORMATS: [&str; 8] = ["STL", "OBJ", "GLTF", "3MF", "DXF", "SVG", "JSON", "SKETCH83"];
-        let format = args.name("a format")?.to_ascii_uppercase();
-        if format == "STEP" {
-            return Err(CommandError::new(
-                600,
-                "STEP is not written yet",
-                "EXPORT 3MF or GLTF for meshes, DXF for edges and facets",
-            ));
+        const FORMATS: [&str; 10] =
+            ["STL", "OBJ", "GLTF", "GLB", "3MF", "DXF", "SVG", "JSON", "SKETCH83", "STEP"];
+        let mut format = args.name("a format")?.to_ascii_uppercase();
+        if format == "STP" {
+            format = "STEP".to_owned();
         }
         if !FORMATS.contains(&format.as_str()) {
             return Err(CommandError::new(
@@ -278,6 +277,23 @@ impl SketchSession {
         let object = self.active_arc()?;
         let extension = format.to_ascii_lowercase();
         let file = file.unwrap_or_else(|| format!("{}.{extension}", object.name));
+        // The name of a file says what is in it.
+        let suffix = file.rsplit_once('.').map(|s| s.1.to_ascii_uppercase()).unwrap_or_default();
+        let suffix = if suffix == "STP" { "STEP".to_owned() } else { suffix };
+        match (format.as_str(), suffix.as_str()) {
+            ("GLTF", "GLB") => format = suffix,
+            (_, other) if other != format && FORMATS.contains(&other) => {
+                return Err(CommandError::new(
+                    600,
+                    format!("{file} would not be {other}: {format} was asked for"),
+                    format!("EXPORT {other}, or another name"),
+                ));
+            }
+            _ => {}
+        }
+        let metres = object.units.as_deref().and_then(|unit| {
+            super::words::UNITS.iter().find(|u| u.0 == unit).map(|u| u.1 / 10_000.0)
+        });
         let data = self.data(&object);
         let bytes = match format.as_str() {
             "JSON" => (data.to_json().to_string() + "\n").into_bytes(),
@@ -313,9 +329,11 @@ impl SketchSession {
                 let size = solid.vertices.iter().map(|v| v.at.norm()).fold(0.0, f64::max);
                 let mesh = export::IndexedTriangles::of(&solid.mesh(1e-3 * size));
                 match format.as_str() {
+                    "STEP" => self.step_bytes(&object, solid, metres)?,
                     "STL" => export::stl(&mesh, &object.name).into_bytes(),
                     "OBJ" => export::obj(&mesh, &object.name).into_bytes(),
-                    "GLTF" => export::gltf(&mesh, &object.name).into_bytes(),
+                    "GLTF" => export::gltf(&mesh, &object.name, metres).into_bytes(),
+                    "GLB" => export::glb(&mesh, &object.name, metres),
                     "3MF" => export::three_mf(&mesh, object.units.as_deref()),
                     _ => export::dxf(&mesh, solid, 1e-3 * size).into_bytes(),
                 }
@@ -323,5 +341,48 @@ impl SketchSession {
         };
         self.write(&file, bytes);
         Ok(())
+    }
+
+    /// The body as a STEP file of exact surfaces.
+    fn step_bytes(
+        &self,
+        object: &SketchObject,
+        solid: &SketchSolid<f64>,
+        metres: Option<f64>,
+    ) -> Result<Vec<u8>, CommandError> {
+        let refused = |why: String| {
+            let next = "EXPORT STL, OBJ, 3MF or GLTF for meshes, DXF for edges and facets";
+            CommandError::new(600, format!("{} is not written as STEP: {why}", object.name), next)
+        };
+        if solid.flat {
+            return Err(refused("it is a cross section".to_owned()));
+        }
+        let size = solid.vertices.iter().map(|v| v.at.norm()).fold(0.0, f64::max);
+        let made = solid.brep(&object.name, None, &[], 1e-7 * size);
+        let mut brep = made.map_err(|fault| refused(fault.to_string()))?;
+        let shells = brep.shells();
+        let cavity = |s: &moldloft_brep::Shell| {
+            let known = s.faces.first().and_then(|&f| brep.faces[f].extent);
+            known.is_some_and(|(_, cavity)| cavity)
+        };
+        let (inner, outer): (Vec<_>, Vec<_>) = shells.into_iter().partition(cavity);
+        if !inner.is_empty() && outer.len() != 1 {
+            return Err(refused("it has a cavity in one of several bodies".to_owned()));
+        }
+        let name = |k: usize| match k {
+            0 => object.name.clone(),
+            k => format!("{} {}", object.name, k + 1),
+        };
+        let part = |(k, shell)| moldloft_brep::Part {
+            name: name(k),
+            shells: vec![shell],
+            wires: Vec::new(),
+        };
+        brep.parts = outer.into_iter().enumerate().map(part).collect();
+        for shell in inner {
+            brep.parts[0].shells.push(moldloft_brep::Shell { cavity: true, ..shell });
+        }
+        // As in a model: metres when there is no unit.
+        self.files.step(&brep, &object.name, metres.unwrap_or(1.0)).map_err(refused)
     }
 }

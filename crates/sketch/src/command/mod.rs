@@ -14,6 +14,7 @@ mod sensitivity;
 mod session;
 mod solids;
 mod treatments;
+mod typed;
 pub mod verbs;
 pub mod words;
 
@@ -22,3 +23,4 @@ pub use features::no_body;
 pub use info::Suggestion;
 pub(crate) use session::Picture;
 pub use session::{CommandReply, Files, NullFiles, OutFile, SketchSession};
+pub use typed::{CommandReport, ObjectChange, SketchCommand};

@@ -20,6 +20,15 @@ pub trait Files: Send + Sync {
     /// # Errors
     /// The reason in words.
     fn read(&self, name: &str) -> Result<String, String>;
+
+    /// A boundary representation as a STEP file, of a title and the unit of length in metres, for hosts that
+    /// can write one.
+    ///
+    /// # Errors
+    /// The reason in words.
+    fn step(&self, _: &moldloft_brep::Brep, _: &str, _: f64) -> Result<Vec<u8>, String> {
+        Err("STEP is not written here".to_owned())
+    }
 }
 
 /// A world without files.
@@ -180,8 +189,8 @@ pub struct SketchSession {
     forgotten: usize,
     redo: Vec<SessionState>,
     history: Vec<String>,
-    journal: Vec<String>,
-    files: Box<dyn Files>,
+    pub(super) journal: Vec<String>,
+    pub(super) files: Box<dyn Files>,
     pub(crate) question: Option<Question>,
     begun: String,
     views: Vec<Arc<DrawingCache>>,
@@ -194,6 +203,8 @@ pub struct SketchSession {
     pub(crate) recorded: Option<String>,
     /// Replies of the command that is running.
     pub(crate) out: Vec<CommandReply>,
+    /// A run of edits that count as one.
+    pub(super) transaction: Option<super::typed::Transaction>,
 }
 
 /// Commands that only look: an open question stays open.
@@ -267,6 +278,7 @@ impl SketchSession {
             written: BTreeMap::new(),
             recorded: None,
             out: Vec::new(),
+            transaction: None,
         }
     }
 
@@ -332,10 +344,8 @@ impl SketchSession {
                 if !nested && (changed || steps || asked || answered) {
                     self.journal.push(text);
                 }
-                if !nested && !steps && changed {
-                    self.undo.push(before);
-                    self.forget();
-                    self.redo.clear();
+                if !nested && !steps && changed && self.transaction.is_none() {
+                    self.push_undo(before);
                 }
             }
             Err(fault) => {
@@ -348,6 +358,13 @@ impl SketchSession {
             }
         }
         replies
+    }
+
+    /// A state that UNDO goes back to.
+    pub(super) fn push_undo(&mut self, before: SessionState) {
+        self.undo.push(before);
+        self.forget();
+        self.redo.clear();
     }
 
     /// Forgets the oldest states: beyond a number of steps, or of parts that they hold.
@@ -459,7 +476,7 @@ impl SketchSession {
     /// The commands that made the present state, for a journal. A host appends new ones to its file
     /// after each line; running them again restores the session.
     pub fn journal(&self) -> &[String] {
-        &self.journal
+        &self.journal[..self.settled()]
     }
 
     /// Whether a question waits for an answer.
@@ -670,6 +687,9 @@ impl SketchSession {
     }
 
     fn step(&mut self, args: &mut Args, back: bool) -> Result<(), CommandError> {
+        if self.transaction.is_some() {
+            return Err(CommandError::text("a drag is open", "end it first"));
+        }
         let n = if args.at_number() { args.count("how many steps")? } else { 1 };
         args.end()?;
         let mut done = 0;
@@ -752,7 +772,7 @@ pub(crate) fn lay_out<T: Real>(
 }
 
 /// Whether nothing was changed: objects are shared until they are.
-fn same(a: &SessionState, b: &SessionState) -> bool {
+pub(super) fn same(a: &SessionState, b: &SessionState) -> bool {
     a.active == b.active
         && a.sketch83 == b.sketch83
         && a.picture == b.picture

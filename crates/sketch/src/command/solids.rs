@@ -46,7 +46,10 @@ impl SketchSession {
         }
     }
 
-    fn wireframe(&mut self, object: &SketchObject) -> Result<(Vec<PointId>, Fitted), CommandError> {
+    pub(super) fn wireframe(
+        &mut self,
+        object: &SketchObject,
+    ) -> Result<(Vec<PointId>, Fitted), CommandError> {
         let at = self.placed(object)?;
         let ids: Vec<PointId> = at.keys().copied().collect();
         let positions: Vec<Vec3> = at.values().copied().collect();
@@ -710,7 +713,7 @@ pub(super) fn faces_word() -> super::words::CommandToken {
     }
 }
 
-fn face_of(polygon: &Polygon, ids: &[PointId]) -> SketchFace {
+pub(super) fn face_of(polygon: &Polygon, ids: &[PointId]) -> SketchFace {
     // Vertices beyond the points were refused before.
     let cycle = |c: &Vec<usize>| c.iter().filter_map(|k| ids.get(*k).copied()).collect();
     SketchFace { outer: cycle(&polygon.outer), holes: polygon.holes.iter().map(cycle).collect() }

@@ -76,18 +76,62 @@ pub fn obj(mesh: &IndexedTriangles, name: &str) -> String {
     out
 }
 
-/// glTF 2.0 with its buffer inside; y is up there, so (x, y, z) becomes (x, z, -y).
-pub fn gltf(mesh: &IndexedTriangles, name: &str) -> String {
+/// glTF 2.0 with its buffer inside, in metres where the object has a unit; y is up there, so (x, y, z) becomes
+/// (x, z, -y).
+pub fn gltf(mesh: &IndexedTriangles, name: &str, metres: Option<f64>) -> String {
+    let bytes = buffer(mesh);
+    let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
+    gltf_text(
+        mesh,
+        name,
+        metres,
+        Json::map([("byteLength", Json::from(bytes.len())), ("uri", Json::from(uri.as_str()))]),
+    )
+}
+
+/// The same in the binary form: a header, the text, the buffer (glTF 2.0, section 4.4).
+pub fn glb(mesh: &IndexedTriangles, name: &str, metres: Option<f64>) -> Vec<u8> {
+    let bytes = buffer(mesh);
+    let length = Json::map([("byteLength", Json::from(bytes.len()))]);
+    let mut text = gltf_text(mesh, name, metres, length).into_bytes();
+    while text.len() % 4 != 0 {
+        text.push(b' ');
+    }
+    // The buffer is made of words of four bytes.
+    let total = 12 + 8 + text.len() + 8 + bytes.len();
+    let word = |n: usize| (n as u32).to_le_bytes();
+    let mut out = Vec::with_capacity(total);
+    out.extend(b"glTF");
+    out.extend(word(2));
+    out.extend(word(total));
+    out.extend(word(text.len()));
+    out.extend(b"JSON");
+    out.extend(text);
+    out.extend(word(bytes.len()));
+    out.extend(b"BIN\0");
+    out.extend(bytes);
+    out
+}
+
+/// Positions, then corners of triangles.
+fn buffer(mesh: &IndexedTriangles) -> Vec<u8> {
     let mut bytes: Vec<u8> = Vec::new();
+    for p in &mesh.vertices {
+        [p.x as f32, p.z as f32, -p.y as f32].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    }
+    mesh.triangles.iter().flatten().for_each(|v| bytes.extend(v.to_le_bytes()));
+    bytes
+}
+
+fn gltf_text(mesh: &IndexedTriangles, name: &str, metres: Option<f64>, buffer: Json) -> String {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for p in &mesh.vertices {
         for (k, x) in [p.x as f32, p.z as f32, -p.y as f32].into_iter().enumerate() {
-            bytes.extend(x.to_le_bytes());
             (low[k], high[k]) = (low[k].min(x), high[k].max(x));
         }
     }
-    let start = bytes.len();
-    mesh.triangles.iter().flatten().for_each(|v| bytes.extend(v.to_le_bytes()));
+    let start = 12 * mesh.vertices.len();
+    let end = start + 12 * mesh.triangles.len();
     let number = |x: usize| Json::from(x);
     let bounds = |b: [f32; 3]| Json::list(b.map(|x| Json::from(f64::from(x))));
     let view = |offset: usize, length: usize, target: usize| {
@@ -101,12 +145,15 @@ pub fn gltf(mesh: &IndexedTriangles, name: &str) -> String {
     let attributes = Json::map([("POSITION", number(0))]);
     let primitive = Json::map([("attributes", attributes), ("indices", number(1))]);
     let one = |x: Json| Json::list([x]);
-    let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
+    let mut node = vec![("mesh", number(0)), ("name", Json::from(name))];
+    if let Some(m) = metres {
+        node.push(("scale", Json::list([m; 3].map(Json::from))));
+    }
     Json::map([
         ("asset", Json::map([("version", Json::from("2.0"))])),
         ("scene", number(0)),
         ("scenes", one(Json::map([("nodes", one(number(0)))]))),
-        ("nodes", one(Json::map([("mesh", number(0)), ("name", Json::from(name))]))),
+        ("nodes", one(Json::map(node))),
         ("meshes", one(Json::map([("primitives", one(primitive))]))),
         (
             "accessors",
@@ -127,17 +174,8 @@ pub fn gltf(mesh: &IndexedTriangles, name: &str) -> String {
                 ]),
             ]),
         ),
-        (
-            "bufferViews",
-            Json::list([view(0, start, 34962), view(start, bytes.len() - start, 34963)]),
-        ),
-        (
-            "buffers",
-            one(Json::map([
-                ("byteLength", number(bytes.len())),
-                ("uri", Json::from(uri.as_str())),
-            ])),
-        ),
+        ("bufferViews", Json::list([view(0, start, 34962), view(start, end - start, 34963)])),
+        ("buffers", one(buffer)),
     ])
     .to_string()
 }

@@ -9,7 +9,7 @@ use moldloft_syntax::number::plain;
 use std::fmt::Write;
 
 /// A name or expression, in quotes where a command needs them.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let simple = text.starts_with(|c: char| c.is_alphabetic() || c == '_')
         && text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '.');
     let number = text.parse::<f64>().is_ok_and(f64::is_finite)

@@ -42,6 +42,9 @@ const SQUARE: &str = "SKETCH A 2D XY; POINT 1 0 0; POINT 2 9 0; POINT 3 9 9; POI
     POLYLINE 1 2 3 4 CLOSE";
 
 /// A box whose top is drawn oblique, so that each of its corners has its own height.
+const PRISM: &str = "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 90 2; POINT 3 91 30; POINT 4 1 29
+POLYLINE 1 2 3 4 CLOSE; DIM W X 1 2 8; DIM H Z 1 4 2; EXTRUDE 5";
+
 const LOOSE_TOP: &str = "SKETCH A
     POINT 1 0 0; POINT 2 97 -26; POINT 3 173 38; POINT 4 77 64
     POINT 5 0 100; POINT 6 97 74; POINT 7 173 138; POINT 8 77 164
@@ -109,7 +112,12 @@ const TABLE: &[(u16, &str, &str, &str)] = &[
     ),
     (600, "SKETCH A", "SAVE AS ''", "cannot write"),
     (600, "SKETCH A", "INPUT \"none.skt\"", "no such file"),
-    (600, LOOSE_TOP, "EXPORT STEP", "not written yet"),
+    (600, PRISM, "EXPORT STEP", "not written here"),
+    (600, PRISM, "EXPORT STL a.obj", "would not be OBJ"),
+    (701, PRISM, "FILLET A 9 EDGES ALL", "leaves the face"),
+    (701, PRISM, "SHELL A 0", "a wall of 0 is none"),
+    (701, PRISM, "DRAFT A X 1 FACES TOP X", "square to X"),
+    (114, "SKETCH A 2D XY; POINT 1 0 0; POINT 2 9 3; LINE 1 1 2", "SHELL A 1", "cross section"),
     (
         701,
         "SKETCH A; POINT 1 0 0; POINT 2 9 0; POINT 3 9 9; LINE 1 1 2 TYPE X; LINE 2 2 3 TYPE Z

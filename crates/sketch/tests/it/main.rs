@@ -16,6 +16,7 @@ mod projection;
 mod session;
 mod solids;
 mod treatments;
+mod typed;
 mod verbs;
 mod words;
 mod work;
