@@ -29,6 +29,8 @@ impl std::fmt::Display for ShapeFault {
                     FacetFaultKind::Seam => "a face goes round its axis without room for a seam",
                     FacetFaultKind::Edge => "faces meet, or touch, in an edge that is not found",
                     FacetFaultKind::Vertex => "faces meet in a corner that is not found",
+                    FacetFaultKind::Surface => "a face is on no surface that such files hold",
+                    FacetFaultKind::Patch => "no patch comes near enough to a face",
                 };
                 (format!("{what} ({})", fault.surfaces.join(", ")), &fault.place)
             }
@@ -83,7 +85,7 @@ impl SketchSolid<f64> {
             };
             let at = self.faces[f].loops[0].first().map_or(Vec3::zero(), |&h| self.run(h)[0]);
             let shape = self.face_shape(f).ok_or_else(|| ShapeFault::Surface(own.clone(), at))?;
-            facets.surfaces.push(shape);
+            facets.surfaces.push(Some(shape));
             facets.names.push(format!("{name}.{own}"));
         }
         let mut longest = 0.0f64;
