@@ -252,9 +252,7 @@ def test_a_prompt_completes_and_remembers(tmp_path) -> None:
 
 def test_options_of_all_commands_may_stand_before_the_command(tmp_path, cli) -> None:
     (tmp_path / "bad.sdl").write_text("AbsPoint P(1, 2);\n")
-    plain = cli("check", "bad.sdl", "--color", "always", status=1).stderr
-    assert "\x1b[" in plain
     for words in (["--color", "always"], ["--color=always", "--limit", "steps=1e6"]):
-        assert cli(*words, "check", "bad.sdl", status=1).stderr == plain
+        assert "\x1b[31;1merror[" in cli(*words, "check", "bad.sdl", status=1).stderr
     assert "unknown command `chekc`" in cli("--color", "never", "chekc", status=2).stderr
     assert "unknown command" not in cli("--color", status=2).stderr
