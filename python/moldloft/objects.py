@@ -468,7 +468,6 @@ class Surface(_Located):
             )
             return flat.reshape(*u.shape, 3)
 
-    @overload
     @property
     def divisions(self) -> tuple[int, int] | None:
         """Panels along u and v as they are made; None where the surface has no such panels.
@@ -486,6 +485,7 @@ class Surface(_Located):
         except UnknownNameError:
             return None
 
+    @overload
     def grid(self, nu: int, nv: int, *, normals: Literal[False] = ...) -> Floats: ...
     @overload
     def grid(self, nu: int, nv: int, *, normals: Literal[True]) -> tuple[Floats, Floats]: ...
