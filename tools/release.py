@@ -4,6 +4,7 @@
 ``wheel``  the page (if npm is there), the language server, and the wheel with all three inside
 ``editor`` the extension for Visual Studio Code of this platform, with the language server inside
 ``sdist``  the source distribution, the notices of bundled software and the bill of materials
+``papers`` the notices and the bill of materials alone, as packages for conda need them
 ``smoke``  installs the wheel into an empty environment (no Rust, Node.js or make on the path) and
            uses it: command, workbench, language server, display in notebooks, each extra
 
@@ -444,16 +445,19 @@ def _server_answers(command: Path, home: Path, clean: dict[str, str]) -> None:
 
 STEPS = {"engine": engine, "wheel": wheel, "editor": editor, "sdist": sdist, "smoke": smoke}
 
+#: Steps that are parts of others, for those who build by other means.
+PARTS = {"papers": write_papers}
+
 
 def main() -> None:
     """Runs the steps that are named, or all."""
     wanted = sys.argv[1:] or list(STEPS)
     for name in wanted:
-        if name not in STEPS:
+        if name not in {**STEPS, **PARTS}:
             raise SystemExit(__doc__)
     print(f"{platform.platform()}, Python {sysconfig.get_python_version()}")
     for name in wanted:
-        STEPS[name]()
+        {**STEPS, **PARTS}[name]()
 
 
 if __name__ == "__main__":

@@ -174,7 +174,13 @@ def __getattr__(name: str) -> object:
         return import_module(f"moldloft.{name}")
     home = _HOMES.get(name)
     if home is None:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        if name.startswith("_"):
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from moldloft.spelling import nearest
+
+        near = nearest(name, [*__all__, *_MODULES])
+        hint = f"; did you mean `{near}`?" if near else ""
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
     value: object = getattr(import_module(home), name)
     globals()[name] = value
     return value

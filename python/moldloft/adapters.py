@@ -83,6 +83,11 @@ def to_pyvista(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
     tags
         Of a model: only the patches with one of these tags.
 
+    Returns
+    -------
+    pyvista.PolyData
+        Points ``(n, 3)`` in the model's unit.
+
     Examples
     --------
     >>> import moldloft
@@ -131,6 +136,11 @@ def to_trimesh(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
     ----------
     source, tags
         As for :func:`to_pyvista`.
+
+    Returns
+    -------
+    trimesh.Trimesh
+        Vertices ``(n, 3)`` in the model's unit.
     """
     trimesh = _module("trimesh", "trimesh")
     mesh = _panels(source, tags)
@@ -154,6 +164,11 @@ def to_meshio(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
     ----------
     source, tags
         As for :func:`to_pyvista`.
+
+    Returns
+    -------
+    meshio.Mesh
+        Points ``(n, 3)`` in the model's unit.
     """
     meshio = _module("meshio", "meshio")
     mesh = _panels(source, tags)
@@ -191,6 +206,11 @@ def to_capytaine(
         The body's name.
     tags
         Only patches with one of these tags.
+
+    Returns
+    -------
+    capytaine.FloatingBody
+        With the panels below the water as its mesh, and the model's planes of symmetry.
     """
     capytaine = _module("capytaine", "'moldloft[hydro]'")
     with TemporaryDirectory() as folder:
@@ -218,6 +238,11 @@ def to_ocp(model: Model, *, accuracy: float | None = None) -> Any:
         The model.
     accuracy
         The largest error of fits, by default 1e-6 of the model's diagonal.
+
+    Returns
+    -------
+    OCP.TopoDS.TopoDS_Shape
+        Shells and solids.
 
     Examples
     --------
@@ -249,6 +274,11 @@ def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldlof
         The largest error of fits, by default 1e-6 of the model's diagonal.
     name
         The name of Gmsh's model.
+
+    Returns
+    -------
+    list
+        Pairs ``(dimension, tag)``.
     """
     from moldloft import _core
 
@@ -307,6 +337,11 @@ def to_pandas(source: Any) -> Any:
     source
         A model, a hydrostatic table or a righting curve: anything with ``rows`` of records.
 
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each parameter, draft or heel.
+
     Examples
     --------
     >>> import moldloft
@@ -344,6 +379,11 @@ def to_xarray(source: Any, *, along: str | None = None) -> Any:
         A hydrostatic table or a righting curve: anything with ``rows`` of records.
     along
         The column that is the coordinate; by default ``heel`` where it changes, else ``draft``.
+
+    Returns
+    -------
+    xarray.Dataset
+        A variable for each figure, its unit as the attribute ``units``.
     """
     xarray = _module("xarray", "xarray")
     columns = {

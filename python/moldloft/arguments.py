@@ -12,14 +12,14 @@ import inspect
 import linecache
 import operator
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args
 
 from moldloft.errors import Error
 from moldloft.spelling import nearest
 
-__all__ = ["ArgumentError", "explain"]
+__all__ = ["ArgumentError", "explain", "names_of"]
 
 
 class ArgumentError(Error, TypeError, ValueError):
@@ -36,6 +36,15 @@ class ArgumentError(Error, TypeError, ValueError):
     def __init__(self, message: str, argument: str = "") -> None:
         super().__init__(message)
         self.argument = argument
+
+
+def names_of(names: Sequence[str] | str) -> list[str]:
+    """Names as a list; a text is one name, not its letters.
+
+    >>> names_of("beam"), names_of(("beam", "draft"))
+    (['beam'], ['beam', 'draft'])
+    """
+    return [names] if isinstance(names, str) else list(names)
 
 
 #: What Python and NumPy raise about values of wrong kinds.

@@ -90,6 +90,11 @@ def booklet(
         Of the hydrostatic table; by default eight about the draught of the loading.
     heels
         Of the righting arms, in radians; by default 0 to 90 degrees by 5.
+
+    Returns
+    -------
+    str
+        HTML that needs no other file.
     """
     parts = _parts(model, stability, rule, wind, drafts, heels)
     return _html(title or "loading", parts)
@@ -175,6 +180,11 @@ def write_booklet(
         The file. PDF needs reportlab (``pip install 'moldloft[plot]'``).
     options
         As for :func:`booklet`.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
 
     Raises
     ------

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, cast
 
-from moldloft.arguments import explain
+from moldloft.arguments import explain, names_of
 from moldloft.errors import Error
 from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
 from moldloft.units import Units
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from moldloft.stability import Stability
 
 __all__ = ["Floating"]
+
+#: Beyond it an angle is one in degrees.
+_MOST_TURN = 2 * math.pi + 1e-9
 
 
 class Floating:
@@ -319,6 +323,13 @@ class Floating:
         centre = None if cg is None else [float(x) for x in cg]
         if centre is not None and len(centre) != 3:
             raise Error(f"a centre of gravity is x, y, z, not {len(centre)} numbers")
+        for _, _, trim, heel, _, _ in rows:
+            for name, angle in (("trim", trim), ("heel", heel)):
+                if not abs(angle) <= _MOST_TURN:
+                    raise Error(
+                        f"a {name} is in radians, {angle:g} is more than a whole turn\n"
+                        f"help: np.radians({angle:g}) are {angle:g} degrees"
+                    )
         units = self.units
         water = units.water(density)
         if water is None and any(row[0] == "displacement" for row in rows):
@@ -327,7 +338,7 @@ class Floating:
                 'help: give density="salt", "fresh", or mass per volume in the model\'s units'
             )
         answers = self._document.floating(
-            rows, water or 1.0, gravity, centre, sides, list(by), accuracy, of_weights
+            rows, water or 1.0, gravity, centre, sides, names_of(by), accuracy, of_weights
         )
         massive = ("displacement", "weight", "tpc", "mtc", "righting_moment")
         for answer in answers:

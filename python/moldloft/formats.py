@@ -217,6 +217,8 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     if near:
         raise Error(f"unknown format `{name}`; did you mean `{near}`?")
     names = ", ".join(row.name for row in rows)
+    if not name:
+        raise Error(f"no format is stated, and the file's name has no ending; one of: {names}")
     raise Error(f"unknown format `{name}`; expected one of: {names}")
 
 

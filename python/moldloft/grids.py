@@ -148,6 +148,11 @@ def decode_plot3d(
     data
         The content of the file.
 
+    Returns
+    -------
+    tuple
+        Blocks ``(i, j, k, 3)`` or ``(i, j, 3)``, the variant, and the blanking or None.
+
     Raises
     ------
     FormatError
@@ -233,6 +238,11 @@ def write_plot3d(
     iblank
         A whole number for each point of each grid: 0 for those that do not count.
 
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
     Raises
     ------
     Error
@@ -258,6 +268,11 @@ def encode_plot3d(
         How; by default plain binary, double precision, several blocks, three coordinates.
     iblank
         A whole number for each point of each grid: 0 for those that do not count.
+
+    Returns
+    -------
+    bytes
+        The content of the file.
     """
     variant = variant or Plot3DVariant()
     arrays = _grids(grids)
@@ -328,6 +343,11 @@ def encoded(
         Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
     names
         Of the zones of a CGNS file.
+
+    Returns
+    -------
+    dict
+        Bytes by name; the main file first.
     """
     from moldloft.formats import format_named, formats
 
@@ -347,6 +367,11 @@ def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
         The file of one grid; of several its stem is that of all files.
     grids
         Arrays (ni, nj, 3) or (ni, nj, nk, 3).
+
+    Returns
+    -------
+    list of pathlib.Path
+        The files, the main one first.
     """
     target = Path(path)
     files = _core.write_grids(_grids(grids), "vts", target.name)
@@ -372,6 +397,11 @@ def write_cgns(
         The zones' names; ``grid1``, ``grid2``, ... by default.
     tolerance
         Points of edges are the same when they are no further apart, as a share of the size of all.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
     """
     target = Path(path)
     return _commit(path, cgns_bytes(target.name, grids, names, tolerance))
@@ -406,6 +436,11 @@ def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = Fals
         Arrays (ni, nj, 3).
     flip
         Facets face against r_i x r_j instead of along it.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
     """
     target = Path(path)
     return _commit(path, _core.grids_as_stl(_grids(grids), target.stem, flip))
@@ -422,6 +457,11 @@ def write_csv(path: str | Path, points: ArrayLike) -> Path:
         The file.
     points
         Points ``(n, 2)`` or ``(n, 3)``.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
     """
     array = np.asarray(points, dtype=np.float64)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
@@ -443,6 +483,11 @@ def read_points(path: str | Path) -> NDArray[np.float64]:
     path
         The file.
 
+    Returns
+    -------
+    numpy.ndarray
+        z is 0 where there are two numbers.
+
     Raises
     ------
     FileError
@@ -463,6 +508,11 @@ def read_aerofoil(path: str | Path) -> Aerofoil:
     ----------
     path
         The file.
+
+    Returns
+    -------
+    Aerofoil
+        Upper and lower side from nose to tail.
 
     Raises
     ------

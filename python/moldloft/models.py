@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
 from moldloft.adapted import Adapted
-from moldloft.arguments import explain
+from moldloft.arguments import explain, names_of
 from moldloft.errors import Error, FileError, ModelError, UnknownNameError
 from moldloft.floating import Floating
 from moldloft.objects import object_of, wrapped
@@ -76,7 +76,14 @@ class Model(Floating, Adapted):
     moldloft.errors.UnknownNameError: unknown parameter or object `beem`; did you mean `beam`?
     """
 
-    def __init__(self, document: _core.Document, origin: Origin | None = None) -> None:
+    def __init__(
+        self, document: _core.Document | None = None, origin: Origin | None = None
+    ) -> None:
+        if not isinstance(document, _core.Document):
+            raise TypeError(
+                "models are made by moldloft.load(path), moldloft.loads(text), or a function "
+                "decorated with @moldloft.model"
+            )
         self._plain_document = document
         #: Threads that are in a Python function of this model.
         self._inside: set[int] = set()
@@ -367,6 +374,15 @@ class Model(Floating, Adapted):
         def __getitem__(self, name: str) -> Any:
             return self._entry(name)
 
+        def __getattr__(self, name: str) -> Any:
+            # Only asked for what is not there. Objects are no attributes: a method may have their
+            # name.
+            text = f"a model has no attribute `{name}`"
+            document = self.__dict__.get("_plain_document")
+            if document is not None and not name.startswith("_") and name in self.keys():
+                text += f'; the object or parameter is `m["{name}"]`'
+            raise AttributeError(text)
+
     def _entry(self, name: str) -> Any:
         value = self._document.param(name)
         if value is not None:
@@ -554,7 +570,7 @@ class Model(Floating, Adapted):
         ModelError
             As for :meth:`blocks`.
         """
-        return self._document.block_jacobian(list(by))
+        return self._document.block_jacobian(names_of(by))
 
     def jacobian(self, by: Sequence[str]) -> NDArray[np.float64]:
         """Exact derivatives of every mesh vertex.
@@ -589,7 +605,7 @@ class Model(Floating, Adapted):
         >>> float(m.jacobian(["beam"])[:, 1, 0].sum())
         2.0
         """
-        return self._document.jacobian(list(by))
+        return self._document.jacobian(names_of(by))
 
     def derivative(self, expression: str, by: str) -> Any:
         """The exact derivative of a number or vector by one parameter or literal.
@@ -656,7 +672,7 @@ class Model(Floating, Adapted):
         >>> round(change, 9)
         4.0
         """
-        return self._document.derivatives(list(expressions), list(by))
+        return self._document.derivatives(names_of(expressions), names_of(by))
 
     # -- writing ---------------------------------------------------------------------------
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.arguments import explain
-from moldloft.errors import Error, ModelError
+from moldloft.errors import Error, ModelError, UnknownNameError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -467,6 +467,23 @@ class Surface(_Located):
                 self.name, np.ascontiguousarray(u.ravel()), np.ascontiguousarray(v.ravel())
             )
             return flat.reshape(*u.shape, 3)
+
+    @property
+    def divisions(self) -> tuple[int, int] | None:
+        """Panels along u and v as they are made; None where the surface has no such panels.
+
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... Line a({0, 0, 0}, {1, 0, 0}); Line b({0, 1, 0}, {1, 1, 0});
+        ... RuledSurf s(a, b, divisions = {3, 0});
+        ... ''')
+        >>> m["s"].divisions
+        (3, 8)
+        """
+        try:
+            return self._model.mesh().patch(self.name).divisions
+        except UnknownNameError:
+            return None
 
     @overload
     def grid(self, nu: int, nv: int, *, normals: Literal[False] = ...) -> Floats: ...

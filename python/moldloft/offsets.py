@@ -62,7 +62,13 @@ class Offsets:
     """For each station x its points (waterline z, half-breadth y), from the keel up."""
 
     def csv(self) -> str:
-        """The table as text, a row for each point."""
+        """The table as text, a row for each point.
+
+        Returns
+        -------
+        str
+            A header, then station, waterline and half-breadth.
+        """
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(_COLUMNS)
@@ -80,6 +86,11 @@ class Offsets:
             ``"CCurve"`` passes through the points, ``"BCurve"`` has them as control points.
         units
             The unit of length, for the model's header.
+
+        Returns
+        -------
+        str
+            A program of the language.
         """
         if curves not in ("CCurve", "BCurve"):
             raise Error(f"stations are CCurve or BCurve, not `{curves}`")
@@ -113,6 +124,11 @@ def read(path: str | os.PathLike[str]) -> Offsets:
     path
         The file.
 
+    Returns
+    -------
+    Offsets
+        In the unit of the table.
+
     Raises
     ------
     FileError
@@ -132,6 +148,11 @@ def parse(text: str, name: str = "offsets") -> Offsets:
         The text.
     name
         What messages call the text.
+
+    Returns
+    -------
+    Offsets
+        In the unit of the table.
     """
 
     def fault(line: int, expected: str, found: str) -> Error:
@@ -188,6 +209,11 @@ def encode(model: Model, title: str = "") -> bytes:
         The model.
     title
         A title, for formats that have one.
+
+    Returns
+    -------
+    bytes
+        The content of the file.
     """
     return even(model).csv().encode()
 
@@ -206,6 +232,11 @@ def measure(model: Model, stations: Iterable[float], waterlines: Iterable[float]
         Coordinates x.
     waterlines
         Coordinates z.
+
+    Returns
+    -------
+    Offsets
+        In the model's unit.
     """
     import numpy as np
 
@@ -243,6 +274,11 @@ def even(model: Model, *, stations: int = 21, waterlines: int = 11) -> Offsets:
         The number of stations.
     waterlines
         The number of waterlines.
+
+    Returns
+    -------
+    Offsets
+        In the model's unit.
     """
     import numpy as np
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.arguments import explain
-from moldloft.errors import Error, UnknownNameError
+from moldloft.errors import Error, FileError, UnknownNameError
 from moldloft.storage import read_text
 
 if TYPE_CHECKING:
@@ -137,6 +137,8 @@ class Sketch:
     """
 
     def __init__(self, folder: str | os.PathLike[str] | None = None) -> None:
+        if folder is not None and not Path(folder).is_dir():
+            raise FileError(f"`{folder}` is not a folder; `Sketch.load(path)` reads a file")
         self._session = _core.SketchSession(None if folder is None else os.fspath(folder))
 
     @property

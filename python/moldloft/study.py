@@ -102,6 +102,11 @@ class Function:
         ----------
         x
             Values of the inputs, ``(inputs,)``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Exact, not by differences.
         """
         self._set(x)
         return self._derivatives()
@@ -124,6 +129,11 @@ class Function:
         ----------
         x
             Values of the inputs, ``(inputs,)``.
+
+        Returns
+        -------
+        tuple of two numpy.ndarray
+            ``(outputs,)`` and ``(outputs, inputs)``.
         """
         values = self(x)
         return values, self._derivatives()
@@ -142,6 +152,11 @@ def function(
         Parameters, or literals such as ``"P21.y"``.
     outputs
         Expressions, or names with expressions. Values may be numbers, vectors or arrays.
+
+    Returns
+    -------
+    Function
+        Called with an array of the inputs it returns one of the outputs.
 
     Raises
     ------
@@ -174,6 +189,11 @@ def component(
         Parameters, or literals such as ``"P21.y"`` (named ``P21_y`` in OpenMDAO).
     outputs
         Expressions, or names with expressions.
+
+    Returns
+    -------
+    openmdao.api.ExplicitComponent
+        With the inputs and outputs named.
     """
     try:
         import openmdao.api as om

@@ -82,6 +82,11 @@ class Units:
         ----------
         text
             The units, with blanks between.
+
+        Returns
+        -------
+        Units
+            What is not named is empty.
         """
         found: dict[str, str] = {}
         for word in text.replace(",", " ").split():
@@ -122,6 +127,11 @@ class Units:
         """The units with mass and force filled in where the length is known.
 
         With metric lengths kg and N, with feet, inches and yards lb and lbf.
+
+        Returns
+        -------
+        Units
+            A new one; this stays as it is.
         """
         if not self.length:
             return self
@@ -132,6 +142,11 @@ class Units:
 
     def force_scale(self) -> float:
         """A mass times an acceleration of these units, in that of force; 1 where one is missing.
+
+        Returns
+        -------
+        float
+            A factor.
 
         Examples
         --------
@@ -149,6 +164,11 @@ class Units:
         ----------
         density
             ``"salt"``, ``"fresh"``, or mass per volume in the model's units.
+
+        Returns
+        -------
+        float or None
+            Mass per volume; None where none is given.
         """
         if density is None:
             return None
@@ -170,6 +190,11 @@ class Units:
         ----------
         figure
             The name of a figure, such as ``"volume"``.
+
+        Returns
+        -------
+        str
+            Such as ``"m³"``.
         """
         if figure in ANGLES:
             return self.angle
@@ -192,6 +217,11 @@ class Units:
             The name of a figure, such as ``"volume"``.
         to
             The other units.
+
+        Returns
+        -------
+        float
+            1 where the dimension is not stated in both.
         """
         length, mass, force = DIMENSIONS.get(figure, (0, 0, 0))
         scale = 1.0
@@ -221,6 +251,11 @@ def shown(name: str, value: Any) -> Any:
     value
         Its value; angles in radians.
 
+    Returns
+    -------
+    float, str or None
+        What is not an angle stays as it is.
+
     Examples
     --------
     >>> shown("volume", 2.0), round(shown("heel", math.pi), 9), shown("trim", None)
@@ -238,6 +273,11 @@ def header(name: str, units: Units) -> str:
         Which figure it is.
     units
         What the figures are in.
+
+    Returns
+    -------
+    str
+        Such as ``"volume [m³]"``.
 
     Examples
     --------

@@ -248,3 +248,11 @@ def test_a_prompt_completes_and_remembers(tmp_path) -> None:
             with pytest.raises(EOFError):
                 ask("> ")
     assert "hull.area" in (tmp_path / "history.lines").read_text()
+
+
+def test_options_of_all_commands_may_stand_before_the_command(tmp_path, cli) -> None:
+    (tmp_path / "bad.sdl").write_text("AbsPoint P(1, 2);\n")
+    for words in (["--color", "always"], ["--color=always", "--limit", "steps=1e6"]):
+        assert "\x1b[31;1merror[" in cli(*words, "check", "bad.sdl", status=1).stderr
+    assert "unknown command `chekc`" in cli("--color", "never", "chekc", status=2).stderr
+    assert "unknown command" not in cli("--color", status=2).stderr

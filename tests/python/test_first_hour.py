@@ -126,6 +126,52 @@ def test_shapes_that_do_not_fit_are_named() -> None:
         hull.grid(-1, 5)
 
 
+#: Slips in Python, with what the answer must say.
+SLIPS = {
+    "m.hull": 'the object or parameter is `m["hull"]`',
+    "m.beem": "a model has no attribute `beem`",
+    "m['hul']": "did you mean `hull`",
+    "m.hydrostatics(heel=10)": "a heel is in radians",
+    "m.hydrostatics(trim=-9)": "a trim is in radians",
+    "m.righting_curve([0, 10, 20], 40, cg=(15, 0, 0), density=1)": "np.radians(10)",
+    "m.hydrostatics().unit('volum')": "unknown figure `volum`",
+    "m.hydrostatic_table([0.1]).derivative('volume', 'beam')": "no derivatives by `beam`",
+    "m.write('hull')": "no ending",
+    "m.write('no/such/hull.stl')": "there is no folder",
+    "m.hydrostatic_table([0.1]).write_csv('no/such/t.csv')": "there is no folder",
+    "m.refine(-1)": "0 or more",
+    "m.kind_picture('BCruve')": "did you mean `BCurve`",
+    "moldloft.laod": "did you mean `load`",
+    "moldloft.Model()": "moldloft.load",
+    "moldloft.Sketch('plate.skt')": "Sketch.load",
+    "moldloft.param(5, 1, 2)": "not in its range",
+    "ball.range((1, 1, 1), (0, 0, 0))": "not below",
+    "ball.pruned((0, 0, 0), (1, float('nan'), 1))": "not below",
+    "ball.with_attributes(tolerance=-1)": "0 or more",
+}
+
+
+@pytest.mark.parametrize("code", SLIPS)
+def test_a_slip_in_python_is_explained(
+    code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from moldloft import implicit
+
+    monkeypatch.chdir(tmp_path)
+    names = {"m": moldloft.load(HULL), "ball": implicit.Set(implicit.sphere((0, 0, 0), 1))}
+    kinds = (moldloft.Error, AttributeError, TypeError, ValueError)
+    with pytest.raises(kinds, match=re.escape(SLIPS[code])):
+        eval(code, {"moldloft": moldloft, **names})
+    assert not list(tmp_path.iterdir())
+
+
+def test_one_name_is_a_list_of_one() -> None:
+    m = moldloft.load(HULL)
+    assert m.jacobian("beam").shape[2] == 1
+    assert m.derivatives("hull.area", "beam") == m.derivatives(["hull.area"], ["beam"])
+    assert m.hydrostatics(by="beam").derivatives["volume"]["beam"] > 0
+
+
 def test_links_between_the_pages_lead_somewhere() -> None:
     pages = [*PAGES, *ROOT.glob("examples/*/README.md"), *ROOT.glob("editors/*/README.md")]
     pages += [ROOT / "CONTRIBUTING.md", ROOT / "SECURITY.md"]

@@ -79,8 +79,24 @@ def test_the_recipe_needs_what_the_package_needs() -> None:
     run = {str(line).split()[0] for line in recipe["requirements"]["run"]}
     assert run == names | {"python"}
     assert recipe["about"]["license"] == "MIT OR Apache-2.0"
-    for file in recipe["about"]["license_file"]:
-        assert (ROOT / file).is_file()
+    *own, notices = recipe["about"]["license_file"]
+    assert all((ROOT / file).is_file() for file in own)
+    # The last is made by the first line of the script.
+    assert notices == "dist/NOTICES.txt" and "release.py papers" in recipe["build"]["script"][0]
+    parts = runpy.run_path(str(ROOT / "tools" / "release.py"))["PARTS"]
+    assert "papers" in parts
+
+
+def test_the_recipe_is_rendered() -> None:
+    """By rattler-build itself, for each platform that wheels are built for."""
+    rattler = pytest.importorskip("rattler_build")
+    recipe = rattler.Stage0Recipe.from_file(str(ROOT / "conda" / "recipe.yaml"))
+    (variant,) = recipe.render(rattler.VariantConfig())
+    found = variant.recipe() if callable(variant.recipe) else variant.recipe
+    data = found.to_dict()
+    assert data["package"]["version"] == moldloft.__version__
+    commands = [line for test in data["tests"] for line in test.get("script", [])]
+    assert len(commands) == 3
 
 
 def test_templates_of_issues_ask_for_something() -> None:

@@ -212,9 +212,31 @@ def _run(arguments: list[str]) -> int:
     return status
 
 
+#: The options of all commands, and how many values each takes: they may stand before the command.
+_COMMON = {"--color": 1, "--limit": 1, "--traceback": 0}
+
+
+def _command_first(arguments: list[str]) -> list[str]:
+    """The words with the options of all commands behind the command.
+
+    >>> _command_first(["--color", "never", "--traceback", "check", "a.sdl"])
+    ['check', '--color', 'never', '--traceback', 'a.sdl']
+    """
+    rest = list(arguments)
+    moved: list[str] = []
+    while rest and (name := rest[0].partition("=")[0]) in _COMMON:
+        words = 1 if "=" in rest[0] else 1 + _COMMON[name]
+        moved += rest[:words]
+        rest = rest[words:]
+    if not rest or rest[0].startswith("-"):
+        return arguments
+    return [rest[0], *moved, *rest[1:]]
+
+
 def _parsed(arguments: list[str]) -> Namespace:
     from moldloft.cli.parser import meant, usage_error
 
+    arguments = _command_first(arguments)
     word = next((a for a in arguments if not a.startswith("-")), None)
     if word is not None and word not in COMMANDS:
         usage_error(f"unknown command `{word}`{meant(word, COMMANDS)}", "moldloft")
@@ -235,7 +257,8 @@ def whole_parser(loaded: Sequence[str]) -> Parser:
         prog="moldloft",
         usage="moldloft COMMAND [arguments]",
         description="Describe a shape, relate its parts, panel it, measure it.",
-        epilog="\n".join(lines) + "\n`moldloft COMMAND --help` describes each, with examples.",
+        epilog="\n".join(lines) + "\n`moldloft COMMAND --help` describes each, with examples. "
+        "--color, --limit and --traceback may stand before it.",
     )
     parser.add_argument("-V", "--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(

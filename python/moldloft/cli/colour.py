@@ -21,8 +21,9 @@ _RULES = (
         _GREEN,
     ),
 )
-_MARKS = re.compile(r"^([ \d]*\|\s*)(\^+|-+)(?=\s|$)")
-_PLACE = re.compile(r"^( *--> )(.*)$")
+#: The margin of source lines, with its number or without, and what stands right of it.
+_MARGIN = re.compile(r"^( *(\d*) *\|)(.*)$")
+_PLACE = re.compile(r"^( *(?:-->|:::) )(.*)$")
 
 _choice = "auto"
 
@@ -57,11 +58,13 @@ def _line(line: str) -> str:
     place = _PLACE.match(line)
     if place:
         return f"\x1b[{_BLUE}m{place[1]}\x1b[0m{place[2]}"
-    marks = _MARKS.match(line)
-    if marks:
-        colour = _RED if marks[2].startswith("^") else _BLUE
-        rest = line[marks.end() :]
-        return f"\x1b[{_BLUE}m{marks[1]}\x1b[{colour}m{marks[2]}{rest}\x1b[0m"
+    margin = _MARGIN.match(line)
+    if margin:
+        rest = margin[3]
+        if not margin[2] and rest.strip():
+            # Marks and their words: of the fault red, of what explains it blue.
+            rest = f"\x1b[{_RED if '^' in rest else _BLUE}m{rest}\x1b[0m"
+        return f"\x1b[{_BLUE}m{margin[1]}\x1b[0m{rest}"
     stripped = line.lstrip(" =")
     for rule, colour in _RULES:
         found = rule.match(stripped)

@@ -168,7 +168,13 @@ class Fairing:
         return before.arc, 100.0 * far / self.length if self.length > 0 else far
 
     def as_dict(self) -> dict[str, Any]:
-        """The report as plain data: what ``moldloft fair --json`` prints."""
+        """The report as plain data: what ``moldloft fair --json`` prints.
+
+        Returns
+        -------
+        dict
+            Numbers, texts and lists only, so that JSON takes it.
+        """
         return {
             "points": len(self.data),
             "control_points": len(self.control_points),

@@ -99,7 +99,13 @@ class NetworkFairing:
         return self.gap / size if size > 0 else 0.0
 
     def as_dict(self) -> dict[str, Any]:
-        """The report as plain data: what ``moldloft fair --json`` prints."""
+        """The report as plain data: what ``moldloft fair --json`` prints.
+
+        Returns
+        -------
+        dict
+            Numbers, texts and lists only, so that JSON takes it.
+        """
         return {
             "points": len(self.data),
             "curves": len(self.curves),
@@ -220,6 +226,11 @@ def network(
     original
         The points as they were read, when ``points`` were faired already: tolerances are counted
         from these, so that fairing a result again is fairing the original.
+
+    Returns
+    -------
+    NetworkFairing
+        The curves faired, with the reports before and after.
 
     Examples
     --------

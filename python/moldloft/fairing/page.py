@@ -457,6 +457,10 @@ def page(
     title
         Its heading.
 
+    Returns
+    -------
+    str
+        HTML with its pictures inside.
     """
     from moldloft.fairing.faired import Fairing
     from moldloft.fairing.network import NetworkFairing
@@ -493,6 +497,11 @@ def write_page(
         The file.
     title
         A title, for formats that have one.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
     """
     from moldloft.files import Output, commit
 

@@ -71,7 +71,13 @@ class PatchesFairing:
         return self.gap / size if size > 0 else 0.0
 
     def as_dict(self) -> dict[str, Any]:
-        """The report as plain data: what ``moldloft fair --json`` prints."""
+        """The report as plain data: what ``moldloft fair --json`` prints.
+
+        Returns
+        -------
+        dict
+            Numbers, texts and lists only, so that JSON takes it.
+        """
         return {
             "surfaces": [list(g.shape[:2]) for g in self.grids],
             "seams": [[[k, e], [m, f]] for (k, e), (m, f) in self.seams],
@@ -144,6 +150,11 @@ def patches(
         What the points of grids are, ``"fit"`` or ``"control"``, and of what degree.
     measure, bound, rims, motion
         As for surfaces; rims that are seams keep what ``seams`` says.
+
+    Returns
+    -------
+    PatchesFairing
+        The surfaces faired, with the reports before and after.
 
     Raises
     ------

@@ -137,6 +137,11 @@ class Spline:
         breaks
             Points, from 0, at which the curve may have corners. A closed curve with breaks becomes
             an open one that begins and ends at the first of them.
+
+        Returns
+        -------
+        Spline
+            A new curve.
         """
         return cls._interpolated(points, degree, spacing, closed, breaks)[0]
 
@@ -176,6 +181,11 @@ class Spline:
             ``"chord"``, ``"centripetal"``, ``"uniform"``, or an axis, ``"x"`` to ``"z"``.
         closed
             Whether the curve closes.
+
+        Returns
+        -------
+        Spline
+            A new curve.
         """
         rows, _ = points_of(points)
         refuse_repeats(rows, closed)
@@ -213,6 +223,11 @@ class Spline:
             How points get their parameters.
         at
             The parameters themselves, rising, in [0, 1].
+
+        Returns
+        -------
+        Spline
+            A new curve.
 
         Examples
         --------
@@ -306,6 +321,11 @@ class Spline:
         """Knots over [0, 1], control points and weights of the curve as an open spline.
 
         Others draw a closed curve from these too.
+
+        Returns
+        -------
+        tuple
+            Knots ``(n + degree + 1,)``, control points ``(n, 3)``, weights or None.
         """
         return self._core.open_form()
 
@@ -316,6 +336,11 @@ class Spline:
         ----------
         t
             Parameters in [0, 1], of any shape.
+
+        Returns
+        -------
+        Samples
+            Arrays ``(k,)`` and ``(k, 3)``, one row for each parameter.
         """
         flat = np.ascontiguousarray(np.asarray(t, np.float64).ravel())
         return Samples(**self._core.at(flat))
@@ -327,6 +352,11 @@ class Spline:
         ----------
         per_span
             Samples on each span of the curve.
+
+        Returns
+        -------
+        Samples
+            Arrays ``(k,)`` and ``(k, 3)``.
         """
         return Samples(**self._core.spans(per_span))
 
@@ -342,6 +372,11 @@ class Spline:
         ----------
         t
             Parameters in [0, 1], of any shape.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(k,)``, per unit of length; of plane curves with its sign.
         """
         return self.at(t).curvature.reshape(np.shape(t))
 
@@ -352,6 +387,11 @@ class Spline:
         ----------
         t
             Parameters in [0, 1], of any shape.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(k,)``, per unit of length.
         """
         return self.at(t).torsion.reshape(np.shape(t))
 
@@ -389,6 +429,11 @@ class Spline:
 
         Free of the parameter's unit: on uniform cubics the fourth difference of the control
         points.
+
+        Returns
+        -------
+        tuple of two numpy.ndarray
+            Parameters and vectors, in rising order.
         """
         return self._core.jumps()
 
@@ -399,6 +444,11 @@ class Spline:
         ----------
         name
             The name of a measure, as for :func:`~moldloft.fairing.fair`.
+
+        Returns
+        -------
+        float
+            In the unit of its definition; 0 is ideal.
         """
         return self._core.measure(name)
 
@@ -413,6 +463,11 @@ class Spline:
             Share of the range of values below which a reversal is ignored.
         per_span
             Samples on each span of the curve.
+
+        Returns
+        -------
+        int
+            1 where the curvature only rises or only falls.
         """
         return self._core.monotone_pieces(share, per_span)
 
@@ -423,6 +478,11 @@ class Spline:
         ----------
         per_span
             Samples on each span of the curve.
+
+        Returns
+        -------
+        int
+            Reversals below the share that reports ignore do not count.
         """
         return self._core.inflections(per_span)
 
@@ -436,6 +496,11 @@ class Spline:
         ----------
         per_span
             Samples on each span of the curve.
+
+        Returns
+        -------
+        numpy.ndarray
+            Columns log(radius) and log(d(length)/d(log radius)).
         """
         return self._core.logarithmic(per_span)
 
@@ -452,12 +517,23 @@ class Spline:
             The factor of the distance to the tangent.
         per_span
             Samples on each span of the curve.
+
+        Returns
+        -------
+        numpy.ndarray
+            Points, in the order of the parameters.
         """
         point, _ = points_of([np.asarray(p, np.float64).ravel()])
         return self._core.orthotomic([float(c) for c in point[0]], k, per_span)
 
     def findings(self) -> list[Any]:
-        """Corners and single wrong control points that stand out among the jumps."""
+        """Corners and single wrong control points that stand out among the jumps.
+
+        Returns
+        -------
+        list
+            Each with its place, its kind and how far it stands out.
+        """
         from moldloft.fairing.report import Finding
 
         return [Finding.of(row) for row in self._core.findings()]
@@ -477,6 +553,11 @@ def monotone_runs(values: ArrayLike, share: float = 1e-3) -> int:
     share
         Share of the range of values below which a reversal is ignored.
 
+    Returns
+    -------
+    int
+        1 for a list that only rises or only falls.
+
     Examples
     --------
     >>> monotone_runs([0, 1, 2, 1.9999, 3, 1])
@@ -495,6 +576,11 @@ def divided_differences(points: ArrayLike, t: ArrayLike) -> Floats:
     t
         Their parameters, increasing, ``(n,)``.
 
+    Returns
+    -------
+    numpy.ndarray
+        Vectors, one for each point but the first and the last.
+
     Examples
     --------
     >>> divided_differences([(0, 0), (1, 1), (3, 9)], [0, 1, 3])
@@ -511,6 +597,11 @@ def grid_metric(grid: ArrayLike) -> Floats:
     ----------
     grid
         ``(m, n, 2)`` or ``(m, n, 3)``, i along the body and j away from it; z is not looked at.
+
+    Returns
+    -------
+    numpy.ndarray
+        Of the shape of the grid.
     """
     points, _ = points_of(grid, 3)
     m, n = points.shape[:2]

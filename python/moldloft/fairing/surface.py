@@ -241,6 +241,11 @@ class SplineSurface:
             Rows of points along u and along v, from 0, at which it may have edges, in open
             directions without knots of their own.
 
+        Returns
+        -------
+        SplineSurface
+            A new surface.
+
         Examples
         --------
         >>> import numpy as np
@@ -316,6 +321,11 @@ class SplineSurface:
             Parameters along u in [0, 1], or how many even ones.
         v
             Parameters along v in [0, 1], or how many even ones.
+
+        Returns
+        -------
+        Look
+            Normals, curvatures and reflections there.
         """
         return Look(self._core.look(_parameters(u), _parameters(v)))
 
@@ -328,6 +338,11 @@ class SplineSurface:
             Parameters along u in [0, 1], or how many even ones.
         v
             Parameters along v in [0, 1], or how many even ones.
+
+        Returns
+        -------
+        numpy.ndarray
+            In the order of the parameters.
         """
         return self.look(u, v).points
 
@@ -338,6 +353,11 @@ class SplineSurface:
         ----------
         name
             The name of a measure, as for :func:`~moldloft.fairing.fair`.
+
+        Returns
+        -------
+        tuple of float
+            The sums over the curves of each direction.
         """
         return self._core.measure(name)
 

@@ -69,6 +69,11 @@ def liming(
     contact
         Order of contact: 1 for tangent planes, 2 for curvature too.
 
+    Returns
+    -------
+    Field
+        A quartic for quadrics; its sign is that of the body.
+
     Examples
     --------
     >>> from moldloft import implicit as im
@@ -99,6 +104,11 @@ def zhang(
         Shape of the blend, between 0 and 1.
     contact
         Order of contact: 1 for tangent planes, 2 for curvature too.
+
+    Returns
+    -------
+    Field
+        Zero on the transition.
     """
     return Field(l1._core.zhang(l2._core, l3._core, l4._core, float(lam), int(contact)))
 
@@ -118,6 +128,11 @@ def setback(l1: Field, l2: Field, a: float, b: float | None = None) -> Field:
         Setback on the second body: where the rail meets it.
     b
         Setback on the first body; by default the same.
+
+    Returns
+    -------
+    Field
+        Zero at the setback from the edge.
     """
     return Field(l1._core.setback(l2._core, float(a), float(a if b is None else b)))
 
@@ -215,6 +230,11 @@ def fillet(
         Setback on the second body; by default the same.
     lam
         Shape of the blend, between 0 and 1.
+
+    Returns
+    -------
+    Blend or Set
+        What can be combined further.
     """
     from moldloft.implicit.sets import Set
 
@@ -241,6 +261,11 @@ def rounded(
         Setback on the second body; by default the same.
     lam
         Shape of the blend, between 0 and 1.
+
+    Returns
+    -------
+    Blend
+        What can be combined further.
     """
     return _blended("round", l1, l2, width, other, lam)
 
@@ -266,6 +291,11 @@ def transition(
         Shape of the blend, between 0 and 1.
     contact
         Order of contact: 1 for tangent planes, 2 for curvature too.
+
+    Returns
+    -------
+    Blend
+        What can be combined further.
     """
     from moldloft.implicit.sets import Set
 

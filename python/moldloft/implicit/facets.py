@@ -191,6 +191,11 @@ class Facets:
         ----------
         accuracy
             The largest distance from the surface, in model units.
+
+        Returns
+        -------
+        Facets
+            A new mesh; this stays as it is.
         """
         return Facets(self._core.simplified(float(accuracy)))
 
@@ -234,15 +239,33 @@ class Facets:
         return self._core.blunt()
 
     def centre_distances(self) -> Floats:
-        """Distances of the solids' triangle centres from their surfaces, |f| / |f'|, ``(m,)``."""
+        """Distances of the solids' triangle centres from their surfaces, |f| / |f'|, ``(m,)``.
+
+        Returns
+        -------
+        numpy.ndarray
+            In model units.
+        """
         return self._core.distances()[0]
 
     def worst_vertex(self) -> float:
-        """The largest distance of a vertex of the solids from a surface that it lies on."""
+        """The largest distance of a vertex of the solids from a surface that it lies on.
+
+        Returns
+        -------
+        float
+            In model units.
+        """
         return self._core.distances()[1]
 
     def crossings(self) -> int:
-        """How many pairs of triangles cut each other."""
+        """How many pairs of triangles cut each other.
+
+        Returns
+        -------
+        int
+            0 for a mesh that is fit for use.
+        """
         return self._core.crossings()
 
     def section(self, normal: Sequence[float], point: Sequence[float] = (0, 0, 0)) -> list[Contour]:
@@ -254,6 +277,11 @@ class Facets:
             The normal of the plane, ``(3,)``.
         point
             A point of the plane, ``(3,)``.
+
+        Returns
+        -------
+        list of Contour
+            Closed ones run round solid parts counter-clockwise, seen against the normal.
         """
         from moldloft.implicit.moving import triple
 
@@ -277,6 +305,11 @@ class Facets:
             A point that the planes go through.
         width
             Width of each view, in millimetres.
+
+        Returns
+        -------
+        str
+            The drawing.
         """
         return _drawn([(n, self.section(n, point)) for n in normals], point, width)
 
@@ -292,6 +325,11 @@ class Facets:
             The file.
         format
             The name of a format, see :data:`moldloft.files.FORMATS`.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
         """
         from moldloft.files import Output, commit
 
@@ -311,6 +349,11 @@ class Facets:
             The file.
         size
             Width and height, pixels.
+
+        Returns
+        -------
+        bytes
+            The PNG file.
         """
         png = self._core.picture(int(size[0]), int(size[1]))
         if path is not None:

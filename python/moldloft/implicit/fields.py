@@ -340,7 +340,13 @@ def _required(x: object) -> Field:
 
 
 def axes() -> tuple[Field, Field, Field]:
-    """The coordinates x, y and z as fields."""
+    """The coordinates x, y and z as fields.
+
+    Returns
+    -------
+    tuple of Field
+        Three coordinates, in model units.
+    """
     return (
         plane((1, 0, 0), (0, 0, 0)),
         plane((0, 1, 0), (0, 0, 0)),
@@ -357,6 +363,11 @@ def plane(normal: Triple, point: Triple) -> Field:
         A normal of any length, ``(3,)``; it points from solid to air.
     point
         A point of the plane, ``(3,)``.
+
+    Returns
+    -------
+    Field
+        In model units.
     """
     return Field(_core.Field.plane(triple(normal, "normal"), triple(point, "point")))
 
@@ -372,6 +383,11 @@ def sphere(centre: Triple, radius: float, *, distance: bool = False) -> Field:
         Radius, in model units.
     distance
         Give the distance instead of the polynomial.
+
+    Returns
+    -------
+    Field
+        Negative inside.
     """
     return Field(_core.Field.sphere(triple(centre, "centre"), float(radius), distance))
 
@@ -389,6 +405,11 @@ def cylinder(point: Triple, direction: Triple, radius: float, *, distance: bool 
         Radius, in model units.
     distance
         Give the distance instead of the polynomial.
+
+    Returns
+    -------
+    Field
+        Negative inside.
     """
     p, d = triple(point, "point"), triple(direction, "direction")
     return Field(_core.Field.cylinder(p, d, float(radius), distance))
@@ -405,6 +426,11 @@ def cone(apex: Triple, direction: Triple, angle: float) -> Field:
         A direction of any length, ``(3,)``.
     angle
         Full angle at the apex, radians, below pi.
+
+    Returns
+    -------
+    Field
+        Negative inside.
     """
     return Field(
         _core.Field.cone(triple(apex, "apex"), triple(direction, "direction"), float(angle))
@@ -424,6 +450,11 @@ def torus(centre: Triple, direction: Triple, major: float, minor: float) -> Fiel
         Radius from the axis to the centre of the tube.
     minor
         Radius of the tube.
+
+    Returns
+    -------
+    Field
+        Negative inside the tube.
     """
     p, d = triple(centre, "centre"), triple(direction, "direction")
     return Field(_core.Field.torus(p, d, float(major), float(minor)))
@@ -450,6 +481,11 @@ def cyclide(
         Radius of the tube.
     change
         Half the difference of the greatest and the least radius of the tube.
+
+    Returns
+    -------
+    Field
+        Negative inside the ring.
     """
     p, d, a = triple(centre, "centre"), triple(direction, "direction"), triple(along, "along")
     return Field(_core.Field.cyclide(p, d, a, float(major), float(minor), float(change)))
@@ -479,6 +515,11 @@ def function(
 
     What the function raises, or a wrong shape that it returns, becomes a :class:`moldloft.Error`.
 
+    Returns
+    -------
+    Field
+        It calls the function wherever it is evaluated.
+
     Examples
     --------
     >>> import numpy as np
@@ -505,6 +546,11 @@ def read_fidget(text: str) -> Field:
     text
         The text.
 
+    Returns
+    -------
+    Field
+        The expression, operation by operation.
+
     Examples
     --------
     >>> from moldloft import implicit as im
@@ -521,6 +567,11 @@ def read_libfive(text: str) -> Field:
     ----------
     text
         The text.
+
+    Returns
+    -------
+    Field
+        The expression, operation by operation.
 
     Examples
     --------
@@ -542,6 +593,11 @@ def sin(x: Field) -> Field:
     ----------
     x
         The argument.
+
+    Returns
+    -------
+    Field
+        Values from -1 to 1.
     """
     return _unary("sin", x)
 
@@ -553,6 +609,11 @@ def cos(x: Field) -> Field:
     ----------
     x
         The argument.
+
+    Returns
+    -------
+    Field
+        Values from -1 to 1.
     """
     return _unary("cos", x)
 
@@ -564,6 +625,11 @@ def exp(x: Field) -> Field:
     ----------
     x
         The argument.
+
+    Returns
+    -------
+    Field
+        Values above 0.
     """
     return _unary("exp", x)
 
@@ -575,6 +641,11 @@ def ln(x: Field) -> Field:
     ----------
     x
         The argument.
+
+    Returns
+    -------
+    Field
+        The logarithm to the base e.
     """
     return _unary("ln", x)
 
@@ -586,6 +657,11 @@ def tan(x: Field) -> Field:
     ----------
     x
         The argument.
+
+    Returns
+    -------
+    Field
+        Any value.
     """
     return _unary("tan", x)
 
@@ -597,6 +673,11 @@ def twist(rate: float) -> tuple[Field, Field, Field]:
     ----------
     rate
         Turn per length along z, radians.
+
+    Returns
+    -------
+    tuple of Field
+        Three coordinates, for :meth:`Field.remapped`.
 
     Examples
     --------
@@ -615,6 +696,11 @@ def sqrt(x: Field) -> Field:
     ----------
     x
         The argument.
+
+    Returns
+    -------
+    Field
+        Values of 0 and above.
     """
     return _unary("sqrt", x)
 
@@ -626,6 +712,11 @@ def s_sqrt(x: Field) -> Field:
     ----------
     x
         The argument.
+
+    Returns
+    -------
+    Field
+        Of the sign of the field.
     """
     return _unary("s_sqrt", x)
 
@@ -637,6 +728,11 @@ def sign(x: Field) -> Field:
     ----------
     x
         The argument.
+
+    Returns
+    -------
+    Field
+        1 and -1.
     """
     return _unary("sign", x)
 
@@ -650,6 +746,11 @@ def minimum(a: Field | float, b: Field | float) -> Field:
         The first field.
     b
         The second field.
+
+    Returns
+    -------
+    Field
+        Solid where one is.
     """
     return Field(_required(a)._core.binary("min", _required(b)._core))
 
@@ -663,6 +764,11 @@ def maximum(a: Field | float, b: Field | float) -> Field:
         The first field.
     b
         The second field.
+
+    Returns
+    -------
+    Field
+        Solid where both are.
     """
     return Field(_required(a)._core.binary("max", _required(b)._core))
 
@@ -676,6 +782,11 @@ def atan2(y: Field | float, x: Field | float) -> Field:
         The second argument.
     x
         The argument.
+
+    Returns
+    -------
+    Field
+        In radians.
     """
     return Field(_required(y)._core.binary("atan2", _required(x)._core))
 

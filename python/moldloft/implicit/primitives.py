@@ -17,12 +17,24 @@ __all__ = ["cuboid", "everything", "nothing", "point", "segment", "tetrahedron"]
 
 
 def everything() -> Set:
-    """All of space."""
+    """All of space.
+
+    Returns
+    -------
+    Set
+        What ``&`` leaves another set by.
+    """
     return Set(_core.Set.everything())
 
 
 def nothing() -> Set:
-    """The empty set."""
+    """The empty set.
+
+    Returns
+    -------
+    Set
+        What ``|`` leaves another set by.
+    """
     return Set(_core.Set.nothing())
 
 
@@ -35,6 +47,11 @@ def cuboid(low: Triple, high: Triple) -> Set:
         The corner with the least coordinates, ``(3,)``.
     high
         The corner with the greatest coordinates, ``(3,)``.
+
+    Returns
+    -------
+    Set
+        A solid.
     """
     return Set(_core.Set.cuboid(triple(low, "low corner"), triple(high, "high corner")))
 
@@ -48,6 +65,11 @@ def segment(start: Triple, end: Triple) -> Set:
         Where it begins, ``(3,)``.
     end
         Where it ends, ``(3,)``.
+
+    Returns
+    -------
+    Set
+        Without area or volume.
 
     Examples
     --------
@@ -67,6 +89,11 @@ def point(at: Triple) -> Set:
     at
         The place, ``(3,)``.
 
+    Returns
+    -------
+    Set
+        Without length, area or volume.
+
     Examples
     --------
     >>> from moldloft import implicit as im
@@ -83,6 +110,11 @@ def tetrahedron(corners: Sequence[Triple]) -> Set:
     ----------
     corners
         Four points, ``(4, 3)``.
+
+    Returns
+    -------
+    Set
+        A solid.
     """
     points = [triple(p, "corner") for p in corners]
     if len(points) != 4:

@@ -824,6 +824,11 @@ def loads(text: str) -> Set:
     ----------
     text
         A text that :meth:`Set.dumps` made.
+
+    Returns
+    -------
+    Set
+        The same, bit for bit.
     """
     return Set(_core.Set.from_text(text))
 
@@ -835,6 +840,11 @@ def load(path: str | os.PathLike[str]) -> Set:
     ----------
     path
         The file.
+
+    Returns
+    -------
+    Set
+        The same, bit for bit.
     """
     from moldloft.storage import read_text
 

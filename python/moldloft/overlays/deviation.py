@@ -58,7 +58,13 @@ class Deviation:
         return int(np.abs(self.distances).argmax())
 
     def summary(self) -> str:
-        """A line for each surface: its points, rms, largest distance and where that is."""
+        """A line for each surface: its points, rms, largest distance and where that is.
+
+        Returns
+        -------
+        str
+            For people; the figures are attributes.
+        """
         rows = [f"{'surface':20} {'points':>8} {'rms':>11} {'largest':>11}  at"]
         for name in dict.fromkeys(self.surfaces.tolist()):
             own = np.flatnonzero(self.surfaces == name)
@@ -72,7 +78,13 @@ class Deviation:
         return "\n".join(rows)
 
     def to_pandas(self) -> Any:
-        """A ``pandas.DataFrame``: x, y, z, distance, surface, u, v, beside."""
+        """A ``pandas.DataFrame``: x, y, z, distance, surface, u, v, beside.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each point.
+        """
         from moldloft.adapters import frame
 
         x, y, z = self.points.T
@@ -108,6 +120,11 @@ def deviation(model: Model, points: ArrayLike, *, objects: Sequence[str] | str =
         ``(n, 3)``, in its unit.
     objects
         Names of its surfaces; by default all that it shows.
+
+    Returns
+    -------
+    Deviation
+        For each point its foot, its signed distance and the surface.
 
     Raises
     ------

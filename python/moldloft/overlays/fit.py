@@ -74,6 +74,11 @@ def fit(
     steps
         Steps at most.
 
+    Returns
+    -------
+    Fit
+        The parameters, what they were, and the deviation that is left.
+
     Raises
     ------
     Error

@@ -54,6 +54,11 @@ class Overlay:
         ----------
         factor
             A positive number.
+
+        Returns
+        -------
+        Overlay
+            A new one; this stays as it is.
         """
         if not (np.isfinite(factor) and factor > 0):
             raise Error(f"a scale is a positive number, not {factor}")
@@ -70,6 +75,11 @@ class Overlay:
         ----------
         per_curve
             Places of each curve, at least 2.
+
+        Returns
+        -------
+        numpy.ndarray
+            In the overlay's unit.
         """
         if per_curve < 2:
             raise Error(f"per_curve = {per_curve} places: expected 2 or more")
@@ -87,19 +97,36 @@ class Overlay:
             The model.
         objects
             Names of its surfaces; by default all that it shows.
+
+        Returns
+        -------
+        Deviation
+            For each sample its foot, its signed distance and the surface.
         """
         from moldloft.overlays.deviation import deviation
 
         return deviation(model, self.samples(), objects=objects)
 
     def to_sdl(self) -> str:
-        """Statements that declare the curves, as ``NURBCurve``, to build upon."""
+        """Statements that declare the curves, as ``NURBCurve``, to build upon.
+
+        Returns
+        -------
+        str
+            A line for each curve.
+        """
         if not self.curves:
             raise Error(f"`{self.name}` holds no curve; points and faces are overlays only")
         return "\n".join(c.to_sdl(name) for name, c in self.curves.items()) + "\n"
 
     def to_pyvista(self) -> Any:
-        """The faces, or the points where there are none, as ``pyvista.PolyData``."""
+        """The faces, or the points where there are none, as ``pyvista.PolyData``.
+
+        Returns
+        -------
+        pyvista.PolyData
+            In the overlay's unit.
+        """
         from moldloft.adapters import polydata
 
         return polydata(self.points, self.faces)

@@ -72,6 +72,11 @@ def read(path: str | os.PathLike[str], *, units: str = "", file_units: str = "")
         The unit of the file's numbers. DXF and SVG files may state it themselves; others do not,
         so with ``units`` it is needed for them.
 
+    Returns
+    -------
+    Overlay
+        Points, curves and faces of the file, by layer or group.
+
     Raises
     ------
     FileError
