@@ -170,18 +170,6 @@ def test_what_is_thinner_than_cells_is_refused_by_place(tmp_path: Path) -> None:
         moldloft.loads(text).write(tmp_path / "b.step")
 
 
-def test_what_is_no_such_surface_is_named(tmp_path: Path) -> None:
-    text = """
-    field x = plane({1, 0, 0}, {0, 0, 0}), y = plane({0, 1, 0}, {0, 0, 0});
-    field z = plane({0, 0, 1}, {0, 0, 0});
-    field bump = x^4 + y^4 + z^4 - 1;
-    set s = set(bump) & cuboid({-2, -2, 0}, {2, 2, 2});
-    SetBody b(s);
-    """
-    with pytest.raises(moldloft.Error, match="`bump` of `b` is not a plane, cylinder"):
-        moldloft.loads(text).write(tmp_path / "b.step")
-
-
 def test_cavities_are_voids_and_names_are_there(tmp_path: Path) -> None:
     from cad_reading import read
 

@@ -17,10 +17,10 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
 /// Most triangles that a body is divided into.
-const MOST: usize = 60_000;
+const MOST: usize = 16_000;
 
 /// How often sides are halved.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 16;
 
 /// The least sine of the corners of a quadrilateral.
 const LEAST_CORNER: f64 = 0.25;
@@ -114,7 +114,7 @@ impl<'a> PatchedBody<'a> {
         }
         for (v, own) in labels.iter().enumerate() {
             let start = self.net.positions[v];
-            match self.foot(own, start, self.facets.step) {
+            match self.foot(own, start, 2.0 * self.facets.step) {
                 Some(p) => self.net.positions[v] = p,
                 None => return Err(self.fault(FacetFaultKind::Vertex, own, start)),
             }
@@ -413,6 +413,7 @@ impl<'a> PatchedBody<'a> {
         sides.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         sides.dedup();
         let mut touched: FxHashSet<u32> = FxHashSet::default();
+        let mut fault = None;
         for (long, (a, b)) in sides {
             let Some((&k, &l)) = self.net.across.get(&(a, b)).zip(self.net.across.get(&(b, a)))
             else {
@@ -428,14 +429,18 @@ impl<'a> PatchedBody<'a> {
                 None => (p + q) * 0.5,
             };
             let Some(place) = self.foot(&labels, start, long) else {
-                return Err(self.fault(FacetFaultKind::Edge, &labels, start));
+                fault = Some(self.fault(FacetFaultKind::Edge, &labels, start));
+                continue;
             };
             let count = self.net.triangles.len() as u32;
             self.net.split(a, b, place);
             touched.extend([k, l, count, count + 1]);
             self.sides.remove(&ordered(a, b));
         }
-        Ok(())
+        match fault {
+            Some(fault) if touched.is_empty() => Err(fault),
+            _ => Ok(()),
+        }
     }
 
     fn into_brep(

@@ -235,7 +235,8 @@ class StepText:
             return None
         for measure in self.references[number]:
             body = self.entities.get(measure, "")
-            value = re.search(r"_MEASURE\s*\(\s*([-+\d.Ee]+)\s*\)", body)
+            # Its kind may be left out: LENGTH_MEASURE_WITH_UNIT(25.4,#7).
+            value = re.search(r"(?:_MEASURE|_WITH_UNIT)\s*\(\s*([-+\d.Ee]+)\s*[,)]", body)
             if "MEASURE_WITH_UNIT" not in body or not value:
                 continue
             for base in self.references[measure]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 __all__ = ["Sewn", "faces_of", "map_of"]
@@ -75,16 +76,19 @@ class Sewn:
         """The shape that its faces are parts of."""
         return self.shape if self.body is None else self.body
 
-    def face(self, original: Any) -> Any:
-        """A face of the shape as it is in the whole."""
+    @cached_property
+    def _faces(self) -> Any:
         from OCP.TopAbs import TopAbs_FACE
 
+        return map_of(self.body, TopAbs_FACE)
+
+    def face(self, original: Any) -> Any:
+        """A face of the shape as it is in the whole."""
         if self.sewing is None:
             return original
         made = self.sewing.Modified(original) if self.sewing.IsModified(original) else original
-        faces = map_of(self.body, TopAbs_FACE)
-        number = faces.FindIndex(made)
-        return faces.FindKey(number) if number else made
+        number = self._faces.FindIndex(made)
+        return self._faces.FindKey(number) if number else made
 
     def say(self, remarks: list[str]) -> None:
         """Says how many edges were found to be one, and how many are open.

@@ -24,10 +24,13 @@ use std::collections::HashMap;
 
 /// Levels of cells that are tried for exact faces, and for patches.
 const LEVELS: std::ops::RangeInclusive<u32> = 6..=8;
-const PATCH_LEVELS: std::ops::RangeInclusive<u32> = 4..=7;
+const PATCH_LEVELS: std::ops::RangeInclusive<u32> = 4..=6;
 
 /// Places along an edge that are compared with the set, for the length of a cell.
 const PLACES: f64 = 6.0;
+
+/// A part that cells pass over.
+const THIN: &str = "thin-part";
 
 /// What helps with a body that is refused.
 const HELP: &str = "write it as stl, 3mf or obj, or hide it";
@@ -52,6 +55,10 @@ pub fn add(
     let body = SetOfBody { set: &set, over: &over, name, mesh };
     let exact = body.exact(brep, accuracy, size)?;
     let Some(refused) = exact else { return Ok(true) };
+    // Coarser facets miss such parts, too.
+    if let Some(thin) = refused.as_ref().filter(|d| d.id == THIN) {
+        return Err(thin.clone().into());
+    }
     match body.patches(brep, accuracy, size)? {
         None => Ok(true),
         // A body of such faces alone is told by them.
@@ -271,7 +278,7 @@ fn place_of(p: Vec3) -> String {
 
 fn missed(name: &str, place: Vec3, step: f64) -> Diagnostic {
     Diagnostic::error(
-        "thin-part",
+        THIN,
         format!("`{name}` has a part that is thinner than cells near {}", place_of(place)),
     )
     .found(format!("cells of {step:.3e}"))

@@ -84,9 +84,9 @@ pub fn brep_or_facets(
         let made = exact_body(&mut brep, document, mesh, &name, [accuracy, size]);
         if let Err(fault) = made {
             let told = fault.diagnostics("step");
-            // What ran out of its limits, or has no facets either, is an error.
-            let held = told.iter().all(|d| matches!(&*d.id, "curved-body" | "thin-part"));
-            if !held || told.is_empty() {
+            // Parts that facets miss, too, and what ran out of its limits are errors.
+            let faces_only = told.iter().all(|d| d.id == "curved-body");
+            if !faces_only || told.is_empty() {
                 return Err(ExportFailure::from(told));
             }
             brep.faceted.push(faceted::part(document, mesh, &name));
