@@ -5,5 +5,6 @@
 
 mod grids;
 mod marching;
+mod sections;
 mod volumes;
 mod walls;
