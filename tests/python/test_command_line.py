@@ -248,3 +248,13 @@ def test_a_prompt_completes_and_remembers(tmp_path) -> None:
             with pytest.raises(EOFError):
                 ask("> ")
     assert "hull.area" in (tmp_path / "history.lines").read_text()
+
+
+def test_values_are_set_where_those_of_the_text_are_errors(cli, tmp_path) -> None:
+    path = tmp_path / "m.sdl"
+    path.write_text("param float n = 0 in [0, 10]; float y = 1/n; print y;")
+    done = cli("run", path, "--set", "n=4")
+    assert (done.stdout.strip(), done.stderr) == ("0.25", "")
+    assert "not-finite" in cli("run", path, status=1).stderr
+    path.write_text("param float n = 0;\nfloat y = = ;")
+    assert "unexpected `=`" in cli("run", path, "--set", "n=4", status=1).stderr
