@@ -46,6 +46,7 @@ def written(
     **how: Any,
 ) -> Path:
     """A file with these zones; ``how`` is for the file, ``data`` for the arrays in it."""
+    h5py.get_config().track_order = how.pop("track_order", False)
     with h5py.File(path, "w", **how) as file:
         base = node(file, "Base", "CGNSBase_t", np.array([3, 3], dtype=np.int32))
         for name, points in zones.items():
@@ -65,6 +66,7 @@ def written(
             for c, axis in enumerate("XYZ"):
                 values = np.ascontiguousarray(points[..., c].T).astype(dtype)
                 node(grid, f"Coordinate{axis}", "DataArray_t", values, **(data or {}))
+    h5py.get_config().track_order = False
     return path
 
 
@@ -161,8 +163,8 @@ def test_a_program_reads_zones_by_number_and_name(tmp_path: Path) -> None:
     )
     model = moldloft.load(program)
     assert np.array_equal(np.asarray(model["s"]), zones["body"])
-    assert np.array_equal(np.asarray(model["b"]), zones["wake"])
-    assert np.array_equal(np.asarray(model["c"]), zones["wake"])
+    assert np.array_equal(np.moveaxis(np.asarray(model["b"]), 0, 2), zones["wake"])
+    assert np.array_equal(np.moveaxis(np.asarray(model["c"]), 0, 2), zones["wake"])
     assert model["n"] == 2
     (tmp_path / "again.cgns").write_bytes(model.written["again.cgns"])
     same(tmp_path / "again.cgns", {"b": zones["wake"]})
@@ -173,7 +175,7 @@ def test_a_program_reads_zones_by_number_and_name(tmp_path: Path) -> None:
         ('read_cgns("p.sdl")', "an HDF5 file"),
         ('read_cgns("none.cgns")', "no such file"),
     ]:
-        (tmp_path / "q.sdl").write_text(f"any x = {call};")
+        (tmp_path / "q.sdl").write_text(f"print {call};")
         with pytest.raises(ModelError, match=match):
             moldloft.load(tmp_path / "q.sdl")
 
