@@ -256,3 +256,13 @@ def test_options_of_all_commands_may_stand_before_the_command(tmp_path, cli) -> 
         assert "\x1b[31;1merror[" in cli(*words, "check", "bad.sdl", status=1).stderr
     assert "unknown command `chekc`" in cli("--color", "never", "chekc", status=2).stderr
     assert "unknown command" not in cli("--color", status=2).stderr
+
+
+def test_values_are_set_where_those_of_the_text_are_errors(cli, tmp_path) -> None:
+    path = tmp_path / "m.sdl"
+    path.write_text("param float n = 0 in [0, 10]; float y = 1/n; print y;")
+    done = cli("run", path, "--set", "n=4")
+    assert (done.stdout.strip(), done.stderr) == ("0.25", "")
+    assert "not-finite" in cli("run", path, status=1).stderr
+    path.write_text("param float n = 0;\nfloat y = = ;")
+    assert "unexpected `=`" in cli("run", path, "--set", "n=4", status=1).stderr

@@ -174,7 +174,8 @@ impl<T: Scalar> Build<T> for CGrid<T> {
 
 /// An H-grid round a section in x and y: the list of two surfaces, below and above it, whose lines g[,1] are the
 /// section's side between the stagnation line ahead of the nose and the wake, and whose lines g[,n] are straight, the
-/// last height below the lower and above the upper end of the section.
+/// last height below the lower and above the upper end of the section. With as many points above as below they are a
+/// block of two layers.
 ///
 /// The section is given once round, from the tail to the tail, either way, nose at its least x, sharp tail at its
 /// greatest. The lines ahead and behind run along x for `ahead` and `behind`, in `n` cells each that grow from the
@@ -220,18 +221,19 @@ impl<T: Scalar> Build<T> for HGrid<T> {
         let ascends = heights.first().is_some_and(|h| h.re() == 0.0)
             && heights.windows(2).all(|pair| pair[1].re() > pair[0].re());
         if heights.len() < 3 || !ascends {
-            return Err(CallError::new("wrong-order", "heights ascend from 0")
+            return Err(CallError::new("out-of-range", "heights ascend from 0")
                 .expected("at least 3 heights, the first 0, each greater than the one before")
                 .in_field(Self::HEIGHTS));
         }
         let x = |k: usize| section[k].re().x;
         let nose = (0..count).fold(0, |least, k| if x(k) < x(least) { k } else { least });
         if nose < 2 || nose + 3 > count || (0..count).any(|k| x(k) > x(0)) {
-            return Err(CallError::new("wrong-order", "the section has no nose ahead of its tail")
-                .expected(
-                    "a section from its tail, at the greatest x, round its nose, at the least",
-                )
-                .in_field(Self::SECTION));
+            return Err(CallError::new(
+                "out-of-range",
+                "the section has no nose ahead of its tail",
+            )
+            .expected("a section from its tail, at the greatest x, round its nose, at the least")
+            .in_field(Self::SECTION));
         }
         // Clockwise from the tail: below to the nose, then above.
         let side_lower: Vec<Vec3<T>> = section[..=nose].to_vec();

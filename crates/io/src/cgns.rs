@@ -1,6 +1,6 @@
 //! Structured zones of CGNS files: their names and points (SIDS 4.4 in its mapping to HDF5).
 
-use crate::hdf5::{Hdf5File, Link, Numbers, Object};
+use crate::hdf5::{Hdf5File, Link, StoredNumbers, StoredObject};
 use crate::{FilePosition, ReadError, StructuredGrid};
 
 /// A zone.
@@ -22,7 +22,7 @@ fn fault(zone: usize, expected: impl Into<String>, found: impl Into<String>) -> 
 }
 
 /// The children of a node with a label.
-fn labelled(file: &Hdf5File<'_>, node: Object, label: &str) -> Result<Vec<Link>, ReadError> {
+fn labelled(file: &Hdf5File<'_>, node: StoredObject, label: &str) -> Result<Vec<Link>, ReadError> {
     let mut found = Vec::new();
     for link in file.children(node)? {
         let Some(to) = link.to else { continue };
@@ -37,7 +37,7 @@ fn labelled(file: &Hdf5File<'_>, node: Object, label: &str) -> Result<Vec<Link>,
 }
 
 /// The numbers of a node; `None` of a node that has none.
-fn data(file: &Hdf5File<'_>, node: Object) -> Result<Option<Numbers>, ReadError> {
+fn data(file: &Hdf5File<'_>, node: StoredObject) -> Result<Option<StoredNumbers>, ReadError> {
     for link in file.children(node)? {
         if link.name == " data"
             && let Some(to) = link.to
@@ -74,7 +74,11 @@ pub fn read(bytes: &[u8]) -> Result<Vec<CgnsZone>, ReadError> {
     Ok(zones)
 }
 
-fn zone(file: &Hdf5File<'_>, node: Object, number: usize) -> Result<StructuredGrid, ReadError> {
+fn zone(
+    file: &Hdf5File<'_>,
+    node: StoredObject,
+    number: usize,
+) -> Result<StructuredGrid, ReadError> {
     let here = |expected: &str, found: String| fault(number, expected, found);
     for kind in labelled(file, node, "ZoneType_t")? {
         let text = data(file, kind.to.expect("labelled nodes are here"))?;
@@ -146,7 +150,11 @@ fn zone(file: &Hdf5File<'_>, node: Object, number: usize) -> Result<StructuredGr
 }
 
 /// The planes beyond each end of each index.
-fn rind(file: &Hdf5File<'_>, grid: Object, dimensions: usize) -> Result<[[usize; 2]; 3], String> {
+fn rind(
+    file: &Hdf5File<'_>,
+    grid: StoredObject,
+    dimensions: usize,
+) -> Result<[[usize; 2]; 3], String> {
     let mut planes = [[0; 2]; 3];
     let nodes = labelled(file, grid, "Rind_t").map_err(|e| e.to_string())?;
     let Some(node) = nodes.first() else { return Ok(planes) };

@@ -81,7 +81,7 @@ pub fn read_cgns<'py>(
     data: &[u8],
 ) -> PyResult<Vec<(String, Bound<'py, PyArray4<f64>>)>> {
     let data = data.to_vec();
-    let zones = unlocked(py, move || moldloft_io::cgns::read(&data))?.map_err(format_error)?;
+    let zones = unlocked(py, move || moldloft::io::cgns::read(&data))?.map_err(format_error)?;
     Ok(zones.iter().map(|zone| (zone.name.clone(), array(py, &zone.grid))).collect())
 }
 

@@ -239,8 +239,13 @@ def open_model(options: argparse.Namespace) -> Model:
         if refine < 0:
             raise Error("--refine takes a whole number of at least 0")
         model.refine(refine)
-    if options.set and not model.has_errors:
-        model.set(dict(options.set))
+    if options.set:
+        try:
+            model.set(dict(options.set))
+        except Error:
+            # What is wrong with the text may be why a name is unknown.
+            report([d for d in model.diagnostics if d.severity == "error"])
+            raise
     return model
 
 

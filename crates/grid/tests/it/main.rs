@@ -6,5 +6,6 @@
 mod grids;
 mod marching;
 mod pole_cells;
+mod sections;
 mod volumes;
 mod walls;

@@ -1,5 +1,6 @@
 //! Grids marched off curves and surfaces, measured by the tests' own code.
 
+use crate::sections;
 use crate::walls::{self, Wall, geometric};
 use moldloft_budget::{Budget, Spent};
 use moldloft_grid::*;
@@ -122,14 +123,10 @@ fn tightness(wall: &Wall) -> f64 {
 }
 
 /// Each wall comes out right, or is refused beyond the limit that no march can pass.
-#[test]
-fn walls_march_to_the_height_asked_or_say_why_not() {
-    let all = walls::walls();
-    let soak = std::env::var_os("MOLDLOFT_SOAK").is_some();
-    let every = if soak { 1 } else { 41 };
+fn judged(all: &[Wall]) {
     let (mut passed, mut refused, mut wrong) = (0, 0, Vec::new());
     let mut rungs = [0; 3];
-    for wall in all.iter().step_by(every) {
+    for wall in all {
         match march(wall) {
             Ok(marched) => {
                 let faults = faults(wall, &marched.layers[0]);
@@ -152,6 +149,26 @@ fn walls_march_to_the_height_asked_or_say_why_not() {
     }
     println!("{passed} passed on rungs {rungs:?}, {refused} refused, {} wrong", wrong.len());
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+fn is_soak() -> bool {
+    std::env::var_os("MOLDLOFT_SOAK").is_some()
+}
+
+#[test]
+fn walls_march_to_the_height_asked_or_say_why_not() {
+    let all: Vec<Wall> =
+        walls::walls().into_iter().step_by(if is_soak() { 1 } else { 41 }).collect();
+    judged(&all);
+}
+
+/// Of a collection of 2 000 listings the soak takes each fifteenth.
+#[test]
+fn listings_and_blades_march_or_say_why_not() {
+    let all = sections::sections(if is_soak() { 15 } else { 1 });
+    let every = if is_soak() { 1 } else { 17 };
+    let all: Vec<Wall> = all.into_iter().step_by(every).collect();
+    judged(&all);
 }
 
 /// Concave corners take first cells up to the limit, and are refused beyond it with what fits.

@@ -1,4 +1,4 @@
-//! Numbers and texts: their types, extents and places.
+//! StoredNumbers and texts: their types, extents and places.
 
 use super::Hdf5File;
 use super::bytes::{Cursor, fault};
@@ -7,7 +7,7 @@ use crate::ReadError;
 
 /// The numbers of an object.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Numbers {
+pub(crate) struct StoredNumbers {
     /// Extents, the last running fastest.
     pub extents: Vec<usize>,
     /// All of them; characters are numbers, too.
@@ -116,7 +116,7 @@ pub(super) fn text_attribute(
 pub(super) fn numbers<'a>(
     file: &Hdf5File<'a>,
     messages: &[Message<'a>],
-) -> Result<Numbers, ReadError> {
+) -> Result<StoredNumbers, ReadError> {
     let of = |kind: u16, what: &str| {
         let message = messages.iter().find(|message| message.kind == kind);
         message.copied().ok_or_else(|| fault(0, what, "an object without"))
@@ -139,7 +139,7 @@ pub(super) fn numbers<'a>(
         3 => raw.iter().map(|byte| f64::from(*byte)).collect(),
         _ => raw.chunks_exact(kind.size).map(|bytes| kind.number(bytes)).collect(),
     };
-    Ok(Numbers { extents, values })
+    Ok(StoredNumbers { extents, values })
 }
 
 /// The bytes of all numbers, as the layout message places them.
@@ -199,7 +199,7 @@ fn stored<'a>(
     }
 }
 
-/// Numbers in one piece; those never written are zeros.
+/// StoredNumbers in one piece; those never written are zeros.
 fn contiguous(
     file: &Hdf5File<'_>,
     at: Cursor<'_>,
@@ -223,7 +223,7 @@ fn contiguous(
     file.cursor(address)?.take(bytes).map(<[u8]>::to_vec)
 }
 
-/// Numbers in chunks, found by a tree.
+/// StoredNumbers in chunks, found by a tree.
 fn chunked(
     file: &Hdf5File<'_>,
     tree: u64,

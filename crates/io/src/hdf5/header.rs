@@ -1,4 +1,4 @@
-//! Object headers: the messages that say what an object is.
+//! StoredObject headers: the messages that say what an object is.
 
 use super::bytes::{Cursor, fault};
 use super::{Hdf5File, MOST_OBJECTS};

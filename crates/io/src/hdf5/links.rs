@@ -2,7 +2,7 @@
 
 use super::bytes::{Cursor, fault};
 use super::header::{self, Message};
-use super::{Hdf5File, Link, MOST_OBJECTS, Object};
+use super::{Hdf5File, Link, MOST_OBJECTS, StoredObject};
 use crate::ReadError;
 
 /// The links of a group.
@@ -44,7 +44,7 @@ fn link(mut at: Cursor<'_>) -> Result<Link, ReadError> {
     let length = at.number(1 << (flags & 3))?;
     let name = at.take(usize::try_from(length).unwrap_or(usize::MAX))?;
     let name = String::from_utf8_lossy(name).into_owned();
-    let to = if kind == 0 { Some(Object(at.address()?)) } else { None };
+    let to = if kind == 0 { Some(StoredObject(at.address()?)) } else { None };
     Ok(Link { name, to, order })
 }
 
@@ -84,7 +84,7 @@ fn symbols(
                 };
                 let end = rest.iter().position(|b| *b == 0).unwrap_or(rest.len());
                 let name = String::from_utf8_lossy(&rest[..end]).into_owned();
-                let to = (kind != 2).then_some(Object(object));
+                let to = (kind != 2).then_some(StoredObject(object));
                 links.push(Link { name, to, order: None });
             }
             continue;

@@ -11,7 +11,7 @@ mod dataset;
 mod header;
 mod links;
 
-pub(crate) use dataset::Numbers;
+pub(crate) use dataset::StoredNumbers;
 
 use crate::ReadError;
 use bytes::{Cursor, fault};
@@ -36,14 +36,14 @@ pub(crate) struct Hdf5File<'a> {
 
 /// An object: the address of its header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Object(u64);
+pub(crate) struct StoredObject(u64);
 
 /// What a group has under a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Link {
     pub name: String,
     /// `None` of links by name and into other files.
-    pub to: Option<Object>,
+    pub to: Option<StoredObject>,
     /// The place among the links of the group as they were made, where it was kept.
     pub order: Option<u64>,
 }
@@ -94,8 +94,8 @@ impl<'a> Hdf5File<'a> {
     }
 
     /// The group that all others are in.
-    pub fn root(&self) -> Object {
-        Object(self.root)
+    pub fn root(&self) -> StoredObject {
+        StoredObject(self.root)
     }
 
     fn cursor(&self, at: u64) -> Result<Cursor<'a>, ReadError> {
@@ -111,12 +111,12 @@ impl<'a> Hdf5File<'a> {
         }
     }
 
-    fn messages(&self, object: Object) -> Result<Vec<Message<'a>>, ReadError> {
+    fn messages(&self, object: StoredObject) -> Result<Vec<Message<'a>>, ReadError> {
         messages(self, object.0)
     }
 
     /// What a group holds, in the order in which it was made where that was kept, else by names.
-    pub fn children(&self, group: Object) -> Result<Vec<Link>, ReadError> {
+    pub fn children(&self, group: StoredObject) -> Result<Vec<Link>, ReadError> {
         let mut links = links::links(self, &self.messages(group)?)?;
         match links.iter().all(|link| link.order.is_some()) {
             true => links.sort_by_key(|link| link.order),
@@ -126,7 +126,7 @@ impl<'a> Hdf5File<'a> {
     }
 
     /// A text among the attributes of an object.
-    pub fn text(&self, object: Object, name: &str) -> Result<Option<String>, ReadError> {
+    pub fn text(&self, object: StoredObject, name: &str) -> Result<Option<String>, ReadError> {
         for message in self.messages(object)? {
             if message.kind == header::ATTRIBUTE
                 && let Some(text) = dataset::text_attribute(&message, name)?
@@ -138,7 +138,7 @@ impl<'a> Hdf5File<'a> {
     }
 
     /// The numbers of an object.
-    pub fn numbers(&self, object: Object) -> Result<Numbers, ReadError> {
+    pub fn numbers(&self, object: StoredObject) -> Result<StoredNumbers, ReadError> {
         dataset::numbers(self, &self.messages(object)?)
     }
 }

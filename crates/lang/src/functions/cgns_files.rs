@@ -64,7 +64,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Value::Number(x) => {
                     let x = x.re();
                     let whole = x.fract() == 0.0 && x >= 1.0 && x <= zones.len() as f64;
-                    whole.then_some(x as usize - 1)
+                    whole.then(|| x as usize - 1)
                 }
                 other => {
                     return Err(Diagnostic::error("wrong-type", "expected a zone of the file")

@@ -11,7 +11,7 @@ use crate::functions::files::predeclared;
 use crate::run::unused;
 use crate::source::module::{Module, Modules, Name, RoutineAt};
 use crate::value::variables::described;
-use moldloft_diag::{Diagnostic, Span, nearest};
+use moldloft_diag::{Diagnostic, Severity, Span, nearest};
 use moldloft_registry::{Registry, Row};
 use moldloft_syntax::sdl::{
     Arg, AssignOp, BinaryOp, ChainItem, Declarator, ExprId, ExprKind, Formal, Ident, NodeList,
@@ -161,10 +161,15 @@ impl<'a> Semantics<'a> {
         }
         collect(m, routine.body, &mut locals, false);
         let place = JudgedScope { m, module, locals: &locals, routine: Some(routine) };
+        let before = self.found.len();
         self.list(&place, routine.body);
+        let sound = self.found[before..].iter().all(|d| d.severity == Severity::Note);
         self.declared_again(m, routine.body);
         self.shadows(m, of_file, routine.body);
-        self.found.extend(unused::unread(m, routine));
+        // What has faults may be unread because of them.
+        if sound {
+            self.found.extend(unused::unread(m, routine));
+        }
         let word = m.program.name(routine.name.symbol);
         if routine.result.is_some() && !ends(m, routine.body) {
             self.say(

@@ -183,7 +183,7 @@ impl<'a> ModelFileParser<'a> {
                 self.optional_semicolon();
                 return;
             }
-            if !(word.len() > 1 && word.ends_with(':')) {
+            if self.at_comment() || !(word.len() > 1 && word.ends_with(':')) {
                 return;
             }
             let mut key = self.word();
@@ -203,7 +203,8 @@ impl<'a> ModelFileParser<'a> {
                 if self.at_comment() || self.model.version.is_some() {
                     let ahead = self.word_ahead();
                     let more = ahead.ends_with(':') || ahead.eq_ignore_ascii_case("BeginModel");
-                    self.at = if more { self.at } else { before };
+                    // A comment such as `#note:` is no line of the header.
+                    self.at = if more && !self.at_comment() { self.at } else { before };
                 }
                 return;
             }

@@ -102,3 +102,36 @@ fn canonical_text_is_its_own() {
     }
     assert!(sound > cases / 50, "{sound} of {cases} texts have no faults");
 }
+
+/// All heads of a few words and blanks, before `BeginModel` and without it.
+#[test]
+fn canonical_heads_are_their_own() {
+    const WORDS: [&str; 9] = ["#", "\r", "\n", "x", "Rem", "X:", "\u{b}", " ", ";"];
+    let longest = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 6 } else { 4 };
+    for length in 1..=longest {
+        for mut number in 0..WORDS.len().pow(length) {
+            let mut head = String::new();
+            for _ in 0..length {
+                head += WORDS[number % WORDS.len()];
+                number /= WORDS.len();
+            }
+            for (before, after) in [
+                ("MultiSurf 1\n", "\nBeginModel;\nEndModel;\n"),
+                ("MultiSurf 1\n", "BeginModel;\nEndModel;\n"),
+                ("MultiSurf 1", "\nEndModel;\n"),
+                ("", "MultiSurf 1\nBeginModel;\nEndModel;\n"),
+                ("MultiSurf 1\nBeginModel;\n", "\nEndModel;\n"),
+            ] {
+                let text = format!("{before}{head}{after}");
+                let (model, faults) = model_file::parse(text.as_str(), FileId(0));
+                if !faults.is_empty() {
+                    continue;
+                }
+                let canonical = model.to_canonical(|_| false);
+                let (again, faults) = model_file::parse(canonical.as_str(), FileId(0));
+                assert!(faults.is_empty(), "{text:?} became {canonical:?}: {faults:?}");
+                assert_eq!(again.to_canonical(|_| false), canonical, "of {text:?}");
+            }
+        }
+    }
+}
