@@ -36,6 +36,8 @@ PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildca
 WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
 
 ENGINE := python/moldloft/workbench/wasm/engine.wasm.gz
+# `demo` makes one without optimisation, a quarter of the work: the same bits, for tests.
+ENGINE_PROFILE ?= engine
 WASM := wasm32-unknown-unknown
 
 .PHONY: setup demo optimised web engine test check bits reference site release soak fuzz clean help
@@ -84,9 +86,9 @@ engine: ## the engine for `export --html`; needs the target wasm32-unknown-unkno
 	@test -d "$$(rustc --print sysroot)/lib/rustlib/$(WASM)" || { \
 		echo "the engine for pages needs the target $(WASM): rustup target add $(WASM)"; exit 1; }
 	@echo "building the engine for pages (it takes a while)"
-	@cargo build --quiet --profile engine --target $(WASM) -p moldloft-wasm
+	@cargo build --quiet --profile $(ENGINE_PROFILE) --target $(WASM) -p moldloft-wasm
 	@mkdir -p $(dir $(ENGINE))
-	@gzip -9 -n -c $${CARGO_TARGET_DIR:-target}/$(WASM)/engine/moldloft_engine.wasm > $(ENGINE).new
+	@gzip -9 -n -c $${CARGO_TARGET_DIR:-target}/$(WASM)/$(ENGINE_PROFILE)/moldloft_engine.wasm > $(ENGINE).new
 	@mv $(ENGINE).new $(ENGINE)
 
 # What the tests of the page need, where it can be had: a browser that runs without a display.

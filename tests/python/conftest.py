@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -60,3 +61,34 @@ def model_file(tmp_path: Path) -> Callable[..., Path]:
         return path
 
     return make
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """A browser without a display."""
+    from playwright.sync_api import sync_playwright
+
+    from page_in_browser import CHROMIUM, FLAGS
+
+    with sync_playwright() as p:
+        made = p.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield made
+        made.close()
+
+
+@pytest.fixture
+def bench(tmp_path: Path, browser: Any) -> Iterator[Callable[..., Any]]:
+    """Makes workbenches: a server with a model, and its page."""
+    from page_in_browser import HULL, Bench
+
+    made: list[Bench] = []
+
+    def make(text: str = HULL, name: str = "hull.sdl") -> Bench:
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        made.append(Bench(path, browser))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()

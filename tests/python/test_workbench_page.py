@@ -3,113 +3,17 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
-import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from conftest import ROOT, SAILBOAT
+from page_in_browser import ENGINE, HULL, PLATE, Bench, File, children, needs_page
 
-playwright = pytest.importorskip(
-    "playwright.sync_api", reason="the package playwright is not installed"
-)
-
-CHROMIUM = next(
-    filter(None, map(shutil.which, ["chromium", "chromium-browser", "google-chrome"])), None
-)
-PAGE = ROOT / "python" / "moldloft" / "workbench" / "page" / "index.html"
-
-ENGINE = PAGE.parents[1] / "wasm" / "engine.wasm.gz"
-
-pytestmark = [
-    pytest.mark.skipif(
-        CHROMIUM is None, reason="no chromium here: `make setup` installs it as root on Debian"
-    ),
-    pytest.mark.skipif(not PAGE.exists(), reason="the page is not built: `make web` needs Node.js"),
-]
-
-FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-
-HULL = (SAILBOAT / "hull.sdl").read_text(encoding="utf-8")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with playwright.sync_playwright() as p:
-        made = p.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield made
-        made.close()
-
-
-class Bench:
-    """A server and its page."""
-
-    def __init__(self, path: Path, browser: Any) -> None:
-        command = [sys.executable, "-m", "moldloft", "view", str(path), "--no-browser"]
-        self.path = path
-        self.process = subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-        )
-        assert self.process.stdout is not None
-        self.url = self.process.stdout.readline().strip()
-        assert self.url, self.process.stderr and self.process.stderr.read()
-        self.context = browser.new_context(viewport={"width": 1400, "height": 860})
-        self.page = self.context.new_page()
-        self.faults: list[str] = []
-        self.page.on("console", lambda m: self.faults.append(m.text) if m.type == "error" else None)
-        self.page.on("pageerror", lambda e: self.faults.append(str(e)))
-        self.requests: list[str] = []
-        self.page.on("request", lambda r: self.requests.append(r.url))
-        self.page.goto(self.url)
-        self.page.locator("body[data-state=alive]").wait_for(timeout=30_000)
-        self.until(lambda: self.hand("items()"))
-
-    def hand(self, call: str) -> Any:
-        return self.page.evaluate(f"() => window.moldloft.{call}")
-
-    def until(self, true: Callable[[], Any], seconds: float = 20) -> Any:
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            if found := true():
-                return found
-            self.page.wait_for_timeout(30)
-        raise AssertionError("it did not come to that")
-
-    def text(self) -> str:
-        found: str = self.hand("text()")
-        return found
-
-    def param(self, name: str) -> float:
-        all_params = self.page.evaluate("() => window.moldloft.model.params")
-        return float(next(p["value"] for p in all_params if p["name"] == name))
-
-    def close(self) -> None:
-        self.context.close()
-        self.process.terminate()
-        self.process.wait(60)
-        for pipe in (self.process.stdout, self.process.stderr):
-            if pipe is not None:
-                pipe.close()
-
-
-@pytest.fixture
-def bench(tmp_path: Path, browser: Any) -> Iterator[Callable[..., Bench]]:
-    made: list[Bench] = []
-
-    def make(text: str = HULL, name: str = "hull.sdl") -> Bench:
-        path = tmp_path / name
-        path.write_text(text, encoding="utf-8")
-        made.append(Bench(path, browser))
-        return made[-1]
-
-    yield make
-    for each in made:
-        each.close()
+pytestmark = needs_page
 
 
 def test_a_slider_moves_the_model_and_then_the_text(bench: Callable[..., Bench]) -> None:
@@ -293,7 +197,7 @@ def test_nothing_is_lost_when_engine_or_server_go(bench: Callable[..., Bench]) -
     b = bench("AbsPoint P(1, 2, 3);\n", "small.sdl")
     b.page.get_by_role("textbox", name="program").focus()
     b.page.keyboard.press("Control+End")
-    for child in _children(b.process.pid):
+    for child in children(b.process.pid):
         subprocess.run(["kill", "-9", str(child)], check=True)
     b.page.keyboard.type("AbsPoint Q(4, 5, 6);\n")
     b.until(lambda: any(i["object"] == "Q" for i in b.hand("items()")), 30)
@@ -303,45 +207,6 @@ def test_nothing_is_lost_when_engine_or_server_go(bench: Callable[..., Bench]) -
     b.page.keyboard.type("# typed alone\n")
     assert "Q(4" in (b.path.parent / ".small.sdl.draft").read_text()
     assert b.text().endswith("# typed alone\n")
-
-
-def _children(pid: int) -> list[int]:
-    listed = subprocess.run(
-        ["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True
-    ).stdout
-    return [int(word) for word in listed.split()]
-
-
-class File:
-    """A page of `export --html`, opened from the disk."""
-
-    def __init__(self, path: Path, browser: Any) -> None:
-        self.context = browser.new_context(viewport={"width": 1400, "height": 860})
-        self.page = self.context.new_page()
-        self.faults: list[str] = []
-        self.page.on("console", lambda m: self.faults.append(m.text) if m.type == "error" else None)
-        self.page.on("pageerror", lambda e: self.faults.append(str(e)))
-        self.requests: list[str] = []
-        self.page.on("request", lambda r: self.requests.append(r.url))
-        self.path = path
-        self.open()
-
-    def open(self) -> None:
-        self.page.goto(f"{self.path.as_uri()}?norender")
-        self.page.locator("body[data-state=alive]").wait_for(timeout=60_000)
-
-    def hand(self, call: str) -> Any:
-        return self.page.evaluate(f"() => window.moldloft.{call}")
-
-    until = Bench.until
-
-    def running(self) -> None:
-        self.page.locator("body[data-engine=ready]").wait_for(timeout=120_000)
-
-    def close(self) -> None:
-        assert not self.faults
-        assert all(u.startswith(("file:", "blob:", "data:")) for u in self.requests)
-        self.context.close()
 
 
 def test_a_still_file_opens_without_a_server(browser: Any, cli: Any, tmp_path: Path) -> None:
@@ -442,10 +307,6 @@ def test_a_file_carries_what_the_model_reads(browser: Any, cli: Any, tmp_path: P
 
 
 OFFSETS = "x, y, z\n0.5, 0.25, 0\n0.5, 0.5, 0.1\n0.25, 0.75, -0.2\n"
-PLATE = (
-    "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(1, 1, 0);\n"
-    "Line l(A, B); Line m(C, D); RuledSurf s(l, m);\nAbsPoint P(0.5, 0.5, 1);\n"
-)
 
 
 def test_foreign_points_have_their_deviation(bench: Callable[..., Bench], tmp_path: Path) -> None:

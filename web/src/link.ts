@@ -158,6 +158,8 @@ export class Newest<A> {
       this.busy = true
       try {
         await this.carryOut(next)
+      } catch {
+        // Who asked has been told, or did not want to know: what waits is carried out all the same.
       } finally {
         this.busy = false
       }

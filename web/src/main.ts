@@ -850,8 +850,10 @@ function palette(): void {
 function help(): void {
   const rows = commands().filter((c) => c.keys).map((c) => $('tr', {}, $('td', {}, $('kbd', {}, c.keys!)), $('td', {}, c.name)))
   const hand = [['drag', 'orbit'], ['right or middle drag, Shift+drag', 'pan'], ['wheel, pinch', 'zoom to the pointer'], ['click', 'select'], ['double click', 'go to the declaration'], ['drag a point', 'move it: the number in the text follows'], ['X Y Z while dragging', 'along an axis; with Shift across it'], ['S while dragging', 'on the surface under the pointer'], ['digits while dragging', 'enter the value'], ['Alt while dragging', 'no snapping'], ['Esc', 'take it back']]
-  const dialog = $('dialog', { class: 'help', 'aria-label': 'help' }, $('h2', {}, 'Keys and gestures'),
-    $('div', { class: 'columns' }, $('table', {}, $('tbody', {}, ...hand.map(([k, w]) => $('tr', {}, $('td', {}, k), $('td', {}, w))))), $('table', {}, $('tbody', {}, ...rows))),
+  const table = (body: Node[]) => $('table', {}, $('tbody', {}, ...body))
+  const half = Math.ceil(rows.length / 2)
+  const dialog = $('dialog', { class: 'help', 'aria-label': 'help' }, $('h2', { tabindex: -1, autofocus: true }, 'Keys and gestures'),
+    $('div', { class: 'columns' }, table(hand.map(([k, w]) => $('tr', {}, $('td', {}, k), $('td', {}, w)))), table(rows.slice(0, half)), table(rows.slice(half))),
     $('button', { class: 'primary', onclick: () => dialog.close() }, 'Close'))
   dialog.addEventListener('close', () => dialog.remove())
   document.body.append(dialog)

@@ -72,6 +72,7 @@ export class Sheets {
     const frame = await this.link.ask('section_areas', { count: 101 })
     const { place, area } = frame.head.areas
     const now = { x: frame.floats(place), y: frame.floats(area) }
+    if (!now.x.every(Number.isFinite)) return [h('p', { class: 'quiet pad' }, 'The model has no surfaces whose sections have areas.')]
     this.curve ??= now
     const again = h('button', { onclick: () => ((this.curve = null), this.refresh()) }, 'Mark now')
     const label = `section areas, at most ${shown(Math.max(...now.y), 4)} ${model.unit}²`

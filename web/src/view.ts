@@ -35,7 +35,7 @@ const FRAGMENT = `
 uniform vec3 colour; uniform float tinted; uniform int mode; uniform vec3 towards; uniform vec3 upward; uniform vec3 right;
 uniform float opacity; uniform float grey; uniform float lit; uniform vec3 centre; uniform float size; uniform float stripes;
 varying vec3 vNormal; varying vec3 vWorld; varying vec3 vTint;
-float stripe(float x) { float w = max(fwidth(x), 1e-6); float d = abs(fract(x) - 0.5) - 0.25; return smoothstep(-w, w, d); }
+float stripe(float x) { float w = max(fwidth(x), 1e-6); float d = abs(fract(x) - 0.5) - 0.25; return mix(smoothstep(-w, w, d), 0.5, smoothstep(0.25, 0.6, w)); }
 void main() {
   #include <clipping_planes_fragment>
   vec3 n = normalize(vNormal);
@@ -47,7 +47,7 @@ void main() {
   if (mode == 2) base = mix(vec3(0.16, 0.3, 0.52), vec3(0.95, 0.94, 0.9), stripe(stripes * acos(clamp(n.z, -1.0, 1.0)) / 3.14159265));
   if (mode == 3) { vec3 s = vec3(1.0, 0.0, 0.0); vec3 c = cross(s, n); float d = dot(c, centre + vec3(0.0, 0.0, size) - vWorld) / max(length(c), 1e-6); base = mix(vec3(0.2, 0.24, 0.3), vec3(0.97), stripe(0.5 * stripes * d / size)); }
   // Parallel lights along x on a ceiling over the model, as the eye sees them in it (Klass 1980).
-  if (mode == 4) { vec3 r = 2.0 * dot(n, eye) * n - eye; float way = (centre.z + 3.0 * size - vWorld.z) / max(r.z, 1e-3); float y = vWorld.y + way * r.y - centre.y; base = mix(vec3(0.17, 0.2, 0.25), vec3(0.98), r.z > 1e-3 ? stripe(0.35 * stripes * y / size) : 0.0); }
+  if (mode == 4) { vec3 r = 2.0 * dot(n, eye) * n - eye; float way = (centre.z + 3.0 * size - vWorld.z) / max(r.z, 1e-3); float y = vWorld.y + way * r.y - centre.y; base = mix(vec3(0.17, 0.2, 0.25), vec3(0.98), r.z > 1e-3 ? stripe(0.1 * stripes * y / size) : 0.0); }
   vec3 key = normalize(-0.45 * right + 0.7 * upward + 0.55 * towards);
   float diffuse = 0.52 + 0.16 * (0.5 + 0.5 * n.z) + 0.24 * max(dot(n, eye), 0.0) + 0.30 * max(dot(n, key), 0.0);
   float gloss = 0.09 * pow(max(dot(n, normalize(key + eye)), 0.0), 40.0);

@@ -489,7 +489,11 @@ impl Session {
     }
 
     fn section_areas(&mut self, count: usize, frame: &mut ReplyFrame) -> Answer {
-        let bounds = self.document.panelled()?.mesh.bounds();
+        let panelled = self.document.panelled()?;
+        if panelled.mesh.faces().is_empty() {
+            return Err("the model has no panels: show a surface".to_string().into());
+        }
+        let bounds = panelled.mesh.bounds();
         let (low, high) = (bounds.low.x, bounds.high.x);
         let steps = count.clamp(2, MOST_SECTIONS) - 1;
         let at = |k: usize| low + (high - low) * k as f64 / steps as f64;

@@ -530,3 +530,38 @@ fn direct_edits_are_written_as_they_are() {
         assert_eq!(at(&document, "A")[1], (x + 0.0).to_bits());
     }
 }
+
+/// Surfaces with knuckles of which one may go, their images, edges in pieces between a moving bead, sizes.
+const SHELL: &str = "param float w = 5 in [3, 7]; param float k = 1 in [0, 2]; param float t = 0.4 in [0.2, 0.8];
+    param float size = 0.9 in [0.5, 2];
+    AbsPoint a(0, 0, 0); AbsPoint b(2, k, 0); AbsPoint c(4, 0, 0); Line l1(a, b); Line l2(b, c); PolyCurve p({l1, l2});
+    AbsPoint a2(0, 0.5, w); AbsPoint b2(2, 0.5 + k, w); AbsPoint c2(4, 0.5, w);
+    Line m1(a2, b2); Line m2(b2, c2); PolyCurve q({m1, m2});
+    RuledSurf s(p, q, divisions = {6, 4}); MirrSurf i(s, \"y=-1\"); MirrSurf j(i, \"x=-1\");
+    AbsBead e(q, t); AbsPoint d(0, 3, w); AbsPoint d2(2, 3, w); AbsPoint d3(4, 3, w); Line n1(d, d2); Line n2(d2, d3);
+    AbsBead e0(q, 0); AbsBead e1(q, 1); SubCurve q1(e0, e); SubCurve q2(e, e1); RuledSurf r1(q1, n1); RuledSurf r2(q2, n2);
+    Line up(a, a2); Line side(c, c2); Line far(d, d3); RuledSurf z(up, side, size = {size, size});";
+
+#[test]
+fn panels_after_changes_are_those_of_a_fresh_start() {
+    let text = SHELL;
+    let mut random = Random::new(23);
+    let mut document = open(text);
+    assert!(!told(&document).iter().any(|d| d.starts_with("error")), "{:?}", told(&document));
+    let ranges = [("w", 3.0, 7.0), ("k", 0.0, 2.0), ("t", 0.2, 0.8), ("size", 0.5, 2.0)];
+    let mut values: Vec<(String, f64)> = Vec::new();
+    for round in 0..rounds(1500) {
+        let (name, low, high) = *random.pick(&ranges);
+        // Ends of ranges as well: there a knuckle is none, and lines fall together.
+        let x = match random.below(4) {
+            0 => low,
+            _ => random.between(low, high),
+        };
+        values.retain(|(n, _)| n != name);
+        values.push((name.into(), x));
+        document.set(&[(name.into(), x)]).unwrap();
+        let mut fresh = open(text);
+        fresh.set(&values).unwrap();
+        assert!(seen(&mut document) == seen(&mut fresh), "round {round}: {values:?}");
+    }
+}
