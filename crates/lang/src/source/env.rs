@@ -141,7 +141,8 @@ pub struct Environment<T: Scalar> {
     /// Loaded sketches by the name that their parts begin with.
     pub sketches: Vec<String>,
     /// Finished bodies of sketches by the name of their mesh, in runs of plain numbers.
-    pub sketch_bodies: std::collections::BTreeMap<String, std::sync::Arc<moldloft_sketch::SketchSolid<f64>>>,
+    pub sketch_bodies:
+        std::collections::BTreeMap<String, std::sync::Arc<moldloft_sketch::SketchSolid<f64>>>,
     /// Numbers and objects of sketches by full name, as spelled and in small letters.
     pub sketch_members: HashMap<String, Value<T>>,
     /// True when the run ended early, so that objects may be missing.

@@ -46,7 +46,10 @@ impl SketchSession {
         }
     }
 
-    pub(super) fn wireframe(&mut self, object: &SketchObject) -> Result<(Vec<PointId>, Fitted), CommandError> {
+    pub(super) fn wireframe(
+        &mut self,
+        object: &SketchObject,
+    ) -> Result<(Vec<PointId>, Fitted), CommandError> {
         let at = self.placed(object)?;
         let ids: Vec<PointId> = at.keys().copied().collect();
         let positions: Vec<Vec3> = at.values().copied().collect();

@@ -202,7 +202,8 @@ impl SketchSession {
     /// One that has begun is not ended; a question is open.
     pub fn begin(&mut self) -> Result<(), CommandError> {
         if self.transaction.is_some() || self.question.is_some() {
-            let text = if self.question.is_some() { "a question is open" } else { "a drag is open" };
+            let text =
+                if self.question.is_some() { "a question is open" } else { "a drag is open" };
             return Err(CommandError::text(text, "answer it, or end it first"));
         }
         self.transaction =
@@ -301,8 +302,11 @@ impl SketchSession {
         new: &Arc<SketchObject>,
     ) -> Option<ObjectChange> {
         let nothing = Arc::new(SketchObject::new(&new.name, new.drawing.section));
-        let mut change =
-            ObjectChange { name: new.name.clone(), added: old.is_none(), ..ObjectChange::default() };
+        let mut change = ObjectChange {
+            name: new.name.clone(),
+            added: old.is_none(),
+            ..ObjectChange::default()
+        };
         let old = old.unwrap_or(&nothing);
         let (a, b) = (&old.drawing, &new.drawing);
         let (work_a, work_b) = (self.worked(old), self.worked(new));

@@ -81,10 +81,12 @@ pub fn obj(mesh: &IndexedTriangles, name: &str) -> String {
 pub fn gltf(mesh: &IndexedTriangles, name: &str, metres: Option<f64>) -> String {
     let bytes = buffer(mesh);
     let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
-    gltf_text(mesh, name, metres, Json::map([
-        ("byteLength", Json::from(bytes.len())),
-        ("uri", Json::from(uri.as_str())),
-    ]))
+    gltf_text(
+        mesh,
+        name,
+        metres,
+        Json::map([("byteLength", Json::from(bytes.len())), ("uri", Json::from(uri.as_str()))]),
+    )
 }
 
 /// The same in the binary form: a header, the text, the buffer (glTF 2.0, section 4.4).
@@ -121,12 +123,7 @@ fn buffer(mesh: &IndexedTriangles) -> Vec<u8> {
     bytes
 }
 
-fn gltf_text(
-    mesh: &IndexedTriangles,
-    name: &str,
-    metres: Option<f64>,
-    buffer: Json,
-) -> String {
+fn gltf_text(mesh: &IndexedTriangles, name: &str, metres: Option<f64>, buffer: Json) -> String {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for p in &mesh.vertices {
         for (k, x) in [p.x as f32, p.z as f32, -p.y as f32].into_iter().enumerate() {
@@ -177,10 +174,7 @@ fn gltf_text(
                 ]),
             ]),
         ),
-        (
-            "bufferViews",
-            Json::list([view(0, start, 34962), view(start, end - start, 34963)]),
-        ),
+        ("bufferViews", Json::list([view(0, start, 34962), view(start, end - start, 34963)])),
         ("buffers", one(buffer)),
     ])
     .to_string()

@@ -22,8 +22,8 @@ pub mod operation;
 mod outline;
 pub mod place;
 pub(crate) mod ruled_faces;
-pub mod surface;
 mod shapes;
+pub mod surface;
 mod turn;
 pub mod validity;
 
@@ -31,9 +31,9 @@ use crate::solid::curve::{CurveFault, CurveKind, SketchCurve, SmoothPiece, Trace
 use crate::solid::mass::{DirectedEdge, Mass, MassIntegrals};
 use crate::{DimensionLayout, FaceId, Planes, PointId, SketchObject};
 use moldloft_num::{Real, Vec3};
+pub use shapes::ShapeFault;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
-pub use shapes::ShapeFault;
 use surface::FaceSurface;
 
 /// A vertex of a solid.

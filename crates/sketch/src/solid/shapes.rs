@@ -133,7 +133,8 @@ fn straight_shape(axis: &Line<f64>, surface: &FaceSurface<f64>) -> Option<Surfac
 fn turned_shape(axis: &Line<f64>, profile: &SmoothPiece<f64>) -> Option<SurfaceShape> {
     let SmoothPiece::Conic { centre, a, b, .. } = *profile else { return None };
     let minor = a.norm();
-    let round = (minor - b.norm()).abs() <= 1e-10 * minor && a.dot(b).abs() <= 1e-10 * minor * minor;
+    let round =
+        (minor - b.norm()).abs() <= 1e-10 * minor && a.dot(b).abs() <= 1e-10 * minor * minor;
     let foot = axis.foot(centre);
     let arm = centre - foot;
     let major = arm.norm();
