@@ -580,3 +580,28 @@ def test_a_picture_without_dimensions_has_a_body():
     assert s.volume is None
     s.run("ACCEPT ALL")
     assert len(s.candidates()) == 1
+
+
+def test_a_program_has_the_unit_of_its_sketches(tmp_path):
+    for name, unit in (("a", "FT"), ("b", "MM"), ("c", "FT")):
+        (tmp_path / f"{name}.skt").write_text(SLAB.replace("SLAB", name) + f"SET UNITS {unit}\n")
+
+    def load(text):
+        path = tmp_path / "site.sdl"
+        path.write_text(text)
+        return moldloft.load(path)
+
+    m = load('load "a.skt"; load "c.skt";')
+    size = 304.8 if pytest.importorskip("OCP") else 0
+    path = tmp_path / "site.step"
+    m.write(path)
+    assert step_solid(path)[0] == pytest.approx(2 * 80 * size**3, rel=1e-8)
+    load('Model info(units = "ft"); load "a.skt";')
+    for text in (
+        'load "a.skt"; load "b.skt";',
+        'Model info(units = "m"); load "a.skt";',
+        'load "a.skt"; Model info(units = "mm kg");',
+        'Sketch s("a.skt", W = 3); load "b.skt";',
+    ):
+        with pytest.raises(moldloft.ModelError, match="units-differ|is in ft|is in mm"):
+            load(text)
