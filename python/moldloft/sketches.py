@@ -19,7 +19,16 @@ from moldloft.storage import read_text
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Gradient", "Reply", "Sketch", "SketchError"]
+__all__ = [
+    "Drag",
+    "Gradient",
+    "ObjectChange",
+    "Reply",
+    "Sketch",
+    "SketchError",
+    "SketchSnap",
+    "SketchSuggestion",
+]
 
 
 @dataclass(frozen=True)
@@ -102,6 +111,96 @@ class Gradient:
     area: NDArray[np.float64]
     centroid: NDArray[np.float64]
     points: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ObjectChange:
+    """What happened to an object of a sketch.
+
+    Attributes
+    ----------
+    name
+        The object.
+    added, removed
+        Whether it is new, or gone.
+    body
+        Whether the finished body is another.
+    drawn
+        Points that are new or elsewhere on the page.
+    moved
+        Points whose coordinates are others.
+    removed_points
+        Points that are gone.
+    lines, faces
+        Lines and faces that are new, changed or gone.
+    numbers
+        Dimensions, variables and curves that are new, changed or gone.
+    """
+
+    name: str
+    added: bool
+    removed: bool
+    body: bool
+    drawn: tuple[int, ...]
+    moved: tuple[int, ...]
+    removed_points: tuple[int, ...]
+    lines: tuple[int, ...]
+    faces: tuple[int, ...]
+    numbers: tuple[str, ...]
+
+    @staticmethod
+    def _of(row: tuple[str, list[bool], list[list[int]], list[str]]) -> ObjectChange:
+        name, flags, parts, numbers = row
+        drawn, moved, removed, lines, faces = (tuple(p) for p in parts)
+        return ObjectChange(name, *flags, drawn, moved, removed, lines, faces, tuple(numbers))
+
+
+@dataclass(frozen=True)
+class SketchSnap:
+    """A place on the page that a pointer snaps to.
+
+    Attributes
+    ----------
+    at
+        The place, ``(u, v)``.
+    point
+        The point that is there, or that the extension runs through.
+    line
+        The line that is there.
+    part
+        The part of the line's length, 0 to 1.
+    axis
+        The axis of the extension: ``"X"``, ``"Y"`` or ``"Z"``.
+    """
+
+    at: tuple[float, float]
+    point: int | None = None
+    line: int | None = None
+    part: float | None = None
+    axis: str | None = None
+
+
+@dataclass(frozen=True)
+class SketchSuggestion:
+    """A missing dimension as the picture suggests it.
+
+    Attributes
+    ----------
+    axis
+        ``"X"``, ``"Y"`` or ``"Z"``.
+    p, q
+        From the point ``p`` to the point ``q``.
+    value
+        The distance.
+    guess
+        True when the picture leaves the depth open.
+    """
+
+    axis: str
+    p: int
+    q: int
+    value: float
+    guess: bool
 
 
 class Sketch:
@@ -278,6 +377,158 @@ class Sketch:
             assert reply.file is not None
             data = reply.file[1]
         return commit(path.parent, [Output(path.name, data)], make=False)[0]
+
+    # -- edits as data -----------------------------------------------------------------------
+
+    def edit(self, text: str) -> list[ObjectChange]:
+        """Run one line of commands, and say what it changed.
+
+        Parameters
+        ----------
+        text
+            The line.
+
+        Raises
+        ------
+        SketchError
+            When a command is refused.
+        """
+        rows, changes = self._session.report(text)
+        replies = [Reply(s, t, n, c, f) for s, c, t, n, f in rows]
+        bad = next((r for r in replies if r.is_error), None)
+        if bad is not None:
+            raise SketchError(str(bad), replies)
+        return [ObjectChange._of(row) for row in changes]
+
+    def draw(
+        self, points: ArrayLike, lines: ArrayLike = (), *, types: Sequence[str | None] | None = None
+    ) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+        """Draw points and lines into the active object.
+
+        Parameters
+        ----------
+        points
+            Places on the page, ``(n, 2)``.
+        lines
+            Ends of lines as rows of ``points``, from 0, ``(m, 2)``.
+        types
+            The type of each line (``"X"``, ``"H"``, ``"O"``, ...); ``None`` as its slope says.
+
+        Returns
+        -------
+        tuple
+            The labels of the new points ``(n,)`` and of the new lines ``(m,)``.
+        """
+        places = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        ends = np.asarray(lines, dtype=np.int64).reshape(-1, 2)
+        if ends.size and not (0 <= ends.min() and ends.max() < len(places)):
+            raise SketchError(f"an end of a line is no row of the {len(places)} points")
+        kinds = [None] * len(ends) if types is None else list(types)
+        if len(kinds) != len(ends):
+            raise SketchError(f"{len(kinds)} types for {len(ends)} lines")
+        first = int(self.labels.max(initial=0)) + 1
+        commands = [f"POINT {first + k} AT {u!r} {v!r}" for k, (u, v) in enumerate(places.tolist())]
+        for (p, q), kind in zip(ends.tolist(), kinds, strict=True):
+            typed = f" TYPE {kind}" if kind else ""
+            commands.append(f"LINE FROM {first + p} TO {first + q}{typed}")
+        with self.drag() as drag:
+            self.run("; ".join(commands))
+        made = [n for change in drag.changes for n in change.lines]
+        labels = np.arange(first, first + len(places), dtype=np.uint32)
+        return labels, np.array(sorted(made), dtype=np.uint32)
+
+    def dimension(
+        self, axis: str, p: int, q: int, value: float | str, *, name: str | None = None
+    ) -> list[ObjectChange]:
+        """Say how much the coordinate of point ``q`` is more than that of ``p``.
+
+        Parameters
+        ----------
+        axis
+            ``"X"``, ``"Y"`` or ``"Z"``.
+        p, q
+            Labels of points.
+        value
+            A number or an expression.
+        name
+            The name of the dimension; by default a new one.
+        """
+        given = f'"{value}"' if isinstance(value, str) else repr(float(value))
+        return self.edit(f"DIMENSION {name or ''} {axis} {p} TO {q} = {given}")
+
+    def drag(self) -> Drag:
+        """Edits that count as one step of UNDO and one line of the journal.
+
+        Examples
+        --------
+        >>> from moldloft import Sketch
+        >>> s = Sketch()
+        >>> _ = s.run("SKETCH A 2D XZ; POINT 1 0 0; POINT 2 9 0; LINE 1 2")
+        >>> with s.drag() as drag:
+        ...     for u in range(100):
+        ...         drag.move(2, 9 + u, 0.1 * u)
+        >>> drag.changes[0].drawn
+        (2,)
+        >>> _ = s.run("UNDO")
+        >>> s.snap(9.2, 0.1, 1).at
+        (9.0, 0.0)
+        """
+        return Drag(self)
+
+    def snap(self, u: float, v: float, reach: float, *, name: str | None = None) -> SketchSnap | None:
+        """What a pointer snaps to: the nearest point, line, or extension along an axis.
+
+        Parameters
+        ----------
+        u, v
+            The place on the page.
+        reach
+            How far off it may be.
+        name
+            The object; by default the active one.
+        """
+        found = self._session.snap(self._name(name), [float(u), float(v)], float(reach))
+        if found is None:
+            return None
+        (x, y), point, line, axis = found
+        on, part = (None, None) if line is None else line
+        return SketchSnap((x, y), point, on, part, axis)
+
+    def suggestions(self, *, name: str | None = None) -> list[SketchSuggestion | None]:
+        """A dimension for each part that none connects with the reference point, as the picture suggests it.
+
+        Parameters
+        ----------
+        name
+            The object; by default the active one.
+        """
+        rows = self._session.suggestions(self._name(name))
+        return [None if row is None else SketchSuggestion(*row) for row in rows]
+
+    def candidates(
+        self, *, name: str | None = None
+    ) -> list[tuple[NDArray[np.float64], NDArray[np.uint32]]]:
+        """The bodies that fit the wireframe, likeliest first, each as :meth:`mesh` gives it.
+
+        Parameters
+        ----------
+        name
+            The object; by default the active one.
+        """
+        return self._session.candidates(self._name(name), False)
+
+    def preview(
+        self, *, name: str | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint32]] | None:
+        """The estimated body, as :meth:`mesh` gives it: missing dimensions are those that the picture suggests.
+
+        Parameters
+        ----------
+        name
+            The object; by default the active one.
+        """
+        found = self._session.candidates(self._name(name), True)
+        return found[0] if found else None
 
     # -- objects -----------------------------------------------------------------------------
 
@@ -496,6 +747,42 @@ class Sketch:
 
     def _data(self) -> dict[str, Any]:
         return self.objects[self._name(None)]
+
+
+class Drag:
+    """A run of edits of a :class:`Sketch` that count as one; see :meth:`Sketch.drag`.
+
+    Attributes
+    ----------
+    changes
+        What all of them changed, when it has ended.
+    """
+
+    def __init__(self, sketch: Sketch) -> None:
+        self.changes: list[ObjectChange] = []
+        self._sketch = sketch
+
+    def move(self, point: int, u: float, v: float) -> None:
+        """Move a point of the active object on the page.
+
+        Parameters
+        ----------
+        point
+            Its label.
+        u, v
+            The new place.
+        """
+        self._sketch.run(f"POINT {int(point)} AT {float(u)!r} {float(v)!r}")
+
+    def __enter__(self) -> Drag:
+        self._sketch.session.begin()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is not None:
+            self._sketch.session.rollback()
+            return
+        self.changes = [ObjectChange._of(row) for row in self._sketch.session.commit()]
 
 
 explain(globals())

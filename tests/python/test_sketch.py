@@ -522,3 +522,86 @@ def test_the_pictures_are_those_of_the_scripts(tmp_path):
         drawn = s.export(tmp_path / f"{name}.svg").read_text()
         assert drawn == (images / f"sketch-{name}.svg").read_text()
         assert (images / f"sketch-{name}.png").read_bytes().startswith(b"\x89PNG")
+
+
+# -- edits as data ----------------------------------------------------------------------------
+
+
+def test_edits_are_data():
+    s = Sketch()
+    s.run("SKETCH PLATE 2D XZ")
+    ends = [[0, 1], [1, 2], [2, 3], [3, 0]]
+    points, lines = s.draw([[0, 0], [90, 1], [91, 30], [1, 29]], ends)
+    assert list(points) == [1, 2, 3, 4] and list(lines) == [1, 2, 3, 4]
+    # Drawn at once: one step.
+    s.run("UNDO")
+    assert len(s.points) == 0
+    s.run("REDO")
+    (change,) = s.dimension("X", points[0], points[1], 8, name="W")
+    assert change.numbers == ("W",) and set(change.moved) == {2, 3}
+    (missing,) = s.suggestions()
+    assert missing is not None and missing.axis == "Z"
+    assert missing.value == pytest.approx(2.6, abs=0.2)
+    s.edit("ACCEPT ALL; EXTRUDE 5")
+    assert s.volume == pytest.approx(40 * missing.value)
+    before = s.session.journal_length()
+    with s.drag() as drag:
+        for k in range(50):
+            drag.move(3, 91 + k, 33)
+    assert drag.changes[0].drawn == (3,) and s.session.journal_length() == before + 1
+    with pytest.raises(RuntimeError), s.drag():
+        drag.move(3, 0, 0)
+        raise RuntimeError
+    snapped = s.snap(140.5, 33, reach=2)
+    assert snapped is not None and snapped.point == 3 and snapped.at == (140.0, 33.0)
+    on_line = s.snap(45, 0.4, reach=1)
+    assert on_line is not None and on_line.line == 1 and on_line.part == pytest.approx(0.5, abs=0.01)
+    assert s.snap(1e6, 1e5, reach=1) is None
+    with pytest.raises(SketchError, match="no row"):
+        s.draw([[0, 0]], [[0, 1]])
+    with pytest.raises(SketchError):
+        s.edit("SET NOTHING 5")
+
+
+def test_a_picture_without_dimensions_has_a_body():
+    s = Sketch()
+    s.run(
+        "SKETCH BOX; AXES 345 40 90; POINT 1 0 0; POINT 2 97 -26; POINT 3 1 50; POINT 4 97 24\n"
+        "POINT 5 61 52; POINT 6 158 25; POINT 7 62 102; POINT 8 159 76\n"
+        "LINE 1 2 TYPE X; LINE 3 4 TYPE X; LINE 5 6 TYPE X; LINE 7 8 TYPE X; LINE 1 3 TYPE Z\n"
+        "LINE 2 4 TYPE Z; LINE 5 7 TYPE Z; LINE 6 8 TYPE Z; LINE 1 5 TYPE Y; LINE 2 6 TYPE Y\n"
+        "LINE 3 7 TYPE Y; LINE 4 8 TYPE Y"
+    )
+    found = s.preview()
+    assert found is not None
+    vertices, faces = found
+    assert vertices.shape == (8, 3) and len(faces) == 6
+    assert np.ptp(vertices, axis=0) == pytest.approx([100, 80, 50], rel=0.05)
+    assert s.volume is None
+    s.run("ACCEPT ALL")
+    assert len(s.candidates()) == 1
+
+
+def test_a_program_has_the_unit_of_its_sketches(tmp_path):
+    for name, unit in (("a", "FT"), ("b", "MM"), ("c", "FT")):
+        (tmp_path / f"{name}.skt").write_text(SLAB.replace("SLAB", name) + f"SET UNITS {unit}\n")
+
+    def load(text):
+        path = tmp_path / "site.sdl"
+        path.write_text(text)
+        return moldloft.load(path)
+
+    m = load('load "a.skt"; load "c.skt";')
+    size = 304.8 if pytest.importorskip("OCP") else 0
+    path = tmp_path / "site.step"
+    m.write(path)
+    assert step_solid(path)[0] == pytest.approx(2 * 80 * size**3, rel=1e-8)
+    load('Model info(units = "ft"); load "a.skt";')
+    for text in (
+        'load "a.skt"; load "b.skt";',
+        'Model info(units = "m"); load "a.skt";',
+        'load "a.skt"; Model info(units = "mm kg");',
+        'Sketch s("a.skt", W = 3); load "b.skt";',
+    ):
+        with pytest.raises(moldloft.ModelError, match="units-differ|is in ft|is in mm"):
+            load(text)

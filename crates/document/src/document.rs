@@ -6,6 +6,7 @@ use indexmap::IndexMap;
 use moldloft_budget::Budget;
 use moldloft_diag::{Diagnostic, Sources};
 use moldloft_lang::World;
+use moldloft_lang::model_file::units::{self, PhysicalDimension};
 use moldloft_lang::run::interpreter::{Inputs, Settings};
 use moldloft_lang::run::program::{self, RunContext};
 use moldloft_lang::run::weight::mass_and_centre;
@@ -735,7 +736,19 @@ impl Document {
         match &self.source {
             ObjectSource::ModelFile(source) => source.units(),
             ObjectSource::Sketch(sketch) => sketch.unit().unwrap_or_default(),
-            _ => moldloft_lang::model_file::header::text(&self.plain.graph, "units"),
+            _ => self.units_of_program(),
+        }
+    }
+
+    /// The units that a program states; its length is in the unit of the sketches that it loads when it states none.
+    fn units_of_program(&self) -> String {
+        let stated = moldloft_lang::model_file::header::text(&self.plain.graph, "units");
+        let known = units::parsed(&stated).unwrap_or_default();
+        let length = known.iter().any(|u| u.1 == PhysicalDimension::Length);
+        match self.plain.env.sketch_units.first().filter(|_| !length) {
+            Some((_, unit, _)) if stated.is_empty() => unit.clone(),
+            Some((_, unit, _)) => format!("{unit} {stated}"),
+            None => stated,
         }
     }
 

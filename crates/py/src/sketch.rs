@@ -12,7 +12,10 @@ use moldloft::lang::World;
 use moldloft::mesh::Mesh;
 use moldloft::num::Vec3;
 use moldloft::picture::{Camera, Options, StyledPolyline, render};
-use moldloft::sketch::{CommandReply, Files, SketchSession, SketchSolid, script};
+use moldloft::sketch::{
+    CommandReply, DrawingHit, Files, ObjectChange, PointId, SketchSession, SketchSolid, Suggestion,
+    script,
+};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
@@ -124,6 +127,38 @@ fn mesh_of(solid: &SketchSolid<f64>, tolerance: Option<f64>) -> Mesh<f64> {
     solid.mesh(tolerance.filter(|t| *t > 0.0).unwrap_or(1e-3 * size))
 }
 
+/// Vertices and faces of a body.
+#[allow(clippy::type_complexity)]
+fn mesh_arrays<'py>(
+    py: Python<'py>,
+    solid: &SketchSolid<f64>,
+    tolerance: Option<f64>,
+) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>)> {
+    let mesh = py.detach(|| mesh_of(solid, tolerance));
+    let positions = mesh.positions();
+    let fill = |out: &mut [Vec3]| out.copy_from_slice(positions);
+    let vertices = arrays::filled(py, [positions.len(), 3], fill).0;
+    let faces = PyArray2::<u32>::zeros(py, [mesh.faces().len(), 4], false);
+    faces.readwrite().as_slice_mut()?.copy_from_slice(mesh.faces().as_flattened());
+    Ok((vertices, faces))
+}
+
+/// What happened to an object: its name; added, removed, another body; points drawn, moved, removed; lines;
+/// faces; numbers.
+type Changed = (String, [bool; 3], [Vec<u32>; 5], Vec<String>);
+
+fn changed(c: ObjectChange) -> Changed {
+    let points = |p: Vec<PointId>| p.into_iter().map(|p| p.0).collect();
+    let parts = [
+        points(c.drawn),
+        points(c.moved),
+        points(c.removed_points),
+        c.lines.into_iter().map(|l| l.0).collect(),
+        c.faces.into_iter().map(|f| f.0).collect(),
+    ];
+    (c.name, [c.added, c.removed, c.body], parts, c.numbers)
+}
+
 #[pymethods]
 impl PySketch {
     #[new]
@@ -142,6 +177,90 @@ impl PySketch {
     fn run_line<'py>(&self, py: Python<'py>, line: String) -> PyResult<Vec<Answer<'py>>> {
         let replies = self.long(py, move |s| s.run_line(&line))?;
         Ok(replies.into_iter().map(|r| answer(py, r)).collect())
+    }
+
+    /// The answers to a line, and what it changed as JSON.
+    fn report<'py>(
+        &self,
+        py: Python<'py>,
+        line: String,
+    ) -> PyResult<(Vec<Answer<'py>>, Vec<Changed>)> {
+        let report = self.long(py, move |s| s.report(&line))?;
+        let replies = report.replies.into_iter().map(|r| answer(py, r)).collect();
+        Ok((replies, report.changes.into_iter().map(changed).collect()))
+    }
+
+    /// Begins a run of edits that count as one.
+    fn begin(&self, py: Python<'_>) -> PyResult<()> {
+        self.lock(py).begin().map_err(|fault| plain_error(fault.text))
+    }
+
+    /// Ends it, and says what it changed.
+    fn commit(&self, py: Python<'_>) -> PyResult<Vec<Changed>> {
+        Ok(self.long(py, |s| s.commit())?.into_iter().map(changed).collect())
+    }
+
+    /// Ends it as if it had not been.
+    fn rollback(&self, py: Python<'_>) {
+        self.lock(py).rollback();
+    }
+
+    /// The place on the page that a pointer snaps to: u, v, a point, a line with the part of its length, the
+    /// axis of an extension through the point.
+    #[allow(clippy::type_complexity)]
+    fn snap(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        at: [f64; 2],
+        reach: f64,
+    ) -> PyResult<Option<([f64; 2], Option<u32>, Option<(u32, f64)>, Option<String>)>> {
+        let session = self.lock(py);
+        let object = session.object(name).ok_or_else(|| no_object(name))?;
+        Ok(object.drawing.snap(at, reach).map(|snap| {
+            let axis = snap.axis.map(|a| a.to_string());
+            match snap.hit {
+                Some(DrawingHit::Point(p)) => (snap.at, Some(p.0), None, axis),
+                Some(DrawingHit::Line { line, part }) => {
+                    (snap.at, None, Some((line.0, part)), axis)
+                }
+                None => (snap.at, None, None, axis),
+            }
+        }))
+    }
+
+    /// Dimensions that the picture suggests: axis, from, to, value, and whether the depth is a guess.
+    #[allow(clippy::type_complexity)]
+    fn suggestions(
+        &self,
+        py: Python<'_>,
+        name: &str,
+    ) -> PyResult<Vec<Option<(String, u32, u32, f64, bool)>>> {
+        let wanted = name.to_owned();
+        let found = self.long(py, move |s| s.suggestions(&wanted))?;
+        let row = |s: Suggestion| (s.axis.to_string(), s.p.0, s.q.0, s.value, s.open);
+        Ok(found.ok_or_else(|| no_object(name))?.into_iter().map(|s| s.map(row)).collect())
+    }
+
+    /// The bodies that fit a wireframe, likeliest first; or with `preview` the one body that the picture and
+    /// the dimensions suggest.
+    #[allow(clippy::type_complexity)]
+    fn candidates<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        preview: bool,
+    ) -> PyResult<Vec<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>)>> {
+        let wanted = name.to_owned();
+        let found = self.long(py, move |s| {
+            if preview {
+                Ok(s.preview(&wanted).map(|p| p.0).into_iter().collect())
+            } else {
+                s.candidates(&wanted)
+            }
+        })?;
+        let solids = found.map_err(|fault| plain_error(fault.text))?;
+        solids.iter().map(|solid| mesh_arrays(py, solid, None)).collect()
     }
 
     /// The journal's commands from number `start` on.
@@ -237,13 +356,7 @@ impl PySketch {
         tolerance: Option<f64>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>)> {
         let solid = self.solid(py, name)?;
-        let mesh = py.detach(|| mesh_of(&solid, tolerance));
-        let positions = mesh.positions();
-        let fill = |out: &mut [Vec3]| out.copy_from_slice(positions);
-        let vertices = arrays::filled(py, [positions.len(), 3], fill).0;
-        let faces = PyArray2::<u32>::zeros(py, [mesh.faces().len(), 4], false);
-        faces.readwrite().as_slice_mut()?.copy_from_slice(mesh.faces().as_flattened());
-        Ok((vertices, faces))
+        mesh_arrays(py, &solid, tolerance)
     }
 
     /// Derivatives by dimensions: of the volume, of the area, of the centroid `(n, 3)`, of the body's

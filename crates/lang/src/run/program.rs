@@ -118,6 +118,7 @@ impl RunContext<'_> {
                     let mut interpreter = Interpreter::new(modules, loader, run, env, inputs);
                     interpreter.module(0);
                     interpreter.judge();
+                    interpreter.judge_units();
                     if let Some(sketch) = &sketch {
                         let span = Span::new(sketch.file, 0, 0);
                         interpreter.sketch(sketch, Site { origin: u32::MAX, span });

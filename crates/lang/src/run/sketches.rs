@@ -1,5 +1,7 @@
 //! Runs a program: the objects of loaded sketches.
 
+use crate::model_file::header;
+use crate::model_file::units::{self, PhysicalDimension};
 use crate::run::interpreter::Interpreter;
 use crate::source::env::{DeclarationOrigin, Param};
 use crate::source::module::Module;
@@ -42,6 +44,43 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(())
     }
 
+    /// Remembers the unit of length that a sketch states.
+    fn note_unit(&mut self, file: &SketchFile, span: Span) {
+        let known = self.env.sketch_units.iter().any(|u| u.0 == file.path);
+        if let Some(unit) = file.unit().filter(|_| !known) {
+            self.env.sketch_units.push((file.path.clone(), unit, span));
+        }
+    }
+
+    /// Reports sketches whose numbers are in another unit of length than the model states, or than one another.
+    pub fn judge_units(&mut self) {
+        let text = header::text(self.run.graph(), "units");
+        let stated = units::parsed(&text).unwrap_or_default();
+        let own = stated.into_iter().find(|u| u.1 == PhysicalDimension::Length);
+        let own = own.map(|u| (u.0.to_owned(), "the model".to_owned()));
+        let first = self
+            .env
+            .sketch_units
+            .first()
+            .map(|(path, unit, _)| (unit.clone(), format!("`{path}`")));
+        let Some((unit, whose)) = own.or(first) else { return };
+        let size = |word: &str| units::unit(word).map(|u| u.2);
+        let others: Vec<Diagnostic> = (self.env.sketch_units.iter())
+            .filter(|(_, other, _)| size(other) != size(&unit))
+            .map(|(path, other, span)| {
+                let text = format!("the sketch `{path}` is in {other}, {whose} in {unit}");
+                Diagnostic::error("units-differ", text)
+                    .at(*span)
+                    .expected("one unit of length for all numbers")
+                    .help(format!(
+                        "SET UNITS {} CONVERT in the sketch converts its numbers",
+                        unit.to_ascii_uppercase()
+                    ))
+            })
+            .collect();
+        others.into_iter().for_each(|fault| self.report(fault));
+    }
+
     fn sketch_origin(&mut self, id: StmtId) -> u32 {
         let origin = self.env.origins.len() as u32;
         // Several objects are made by the statement, so none of them has a literal in it.
@@ -56,6 +95,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// Declares all objects of a sketch file, their dimensions as parameters.
     pub fn sketch(&mut self, file: &Arc<SketchFile>, site: Site) {
         file.faults.iter().for_each(|fault| self.report(fault.clone()));
+        self.note_unit(file, site.span);
         for drawn in &file.objects {
             let prefix = file.prefix(drawn);
             let mut values = BTreeMap::new();
@@ -173,6 +213,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             values.insert(key, x);
         }
+        self.note_unit(&file, span);
         let full = self.instance_name(m, name)?;
         let origin = self.sketch_origin(id);
         self.drawn(drawn, &full, &values, Site { origin, span });

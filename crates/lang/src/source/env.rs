@@ -140,6 +140,8 @@ pub struct Environment<T: Scalar> {
     pub files: RunFiles,
     /// Loaded sketches by the name that their parts begin with.
     pub sketches: Vec<String>,
+    /// The files of sketches with the units of length that they state, and where they are loaded.
+    pub sketch_units: Vec<(String, String, moldloft_diag::Span)>,
     /// Finished bodies of sketches by the name of their mesh, in runs of plain numbers.
     pub sketch_bodies:
         std::collections::BTreeMap<String, std::sync::Arc<moldloft_sketch::SketchSolid<f64>>>,
@@ -165,6 +167,7 @@ impl<T: Scalar> Default for Environment<T> {
             printed: Vec::new(),
             files: RunFiles::default(),
             sketches: Vec::new(),
+            sketch_units: Vec::new(),
             sketch_bodies: std::collections::BTreeMap::new(),
             sketch_members: HashMap::new(),
             stopped: false,

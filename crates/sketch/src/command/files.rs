@@ -122,22 +122,29 @@ impl SketchSession {
         let file = args.name("the name of a file")?;
         args.end()?;
         let text = self.read(&file)?;
-        if !file.to_ascii_lowercase().ends_with(".dxf") {
+        let lower = file.to_ascii_lowercase();
+        let kind = if lower.ends_with(".dxf") {
+            "DXF"
+        } else if lower.ends_with(".svg") {
+            "SVG"
+        } else {
             let words =
                 [crate::command::words::CommandToken { kind: CommandTokenKind::Text, text: file }];
             return self.input(&mut Args::new(&words, ""), true);
-        }
-        let strokes = crate::format::dxf::dxf_lines(&text).map_err(|why| {
-            CommandError::new(
-                399,
-                format!("{file} is not a DXF drawing: {why}"),
-                "EXPORT DXF writes one",
-            )
+        };
+        let read = if kind == "DXF" {
+            crate::format::dxf::dxf_shapes(&text)
+        } else {
+            crate::format::svg_shapes::svg_shapes(&text)
+        };
+        let shapes = read.map_err(|why| {
+            let next = format!("EXPORT {kind} writes one");
+            CommandError::new(399, format!("{file} is not a {kind} drawing: {why}"), next)
         })?;
-        if strokes.is_empty() {
+        if shapes.line_count() == 0 {
             return Err(CommandError::new(
                 102,
-                format!("{file} has no lines"),
+                format!("{file} has no lines, arcs or circles"),
                 "draw LINE or polyline",
             ));
         }
@@ -146,9 +153,28 @@ impl SketchSession {
             let name: String = stem.map_or("NONAME".into(), |s| s.chars().take(32).collect());
             self.nested(&format!("SKETCH \"{}\"", name.replace('"', "_")))?;
         }
-        self.draw_strokes(&strokes)?;
-        let numbers: Vec<String> = strokes.iter().flatten().flatten().map(|x| plain(*x)).collect();
-        self.recorded = Some(format!("STROKES {}", numbers.join(" ")));
+        self.check_page(shapes.size(), shapes.line_count())?;
+        let before = self.active()?.clone();
+        let size = shapes.size();
+        let (points, lines, curves) = shapes.draw(self.active_mut()?, 1e-6 * size);
+        let mut said = format!("{points} points and {lines} lines");
+        if !curves.is_empty() {
+            let radii: Vec<&str> = (self.active()?.variables.values())
+                .filter(|v| !before.has_name(&v.name))
+                .map(|v| v.name.as_str())
+                .collect();
+            said.push_str(&format!(", curves {}", curves.join(", ")));
+            if !radii.is_empty() {
+                said.push_str(&format!("; the radii {} are as drawn", radii.join(", ")));
+            }
+        }
+        self.out.push(CommandReply::note(said));
+        if !shapes.left_out.is_empty() {
+            let all = shapes.left_out.iter().map(|(kind, n)| format!("{n} {kind}"));
+            let all: Vec<String> = all.collect();
+            self.out.push(CommandReply::warning(format!("not drawn: {}", all.join(", "))));
+        }
+        self.recorded = Some(drawn_since(&before, self.active()?));
         Ok(())
     }
 
@@ -168,17 +194,23 @@ impl SketchSession {
         self.draw_strokes(&strokes)
     }
 
-    fn draw_strokes(&mut self, strokes: &[crate::format::dxf::Stroke]) -> Result<(), CommandError> {
-        let ends = strokes.iter().flatten();
-        let size = ends.fold(0.0, |s: f64, [u, v]| s.max(u.abs()).max(v.abs()));
-        let points = self.active()?.drawing.points.len() + 2 * strokes.len();
+    /// Refuses lines that are too many, or lie too far off.
+    fn check_page(&self, size: f64, lines: usize) -> Result<(), CommandError> {
+        let points = self.active()?.drawing.points.len() + 2 * lines;
         if size > 1e9 || points > super::session::MAX_POINTS {
             return Err(CommandError::new(
                 200,
-                format!("{} lines on this page are too many, or it ends beyond 1e9", strokes.len()),
+                format!("{lines} lines on this page are too many, or it ends beyond 1e9"),
                 "draw a part of them",
             ));
         }
+        Ok(())
+    }
+
+    fn draw_strokes(&mut self, strokes: &[crate::format::dxf::Stroke]) -> Result<(), CommandError> {
+        let ends = strokes.iter().flatten();
+        let size = ends.fold(0.0, |s: f64, [u, v]| s.max(u.abs()).max(v.abs()));
+        self.check_page(size, strokes.len())?;
         let drawing = self.active_mut()?.draw();
         let (points, lines) = crate::format::dxf::draw(drawing, strokes, 1e-6 * size);
         self.out.push(CommandReply::note(format!("{points} points and {lines} lines")));
@@ -385,4 +417,22 @@ impl SketchSession {
         // As in a model: metres when there is no unit.
         self.files.step(&brep, &object.name, metres.unwrap_or(1.0)).map_err(refused)
     }
+}
+
+/// The commands for what an object has more than before: points, lines, variables, curves.
+fn drawn_since(before: &SketchObject, now: &SketchObject) -> String {
+    let mut out = Vec::new();
+    let (a, b) = (&before.drawing, &now.drawing);
+    for (id, p) in b.points.iter().filter(|(id, _)| !a.points.contains_key(id)) {
+        out.push(format!("POINT {id} AT {} {}", plain(p.u), plain(p.v)));
+    }
+    for (id, l) in b.lines.iter().filter(|(id, _)| !a.lines.contains_key(id)) {
+        out.push(format!("LINE {id} FROM {} TO {}", l.p, l.q));
+    }
+    for v in now.variables.values().filter(|v| !before.has_name(&v.name)) {
+        out.push(format!("VARIABLE {} {}", v.name, v.value.text()));
+    }
+    let curves = now.curves.values().filter(|c| !before.has_name(&c.name));
+    out.extend(curves.map(crate::format::script::curve_text));
+    out.join("; ")
 }

@@ -15,6 +15,10 @@ const PRINCIPAL: f64 = 0.85;
 /// From here on a line counts as surely typed.
 const SURE: f64 = 0.9;
 
+/// The noise of a steady hand, as a share of the longest line, and how many lines that is worth.
+const STEADY: f64 = 2.5e-3;
+const STEADY_LINES: f64 = 5.0;
+
 /// Directions at which an inclined line is tried.
 const DIRECTIONS: usize = 720;
 
@@ -25,6 +29,8 @@ pub(crate) struct Verdict {
     pub axis: Option<CoordinateAxis>,
     /// The share of that answer.
     pub share: f64,
+    /// The lines that were judged together have one number.
+    pub group: usize,
 }
 
 /// A line as it is judged.
@@ -98,8 +104,8 @@ impl Drawing {
             members.entry(group.find(k)).or_default().push(s);
         }
         let mut out = BTreeMap::new();
-        for own in members.values() {
-            let verdict = judge(own, &axes, sigma);
+        for (&group, own) in &members {
+            let verdict = Verdict { group, ..judge(own, &axes, sigma) };
             out.extend(own.iter().map(|s| (s.id, verdict)));
         }
         out
@@ -117,7 +123,11 @@ impl Drawing {
             .collect();
         off.sort_by(f64::total_cmp);
         let median = off.get(off.len() / 2).copied().unwrap_or(0.0);
-        (median / 0.6745 / std::f64::consts::SQRT_2).clamp(1.2e-3 * size, 0.02 * size)
+        let found = median / 0.6745 / std::f64::consts::SQRT_2;
+        // The median of a few lines says little: with it counts what a steady hand does.
+        let (n, usual) = (off.len() as f64, STEADY * size);
+        let mean = (n * found * found + STEADY_LINES * usual * usual) / (n + STEADY_LINES);
+        Real::sqrt(mean).clamp(1.2e-3 * size, 0.02 * size)
     }
 }
 
@@ -154,11 +164,11 @@ fn judge(strokes: &[&Stroke], axes: &[(CoordinateAxis, [f64; 2])], sigma: f64) -
     let free = (1.0 - PRINCIPAL) * mean;
     let all = principal.iter().sum::<f64>() + free;
     if all <= 0.0 {
-        return Verdict { axis: None, share: 1.0 };
+        return Verdict { axis: None, share: 1.0, group: 0 };
     }
     let best = (0..axes.len()).max_by(|&a, &b| principal[a].total_cmp(&principal[b]));
     match best.filter(|&k| principal[k] > free) {
-        Some(k) => Verdict { axis: Some(axes[k].0), share: principal[k] / all },
-        None => Verdict { axis: None, share: free / all },
+        Some(k) => Verdict { axis: Some(axes[k].0), share: principal[k] / all, group: 0 },
+        None => Verdict { axis: None, share: free / all, group: 0 },
     }
 }

@@ -232,7 +232,7 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
     writeln!(out, "END")
 }
 
-fn curve_text(c: &SketchCurve) -> String {
+pub(crate) fn curve_text(c: &SketchCurve) -> String {
     let points: Vec<String> = c.points.iter().map(ToString::to_string).collect();
     let mut text = match (c.kind, &points[..]) {
         (CurveKind::EllipticalArc, [a, m, b]) => {

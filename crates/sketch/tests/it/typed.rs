@@ -116,12 +116,73 @@ fn what_is_missing_and_what_fits_are_data() {
     assert_eq!((missing.len(), found.axis), (1, CoordinateAxis::Z));
     assert!((found.value - 2.5).abs() < 0.1, "{found:?}");
     assert!(s.suggestions("B").is_none());
-    let case = case_named("T14");
-    let count = case.object.clone();
-    s.insert(count);
-    let name = s.active_object().unwrap().name.clone();
+    // A cube in a cube, corners joined: each of three directions may be a tunnel.
+    let mut s = SketchSession::new();
+    s.insert(cuboid([6.0; 3]));
+    let mut inner = cuboid([2.0; 3]);
+    inner.name = "I".into();
+    s.insert(inner);
+    s.run_text("MOVE I 2 2 2; MERGE A I INTO C");
+    for k in 1..=8 {
+        s.run_line(&format!("LINE FROM {k} TO {} TYPE O", k + 8));
+    }
+    let name = "C".to_owned();
     let all = s.candidates(&name).unwrap();
     assert_eq!(all.len(), 3);
     assert!(all.iter().all(|c| c.mesh(1.0).report().closed));
     assert!(s.candidates("NONE").is_err());
+}
+
+/// A rounded plate with a round hole, as another program draws it.
+#[test]
+fn arcs_and_circles_are_imported() {
+    struct Shelf(&'static str);
+    impl Files for Shelf {
+        fn read(&self, _: &str) -> Result<String, String> {
+            Ok(self.0.to_owned())
+        }
+    }
+    const DXF: &str = "0\nSECTION\n2\nENTITIES\n\
+        0\nLINE\n10\n10\n20\n0\n11\n80\n21\n0\n0\nARC\n10\n80\n20\n10\n40\n10\n50\n270\n51\n0\n\
+        0\nLINE\n10\n90\n20\n10\n11\n90\n21\n40\n0\nLINE\n10\n90\n20\n40\n11\n0\n21\n40\n\
+        0\nLINE\n10\n0\n20\n40\n11\n0\n21\n10\n0\nARC\n10\n10\n20\n10\n40\n10\n50\n180\n51\n270\n\
+        0\nCIRCLE\n10\n45\n20\n20\n40\n8\n0\nTEXT\n1\nplan\n0\nENDSEC\n0\nEOF\n";
+    const BULGES: &str = "0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n70\n1\n10\n10\n20\n0\n10\n80\n20\n0\n\
+        42\n0.41421356237309503\n10\n90\n20\n10\n10\n90\n20\n40\n10\n0\n20\n40\n10\n0\n20\n10\n42\n0.41421356237309503\n\
+        0\nCIRCLE\n10\n45\n20\n20\n40\n8\n0\nINSERT\n0\nENDSEC\n0\nEOF\n";
+    const SVG: &str = "<svg><path d='M10-0H80A10 10 0 0 0 90-10V-40H0V-10a10 10 0 0 0 10 10'/>\
+        <circle cx='45' cy='-20' r='8'/><text>plan</text></svg>";
+    let truth = 90.0 * 40.0
+        - 2.0 * (1.0 - std::f64::consts::PI / 4.0) * 100.0
+        - 64.0 * std::f64::consts::PI;
+    for (file, text) in [("a.dxf", DXF), ("b.dxf", BULGES), ("c.svg", SVG)] {
+        let mut s = SketchSession::with_files(Box::new(Shelf(text)));
+        let replies = s.run_text(&format!("SKETCH P 2D XY\nIMPORT \"{file}\""));
+        assert!(replies.iter().all(|r| !r.is_error()), "{file}: {replies:?}");
+        let told = replies.iter().find(|r| r.text.contains("not drawn"));
+        assert!(told.is_some(), "{file}: {replies:?}");
+        let object = s.object("P").unwrap();
+        assert_eq!((object.drawing.points.len(), object.drawing.lines.len()), (8, 8), "{file}");
+        assert_eq!((object.curves.len(), object.variables.len()), (3, 1), "{file}");
+        let journal = s.journal().join("\n");
+        let p = object.drawing.points.iter();
+        let at = |u: f64, v: f64| {
+            let near = |q: &DrawnPoint| (q.u - u).abs() < 1e-6 && (q.v - v).abs() < 1e-6;
+            p.clone().find(|(_, q)| near(q)).map(|(id, _)| *id).unwrap()
+        };
+        let (a, b, d) = (at(0.0, 0.0), at(90.0, 0.0), at(0.0, 40.0));
+        let (c, e, f) = (at(37.0, 12.0), at(53.0, 12.0), at(37.0, 28.0));
+        let replies = s.run_text(&format!(
+            "DIM X {a} {b} 90; DIM Y {a} {d} 40; DIM X {a} {c} 37; DIM Y {a} {c} 12
+             DIM X {c} {e} 16; DIM Y {c} {f} 16; GENERATE FACES"
+        ));
+        assert!(replies.iter().all(|r| !r.is_error()), "{file}: {replies:?}");
+        let area = s.objects()[0].area.unwrap();
+        assert!((area - truth).abs() < 1e-9 * truth, "{file}: {area} for {truth}");
+        // The journal needs no file.
+        let mut again = SketchSession::new();
+        again.run_text(&journal);
+        let imported = |o: &SketchObject| (o.drawing.points.clone(), o.curves.clone());
+        assert_eq!(imported(again.object("P").unwrap()), imported(s.object("P").unwrap()));
+    }
 }

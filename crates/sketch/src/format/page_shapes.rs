@@ -1,0 +1,201 @@
+//! Shapes of another program's drawing: strokes, and arcs and circles as the curves that a sketch draws into the
+//! corners of lines.
+
+use crate::Drawing;
+use crate::format::dxf::{Stroke, draw};
+use crate::solid::curve::{CurveKind, SketchCurve};
+use crate::{DimensionExpr, PointId, SketchObject, Variable};
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Angles up to this part of a radian make lines go on straight.
+const STRAIGHT: f64 = 1e-6;
+
+/// What is on the page.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PageShapes {
+    /// Straight lines.
+    pub strokes: Vec<Stroke>,
+    /// Arcs of at most a quarter: start, where the tangents at both ends meet, end, radius.
+    pub arcs: Vec<([[f64; 2]; 3], f64)>,
+    /// Circles and ellipses: the centre and two conjugate half-diameters.
+    pub rounds: Vec<[[f64; 2]; 3]>,
+    /// What is not drawn, by kind.
+    pub left_out: BTreeMap<String, usize>,
+}
+
+impl PageShapes {
+    /// Counts a shape that cannot be drawn.
+    pub fn leave_out(&mut self, kind: &str) {
+        *self.left_out.entry(kind.to_owned()).or_default() += 1;
+    }
+
+    /// Adds the arc about a centre from an angle on, counter-clockwise for a positive sweep.
+    pub fn arc(&mut self, [x, y]: [f64; 2], radius: f64, start: f64, sweep: f64) {
+        let parts = (sweep.abs() / FRAC_PI_2 - 1e-9).ceil().max(1.0);
+        let step = sweep / parts;
+        let at = |r: f64, a: f64| [x + r * libm::cos(a), y + r * libm::sin(a)];
+        for k in 0..parts as usize {
+            let a = start + step * k as f64;
+            let corner = at(radius / libm::cos(0.5 * step), a + 0.5 * step);
+            self.arcs.push(([at(radius, a), corner, at(radius, a + step)], radius));
+        }
+    }
+
+    /// Adds a segment that bulges to the right by a quarter of the tangent of its angle, as in DXF.
+    pub fn bulged(&mut self, p: [f64; 2], q: [f64; 2], bulge: f64) {
+        if bulge.abs() < 1e-12 {
+            self.strokes.push([p, q]);
+            return;
+        }
+        let sweep = 4.0 * libm::atan(bulge);
+        let chord = [q[0] - p[0], q[1] - p[1]];
+        let length = libm::hypot(chord[0], chord[1]);
+        let radius = 0.5 * length / libm::sin(0.5 * sweep).abs();
+        // From the middle of the chord to the centre, left of it for a sweep of less than half a turn.
+        let offset = 0.5 / libm::tan(0.5 * sweep);
+        let centre =
+            [0.5 * (p[0] + q[0]) - offset * chord[1], 0.5 * (p[1] + q[1]) + offset * chord[0]];
+        let start = libm::atan2(p[1] - centre[1], p[0] - centre[0]);
+        self.arc(centre, radius, start, sweep);
+    }
+
+    /// How far the shapes reach.
+    pub fn size(&self) -> f64 {
+        let arcs = self.arcs.iter().flat_map(|a| a.0);
+        let rounds = self.rounds.iter().flat_map(|[c, a, b]| {
+            [1.0, -1.0].map(|s| {
+                [c[0] + s * (a[0].abs() + b[0].abs()), c[1] + s * (a[1].abs() + b[1].abs())]
+            })
+        });
+        let all = self.strokes.iter().flatten().copied().chain(arcs).chain(rounds);
+        all.fold(0.0, |s: f64, [u, v]| s.max(u.abs()).max(v.abs()))
+    }
+
+    /// How many lines it draws, at most.
+    pub fn line_count(&self) -> usize {
+        self.strokes.len() + 2 * self.arcs.len() + 4 * self.rounds.len()
+    }
+
+    /// Draws the shapes into an object, ends within `tolerance` being one point: an arc between two lines that
+    /// it goes on from is a round of their corner. Gives the numbers of new points and lines, and the names
+    /// of new curves.
+    pub fn draw(&self, object: &mut SketchObject, tolerance: f64) -> (usize, usize, Vec<String>) {
+        let near =
+            |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).abs().max((p[1] - q[1]).abs()) <= tolerance;
+        let mut strokes = self.strokes.clone();
+        for ([start, corner, end], _) in &self.arcs {
+            for at in [start, end] {
+                let straight = |s: &Stroke, k: usize| {
+                    let (a, b) = (
+                        [at[0] - s[1 - k][0], at[1] - s[1 - k][1]],
+                        [corner[0] - at[0], corner[1] - at[1]],
+                    );
+                    let cross = a[0] * b[1] - a[1] * b[0];
+                    let size = libm::hypot(a[0], a[1]) * libm::hypot(b[0], b[1]);
+                    near(s[k], *at)
+                        && a[0] * b[0] + a[1] * b[1] > 0.0
+                        && cross.abs() <= STRAIGHT * size
+                };
+                let touching = strokes.iter().flatten().filter(|p| near(**p, *at)).count();
+                let found = (0..strokes.len()).flat_map(|s| [(s, 0), (s, 1)]);
+                let found = found.into_iter().find(|&(s, k)| straight(&strokes[s], k));
+                match found.filter(|_| touching == 1) {
+                    Some((s, k)) => strokes[s][k] = *corner,
+                    None => strokes.push([*at, *corner]),
+                }
+            }
+        }
+        for [c, a, b] in &self.rounds {
+            let at = |s: f64, t: f64| [c[0] + s * a[0] + t * b[0], c[1] + s * a[1] + t * b[1]];
+            let ring = [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)];
+            strokes.extend((0..4).map(|k| [ring[k], ring[(k + 1) % 4]]));
+        }
+        let (points, lines) = draw(object.draw(), &strokes, tolerance);
+        let mut names = Vec::new();
+        for ([start, corner, end], radius) in &self.arcs {
+            let drawing = object.drawing.clone();
+            let Some(m) = point_at(&drawing, *corner, tolerance) else { continue };
+            let ends = [start, end].map(|p| neighbour(&drawing, m, *corner, *p));
+            let [Some(a), Some(b)] = ends else { continue };
+            let radius = radius_name(object, *radius);
+            names.push(add_curve(object, CurveKind::Arc, vec![a, m, b], Some(radius)));
+        }
+        for [c, a, b] in &self.rounds {
+            let at = |s: f64, t: f64| [c[0] + s * a[0] + t * b[0], c[1] + s * a[1] + t * b[1]];
+            let drawing = object.drawing.clone();
+            let find = |p| point_at(&drawing, p, tolerance);
+            let corners = [find(at(1.0, -1.0)), find(at(-1.0, -1.0)), find(at(-1.0, 1.0))];
+            let [Some(p), Some(m), Some(q)] = corners else { continue };
+            let (x, y) = (libm::hypot(a[0], a[1]), libm::hypot(b[0], b[1]));
+            let square =
+                (a[0] * b[0] + a[1] * b[1]).abs() <= 1e-9 * x * y && (x - y).abs() <= 1e-9 * x;
+            let kind = if square { CurveKind::Circle } else { CurveKind::Ellipse };
+            names.push(add_curve(object, kind, vec![p, m, q], None));
+        }
+        (points, lines, names)
+    }
+}
+
+/// The point drawn at a place.
+fn point_at(drawing: &Drawing, at: [f64; 2], tolerance: f64) -> Option<PointId> {
+    let near = |p: &crate::DrawnPoint| (p.u - at[0]).abs().max((p.v - at[1]).abs()) <= tolerance;
+    drawing.points.iter().find(|(_, p)| near(p)).map(|(id, _)| *id)
+}
+
+/// The other end of the line from a corner towards a place.
+fn neighbour(drawing: &Drawing, m: PointId, corner: [f64; 2], to: [f64; 2]) -> Option<PointId> {
+    let way = [to[0] - corner[0], to[1] - corner[1]];
+    let other =
+        |l: &crate::DrawnLine| (l.p == m).then_some(l.q).or_else(|| (l.q == m).then_some(l.p));
+    drawing.lines.values().filter_map(other).find(|id| {
+        let p = drawing.points[id];
+        let d = [p.u - corner[0], p.v - corner[1]];
+        let size = libm::hypot(d[0], d[1]) * libm::hypot(way[0], way[1]);
+        let (cross, dot) = (d[0] * way[1] - d[1] * way[0], d[0] * way[0] + d[1] * way[1]);
+        cross.abs() <= 10.0 * STRAIGHT * size && dot > 0.0
+    })
+}
+
+/// The name of a variable for a radius: one for all arcs of it.
+fn radius_name(object: &mut SketchObject, radius: f64) -> DimensionExpr {
+    let same = |v: &&Variable| {
+        v.name.starts_with('R')
+            && v.value.literal().is_some_and(|x| (x - radius).abs() <= 1e-9 * radius)
+    };
+    let name = match object.variables.values().find(same) {
+        Some(v) => v.name.clone(),
+        None => {
+            let name = object.fresh_name("R");
+            let value = DimensionExpr::number(radius);
+            let variable = Variable { name: name.clone(), value, range: None };
+            object.variables.insert(name.to_ascii_lowercase(), variable);
+            name
+        }
+    };
+    DimensionExpr::parse(&name).unwrap_or_else(|_| DimensionExpr::number(radius))
+}
+
+fn add_curve(
+    object: &mut SketchObject,
+    kind: CurveKind,
+    points: Vec<PointId>,
+    radius: Option<DimensionExpr>,
+) -> String {
+    let name = object.fresh_name("C");
+    let curve = SketchCurve {
+        name: name.clone(),
+        kind,
+        points,
+        radius,
+        semi: None,
+        steps: None,
+        replaces: true,
+        centripetal: false,
+    };
+    object.curves.insert(name.to_ascii_lowercase(), curve);
+    name
+}
+
+/// A full turn.
+pub(crate) const TURN: f64 = TAU;

@@ -1,0 +1,315 @@
+//! The shapes of an SVG picture: lines, polygons, rectangles, circles, ellipses, and paths of lines and arcs.
+
+use crate::format::page_shapes::PageShapes;
+
+/// Reads the shapes of an SVG text; v runs up, as on the page of a sketch.
+///
+/// # Errors
+/// Says why the text is no SVG, or what of it cannot be placed.
+pub fn svg_shapes(text: &str) -> Result<PageShapes, String> {
+    let mut shapes = PageShapes::default();
+    let mut known = false;
+    let mut hidden: Vec<String> = Vec::new();
+    let mut rest = text;
+    while let Some(at) = rest.find('<') {
+        rest = &rest[at + 1..];
+        if let Some(comment) = rest.strip_prefix("!--") {
+            let end = comment.find("-->").ok_or("a comment does not end")?;
+            rest = &comment[end + 3..];
+            continue;
+        }
+        let end = tag_end(rest).ok_or("an element does not end")?;
+        let (tag, after) = (&rest[..end], &rest[end + 1..]);
+        rest = after;
+        if tag.starts_with(['!', '?']) {
+            continue;
+        }
+        if let Some(name) = tag.strip_prefix('/') {
+            if hidden.last().is_some_and(|h| *h == name.trim()) {
+                hidden.pop();
+            }
+            continue;
+        }
+        let (body, alone) = tag.strip_suffix('/').map_or((tag, false), |t| (t, true));
+        let name = body.split(|c: char| c.is_whitespace()).next().unwrap_or("");
+        let local = name.rsplit(':').next().unwrap_or(name);
+        known |= local == "svg";
+        if !known {
+            return Err("it does not begin with an svg element".into());
+        }
+        let unseen = ["defs", "clipPath", "mask", "marker", "pattern", "symbol", "metadata"];
+        if !hidden.is_empty() || unseen.contains(&local) {
+            if !alone {
+                hidden.push(name.to_owned());
+            }
+            continue;
+        }
+        let attributes = attributes(&body[name.len()..])?;
+        if attributes.iter().any(|a| a.0 == "transform") {
+            return Err(format!("`{local}` has a transform: write the picture without transforms"));
+        }
+        element(local, &attributes, &mut shapes)?;
+    }
+    if known { Ok(shapes) } else { Err("it has no svg element".into()) }
+}
+
+/// Where a tag ends, not within quotes.
+fn tag_end(text: &str) -> Option<usize> {
+    let mut quote = None;
+    text.char_indices().find_map(|(k, c)| match (quote, c) {
+        (None, '>') => Some(k),
+        (None, '"' | '\'') => {
+            quote = Some(c);
+            None
+        }
+        (Some(q), c) if q == c => {
+            quote = None;
+            None
+        }
+        _ => None,
+    })
+}
+
+fn attributes(mut text: &str) -> Result<Vec<(&str, &str)>, String> {
+    let mut out = Vec::new();
+    loop {
+        text = text.trim_start();
+        let Some(at) = text.find('=') else { return Ok(out) };
+        let name = text[..at].trim();
+        let value = text[at + 1..].trim_start();
+        let quote = value.chars().next().filter(|c| ['"', '\''].contains(c));
+        let quote = quote.ok_or_else(|| format!("the value of `{name}` has no quotes"))?;
+        let end = value[1..].find(quote).ok_or("a value does not end")? + 1;
+        out.push((name, &value[1..end]));
+        text = &value[end + 1..];
+    }
+}
+
+fn element(name: &str, attributes: &[(&str, &str)], shapes: &mut PageShapes) -> Result<(), String> {
+    let text = |wanted: &str| attributes.iter().find(|a| a.0 == wanted).map(|a| a.1);
+    let number = |wanted: &str| -> Result<f64, String> {
+        let Some(text) = text(wanted) else { return Ok(0.0) };
+        let plain = text.trim().trim_end_matches("px");
+        let x: Option<f64> = plain.parse().ok().filter(|x: &f64| x.is_finite());
+        x.ok_or_else(|| format!("`{wanted}` of `{name}` is not a plain number: {text}"))
+    };
+    match name {
+        "line" => {
+            let ends = [[number("x1")?, -number("y1")?], [number("x2")?, -number("y2")?]];
+            shapes.strokes.push(ends);
+        }
+        "polyline" | "polygon" => {
+            let all = numbers(text("points").unwrap_or(""))?;
+            let points: Vec<[f64; 2]> = all.chunks_exact(2).map(|p| [p[0], -p[1]]).collect();
+            shapes.strokes.extend(points.windows(2).map(|w| [w[0], w[1]]));
+            if let ([first, _, .., last], "polygon") = (&points[..], name) {
+                shapes.strokes.push([*last, *first]);
+            }
+        }
+        "rect" if text("rx").or(text("ry")).is_none() => {
+            let [x, y] = [number("x")?, number("y")?];
+            let [w, h] = [number("width")?, number("height")?];
+            let ring = [[x, -y], [x + w, -y], [x + w, -y - h], [x, -y - h]];
+            shapes.strokes.extend((0..4).map(|k| [ring[k], ring[(k + 1) % 4]]));
+        }
+        "circle" | "ellipse" => {
+            let c = [number("cx")?, -number("cy")?];
+            let [a, b] = match name {
+                "circle" => [number("r")?; 2],
+                _ => [number("rx")?, number("ry")?],
+            };
+            if a > 0.0 && b > 0.0 {
+                shapes.rounds.push([c, [a, 0.0], [0.0, b]]);
+            }
+        }
+        "path" => path(text("d").unwrap_or(""), shapes)?,
+        "svg" | "g" | "title" | "desc" | "a" | "style" | "switch" => {}
+        other => shapes.leave_out(other),
+    }
+    Ok(())
+}
+
+/// Numbers with blanks or commas between them, or none where the next begins with a sign or point.
+fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    let mut out = Vec::new();
+    let mut word = String::new();
+    let mut flush = |word: &mut String| -> Result<(), String> {
+        if !word.is_empty() {
+            let x: Option<f64> = word.parse().ok().filter(|x: &f64| x.is_finite());
+            out.push(x.ok_or_else(|| format!("`{word}` is not a number"))?);
+            word.clear();
+        }
+        Ok(())
+    };
+    for c in text.chars() {
+        let exponent = word.ends_with(['e', 'E']);
+        match c {
+            ',' => flush(&mut word)?,
+            c if c.is_whitespace() => flush(&mut word)?,
+            '+' | '-' if !exponent => {
+                flush(&mut word)?;
+                word.push(c);
+            }
+            '.' if word.contains('.') || word.contains(['e', 'E']) => {
+                flush(&mut word)?;
+                word.push(c);
+            }
+            c => word.push(c),
+        }
+    }
+    flush(&mut word)?;
+    Ok(out)
+}
+
+/// A path; its Bézier curves are left out, and counted.
+fn path(d: &str, shapes: &mut PageShapes) -> Result<(), String> {
+    let mut at = [0.0; 2];
+    let mut start = [0.0; 2];
+    let mut rest = d.trim_start();
+    let line = |p: [f64; 2], q: [f64; 2], shapes: &mut PageShapes| {
+        if p != q {
+            shapes.strokes.push([[p[0], -p[1]], [q[0], -q[1]]]);
+        }
+    };
+    while let Some(command) = rest.chars().next() {
+        if !command.is_ascii_alphabetic() {
+            return Err(format!("a path has `{command}` where a command should be"));
+        }
+        let body = &rest[1..];
+        let end = body.find(|c: char| c.is_ascii_alphabetic() && c != 'e' && c != 'E');
+        let (body, after) = body.split_at(end.unwrap_or(body.len()));
+        rest = after;
+        let relative = command.is_ascii_lowercase();
+        let kind = command.to_ascii_uppercase();
+        let count = match kind {
+            'M' | 'L' | 'T' => 2,
+            'H' | 'V' => 1,
+            'A' => 7,
+            'C' => 6,
+            'S' | 'Q' => 4,
+            'Z' => {
+                line(at, start, shapes);
+                at = start;
+                continue;
+            }
+            other => return Err(format!("a path has the unknown command {other}")),
+        };
+        let all = if kind == 'A' { arc_numbers(body)? } else { numbers(body)? };
+        if all.is_empty() || all.len() % count != 0 {
+            return Err(format!("{command} of a path has {} numbers", all.len()));
+        }
+        for (k, n) in all.chunks_exact(count).enumerate() {
+            let base = if relative { at } else { [0.0; 2] };
+            let to = match kind {
+                'H' => [base[0] + n[0], at[1]],
+                'V' => [at[0], if relative { at[1] + n[0] } else { n[0] }],
+                _ => [base[0] + n[count - 2], base[1] + n[count - 1]],
+            };
+            match kind {
+                'M' if k == 0 => start = to,
+                'M' | 'L' | 'H' | 'V' => line(at, to, shapes),
+                'A' => path_arc(at, to, n, shapes),
+                _ => shapes.leave_out("Bézier curve of a path"),
+            }
+            at = to;
+        }
+    }
+    Ok(())
+}
+
+/// The numbers of arcs, whose flags need no blank after them.
+fn arc_numbers(text: &str) -> Result<Vec<f64>, String> {
+    let mut out: Vec<f64> = Vec::new();
+    let mut rest = text.trim_start_matches([' ', ',', '\t', '\n', '\r']);
+    while !rest.is_empty() {
+        let flag = matches!(out.len() % 7, 3 | 4);
+        let (word, after) = if flag {
+            rest.split_at(1)
+        } else {
+            let mut seen = String::new();
+            let end = rest.char_indices().find_map(|(k, c)| {
+                let exponent = seen.ends_with(['e', 'E']);
+                let stop = c.is_whitespace()
+                    || c == ','
+                    || (k > 0 && (c == '-' || c == '+') && !exponent)
+                    || (c == '.' && seen.contains('.'));
+                seen.push(c);
+                stop.then_some(k)
+            });
+            rest.split_at(end.unwrap_or(rest.len()))
+        };
+        out.extend(numbers(word)?);
+        rest = after.trim_start_matches([' ', ',', '\t', '\n', '\r']);
+    }
+    Ok(out)
+}
+
+/// An arc by its ends (SVG 1.1, appendix F.6.5); one of an ellipse is left out.
+fn path_arc(from: [f64; 2], to: [f64; 2], n: &[f64], shapes: &mut PageShapes) {
+    let (rx, ry, large, positive) = (n[0].abs(), n[1].abs(), n[3] != 0.0, n[4] != 0.0);
+    if from == to {
+        return;
+    }
+    if rx == 0.0 || ry == 0.0 {
+        shapes.strokes.push([[from[0], -from[1]], [to[0], -to[1]]]);
+        return;
+    }
+    if (rx - ry).abs() > 1e-9 * rx {
+        shapes.leave_out("elliptical arc of a path");
+        return;
+    }
+    let chord = [to[0] - from[0], to[1] - from[1]];
+    let half = 0.5 * libm::hypot(chord[0], chord[1]);
+    // A radius that is too small is enlarged until the arc reaches, as the standard says.
+    let radius = rx.max(half);
+    let height = (radius * radius - half * half).max(0.0).sqrt() / (2.0 * half);
+    let side = if large == positive { -1.0 } else { 1.0 };
+    let centre = [
+        0.5 * (from[0] + to[0]) - side * height * chord[1],
+        0.5 * (from[1] + to[1]) + side * height * chord[0],
+    ];
+    let angle = |p: [f64; 2]| libm::atan2(-(p[1] - centre[1]), p[0] - centre[0]);
+    // On the page v runs up, so that positive angles of SVG are negative ones.
+    let start = angle(from);
+    let mut sweep = angle(to) - start;
+    let turn = crate::format::page_shapes::TURN;
+    if positive && sweep > 0.0 {
+        sweep -= turn;
+    } else if !positive && sweep < 0.0 {
+        sweep += turn;
+    }
+    shapes.arc([centre[0], -centre[1]], radius, start, sweep);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_of_a_picture() {
+        let text = "<?xml version='1.0'?><!-- < > --><svg xmlns=\"x\"><defs><line x1=\"9\"/></defs>\
+            <line x1='0' y1='0' x2='4' y2='-3'/><polygon points='0,0 4,0 4,3'/><g><rect width='2' height='1'/></g>\
+            <circle cx='5' cy='5' r='2'/><text x='1'>a</text>\
+            <path d='M0 0h10a2 2 0 01 2 2v5q1 1 2 2z'/></svg>";
+        let shapes = svg_shapes(text).unwrap();
+        assert_eq!((shapes.strokes.len(), shapes.arcs.len(), shapes.rounds.len()), (11, 1, 1));
+        assert_eq!(shapes.strokes[0], [[0.0, 0.0], [4.0, 3.0]]);
+        let ([start, corner, end], radius) = shapes.arcs[0];
+        let near = |p: [f64; 2], q: [f64; 2]| libm::hypot(p[0] - q[0], p[1] - q[1]) < 1e-9;
+        assert!(near(start, [10.0, 0.0]) && near(end, [12.0, -2.0]) && near(corner, [12.0, 0.0]));
+        assert!((radius - 2.0).abs() < 1e-12);
+        assert_eq!(shapes.left_out.values().sum::<usize>(), 2);
+        for bad in [
+            "",
+            "<a/>",
+            "<svg",
+            "<svg><line x1=\"a\"/></svg>",
+            "<svg><g transform='scale(2)'/></svg>",
+            "<svg><path d='M 1'/></svg>",
+            "<svg><path d='5'/></svg>",
+            "<svg><line x1=5/></svg>",
+        ] {
+            assert!(svg_shapes(bad).is_err(), "{bad}");
+        }
+    }
+}
