@@ -17,11 +17,13 @@ mod image;
 mod labelled;
 mod meet;
 mod seams;
+mod volume;
 
 pub use analytic::SurfaceAxes;
 pub use check::{Fault, ShellFacts};
 pub use labelled::{FacetFault, FacetFaultKind, LabelledFacets};
 pub use meet::{ExactCurve, meet};
+pub use volume::BrepVolume;
 
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;

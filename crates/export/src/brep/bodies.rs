@@ -10,9 +10,10 @@ use moldloft_brep::{Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxe
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 use moldloft_field::{
-    FacetOptions, Facets, Form, Membership, Resolution, Set, around, facet, set_of,
+    Effort, FacetOptions, Facets, Form, Membership, Resolution, Set, around, certified, facet,
+    set_of,
 };
-use moldloft_mesh::Mesh;
+use moldloft_mesh::{Mesh, measure};
 use moldloft_model::Object;
 use moldloft_num::{Box3, Vec3};
 use moldloft_picture::PALETTE;
@@ -24,6 +25,10 @@ const LEVELS: std::ops::RangeInclusive<u32> = 6..=8;
 
 /// Places along an edge that are compared with the set, for the length of a cell.
 const PLACES: f64 = 6.0;
+
+/// The volume of a body is proved to this part of it, with at most so many cells.
+const SHARE: f64 = 1e-6;
+const PROOF: usize = 60_000;
 
 /// What helps with a body that is refused.
 const HELP: &str = "write it as stl, 3mf or obj, or hide it";
@@ -57,10 +62,13 @@ pub fn add(
             Err(fault) => last = Some(told(name, &fault)),
             Ok(places) => match elsewhere(&made, &set, &over, places, step, [accuracy, size]) {
                 Some(place) => last = Some(missed(name, place, step)),
-                None => {
-                    brep.append(made);
-                    return Ok(true);
-                }
+                None => match wrong_volume(&made, &facets, &set, &over, name)? {
+                    Some(wrong) => last = Some(wrong),
+                    None => {
+                        brep.append(made);
+                        return Ok(true);
+                    }
+                },
             },
         }
     }
@@ -186,6 +194,37 @@ fn elsewhere(
         }
     };
     places.iter().zip(&values).find(|pair| !on(*pair)).map(|pair| *pair.0)
+}
+
+/// What is wrong with a body whose faces do not enclose the volume that is proved of the set: a part that all cells miss.
+/// Faces of which the volume is not known by their edges are judged by that of the facets.
+fn wrong_volume(
+    made: &Brep,
+    facets: &Facets,
+    set: &Set,
+    over: &Box3,
+    name: &str,
+) -> Result<Option<Diagnostic>, ExportFailure> {
+    let shown = measure(&facets.mesh);
+    let size = (0..3).map(|k| over.high[k] - over.low[k]).fold(0.0, f64::max);
+    let (volume, off) = match made.volume() {
+        Some(v) => (v.volume, v.error + (made.gap + 1e-9 * size) * shown.area),
+        // Triangles are as far from their surfaces as their centres.
+        None => (shown.volume, facets.worst_centre() * shown.area),
+    };
+    let effort = Effort { cells: PROOF, ..Effort::to(SHARE * volume.abs()) };
+    let proved = certified(set, over, &effort, &Default::default()).map_err(|e| {
+        Diagnostic::error("cannot-write", format!("`{name}` has no certified volume: {e}"))
+    })?;
+    let bracket = proved.bracket.volume();
+    if volume >= bracket.low - off && volume <= bracket.high + off {
+        return Ok(None);
+    }
+    let place = proved.open.first().map_or_else(|| over.centre(), |(place, _)| place.centre());
+    Ok(Some(missed(name, place, facets.step).found(format!(
+        "faces that enclose {volume:.9}, and a volume from {:.9} to {:.9}",
+        bracket.low, bracket.high
+    ))))
 }
 
 fn curved(name: &str, part: &str, kind: &str) -> Diagnostic {
