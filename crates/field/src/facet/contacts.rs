@@ -41,10 +41,14 @@ const SAME: f64 = 1e-10;
 /// parallelogram is this part of the square of the radius.
 const AROUND: usize = 64;
 const WIDE: f64 = 0.1;
-/// Two sets share no more than this part of the box where they only touch.
+/// Of sets without a point in common on their surfaces it is not proved that they share no volume unless the bound is
+/// below this part of the box.
 const SHARED: f64 = 1e-9;
 /// Triangles that are through others by this part of a cell are on them, to rounding.
 const TOUCH: f64 = 1e-9;
+/// They withdraw in so many rounds, by this part of the box.
+const ROUNDS: usize = 6;
+const BACK: f64 = 1e-13;
 /// The sine of the angle between surfaces below which they touch, and do not cross.
 const TANGENT: f64 = 0.05;
 
@@ -233,6 +237,18 @@ fn common_point(a: &Surface, b: &Surface, start: Vec3, size: f64) -> Option<Vec3
     None
 }
 
+/// Whether there is a point inside of both sets near one that is on their surfaces.
+fn overlap(a: &Surface, b: &Surface, p: Vec3, size: f64) -> bool {
+    let (Some((_, m)), Some((_, n))) = (a.height(p), b.height(p)) else { return false };
+    // Where surfaces nearly touch, what the sets share is a lens whose rim they have in common: across the rim.
+    let Some(inward) = ((m + n) * -1.0).normalized() else { return false };
+    [1e-1, 1e-2, 1e-3, 1e-4, 1e-5].into_iter().any(|reach| {
+        let q = p + inward * (reach * size);
+        let inside = |s: &Surface| s.height(q).is_some_and(|h| h.0 < -SAME * size);
+        inside(a) && inside(b)
+    })
+}
+
 /// Whether two surfaces that meet at a point have a piece of surface in common there, and not a line or the point only.
 fn share_face(a: &Surface, b: &Surface, p: Vec3, size: f64) -> bool {
     let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
@@ -297,19 +313,22 @@ fn parted_by(view: &UnionView, over: &Box3, budget: &Budget) -> Result<Option<Pa
         if places.is_empty() {
             continue;
         }
-        let shared = certified(&both, over, &Effort::of_cells(CELLS), budget)?;
-        if shared.bracket.volume().high > SHARED * volume {
-            groups.join(i, j);
-            continue;
-        }
         let (a, b) = (Surface::of(&bodies[i]), Surface::of(&bodies[j]));
         let some = places.iter().step_by(places.len().div_ceil(PLACES));
         let points = some.filter_map(|p| common_point(&a, &b, *p, size));
         let points: Vec<Vec3> = points.collect();
-        if points.iter().any(|p| share_face(&a, &b, *p, size)) {
+        let meets = |p: &Vec3| overlap(&a, &b, *p, size) || share_face(&a, &b, *p, size);
+        if points.iter().any(meets) {
             groups.join(i, j);
-        } else if let Some(p) = points.first() {
-            contacts.push((i, j, *p));
+            continue;
+        }
+        let shared = certified(&both, over, &Effort::of_cells(CELLS), budget)?.bracket.volume();
+        // A line of contact leaves more open than a point does; without a point in common there is no reason to.
+        let open = points.is_empty() && shared.high > SHARED * volume;
+        match points.first() {
+            _ if shared.low > 0.0 || open => groups.join(i, j),
+            Some(p) => contacts.push((i, j, *p)),
+            None => {}
         }
     }
     contacts.retain(|&(i, j, _)| groups.find(i) != groups.find(j));
@@ -347,6 +366,44 @@ fn depth(mesh: &Mesh, pair: [usize; 2]) -> f64 {
         above.min(below)
     };
     through(s, t).min(through(t, s))
+}
+
+/// Faces of bodies that share an edge cut each other by roundings: their corners on the planes of others go into their
+/// bodies by less than what vertices may be off their surfaces.
+fn withdrawn(
+    mesh: &Mesh,
+    pairs: &[[usize; 2]],
+    over: &Box3,
+    step: f64,
+) -> Result<Mesh, moldloft_mesh::MeshError> {
+    let corners = |face: usize| mesh.faces()[face];
+    let normal = |face: usize| {
+        let [a, b, c] = [0, 1, 2].map(|k| mesh.positions()[corners(face)[k] as usize]);
+        ((b - a).cross(c - a), a)
+    };
+    let mut moved: BTreeSet<u32> = BTreeSet::new();
+    for [s, t] in pairs.iter().flat_map(|&[s, t]| [[s, t], [t, s]]) {
+        let (n, at) = normal(t);
+        let near = |v: &u32| {
+            let height = (mesh.positions()[*v as usize] - at).dot(n) / n.norm();
+            height.abs() <= TOUCH * step
+        };
+        moved.extend(corners(s)[..3].iter().copied().filter(near));
+    }
+    let mut outward: FxHashMap<u32, Vec3> = FxHashMap::default();
+    for (face, corners) in mesh.faces().iter().enumerate() {
+        for v in corners[..3].iter().filter(|v| moved.contains(v)) {
+            let sum = outward.entry(*v).or_default();
+            *sum += normal(face).0.normalized().unwrap_or_default();
+        }
+    }
+    let size = (0..3).map(|k| over.high[k] - over.low[k]).fold(0.0, f64::max);
+    let mut positions = mesh.positions().to_vec();
+    for (v, n) in outward {
+        positions[v as usize] =
+            positions[v as usize] - n.normalized().unwrap_or_default() * (BACK * size);
+    }
+    Mesh::new(mesh.topology().clone(), positions)
 }
 
 /// The facets of several sets that share no volume as those of the whole `set`; `None` when triangles of bodies whose
@@ -406,22 +463,28 @@ pub(super) fn together(
             builder.add_faces(info(&leaves[leaf]), faces).map_err(broken)?;
         }
     }
-    let mesh = Mesh::new(builder.build().into(), positions).map_err(broken)?;
+    let mut mesh = Mesh::new(builder.build().into(), positions).map_err(broken)?;
     let mut undecided: Vec<Box3> = parts.iter().flat_map(|p| p.undecided.iter().copied()).collect();
-    let corner = |face: usize| mesh.faces()[face][0] as usize;
-    for pair in crossing_faces(&mesh, None) {
-        if body[corner(pair[0])] == body[corner(pair[1])] || depth(&mesh, pair) <= TOUCH * step {
-            continue;
-        }
-        if !found.tangent {
+    let body_of = |mesh: &Mesh, face: usize| body[mesh.faces()[face][0] as usize];
+    for round in 0..=ROUNDS {
+        let mut pairs = crossing_faces(&mesh, None);
+        pairs.retain(|p| body_of(&mesh, p[0]) != body_of(&mesh, p[1]));
+        let deep = |p: &[usize; 2]| depth(&mesh, *p) > TOUCH * step;
+        if !found.tangent && pairs.iter().any(deep) {
             return Ok(None);
         }
-        for face in pair {
-            let middle = (mesh.positions()[corner(face)] - over.low) / step;
-            let low =
-                over.low + Vec3::of(middle.x.floor(), middle.y.floor(), middle.z.floor()) * step;
-            undecided.push(Box3 { low, high: low + Vec3::of(step, step, step) });
+        if pairs.is_empty() || round == ROUNDS || pairs.iter().all(deep) {
+            for face in pairs.into_iter().flatten() {
+                let at = mesh.positions()[mesh.faces()[face][0] as usize];
+                let middle = (at - over.low) / step;
+                let cell = Vec3::of(middle.x.floor(), middle.y.floor(), middle.z.floor());
+                let low = over.low + cell * step;
+                undecided.push(Box3 { low, high: low + Vec3::of(step, step, step) });
+            }
+            break;
         }
+        pairs.retain(|p| !deep(p));
+        mesh = withdrawn(&mesh, &pairs, over, step).map_err(broken)?;
     }
     let place = |b: &Box3| [b.low.x, b.low.y, b.low.z];
     undecided.sort_by(|a, b| place(a).partial_cmp(&place(b)).unwrap_or(std::cmp::Ordering::Equal));
