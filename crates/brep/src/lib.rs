@@ -19,12 +19,14 @@ mod meet;
 mod patch;
 mod patches;
 mod seams;
+mod volume;
 
 pub use analytic::SurfaceAxes;
 pub use check::{Fault, ShellFacts};
 pub use labelled::{FacetFault, FacetFaultKind, LabelledFacets};
 pub use meet::{ExactCurve, meet};
 pub use patch::SurfaceField;
+pub use volume::BrepVolume;
 
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;

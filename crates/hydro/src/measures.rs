@@ -59,7 +59,8 @@ const DEEPEST: u32 = 48;
 /// A part that was halved more often has a kink inside.
 const KINKED: u32 = 20;
 
-/// The volume of a solid, its centre, and an estimate of the error of the volume. `None` when a place is not finite.
+/// The volume of a solid, negative when it is left-handed, its centre, and an estimate of the error of the volume. `None`
+/// when a place is not finite.
 ///
 /// By Gauss points, eight along each parameter of a part; the part whose halves differ most from it is halved along
 /// the parameter of that difference, so that a kink inside is closed in upon. Where there is one, derivatives have
@@ -143,5 +144,5 @@ pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)
     if volume.re() == 0.0 {
         return Some((T::zero(), solid.eval(0.5.into(), 0.5.into(), 0.5.into()), error));
     }
-    Some((volume.abs(), moment / volume, error))
+    Some((volume, moment / volume, error))
 }

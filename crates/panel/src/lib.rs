@@ -33,7 +33,7 @@ mod t_junctions;
 mod topology;
 mod triangle_bodies;
 
-pub use blocks::{BlockNote, Blocking, MOST_CELLS, grid as solid_grid};
+pub use blocks::{BlockNote, Blocking};
 pub use contour::{Contour, ContourCutter, body_section};
 pub use contour_integrals::{ContourPiece, body_integrals, contour_piece};
 pub use draft::divisions;

@@ -13,9 +13,10 @@ use moldloft_brep::{Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxe
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 use moldloft_field::{
-    FacetOptions, Facets, Form, Membership, Resolution, Set, around, facet, set_of,
+    Effort, FacetOptions, Facets, Form, Membership, Resolution, Set, around, certified, facet,
+    set_of,
 };
-use moldloft_mesh::Mesh;
+use moldloft_mesh::{Mesh, measure};
 use moldloft_model::Object;
 use moldloft_num::{Box3, Vec3};
 use moldloft_picture::PALETTE;
@@ -31,6 +32,10 @@ const PLACES: f64 = 6.0;
 
 /// A part that cells pass over.
 const THIN: &str = "thin-part";
+
+/// The volume of a body is proved to this part of it, with at most so many cells.
+const SHARE: f64 = 1e-6;
+const PROOF: usize = 60_000;
 
 /// What helps with a body that is refused.
 const HELP: &str = "write it as stl, 3mf or obj, or hide it";
@@ -98,7 +103,11 @@ impl SetOfBody<'_> {
             }
             let mut made = Brep::default();
             let places = made.add_facets(labelled, accuracy, size);
-            match self.judged(&made, places, step, [accuracy, size]) {
+            let fault = match self.judged(&made, places, step, [accuracy, size]) {
+                None => self.wrong_volume(&made, &facets)?,
+                fault => fault,
+            };
+            match fault {
                 None => {
                     brep.append(made);
                     return Ok(None);
@@ -127,7 +136,11 @@ impl SetOfBody<'_> {
             let mut made = Brep::default();
             let labelled = labelled(&facets, self.mesh, self.name);
             let places = made.add_patches(labelled, &field, accuracy, size);
-            match self.judged(&made, places, facets.step, [accuracy, size]) {
+            let fault = match self.judged(&made, places, facets.step, [accuracy, size]) {
+                None => self.wrong_volume(&made, &facets)?,
+                fault => fault,
+            };
+            match fault {
                 None => {
                     brep.append(made);
                     return Ok(None);
@@ -151,6 +164,39 @@ impl SetOfBody<'_> {
             Ok(places) => elsewhere(made, self.set, self.over, places, step, scale)
                 .map(|place| missed(self.name, place, step)),
         }
+    }
+
+    /// What is wrong with a body whose faces do not enclose the volume that is proved of the set: a part that all cells miss.
+    /// Faces of which the volume is not known by their edges are judged by that of the facets.
+    fn wrong_volume(
+        &self,
+        made: &Brep,
+        facets: &Facets,
+    ) -> Result<Option<Diagnostic>, ExportFailure> {
+        let shown = measure(&facets.mesh);
+        let size = (0..3).map(|k| self.over.high[k] - self.over.low[k]).fold(0.0, f64::max);
+        let (volume, off) = match made.volume() {
+            Some(v) => (v.volume, v.error + (made.gap + 1e-9 * size) * shown.area),
+            // Triangles are as far from their surfaces as their centres.
+            None => (shown.volume, facets.worst_centre() * shown.area),
+        };
+        let effort = Effort { cells: PROOF, ..Effort::to(SHARE * volume.abs()) };
+        let proved = certified(self.set, self.over, &effort, &Default::default()).map_err(|e| {
+            Diagnostic::error(
+                "cannot-write",
+                format!("`{}` has no certified volume: {e}", self.name),
+            )
+        })?;
+        let bracket = proved.bracket.volume();
+        if volume >= bracket.low - off && volume <= bracket.high + off {
+            return Ok(None);
+        }
+        let place =
+            proved.open.first().map_or_else(|| self.over.centre(), |(place, _)| place.centre());
+        Ok(Some(missed(self.name, place, facets.step).found(format!(
+            "faces that enclose {volume:.9}, and a volume from {:.9} to {:.9}",
+            bracket.low, bracket.high
+        ))))
     }
 }
 

@@ -32,7 +32,7 @@ pub(crate) mod vertex;
 use crate::error::solid_box;
 use crate::expr::form::Form;
 use crate::expr::tape::ExprTape;
-use crate::set::{Leaf, SetAttributes};
+use crate::set::{Compiled, Leaf, SetAttributes};
 use crate::{FieldError, Set};
 pub use crossing::crossing_faces;
 use grid::Grid;
@@ -265,7 +265,7 @@ struct CompleteFacets {
     facets: Facets,
     /// False when more cells would have been needed than allowed.
     all: bool,
-    parted: Option<(Vec<Set>, Vec<Vec3>)>,
+    parted: Option<contacts::Parted>,
 }
 
 impl CompleteFacets {
@@ -278,9 +278,10 @@ impl CompleteFacets {
         before: Option<&Facets>,
     ) -> Result<Facets, FieldError> {
         match &self.parted {
-            Some((sets, contacts)) => {
-                contacts::together(sets, contacts, over, step, accuracy, options)
-            }
+            Some(parted) => match contacts::together(set, parted, over, step, accuracy, options)? {
+                Some(facets) => Ok(facets),
+                None => at_step(set, over, step, accuracy, options, before),
+            },
             None => at_step(set, over, step, accuracy, options, before),
         }
     }
@@ -295,21 +296,19 @@ fn whole(
     options: &FacetOptions,
 ) -> Result<CompleteFacets, FieldError> {
     let mut found = CompleteFacets { facets, all: true, parted: None };
-    let mut asked = false;
+    if let Some(parted) = contacts::parted(set, over, &options.budget)? {
+        let step = found.facets.step;
+        let made = contacts::together(set, &parted, over, step, f64::INFINITY, options)?;
+        if let Some(facets) = made {
+            found.facets = facets;
+            found.parted = Some(parted);
+        }
+    }
     loop {
         let missed = found.facets.unresolved.iter().filter(|u| u.missed);
         let (count, volume) = missed.fold((0, 0.0), |(n, v), u| (n + 1, v + u.volume));
         if count == 0 {
             return Ok(found);
-        }
-        if !asked {
-            asked = true;
-            found.parted = contacts::parted(set, over, &options.budget)?;
-            if found.parted.is_some() {
-                let step = found.facets.step;
-                found.facets = found.again(set, over, (step, f64::INFINITY), options, None)?;
-                continue;
-            }
         }
         let body = moldloft_mesh::measure(&found.facets.mesh).volume.abs();
         let matters = most > USUAL_CELLS || volume > MATTERS * body;
@@ -340,6 +339,12 @@ fn halvings(length: f64, least: f64) -> u32 {
     (0..1000).find(|&k| length <= least * 2f64.powi(k)).unwrap_or(1000) as u32
 }
 
+/// How many of the leaves of a capped set are the set's own. A face of the set that lies in a face of the box is the set's.
+fn own_leaves(capped: &Compiled<f64>) -> usize {
+    let own = capped.places.len().saturating_sub(CAPS.len());
+    capped.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0)
+}
+
 fn at_step(
     set: &Set,
     over: &Box3,
@@ -354,10 +359,8 @@ fn at_step(
         .filter(|b| b.memory.grid == grid)
         .map(|b| Reuse { blocks: b.memory.blocks.iter().map(|pair| (pair.1.at, pair)).collect() });
     let divided = divide::divide(&grid, &compiled.tape, &compiled.leaves, options, reuse.as_ref())?;
+    let own_leaves = own_leaves(&compiled);
     let leaves = compiled.leaves;
-    // A face of the set that lies in a face of the box is the set's.
-    let own = compiled.places.len().saturating_sub(CAPS.len());
-    let own_leaves = compiled.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0);
     let mut made = remove_intersections::assembled(&grid, &leaves, &divided.blocks, options.sharp);
     let rule = RefinementRule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
     let tapes = Tapes::new(&grid, &divided.blocks, &compiled.tape);

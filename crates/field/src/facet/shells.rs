@@ -88,7 +88,12 @@ impl Facets {
         };
         let mut found: Vec<Vec3> =
             (0..positions.len()).filter(|&v| meets(v)).map(|v| positions[v]).collect();
-        found.extend_from_slice(&self.contacts);
+        let known = found.len();
+        for p in &self.contacts {
+            if found[..known].iter().all(|q| q.distance(*p) > near) {
+                found.push(*p);
+            }
+        }
         found.sort_by(|a, b| {
             a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
         });

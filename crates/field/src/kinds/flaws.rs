@@ -57,7 +57,7 @@ pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
             _ => (
                 "touching-bodies",
                 format!(
-                    "bodies touch in {} point{}, the first at ({:.6}, {:.6}, {:.6}): each has a vertex of \
+                    "bodies touch in {} point{}, the first at ({:.6}, {:.6}, {:.6}): each has vertices of \
                      its own there, so that all stay manifold",
                     places.len(),
                     if places.len() == 1 { "" } else { "s" },

@@ -3,6 +3,7 @@
 mod blends;
 mod certified;
 mod common;
+mod contacts;
 mod distances;
 mod faces;
 mod facets;

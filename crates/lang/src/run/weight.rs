@@ -2,15 +2,13 @@
 //! from the shape where it is a mass per length, area or volume of one.
 
 use crate::model_file::text::Text;
+use crate::value::member::ROUGH;
 use moldloft_hydro::{USUAL_ACCURACY, curve_measures, solid_measures, surface_measures};
 use moldloft_model::Object;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{Array, Build, CallError, Context, Kind, Role, Row, Scalar, Value};
 use std::sync::Arc;
-
-/// An error of a volume that is refused, relative to it.
-const ROUGH: f64 = 1e-6;
 
 /// A mass and its centre: a part of a ship's weight.
 ///
@@ -92,6 +90,7 @@ impl<T: Real> Build<T> for Weight<T> {
             }
             Value::Solid(solid) => {
                 let (volume, centre, error) = solid_measures(&**solid).ok_or_else(unsound)?;
+                let volume = volume.abs();
                 if error > ROUGH * volume.re() {
                     let found = format!("a volume of {} that is known to {error:.1e}", volume.re());
                     return Err(CallError::new(

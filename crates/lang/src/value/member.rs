@@ -1,11 +1,9 @@
 //! What values own: `.x`, `.t`, `.length`, `.area`, the edges and corners of surfaces, and the like.
 
 use moldloft_diag::Diagnostic;
-use moldloft_hydro::{USUAL_ACCURACY, surface_measures};
-use moldloft_mesh::{Blocks, HexBlock};
+use moldloft_hydro::{USUAL_ACCURACY, solid_measures, surface_measures};
 use moldloft_model::Object;
 use moldloft_num::{Order, Real, Surface, Vec3, gauss_legendre};
-use moldloft_panel::{MOST_CELLS, solid_grid};
 use moldloft_registry::{Array, ArrayShape, Point, Scalar, SolidRef, SurfaceRef, Value, Vectors};
 use std::sync::Arc;
 
@@ -147,7 +145,7 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
     }
 }
 
-/// The area, the centre of the area, or the enclosed volume of a surface; the volume of a solid, on its cells.
+/// The area, the centre of the area, or the enclosed volume of a surface; the volume of a solid.
 pub fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<Value<T>, Diagnostic>> {
     if let Value::Solid(solid) = object.value()? {
         return (name == "volume").then(|| solid_volume(solid, object).map(Value::Number));
@@ -205,28 +203,17 @@ fn is_closed<T: Scalar>(surface: &dyn Surface<T>) -> bool {
 /// Places of an edge, between its ends, at which it is compared with others.
 const EDGE_PLACES: usize = 24;
 
-/// Cells along a direction of which the solid itself says nothing.
-const USUAL_CELLS: usize = 8;
+/// An error of a volume that is refused, relative to it.
+pub const ROUGH: f64 = 1e-6;
 
-/// The volume of a solid, measured on its own cells; negative when it is left-handed.
+/// The volume of a solid by quadrature on its shape, negative when it is left-handed: the figure that weights take, too.
 fn solid_volume<T: Scalar>(solid: &SolidRef<T>, object: &Object<T>) -> Result<T, Diagnostic> {
-    let cells = object.head.blocks.map(|n| if n == 0 { USUAL_CELLS } else { n as usize });
-    let count = cells.iter().map(|&n| n as u64).product::<u64>();
-    if count > MOST_CELLS {
-        let message = format!("{count} cells are too many");
-        return Err(Diagnostic::error("too-many-cells", message)
-            .expected(format!("at most {MOST_CELLS}"))
-            .help("lower the divisions of the solid"));
+    let (volume, _, error) = solid_measures(&**solid).ok_or_else(not_finite)?;
+    if error > ROUGH * volume.re().abs() {
+        let message = format!("the volume of `{}` does not settle", object.name);
+        return Err(Diagnostic::error("rough-volume", message)
+            .expected("a solid without kinks that run across its parameters")
+            .found(format!("a volume of {} that is known to {error:.1e}", volume.re())));
     }
-    let points = solid_grid(solid, cells);
-    let block = HexBlock {
-        name: object.name.to_string(),
-        size: cells.map(|n| n + 1),
-        vertices: (0..points.len() as u32).collect(),
-        faces: Default::default(),
-    };
-    match Blocks::new(points, vec![block]) {
-        Ok(blocks) => Ok(blocks.volume()),
-        Err(error) => Err(Diagnostic::error("no-mesh", error.to_string())),
-    }
+    Ok(volume)
 }

@@ -12,7 +12,7 @@ mod marks;
 mod notes;
 
 use divisions::{BlockDivisions, DivisionClasses};
-pub use draft::grid;
+use draft::grid;
 use draft::{BlockDraft, solid_of};
 use joiner::BlockJoiner;
 use moldloft_mesh::{BlockFace, Blocks, HexBlock};
@@ -24,7 +24,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The most cells of a model.
-pub const MOST_CELLS: u64 = 20_000_000;
+const MOST_CELLS: u64 = 20_000_000;
 
 /// Which vertices of volume blocks there are and who computes them; independent of the scalar.
 #[derive(Clone, Debug)]
