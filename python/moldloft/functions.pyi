@@ -68,7 +68,8 @@ def fair(
     """A row of points, faired: control points of a uniform cubic that each stay within a tolerance.
 
     On uniform points the same steps fair the points themselves: interpolation and fourth
-    differences commute. Open rows keep their first and last two points.
+    differences commute. Open rows keep their first and last two points. Points on a line, conic,
+    plane cubic or helix stay.
 
     Parameters
     ----------

@@ -7623,7 +7623,9 @@ def FairCurve(
     Parameters and knots follow the points' spacing. Points that are as fair as the tolerance allows do
     not move. The result is continuous in the points. Points can be control points
     or be faired themselves instead (`as`); these, curves that join others and the mode "faithful"
-    take the number of a point for its parameter, as the report of 1991 does. In mode "faithful" the
+    take the number of a point for its parameter, as the report of 1991 does. Their members are `deviation`
+    (how far control points, or the points themselves, moved) and, of optima, `value`, `gap` and `active`.
+    Points on a line, conic, plane cubic or helix stay in any case, unless `goal` is "fairest". In mode "faithful" the
     worst knots are removed and re-inserted one after the other (Farin and Sapidis 1989), one step per
     point, and which knot comes first may change with the points.
 
@@ -8020,6 +8022,7 @@ def FairPatches(
     degree: _Integer | None = ...,
     seams: _Text | None = ...,
     rims: object | None = ...,
+    goal: _Text | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -8061,6 +8064,10 @@ def FairPatches(
         Continuity across seams: "position", "tangent" or "curvature". Default curvature.
     rims : value, optional
         Kept at rims that are not seams; see `FairSurf`. Default corners.
+    goal : text, optional
+        "fairest", or "near": where all lines of all grids are exact (lines, conics, plane
+        cubics, helices) these move no farther than continuity across the seams asks for, give
+        or take a factor of eight. Default near.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8094,6 +8101,9 @@ def NetSurf(
     attributes: _Text | None = ...,
 ) -> SurfaceHandle:
     """One surface of several that are faired together.
+
+    Its members are `deviation` (how far its control points moved) and, of all surfaces together, `value`,
+    `gap` and `active`.
 
     Parameters
     ----------

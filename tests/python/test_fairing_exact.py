@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import moldloft
-from moldloft.fairing import network
+from moldloft.fairing import network, patches
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 
@@ -113,6 +113,59 @@ def test_exact_networks_stay(name):
             assert far <= 1e-12 * size, (seed, measure, grid.shape)
 
 
+@pytest.mark.parametrize("name", [n for n in GRIDS if n != "hemisphere"])
+def test_exact_grids_stay_in_every_mode(name):
+    ways = [{"as_": as_, "mode": m} for as_ in ("control", "fit") for m in ("faithful", "sweeps")]
+    ways += [
+        {"as_": "control"},
+        {"as_": "fit", "bound": "curve"},
+        {"as_": "fit", "bound": "points"},
+    ]
+    for seed in range(10 if SOAK else 2):
+        grid, closed, size = drawn(name, seed)
+        for way in ways:
+            faired = moldloft.fair(grid, 1e-2 * size, closed=closed, **way)
+            assert np.abs(faired.points - grid).max() <= 1e-12 * size, way
+            assert any("stay as they are" in note for note in faired.notes)
+            assert "note: the points are on lines" in str(faired)
+        moved = moldloft.fair(grid, 1e-2 * size, closed=closed, as_="control", goal="fairest")
+        if name != "plane":
+            assert np.abs(moved.points - grid).max() > 1e-4 * size
+        if name in ("hemisphere", "torus"):
+            continue
+        data, curves = grid.reshape(-1, 3), lines_of(grid.shape[:2], closed)
+        for way in ({"mode": "faithful"}, {"mode": "sweeps"}, {"spacing": "index"}):
+            net = network(data, curves, 1e-2 * size, **way)
+            assert np.abs(net.points - data).max() <= 1e-12 * size, way
+
+
+@pytest.mark.parametrize("seams", ["position", "tangent", "curvature"])
+def test_exact_patches_move_by_what_their_seams_ask_for(seams):
+    rng = np.random.default_rng(2)
+    u, v = np.meshgrid(np.arange(15.0), np.arange(7.0), indexing="ij")
+    flat = np.stack([u, 0.3 * u - 0.1 * v, v], -1)
+    bent = np.stack([u, 0.02 * u**2 + 0.01 * v**2, v], -1)
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    for name, grid in (("flat", flat), ("bent", bent), ("turned", bent @ turn.T)):
+        for as_ in ("fit", "control"):
+            both = [grid[:8], grid[7:]]
+            faired = patches(both, 0.05, seams=seams, as_=as_)
+            far = max(np.abs(a - b).max() for a, b in zip(faired.grids, both, strict=True))
+            # The knots of control points at an end are not even: parabolas do not run on.
+            exact = name == "flat" or as_ == "fit" or seams == "position"
+            assert far <= (1e-11 if exact else 0.05), (name, as_, far)
+            if name != "flat" and as_ == "fit":
+                moved = patches(both, 0.05, seams=seams, as_=as_, goal="fairest", measure="bending")
+                assert np.abs(moved.grids[0] - both[0]).max() > 1e-3
+    angle = np.linspace(0, 1.5, 15)
+    arc = np.stack([np.cos(angle), np.sin(angle), 0 * angle], -1)
+    tube = arc[:, None] + np.arange(6.0)[:, None] * np.array([0, 0, 0.3])
+    both = [tube[:8], tube[7:]]
+    faired = patches(both, 0.05, seams=seams)
+    far = max(np.abs(a - b).max() for a, b in zip(faired.grids, both, strict=True))
+    assert far < 2e-4, far
+
+
 def test_corners_between_exact_parts_stay():
     rng = np.random.default_rng(3)
     for _ in range(40 if SOAK else 5):
@@ -182,6 +235,51 @@ def test_exact_entities_stay(measure):
     model = moldloft.loads(points + net + " NetCurve a(n, 1); NetCurve b(n, 20);")
     assert model.eval("a.deviation") <= 1e-12 * size
     assert model.eval("b.deviation") <= 1e-12 * size
+
+
+def samples(model, name, n=9):
+    return np.array([model.eval(f"{name}({t})") for t in np.linspace(0, 1, n)], float)
+
+
+def test_exact_entities_stay_in_every_mode():
+    rng = np.random.default_rng(6)
+    for _ in range(10 if SOAK else 2):
+        u = along(rng, 20, 10)
+        for points in (
+            np.c_[3 * u, 0.4 * u, u],
+            np.c_[3 * u - 1, 0.5 * (3 * u - 1) ** 2, 0 * u],
+            np.c_[np.cos(2.5 * u), np.sin(2.5 * u), 0 * u],
+        ):
+            for way in ('as = "control"', 'as = "points"', 'mode = "faithful"'):
+                near = moldloft.loads(curve_text(points, f"0.05, {way}"))
+                still = moldloft.loads(curve_text(points, f"0, {way}"))
+                far = np.abs(samples(near, "c") - samples(still, "c")).max()
+                assert far <= 1e-12, (way, far)
+        for name in ("plane", "translated", "tube"):
+            grid, _, size = drawn(name, int(rng.integers(100)))
+            for way in ('as = "control"', 'mode = "faithful"'):
+                models = [
+                    moldloft.loads(grid_text(grid, f"{number(tol)}, {way}"))
+                    for tol in (0.01 * size, 0)
+                ]
+                values = [np.array(m.eval("s(0.37, 0.61)"), float) for m in models]
+                assert np.abs(values[0] - values[1]).max() <= 1e-12 * size, (name, way)
+
+
+def test_an_exact_path_on_a_surface_stays():
+    text = (
+        "Line l({0, 0, 0}, {4, 0, 0}); Line m({0, 0, 3}, {4, 1, 3}); RuledSurf S(l, m); "
+        "AbsMagnet p0(S, 0, 0.1); AbsMagnet p1(S, 0.1, 0.14); AbsMagnet p2(S, 0.15, 0.16); "
+        "AbsMagnet p3(S, 0.4, 0.26); AbsMagnet p4(S, 0.7, 0.38); AbsMagnet p5(S, 0.8, 0.42); "
+        "AbsMagnet p6(S, 0.9, 0.46); AbsMagnet p7(S, 1, 0.5); "
+    )
+    for way in ("", ', mode = "faithful"'):
+        model = moldloft.loads(
+            f"{text} FairSnake f({{p0, p1, p2, p3, p4, p5, p6, p7}}, 0.05{way});"
+        )
+        for p in samples(model, "f"):
+            # On S y is u v, v is z / 3 and u is x / 4; the path is v = 0.1 + 0.4 u.
+            assert abs(p[2] / 3 - 0.1 - 0.4 * p[0] / 4) < 1e-12, way
 
 
 def test_entities_report_how_they_came_out():

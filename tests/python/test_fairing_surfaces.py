@@ -124,3 +124,29 @@ def test_what_is_asked_is_kept(cli, tmp_path):
         cli("fair", "hull.p3d", "--tol", "6e-3", "--as", "fit", "-o", "o.p3d", "--json").stdout
     )
     assert told["goal"] == "near" and told["deviation_data"] <= 6e-3 * (1 + 1e-12)
+
+
+def test_noise_between_close_stations_decides_no_parameters():
+    """Stations and waterlines stay the parameters where steps are steep by noise alone."""
+
+    def share(values):
+        values = np.asarray(values)
+        return (values - values[0]) / (values[-1] - values[0])
+
+    for seed in range(8):
+        rng = np.random.default_rng([9, seed])
+        x = np.sort(np.r_[0, 10, rng.uniform(0, 10, 12)])
+        z = np.sort(np.r_[0, 1.25, rng.uniform(0, 1.25, 6)])
+        # A pair of stations nearer to each other than their readings are exact.
+        x[6], z[3] = x[5] + 1e-3, z[2] + 1e-3
+        a, b = np.meshgrid(x, z, indexing="ij")
+        y = wigley(a, b) + rng.uniform(-0.005, 0.005, a.shape)
+        for motion in ("ball", (0, 1, 0)):
+            grid = np.stack([a, y, b], -1)
+            faired = moldloft.fair(grid, 0.005, as_="fit", motion=motion, goal="fairest")
+            for knots, places in zip(faired.surface.knots, (x, z), strict=True):
+                off = np.abs(share(knots)[:, None] - share(places)).min(axis=1)
+                assert off.max() < 1e-9, (seed, motion)
+        steep = np.stack([a, 30 * wigley(a, b), b], -1)
+        knots = moldloft.fair(steep, 0.005, as_="fit", motion=(0, 1, 0)).surface.knots[1]
+        assert np.abs(share(knots)[:, None] - share(z)).min(axis=1).max() > 1e-3

@@ -97,6 +97,7 @@ pub use curve::corners::{FitWithCorners, interpolate_with_corners};
 pub use curve::data::{
     Data, DataFit, DataOptions, Merged, MovingFit, fair_data, fair_data_with, merged,
 };
+pub use curve::exact::{are_exact, is_exact};
 pub use curve::fit::{
     Fit, ParameterSpacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
     parameters_across, parameters_with,

@@ -57,6 +57,24 @@ def only_data(goal: Any) -> None:
         raise FairingError(f'the goal `{word}` is for optima of data, `as_="fit"`')
 
 
+EXACT = (
+    "the points are on lines, conics, plane cubics or helices and stay as they are: the goal "
+    "`fairest` moves them"
+)
+"""What is said where exact points stay although others would move."""
+
+EXACT_NEAREST = (
+    "the points are on lines, conics, plane cubics or helices: of the splines with these knots the "
+    "one nearest to them is taken; the goal `fairest` moves it"
+)
+"""The same of splines that need not pass through them."""
+
+
+def stays_near(goal: Any, free: bool) -> bool:
+    """Whether a goal leaves exact points where they are: nothing else is asked of them."""
+    return free and goal_of(goal)[0] == "near"
+
+
 def spacing_of(given: Any) -> tuple[str, tuple[float, float, float]]:
     """The word and the direction of a spacing."""
     axes = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}

@@ -8,10 +8,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, points_of, radii
-from moldloft.fairing.asked import Asked, ends_of, goal_of, index_of, only_data
+from moldloft.fairing.asked import (
+    EXACT,
+    EXACT_NEAREST,
+    Asked,
+    ends_of,
+    goal_of,
+    index_of,
+    only_data,
+    stays_near,
+)
 from moldloft.fairing.conditions import join_conditions, linear_conditions
 from moldloft.fairing.control import Own, left, prepared, result, spread
 from moldloft.fairing.data import fair_data
@@ -137,6 +147,8 @@ def fair_curve(
         the nearest to the data whose measure exceeds the least by at most this share.
         ``("energy", most)``: the nearest whose measure is at most this. ``"closest"``: the nearest
         that has the ``shape``, whatever it measures. Data that are as fair as asked do not move.
+        Other modes than optima of data have ``"near"``, which leaves points on a line, conic,
+        plane cubic or helix as they are, and ``"fairest"``.
     shape
         What shape an optimum of data has, all points counted from 0: ``("convex", i, j)`` or
         ``("concave", i, j)``, a turn to the left or to the right only between two points (seen
@@ -202,6 +214,7 @@ def fair_curve(
     started = time.perf_counter()
     own = Own(knots, weights, period)
     word, share = goal_of(goal)
+    through, tangents = list(through), list(tangents)
     if not isinstance(points, Spline) and mode == "optimum":
         asked = Asked(
             closed,
@@ -219,7 +232,6 @@ def fair_curve(
             shape,
             accuracy,
         )
-        through, tangents = list(through), list(tangents)
         # Points that move are those of the curve through them.
         moves = as_ == "points" and bound is None and spacing not in ("index", "uniform")
         if (as_ == "fit" or moves) and not own.given and count is None and bound in (None, "data"):
@@ -242,6 +254,11 @@ def fair_curve(
     spline, data, width = made.spline, made.data, made.width
     fitted = made.role in ("fit", "spline")
     n = len(spline.control_points)
+    # A result is near the points, and exact points are as fair as can be.
+    free = spline.weights is None and not (through or tangents or keep or joins)
+    stay = stays_near((word, share), free) and _core.is_exact(
+        data, list(made.breaks), spline.closed
+    )
     limits = radii(tol, n) if made.parameters is None else spread(left(tol, made), made, n)
     for finding in made.corrected:
         if finding.kind == "outlier" and made.role != "fit":
@@ -251,6 +268,8 @@ def fair_curve(
         bound = "curve" if fitted else "points"
     default = {"sweeps": 10, "levels": 2}.get(mode, n)
     kept = list(ends_of(ends if ends is not None else ("tangent" if fitted else 2), spline.closed))
+    if stay:
+        limits = [0.0] * n
     conditions, labels = linear_conditions(through, tangents, keep)
     for k, join in enumerate(join_conditions(joins, spline)):
         kept[int(join[1])] = "position"
@@ -276,6 +295,11 @@ def fair_curve(
     if conditions and mode != "optimum":
         raise FairingError("only the optimum keeps conditions; take mode `optimum`")
     core, told = spline._core.fair(chosen)
+    if stay and tol is not None:
+        # Which curve is the fairest was not asked.
+        told["certificate"]["gap"] = told["certificate"]["value"]
+        own_knots = made.role == "fit" and (own.given or count is not None)
+        told["notes"] = [*told["notes"], EXACT_NEAREST if own_knots else EXACT]
     seconds = time.perf_counter() - started
     return result(made, Spline._of(core), told, tol, mode, width, seconds, data)
 

@@ -13,7 +13,7 @@ from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, narrowed, points_of, radii, too_large
-from moldloft.fairing.asked import goal_of, only_data, spacing_of
+from moldloft.fairing.asked import EXACT, goal_of, only_data, spacing_of
 from moldloft.fairing.control import laid
 from moldloft.fairing.findings import along_lines
 from moldloft.fairing.report import Finding, lines_of
@@ -297,11 +297,14 @@ def network(
     else:
         still = [_number(i, count) for i in fixed]
     marks = [[k for k, i in enumerate(own) if i in marked] for own, _ in lists]
+    # The optimum along curves at parameters knows exact points itself.
+    stay = index and tol is not None and goal_of(goal)[0] == "near"
+    stay = stay and _core.are_exact(data, lists, sorted(marked))
     web = _core.Web(data, [(o, c, m) for (o, c), m in zip(lists, marks, strict=True)], degree)
     word, way = direction(motion)
     faired, told = web.fair(
         {
-            "tolerance": radii(tol, count),
+            "tolerance": [0.0] * count if stay else radii(tol, count),
             "motion": word,
             "direction": way,
             "fixed": still,
@@ -317,6 +320,9 @@ def network(
             "steps": {"faithful": 3, "sweeps": 50}.get(mode, 0) if steps is None else steps,
         }
     )
+    if stay:
+        # Which network is the fairest was not asked.
+        told["certificate"]["gap"] = told["certificate"]["value"]
     pairs = []
     for (own, closed), own_marks in zip(lists, marks, strict=True):
         spaced = "index" if index else spacing
@@ -346,7 +352,7 @@ def network(
         goal=wanted[0],
         used=told["used"],
         findings=along_lines(data, lists, marked),
-        notes=too_large(tol, data),
+        notes=(*too_large(tol, data), *((EXACT,) if stay else ())),
         value=told["certificate"]["value"],
         gap=told["certificate"]["gap"],
         seconds=seconds,

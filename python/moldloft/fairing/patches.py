@@ -12,6 +12,7 @@ import numpy as np
 from moldloft import _core
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, points_of, radii
+from moldloft.fairing.findings import lines_exact
 from moldloft.fairing.report import lines_of
 from moldloft.fairing.surface import SplineSurface, _rims
 
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = ["PatchesFairing", "patches"]
+
+ROUNDING = 1e-13
+"""What rounding moves, as a share of the size."""
 
 _EDGES = (("u0", "u1"), ("v0", "v1"))
 
@@ -130,6 +134,7 @@ def patches(
     bound: str = "points",
     rims: str | Mapping[str, str] = "corners",
     motion: Any = "ball",
+    goal: str = "near",
 ) -> PatchesFairing:
     """Fair surfaces that share edges as one, so that they run on across these.
 
@@ -150,6 +155,10 @@ def patches(
         What the points of grids are, ``"fit"`` or ``"control"``, and of what degree.
     measure, bound, rims, motion
         As for surfaces; rims that are seams keep what ``seams`` says.
+    goal
+        ``"fairest"``, or ``"near"``, which differs where all lines of all grids are exact (lines,
+        conics, plane cubics, helices): these move no farther than continuity across the seams asks
+        for, give or take a factor of eight.
 
     Returns
     -------
@@ -178,17 +187,23 @@ def patches(
         raise FairingError(f"points of a surface are `control` or `fit`, not `{as_}`")
     if seams not in ("position", "tangent", "curvature"):
         raise FairingError(f"seams keep position, tangent or curvature, not `{seams}`")
+    if goal not in ("near", "fairest"):
+        raise FairingError(f"the goal of surfaces with seams is near or fairest, not `{goal}`")
     if not surfaces:
         raise FairingError("expected surfaces, found none")
     started = time.perf_counter()
     before: list[SplineSurface] = []
     at: list[tuple[Floats, Floats] | None] = []
+    stays = goal == "near" and tol is not None and tol > 0
     for given in surfaces:
         if isinstance(given, SplineSurface):
             before.append(given)
             at.append(None)
+            net = given.control_points
+            stays = stays and not given._core.rational and lines_exact(net, given.closed)
             continue
         data, _ = points_of(given, 3)
+        stays = stays and lines_exact(data, (False, False))
         if as_ == "fit":
             made, places, _ = SplineSurface._interpolated(data, degree, ((), ()))
             before.append(made)
@@ -212,7 +227,24 @@ def patches(
         "conditions": [],
         "labels": [],
     }
-    cores, found, told = _core.Net.joined([s._core for s in before], seams, chosen)
+    parts = [s._core for s in before]
+    tries: list[float | None] = [tol]
+    if stays and tol is not None:
+        # Of exact surfaces the smallest move that lets them run on.
+        size = max(float(np.abs(s.control_points).max()) for s in before)
+        moves = [ROUNDING * size * 8**k for k in range(16)]
+        tries = [*(move for move in moves if move < tol), tol]
+    for least in tries:
+        chosen["tolerance"] = radii(least, count)
+        try:
+            cores, found, told = _core.Net.joined(parts, seams, chosen)
+        except FairingError:
+            if least == tries[-1]:
+                raise
+            continue
+        if least != tol:
+            told["certificate"]["gap"] = told["certificate"]["value"]
+        break
     faired = [SplineSurface._of(core) for core in cores]
     seconds = time.perf_counter() - started
     return PatchesFairing(

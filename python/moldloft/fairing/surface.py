@@ -14,8 +14,8 @@ from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, points_of, radii, too_large
-from moldloft.fairing.asked import only_data
-from moldloft.fairing.findings import along_lines
+from moldloft.fairing.asked import EXACT, only_data, stays_near
+from moldloft.fairing.findings import along_lines, grid_lines, lines_exact
 from moldloft.fairing.report import Finding, lines_of
 
 if TYPE_CHECKING:
@@ -514,6 +514,8 @@ class SurfaceFairing:
     """The distance of each point from the surface at its parameters, for fits."""
     used: float | None = None
     """The mean of the squared residuals over tolerances; 1 is noise that fills these evenly."""
+    stayed: bool = False
+    """Whether the points were exact and stayed in a mode that moves others."""
 
     @property
     def deviation_data(self) -> float:
@@ -531,10 +533,7 @@ class SurfaceFairing:
         if self.as_ != "fit":
             return ()
         m, n = self.data.shape[:2]
-        places = np.arange(m * n).reshape(m, n)
-        lines = [(row.tolist(), self.surface.closed[1]) for row in places]
-        lines += [(column.tolist(), self.surface.closed[0]) for column in places.T]
-        found = along_lines(self.data.reshape(-1, 3), lines)
+        found = along_lines(self.data.reshape(-1, 3), grid_lines((m, n), self.surface.closed))
         out = []
         for _, f in found:
             i, j = divmod(f.index, n)
@@ -545,7 +544,8 @@ class SurfaceFairing:
     @cached_property
     def notes(self) -> tuple[str, ...]:
         """What the user should know."""
-        return too_large(self.tol, self.data)
+        stays = (EXACT,) if self.stayed else ()
+        return (*too_large(self.tol, self.data), *stays)
 
     @property
     def gap_relative(self) -> float:
@@ -844,7 +844,8 @@ def fair_surface(
     spacing
         Parameters of data in each direction, the mean over its lines; see curves.
     goal
-        Which of the surfaces within the tolerances of data; see curves.
+        Which of the surfaces within the tolerances of data; see curves. Other modes have
+        ``"near"``, which leaves grids of exact lines as they are, and ``"fairest"``.
     breaks
         Rows of points along u and along v, from 0, that are knuckle lines: their points do not move
         by a bit and nothing is smoothed across them.
@@ -960,7 +961,15 @@ def fair_surface(
         "conditions": conditions,
         "labels": labels,
     }
+    free = not (surface._core.rational or conditions)
+    around = surface.closed
+    stay = tol is not None and stays_near(goal, free) and lines_exact(data, around, breaks)
+    if stay:
+        chosen["tolerance"] = [0.0] * (m * n)
     core, told = surface._core.fair(chosen)
+    if stay:
+        # Which surface is the fairest was not asked.
+        told["certificate"]["gap"] = told["certificate"]["value"]
     faired = SplineSurface._of(core)
     seconds = time.perf_counter() - started
     jumps_before, jumps_after = surface.measure("jumps"), faired.measure("jumps")
@@ -985,6 +994,7 @@ def fair_surface(
         gap=told["certificate"]["gap"],
         passes=passes if mode == "faithful" else None,
         seconds=seconds,
+        stayed=stay,
     )
 
 

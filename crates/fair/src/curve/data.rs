@@ -8,13 +8,15 @@
 //! what is kept is a proof about the data. The least energy sits at the edge of what is allowed,
 //! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
 
-use crate::curve::exact::{between_breaks, exact};
+use crate::curve::bends::{Counts, SolvedFit};
+use crate::curve::exact::is_exact;
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
     Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique, moved,
     rounding,
 };
+use crate::optimum::problem::CertifiedSolution;
 use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
 use crate::{
     Certificate, Condition, FairError, FoundArc, InterpolationSpace, Job, Limit, Measure,
@@ -145,7 +147,11 @@ pub fn merged(points: &[Vec3<f64>], radii: &[f64], closed: bool) -> Result<Merge
 
 impl Data {
     /// The parts of the optimum that are the same for all weights of the data.
-    fn parts<'a>(&self, options: &DataOptions, job: &'a Job) -> Result<Parts<'a>, FairError> {
+    pub(super) fn parts<'a>(
+        &self,
+        options: &DataOptions,
+        job: &'a Job,
+    ) -> Result<Parts<'a>, FairError> {
         self.parts_at(options, job, &job.points)
     }
 
@@ -251,10 +257,10 @@ impl Data {
     }
 
     /// Whether the data are exact from break to break.
-    fn exact_parts(&self) -> bool {
+    pub(super) fn exact_parts(&self) -> bool {
         let layout = &self.layout;
         let closed = layout.space.is_closed() || layout.owner.first() == layout.owner.last();
-        between_breaks(&self.points, &layout.break_data(), closed).iter().all(|part| exact(part))
+        is_exact(&self.points, &layout.break_data(), closed)
     }
 
     /// The data that pull, as rows of displacements over tolerances.
@@ -335,15 +341,18 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
     }
     let mut parts = data.parts(options, &job)?;
     let mut found = data.found(options, &job, &mut parts)?;
-    let fairest = std::mem::take(&mut found.fairest);
+    let (fairest, solution) = (std::mem::take(&mut found.fairest), found.solution.take());
     let plain = data.fit(found, &job);
-    let all = shape::samples(&data.layout.space, &plain.points, None, shape::COUNTING);
-    let plane = shape::plane_normal(&all).is_some();
     let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);
-    if options.bends || jumps || !plane || data.stays(options, &job, &plain) {
+    if options.bends || jumps || data.stays(options, &job, &plain) {
         return Ok(plain);
     }
-    data.without_bends(options, &job, plain, fairest)
+    let samples = Counts::samples(&data.layout.space, &plain.points);
+    if shape::plane_normal(&samples).is_none() {
+        return Ok(plain);
+    }
+    let counts = Counts::of(&samples);
+    data.without_bends(options, &job, plain, SolvedFit { fairest, counts, solution })
 }
 
 /// Times that signs and lines are made linear again at most.
@@ -360,223 +369,42 @@ const INSIDE: f64 = 1e-2;
 /// The change of the measure, as a share, at which the search for the least under signs ends.
 const SETTLED: f64 = 1e-8;
 
-/// The same where the weight of the data is not yet that of the goal.
-const COARSE: f64 = 1e-3;
-
-/// Times that signs are made linear again once the curve has them.
-const FEW: usize = 4;
-
-/// Times that signs are made linear at most where a turn fewer is all that they are for.
-const SOME: usize = 12;
-
-/// So many monotone pieces any curve may have, and so many more than the fairest the one that is near.
-const LEAST_PIECES: usize = 2;
-const MORE_PIECES: usize = 2;
-
-/// Steps of the logarithm of the data's weight, how many of them, and halvings of the last.
-const STEP: f64 = 1.4;
-const LIGHTER: usize = 8;
-const HALVES: usize = 2;
-
-/// Steps, and halvings of one of them, on the way between two curves.
-const SHARES: usize = 32;
-const HALVINGS: usize = 6;
+/// How exactly curves are solved for where a change of the measure is settled: as a share of that.
+const ROUGHLY: f64 = 1e-3;
 
 /// How a curve under signs is looked for.
 #[derive(Clone, Copy, Debug)]
-struct SignSearch {
+pub(super) struct SignSearch {
     /// The weight of the data; without one the goal's is found in each round.
-    weight: Option<f64>,
+    pub weight: Option<f64>,
     /// The change of the measure, as a share, at which it is settled.
-    settled: f64,
-    rounds: usize,
+    pub settled: f64,
+    pub rounds: usize,
+    /// What the measure and the weighed squares are at least: a curve that is as near to it as that is
+    /// settled, too.
+    pub least: f64,
 }
 
 impl SignSearch {
     /// The least of a goal.
-    const WHOLE: Self = Self { weight: None, settled: SETTLED, rounds: ROUNDS };
+    pub const WHOLE: Self =
+        Self { weight: None, settled: SETTLED, rounds: ROUNDS, least: f64::NEG_INFINITY };
 }
 
 impl Data {
-    /// The curve of a goal, or one near it that bends no more often than it has to and, under the goal
-    /// `near`, has hardly more monotone pieces than the fairest, and none more than the data's. Third
-    /// derivatives may buy smoothness with a bend, and budgets leave some of the data's: the signs of the fairest curve, or of that of
-    /// least bending, are conditions then, and the weight of the data falls until the pieces are few.
-    /// Where no such curve is found, one between it and the fairest is taken, which is within the
-    /// tolerances as both are.
-    fn without_bends(
-        &self,
-        options: &DataOptions,
-        job: &Job,
-        plain: DataFit,
-        fairest: Vec<Vec3<f64>>,
-    ) -> Result<DataFit, FairError> {
-        let space = &self.layout.space;
-        let near = matches!(options.goal, Goal::Near(_));
-        let turns = |points: &[Vec3<f64>]| shape::turns_back(space, points);
-        let signs = |points: &[Vec3<f64>]| {
-            shape::inflections(&shape::samples(space, points, None, shape::COUNTING))
-        };
-        let pieces = |points: &[Vec3<f64>]| shape::pieces(space, points);
-        let own = signs(&job.points);
-        let bent = turns(&plain.points) > 0 || signs(&plain.points) > own;
-        let before = pieces(&job.points);
-        let few = before.min(LEAST_PIECES + MORE_PIECES);
-        if !bent && (!near || pieces(&plain.points) <= few) {
-            return Ok(plain);
-        }
-        let fairest = if fairest.is_empty() { self.fairest(options, job)? } else { fairest };
-        let allowed = if near {
-            let least = pieces(&fairest);
-            (least.max(LEAST_PIECES) + MORE_PIECES).min(before.max(least))
-        } else {
-            usize::MAX
-        };
-        let mut starts = vec![(turns(&fairest), fairest)];
-        if bent {
-            let stiffest = self.least_bending(options, job)?;
-            let count = turns(&stiffest);
-            let at = usize::from(count >= starts[0].0);
-            starts.insert(at, (count, stiffest));
-        }
-        let most = starts[0].0;
-        let good = |points: &[Vec3<f64>]| turns(points) <= most && signs(points) <= own;
-        let fine = |points: &[Vec3<f64>]| good(points) && pieces(points) <= allowed;
-        if fine(&plain.points) {
-            return Ok(plain);
-        }
-        let least = plain.least;
-        // What the form costs is part of the gap.
-        let priced = |mut made: DataFit| {
-            made.certificate.gap = made.certificate.gap.max(made.certificate.value - least);
-            made.least = least;
-            made.fairest_used = plain.fairest_used;
-            made
-        };
-        let mut found: Option<DataFit> = None;
-        for (_, start) in starts.iter().filter(|s| s.0 <= most) {
-            let Some(shape) = ShapeConstraints::pattern(space, start) else { continue };
-            let signed = DataOptions { shape: shape.clone(), ..options.clone() };
-            let under = |weight: f64, from: &[Vec3<f64>]| -> Result<Option<DataFit>, FairError> {
-                let mut parts = self.parts(options, job)?;
-                let made = self.weighed(job, &mut parts, weight)?;
-                if good(&made.points) {
-                    return Ok(Some(made));
-                }
-                let search = SignSearch { weight: Some(weight), settled: COARSE, rounds: SOME };
-                match self.with_signs(&signed, job, shape.clone(), from, search) {
-                    Ok(made) => Ok(Some(made).filter(|made| good(&made.points))),
-                    Err(FairError::Shape { .. }) => Ok(None),
-                    Err(other) => Err(other),
-                }
-            };
-            // First under the weight of the goal's own curve.
-            let first =
-                if good(&plain.points) { Some(plain.clone()) } else { under(plain.weight, start)? };
-            let Some(mut made) = first else { continue };
-            if pieces(&made.points) <= allowed {
-                if options.goal != Goal::Fairest && !near {
-                    let then = SignSearch { weight: None, settled: f64::INFINITY, rounds: FEW };
-                    match self.with_signs(&signed, job, shape, &made.points, then) {
-                        Ok(more) if good(&more.points) => made = more,
-                        Ok(_) | Err(FairError::Shape { .. }) => {}
-                        Err(other) => return Err(other),
-                    }
-                }
-                return Ok(priced(made));
-            }
-            // Then less and less of it, and back half-way as long as the pieces are few.
-            let (mut high, mut low) = (libm::log(plain.weight), None);
-            for _ in 0..LIGHTER {
-                let weight = high - STEP;
-                let Some(tried) = under(libm::exp(weight), &made.points)? else { break };
-                if fine(&tried.points) {
-                    low = Some((weight, tried));
-                    break;
-                }
-                (high, made) = (weight, tried);
-            }
-            let Some((mut weight, mut best)) = low else {
-                found.get_or_insert(made);
-                continue;
-            };
-            for _ in 0..HALVES {
-                let middle = 0.5 * (weight + high);
-                match under(libm::exp(middle), &best.points)? {
-                    Some(tried) if fine(&tried.points) => (weight, best) = (middle, tried),
-                    _ => high = middle,
-                }
-            }
-            return Ok(priced(best));
-        }
-        if let Some(made) = found {
-            return Ok(priced(made));
-        }
-        let norm = options.measure.norm();
-        let rows = options.measure.rows(space)?;
-        // As much bending beside the measure as keeps the turns.
-        let stiff = Measure::Bending.rows(space)?;
-        let (low, high) = (plain.certificate.value, stiff.sum_sq(&plain.points));
-        let ratio = low.max(f64::MIN_POSITIVE) / high.max(f64::MIN_POSITIVE);
-        let mut parts = self.parts(options, job)?;
-        for factor in [0.1, 1.0, 10.0, 100.0] {
-            parts.measure = rows.clone().joined(&stiff.clone().scaled(factor * ratio.sqrt()));
-            let mut made = self.along(options, job, &mut parts)?;
-            if good(&made.points) {
-                made.certificate.value = crate::measure::value(&rows, norm, &made.points);
-                return Ok(priced(made));
-            }
-        }
-        let (_, start) = &starts[0];
-        let between = |share: f64| -> Vec<Vec3<f64>> {
-            let both = start.iter().zip(&plain.points);
-            both.map(|(p, q)| *p + (*q - *p) * share).collect()
-        };
-        let shares = (0..SHARES).rev().map(|k| k as f64 / SHARES as f64);
-        if let Some(mut low) = shares.into_iter().find(|&s| good(&between(s))) {
-            let mut high = low + 1.0 / SHARES as f64;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                *(if good(&between(middle)) { &mut low } else { &mut high }) = middle;
-            }
-            let points = between(low);
-            let value = crate::measure::value(&rows, norm, &points);
-            let mut made = self.fit(GoalOptimum::unmoved(&points, value, false), job);
-            let radii = &self.limit.radii;
-            made.active = made.residuals.iter().zip(radii).filter(|(r, a)| r >= a).count();
-            made.used = self.used(&made.residuals);
-            made.certificate.gap = value;
-            return Ok(priced(made));
-        }
-        let bends = signs(&plain.points).saturating_sub(own);
-        if bends == 0 || !options.conditions.is_empty() {
-            return Ok(DataFit { bends, ..plain });
-        }
-        // The curve through the data bends no more often than itself.
-        let value = crate::measure::value(&rows, norm, &job.points);
-        let mut kept = self.fit(GoalOptimum::unmoved(&job.points, value, false), job);
-        kept.least = least;
-        kept.bends = bends;
-        Ok(kept)
-    }
-
-    /// Whether data that did not move are to stay: they are exact, or as fair as asked. Under the goal
-    /// `near` others move for a turn that the fairest does not have.
-    fn stays(&self, options: &DataOptions, job: &Job, plain: &DataFit) -> bool {
-        let near = matches!(options.goal, Goal::Near(_));
-        let still = self.limit.radii.iter().all(|&r| r == 0.0);
-        plain.points == job.points && (!near || still || self.exact_parts())
-    }
-
     /// The mean of squared residuals over tolerances, over 1/3.
-    fn used(&self, residuals: &[f64]) -> f64 {
+    pub(super) fn used(&self, residuals: &[f64]) -> f64 {
         let moves = |(r, a): (&f64, &f64)| (*a > 0.0 && a.is_finite()).then(|| (r / a) * (r / a));
         let all: Vec<f64> = residuals.iter().zip(&self.limit.radii).filter_map(moves).collect();
         all.iter().sum::<f64>() * 3.0 / all.len().max(1) as f64
     }
 
     /// The control points of the curve of least bending within the tolerances.
-    fn least_bending(&self, options: &DataOptions, job: &Job) -> Result<Vec<Vec3<f64>>, FairError> {
+    pub(super) fn least_bending(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+    ) -> Result<Vec<Vec3<f64>>, FairError> {
         let (measure, goal) = (Measure::Bending, Goal::Fairest);
         let least =
             DataOptions { measure, goal, shape: ShapeConstraints::default(), ..options.clone() };
@@ -633,7 +461,11 @@ impl Data {
     }
 
     /// The control points of the fairest curve by the measure, whatever its shape.
-    fn fairest(&self, options: &DataOptions, job: &Job) -> Result<Vec<Vec3<f64>>, FairError> {
+    pub(super) fn fairest(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+    ) -> Result<Vec<Vec3<f64>>, FairError> {
         let (goal, shape) = (Goal::Fairest, ShapeConstraints::default());
         let plain = DataOptions { goal, shape, bends: true, ..options.clone() };
         let mut parts = self.parts(&plain, job)?;
@@ -671,7 +503,7 @@ impl Data {
 
     /// The curve of a goal under signs: these are made linear at a curve, and again at the one found,
     /// until it has them itself and no longer changes.
-    fn with_signs(
+    pub(super) fn with_signs(
         &self,
         options: &DataOptions,
         job: &Job,
@@ -690,7 +522,10 @@ impl Data {
         for round in 0..search.rounds {
             let mut parts = self.parts_at(&options, job, &control)?;
             let tried = match search.weight {
-                Some(weight) => self.weighed(job, &mut parts, weight),
+                Some(weight) => {
+                    parts.accuracy = parts.accuracy.max(search.settled * ROUGHLY);
+                    self.weighed(job, &mut parts, weight, None).map(|made| made.0)
+                }
                 None => self.along(&options, job, &mut parts),
             };
             let made = match tried {
@@ -723,6 +558,9 @@ impl Data {
                 options.shape.margin = (options.shape.margin + 2.0 * missed.0).min(most);
             }
             if missed.0 <= 0.0 {
+                let above = self.weighed_value(&made) - search.least;
+                let near = search.least.is_finite() && above <= search.settled * search.least.abs();
+                let settled = settled || near;
                 best = Some(self.exact(&options.shape, made));
                 if settled || search.settled.is_infinite() {
                     break;
@@ -733,7 +571,7 @@ impl Data {
     }
 
     /// The optimum of a goal.
-    fn along(
+    pub(super) fn along(
         &self,
         options: &DataOptions,
         job: &Job,
@@ -743,10 +581,16 @@ impl Data {
     }
 
     /// The optimum of the measure and the squared residuals of this weight.
-    fn weighed(&self, job: &Job, parts: &mut Parts<'_>, weight: f64) -> Result<DataFit, FairError> {
+    pub(super) fn weighed(
+        &self,
+        job: &Job,
+        parts: &mut Parts<'_>,
+        weight: f64,
+        before: Option<&CertifiedSolution>,
+    ) -> Result<(DataFit, CertifiedSolution), FairError> {
         let pull = self.pull(parts);
         parts.pull = (weight > 0.0).then(|| pull.scaled(weight.sqrt()));
-        let optimum = parts.solve()?;
+        let (optimum, solution) = parts.solve_after(before)?;
         let value = crate::measure::value(&parts.measure, parts.norm, &optimum.points);
         let mut found = GoalOptimum::unmoved(&optimum.points, value, false);
         found.optimum =
@@ -754,10 +598,17 @@ impl Data {
         found.weight = weight;
         let mut made = self.fit(found, job);
         made.used = self.used(&made.residuals);
-        Ok(made)
+        Ok((made, solution))
     }
 
-    fn fit(&self, found: GoalOptimum, job: &Job) -> DataFit {
+    /// The measure of a curve and its squares by their weight.
+    pub(super) fn weighed_value(&self, made: &DataFit) -> f64 {
+        let counts = |a: &&f64| **a > 0.0 && a.is_finite();
+        let count = self.limit.radii.iter().filter(counts).count().max(1);
+        made.certificate.value + made.weight * made.used * count as f64 / 3.0
+    }
+
+    pub(super) fn fit(&self, found: GoalOptimum, job: &Job) -> DataFit {
         DataFit {
             residuals: self.residuals(&found.optimum.points),
             used: found.used,
@@ -800,10 +651,7 @@ impl Data {
             original: &job.points,
             adapts: false,
         };
-        path.follow(options.goal, norm, conditioned, |weight| {
-            parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
-            parts.solve()
-        })
+        path.follow(options.goal, norm, conditioned, parts, &pull)
     }
 }
 

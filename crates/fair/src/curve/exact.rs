@@ -19,6 +19,33 @@ pub(crate) fn exact(points: &[Vec3<f64>]) -> bool {
     exact_with(points, SPARE)
 }
 
+/// Whether points are exact from break to break: on a line, a conic, a plane cubic or a helix to rounding, in
+/// order, with some points more than such a curve is determined by.
+///
+/// # Example
+/// ```
+/// use moldloft_fair::is_exact;
+/// use moldloft_num::Vec3;
+/// let at = |x: f64| Vec3::of(x, 0.1 * x * x, 0.0);
+/// let mut points: Vec<_> = [0.0, 0.5, 1.0, 2.0, 4.0, 5.0, 7.5, 8.0, 9.0, 9.5].map(at).to_vec();
+/// assert!(is_exact(&points, &[], false));
+/// points[4].y += 1e-6;
+/// assert!(!is_exact(&points, &[], false));
+/// ```
+pub fn is_exact(points: &[Vec3<f64>], breaks: &[usize], closed: bool) -> bool {
+    between_breaks(points, breaks, closed).iter().all(|part| exact(part))
+}
+
+/// The same of all lines through numbered points, each its points and whether it is closed; `breaks` are
+/// numbers of points. One whose points are in one place is exact.
+pub fn are_exact(points: &[Vec3<f64>], lines: &[(Vec<usize>, bool)], breaks: &[usize]) -> bool {
+    all_exact(lines.iter().flat_map(|(own, closed)| {
+        let marks: Vec<usize> = (0..own.len()).filter(|&k| breaks.contains(&own[k])).collect();
+        let line: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
+        between_breaks(&line, &marks, *closed)
+    }))
+}
+
 /// Whether all lines of a grid or network are exact; one whose points are in one place is.
 pub(crate) fn all_exact(lines: impl IntoIterator<Item = Vec<Vec3<f64>>>) -> bool {
     lines

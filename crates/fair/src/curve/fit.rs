@@ -273,9 +273,10 @@ pub fn fit(
             frozen: frozen.clone(),
             conditions: Vec::new(),
             halves: Vec::new(),
+            squares: None,
             reach: vec![f64::INFINITY; n],
         };
-        let step = problem::solve(&problem, 0.0, 0.0, 0.0)?;
+        let step = problem::solve(&problem, 0.0, 0.0, 0.0, None)?;
         for (c, x) in control.iter_mut().zip(step.x) {
             *c += Vec3::from(x);
         }
@@ -361,6 +362,7 @@ fn squares(measure: SparseRows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Pr
         frozen,
         conditions,
         halves: Vec::new(),
+        squares: None,
         reach,
     }
 }
@@ -391,7 +393,7 @@ pub fn fit_with<T: Real>(fit: &Fit, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, 
         })
         .collect();
     let problem = squares(rows, vec![[0.0; 3]; offsets.len()], frozen);
-    let still = problem::solve(&problem, 0.0, 0.0, 0.0)?;
+    let still = problem::solve(&problem, 0.0, 0.0, 0.0, None)?;
     for (c, x) in
         control.iter_mut().zip(problem::respond(&problem, &still, &offsets, &[], &[], &[])?)
     {

@@ -1,7 +1,8 @@
 //! One curve to be faired: what its control points mean, how points become a spline, what may move
 //! how far, and the step of knot removal.
 
-pub(crate) mod bernstein;
+pub(crate) mod bends;
+mod bernstein;
 pub(crate) mod breaks;
 pub(crate) mod chain;
 pub(crate) mod condition;

@@ -32,10 +32,16 @@ pub fn line_findings(
     let (mut seen, mut judged) = (vec![0; points.len()], vec![0; points.len()]);
     for (k, (own, closed)) in lines.iter().enumerate() {
         let row: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
-        for (&i, least) in own.iter().zip(detectable(&row, *closed)) {
-            judged[i] += usize::from(least.is_finite());
+        let here = data_findings(&row, *closed);
+        // A knuckle is a judgement, too.
+        let turns = |k: usize| {
+            let knuckle = |f: &DataFinding| matches!(f, DataFinding::Knuckle { .. });
+            here.iter().any(|f| knuckle(f) && f.index() == k)
+        };
+        for (k, (&i, least)) in own.iter().zip(detectable(&row, *closed)).enumerate() {
+            judged[i] += usize::from(least.is_finite() || turns(k));
         }
-        for mut finding in data_findings(&row, *closed) {
+        for mut finding in here {
             let place = own[finding.index()];
             if marked.contains(&place) {
                 continue;

@@ -105,6 +105,9 @@ const CONFIRMS: [f64; 2] = [0.5, 0.8];
 /// neighbourhood's scale and by the file's.
 const CANDIDATES: [usize; 2] = [8, 4];
 
+/// Points of which anything is said, at least.
+const FEWEST: usize = 12;
+
 /// Proposals at most.
 const MOST: usize = 5;
 
@@ -294,8 +297,8 @@ fn median(mut all: Vec<f64>) -> f64 {
     if all.is_empty() {
         return 0.0;
     }
-    all.sort_unstable_by(f64::total_cmp);
-    all[all.len() / 2]
+    let middle = all.len() / 2;
+    *all.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// A point set against its scale.
@@ -386,6 +389,28 @@ impl FileScale {
     }
 }
 
+/// What all points but one look like from each other, where `all` is what they look like with it.
+fn without(
+    points: &[Vec3<f64>],
+    all: &[Option<NeighbourFit>],
+    at: usize,
+    closed: bool,
+) -> Vec<Option<NeighbourFit>> {
+    let n = points.len();
+    let mut left = points.to_vec();
+    left.remove(at);
+    (0..n)
+        .filter(|&i| i != at)
+        .map(|i| {
+            if window(i, n, SIDE, closed).0.contains(&at) {
+                seen(&left, i - usize::from(i > at), SIDE, closed)
+            } else {
+                all[i]
+            }
+        })
+        .collect()
+}
+
 /// The clearest wrong digit of a list.
 ///
 /// One point is among the neighbours of ten, and of all in a short list: it is set against the scale
@@ -405,19 +430,7 @@ fn clearest(points: &[Vec3<f64>], closed: bool, floor: f64) -> Option<(usize, Ju
     by_own
         .into_iter()
         .filter_map(|(at, seen_at)| {
-            let mut left = points.to_vec();
-            left.remove(at);
-            let others: Vec<Option<NeighbourFit>> = (0..n)
-                .filter(|&i| i != at)
-                .map(|i| {
-                    if window(i, n, SIDE, closed).0.contains(&at) {
-                        seen(&left, i - usize::from(i > at), SIDE, closed)
-                    } else {
-                        all[i]
-                    }
-                })
-                .collect();
-            let judged = FileScale::of(&others, floor).judge(seen_at);
+            let judged = FileScale::of(&without(points, &all, at, closed), floor).judge(seen_at);
             let found = judged.score >= judged.least && confirmed(points, at, closed, &seen_at);
             found.then_some((at, judged))
         })
@@ -444,21 +457,11 @@ pub fn digit_scale(points: &[Vec3<f64>]) -> f64 {
     0.0
 }
 
-/// What stands out among data, wrong digits first, the clearest first. Nothing is said of lists of
-/// fewer than a dozen points.
-pub fn data_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
-    let n = points.len();
-    if n < 12 {
-        return Vec::new();
-    }
-    let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
-    let floor = digit_scale(points).max(1e-12 * size);
-    let knuckles = knuckles(points, closed, floor);
-    let mut out = Vec::new();
-    // Cubics do not run across knuckles.
+/// The points between knuckles, which cubics do not run across, and whether they are a closed list.
+fn pieces(n: usize, closed: bool, knuckles: &[DataFinding]) -> Vec<(Vec<usize>, bool)> {
     let mut cuts: Vec<usize> = knuckles.iter().map(DataFinding::index).collect();
     cuts.sort_unstable();
-    let pieces: Vec<(Vec<usize>, bool)> = match (closed, cuts.as_slice()) {
+    match (closed, cuts.as_slice()) {
         (true, []) => vec![((0..n).collect(), true)],
         (true, cuts) => (0..cuts.len())
             .map(|k| {
@@ -472,19 +475,41 @@ pub fn data_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
                 std::iter::once(0).chain(cuts.iter().copied()).chain([n - 1]).collect();
             ends.windows(2).map(|w| ((w[0]..=w[1]).collect(), false)).collect()
         }
-    };
-    for (mut own, round) in pieces {
-        for _ in 0..MOST {
-            if own.len() < 12 {
-                break;
-            }
-            let list: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
-            let found = clearest(&list, round, floor);
-            let Some((at, Judged { seen, score, least, deviation })) = found else { break };
-            let (index, expected) = (own.remove(at), seen.expected);
-            let least = least * deviation;
-            out.push(DataFinding::WrongDigit { index, expected, score, least });
-        }
+    }
+}
+
+/// The wrong digits of a piece, which leave it one by one.
+fn wrong_digits(
+    points: &[Vec3<f64>],
+    own: &mut Vec<usize>,
+    round: bool,
+    floor: f64,
+) -> Vec<DataFinding> {
+    let mut out = Vec::new();
+    while own.len() >= FEWEST && out.len() < MOST {
+        let list: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
+        let found = clearest(&list, round, floor);
+        let Some((at, Judged { seen, score, least, deviation })) = found else { break };
+        let (index, expected) = (own.remove(at), seen.expected);
+        let least = least * deviation;
+        out.push(DataFinding::WrongDigit { index, expected, score, least });
+    }
+    out
+}
+
+/// What stands out among data, wrong digits first, the clearest first. Nothing is said of lists of
+/// fewer than a dozen points.
+pub fn data_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
+    let n = points.len();
+    if n < FEWEST {
+        return Vec::new();
+    }
+    let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
+    let floor = digit_scale(points).max(1e-12 * size);
+    let knuckles = knuckles(points, closed, floor);
+    let mut out = Vec::new();
+    for (mut own, round) in pieces(n, closed, &knuckles) {
+        out.extend(wrong_digits(points, &mut own, round, floor));
     }
     out.sort_by(|a, b| match (a, b) {
         (DataFinding::WrongDigit { score: a, .. }, DataFinding::WrongDigit { score: b, .. }) => {
@@ -508,17 +533,42 @@ pub fn predicted(points: &[Vec3<f64>], closed: bool) -> Vec<f64> {
     of_each(points, closed, |j| j.deviation)
 }
 
+/// Each point is judged as it is when it is looked for: between knuckles, without the wrong digits that
+/// are clearer, and by the scale that the others have among themselves.
 fn of_each(points: &[Vec3<f64>], closed: bool, what: impl Fn(Judged) -> f64) -> Vec<f64> {
     let n = points.len();
-    if n < 12 {
-        return vec![f64::INFINITY; n];
+    let mut out = vec![f64::INFINITY; n];
+    if n < FEWEST {
+        return out;
     }
     let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
     let floor = digit_scale(points).max(1e-12 * size);
-    let all = fits(points, closed);
-    let file = FileScale::of(&all, floor);
-    let each = |s: &Option<NeighbourFit>| Some(what(file.judge(s.filter(|s| s.judged)?)));
-    all.iter().map(|s| each(s).unwrap_or(f64::INFINITY)).collect()
+    for (mut own, round) in pieces(n, closed, &knuckles(points, closed, floor)) {
+        if own.len() < FEWEST {
+            continue;
+        }
+        let whole = own.clone();
+        let wrong: Vec<usize> =
+            wrong_digits(points, &mut own, round, floor).iter().map(DataFinding::index).collect();
+        let list: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
+        let all = fits(&list, round);
+        for (at, &i) in own.iter().enumerate() {
+            if let Some(seen) = all[at].filter(|s| s.judged) {
+                let scale = FileScale::of(&without(&list, &all, at, round), floor);
+                out[i] = out[i].min(what(scale.judge(seen)));
+            }
+        }
+        for &i in &wrong {
+            let with: Vec<usize> =
+                whole.iter().copied().filter(|k| *k == i || !wrong.contains(k)).collect();
+            let list: Vec<Vec3<f64>> = with.iter().map(|&k| points[k]).collect();
+            let at = with.iter().position(|&k| k == i).unwrap_or(0);
+            if let Some(own) = seen(&list, at, SIDE, round).filter(|s| s.judged) {
+                out[i] = what(FileScale::of(&all, floor).judge(own));
+            }
+        }
+    }
+    out
 }
 
 /// Points at which a cubic through the neighbours wants a hinge.

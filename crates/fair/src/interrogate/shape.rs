@@ -243,8 +243,12 @@ const LEAST_TURN: f64 = 1e-4;
 /// How often a plane curve turns back: the reversals of its tangent's turning by more than a
 /// ten-thousandth of a radian. 0 for curves in space, which have no sign of curvature.
 pub fn turns_back(space: &Space, points: &[Vec3<f64>]) -> usize {
-    let all = samples(space, points, None, COUNTING);
-    let Some(normal) = plane_normal(&all) else { return 0 };
+    reversals(&samples(space, points, None, COUNTING))
+}
+
+/// The same of samples of a curve.
+pub(crate) fn reversals(all: &[Sample]) -> usize {
+    let Some(normal) = plane_normal(all) else { return 0 };
     let (mut angle, mut extreme, mut rising, mut count) = (0.0, 0.0, None, 0usize);
     let mut before: Option<Vec3<f64>> = None;
     for d in all.iter().map(|s| s.derivatives[0]).filter(|d| d.norm_sq() > 0.0) {
@@ -273,8 +277,11 @@ pub(crate) const COUNTING: usize = 16;
 /// The number of monotone pieces of the curvature, reversals below a thousandth of its range
 /// ignored (Dill 1981; Farin 2002, ch. 23: few pieces are fair).
 pub fn pieces(space: &Space, points: &[Vec3<f64>]) -> usize {
-    monotone_pieces(&samples(space, points, None, COUNTING), 1e-3)
+    monotone_pieces(&samples(space, points, None, COUNTING), UNCOUNTED)
 }
+
+/// The share of the curvature's range below which a reversal is not counted.
+pub(crate) const UNCOUNTED: f64 = 1e-3;
 
 /// The length of the curve, by the 8-point Gauss-Legendre rule on each span.
 pub fn arc_length(space: &Space, points: &[Vec3<f64>], weights: Option<&[f64]>) -> f64 {

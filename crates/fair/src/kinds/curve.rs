@@ -18,7 +18,9 @@ use std::sync::Arc;
 /// Parameters and knots follow the points' spacing. Points that are as fair as the tolerance allows do
 /// not move. The result is continuous in the points. Points can be control points
 /// or be faired themselves instead (`as`); these, curves that join others and the mode "faithful"
-/// take the number of a point for its parameter, as the report of 1991 does. In mode "faithful" the
+/// take the number of a point for its parameter, as the report of 1991 does. Their members are `deviation`
+/// (how far control points, or the points themselves, moved) and, of optima, `value`, `gap` and `active`.
+/// Points on a line, conic, plane cubic or helix stay in any case, unless `goal` is "fairest". In mode "faithful" the
 /// worst knots are removed and re-inserted one after the other (Farin and Sapidis 1989), one step per
 /// point, and which knot comes first may change with the points.
 #[derive(Kind)]
@@ -472,7 +474,7 @@ impl<T: Real> Build<T> for FairCurve<T> {
                 .expected("as = \"fit\", mode = \"optimum\", without joins and spacing \"index\"")
                 .in_field(field));
         }
-        let (space, control) = intent.spline(&points).map_err(about)?;
+        let (space, control, figures) = intent.spline(&points).map_err(about)?;
         let made = match &intent.own.weights {
             Some(weights) => shapes::rational(&space, &control, weights),
             None => shapes::curve(&space, &control),
@@ -488,6 +490,7 @@ impl<T: Real> Build<T> for FairCurve<T> {
         let kept = |at: usize| !intent.closed && (intent.end.kept() > 0 || joins[at].is_some());
         let end = |at: usize, p: &Point<T>| if kept(at) { p.key } else { None };
         let ends = [end(0, first), end(1, last)];
-        Ok(Value::Curve(CurveRef::new(AnchoredSpline { curve, ends }, 0)))
+        let curve = CurveRef::new(AnchoredSpline { curve, ends }, 0);
+        Ok(Value::Curve(curve.with_figures(&figures.members_of_moves())))
     }
 }

@@ -1,6 +1,6 @@
 //! What faired objects say of themselves.
 
-use crate::{Certificate, DataFit, GridFit, NetworkFit};
+use crate::{Certificate, DataFit, GridFit, NetworkFit, Optimum};
 
 /// Figures of a faired object, which become its members.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,6 +41,27 @@ impl FairFigures {
     ) -> Self {
         let own = Self::of_residuals(residuals, radii, findings);
         own.of_goal(&made.certificate, made.used, made.fairest_used)
+    }
+
+    /// Of control points, or points that move themselves: how far they moved, and what the optimum says.
+    pub fn of_moves(moved: impl Iterator<Item = f64>, best: Option<&Optimum>) -> Self {
+        let deviation = moved.fold(0.0, f64::max);
+        let unknown = Self { deviation, value: f64::NAN, gap: f64::NAN, ..Self::default() };
+        best.map_or(unknown, |best| Self {
+            value: best.certificate.value,
+            gap: best.certificate.gap,
+            active: best.active,
+            ..unknown
+        })
+    }
+
+    /// The members that are known of control points and points that move themselves.
+    pub fn members_of_moves(&self) -> Vec<(&'static str, f64)> {
+        let all = self.members().into_iter();
+        let known = ["deviation", "value", "gap", "active"];
+        all.filter(|(name, x)| known.contains(name) && !x.is_nan())
+            .filter(|(name, _)| *name != "active" || !self.value.is_nan())
+            .collect()
     }
 
     fn of_goal(self, certificate: &Certificate, used: f64, fairest_used: f64) -> Self {

@@ -9,7 +9,8 @@ use std::sync::Arc;
 /// A row of points, faired: control points of a uniform cubic that each stay within a tolerance.
 ///
 /// On uniform points the same steps fair the points themselves: interpolation and fourth
-/// differences commute. Open rows keep their first and last two points.
+/// differences commute. Open rows keep their first and last two points. Points on a line, conic,
+/// plane cubic or helix stay.
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -50,7 +51,7 @@ impl<T: Real> Build<T> for Fair<T> {
             joins: [None; 2],
             own: super::GivenKnots::default(),
             spacing: crate::ParameterSpacing::Uniform,
-            goal: crate::Goal::Fairest,
+            goal: crate::Goal::Near(super::BUDGET),
             motion: crate::Motion::Ball,
         };
         let places = ArgumentFields {
@@ -59,7 +60,10 @@ impl<T: Real> Build<T> for Fair<T> {
             degree: Self::POINTS,
             breaks: Self::POINTS,
         };
-        let faired = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;
+        if intent.stays(&self.points, &[]) {
+            return Ok(Value::Vectors(Arc::new(Vectors::row(self.points))));
+        }
+        let (faired, _) = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;
         Ok(Value::Vectors(Arc::new(Vectors::row(faired))))
     }
 }

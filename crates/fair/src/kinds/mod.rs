@@ -12,10 +12,11 @@ mod snake;
 mod surface;
 
 use crate::curve::condition::{end_jet, joined};
+use crate::kinds::figures::FairFigures;
 use crate::{
     Bound, Condition, EndContinuity, FairError, Goal, Job, KnotRemovalOptions, Limit, Measure,
-    Motion, OptimumOptions, ParameterSpacing, Space, interpolate_with_corners, knot_removal,
-    optimum_with, replay_with,
+    Motion, Optimum, OptimumOptions, ParameterSpacing, Space, interpolate_with_corners, is_exact,
+    knot_removal, optimum_with, replay_with,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
@@ -262,9 +263,25 @@ pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, Fai
     numbers.iter().map(from_zero).collect()
 }
 
+/// Points that moved, and the optimum that they are.
+type Moved<T> = (Vec<Vec3<T>>, Option<Optimum>);
+
+/// How far points moved.
+pub(crate) fn moves<T: Real, U: Real>(
+    after: &[Vec3<T>],
+    before: &[Vec3<U>],
+) -> impl Iterator<Item = f64> {
+    after.iter().zip(before).map(|(p, q)| (p.re() - q.re()).norm())
+}
+
 impl<T: Real> Intent<T> {
     /// The faired spline of points.
-    pub fn spline(&self, points: &[Vec3<T>]) -> Result<(Space, Vec<Vec3<T>>), FairError> {
+    ///
+    /// Its figures are those of what moves: control points, or the points themselves.
+    pub fn spline(
+        &self,
+        points: &[Vec3<T>],
+    ) -> Result<(Space, Vec<Vec3<T>>, FairFigures), FairError> {
         let n = points.len();
         let marks = indices(&self.breaks, n)?;
         let fitted = |points: &[Vec3<T>]| {
@@ -276,6 +293,7 @@ impl<T: Real> Intent<T> {
                 &marks,
             )
         };
+        let stays = self.stays(points, &marks);
         match self.role {
             PointRole::Control => {
                 let space = if self.closed {
@@ -284,25 +302,52 @@ impl<T: Real> Intent<T> {
                 } else {
                     self.own.space(self.degree, n)?
                 };
-                let faired = self.within(&space, points, Bound::Bezier, marks)?;
-                Ok((space, faired))
+                if stays {
+                    return Ok((
+                        space,
+                        points.to_vec(),
+                        FairFigures::of_moves([].into_iter(), None),
+                    ));
+                }
+                let (faired, best) = self.within(&space, points, Bound::Bezier, marks)?;
+                let figures = FairFigures::of_moves(moves(&faired, points), best.as_ref());
+                Ok((space, faired, figures))
             }
             PointRole::Fit => {
                 let sharp = fitted(points)?;
                 let space = sharp.fit.space;
-                let faired = self.within(&space, &sharp.points, Bound::Bezier, sharp.marks)?;
-                Ok((space, faired))
+                if stays {
+                    return Ok((space, sharp.points, FairFigures::of_moves([].into_iter(), None)));
+                }
+                let (faired, best) =
+                    self.within(&space, &sharp.points, Bound::Bezier, sharp.marks)?;
+                let figures = FairFigures::of_moves(moves(&faired, &sharp.points), best.as_ref());
+                Ok((space, faired, figures))
             }
             PointRole::Points => {
-                let sharp = fitted(&self.faired_points(points)?)?;
-                Ok((sharp.fit.space, sharp.points))
+                if stays {
+                    let sharp = fitted(points)?;
+                    let figures = FairFigures::of_moves([].into_iter(), None);
+                    return Ok((sharp.fit.space, sharp.points, figures));
+                }
+                let (faired, best) = self.faired_points(points)?;
+                let figures = FairFigures::of_moves(moves(&faired, points), best.as_ref());
+                let sharp = fitted(&faired)?;
+                Ok((sharp.fit.space, sharp.points, figures))
             }
         }
     }
 
+    /// Whether points stay: exact ones are as fair as can be, and what is near them is they themselves.
+    pub fn stays(&self, points: &[Vec3<T>], marks: &[usize]) -> bool {
+        let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
+        let free = self.own.weights.is_none() && self.joins.iter().all(Option::is_none);
+        free && matches!(self.goal, Goal::Near(_)) && is_exact(&plain, marks, self.closed)
+    }
+
     /// Points, faired with a bound on each of them: as the control points of a uniform spline, for
     /// which interpolation and the measures commute.
-    pub fn faired_points(&self, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
+    pub fn faired_points(&self, points: &[Vec3<T>]) -> Result<Moved<T>, FairError> {
         let (n, degree) = (points.len(), self.degree);
         let space = if self.closed {
             Space::closed(degree, n)?
@@ -327,7 +372,7 @@ impl<T: Real> Intent<T> {
         points: &[Vec3<T>],
         bound: Bound,
         marks: Vec<usize>,
-    ) -> Result<Vec<Vec3<T>>, FairError> {
+    ) -> Result<Moved<T>, FairError> {
         let n = points.len();
         let mut job = Job {
             space: space.clone(),
@@ -351,14 +396,14 @@ impl<T: Real> Intent<T> {
             let mut options = KnotRemovalOptions::faithful(n);
             options.log = true;
             let steps = knot_removal(&job, &options)?;
-            replay_with(&job, &options, &steps.log, points, &tolerances)
+            Ok((replay_with(&job, &options, &steps.log, points, &tolerances)?, None))
         } else {
             let mut options = OptimumOptions::of(self.measure);
             options.bound = bound;
             options.accuracy = ACCURACY;
             options.conditions = conditions;
             let best = optimum_with(&job, &options, points, &tolerances, &targets)?;
-            Ok(best.0)
+            Ok((best.0, Some(best.1)))
         }
     }
 }

@@ -1,12 +1,16 @@
 //! `FairPatches` and `NetSurf`: surfaces faired together with their common edges.
 
-use super::surface::{PointGrid, Rims, fitted, turned};
+use super::figures::FairFigures;
+use super::surface::{PointGrid, Rims, fitted, lines, turned};
 use super::{ACCURACY, ArgumentFields, PointRole, fault, measure, role};
-use crate::{Bound, EndContinuity, FairError, Limit, Network, PatchNet, Seam, Space};
+use crate::{Bound, EndContinuity, FairError, Limit, Network, PatchNet, Seam, Space, are_exact};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Build, CallError, Class, Context, Kind, SurfaceRef, Value};
 use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
+
+/// What rounding moves, as a share of the size.
+const ROUNDING: f64 = 1e-13;
 
 /// Surfaces with common edges, faired together within a tolerance, so that tangents and curvature run
 /// on across the edges.
@@ -50,6 +54,10 @@ pub struct FairPatches<T: Real> {
     /// Kept at rims that are not seams; see `FairSurf`.
     #[field(default = "corners")]
     rims: Rims,
+    /// "fairest", or "near": where all lines of all grids are exact (lines, conics, plane cubics, helices)
+    /// these move no farther than continuity across the seams asks for, give or take a factor of eight.
+    #[field(default = "near")]
+    goal: Arc<str>,
 }
 
 impl<T: Real> Build<T> for FairPatches<T> {
@@ -82,6 +90,12 @@ impl<T: Real> Build<T> for FairPatches<T> {
             breaks: Self::SURFACES,
         };
         let degree = self.degree;
+        let near = match &*self.goal {
+            "near" => true,
+            "fairest" => false,
+            word => return Err(super::unknown("goal", word, &["near", "fairest"], Self::GOAL)),
+        };
+        let mut exact = near && self.tolerance.re() > 0.0;
         let mut sheets = Vec::new();
         let mut given: Vec<Vec3<T>> = Vec::new();
         for (k, PointGrid(grid)) in self.surfaces.iter().enumerate() {
@@ -112,6 +126,8 @@ impl<T: Real> Build<T> for FairPatches<T> {
                 Ok((sheet, net))
             };
             let (sheet, net) = made().map_err(|e| fault(e, &places).in_item(k))?;
+            let plain: Vec<Vec3<f64>> = grid.points().iter().map(|p| p.re()).collect();
+            exact = exact && are_exact(&plain, &lines([m, n]), &[]);
             sheets.push(sheet);
             given.extend(net);
         }
@@ -123,17 +139,24 @@ impl<T: Real> Build<T> for FairPatches<T> {
                 sheets[seam.sheets[k]].rims[edge.direction][edge.end] = EndContinuity::Free;
             }
         }
-        let solve = || -> Result<Vec<Vec<Vec3<T>>>, FairError> {
+        type Made<T> = (Vec<Vec<Vec3<T>>>, Option<crate::Optimum>);
+        let solve = |tolerance: T| -> Result<Made<T>, FairError> {
+            let mut sheets = sheets.clone();
+            for sheet in &mut sheets {
+                sheet.limit.radii.fill(tolerance.re());
+            }
             let network = Network::joined(&sheets, &seams)?;
             let points = network.gathered(&given);
-            let tolerances = vec![self.tolerance; points.len()];
-            let faired = if self.tolerance.re() == 0.0 {
-                points
+            let tolerances = vec![tolerance; points.len()];
+            let (faired, best) = if tolerance.re() == 0.0 {
+                (points, None)
             } else {
                 let bound = Bound::ControlPoints;
-                network.optimum_with(measure, bound, ACCURACY, &points, &tolerances)?.0
+                let (points, best) =
+                    network.optimum_with(measure, bound, ACCURACY, &points, &tolerances)?;
+                (points, Some(best))
             };
-            Ok((0..sheets.len()).map(|k| network.sheet(k, &faired)).collect())
+            Ok(((0..sheets.len()).map(|k| network.sheet(k, &faired)).collect(), best))
         };
         let contradicted = |e: FairError| match e {
             FairError::Contradiction { miss, .. } => {
@@ -149,19 +172,32 @@ impl<T: Real> Build<T> for FairPatches<T> {
                 .in_field(Self::SURFACES),
             e => fault(e, &places),
         };
-        let faired = solve().map_err(contradicted)?;
-        let surface = |(sheet, points): (&PatchNet, Vec<Vec3<T>>)| {
+        // Of exact surfaces the smallest move that lets them run on.
+        let size = given.iter().map(|p| p.re().norm()).fold(0.0, f64::max);
+        let tries = (0..16).map(|k| ROUNDING * size * f64::powi(8.0, k));
+        let smaller = tries.filter(|&t| exact && t < self.tolerance.re());
+        let found = smaller
+            .map(|t| solve(T::from(t)))
+            .find(|made| !matches!(made, Err(FairError::Contradiction { .. })));
+        let (faired, best) =
+            found.unwrap_or_else(|| solve(self.tolerance)).map_err(contradicted)?;
+        let surface = |(sheet, points): (&PatchNet, &Vec<Vec3<T>>)| {
             let [u, v] = sheet.spaces.each_ref().map(|s| s.knot_vector().0);
-            let surface = BSplineSurface::new(u, v, points, None)
+            let surface = BSplineSurface::new(u, v, points.clone(), None)
                 .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::SURFACES))?;
-            Ok(Value::Surface(SurfaceRef::new(surface, 0)))
+            let own = FairFigures::of_moves(super::moves(points, &sheet.points), best.as_ref());
+            let surface = SurfaceRef::new(surface, 0);
+            Ok(Value::Surface(surface.with_figures(&own.members_of_moves())))
         };
-        let surfaces: Result<Vec<_>, CallError> = sheets.iter().zip(faired).map(surface).collect();
+        let surfaces: Result<Vec<_>, CallError> = sheets.iter().zip(&faired).map(surface).collect();
         Ok(Value::list(surfaces?))
     }
 }
 
 /// One surface of several that are faired together.
+///
+/// Its members are `deviation` (how far its control points moved) and, of all surfaces together, `value`,
+/// `gap` and `active`.
 #[derive(Kind)]
 #[kind(
     class = Surface,

@@ -121,10 +121,11 @@ impl<T: Real> Build<T> for FairSnake<T> {
             let snake = CurveRef::snake(shape, surface, context.nesting);
             return Ok(Value::Curve(snake.with_figures(&figures.members())));
         }
-        let (space, control) = intent.spline(&path).map_err(|e| fault(e, &places))?;
+        let (space, control, figures) = intent.spline(&path).map_err(|e| fault(e, &places))?;
         let path = shapes::curve(&space, &control)
             .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::MAGNETS))?;
         let shape = SplineOnSurface { surface: surface.clone(), path, ends };
-        Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)))
+        let snake = CurveRef::snake(shape, surface, context.nesting);
+        Ok(Value::Curve(snake.with_figures(&figures.members_of_moves())))
     }
 }

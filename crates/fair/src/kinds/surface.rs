@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     Bound, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Motion, Network,
-    ParameterSpacing, Space, fair_grid_with, grid_parameters, interpolate_with_corners,
+    ParameterSpacing, Space, are_exact, fair_grid_with, grid_parameters, interpolate_with_corners,
     line_findings,
 };
 use moldloft_num::{Real, Vec3};
@@ -226,6 +226,13 @@ pub(super) fn fitted<T: Real>(
     Ok((space, out, marks))
 }
 
+/// The lines of an open grid in both directions.
+pub(super) fn lines([m, n]: [usize; 2]) -> Vec<(Vec<usize>, bool)> {
+    let rows = (0..m).map(|i| ((i * n..(i + 1) * n).collect(), false));
+    let columns = (0..n).map(|j| ((0..m).map(|i| i * n + j).collect(), false));
+    rows.chain(columns).collect()
+}
+
 /// The grid with its indices exchanged.
 pub(super) fn turned<T: Real>(grid: &[Vec3<T>], m: usize) -> Vec<Vec3<T>> {
     let n = grid.len() / m;
@@ -284,6 +291,10 @@ impl<T: Real> Build<T> for FairSurf<T> {
         let weights = self.weights.as_ref().map(|w| w.items.clone());
         let Rims([south, east, north, west]) = self.rims;
         let rims = [[west, east], [south, north]];
+        let lines = lines([m, n]);
+        let of_breaks: Vec<usize> = (0..m * n)
+            .filter(|k| marks_u.contains(&(k / n)) || marks_v.contains(&(k % n)))
+            .collect();
         let make = || -> Result<_, FairError> {
             let degree = self.degree;
             for actual in [m, n] {
@@ -300,31 +311,41 @@ impl<T: Real> Build<T> for FairSurf<T> {
                 let spaces = [own[0].space(degree, m)?, own[1].space(degree, n)?];
                 (spaces, grid.points(), [marks_u.clone(), marks_v.clone()])
             };
+            let all: Vec<Vec3<f64>> = grid.points().iter().map(|p| p.re()).collect();
+            let still = weights.is_none() && matches!(goal, crate::Goal::Near(_));
+            if still && are_exact(&all, &lines, &of_breaks) {
+                return Ok((spaces, net, FairFigures::of_moves([].into_iter(), None)));
+            }
             let limit = Limit::new(motion, vec![self.tolerance.re(); net.len()])?;
             let plain = net.iter().map(|p| p.re()).collect();
             let network = Network::net(spaces.clone(), plain, weights.clone(), limit)?
                 .with_breaks(&marks[0], &marks[1])?
                 .with_rims(rims)?;
             let tolerances = vec![self.tolerance; net.len()];
-            let points = match passes {
-                Some(passes) => network.passes_with(passes, 3, &net, &tolerances)?,
+            let (points, best) = match passes {
+                Some(passes) => (network.passes_with(passes, 3, &net, &tolerances)?, None),
                 None => {
                     let bound = Bound::ControlPoints;
-                    network.optimum_with(measure, bound, ACCURACY, &net, &tolerances)?.0
+                    let (points, best) =
+                        network.optimum_with(measure, bound, ACCURACY, &net, &tolerances)?;
+                    (points, Some(best))
                 }
             };
-            Ok((spaces, points))
+            let figures = FairFigures::of_moves(super::moves(&points, &net), best.as_ref());
+            Ok((spaces, points, figures))
         };
         let by_points = || -> Result<_, FairError> {
             let points = grid.points();
             let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
-            let at = grid_parameters(&points, [m, n], [spacing; 2], [false; 2], motion)?;
+            let limit = Limit::new(motion, vec![self.tolerance.re(); plain.len()])?;
+            let allowed = (motion, limit.radii.as_slice());
+            let at = grid_parameters(&points, [m, n], [spacing; 2], [false; 2], allowed)?;
             let layout = |at: &[T], marks: &[usize]| {
                 let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
                 InterpolationSpace::new(self.degree, &real, marks, false)
             };
             let data = GridData {
-                limit: Limit::new(motion, vec![self.tolerance.re(); plain.len()])?,
+                limit,
                 layouts: [layout(&at[0], &marks_u)?, layout(&at[1], &marks_v)?],
                 rims,
                 points: plain,
@@ -333,12 +354,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
             let at = [at[0].as_slice(), at[1].as_slice()];
             let (made, fit) =
                 fair_grid_with(&data, measure, goal, ACCURACY, &points, &tolerances, at)?;
-            let rows = (0..m).map(|i| ((i * n..(i + 1) * n).collect(), false));
-            let columns = (0..n).map(|j| ((0..m).map(|i| i * n + j).collect(), false));
-            let lines: Vec<(Vec<usize>, bool)> = rows.chain(columns).collect();
-            let of_breaks =
-                (0..m * n).filter(|k| marks_u.contains(&(k / n)) || marks_v.contains(&(k % n)));
-            let findings = line_findings(&data.points, &lines, &of_breaks.collect::<Vec<_>>());
+            let findings = line_findings(&data.points, &lines, &of_breaks);
             Ok((made, FairFigures::of_surface(&fit, &data.limit.radii, findings.len())))
         };
         let about = |e: FairError| match e {
@@ -359,11 +375,12 @@ impl<T: Real> Build<T> for FairSurf<T> {
                 MovingSurface::referred(self.degree, made.knots, made.points).map_err(about)?;
             return Ok(Value::Surface(surface.with_figures(&figures.members())));
         }
-        let (spaces, points) = make().map_err(about)?;
+        let (spaces, points, figures) = make().map_err(about)?;
         let [u, v] = spaces.map(|s| s.knot_vector().0);
         let weights = weights.map(|w| w.into_iter().map(T::from).collect());
         let surface = BSplineSurface::new(u, v, points, weights)
             .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
-        Ok(Value::Surface(SurfaceRef::new(surface, 0)))
+        let surface = SurfaceRef::new(surface, 0);
+        Ok(Value::Surface(surface.with_figures(&figures.members_of_moves())))
     }
 }

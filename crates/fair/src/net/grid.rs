@@ -61,7 +61,8 @@ pub struct GridFit {
 
 /// The parameters of a grid of points along both directions: of each the mean over its lines.
 /// Lines whose points coincide, such as poles, do not count; a coordinate is taken for the direction
-/// along which it rises or falls, chords for the other.
+/// along which it rises or falls, chords for the other. `radii` are the tolerances of the points, none
+/// when empty: see [`parameters_across`].
 ///
 /// # Errors
 /// [`FairError::Count`] when there are not m n points.
@@ -70,7 +71,7 @@ pub fn grid_parameters<T: Real>(
     [m, n]: [usize; 2],
     spacing: [ParameterSpacing; 2],
     closed: [bool; 2],
-    motion: Motion,
+    (motion, radii): (Motion, &[f64]),
 ) -> Result<[Vec<T>; 2], FairError> {
     if points.len() != m * n {
         return Err(FairError::Count { what: "points", expected: m * n, actual: points.len() });
@@ -81,11 +82,14 @@ pub fn grid_parameters<T: Real>(
         let mut used = 0usize;
         for line in 0..lines {
             let list: Vec<Vec3<T>> = (0..count).map(|k| points[at(k, line)]).collect();
-            let own = match parameters_across(&list, spacing, closed, (motion, &[])) {
+            let allowed: Vec<f64> =
+                (0..count).filter_map(|k| radii.get(at(k, line)).copied()).collect();
+            let limit = (motion, allowed.as_slice());
+            let own = match parameters_across(&list, spacing, closed, limit) {
                 Err(FairError::TurnsAlong { .. } | FairError::Coincident { .. })
                     if matches!(spacing, ParameterSpacing::Along(_)) =>
                 {
-                    parameters_across(&list, ParameterSpacing::Chord, closed, (motion, &[]))
+                    parameters_across(&list, ParameterSpacing::Chord, closed, limit)
                 }
                 own => own,
             };
@@ -110,16 +114,18 @@ pub fn grid_parameters<T: Real>(
 
 /// Of chords, the coordinate instead that all lines of a direction have in common, as stations and
 /// waterlines do, where it rises or falls along them and they are not too steep for it. A point that
-/// leaves its station makes it chords again: for data that stay, not for what moves.
+/// leaves its station makes it chords again: for data that stay, not for what moves. A step is as steep
+/// as the tolerances `radii` of its points leave it, so that noise between close stations does not count.
 pub fn grid_spacing(
     points: &[Vec3<f64>],
     [m, n]: [usize; 2],
     spacing: ParameterSpacing,
     closed: [bool; 2],
+    radii: &[f64],
 ) -> [ParameterSpacing; 2] {
     let own = |d: usize, lines: usize, at: &dyn Fn(usize, usize) -> usize| {
         let fit = matches!(spacing, ParameterSpacing::Chord) && !closed[d] && points.len() == m * n;
-        let axis = if fit { stations(points, [m, n][d], lines, at) } else { None };
+        let axis = if fit { stations(points, radii, [m, n][d], lines, at) } else { None };
         axis.map_or(spacing, ParameterSpacing::Along)
     };
     [own(0, n, &|k, line| k * n + line), own(1, m, &|k, line| line * n + k)]
@@ -131,6 +137,7 @@ const SHALLOW: f64 = 0.2;
 /// The coordinate that the lines of a direction share.
 fn stations(
     points: &[Vec3<f64>],
+    radii: &[f64],
     count: usize,
     lines: usize,
     at: &dyn Fn(usize, usize) -> usize,
@@ -142,7 +149,13 @@ fn stations(
         let step = |k: usize| own(k) - own(k - 1);
         let rises = (2..count).all(|k| step(k) * step(1) > 0.0);
         let shallow = (1..count).all(|k| {
-            let chords = (0..lines).map(|line| (of(k, line) - of(k - 1, line)).norm());
+            let chords = (0..lines).map(|line| {
+                let (a, b) = (at(k - 1, line), at(k, line));
+                let allowed: f64 = [a, b].iter().filter_map(|&i| radii.get(i)).sum();
+                let across = points[b] - points[a] - *axis * step(k);
+                let needed = (across.norm() - allowed).max(0.0);
+                (needed * needed + step(k) * step(k)).sqrt()
+            });
             step(k).abs() >= SHALLOW * chords.fold(0.0, f64::max)
         });
         common && rises && shallow
@@ -450,10 +463,7 @@ impl GridData {
             Goal::Near(share) if closed => Goal::Budget(share),
             other => other,
         };
-        path.follow(goal, norm, conditioned, |weight| {
-            parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
-            parts.solve()
-        })
+        path.follow(goal, norm, conditioned, parts, pull)
     }
 
     /// The distance of each datum from a surface at its parameters.

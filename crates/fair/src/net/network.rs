@@ -420,10 +420,7 @@ impl Network {
             original: &self.points,
             adapts: !conditioned,
         };
-        let found = path.follow(goal, norm, conditioned, |weight| {
-            parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
-            parts.solve()
-        })?;
+        let found = path.follow(goal, norm, conditioned, parts, &pull)?;
         Ok((found, pull, owners))
     }
 
@@ -542,7 +539,8 @@ impl Network {
             let fairest = parts.whole()?;
             let slope = rows.slope(&fairest.optimum.points);
             let forces = slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
-            let whole = GoalOptimum { share: 1.0, weight: 0.0, ..found.clone() };
+            let optimum = fairest.optimum.clone();
+            let whole = GoalOptimum { share: 1.0, weight: 0.0, optimum, ..found.clone() };
             let own = moving(forces, T::zero());
             let at = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, own)?;
             let mean = owners.len() as f64 / 3.0;

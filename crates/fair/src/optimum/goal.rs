@@ -5,6 +5,7 @@
 //! residuals are no larger, and the nearest of all that are as fair.
 
 use crate::curve::moving::{MapReal, MovingRows};
+use crate::optimum::problem::CertifiedSolution;
 use crate::optimum::{Optimum, Parts, Solved};
 use crate::{Certificate, FairError, RowNorm, SparseRows};
 use moldloft_num::{Dual4, Real, Vec3};
@@ -90,12 +91,22 @@ const CLOSEST: f64 = 1e6;
 /// How exactly budgets and shares are kept.
 const GOAL_ACCURACY: f64 = 1e-7;
 
-/// The difference of the weights' logarithms from which on a value that is no better is due to rounding.
+/// The same where it is known which limits are reached.
+const DECIDED: f64 = 1e-11;
+
+/// The difference of the weights' logarithms from which on a value that is no better is due to rounding, and
+/// the logarithm of the squares that rounding leaves of an optimum whose limits it hides.
 const NOISY: f64 = 1e-5;
+
+/// So many residuals make each search worth saving.
+const MANY: usize = 200;
 
 /// How far the logarithm of the weight goes at once, as long as the goal is not between two weights.
 const FIRST_STRIDE: f64 = 2.0;
 const LARGEST_STRIDE: f64 = 6.0;
+
+/// The difference of the weights' logarithms below which the solution of one shows the limits of the other.
+const NEIGHBOURS: f64 = 0.1;
 
 /// The measure that rounding of the points alone may leave.
 pub(crate) fn rounding(rows: &SparseRows, norm: RowNorm, points: &[Vec3<f64>]) -> f64 {
@@ -138,6 +149,8 @@ pub(crate) struct GoalOptimum {
     pub fairest_used: f64,
     /// Whether the budget was between that of the goal and that of the fairest.
     pub between: bool,
+    /// The solution at the weight, where one was looked for.
+    pub solution: Option<CertifiedSolution>,
 }
 
 impl GoalOptimum {
@@ -154,6 +167,7 @@ impl GoalOptimum {
             fairest: Vec::new(),
             fairest_used: 0.0,
             between: false,
+            solution: None,
         }
     }
 }
@@ -203,15 +217,27 @@ where
         goal: Goal,
         norm: RowNorm,
         conditioned: bool,
-        mut solve: impl FnMut(f64) -> Result<Optimum, FairError>,
+        parts: &mut Parts<'_>,
+        pull: &SparseRows,
     ) -> Result<GoalOptimum, FairError> {
+        // The last solution with its weight: near it the next begins.
+        let mut last: Option<(f64, CertifiedSolution)> = None;
+        let mut solve =
+            |parts: &mut Parts<'_>, weight: f64| -> Result<(Optimum, bool), FairError> {
+                let near = last.as_ref().filter(|l| libm::log(l.0 / weight).abs() < NEIGHBOURS);
+                parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
+                let (optimum, solution) = parts.solve_after(near.map(|l| &l.1))?;
+                let decided = solution.active.is_some();
+                last = Some((weight, solution));
+                Ok((optimum, decided))
+            };
         let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
         let begin = (self.energy)(self.original);
         if !conditioned && (begin <= self.noise || goal == Goal::Closest) {
             // Nothing is left but rounding: not a bit moves.
             return Ok(GoalOptimum::unmoved(self.original, begin, false));
         }
-        let fairest = solve(0.0)?;
+        let (fairest, _) = solve(parts, 0.0)?;
         let least = (self.energy)(&fairest.points);
         let squares = (self.squares)(&fairest.points);
         let fairest_points = fairest.points.clone();
@@ -238,6 +264,7 @@ where
                 fairest: fairest_points.clone(),
                 fairest_used: squares / mean,
                 between,
+                solution: None,
             })
         };
         // Between the data's own curve and the optimum, by what there is to gain: both are within
@@ -282,7 +309,7 @@ where
             Goal::Closest => {
                 // Beside this weight the measure is a trace that decides where data do not.
                 let weight = CLOSEST * begin.max(least).max(f64::MIN_POSITIVE) / mean;
-                return ended(solve(weight)?, weight);
+                return ended(solve(parts, weight)?.0, weight);
             }
             Goal::Energy(most) => {
                 if most.is_nan() || most <= 0.0 {
@@ -327,12 +354,20 @@ where
         // Between two weights by regula falsi on logarithms, the stale end halved (Illinois).
         let mut low: Option<(f64, f64)> = None;
         let mut high: Option<(f64, f64)> = None;
-        let mut trial = self.balance(&fairest.points, [begin, least, squares]);
+        let known = match goal {
+            Goal::Budget(share) | Goal::Near(share) if !conditioned => {
+                parts.pull = None;
+                parts.weight_of(pull, share * mean)?
+            }
+            _ => None,
+        };
+        let guess = || self.balance(&fairest.points, [begin, least, squares]);
+        let mut trial = known.map_or_else(guess, libm::log);
         let mut stride = FIRST_STRIDE;
-        let mut side = 0;
+        let (mut side, mut stepped) = (0, 0.0);
         let mut best: Option<(f64, f64, Optimum)> = None;
         for _ in 0..MOST_SOLUTIONS {
-            let optimum = solve(libm::exp(trial))?;
+            let (optimum, decided) = solve(parts, libm::exp(trial))?;
             let value = measured(&optimum);
             // Conditions may keep the data farther off than the budget.
             let settled = low.is_some_and(|l| l.1 - value < 1e-6);
@@ -346,7 +381,11 @@ where
             }
             let width = low.zip(high).map_or(f64::INFINITY, |(l, h)| h.0 - l.0);
             // Between weights so near to each other what is left is rounding of the optima.
-            if value.abs() <= GOAL_ACCURACY || (!better && width < NOISY) {
+            let many = self.count > MANY;
+            let rounded = known.is_some() && many && !decided && value.abs() <= NOISY;
+            // Where it is known which limits are reached each further solution is a few steps.
+            let close = if known.is_some() && decided { DECIDED } else { GOAL_ACCURACY };
+            if value.abs() <= close || rounded || (!better && width < NOISY) {
                 break;
             }
             if value > 0.0 {
@@ -366,6 +405,12 @@ where
                 high = Some((trial, value));
                 side = -1;
             }
+            if known.is_some() && low.is_none() != high.is_none() {
+                // The goal is near: beyond it by about as much as it is short.
+                let beyond = 4.0 * value.abs().max(GOAL_ACCURACY);
+                stride = beyond.min(LARGEST_STRIDE).max(2.0 * stepped);
+                stepped = stride;
+            }
             trial = match (low, high) {
                 (Some(l), Some(h)) => {
                     if h.0 - l.0 < GOAL_ACCURACY {
@@ -378,10 +423,15 @@ where
                 (Some(l), None) => l.0 + stride,
                 (None, None) => unreachable!("one of them was set"),
             };
-            stride = (2.0 * stride).min(LARGEST_STRIDE);
+            if known.is_none() {
+                stride = (2.0 * stride).min(LARGEST_STRIDE);
+            }
         }
         let (weight, _, optimum) = best.expect("one solution at least");
-        settle(optimum, libm::exp(weight))
+        let weight = libm::exp(weight);
+        let mut found = settle(optimum, weight)?;
+        found.solution = last.filter(|l| l.0 == weight && found.share >= 1.0).map(|l| l.1);
+        Ok(found)
     }
 }
 
@@ -568,5 +618,7 @@ pub(crate) fn moved<T: Real>(
             })
             .collect());
     }
-    Ok(out)
+    // The solution may have been found from another one: its bits count.
+    let found = out.iter().zip(&found.optimum.points);
+    Ok(found.map(|(p, real)| *p - Vec3::lifted(p.re() - *real)).collect())
 }

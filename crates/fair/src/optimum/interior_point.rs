@@ -6,6 +6,7 @@
 use crate::optimum::band::Band;
 use crate::optimum::problem::{Active, CertifiedSolution, NONE, Problem, UnknownOrder};
 use crate::optimum::second_order_cone::{ConeScaling, Pair, V, axpy, dot};
+use crate::optimum::squares_bound::{BoundStep, SquaresBound};
 use crate::{FairError, RowNorm, SparseRows};
 use moldloft_num::Real;
 
@@ -76,6 +77,7 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
     reach: Vec<f64>,
     pub conditions: Vec<LinearConstraint<D>>,
     halves: Vec<Half<D>>,
+    squares: Option<SquaresBound<D>>,
     pub x: Vec<V<D>>,
     /// Cones of the limits, then those of the lengths.
     pub cones: Vec<ConeScaling<D>>,
@@ -96,6 +98,7 @@ struct NewtonDirection<const D: usize> {
     y: Vec<Pair<D>>,
     /// Slack and force of each half-space.
     halves: Vec<(f64, f64)>,
+    squares: BoundStep,
     nu: Vec<f64>,
 }
 
@@ -108,6 +111,7 @@ impl<const D: usize> NewtonDirection<D> {
             u: none.clone(),
             y: none,
             halves: vec![(0.0, 0.0); halves],
+            squares: BoundStep::default(),
             nu: Vec::new(),
         }
     }
@@ -117,7 +121,8 @@ impl<const D: usize> NewtonDirection<D> {
         let pair = |p: &Pair<D>| p.0 + p.1.iter().sum::<f64>();
         let cones: f64 = self.u.iter().chain(&self.y).map(pair).sum();
         let halves: f64 = self.halves.iter().map(|(s, z)| s + z).sum();
-        (cones + halves + self.x.as_flattened().iter().sum::<f64>()).is_finite()
+        let rest = self.squares.sum() + self.x.as_flattened().iter().sum::<f64>();
+        (cones + halves + rest).is_finite()
     }
 }
 
@@ -170,7 +175,7 @@ pub(crate) fn add_block<const D: usize>(
     }
 }
 
-fn identity<const D: usize>() -> [V<D>; D] {
+pub(crate) fn identity<const D: usize>() -> [V<D>; D] {
     std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c))))
 }
 
@@ -207,6 +212,9 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         Self {
             p,
             halves: p.halves.iter().map(half).collect(),
+            squares: p.squares.as_ref().map(|(rows, most)| {
+                SquaresBound::new(rows.renumbered(place), *most, order.unknowns)
+            }),
             measure: p.measure.renumbered(place),
             limit_rows: p.bounds.rows.renumbered(place),
             offsets: p.offsets.iter().map(cut).collect(),
@@ -310,6 +318,9 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             let (rows, k) = self.rows_of(c);
             add_block(band, rows, k, &w);
         }
+        if let Some(squares) = &self.squares {
+            squares.assemble(band);
+        }
         for half in &self.halves {
             let stiffness = half.force / half.slack;
             for (at, (i, a)) in half.entries.iter().enumerate() {
@@ -361,7 +372,12 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
                 axpy(&mut out.x[*i], -push, *factor);
             }
         }
-        band.solve(out.x.as_flattened_mut());
+        let towards = before.map(|d| (mu, &d.squares));
+        if let Some(squares) = &self.squares {
+            let towards = before.map(|d| (mu, &d.squares, d.x.as_slice()));
+            squares.push(towards, &mut out.x);
+        }
+        self.inverse(band, out.x.as_flattened_mut());
         // Conditions by their Schur complement: x = x0 - Y nu, A x = b - A x_now.
         out.nu = dense.solve(self, &self.x, out.x.as_flattened_mut());
         for (c, cone) in self.cones.iter().enumerate() {
@@ -379,12 +395,24 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             let ds = half.rest(&self.x) - half.at(&out.x);
             out.halves[k] = (ds, (goal(k, half) - half.force * ds) / half.slack);
         }
+        if let Some(squares) = &self.squares {
+            out.squares = squares.change(towards, &out.x);
+        }
+    }
+
+    /// Solves with the factored matrix, in place.
+    fn inverse(&self, band: &Band, x: &mut [f64]) {
+        band.solve(x);
+        if let Some(squares) = &self.squares {
+            squares.correct(x);
+        }
     }
 
     /// The longest step along `d` that keeps all cones, at most 2.
     fn longest(&self, d: &NewtonDirection<D>) -> f64 {
         let each = self.cones.iter().zip(&d.u).zip(&d.y);
         let step = each.fold(2.0, |step, ((cone, &du), &dy)| cone.longest(du, dy, step));
+        let step = self.squares.as_ref().map_or(step, |s| s.longest(&d.squares, step));
         let least = |step: f64, (now, by): (f64, f64)| {
             if by < 0.0 { step.min(-now / by) } else { step }
         };
@@ -397,7 +425,8 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
     /// The sum of complementarities.
     fn complementarity(&self) -> f64 {
         let cones: f64 = self.cones.iter().map(|c| c.u.0 * c.y.0 + dot(c.u.1, c.y.1)).sum();
-        cones + self.halves.iter().map(|h| h.slack * h.force).sum::<f64>()
+        let squares = self.squares.as_ref().map_or(0.0, SquaresBound::complementarity);
+        cones + squares + self.halves.iter().map(|h| h.slack * h.force).sum::<f64>()
     }
 
     fn step(&mut self, d: &NewtonDirection<D>, by: f64) {
@@ -426,6 +455,9 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         for (half, d) in self.halves.iter_mut().zip(&d.halves) {
             half.slack += by * d.0;
             half.force += by * d.1;
+        }
+        if let Some(squares) = &mut self.squares {
+            squares.step(&d.squares, by, &self.x);
         }
     }
 
@@ -467,6 +499,9 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             for (i, factor) in &half.entries {
                 axpy(&mut slope[*i], half.force, *factor);
             }
+        }
+        if let Some(squares) = &self.squares {
+            gap += squares.certify(&self.x, &mut slope);
         }
         let norm = |v: V<D>| {
             if p.bounds.separate { v.iter().map(|c| c.abs()).sum() } else { dot(v, v).sqrt() }
@@ -537,6 +572,9 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         }
         let total: f64 = slope.iter().map(|s| dot(*s, *s).sqrt()).sum();
         let force = (total / slope.len().max(1) as f64).max(1e-200);
+        if let Some(squares) = &mut self.squares {
+            squares.start(force * radius.max(1e-200));
+        }
         for (k, &radius) in self.p.bounds.radii.iter().enumerate() {
             let offset: V<D> = cut(&self.p.bounds.offset(k));
             for c in 0..self.groups() {
@@ -555,7 +593,28 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
 
     /// Whether the last digits are worth a try: half-spaces keep those of the interior point.
     fn polished(&self) -> bool {
-        self.p.norm == RowNorm::Square && self.halves.is_empty()
+        self.p.norm == RowNorm::Square && self.halves.is_empty() && self.squares.is_none()
+    }
+
+    /// Whether a polished solution is one.
+    fn polished_to(&self, accuracy: f64, floor: f64, margin: f64) -> bool {
+        let (value, gap) = self.certificate();
+        // The margin is part of the gap: forces times what is not used of the limits.
+        let unused: f64 = self.active.iter().flat_map(|a| &a.forces).map(|f| f * margin).sum();
+        self.missed() <= 1e-9 && gap <= (accuracy * value).max(floor) + 4.0 * unused
+    }
+
+    /// Takes over a solution.
+    fn begin_at(&mut self, before: &CertifiedSolution) {
+        for (x, &at) in before.x.iter().zip(&self.order.place) {
+            if at != NONE {
+                self.x[at as usize] = cut(x);
+            }
+        }
+        let narrow = |p: Pair<3>| (p.0, cut(&p.1));
+        let cones = before.cones.iter().map(|&(u, y)| ConeScaling::new(narrow(u), narrow(y)));
+        self.cones = cones.collect();
+        self.nu.clone_from(&before.nu);
     }
 
     /// By points.
@@ -578,6 +637,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             cones: self.cones.iter().map(|c| (wide(c.u), wide(c.y))).collect(),
             nu: self.nu,
             active: self.active,
+            weight: self.squares.as_ref().map_or(0.0, |s| 2.0 * s.force),
         }
     }
 
@@ -595,15 +655,10 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         if self.unknowns() == 0 {
             return Ok(vec![[T::zero(); 3]; count]);
         }
-        for (x, &at) in solution.x.iter().zip(&self.order.place) {
-            if at != NONE {
-                self.x[at as usize] = cut(x);
-            }
+        self.begin_at(solution);
+        if solution.active.is_none() {
+            self.cones.iter_mut().for_each(|c| *c = c.centred());
         }
-        let narrow = |p: Pair<3>| (p.0, cut(&p.1));
-        let cones = solution.cones.iter().map(|&(u, y)| ConeScaling::new(narrow(u), narrow(y)));
-        let centred = solution.active.is_none();
-        self.cones = cones.map(|c| if centred { c.centred() } else { c }).collect();
         let mut band = self.band()?;
         let mut right = vec![zero; self.unknowns()];
         for (push, &at) in pushes.iter().zip(&self.order.place) {
@@ -687,7 +742,7 @@ impl Schur {
             .iter()
             .map(|row| {
                 let mut y = row.clone();
-                band.solve(&mut y);
+                state.inverse(band, &mut y);
                 y
             })
             .collect();
@@ -760,13 +815,27 @@ pub(crate) fn solve<const D: usize>(
     accuracy: f64,
     floor: f64,
     margin: f64,
+    before: Option<&CertifiedSolution>,
 ) -> Result<CertifiedSolution, FairError> {
-    state.start();
     let mut iterations = 0;
+    let mut band = state.band()?;
+    if let Some(before) = before.filter(|b| b.active.is_some())
+        && state.polished()
+        && state.unknowns() > 0
+    {
+        // Near a solution the limits that it reaches may be those of this problem, too.
+        state.begin_at(before);
+        if state.polish(&mut band, margin) && state.polished_to(accuracy, floor, margin) {
+            return Ok(state.solution(1));
+        }
+        state.x.fill([0.0; D]);
+        state.nu.fill(0.0);
+        (state.cones, state.active) = (Vec::new(), None);
+    }
+    state.start();
     if state.unknowns() == 0 {
         return Ok(state.solution(iterations));
     }
-    let mut band = state.band()?;
     let mut best: Option<(f64, Vec<V<D>>, Vec<ConeScaling<D>>, Vec<f64>)> = None;
     let (cones, halves) = (state.cones.len(), state.halves.len());
     let mut affine = NewtonDirection::zero(state.unknowns(), cones, halves);
@@ -778,14 +847,18 @@ pub(crate) fn solve<const D: usize>(
         state.cones.iter_mut().for_each(ConeScaling::scale);
         state.assemble(&mut band);
         band.factor();
+        if let Some(squares) = &mut state.squares {
+            squares.factored(&band);
+        }
         let dense = Schur::new(&state, &band);
         state.direction(&band, &dense, 0.0, None, &mut affine);
-        if cones + halves == 0 {
+        if cones + halves == 0 && state.squares.is_none() {
             // Nothing is limited: one step solves a sum of squares.
             state.step(&affine, 1.0);
             break;
         }
-        let mu = state.complementarity() / (cones + halves) as f64;
+        let bounds = cones + halves + usize::from(state.squares.is_some());
+        let mu = state.complementarity() / bounds as f64;
         let reach = state.longest(&affine).min(1.0);
         let centring = (1.0 - reach).powi(3);
         state.direction(&band, &dense, centring * mu, Some(&affine), &mut corrected);
@@ -818,12 +891,7 @@ pub(crate) fn solve<const D: usize>(
         if state.polished() && meets && gap <= shows * value {
             let kept = (state.x.clone(), state.cones.clone(), state.nu.clone());
             if state.polish(&mut band, margin) {
-                let (value, after) = state.certificate();
-                // The margin is part of the gap: forces times what is not used of the limits.
-                let unused: f64 =
-                    state.active.iter().flat_map(|a| &a.forces).map(|f| f * margin).sum();
-                let missed = state.missed();
-                if missed <= 1e-9 && after <= (accuracy * value).max(floor) + 4.0 * unused {
+                if state.polished_to(accuracy, floor, margin) {
                     best = None;
                     break;
                 }

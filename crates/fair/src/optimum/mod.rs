@@ -7,6 +7,7 @@ mod interior_point;
 mod polish;
 pub(crate) mod problem;
 mod second_order_cone;
+mod squares_bound;
 
 use crate::curve::condition::{AXES, across};
 use crate::curve::job::EndContinuity;
@@ -57,6 +58,9 @@ pub struct Optimum {
     /// How many limits are reached: their multiplier outweighs their slack.
     pub active: usize,
 }
+
+/// The gap, as a share of the measure, to which the weight of a budget is looked for.
+const WEIGHED: f64 = 1e-8;
 
 /// The frame that points move in: the directions that matter.
 pub(crate) struct MotionAxes {
@@ -259,7 +263,28 @@ impl<'a> Parts<'a> {
     pub fn solve(&self) -> Result<Optimum, FairError> {
         let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
-        Ok(self.solved(&frame, &problem)?.0)
+        Ok(self.solved(&frame, &problem, None)?.0)
+    }
+
+    /// The optimum beginning at the solution of a problem that differs little, and its own solution.
+    pub fn solve_after(
+        &self,
+        before: Option<&problem::CertifiedSolution>,
+    ) -> Result<(Optimum, problem::CertifiedSolution), FairError> {
+        let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
+        let problem = self.problem(&frame);
+        self.solved(&frame, &problem, before)
+    }
+
+    /// The weight beside the measure of the squares of `pull` at which these are at most `most` in sum,
+    /// nearly; none where the search does not end there.
+    pub fn weight_of(&self, pull: &SparseRows, most: f64) -> Result<Option<f64>, FairError> {
+        let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
+        let mut problem = self.problem(&frame);
+        problem.squares = Some((pull.clone(), most));
+        let solution = problem::solve(&problem, WEIGHED, 0.0, 0.0, None)?;
+        let good = solution.gap <= 1e3 * WEIGHED * solution.value && solution.weight.is_normal();
+        Ok(good.then_some(solution.weight))
     }
 
     /// The optimum with the numbers or their derivatives of `points`, `tolerances` (per control
@@ -285,7 +310,7 @@ impl<'a> Parts<'a> {
     ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
         let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
-        let (optimum, solution) = self.solved(&frame, &problem)?;
+        let (optimum, solution) = self.solved(&frame, &problem, None)?;
         let solved = Solved { frame, problem, optimum, solution };
         let points = self.answer(&solved, points, tolerances, targets, bends, &[])?;
         Ok((points, solved.optimum))
@@ -295,7 +320,7 @@ impl<'a> Parts<'a> {
     pub fn whole(&self) -> Result<Solved, FairError> {
         let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
-        let (optimum, solution) = self.solved(&frame, &problem)?;
+        let (optimum, solution) = self.solved(&frame, &problem, None)?;
         Ok(Solved { frame, problem, optimum, solution })
     }
 
@@ -407,6 +432,7 @@ impl<'a> Parts<'a> {
         &self,
         frame: &MotionAxes,
         problem: &Problem,
+        before: Option<&problem::CertifiedSolution>,
     ) -> Result<(Optimum, problem::CertifiedSolution), FairError> {
         // Gaps below the rounding of the measure are no gaps.
         let size = self.relative.iter().map(|p| p.norm()).fold(0.0, f64::max);
@@ -418,7 +444,7 @@ impl<'a> Parts<'a> {
         };
         // Positions round by half a unit in the last place of the largest coordinate, moves too.
         let margin = 4.0 * f64::EPSILON * self.points.iter().map(|p| p.norm()).fold(0.0, f64::max);
-        let solution = problem::solve(problem, self.accuracy, floor, margin)?;
+        let solution = problem::solve(problem, self.accuracy, floor, margin, before)?;
         let points = self.moved(frame, &solution.x);
         let count = self.conditions.len();
         // What is not a number is missed.
@@ -548,6 +574,7 @@ impl<'a> Parts<'a> {
             .collect();
         Problem {
             halves,
+            squares: None,
             dimension: frame.axes.len(),
             measure,
             norm: self.norm,

@@ -219,3 +219,42 @@ fn wrong_digits_of_short_lists() {
     assert!(100 * clean >= 99 * all, "{clean} of {all} without a false finding");
     assert!(100 * stray <= 2 * all, "{stray} false ones in {all}");
 }
+
+/// The error that is said to be found is found, a third of it is not, and it is the same where there is
+/// such an error.
+#[test]
+fn what_is_detectable_is_found() {
+    let (mut asked, mut found, mut early, mut same) = (0, 0, 0, 0);
+    for (seed, n) in [(1, 14), (2, 20), (3, 31), (4, 48)] {
+        let mut g = Lcg::new(300 + seed);
+        for shape in ["sac", "ellipse", "hollow"] {
+            let exact = (0..n).map(|k| shape_at(shape, f64::from(k) / f64::from(n - 1)));
+            let size = 1e-4;
+            let points: Vec<_> =
+                exact.map(|p| p + Vec3::of(0.0, size * (g.unit() - 0.5), 0.0)).collect();
+            let least = detectable(&points, false);
+            for at in (3..n as usize - 3).step_by(3) {
+                let along = points[at + 1] - points[at - 1];
+                let normal = Vec3::of(-along.y, along.x, 0.0).normalized().unwrap();
+                let with = |times: f64| {
+                    let mut points = points.clone();
+                    points[at] += normal * (times * least[at]);
+                    points
+                };
+                let says = |points: &[Vec3<f64>]| {
+                    data_findings(points, false).first().is_some_and(
+                        |f| matches!(f, DataFinding::WrongDigit { index, .. } if *index == at),
+                    )
+                };
+                asked += 1;
+                found += usize::from(says(&with(1.5)));
+                early += usize::from(says(&with(0.3)));
+                let then = detectable(&with(3.0), false)[at];
+                same += usize::from((then / least[at] - 1.0).abs() < 0.25);
+            }
+        }
+    }
+    assert!(100 * found >= 90 * asked, "{found} of {asked}");
+    assert!(100 * early <= 3 * asked, "{early} of {asked}");
+    assert!(100 * same >= 95 * asked, "{same} of {asked}");
+}

@@ -21,7 +21,13 @@ fn data(points: &[Vec3<f64>], shape: [usize; 2], tolerance: f64, motion: Motion)
         shape,
         tolerance,
         motion,
-        grid_spacing(points, shape, ParameterSpacing::Chord, [false; 2]),
+        grid_spacing(
+            points,
+            shape,
+            ParameterSpacing::Chord,
+            [false; 2],
+            &vec![tolerance; points.len()],
+        ),
     )
 }
 
@@ -32,7 +38,8 @@ fn spaced(
     motion: Motion,
     spacing: [ParameterSpacing; 2],
 ) -> GridData {
-    let at = grid_parameters(points, shape, spacing, [false; 2], motion).unwrap();
+    let radii = vec![tolerance; points.len()];
+    let at = grid_parameters(points, shape, spacing, [false; 2], (motion, &radii)).unwrap();
     GridData {
         limit: Limit::new(motion, vec![tolerance; points.len()]).unwrap(),
         layouts: at.map(|at| InterpolationSpace::new(3, &at, &[], false).unwrap()),
@@ -168,7 +175,8 @@ fn derivatives_go_through_the_knots() {
         moving[15].y = Dual4::seeded(points[15].y, 0);
         moving[20].x = Dual4::seeded(points[20].x, 1);
         let tolerance = Dual4::seeded(0.008, 2);
-        let at = grid_parameters(&moving, [7, 6], chords, [false; 2], Motion::Ball).unwrap();
+        let ball = (Motion::Ball, &[0.008; 42][..]);
+        let at = grid_parameters(&moving, [7, 6], chords, [false; 2], ball).unwrap();
         let data = spaced(&points, [7, 6], 0.008, Motion::Ball, chords);
         let at = [at[0].as_slice(), at[1].as_slice()];
         let tolerances = vec![tolerance; 42];

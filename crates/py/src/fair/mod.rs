@@ -10,5 +10,6 @@ pub use look::Look;
 pub use net::{Net, Web};
 pub use solve::fair_shape;
 pub use spline::{
-    Spline, data_findings, detectable, divided_differences, eta_y, line_findings, monotone_runs,
+    Spline, are_exact, data_findings, detectable, divided_differences, eta_y, is_exact,
+    line_findings, monotone_runs,
 };

@@ -57,6 +57,11 @@ impl Net {
     }
 
     #[getter]
+    fn rational(&self) -> bool {
+        self.weights.is_some()
+    }
+
+    #[getter]
     fn shape(&self) -> (usize, usize) {
         (self.spaces[0].count(), self.spaces[1].count())
     }
@@ -155,9 +160,9 @@ impl Net {
         let closed: [bool; 2] = get(&options, "closed")?;
         let spaced =
             spacing(&get::<String>(&options, "spacing")?, get(&options, "spacing_direction")?)?;
-        let spaced = grid_spacing(&points, shape, spaced, closed);
-        let at =
-            grid_parameters(&points, shape, spaced, closed, limit.motion).map_err(fair_error)?;
+        let spaced = grid_spacing(&points, shape, spaced, closed, &limit.radii);
+        let at = grid_parameters(&points, shape, spaced, closed, (limit.motion, &limit.radii))
+            .map_err(fair_error)?;
         let marks: (Vec<usize>, Vec<usize>) = get(&options, "marks")?;
         let layout = |d: usize, marks: &[usize]| {
             InterpolationSpace::new(degrees[d], &at[d], marks, closed[d]).map_err(fair_error)

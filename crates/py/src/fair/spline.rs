@@ -400,11 +400,38 @@ pub fn line_findings(
     marked: Vec<usize>,
 ) -> PyResult<Vec<(usize, Told)>> {
     let points = vectors(&points)?;
-    if let Some(i) = lines.iter().flat_map(|l| &l.0).find(|&&i| i >= points.len()) {
-        return Err(refused(format!("there is no point {}", i + 1)));
-    }
+    check_lines(&points, &lines)?;
     let found = moldloft::fair::line_findings(&points, &lines, &marked);
     Ok(found.into_iter().map(|(line, f)| (line, told_of(&points, f))).collect())
+}
+
+/// Whether points are exact from break to break; see `moldloft::fair::is_exact`.
+#[pyfunction]
+pub fn is_exact(
+    points: PyReadonlyArray2<'_, f64>,
+    breaks: Vec<usize>,
+    closed: bool,
+) -> PyResult<bool> {
+    Ok(moldloft::fair::is_exact(&vectors(&points)?, &breaks, closed))
+}
+
+/// The same of all lines through numbered points, each its points and whether it is closed.
+#[pyfunction]
+pub fn are_exact(
+    points: PyReadonlyArray2<'_, f64>,
+    lines: Vec<(Vec<usize>, bool)>,
+    breaks: Vec<usize>,
+) -> PyResult<bool> {
+    let points = vectors(&points)?;
+    check_lines(&points, &lines)?;
+    Ok(moldloft::fair::are_exact(&points, &lines, &breaks))
+}
+
+fn check_lines(points: &[Vec3], lines: &[(Vec<usize>, bool)]) -> PyResult<()> {
+    match lines.iter().flat_map(|l| &l.0).find(|&&i| i >= points.len()) {
+        Some(i) => Err(refused(format!("there is no point {}", i + 1))),
+        None => Ok(()),
+    }
 }
 
 /// How large an error of each point would be found.
