@@ -332,7 +332,7 @@ fn rebuilt<T: Real>(body: &SketchSolid<T>, at: Vec<Vec3<T>>) -> Result<SketchSol
     Ok(SketchSolid { vertices, edges, faces, ..SketchSolid::default() })
 }
 
-/// The arc about an axis that an edge becomes between new ends; `None` when it is no arc, or turns the other way.
+/// The arc about an axis that an edge becomes between new ends; `None` when it is not an arc, or turns the other way.
 fn arc<T: Real>(
     body: &SketchSolid<T>,
     edge: usize,
