@@ -455,7 +455,8 @@ impl<T: Real> Blending<'_, T> {
                     let x = (p - s).dot(edge.frame.along.re());
                     x < 0.0 || x > s.distance(e)
                 };
-                if !inside(p) && !(beyond && past) {
+                let ends = beyond && past;
+                if !(ends || inside(p)) {
                     let width = edge.reach[k].re();
                     let text = format!(
                         "a blend that reaches {width} from its edge leaves the face beside it"

@@ -60,7 +60,7 @@ pub(crate) fn drafted<T: Real>(
     at: T,
     faces: &[FaceChoice],
 ) -> Result<SketchSolid<T>, NoBody> {
-    if !(angle.re().abs() < std::f64::consts::FRAC_PI_2) {
+    if angle.re().is_nan() || angle.re().abs() >= std::f64::consts::FRAC_PI_2 {
         let text = format!("a draft of {} degrees", angle.re().to_degrees());
         return Err(TreatmentFault::new(text, None, "give an angle between -90 and 90").into());
     }
