@@ -152,7 +152,10 @@ class ObjectChange:
     def _of(row: tuple[str, list[bool], list[list[int]], list[str]]) -> ObjectChange:
         name, flags, parts, numbers = row
         drawn, moved, removed, lines, faces = (tuple(p) for p in parts)
-        return ObjectChange(name, *flags, drawn, moved, removed, lines, faces, tuple(numbers))
+        added, gone, body = flags
+        return ObjectChange(
+            name, added, gone, body, drawn, moved, removed, lines, faces, tuple(numbers)
+        )
 
 
 @dataclass(frozen=True)
@@ -421,8 +424,8 @@ class Sketch:
         """
         places = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         ends = np.asarray(lines, dtype=np.int64).reshape(-1, 2)
-        if ends.size and not (0 <= ends.min() and ends.max() < len(places)):
-            raise SketchError(f"an end of a line is no row of the {len(places)} points")
+        if ends.size and (ends.min() < 0 or ends.max() >= len(places)):
+            raise SketchError(f"an end of a line is not a row of the {len(places)} points")
         kinds = [None] * len(ends) if types is None else list(types)
         if len(kinds) != len(ends):
             raise SketchError(f"{len(kinds)} types for {len(ends)} lines")
@@ -475,7 +478,9 @@ class Sketch:
         """
         return Drag(self)
 
-    def snap(self, u: float, v: float, reach: float, *, name: str | None = None) -> SketchSnap | None:
+    def snap(
+        self, u: float, v: float, reach: float, *, name: str | None = None
+    ) -> SketchSnap | None:
         """What a pointer snaps to: the nearest point, line, or extension along an axis.
 
         Parameters
@@ -495,7 +500,7 @@ class Sketch:
         return SketchSnap((x, y), point, on, part, axis)
 
     def suggestions(self, *, name: str | None = None) -> list[SketchSuggestion | None]:
-        """A dimension for each part that none connects with the reference point, as the picture suggests it.
+        """The missing dimensions as the picture suggests them, one for each loose part.
 
         Parameters
         ----------
@@ -520,7 +525,7 @@ class Sketch:
     def preview(
         self, *, name: str | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.uint32]] | None:
-        """The estimated body, as :meth:`mesh` gives it: missing dimensions are those that the picture suggests.
+        """The body that the picture and the dimensions suggest, as :meth:`mesh` gives it.
 
         Parameters
         ----------

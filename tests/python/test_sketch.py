@@ -388,7 +388,11 @@ def step_solid(path):
     kinds = []
     faces = TopExp_Explorer(shape, TopAbs_FACE)
     while faces.More():
-        kinds.append(BRepAdaptor_Surface(TopoDS.Face(faces.Current())).GetType().name.removeprefix("GeomAbs_"))
+        kinds.append(
+            BRepAdaptor_Surface(TopoDS.Face(faces.Current()))
+            .GetType()
+            .name.removeprefix("GeomAbs_")
+        )
         faces.Next()
     return props.Mass(), kinds, BRepCheck_Analyzer(shape).IsValid()
 
@@ -412,12 +416,14 @@ def test_step_has_the_surfaces_of_the_solid(name, kinds, tmp_path):
             POINT 1 0 0; POINT 2 90 1; POINT 3 91 90; POINT 4 1 91; POLYLINE 1 2 3 4 CLOSE
             SET UNITS CM; DIM B X 1 2 1; DIM C Z 1 4 1; EXTRUDE 9
             CIRCLE C1 CORNER 1 4 2; CIRCLE C2 CORNER 5 8 6; MOVE DRILL 3 -2 0.5; CUT SLAB DRILL"""
-        s.run({
-            "rounded": "FILLET SLAB 0.5 EDGES ALL",
-            "ring": f"{drill}; FILLET SLAB 0.25 EDGES BETWEEN BOTTOM Y DRILL.C1",
-            "drilled": drill,
-            "sunk": f"{drill}; CHAMFER SLAB 0.25 EDGES BETWEEN BOTTOM Y DRILL.C1",
-        }[name])
+        s.run(
+            {
+                "rounded": "FILLET SLAB 0.5 EDGES ALL",
+                "ring": f"{drill}; FILLET SLAB 0.25 EDGES BETWEEN BOTTOM Y DRILL.C1",
+                "drilled": drill,
+                "sunk": f"{drill}; CHAMFER SLAB 0.25 EDGES BETWEEN BOTTOM Y DRILL.C1",
+            }[name]
+        )
     path = s.export(tmp_path / f"{name}.step")
     volume, found, valid = step_solid(path)
     size = {"bracket": 1, "dam": 304.8}.get(name, 10)
@@ -504,9 +510,9 @@ def test_the_python_of_the_page_runs(tmp_path, monkeypatch):
     page = (Path(__file__).parents[2] / "docs" / "sketch.md").read_text(encoding="utf-8")
     shutil.copytree(EXAMPLES, tmp_path / "examples" / "sketch")
     monkeypatch.chdir(tmp_path)
-    [block] = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    namespace: dict[str, object] = {}
-    exec(compile(block, "sketch.md", "exec"), namespace)
+    for block in re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL):
+        namespace: dict[str, object] = {}
+        exec(compile(block, "sketch.md", "exec"), namespace)
     assert (tmp_path / "dam.3mf").exists() and (tmp_path / "dam.skt").exists()
     program = page.split("```\nload ")[1].split("```")[0]
     path = tmp_path / "examples" / "sketch" / "page.sdl"
@@ -555,9 +561,11 @@ def test_edits_are_data():
     snapped = s.snap(140.5, 33, reach=2)
     assert snapped is not None and snapped.point == 3 and snapped.at == (140.0, 33.0)
     on_line = s.snap(45, 0.4, reach=1)
-    assert on_line is not None and on_line.line == 1 and on_line.part == pytest.approx(0.5, abs=0.01)
+    assert (
+        on_line is not None and on_line.line == 1 and on_line.part == pytest.approx(0.5, abs=0.01)
+    )
     assert s.snap(1e6, 1e5, reach=1) is None
-    with pytest.raises(SketchError, match="no row"):
+    with pytest.raises(SketchError, match="not a row"):
         s.draw([[0, 0]], [[0, 1]])
     with pytest.raises(SketchError):
         s.edit("SET NOTHING 5")
@@ -575,7 +583,7 @@ def test_a_picture_without_dimensions_has_a_body():
     found = s.preview()
     assert found is not None
     vertices, faces = found
-    assert vertices.shape == (8, 3) and len(faces) == 6
+    assert vertices.shape == (8, 3) and len(faces) == 12
     assert np.ptp(vertices, axis=0) == pytest.approx([100, 80, 50], rel=0.05)
     assert s.volume is None
     s.run("ACCEPT ALL")
@@ -603,5 +611,5 @@ def test_a_program_has_the_unit_of_its_sketches(tmp_path):
         'load "a.skt"; Model info(units = "mm kg");',
         'Sketch s("a.skt", W = 3); load "b.skt";',
     ):
-        with pytest.raises(moldloft.ModelError, match="units-differ|is in ft|is in mm"):
+        with pytest.raises(moldloft.ModelError, match=r"is in (ft|mm)"):
             load(text)

@@ -124,8 +124,8 @@ impl Drawing {
         off.sort_by(f64::total_cmp);
         let median = off.get(off.len() / 2).copied().unwrap_or(0.0);
         let found = median / 0.6745 / std::f64::consts::SQRT_2;
-        // The median of a few lines says little: with it counts what a steady hand does.
-        let (n, usual) = (off.len() as f64, STEADY * size);
+        // That a few lines are exact says little: with them counts what a steady hand does.
+        let (n, usual) = (off.len() as f64, (STEADY * size).max(found));
         let mean = (n * found * found + STEADY_LINES * usual * usual) / (n + STEADY_LINES);
         Real::sqrt(mean).clamp(1.2e-3 * size, 0.02 * size)
     }

@@ -94,7 +94,7 @@ pub fn glb(mesh: &IndexedTriangles, name: &str, metres: Option<f64>) -> Vec<u8> 
     let bytes = buffer(mesh);
     let length = Json::map([("byteLength", Json::from(bytes.len()))]);
     let mut text = gltf_text(mesh, name, metres, length).into_bytes();
-    while text.len() % 4 != 0 {
+    while !text.len().is_multiple_of(4) {
         text.push(b' ');
     }
     // The buffer is made of words of four bytes.

@@ -6,7 +6,7 @@
 //! number carries derivatives.
 
 use super::SketchSolid;
-use super::blend_tool::{BallCorner, BlendSection, Station, joined, swept};
+use super::blend_tool::{BallCorner, BlendSection, SectionPlacing, joined, swept};
 use super::combine::combined_with;
 use super::curve::SmoothPiece;
 use super::edges::{EdgeFrame, EdgeSide, FaceForm, TreatmentFault};
@@ -228,17 +228,17 @@ impl<T: Real> Blending<'_, T> {
     }
 
     /// Where the blend of a straight edge ends.
-    fn station(&self, edge: &BlendEdge<T>, end: usize) -> Result<Station<T>, NoBody> {
+    fn station(&self, edge: &BlendEdge<T>, end: usize) -> Result<SectionPlacing<T>, NoBody> {
         let frame = &edge.frame;
         let at = if end == 0 { frame.start } else { frame.finish };
         let along = frame.along;
         let out = if end == 0 { -along } else { along };
-        let square = Station::Plane { along, at, normal: along };
+        let square = SectionPlacing::Plane { along, at, normal: along };
         let (next, others) = self.at_end(edge, end);
         if next.iter().any(|n| n.1) {
             return Ok(square);
         }
-        let refuse = |text: &str| -> Result<Station<T>, NoBody> {
+        let refuse = |text: &str| -> Result<SectionPlacing<T>, NoBody> {
             Err(TreatmentFault::new(
                 text,
                 Some(at.re()),
@@ -261,7 +261,7 @@ impl<T: Real> Blending<'_, T> {
             }
             if let (Some(r), true, [Some(_), Some(_)]) = (self.fillet, open > 0.0, chosen) {
                 let centre = self.ball(edge.frame.ends[end], r)?.centre;
-                return Ok(Station::Plane { along, at: centre, normal: along });
+                return Ok(SectionPlacing::Plane { along, at: centre, normal: along });
             }
             let shared = match chosen {
                 [Some(o), None] => Some((o, 0)),
@@ -271,7 +271,7 @@ impl<T: Real> Blending<'_, T> {
                 }
                 _ => None,
             };
-            let to_face = Station::Plane { along, at: base, normal };
+            let to_face = SectionPlacing::Plane { along, at: base, normal };
             let Some((other, k)) = shared else { return Ok(to_face) };
             // Where the corner stands out, blends of different sizes cross each other.
             let mitre = self.mitre(edge, other, k, at, next[1 - k].0);
@@ -293,7 +293,7 @@ impl<T: Real> Blending<'_, T> {
                 return refuse("more than three faces meet, or a round one, where an edge ends");
             }
             for corner in edge.section.corners {
-                let p = (Station::Plane { along, at, normal: along }).point(corner);
+                let p = (SectionPlacing::Plane { along, at, normal: along }).point(corner);
                 length = length.max(self.to_face(h, p, out).unwrap_or(f64::INFINITY));
             }
         }
@@ -301,7 +301,7 @@ impl<T: Real> Blending<'_, T> {
             return refuse("the end of an edge is not found in the faces there");
         }
         let margin = 0.05 * edge.reach[0].re().max(edge.reach[1].re());
-        Ok(Station::Plane { along, at: at + out * T::from(length + margin), normal: along })
+        Ok(SectionPlacing::Plane { along, at: at + out * T::from(length + margin), normal: along })
     }
 
     /// How far it is from a point along a direction to a face, beyond the point.
@@ -332,7 +332,7 @@ impl<T: Real> Blending<'_, T> {
         k: usize,
         at: Vec3<T>,
         third: usize,
-    ) -> Result<Station<T>, NoBody> {
+    ) -> Result<SectionPlacing<T>, NoBody> {
         let fault = |text: &str| {
             NoBody::from(TreatmentFault::new(
                 text,
@@ -353,10 +353,10 @@ impl<T: Real> Blending<'_, T> {
         let Some(normal) = normal.filter(|_| self.body.is_straight(third)) else {
             return Err(fault("two blends meet in no plane"));
         };
-        let station = Station::Plane { along, at, normal };
-        let its_station = Station::Plane { along: other.frame.along, at, normal };
+        let station = SectionPlacing::Plane { along, at, normal };
+        let its_station = SectionPlacing::Plane { along: other.frame.along, at, normal };
         // Both sections must meet in one curve there.
-        let samples = |e: &BlendEdge<T>, s: &Station<T>, turned: bool| -> Vec<Vec3> {
+        let samples = |e: &BlendEdge<T>, s: &SectionPlacing<T>, turned: bool| -> Vec<Vec3> {
             let [v, a, b] = e.section.corners;
             let piece = e.section.round.unwrap_or_else(|| SmoothPiece::straight(a, b));
             let at = |x: f64| s.point(piece.at(T::from(if turned { 1.0 - x } else { x }))).re();
@@ -438,8 +438,8 @@ impl<T: Real> Blending<'_, T> {
     fn extent(
         &self,
         edge: &BlendEdge<T>,
-        stations: &[Station<T>; 2],
-        strips: &mut Vec<Strip>,
+        stations: &[SectionPlacing<T>; 2],
+        strips: &mut Vec<BlendStrip>,
     ) -> Result<(), NoBody> {
         for k in 0..2 {
             let face = edge.frame.sides[k].face;
@@ -455,7 +455,8 @@ impl<T: Real> Blending<'_, T> {
                     let x = (p - s).dot(edge.frame.along.re());
                     x < 0.0 || x > s.distance(e)
                 };
-                if !inside(p) && !(beyond && past) {
+                let ends = beyond && past;
+                if !(ends || inside(p)) {
                     let width = edge.reach[k].re();
                     let text = format!(
                         "a blend that reaches {width} from its edge leaves the face beside it"
@@ -464,9 +465,9 @@ impl<T: Real> Blending<'_, T> {
                 }
             }
             let [s, e] = stations.each_ref().map(|s| s.point(edge.section.corners[0]).re());
-            strips.push(Strip {
+            strips.push(BlendStrip {
                 face,
-                kind: StripKind::Quad([s, e, b, a]),
+                kind: BlendStripKind::Quad([s, e, b, a]),
                 middle: a.lerp(b, 0.5),
             });
         }
@@ -507,7 +508,7 @@ impl<T: Real> Blending<'_, T> {
     fn rings(
         &self,
         tools: &mut Vec<(bool, SketchSolid<T>)>,
-        strips: &mut Vec<Strip>,
+        strips: &mut Vec<BlendStrip>,
     ) -> Result<(), NoBody> {
         let round: BTreeMap<usize, &BlendEdge<T>> = (self.edges.iter())
             .filter(|(_, e)| e.frame.axis.is_some())
@@ -558,7 +559,7 @@ impl<T: Real> Blending<'_, T> {
             let closed = round[&run[run.len() - 1]].frame.ends[1] == round[&run[0]].frame.ends[0];
             let edge = round[&run[0]];
             let Some(axis) = edge.frame.axis else { continue };
-            let mut stations: Vec<(Station<T>, bool)> = Vec::new();
+            let mut stations: Vec<(SectionPlacing<T>, bool)> = Vec::new();
             let mut angle = T::zero();
             let mut since = 0.0;
             for &e in &run {
@@ -571,13 +572,13 @@ impl<T: Real> Blending<'_, T> {
                     if vertex {
                         since = 0.0;
                     }
-                    stations.push((Station::Turned { axis, angle }, vertex));
+                    stations.push((SectionPlacing::Turned { axis, angle }, vertex));
                     let [a, b] = [p, q].map(|x| x - axis.foot(x));
                     let step = axis.direction.dot(a.cross(b)).atan2(a.dot(b));
                     angle += step;
                     since += step.re();
                     if k + 2 == count && !closed && e == run[run.len() - 1] {
-                        stations.push((Station::Turned { axis, angle }, true));
+                        stations.push((SectionPlacing::Turned { axis, angle }, true));
                     }
                 }
             }
@@ -622,7 +623,7 @@ impl<T: Real> Blending<'_, T> {
         axis: &Line<T>,
         flat: usize,
         angle: f64,
-        strips: &mut Vec<Strip>,
+        strips: &mut Vec<BlendStrip>,
     ) -> Result<(), NoBody> {
         let corners = edge.section.corners;
         let start = edge.frame.start;
@@ -648,8 +649,8 @@ impl<T: Real> Blending<'_, T> {
                     }
                 }
                 let radii = [own.norm(), radius(corner).norm()];
-                let kind = StripKind::Ring([axis.point.re(), axis.direction.re()], radii);
-                strips.push(Strip { face, kind, middle: turned(corner, 0.5 * angle) });
+                let kind = BlendStripKind::Ring([axis.point.re(), axis.direction.re()], radii);
+                strips.push(BlendStrip { face, kind, middle: turned(corner, 0.5 * angle) });
             } else {
                 let level = |p: Vec3| axis.direction.re().dot(p - start.re());
                 let reach = level(corner.re());
@@ -661,8 +662,8 @@ impl<T: Real> Blending<'_, T> {
                 if reach.abs() > most * (1.0 + 1e-9) {
                     return Err(fault(k, corner.re()));
                 }
-                let kind = StripKind::Band([start.re(), axis.direction.re()], reach);
-                strips.push(Strip { face, kind, middle: turned(corner, 0.5 * angle) });
+                let kind = BlendStripKind::Band([start.re(), axis.direction.re()], reach);
+                strips.push(BlendStrip { face, kind, middle: turned(corner, 0.5 * angle) });
             }
         }
         Ok(())
@@ -670,14 +671,14 @@ impl<T: Real> Blending<'_, T> {
 }
 
 /// The part of a face that a blend takes.
-struct Strip {
+struct BlendStrip {
     face: usize,
-    kind: StripKind,
+    kind: BlendStripKind,
     /// The middle of its far side.
     middle: Vec3,
 }
 
-enum StripKind {
+enum BlendStripKind {
     Quad([Vec3; 4]),
     /// About an axis, between two radii.
     Ring([Vec3; 2], [f64; 2]),
@@ -685,10 +686,10 @@ enum StripKind {
     Band([Vec3; 2], f64),
 }
 
-impl Strip {
+impl BlendStrip {
     fn has(&self, p: Vec3) -> bool {
         match self.kind {
-            StripKind::Quad(ring) => {
+            BlendStripKind::Quad(ring) => {
                 let normal = super::combine::newell(&ring);
                 let size = normal.norm();
                 (0..4).all(|k| {
@@ -696,13 +697,13 @@ impl Strip {
                     (b - a).cross(p - a).dot(normal) > 1e-9 * size * size
                 })
             }
-            StripKind::Ring([at, direction], radii) => {
+            BlendStripKind::Ring([at, direction], radii) => {
                 let d = p - at;
                 let r = (d - direction * d.dot(direction)).norm();
                 let (low, high) = (radii[0].min(radii[1]), radii[0].max(radii[1]));
                 r > low * (1.0 + 1e-9) && r < high * (1.0 - 1e-9)
             }
-            StripKind::Band([at, direction], reach) => {
+            BlendStripKind::Band([at, direction], reach) => {
                 let x = (p - at).dot(direction) / reach;
                 x > 1e-9 && x < 1.0 - 1e-9
             }
@@ -711,7 +712,7 @@ impl Strip {
 }
 
 /// Refuses blends that take the same part of a face from two sides.
-fn apart(strips: &[Strip]) -> Result<(), NoBody> {
+fn apart(strips: &[BlendStrip]) -> Result<(), NoBody> {
     for (k, a) in strips.iter().enumerate() {
         for b in &strips[..k] {
             if a.face == b.face && (a.has(b.middle) || b.has(a.middle)) {

@@ -12,20 +12,20 @@ use std::sync::Arc;
 
 /// A place along an edge, as the map that brings the section there.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Station<T> {
+pub(super) enum SectionPlacing<T> {
     /// Moved along a direction into a plane.
     Plane { along: Vec3<T>, at: Vec3<T>, normal: Vec3<T> },
     /// Turned about an axis.
     Turned { axis: Line<T>, angle: T },
 }
 
-impl<T: Real> Station<T> {
+impl<T: Real> SectionPlacing<T> {
     pub fn point(&self, p: Vec3<T>) -> Vec3<T> {
         match *self {
-            Station::Plane { along, at, normal } => {
+            SectionPlacing::Plane { along, at, normal } => {
                 p + along * (normal.dot(at - p) / normal.dot(along))
             }
-            Station::Turned { axis, angle } => axis.rotated(p, angle),
+            SectionPlacing::Turned { axis, angle } => axis.rotated(p, angle),
         }
     }
 
@@ -110,7 +110,7 @@ impl<T: Real> ToolParts<T> {
 /// of an open one the last. A closed one goes on from the last to the first.
 pub(super) fn swept<T: Real>(
     section: &BlendSection<T>,
-    stations: &[(Station<T>, bool)],
+    stations: &[(SectionPlacing<T>, bool)],
     closed: bool,
 ) -> SketchSolid<T> {
     let n = section.round.as_ref().map_or(1, by_angle);
@@ -154,7 +154,7 @@ pub(super) fn swept<T: Real>(
         let to = if next > i { own[next] } else { stations.len() };
         let way: Vec<usize> = (from..=to).map(|k| k % stations.len()).collect();
         let turn = match (stations[from].0, stations[own[next]].0) {
-            (Station::Turned { axis, angle }, Station::Turned { angle: end, .. }) => {
+            (SectionPlacing::Turned { axis, angle }, SectionPlacing::Turned { angle: end, .. }) => {
                 let full = T::from(if next > i { 0.0 } else { 2.0 * std::f64::consts::PI });
                 Some((axis, angle, end - angle + full))
             }

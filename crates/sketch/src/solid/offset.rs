@@ -60,7 +60,7 @@ pub(crate) fn drafted<T: Real>(
     at: T,
     faces: &[FaceChoice],
 ) -> Result<SketchSolid<T>, NoBody> {
-    if !(angle.re().abs() < std::f64::consts::FRAC_PI_2) {
+    if angle.re().is_nan() || angle.re().abs() >= std::f64::consts::FRAC_PI_2 {
         let text = format!("a draft of {} degrees", angle.re().to_degrees());
         return Err(TreatmentFault::new(text, None, "give an angle between -90 and 90").into());
     }
@@ -332,7 +332,7 @@ fn rebuilt<T: Real>(body: &SketchSolid<T>, at: Vec<Vec3<T>>) -> Result<SketchSol
     Ok(SketchSolid { vertices, edges, faces, ..SketchSolid::default() })
 }
 
-/// The arc about an axis that an edge becomes between new ends; `None` when it is no arc, or turns the other way.
+/// The arc about an axis that an edge becomes between new ends; `None` when it is not an arc, or turns the other way.
 fn arc<T: Real>(
     body: &SketchSolid<T>,
     edge: usize,

@@ -11,7 +11,7 @@ use moldloft_num::{Axis as Line, Vec3};
 /// Why a body has no exact boundary representation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeFault {
-    /// A face is no plane, cylinder, cone, sphere or torus: its name and a point of it.
+    /// A face is not a plane, cylinder, cone, sphere or torus: its name and a point of it.
     Surface(String, Vec3),
     /// An edge or corner is not found.
     Facets(FacetFault),
