@@ -170,6 +170,17 @@ def test_what_is_thinner_than_cells_is_refused_by_place(tmp_path: Path) -> None:
         moldloft.loads(text).write(tmp_path / "b.step")
 
 
+def test_what_all_cells_miss_is_refused(tmp_path: Path) -> None:
+    # A hundredth of a cell in volume, beside the block: no sample of edges or faces is near.
+    text = (
+        "set s = cuboid({0, 0, 0}, {10, 10, 10})"
+        " | cuboid({12.013, 5.017, 5.011}, {12.022, 5.026, 5.02}); SetBody b(s);"
+    )
+    with pytest.raises(moldloft.Error, match="thinner than cells") as caught:
+        moldloft.loads(text).write(tmp_path / "b.step")
+    assert caught.value.diagnostics[0].id == "thin-part"
+
+
 def test_what_is_no_such_surface_is_named(tmp_path: Path) -> None:
     text = """
     field x = plane({1, 0, 0}, {0, 0, 0}), y = plane({0, 1, 0}, {0, 0, 0});

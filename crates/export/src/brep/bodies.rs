@@ -27,8 +27,8 @@ const LEVELS: std::ops::RangeInclusive<u32> = 6..=8;
 const PLACES: f64 = 6.0;
 
 /// The volume of a body is proved to this part of it, with at most so many cells.
-const SHARE: f64 = 1e-6;
-const PROOF: usize = 60_000;
+const SHARE: f64 = 1e-9;
+const PROOF: usize = 20_000;
 
 /// What helps with a body that is refused.
 const HELP: &str = "write it as stl, 3mf or obj, or hide it";
