@@ -171,10 +171,10 @@ def test_what_is_thinner_than_cells_is_refused_by_place(tmp_path: Path) -> None:
 
 
 def test_what_all_cells_miss_is_refused(tmp_path: Path) -> None:
-    # A hundredth of a cell in volume, beside the block: no sample of edges or faces is near.
+    # A plate of a fifteenth of the finest cells beside the block: no sample of a face is near.
     text = (
         "set s = cuboid({0, 0, 0}, {10, 10, 10})"
-        " | cuboid({12.013, 5.017, 5.011}, {12.022, 5.026, 5.02}); SetBody b(s);"
+        " | cuboid({12.013, 5.017, 5.011}, {12.016, 5.117, 5.111}); SetBody b(s);"
     )
     with pytest.raises(moldloft.Error, match="thinner than cells") as caught:
         moldloft.loads(text).write(tmp_path / "b.step")
