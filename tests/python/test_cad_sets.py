@@ -170,6 +170,17 @@ def test_what_is_thinner_than_cells_is_refused_by_place(tmp_path: Path) -> None:
         moldloft.loads(text).write(tmp_path / "b.step")
 
 
+def test_what_all_cells_miss_is_refused(tmp_path: Path) -> None:
+    # A plate of a fifteenth of the finest cells beside the block: no sample of a face is near.
+    text = (
+        "set s = cuboid({0, 0, 0}, {10, 10, 10})"
+        " | cuboid({12.013, 5.017, 5.011}, {12.016, 5.117, 5.111}); SetBody b(s);"
+    )
+    with pytest.raises(moldloft.Error, match="thinner than cells") as caught:
+        moldloft.loads(text).write(tmp_path / "b.step")
+    assert caught.value.diagnostics[0].id == "thin-part"
+
+
 def test_cavities_are_voids_and_names_are_there(tmp_path: Path) -> None:
     from cad_reading import read
 

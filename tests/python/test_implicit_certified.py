@@ -73,14 +73,8 @@ def test_clearances_that_are_plateaus():
     assert balls[0].nearest((0, 0, 0)).distance == pytest.approx(1)
 
 
-# Where the contact is a corner of cells, as in the box of the set itself, bodies are joined.
-JOINED = pytest.mark.xfail(strict=True, reason="a contact at a corner of cells is not found")
-
-
-@pytest.mark.parametrize(
-    "box",
-    [((-1.5, -1.3, -1.1), (3.3, 1.4, 1.7)), pytest.param((), marks=JOINED)],
-)
+# In the box of the set itself the contact is a corner of cells.
+@pytest.mark.parametrize("box", [((-1.5, -1.3, -1.1), (3.3, 1.4, 1.7)), ()])
 def test_balls_that_touch_are_two_bodies(box):
     balls = im.Set(im.sphere((0, 0, 0), 1)) | im.Set(im.sphere((2, 0, 0), 1))
     facets = balls.facets(*box)

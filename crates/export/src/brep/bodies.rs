@@ -34,8 +34,8 @@ const PLACES: f64 = 6.0;
 const THIN: &str = "thin-part";
 
 /// The volume of a body is proved to this part of it, with at most so many cells.
-const SHARE: f64 = 1e-6;
-const PROOF: usize = 60_000;
+const SHARE: f64 = 1e-9;
+const PROOF: usize = 20_000;
 
 /// What helps with a body that is refused.
 const HELP: &str = "write it as stl, 3mf or obj, or hide it";

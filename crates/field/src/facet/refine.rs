@@ -334,8 +334,12 @@ impl Refiner<'_> {
             for edge in self.wanted(&front) {
                 self.divide(edge);
             }
+            // Whether a diagonal is turned depends on its two triangles: those that did not change need no second look.
+            let mut from = start;
             for _ in 0..4 {
-                let mut edges: Vec<(u32, u32)> = self.changed[start..]
+                let changed = self.changed[from..].to_vec();
+                from = self.changed.len();
+                let mut edges: Vec<(u32, u32)> = changed
                     .iter()
                     .flat_map(|&t| {
                         let c = self.triangles[t as usize].1;
