@@ -3852,11 +3852,57 @@ def c_grid(
         curve c = points({1, 0, 0}, {0.5, 0.1, 0}, {0, 0, 0}, {0.5, -0.1, 0}, {1, 0, 0}); surface g = c_grid(c, list(0, 0.01, 0.03, 0.07), 2, 6); assert g.d2 == 5 + 12;
     """
     ...
+def h_grid(
+    section: _Vectors,
+    heights: _Numbers,
+    ahead: _Number,
+    behind: _Number,
+    n: _Integer,
+    sweeps: _Integer | None = ...,
+) -> AnyShape:
+    """An H-grid round a section in x and y: the list of two surfaces, below and above it, whose lines g[,1] are the
+    section's side between the stagnation line ahead of the nose and the wake, and whose lines g[,n] are straight, the
+    last height below the lower and above the upper end of the section. With as many points above as below they are a
+    block of two layers.
+
+    The section is given once round, from the tail to the tail, either way, nose at its least x, sharp tail at its
+    greatest. The lines ahead and behind run along x for `ahead` and `behind`, in `n` cells each that grow from the
+    section's own at nose and tail. Both surfaces share their points there to the bit; both are right-handed, so the
+    lower one runs upstream. Inner points are smoothed (`elliptic`, "sorenson"): the first cell off g[,1] has the
+    first height, at right angles; a remark says how far off it is when `sweeps` are not enough. With `sweeps` 0 the
+    grid is that of `tfi`.
+
+    Parameters
+    ----------
+    section : curve or surface
+        The section.
+    heights : list of number
+        The distances of the lines from the section, the first 0.
+    ahead : number
+        The length ahead of the nose. At least 0.
+    behind : number
+        The length behind the tail. At least 0.
+    n : integer
+        The cells along each of them. 1 to 1e+06.
+    sweeps : integer, optional
+        The most sweeps of smoothing. 0 to 1e+06, default 3000.
+
+    Returns
+    -------
+    list
+
+    Notes
+    -----
+    In the language::
+
+        load "naca.sdl"; curve c[41]; naca4s(c, 0, 0, 12); surface upper = h_grid(c, geometric(0, 2, 0.02, 21), 2, 2, 12, 3000)[2]; assert folds(upper) == 0;
+    """
+    ...
 def quality(
-    s: _Vectors,
+    s: object,
     metric: _Text | None = ...,
 ) -> AnyShape:
-    """The quality of the cells of a grid [m,n]: numbers [m-1,n-1].
+    """The quality of the cells of a grid [m,n]: numbers [m-1,n-1]; of a block [l,m,n]: numbers [l-1,m-1,n-1].
 
     "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative where a corner is
     turned over; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best;
@@ -3864,16 +3910,20 @@ def quality(
     corners from a plane over the size; "turn": the greatest angle by which grid lines turn there;
     "area". Cells at poles count as triangles.
 
+    Of blocks: "sj", the least triple product of the unit edges at a corner, negative where it is turned over against
+    the block's own hand; "skew" of all angles of faces; "aspect" of the lines between the middles of opposite faces;
+    "edge_ratio", "growth_i", "growth_j", "growth_k", "volume". Corners at edges without length do not count.
+
     Parameters
     ----------
-    s : curve or surface
-        The grid.
+    s : value
+        The grid, or the layers of a block.
     metric : text, optional
         The metric. Default sj.
 
     Returns
     -------
-    farray
+    value
 
     Notes
     -----
@@ -5052,6 +5102,60 @@ def count_p3d(
     In the language::
 
         surface s[3,2] = {1, 2, 3}; write_p3d("s.x", s, s); assert count_p3d("s.x") == 2;
+    """
+    ...
+def read_cgns(
+    *args: object,
+) -> AnyShape:
+    """A structured zone of a CGNS file (HDF5) as surface or block, by its number (1) or its name.
+
+    Called as `read_cgns(name, zone)`.
+
+    Returns
+    -------
+    value
+
+    Notes
+    -----
+    In the language::
+
+        surface s[3,2] = {1, 2, 3}; write_cgns("s.cgns", s); surface t = read_cgns("s.cgns", "s"); assert t.d1 == 3;
+    """
+    ...
+def count_cgns(
+    *args: object,
+) -> AnyShape:
+    """The number of zones of a CGNS file.
+
+    Called as `count_cgns(name)`.
+
+    Returns
+    -------
+    value
+
+    Notes
+    -----
+    In the language::
+
+        surface s[3,2] = {1, 2, 3}; write_cgns("s.cgns", s, s); assert count_cgns("s.cgns") == 2;
+    """
+    ...
+def names_cgns(
+    *args: object,
+) -> AnyShape:
+    """The names of the zones of a CGNS file, in their order.
+
+    Called as `names_cgns(name)`.
+
+    Returns
+    -------
+    value
+
+    Notes
+    -----
+    In the language::
+
+        surface s[3,2] = {1, 2, 3}; write_cgns("s.cgns", s); string names[1] = names_cgns("s.cgns"); print names[1];
     """
     ...
 def read_points(

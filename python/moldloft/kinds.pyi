@@ -2235,9 +2235,9 @@ def FoilCurve(
         Three, four or five points.
     family : value, optional
         Thickness form: "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A",
-        "64A", "65A" or "66tmb", or its number in this list. Default 4-digit.
+        "64A", "65A", "66tmb" or "67", or its number in this list. Default 4-digit.
     mean : text, optional
-        Mean line: "flat", "parabolic", "210" to "250", "221" to "241", "a" or "a modified"; ""
+        Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; ""
         is the usual one of the family.
     camber_at : number, optional
         Place of the greatest camber of the parabolic mean line, in chords. Default 0.4.
@@ -3640,9 +3640,9 @@ def FoilSnake(
         Three, four or five magnets of one surface.
     family : value, optional
         Thickness form: "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A",
-        "64A", "65A" or "66tmb", or its number in this list. Default 4-digit.
+        "64A", "65A", "66tmb" or "67", or its number in this list. Default 4-digit.
     mean : text, optional
-        Mean line: "flat", "parabolic", "210" to "250", "221" to "241", "a" or "a modified"; ""
+        Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; ""
         is the usual one of the family.
     camber_at : number, optional
         Place of the greatest camber of the parabolic mean line, in chords. Default 0.4.
@@ -4531,9 +4531,9 @@ def FoilLoftSurf(
         Three, four or five curves.
     family : value, optional
         Thickness form: "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A",
-        "64A", "65A" or "66tmb", or its number in this list. Default 4-digit.
+        "64A", "65A", "66tmb" or "67", or its number in this list. Default 4-digit.
     mean : text, optional
-        Mean line: "flat", "parabolic", "210" to "250", "221" to "241", "a" or "a modified"; ""
+        Mean line: "flat", "parabolic", "210" to "250", "221" to "251", "a" or "a modified"; ""
         is the usual one of the family.
     camber_at : number, optional
         Place of the greatest camber of the parabolic mean line, in chords. Default 0.4.

@@ -82,10 +82,17 @@ def picture(row: dict[str, Any]) -> bytes | None:
     name = pictured(row)
     if name is None:
         return None
-    view = '"iso", ' if f"surface {name}[" in row["example"] else ""
-    program = f'{row["example"]} plot("picture.png", {view}{name});'
-    model = moldloft.loads(program, name=f"{row['name']}.sdl")
-    return bytes(model.written["picture.png"])
+    kind, shown = "BCurve", f"BCurve shown({name}, degree = 1);"
+    if f"surface {name}[" in row["example"]:
+        kind, shown = (
+            "BSurf",
+            (
+                f"BSurf shown({name}, nu = {name}.d1, nv = {name}.d2, degree_u = 1, degree_v = 1, "
+                f"divisions = {{{name}.d1 - 1, {name}.d2 - 1}});"
+            ),
+        )
+    model = moldloft.loads(f"{row['example']} {shown}", name=f"{row['name']}.sdl")
+    return bytes(model.kind_picture(kind, 360, 240))
 
 
 def pictured(row: dict[str, Any]) -> str | None:
