@@ -125,7 +125,7 @@ impl PatchBasis {
                 let normal = self.blend(net, du, v).cross(self.blend(net, u, dv));
                 let along = field(surface, self.blend(net, u, v)).1;
                 let cosine = normal.dot(along) * sign;
-                !(cosine > LEAST * normal.norm() * along.norm())
+                cosine.is_nan() || cosine <= LEAST * normal.norm() * along.norm()
             })
         })
     }

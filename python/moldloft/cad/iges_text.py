@@ -21,7 +21,7 @@ class IgesText:
     names: dict[int, str] = field(default_factory=dict)
     """Faces by number: none, for OCCT keeps their names itself."""
     resolution: float = 0.0
-    """The least distance of points that the file tells apart, in metres; 0 when it says none."""
+    """The least distance of points that the file distinguishes, in metres; 0 for none stated."""
 
     @classmethod
     def of(cls, path: object, text: str) -> IgesText:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from moldloft.cad.occt import Imported, ImportedFace, border, is_whole
+from moldloft.nurbs import Nurbs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -122,7 +123,13 @@ def _side(face: ImportedFace, cycle: int, k: int) -> _Side | None:
         held = np.full(_PLACES, float(edge[1]))
         at = (held, t) if edge[0] == "u" else (t, held)
         return _Side(face.name, f"{face.name}.{edge}", face.surface(*at))
-    u, v, _ = trace(t[::-1] if backwards else t).T
+    # In the program a side ends where the next one begins.
+    _, turned, following = face.loops[cycle][(k + 1) % len(face.loops[cycle])]
+    points = trace.points.copy()
+    points[0 if backwards else -1] = following.points[-1 if turned else 0]
+    u, v, _ = Nurbs(trace.degrees, trace.knots, points, trace.weights)(
+        t[::-1] if backwards else t
+    ).T
     return _Side(
         face.name, f"{face.name}_s{cycle}_{k}", face.surface(np.clip(u, 0, 1), np.clip(v, 0, 1))
     )

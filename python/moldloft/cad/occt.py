@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Imported", "ImportedFace", "of_part", "read_shape"]
 
+_OUTSIDE = 1e-6
+"""Parameters this far outside of a surface's are rounded onto its border."""
+
 _PLACES = 33
 """Places between knots at which a side is compared with an edge of the parameters."""
 
@@ -504,6 +507,10 @@ def _cycle(
         spline = Geom2dConvert.CurveToBSplineCurve_s(Geom2d_TrimmedCurve(path, low, high))
         trace = _clamped(spline, spline.FirstParameter(), spline.LastParameter(), flat=True)
         trace.points[:] = (trace.points - frame[0]) / frame[1]
+        # What is outside by rounding alone would be a place of the surface's continuation.
+        inside = np.clip(trace.points, 0, 1)
+        near = np.abs(trace.points - inside) < _OUTSIDE
+        trace.points[near] = inside[near]
         if np.ptp(trace.points, axis=0).max() < 1e-12:
             continue
         cycle.append((edges.FindIndex(edge), edge.Orientation() == TopAbs_REVERSED, trace))

@@ -51,7 +51,7 @@ class Sewn:
         shape
             A compound of faces.
         resolution
-            The least distance of two points that the file tells apart.
+            The least distance of two points that the file distinguishes.
         """
         from OCP.Bnd import Bnd_Box
         from OCP.BRepBndLib import BRepBndLib
