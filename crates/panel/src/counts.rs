@@ -563,10 +563,7 @@ mod tests {
         d.links = links.to_vec();
         d.sums = sums
             .iter()
-            .map(|(whole, parts)| Sum {
-                whole: *whole,
-                parts: parts.to_vec(),
-            })
+            .map(|(whole, parts)| Sum { whole: *whole, parts: parts.to_vec() })
             .collect();
         d
     }
@@ -655,9 +652,8 @@ mod tests {
         (0..n).for_each(|_| {
             let _ = d.node(None, Some(8));
         });
-        d.sums = (0..n / 3)
-            .map(|k| Sum { whole: 3 * k, parts: vec![3 * k + 1, 3 * k + 2] })
-            .collect();
+        d.sums =
+            (0..n / 3).map(|k| Sum { whole: 3 * k, parts: vec![3 * k + 1, 3 * k + 2] }).collect();
         assert!(d.solved().conflicts.is_empty());
     }
 }

@@ -162,7 +162,8 @@ fn computed(document: &Document) -> Vec<Blocks> {
             continue;
         }
         let nk = grids.len();
-        let places = (0..ni).flat_map(|i| (0..nj).flat_map(move |j| (0..nk).map(move |k| [i, j, k])));
+        let places =
+            (0..ni).flat_map(|i| (0..nj).flat_map(move |j| (0..nk).map(move |k| [i, j, k])));
         let positions = places.map(|[i, j, k]| grids[k].0.at(i * nj + j)).collect();
         let block = HexBlock {
             name,
