@@ -287,8 +287,12 @@ def editor() -> None:
             (folder / name).unlink(missing_ok=True)
     with zipfile.ZipFile(path) as archive:
         names = archive.namelist()
-    for wanted in (f"extension/server/moldloft-lsp{EXE}", "extension/src/extension.js",
-                   "extension/src/view.js", "extension/page/index.html"):
+    for wanted in (
+        f"extension/server/moldloft-lsp{EXE}",
+        "extension/src/extension.js",
+        "extension/src/view.js",
+        "extension/page/index.html",
+    ):
         if wanted not in names:
             raise SystemExit(f"{path.name} lacks {wanted}")
     print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
