@@ -224,13 +224,18 @@ def server() -> Path:
     return TARGET / ("debug" if PROFILE == "dev" else PROFILE) / f"moldloft-lsp{EXE}"
 
 
+def page(npm: str) -> None:
+    """The page of the workbench, built."""
+    web = ROOT / "web"
+    run(npm, "ci", "--no-audit", "--no-fund", "--loglevel=error", cwd=web)
+    run(npm, "run", "--silent", "build", cwd=web)
+
+
 def wheel() -> None:
     """The wheel with the page, the engine, the language server and the notices inside."""
-    if shutil.which("npm"):
-        web = ROOT / "web"
-        npm = shutil.which("npm") or "npm"
-        run(npm, "ci", "--no-audit", "--no-fund", "--loglevel=error", cwd=web)
-        run(npm, "run", "--silent", "build", cwd=web)
+    npm = shutil.which("npm")
+    if npm:
+        page(npm)
     else:
         print("npm is not there: the wheel will have no workbench page")
     package = ROOT / "python" / "moldloft"
@@ -272,6 +277,8 @@ def editor() -> None:
     try:
         shutil.copy2(server(), inside)
         workbench = ROOT / "python" / "moldloft" / "workbench"
+        if not (workbench / "page" / "index.html").exists():
+            page(npm)
         shutil.copytree(workbench / "page", folder / "page", dirs_exist_ok=True)
         for packed in (workbench / "wasm").glob("engine.wasm.*"):
             shutil.copy2(packed, folder / "page")
