@@ -40,7 +40,7 @@ ENGINE := python/moldloft/workbench/wasm/engine.wasm.gz
 ENGINE_PROFILE ?= engine
 WASM := wasm32-unknown-unknown
 
-.PHONY: setup demo optimised web engine test check bits reference site release soak fuzz clean help
+.PHONY: setup demo optimised web engine living test check bits reference site release soak fuzz clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
@@ -90,6 +90,9 @@ engine: ## the engine for `export --html`; needs the target wasm32-unknown-unkno
 	@mkdir -p $(dir $(ENGINE))
 	@gzip -9 -n -c $${CARGO_TARGET_DIR:-target}/$(WASM)/$(ENGINE_PROFILE)/moldloft_engine.wasm > $(ENGINE).new
 	@mv $(ENGINE).new $(ENGINE)
+
+living: $(VENV)/.with-tests $(VENV)/.with-browser ## the tests of the engine for pages and of pages with it
+	@$(BIN)/python -m pytest tests/python/test_engine_in_page.py tests/python/test_workbench_page.py tests/python/test_vscode_page.py
 
 # What the tests of the page need, where it can be had: a browser that runs without a display.
 $(VENV)/.with-browser:

@@ -232,13 +232,18 @@ def server() -> Path:
     return TARGET / ("debug" if PROFILE == "dev" else PROFILE) / f"moldloft-lsp{EXE}"
 
 
+def page(npm: str) -> None:
+    """The page of the workbench, built."""
+    web = ROOT / "web"
+    run(npm, "ci", "--no-audit", "--no-fund", "--loglevel=error", cwd=web)
+    run(npm, "run", "--silent", "build", cwd=web)
+
+
 def wheel() -> None:
     """The wheel with the page, the engine, the language server and the notices inside."""
-    if shutil.which("npm"):
-        web = ROOT / "web"
-        npm = shutil.which("npm") or "npm"
-        run(npm, "ci", "--no-audit", "--no-fund", "--loglevel=error", cwd=web)
-        run(npm, "run", "--silent", "build", cwd=web)
+    npm = shutil.which("npm")
+    if npm:
+        page(npm)
     else:
         print("npm is not there: the wheel will have no workbench page")
     package = ROOT / "python" / "moldloft"
@@ -280,6 +285,8 @@ def editor() -> None:
     try:
         shutil.copy2(server(), inside)
         workbench = ROOT / "python" / "moldloft" / "workbench"
+        if not (workbench / "page" / "index.html").exists():
+            page(npm)
         shutil.copytree(workbench / "page", folder / "page", dirs_exist_ok=True)
         for packed in (workbench / "wasm").glob("engine.wasm.*"):
             shutil.copy2(packed, folder / "page")
@@ -295,8 +302,12 @@ def editor() -> None:
             (folder / name).unlink(missing_ok=True)
     with zipfile.ZipFile(path) as archive:
         names = archive.namelist()
-    for wanted in (f"extension/server/moldloft-lsp{EXE}", "extension/src/extension.js",
-                   "extension/src/view.js", "extension/page/index.html"):
+    for wanted in (
+        f"extension/server/moldloft-lsp{EXE}",
+        "extension/src/extension.js",
+        "extension/src/view.js",
+        "extension/page/index.html",
+    ):
         if wanted not in names:
             raise SystemExit(f"{path.name} lacks {wanted}")
     print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")

@@ -263,7 +263,7 @@ mod tests {
             positions,
             triangles,
             labels: of,
-            surfaces,
+            surfaces: surfaces.into_iter().map(Some).collect(),
             names: (0..count).map(|k| format!("face {k}")).collect(),
             colours: vec![None; count],
             layers: vec![Vec::new(); count],

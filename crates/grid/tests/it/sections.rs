@@ -113,7 +113,8 @@ fn crosses_itself(points: &[Vec3]) -> bool {
         for j in i + 2..n {
             let (a, b, c, d) = (points[i], points[i + 1], points[j], points[j + 1]);
             let apart = side(a, b, c) * side(a, b, d) > 0.0 || side(c, d, a) * side(c, d, b) > 0.0;
-            if !apart && !(i == 0 && j + 1 == n) {
+            let neighbours = i == 0 && j + 1 == n;
+            if !apart && !neighbours {
                 return true;
             }
         }
