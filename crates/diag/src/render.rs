@@ -33,16 +33,16 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let mut group =
         Group::with_title(level.primary_title(&*diagnostic.message).id(&*diagnostic.id));
 
-    let places: Vec<Place> = primary
+    let places: Vec<MarkedPlace> = primary
         .iter()
         .map(|label| (label, AnnotationKind::Primary))
         .chain(diagnostic.secondary.iter().map(|label| (label, AnnotationKind::Context)))
-        .filter_map(|(label, kind)| Place::find(label, kind, sources))
+        .filter_map(|(label, kind)| MarkedPlace::find(label, kind, sources))
         .collect();
-    let mut left: Vec<&Place> = places.iter().collect();
+    let mut left: Vec<&MarkedPlace> = places.iter().collect();
     while let Some(first) = left.first() {
         let file = first.file;
-        let (of_file, others): (Vec<&Place>, Vec<&Place>) =
+        let (of_file, others): (Vec<&MarkedPlace>, Vec<&MarkedPlace>) =
             left.into_iter().partition(|place| place.file == file);
         left = others;
         if let Some(snippet) = snippet(&of_file, sources) {
@@ -89,7 +89,7 @@ pub fn render_all<'a>(
 }
 
 /// A label whose place exists.
-struct Place<'a> {
+struct MarkedPlace<'a> {
     label: &'a Label,
     kind: AnnotationKind,
     file: FileId,
@@ -99,8 +99,8 @@ struct Place<'a> {
     lines: [u32; 2],
 }
 
-impl<'a> Place<'a> {
-    fn find(label: &'a Label, kind: AnnotationKind, sources: &Sources) -> Option<Place<'a>> {
+impl<'a> MarkedPlace<'a> {
+    fn find(label: &'a Label, kind: AnnotationKind, sources: &Sources) -> Option<MarkedPlace<'a>> {
         let span = label.span;
         let text = sources.text(span.file)?;
         let start = boundary(text, span.start as usize);
@@ -111,7 +111,7 @@ impl<'a> Place<'a> {
             last = first;
             end = start + text[start..].find(['\r', '\n']).unwrap_or(text.len() - start);
         }
-        Some(Place { label, kind, file: span.file, bytes: start..end, lines: [first, last] })
+        Some(MarkedPlace { label, kind, file: span.file, bytes: start..end, lines: [first, last] })
     }
 }
 
@@ -132,7 +132,10 @@ fn boundary(text: &str, at: usize) -> usize {
 }
 
 /// The lines of one file with their marks; only these lines are handed on, however long the file is.
-fn snippet<'a>(places: &[&'a Place], sources: &'a Sources) -> Option<Snippet<'a, Annotation<'a>>> {
+fn snippet<'a>(
+    places: &[&'a MarkedPlace],
+    sources: &'a Sources,
+) -> Option<Snippet<'a, Annotation<'a>>> {
     let file = places.first()?.file;
     let text: &str = sources.text(file)?;
     let from_line = places.iter().map(|place| place.lines[0]).min()?;

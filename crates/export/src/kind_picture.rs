@@ -5,7 +5,7 @@ use moldloft_document::Document;
 use moldloft_mesh::{Mesh, MeshError, PatchInfo, TopologyBuilder};
 use moldloft_model::Object;
 use moldloft_num::{Box3, Order, Plane, Solid, Vec3};
-use moldloft_picture::{Label, Options, PatchStyle, StyledPolyline, render};
+use moldloft_picture::{Options, PatchStyle, PointName, StyledPolyline, render};
 use moldloft_registry::Value;
 
 /// What the picture is about.
@@ -126,7 +126,7 @@ pub fn kind_picture(
 }
 
 /// The names of the objects: those of the kind first, and of these and of the others points before lines and surfaces.
-fn labels(objects: &[&Object<f64>], kind: &str) -> Vec<Label> {
+fn labels(objects: &[&Object<f64>], kind: &str) -> Vec<PointName> {
     let middle = 0.5;
     let mut all = Vec::new();
     for object in objects {
@@ -139,7 +139,7 @@ fn labels(objects: &[&Object<f64>], kind: &str) -> Vec<Label> {
         };
         let own = object.row.name == kind;
         let colour = if own { SUBJECT } else { NAME };
-        all.push(((!own, rank), Label { at, text: object.name.to_string(), colour }));
+        all.push(((!own, rank), PointName { at, text: object.name.to_string(), colour }));
     }
     all.sort_by_key(|(rank, _)| *rank);
     all.into_iter().map(|(_, label)| label).collect()

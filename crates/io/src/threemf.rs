@@ -89,7 +89,7 @@ fn crc(table: &[u32; 256], bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |c, b| table[((c ^ u32::from(*b)) & 255) as usize] ^ c >> 8)
 }
 
-/// Level of compression, 0 to 10: about a fifth of the size in little time.
+/// Level of compression, 0 to 10: about an eighth of the size in little time.
 const LEVEL: u8 = 6;
 
 /// A zip archive of compressed files. Its date is the first of 1980, so that equal models give equal bytes.

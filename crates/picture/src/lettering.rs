@@ -9,7 +9,7 @@ use moldloft_num::Vec3;
 
 /// A name beside a point of the model.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Label {
+pub struct PointName {
     /// The point.
     pub at: Vec3,
     /// The name; letters other than those of names of the language are drawn as boxes.
@@ -107,7 +107,12 @@ fn apart(a: Area, b: Area) -> bool {
 
 /// Writes names beside their points (`seen`, in samples), the first ones first: to the right above, left above, right below or left
 /// below, wherever no other name or point is. Where there is no room a name is left out.
-pub(crate) fn write(raster: &mut Raster, labels: &[(&Label, [f32; 2])], width: f32, height: f32) {
+pub(crate) fn write(
+    raster: &mut Raster,
+    labels: &[(&PointName, [f32; 2])],
+    width: f32,
+    height: f32,
+) {
     let mut taken: Vec<Area> =
         labels.iter().map(|(_, [x, y])| [x - 5.0, y - 5.0, x + 5.0, y + 5.0]).collect();
     for (label, [x, y]) in labels {

@@ -32,6 +32,6 @@ mod raster;
 mod render;
 
 pub use camera::Camera;
-pub use lettering::Label;
+pub use lettering::PointName;
 pub use palette::{PALETTE, patch_colour};
 pub use render::{Options, PatchStyle, PictureError, StyledPolyline, encoded, render};

@@ -1,7 +1,7 @@
 //! The picture of a mesh and some lines as a PNG file. The same input gives the same bytes; no display is needed.
 
 use crate::camera::{Aimed, Camera, ScreenPoint};
-use crate::lettering::{self, Label};
+use crate::lettering::{self, PointName};
 use crate::palette::{Gamma, patch_colour};
 use crate::raster::{PanelSides, Raster, ShadedVertex, length};
 use moldloft_mesh::{Mesh, Tag, is_triangle};
@@ -54,7 +54,7 @@ pub struct Options {
     /// How the patches look, in their order, instead of their own colours.
     pub looks: Option<Vec<PatchStyle>>,
     /// Names beside points, the most important first; not on mirror images.
-    pub labels: Vec<Label>,
+    pub labels: Vec<PointName>,
 }
 
 impl Default for Options {
@@ -193,7 +193,7 @@ pub fn render(
             }
         }
     }
-    let labels: Vec<(&Label, [f32; 2])> = options
+    let labels: Vec<(&PointName, [f32; 2])> = options
         .labels
         .iter()
         .filter(|label| label.at.is_finite())

@@ -145,8 +145,8 @@ fn lines_on_surfaces_stay_within_the_outline() {
 
 #[test]
 fn names_are_written_beside_their_points() {
-    let name = |text: &str| Label { at: Vec3::zero(), text: text.into(), colour: [0xc0, 0, 0] };
-    let red = |labels: Vec<Label>| {
+    let name = |text: &str| PointName { at: Vec3::zero(), text: text.into(), colour: [0xc0, 0, 0] };
+    let red = |labels: Vec<PointName>| {
         let picture = pixels(&render(&sheet(2), &[], &Options { labels, ..small() }).unwrap());
         picture.iter().filter(|p| p[0] > 150 && p[1] < 100).count()
     };
@@ -157,7 +157,7 @@ fn names_are_written_beside_their_points() {
     let four = red(vec![name("P"); 4]);
     assert_eq!(red(vec![name("P"); 5]), four);
     assert!(four > one);
-    assert_eq!(red(vec![Label { at: Vec3::of(f64::NAN, 0.0, 0.0), ..name("P") }]), 0);
+    assert_eq!(red(vec![PointName { at: Vec3::of(f64::NAN, 0.0, 0.0), ..name("P") }]), 0);
 }
 
 #[test]
