@@ -29,7 +29,9 @@ pub fn nodes(a: f64, b: f64) -> impl Iterator<Item = f64> {
 
 /// A polynomial on a stretch of the parameter, by its Chebyshev coefficients.
 pub struct ChebyshevPiece<T> {
+    /// Where it begins.
     pub from: f64,
+    /// Where it ends.
     pub to: f64,
     coefficients: Vec<Vec3<T>>,
 }
@@ -66,6 +68,7 @@ pub fn in_charge<P>(pieces: &[P], from: impl Fn(&P) -> f64, t: f64) -> usize {
 
 /// The curve of such pieces.
 pub struct PiecewiseChebyshev<T> {
+    /// The pieces, in order.
     pub pieces: Vec<ChebyshevPiece<T>>,
 }
 

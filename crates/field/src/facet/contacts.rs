@@ -232,7 +232,7 @@ fn common_point(a: &Surface, b: &Surface, start: Vec3, size: f64) -> Option<Vec3
             false => m * (0.5 * (f + c.signum() * g)),
         };
         let most = 0.1 * size / step.norm().max(0.1 * size);
-        p = p - step * most;
+        p -= step * most;
     }
     None
 }
@@ -261,7 +261,7 @@ fn share_face(a: &Surface, b: &Surface, p: Vec3, size: f64) -> bool {
             let mut q = p + Vec3::of(r * c, r * s, z) * reach;
             for _ in 0..4 {
                 let (f, m) = a.height(q)?;
-                q = q - m * f;
+                q -= m * f;
             }
             let on = |s: &Surface| s.height(q).is_some_and(|h| h.0.abs() <= SAME * size);
             (on(a) && on(b)).then_some(q - p)
@@ -400,8 +400,7 @@ fn withdrawn(
     let size = (0..3).map(|k| over.high[k] - over.low[k]).fold(0.0, f64::max);
     let mut positions = mesh.positions().to_vec();
     for (v, n) in outward {
-        positions[v as usize] =
-            positions[v as usize] - n.normalized().unwrap_or_default() * (BACK * size);
+        positions[v as usize] -= n.normalized().unwrap_or_default() * (BACK * size);
     }
     Mesh::new(mesh.topology().clone(), positions)
 }

@@ -5,7 +5,9 @@ use moldloft_diag::Diagnostic;
 /// What a format is given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FormatArgument {
+    /// A number.
     Number(f64),
+    /// A text.
     Text(String),
 }
 

@@ -10,25 +10,33 @@ use smallvec::SmallVec;
 /// from 0; and whether the dimension stays (a range) or goes (an index).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Selection {
+    /// The first position.
     pub start: usize,
+    /// From a position to the next.
     pub step: isize,
+    /// The number of positions.
     pub count: usize,
+    /// True of ranges, which keep their dimension; false of single positions.
     pub keeps: bool,
 }
 
 impl Selection {
+    /// All positions of a dimension.
     pub fn whole(extent: usize) -> Self {
         Self { start: 0, step: 1, count: extent, keeps: true }
     }
 
+    /// One position.
     pub fn at(position: usize) -> Self {
         Self { start: position, step: 1, count: 1, keeps: false }
     }
 
+    /// Position `k`.
     pub fn position(self, k: usize) -> usize {
         (self.start as isize + self.step * k as isize) as usize
     }
 
+    /// The positions, in order.
     pub fn positions(self) -> impl ExactSizeIterator<Item = usize> {
         (0..self.count).map(move |k| self.position(k))
     }
@@ -72,8 +80,11 @@ impl Selection {
 /// What all subscripts select.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArraySection {
+    /// Of a row.
     Row(Selection),
+    /// Of a grid.
     Grid(Selection, Selection),
+    /// Of a block.
     Block(Selection, Selection, Selection),
 }
 

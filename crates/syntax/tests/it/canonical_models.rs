@@ -84,7 +84,7 @@ fn canonical_text_is_its_own() {
                 match random.below(4) {
                     0 if at < text.len() && text.is_char_boundary(at + 1) => drop(text.remove(at)),
                     _ => {
-                        text.insert_str(at, random.pick(&BITS));
+                        text.insert_str(at, random.pick::<&str>(&BITS));
                     }
                 }
             }
