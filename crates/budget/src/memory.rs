@@ -109,7 +109,10 @@ fn reserve() {
         }
         // It is nobody's memory yet.
         count(-(RESERVE as i64));
-        if KEPT_BACK.compare_exchange(null_mut(), block, Ordering::AcqRel, Ordering::Acquire).is_err() {
+        if KEPT_BACK
+            .compare_exchange(null_mut(), block, Ordering::AcqRel, Ordering::Acquire)
+            .is_err()
+        {
             count(RESERVE as i64);
             // SAFETY: it was allocated above.
             unsafe { std::alloc::dealloc(block, RESERVED) };

@@ -61,7 +61,8 @@ fn of(mut document: Document, formats: &[&str]) -> String {
             _ => &mut hash,
         };
     }
-    let parameters: Vec<String> = document.params().iter().map(|p| p.name.clone()).take(2).collect();
+    let parameters: Vec<String> =
+        document.params().iter().map(|p| p.name.clone()).take(2).collect();
     match document.panelled() {
         Ok(panelled) => {
             let mesh = &panelled.mesh;
@@ -146,13 +147,13 @@ pub fn lines(examples: bool) -> Vec<String> {
             let name = path.strip_prefix(root().join("examples")).unwrap_or(&path);
             let name = name.to_string_lossy().replace('\\', "/");
             let path = path.to_string_lossy();
-            let document = Document::open(registry(), Box::new(FileWorld::around(&path, &[])), &path);
+            let document =
+                Document::open(registry(), Box::new(FileWorld::around(&path, &[])), &path);
             found.push(format!("example {name} {}", of(document, &FORMATS)));
         }
     }
-    let text = |name: &str, text: &str| {
-        Document::from_text(registry(), Box::new(NoFiles), name, text)
-    };
+    let text =
+        |name: &str, text: &str| Document::from_text(registry(), Box::new(NoFiles), name, text);
     for row in registry().rows() {
         if !row.example.is_empty() {
             let document = text("row.sdl", &row.example);

@@ -150,12 +150,7 @@ impl PyDocument {
 impl PyDocument {
     #[staticmethod]
     #[pyo3(signature = (path, library, edited = false))]
-    fn open(
-        py: Python<'_>,
-        path: String,
-        library: Vec<String>,
-        edited: bool,
-    ) -> PyResult<Self> {
+    fn open(py: Python<'_>, path: String, library: Vec<String>, edited: bool) -> PyResult<Self> {
         let world = Box::new(FileWorld::around(&path, &library));
         let budget = Arc::<Budget>::default();
         let own = budget.clone();
