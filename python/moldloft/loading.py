@@ -122,7 +122,11 @@ def load(
     folders = [os.fspath(folder) for folder in library]
     place = Path(path)
     origin = Origin(
-        place.name, os.fspath(place.parent.absolute()), _absolute(folders), dict(functions or {}), edited
+        place.name,
+        os.fspath(place.parent.absolute()),
+        _absolute(folders),
+        dict(functions or {}),
+        edited,
     )
     model = Model(_core.Document.open(os.fspath(path), folders, edited), origin)
     _add_functions(model, functions)

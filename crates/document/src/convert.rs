@@ -8,6 +8,8 @@
 use crate::document::{Document, ObjectSource};
 use moldloft_diag::Diagnostic;
 use moldloft_lang::model_file::{prevents_conversion, quoted, to_model_file, to_program};
+use moldloft_lang::source::fault_location::unplaced;
+use moldloft_registry::CallError;
 use moldloft_syntax::sdl;
 
 /// The forms that a model can be written in.
@@ -55,6 +57,14 @@ impl Document {
         &self,
         to: ModelFormat,
     ) -> Result<(String, Vec<Diagnostic>), Vec<Diagnostic>> {
+        // Without memory what was written cannot be read again: that says nothing of the objects.
+        self.converted(to).map_err(|faults| match self.budget().poll() {
+            Ok(()) => faults,
+            Err(spent) => vec![unplaced(&CallError::from(spent))],
+        })
+    }
+
+    fn converted(&self, to: ModelFormat) -> Result<(String, Vec<Diagnostic>), Vec<Diagnostic>> {
         let objects = self.graph();
         let all = self.text_diagnostics.iter().chain(&self.run_diagnostics);
         let errors: Vec<Diagnostic> =

@@ -3,7 +3,7 @@
 use crate::solve::SolveReport;
 use crate::{degenerate, faired};
 use indexmap::IndexMap;
-use moldloft_budget::Budget;
+use moldloft_budget::{Budget, Spent};
 use moldloft_diag::{Diagnostic, Sources};
 use moldloft_lang::World;
 use moldloft_lang::model_file::units::{self, PhysicalDimension};
@@ -11,6 +11,7 @@ use moldloft_lang::run::interpreter::{Inputs, Settings};
 use moldloft_lang::run::program::{self, RunContext};
 use moldloft_lang::run::weight::mass_and_centre;
 use moldloft_lang::source::env::{Evaluation, Param, Seed};
+use moldloft_lang::source::fault_location::unplaced;
 use moldloft_lang::source::module::Modules;
 use moldloft_lang::source::scope::Binding;
 use moldloft_lang::source::sketch_file::{self, SketchFile};
@@ -18,7 +19,7 @@ use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph};
 use moldloft_num::Dual4;
 use moldloft_panel::{Nominal, Panelling};
-use moldloft_registry::{Kept, Registry, Role, Row, Scalar, Value};
+use moldloft_registry::{CallError, Kept, Registry, Role, Row, Scalar, Value};
 use moldloft_sketch::SketchSolid;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -246,7 +247,9 @@ impl Document {
         let mut evaluation = std::mem::take(&mut self.plain);
         let seeds = HashSet::new();
         self.applied = self.evaluate(&mut evaluation, &|_, x| x, &seeds, true);
-        self.cut_short = self.run_diagnostics.iter().any(|d| d.id == "cancelled");
+        let refused = self.budget.poll() == Err(Spent::Refused);
+        let cut = |d: &Diagnostic| d.id == "cancelled" || (d.id == "out-of-memory" && refused);
+        self.cut_short = self.run_diagnostics.iter().any(cut);
         self.plain = evaluation;
         self.solved.clear();
         self.solved_objects.clear();
@@ -256,11 +259,35 @@ impl Document {
         self.applied
     }
 
-    /// Runs again what a cancelled run did not come to.
-    pub(crate) fn complete(&mut self) {
-        if self.cut_short && !self.budget.is_cancelled() {
+    /// Runs again what a run did not come to that was cancelled, or that the system refused memory.
+    ///
+    /// # Errors
+    /// Why, when that is still so: what the run has not come to is not unknown.
+    pub(crate) fn complete(&mut self) -> Result<(), Vec<Diagnostic>> {
+        let again = !matches!(self.budget.poll(), Err(Spent::Cancelled | Spent::Refused));
+        if self.cut_short && again {
             self.run();
         }
+        self.finished()
+    }
+
+    /// Why nothing was made: that fault, or that memory or time were used up meanwhile.
+    pub(crate) fn or_spent(&self, fault: Diagnostic) -> Diagnostic {
+        match self.budget.poll() {
+            Ok(()) => fault,
+            Err(spent) => unplaced(&CallError::from(spent)),
+        }
+    }
+
+    /// Whether the last run came to everything.
+    ///
+    /// # Errors
+    /// Why not.
+    pub(crate) fn finished(&self) -> Result<(), Vec<Diagnostic>> {
+        if !self.cut_short {
+            return Ok(());
+        }
+        Err(self.run_diagnostics.iter().filter(|d| Spent::is_id(&d.id)).cloned().collect())
     }
 
     /// Runs the source on a graph. `report` says whether what is found goes to the user: a run
@@ -757,15 +784,14 @@ impl Document {
     /// # Errors
     /// When there would be too many panels.
     pub fn panelled(&mut self) -> Result<Arc<Panelled>, Diagnostic> {
-        self.complete();
+        // The panels of a part would look like those of the whole.
+        self.complete().map_err(|mut faults| faults.swap_remove(0))?;
         let clock = self.plain.graph.last_change();
         if let Some((at, panelled)) = &self.panelled
             && *at == clock
         {
             return Ok(panelled.clone());
         }
-        let unplaced =
-            |f: moldloft_registry::CallError| moldloft_lang::source::fault_location::unplaced(&f);
         let before = self.panelled.as_ref().map(|(_, p)| p.clone());
         let before = before.as_ref().map(|p| &p.panelling);
         // Where lengths decided before they most likely do again: the counts to be kept are at hand then.
@@ -775,17 +801,18 @@ impl Document {
         };
         let graph = &self.plain.graph;
         let mut panelling =
-            Panelling::renewed(graph, nominal.as_ref(), before).map_err(unplaced)?;
+            Panelling::renewed(graph, nominal.as_ref(), before).map_err(|f| unplaced(&f))?;
         if panelling.is_measured() && nominal.is_none() {
             nominal = self.nominal();
             if nominal.is_some() {
                 let graph = &self.plain.graph;
-                panelling =
-                    Panelling::renewed(graph, nominal.as_ref(), before).map_err(unplaced)?;
+                panelling = Panelling::renewed(graph, nominal.as_ref(), before)
+                    .map_err(|f| unplaced(&f))?;
             }
         }
         let mesh = panelling.own_mesh().ok_or_else(|| {
-            Diagnostic::error("no-mesh", "the model has no panels").help("show a surface")
+            let none = Diagnostic::error("no-mesh", "the model has no panels");
+            self.or_spent(none.help("show a surface"))
         })?;
         let panelled = Arc::new(Panelled { panelling, mesh });
         self.panelled = Some((clock, panelled.clone()));

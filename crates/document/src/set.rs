@@ -15,7 +15,7 @@ impl Document {
     /// # Errors
     /// What is wrong with the assignments; the model is then as before.
     pub fn set(&mut self, assignments: &[(String, f64)]) -> Result<Applied, Vec<Diagnostic>> {
-        self.complete();
+        self.complete()?;
         let before = self.overrides.clone();
         let mut edits = Vec::new();
         let mut errors = Vec::new();

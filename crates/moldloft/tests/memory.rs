@@ -7,7 +7,7 @@
 use moldloft::budget::{Budget, Counting};
 use moldloft::session::Session;
 use moldloft::sketch::SketchSession;
-use moldloft::{Document, NoFiles, TextFormat, WriteOptions, format_named, registry, write};
+use moldloft::{Document, NoFiles, TextFormat, Value, WriteOptions, format_named, registry, write};
 use moldloft_testing::rounds;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -85,7 +85,7 @@ fn ids(faults: &[moldloft::Diagnostic]) -> Vec<String> {
 }
 
 const HULL: &str = "param float beam = 5 in [3, 7]; farray rows = {0.2, 0.5, 0.9}; float sum = 0;
-    for (i = 1:3) sum = sum + rows[i]; subroutine twice(x) { return 2 * x; } float t = twice(sum);
+    for (i = 1:3) sum = sum + rows[i]; function float twice(float x) { return 2 * x; } float t = twice(sum);
     AbsPoint P11(0, 0, 0); AbsPoint P12(0.3, 0, -0.4); AbsPoint P13(0.9, 0, -0.8);
     AbsPoint P21(8, 0.5 * beam, 0); AbsPoint P22(8, 0.5 * beam, -1.4); AbsPoint P23(8, 0, -1.4);
     AbsPoint P31(16, 0.4 * beam, 0); AbsPoint P32(16, 0.4 * beam, -0.5); AbsPoint P33(16, 0, -0.5);
@@ -152,13 +152,25 @@ const OPERATIONS: &[Operation] = &[
     ("expressions", HULL, |d| {
         let mut found = String::new();
         for text in ["hull(0.5, 0.5).y + 2*sin(beam)^2", "MC2.length", "rows .* rows"] {
-            found.push_str(&format!("{:?}", d.eval(text).map_err(|f| ids(&f))?.called()));
+            match d.eval(text).map_err(|f| ids(&f))? {
+                Value::Number(x) => found.push_str(&format!("{x:?}")),
+                Value::Numbers(all) => found.push_str(&format!("{:?}", all.items)),
+                _ => return Err(vec!["neither number nor array".into()]),
+            }
         }
         Ok(found)
     }),
     ("faired", FAIRED, told),
     ("body", BODY, told),
 ];
+
+/// The operation; when it was refused, with what the model says of itself: why it has no mesh, say.
+fn explained(operation: fn(&mut Document) -> Outcome, document: &mut Document) -> Outcome {
+    operation(document).map_err(|mut found| {
+        found.extend(ids(&document.diagnostics()));
+        found
+    })
+}
 
 /// Words that say that memory or time was the reason, and what follows from that.
 fn is_refusal(found: &[String]) -> bool {
@@ -196,7 +208,8 @@ impl Tally {
 
 /// A request, so that the reserve is there again.
 fn request() {
-    drop(Budget::default().timed());
+    let budget = Budget::default();
+    drop(budget.timed());
 }
 
 fn of_documents(points: usize, tally: &mut Tally) {
@@ -212,7 +225,7 @@ fn of_documents(points: usize, tally: &mut Tally) {
                 let budget = document.budget();
                 let (_, _, outcome) = armed(at, full, || {
                     let _timed = budget.timed();
-                    operation(&mut document)
+                    explained(*operation, &mut document)
                 });
                 tally.judge(&format!("{name} at {at}, full {full}"), outcome, &right);
                 // Everything as before: the same model goes on and gives the same, and so does a new one.
@@ -225,8 +238,9 @@ fn of_documents(points: usize, tally: &mut Tally) {
                 );
                 // A model that is opened meanwhile.
                 let (_, _, outcome) = armed(at, full, || {
-                    let _timed = Budget::default().timed();
-                    operation(&mut model(text))
+                    let budget = Budget::default();
+                    let _timed = budget.timed();
+                    explained(*operation, &mut model(text))
                 });
                 tally.judge(&format!("{name} opened at {at}, full {full}"), outcome, &right);
             }
@@ -252,7 +266,8 @@ fn of_sessions(points: usize, tally: &mut Tally) {
         for at in places(count, points) {
             request();
             let (_, _, outcome) = armed(at, full, || {
-                let _timed = Budget::default().timed();
+                let budget = Budget::default();
+                let _timed = budget.timed();
                 let mut session = fresh();
                 (frames(&mut session), session)
             });
@@ -293,7 +308,8 @@ fn of_sketches(points: usize, tally: &mut Tally) {
         for at in places(count, points) {
             request();
             let (_, _, outcome) = armed(at, full, || {
-                let _timed = Budget::default().timed();
+                let budget = Budget::default();
+                let _timed = budget.timed();
                 work()
             });
             tally.judge(&format!("sketch at {at}"), outcome.map(Ok), &right);
@@ -305,7 +321,8 @@ fn of_sketches(points: usize, tally: &mut Tally) {
 fn of_great_work(tally: &mut Tally) {
     let text = BODY.replace("depth = 3", "depth = 9");
     let (_, _, outcome) = armed(20_000, true, || {
-        let _timed = Budget::default().timed();
+        let budget = Budget::default();
+        let _timed = budget.timed();
         let mut document = model(&text);
         document.panelled().map(|_| String::new()).map_err(|fault| ids(&[fault])).and_then(|_| {
             if document.has_errors() {
@@ -327,6 +344,7 @@ fn main() {
     drop(vec![0u8; 1 << 20]);
     request();
     // Threads of the pool are there before anything is refused.
+    assert!(!model(HULL).has_errors(), "{:?}", model(HULL).diagnostics());
     told(&mut model(HULL)).unwrap();
     told(&mut model(BODY)).unwrap();
     let points = rounds(24, 420);

@@ -54,6 +54,8 @@ impl Document {
     /// # Errors
     /// When there are no solids, divisions contradict each other, or there would be too many cells.
     pub fn blocked(&mut self) -> Result<Arc<Blocked>, Diagnostic> {
+        // The blocks of a part would look like those of the whole.
+        self.complete().map_err(|mut faults| faults.swap_remove(0))?;
         let clock = self.plain.graph.last_change();
         if let Some((at, blocked)) = &self.blocked
             && *at == clock

@@ -9,9 +9,10 @@ use moldloft_lang::run::interpreter::Inputs;
 use moldloft_lang::run::program::RunContext;
 use moldloft_lang::run::whole::{body_numbers, mesh_numbers, not_finite, one_of};
 use moldloft_lang::source::env::Evaluation;
+use moldloft_lang::source::fault_location::unplaced;
 use moldloft_lang::value::variables::Called as _;
 use moldloft_num::{Dual4, Vec3};
-use moldloft_registry::{Scalar, Value};
+use moldloft_registry::{CallError, Scalar, Value};
 use std::collections::HashSet;
 
 impl Document {
@@ -21,7 +22,7 @@ impl Document {
     /// # Errors
     /// What is wrong with it.
     pub fn eval(&mut self, text: &str) -> Result<Value<f64>, Vec<Diagnostic>> {
-        self.complete();
+        self.complete()?;
         self.expression_remarks.clear();
         if let Some((group, number)) = self.whole_name(text) {
             let found = self.whole_numbers(group).map_err(|d| vec![d])?;
@@ -124,12 +125,12 @@ impl Document {
                         let panelled = document.panelled().map_err(|d| vec![d])?;
                         let found = if group == "mesh" {
                             let mesh = panelled.panelling.mesh(&evaluation.graph);
-                            mesh_numbers(&mesh.ok_or_else(|| vec![no_mesh()])?)
+                            mesh_numbers(&mesh.ok_or_else(|| vec![document.or_spent(no_mesh())])?)
                         } else {
                             let bodied = document.bodied(USUAL_ACCURACY).map_err(|d| vec![d])?;
                             let graph = &evaluation.graph;
                             let body = bodied.skin.body(&panelled.panelling, graph, USUAL_ACCURACY);
-                            let body = body.ok_or_else(|| vec![not_finite()])?;
+                            let body = body.ok_or_else(|| vec![document.or_spent(not_finite())])?;
                             body_numbers(&body, &document.symmetry())
                         };
                         one_of(found, group, number).map_err(|d| vec![d])?
@@ -169,7 +170,7 @@ impl Document {
         self.passes(by, |document, evaluation, count| {
             let panelled = document.panelled().map_err(|d| vec![d])?;
             let positions = panelled.panelling.positions(&evaluation.graph);
-            let positions = positions.ok_or_else(|| vec![no_mesh()])?;
+            let positions = positions.ok_or_else(|| vec![document.or_spent(no_mesh())])?;
             for k in 0..count {
                 columns.push(positions.iter().map(|p| p.map(|x| x.eps[k])).collect());
             }
@@ -185,6 +186,7 @@ impl Document {
         by: &[String],
         mut each: impl FnMut(&mut Self, &mut Evaluation<Dual4>, usize) -> Result<(), Vec<Diagnostic>>,
     ) -> Result<(), Vec<Diagnostic>> {
+        self.complete()?;
         let mut seeded_objects = HashSet::new();
         for name in by {
             if self.params().iter().any(|p| p.name == *name) {
@@ -207,6 +209,11 @@ impl Document {
             let seed =
                 |name: &str, x: Dual4| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
             self.evaluate(&mut evaluation, &seed, &seeded_objects, false);
+            // What this run did not come to would look like what the model does not have.
+            if let Err(spent) = self.budget().poll() {
+                outcome = Err(vec![unplaced(&CallError::from(spent))]);
+                break;
+            }
             outcome = each(self, &mut evaluation, pass.len());
             if outcome.is_err() {
                 break;

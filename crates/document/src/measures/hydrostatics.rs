@@ -51,6 +51,8 @@ impl Document {
     /// # Errors
     /// When there are too many panels, or a surface is not finite.
     pub(crate) fn bodied(&mut self, accuracy: f64) -> Result<Arc<Bodied>, Diagnostic> {
+        // The skin of a part would look like that of the whole.
+        self.complete().map_err(|mut faults| faults.swap_remove(0))?;
         let clock = self.plain.graph.last_change();
         if let Some(known) = &self.bodied
             && known.clock == clock
