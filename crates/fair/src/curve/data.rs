@@ -650,6 +650,7 @@ impl Data {
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
             adapts: false,
+            foreign: None,
         };
         path.follow(options.goal, norm, conditioned, parts, &pull)
     }

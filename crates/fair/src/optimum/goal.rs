@@ -70,9 +70,7 @@ const DEVIATIONS: f64 = 1.5;
 /// The budget of the goal `near` in a network of `count` moving points whose fairest takes `used`; none
 /// where the fairest itself is within what noise has.
 pub(crate) fn allowed<T: Real>(share: f64, used: T, count: usize) -> Option<T> {
-    // The square of even noise has the mean 1/3 and the variance 4/45.
-    let deviation = (0.8 / count.max(1) as f64).sqrt();
-    let beyond = (used - (1.0 + DEVIATIONS * deviation)) / FOREIGN;
+    let beyond = beyond(used, count);
     if count < FEWEST {
         return Some(T::from(share));
     }
@@ -85,13 +83,21 @@ pub(crate) fn allowed<T: Real>(share: f64, used: T, count: usize) -> Option<T> {
     Some(used + (T::from(share) - used) * beyond)
 }
 
+/// How far what the fairest takes of the squares is beyond what noise has, give or take its deviations, where
+/// 1 is as far as a measure that is none of the data's.
+fn beyond<T: Real>(used: T, count: usize) -> T {
+    // The square of even noise has the mean 1/3 and the variance 4/45.
+    let deviation = (0.8 / count.max(1) as f64).sqrt();
+    (used - (1.0 + DEVIATIONS * deviation)) / FOREIGN
+}
+
 /// The weight of data beside the measure of their own curve where the nearest of a shape is wanted.
 const CLOSEST: f64 = 1e6;
 
 /// How exactly budgets and shares are kept.
 const GOAL_ACCURACY: f64 = 1e-7;
 
-/// The same where it is known which limits are reached.
+/// The same where further solutions are quick.
 const DECIDED: f64 = 1e-11;
 
 /// The difference of the weights' logarithms from which on a value that is no better is due to rounding, and
@@ -133,6 +139,8 @@ pub(crate) struct RegularizationPath<'a, E, S> {
     pub original: &'a [Vec3<f64>],
     /// Whether the budget of `near` goes by what the fairest takes.
     pub adapts: bool,
+    /// The budget of `near` where the fairest takes more than noise has, if it is another then.
+    pub foreign: Option<f64>,
 }
 
 /// Where the way ended.
@@ -248,6 +256,13 @@ where
                 let own = allowed(share, used, self.count);
                 between = own.is_some_and(|own| own != share);
                 Goal::Near(own.unwrap_or(f64::INFINITY))
+            }
+            Goal::Near(share) if norm == RowNorm::Square && self.count >= FEWEST => {
+                let beyond = beyond(squares / mean, self.count).clamp(0.0, 1.0);
+                between = self.foreign.is_some() && beyond > 0.0 && beyond < 1.0;
+                Goal::Near(
+                    self.foreign.map_or(share, |low| share + (low - share).min(0.0) * beyond),
+                )
             }
             other => other,
         };
@@ -383,8 +398,9 @@ where
             // Between weights so near to each other what is left is rounding of the optima.
             let many = self.count > MANY;
             let rounded = known.is_some() && many && !decided && value.abs() <= NOISY;
-            // Where it is known which limits are reached each further solution is a few steps.
-            let close = if known.is_some() && decided { DECIDED } else { GOAL_ACCURACY };
+            // Where it is known which limits are reached, or there are few, each further solution is quick.
+            let cheap = known.is_some() && (decided || !many);
+            let close = if cheap { DECIDED } else { GOAL_ACCURACY };
             if value.abs() <= close || rounded || (!better && width < NOISY) {
                 break;
             }
