@@ -107,7 +107,7 @@ impl UnionView {
 }
 
 /// A part of the box with the sets that may be solid in it.
-type Part = ([Interval; 3], Vec<(usize, Arc<ExprTape<f64>>)>, u32);
+type SearchPart = ([Interval; 3], Vec<(usize, Arc<ExprTape<f64>>)>, u32);
 
 fn halves(sides: &[Interval; 3]) -> impl Iterator<Item = [Interval; 3]> + '_ {
     (0..8).map(|c| {
@@ -131,10 +131,10 @@ fn pairs(
     let tapes = sets.iter().map(|s| s.compiled().tape).enumerate().collect();
     let mut found = BTreeSet::new();
     let mut ranges = Vec::new();
-    let mut front: Vec<Part> = vec![(sides(over), tapes, 0)];
+    let mut front: Vec<SearchPart> = vec![(sides(over), tapes, 0)];
     let mut count = 0;
     while !front.is_empty() {
-        let mut next: Vec<Part> = Vec::new();
+        let mut next: Vec<SearchPart> = Vec::new();
         for (place, sets, depth) in front {
             budget.poll()?;
             count += 1;
@@ -196,12 +196,12 @@ fn common_places(both: &Set, over: &Box3) -> Vec<Vec3> {
 }
 
 /// A set with what is asked of it at points.
-struct Surface {
+struct SetSurface {
     tape: Arc<ExprTape<f64>>,
     leaves: Vec<Leaf>,
 }
 
-impl Surface {
+impl SetSurface {
     fn of(set: &Set) -> Self {
         let compiled = set.compiled();
         Self { tape: compiled.tape, leaves: compiled.leaves }
@@ -218,7 +218,7 @@ impl Surface {
 
 /// A point that two surfaces have in common, near a given one: Gauss-Newton steps of least norm on the leaves that
 /// decide. Where the surfaces touch the steps halve the distance.
-fn common_point(a: &Surface, b: &Surface, start: Vec3, size: f64) -> Option<Vec3> {
+fn common_point(a: &SetSurface, b: &SetSurface, start: Vec3, size: f64) -> Option<Vec3> {
     let mut p = start;
     for _ in 0..STEPS {
         let ((f, m), (g, n)) = (a.height(p)?, b.height(p)?);
@@ -238,19 +238,19 @@ fn common_point(a: &Surface, b: &Surface, start: Vec3, size: f64) -> Option<Vec3
 }
 
 /// Whether there is a point inside of both sets near one that is on their surfaces.
-fn overlap(a: &Surface, b: &Surface, p: Vec3, size: f64) -> bool {
+fn overlap(a: &SetSurface, b: &SetSurface, p: Vec3, size: f64) -> bool {
     let (Some((_, m)), Some((_, n))) = (a.height(p), b.height(p)) else { return false };
     // Where surfaces nearly touch, what the sets share is a lens whose rim they have in common: across the rim.
     let Some(inward) = ((m + n) * -1.0).normalized() else { return false };
     [1e-1, 1e-2, 1e-3, 1e-4, 1e-5].into_iter().any(|reach| {
         let q = p + inward * (reach * size);
-        let inside = |s: &Surface| s.height(q).is_some_and(|h| h.0 < -SAME * size);
+        let inside = |s: &SetSurface| s.height(q).is_some_and(|h| h.0 < -SAME * size);
         inside(a) && inside(b)
     })
 }
 
 /// Whether two surfaces that meet at a point have a piece of surface in common there, and not a line or the point only.
-fn share_face(a: &Surface, b: &Surface, p: Vec3, size: f64) -> bool {
+fn share_face(a: &SetSurface, b: &SetSurface, p: Vec3, size: f64) -> bool {
     let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     [2e-2, 1e-3].into_iter().any(|part| {
         let reach = part * size;
@@ -263,7 +263,7 @@ fn share_face(a: &Surface, b: &Surface, p: Vec3, size: f64) -> bool {
                 let (f, m) = a.height(q)?;
                 q -= m * f;
             }
-            let on = |s: &Surface| s.height(q).is_some_and(|h| h.0.abs() <= SAME * size);
+            let on = |s: &SetSurface| s.height(q).is_some_and(|h| h.0.abs() <= SAME * size);
             (on(a) && on(b)).then_some(q - p)
         };
         let shared: Vec<Vec3> = (0..AROUND).filter_map(near).collect();
@@ -313,7 +313,7 @@ fn parted_by(view: &UnionView, over: &Box3, budget: &Budget) -> Result<Option<Pa
         if places.is_empty() {
             continue;
         }
-        let (a, b) = (Surface::of(&bodies[i]), Surface::of(&bodies[j]));
+        let (a, b) = (SetSurface::of(&bodies[i]), SetSurface::of(&bodies[j]));
         let some = places.iter().step_by(places.len().div_ceil(PLACES));
         let points = some.filter_map(|p| common_point(&a, &b, *p, size));
         let points: Vec<Vec3> = points.collect();
@@ -347,7 +347,7 @@ fn parted_by(view: &UnionView, over: &Box3, budget: &Budget) -> Result<Option<Pa
 
 /// Whether the surfaces of two sets have one tangent plane at a point that is on both, or nearly.
 fn tangent(a: &Set, b: &Set, p: Vec3) -> bool {
-    let normal = |set| Surface::of(set).height(p).map(|h| h.1);
+    let normal = |set| SetSurface::of(set).height(p).map(|h| h.1);
     let (Some(m), Some(n)) = (normal(a), normal(b)) else { return false };
     m.cross(n).norm() <= TANGENT
 }
