@@ -51,13 +51,13 @@ fn along(
 ) -> LoopIntegrals {
     let local: Vec<[f64; 3]> = points.iter().map(|p| axes.local(*p)).collect();
     // The tube's angle as it grows along the points.
-    let direction = |q: &[f64; 3]| [q[0].hypot(q[1]) - ring, q[2]];
+    let direction = |q: &[f64; 3]| [libm::hypot(q[0], q[1]) - ring, q[2]];
     let mut angles = vec![*tube];
     for pair in local.windows(2) {
         *tube += turn(direction(&pair[0]), direction(&pair[1]));
         angles.push(*tube);
     }
-    let size = local.iter().map(|q| q[0].hypot(q[1])).fold(0.0, f64::max);
+    let size = local.iter().map(|q| libm::hypot(q[0], q[1])).fold(0.0, f64::max);
     let by = |stride: usize| {
         let (mut area, mut weighted, mut angle) = (Vec3::zero(), 0.0, 0.0);
         for k in (stride..points.len()).step_by(stride) {
@@ -65,7 +65,7 @@ fn along(
             area += (points[i] - origin).cross(points[j] - origin) * 0.5;
             let (p, q) = (local[i], local[j]);
             // At a pole there is no angle.
-            if p[0].hypot(p[1]).min(q[0].hypot(q[1])) > 1e-9 * size {
+            if libm::hypot(p[0], p[1]).min(libm::hypot(q[0], q[1])) > 1e-9 * size {
                 let by = turn([p[0], p[1]], [q[0], q[1]]);
                 angle += by;
                 weighted += 0.5 * by * (weight(p, angles[i]) + weight(q, angles[j]));
@@ -118,7 +118,7 @@ impl Brep {
                 }
                 let q = axes.local(points[0]);
                 let mut at = *tube.get_or_insert_with(|| {
-                    first = libm::atan2(q[2], q[0].hypot(q[1]) - ring);
+                    first = libm::atan2(q[2], libm::hypot(q[0], q[1]) - ring);
                     first
                 });
                 let part = along(&points, origin, axes, ring, &mut at, weight);
