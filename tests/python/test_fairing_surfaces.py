@@ -40,13 +40,12 @@ def test_exact_hulls_stay_and_read_ones_come_nearer():
         faired = moldloft.fair(exact, 0.005, as_="fit", **options)
         assert np.abs(faired.points - exact).max() < 1e-12, options
     # Nearer to the truth than the data, at the points and between them.
-    # Least third derivatives are not those of the full hull: its budget is the smaller one.
-    for hull, least, budget in ((wigley, 5.0, 0.8), (full, 1.2, 0.3)):
+    for hull, least in ((wigley, 5.0), (full, 1.2)):
         exact, read = grids(hull)
         for motion in ("ball", (0, 1, 0)):
             faired = moldloft.fair(read, 0.005 * (1 + 1e-9), as_="fit", motion=motion)
             assert faired.deviation_data <= 0.005 * (1 + 2e-9)
-            assert faired.used == pytest.approx(budget, rel=1e-5)
+            assert faired.used == pytest.approx(0.8, rel=1e-5)
             assert faired.gap_relative < 1e-5
             off = rms(read[..., 1] - exact[..., 1])
             assert off > least * rms(faired.points[..., 1] - hull(*faired.points[..., ::2].T).T)
@@ -152,22 +151,3 @@ def test_noise_between_close_stations_decides_no_parameters():
         steep = np.stack([a, 30 * wigley(a, b), b], -1)
         knots = moldloft.fair(steep, 0.005, as_="fit", motion=(0, 1, 0)).surface.knots[1]
         assert np.abs(share(knots)[:, None] - share(z)).min(axis=1).max() > 1e-3
-
-
-def test_surfaces_come_nearer_on_hulls_that_no_least_energy_has():
-    """A measure that is none of the hull's is kept near the data: a parallel body most of all."""
-    hulls = {
-        "Wigley": lambda s, z: 0.9 * (1 - s**2) * (1 - z**2),
-        "round": lambda s, z: 0.9 * (1 - abs(s) ** 3) * (1 - z**2) ** 0.75,
-        "fine bow": lambda s, z: 0.9 * abs(np.cos(0.5 * np.pi * s)) ** 1.6 * (1 - 0.55 * z**2),
-        "parallel body": lambda s, z: (
-            0.9 * (1 - np.clip((abs(s) - 0.4) / 0.6, 0, 1) ** 2.2) * (1 - z**6)
-        ),
-    }
-    x, z = np.meshgrid(STATIONS, LEVELS, indexing="ij")
-    for name, hull in hulls.items():
-        truth = hull(x / 5 - 1, (1.25 - z) / 1.25)
-        read = np.stack([x, np.round(truth, 2), z], -1)
-        faired = moldloft.fair(read, 0.005, as_="fit", motion=(0, 1, 0))
-        gain = rms(read[..., 1] - truth) / rms(faired.points[..., 1] - truth)
-        assert gain > (5 if name == "Wigley" else 1.02), (name, gain)

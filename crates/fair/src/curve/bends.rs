@@ -33,7 +33,7 @@ const HALVINGS: usize = 6;
 
 /// What is counted of a curve, on the same samples.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Counts {
+pub(super) struct BendCounts {
     /// Reversals of the tangent's turning.
     turns: usize,
     /// Changes of the curvature's sign.
@@ -42,7 +42,7 @@ pub(super) struct Counts {
     pieces: usize,
 }
 
-impl Counts {
+impl BendCounts {
     pub fn samples(space: &Space, points: &[Vec3<f64>]) -> Vec<Sample> {
         shape::samples(space, points, None, shape::COUNTING)
     }
@@ -60,7 +60,7 @@ impl Counts {
 pub(super) struct SolvedFit {
     /// The fairest curve; none where it was not looked for.
     pub fairest: Vec<Vec3<f64>>,
-    pub counts: Counts,
+    pub counts: BendCounts,
     /// The solution that the curve is.
     pub solution: Option<CertifiedSolution>,
 }
@@ -81,9 +81,9 @@ impl Data {
     ) -> Result<DataFit, FairError> {
         let space = &self.layout.space;
         let near = matches!(options.goal, Goal::Near(_));
-        let counted = |points: &[Vec3<f64>]| Counts::of(&Counts::samples(space, points));
+        let counted = |points: &[Vec3<f64>]| BendCounts::of(&BendCounts::samples(space, points));
         let SolvedFit { fairest, counts: own_counts, solution } = before;
-        let Counts { signs: own, pieces: before, .. } = counted(&job.points);
+        let BendCounts { signs: own, pieces: before, .. } = counted(&job.points);
         let bent = own_counts.turns > 0 || own_counts.signs > own;
         let few = before.min(LEAST_PIECES + MORE_PIECES);
         if !bent && (!near || own_counts.pieces <= few) {
@@ -104,7 +104,7 @@ impl Data {
             starts.insert(at, (count, stiffest));
         }
         let most = starts[0].0;
-        let well = |counts: &Counts| counts.turns <= most && counts.signs <= own;
+        let well = |counts: &BendCounts| counts.turns <= most && counts.signs <= own;
         let good = |points: &[Vec3<f64>]| well(&counted(points));
         if well(&own_counts) && own_counts.pieces <= allowed {
             return Ok(plain);

@@ -8,7 +8,7 @@
 //! what is kept is a proof about the data. The least energy sits at the edge of what is allowed,
 //! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
 
-use crate::curve::bends::{Counts, SolvedFit};
+use crate::curve::bends::{BendCounts, SolvedFit};
 use crate::curve::exact::is_exact;
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
@@ -347,11 +347,11 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
     if options.bends || jumps || data.stays(options, &job, &plain) {
         return Ok(plain);
     }
-    let samples = Counts::samples(&data.layout.space, &plain.points);
+    let samples = BendCounts::samples(&data.layout.space, &plain.points);
     if shape::plane_normal(&samples).is_none() {
         return Ok(plain);
     }
-    let counts = Counts::of(&samples);
+    let counts = BendCounts::of(&samples);
     data.without_bends(options, &job, plain, SolvedFit { fairest, counts, solution })
 }
 
@@ -650,7 +650,6 @@ impl Data {
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
             adapts: false,
-            foreign: None,
         };
         path.follow(options.goal, norm, conditioned, parts, &pull)
     }

@@ -162,11 +162,6 @@ fn stations(
     })
 }
 
-/// The budget of the goal `near` where the fairest surface takes more of the squares than noise has: its
-/// measure is none of the hull's. With that of others a hull with a parallel body ends farther from the truth
-/// than its data.
-const FOREIGN_BUDGET: f64 = 0.3;
-
 /// The range that each site stands for.
 fn weights<T: Real>(sites: &[T], closed: bool) -> Vec<T> {
     let n = sites.len();
@@ -461,7 +456,6 @@ impl GridData {
             noise: rounding(&rows, norm, original),
             original,
             adapts: false,
-            foreign: Some(FOREIGN_BUDGET),
         };
         // The measure of closed lines is never small, so that it does not show what a move is worth.
         let closed = self.layouts.iter().any(|layout| layout.space.is_closed());
@@ -651,12 +645,6 @@ pub fn fair_grid_with<T: Real>(
     }
     if !ku.iter().chain(&kv).all(|k| k.is_constant()) {
         check_single(&found, before)?;
-    }
-    if found.between {
-        return Err(FairError::Goal(
-            "the budget of this surface hangs on what the fairest takes of it, whose derivatives are not \
-             known: take the goal \"budget\"",
-        ));
     }
     check_unique(&mut parts, &found, &pull)?;
     if parts.norm != RowNorm::Square {

@@ -419,7 +419,6 @@ impl Network {
             noise: rounding(&rows, norm, &self.points),
             original: &self.points,
             adapts: !conditioned,
-            foreign: None,
         };
         let found = path.follow(goal, norm, conditioned, parts, &pull)?;
         Ok((found, pull, owners))

@@ -70,7 +70,9 @@ const DEVIATIONS: f64 = 1.5;
 /// The budget of the goal `near` in a network of `count` moving points whose fairest takes `used`; none
 /// where the fairest itself is within what noise has.
 pub(crate) fn allowed<T: Real>(share: f64, used: T, count: usize) -> Option<T> {
-    let beyond = beyond(used, count);
+    // The square of even noise has the mean 1/3 and the variance 4/45.
+    let deviation = (0.8 / count.max(1) as f64).sqrt();
+    let beyond = (used - (1.0 + DEVIATIONS * deviation)) / FOREIGN;
     if count < FEWEST {
         return Some(T::from(share));
     }
@@ -81,14 +83,6 @@ pub(crate) fn allowed<T: Real>(share: f64, used: T, count: usize) -> Option<T> {
         return Some(T::from(share));
     }
     Some(used + (T::from(share) - used) * beyond)
-}
-
-/// How far what the fairest takes of the squares is beyond what noise has, give or take its deviations, where
-/// 1 is as far as a measure that is none of the data's.
-fn beyond<T: Real>(used: T, count: usize) -> T {
-    // The square of even noise has the mean 1/3 and the variance 4/45.
-    let deviation = (0.8 / count.max(1) as f64).sqrt();
-    (used - (1.0 + DEVIATIONS * deviation)) / FOREIGN
 }
 
 /// The weight of data beside the measure of their own curve where the nearest of a shape is wanted.
@@ -103,6 +97,9 @@ const DECIDED: f64 = 1e-11;
 /// The difference of the weights' logarithms from which on a value that is no better is due to rounding, and
 /// the logarithm of the squares that rounding leaves of an optimum whose limits it hides.
 const NOISY: f64 = 1e-5;
+
+/// Solutions that come no nearer after which others are not looked for where these are quick.
+const MOST_IDLE: usize = 3;
 
 /// So many residuals make each search worth saving.
 const MANY: usize = 200;
@@ -139,8 +136,6 @@ pub(crate) struct RegularizationPath<'a, E, S> {
     pub original: &'a [Vec3<f64>],
     /// Whether the budget of `near` goes by what the fairest takes.
     pub adapts: bool,
-    /// The budget of `near` where the fairest takes more than noise has, if it is another then.
-    pub foreign: Option<f64>,
 }
 
 /// Where the way ended.
@@ -257,13 +252,6 @@ where
                 between = own.is_some_and(|own| own != share);
                 Goal::Near(own.unwrap_or(f64::INFINITY))
             }
-            Goal::Near(share) if norm == RowNorm::Square && self.count >= FEWEST => {
-                let beyond = beyond(squares / mean, self.count).clamp(0.0, 1.0);
-                between = self.foreign.is_some() && beyond > 0.0 && beyond < 1.0;
-                Goal::Near(
-                    self.foreign.map_or(share, |low| share + (low - share).min(0.0) * beyond),
-                )
-            }
             other => other,
         };
         let ended = |optimum: Optimum, weight: f64| {
@@ -379,7 +367,7 @@ where
         let guess = || self.balance(&fairest.points, [begin, least, squares]);
         let mut trial = known.map_or_else(guess, libm::log);
         let mut stride = FIRST_STRIDE;
-        let (mut side, mut stepped) = (0, 0.0);
+        let (mut side, mut stepped, mut idle) = (0, 0.0, 0);
         let mut best: Option<(f64, f64, Optimum)> = None;
         for _ in 0..MOST_SOLUTIONS {
             let (optimum, decided) = solve(parts, libm::exp(trial))?;
@@ -401,7 +389,9 @@ where
             // Where it is known which limits are reached, or there are few, each further solution is quick.
             let cheap = known.is_some() && (decided || !many);
             let close = if cheap { DECIDED } else { GOAL_ACCURACY };
-            if value.abs() <= close || rounded || (!better && width < NOISY) {
+            idle = if better { 0 } else { idle + 1 };
+            let noisy = if cheap { idle >= MOST_IDLE } else { !better && width < NOISY };
+            if value.abs() <= close || rounded || noisy {
                 break;
             }
             if value > 0.0 {
@@ -429,7 +419,7 @@ where
             }
             trial = match (low, high) {
                 (Some(l), Some(h)) => {
-                    if h.0 - l.0 < GOAL_ACCURACY {
+                    if h.0 - l.0 < if cheap { DECIDED } else { GOAL_ACCURACY } {
                         break;
                     }
                     let share = l.1 / (l.1 - h.1);
