@@ -22,6 +22,10 @@ const MOST: usize = 16_000;
 /// How often sides are halved.
 const ROUNDS: usize = 16;
 
+/// More patches than that, and than four times the fewest so far, that are off after some rounds are a kink.
+const MANY: usize = 200;
+const SMOOTH_AFTER: usize = 4;
+
 /// The least sine of the corners of a quadrilateral.
 const LEAST_CORNER: f64 = 0.25;
 
@@ -346,7 +350,8 @@ impl<'a> PatchedBody<'a> {
         let mut known: FxHashMap<Corners, FittedPatch> = FxHashMap::default();
         let mut apart: FxHashSet<Corners> = FxHashSet::default();
         let mut last = None;
-        for _ in 0..ROUNDS {
+        let mut fewest = usize::MAX;
+        for round in 0..ROUNDS {
             let all = self.pairs(&apart);
             let mut halved: Vec<(f64, (u32, u32))> = Vec::new();
             let mut before = apart.len();
@@ -386,6 +391,11 @@ impl<'a> PatchedBody<'a> {
                     .into_iter()
                     .map(|(corners, k)| (corners, k, known[&corners].clone()))
                     .collect());
+            }
+            // Along a kink there are twice as many after each halving.
+            fewest = fewest.min(halved.len());
+            if round >= SMOOTH_AFTER && halved.len() > MANY.max(4 * fewest) {
+                break;
             }
             before = self.net.triangles.len();
             self.halve(halved)?;
