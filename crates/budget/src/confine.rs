@@ -1,7 +1,7 @@
 //! The process that runs foreign texts: what the system lets it use, and its end with the one that started it.
 //!
-//! The budget ends work by name; these limits hold where no work looks at it. The engines of the workbench and of the
-//! language server begin with this.
+//! The budget ends work by name; these limits hold where no work looks at it. The engine of the workbench begins
+//! with this.
 
 use crate::{Limits, limits, set_limits};
 

@@ -41,14 +41,10 @@ impl EngineProcess {
             .arg("--engine")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
             .spawn()?;
         let taken = "a pipe was asked for";
         let input = BufWriter::new(child.stdin.take().expect(taken));
         let mut output = BufReader::new(child.stdout.take().expect(taken));
-        let mut errors = child.stderr.take().expect(taken);
-        // The engine writes no file, and the editor may keep ours in one.
-        std::thread::spawn(move || std::io::copy(&mut errors, &mut std::io::stderr()));
         let events = events.clone();
         std::thread::spawn(move || {
             while let Ok(Some(message)) = Message::read(&mut output) {

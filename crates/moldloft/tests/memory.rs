@@ -151,7 +151,7 @@ const OPERATIONS: &[Operation] = &[
     ("convert", HULL, |d| d.convert(TextFormat::ModelFile).map_err(|f| ids(&f))),
     ("expressions", HULL, |d| {
         let mut found = String::new();
-        for text in ["hull(0.5, 0.5).y + 2*sin(beam)^2", "MC2.length", "rows .* rows"] {
+        for text in ["hull(0.5, 0.5).y + 2*sin(beam)^2", "MC2.length", "2 * rows"] {
             match d.eval(text).map_err(|f| ids(&f))? {
                 Value::Number(x) => found.push_str(&format!("{x:?}")),
                 Value::Numbers(all) => found.push_str(&format!("{:?}", all.items)),

@@ -76,8 +76,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="RULE",
         nargs="?",
         const="is-code-2008",
-        help="intact criteria: is-code-2008 (the default), fishing, timber, or a .json file; status "
-        "1 unless all that apply are passed",
+        help="intact criteria: is-code-2008 (the default), fishing, timber, or a .json file; "
+        "status 1 unless all that apply are passed",
     )
     parser.add_argument(
         "--wind",
