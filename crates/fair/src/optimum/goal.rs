@@ -225,15 +225,17 @@ where
     ) -> Result<GoalOptimum, FairError> {
         // The last solution with its weight: near it the next begins.
         let mut last: Option<(f64, CertifiedSolution)> = None;
-        let mut solve =
-            |parts: &mut Parts<'_>, weight: f64| -> Result<(Optimum, bool), FairError> {
-                let near = last.as_ref().filter(|l| libm::log(l.0 / weight).abs() < NEIGHBOURS);
-                parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
-                let (optimum, solution) = parts.solve_after(near.map(|l| &l.1))?;
-                let decided = solution.active.is_some();
-                last = Some((weight, solution));
-                Ok((optimum, decided))
-            };
+        let mut solve = |parts: &mut Parts<'_>,
+                         weight: f64|
+         -> Result<(Optimum, bool), FairError> {
+            let close = |l: &&(f64, CertifiedSolution)| libm::log(l.0 / weight).abs() < NEIGHBOURS;
+            let near = last.as_ref().filter(|l| !self.adapts && close(l));
+            parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
+            let (optimum, solution) = parts.solve_after(near.map(|l| &l.1))?;
+            let decided = solution.active.is_some();
+            last = Some((weight, solution));
+            Ok((optimum, decided))
+        };
         let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
         let begin = (self.energy)(self.original);
         if !conditioned && (begin <= self.noise || goal == Goal::Closest) {
@@ -358,7 +360,7 @@ where
         let mut low: Option<(f64, f64)> = None;
         let mut high: Option<(f64, f64)> = None;
         let known = match goal {
-            Goal::Budget(share) | Goal::Near(share) if !conditioned => {
+            Goal::Budget(share) | Goal::Near(share) if !conditioned && !self.adapts => {
                 parts.pull = None;
                 parts.weight_of(pull, share * mean)?
             }

@@ -402,8 +402,7 @@ fn the_budget_of_a_network_goes_by_its_fairest() {
                 }
                 near(&data, &radii).0.points
             };
-            // The last digits of an optimum are noise: steps are large beside them.
-            let h = 1e-6;
+            let h = 1e-7;
             let (low, high) = (at(-h), at(h));
             for i in 0..m * n {
                 let wanted = (high[i].y - low[i].y) / (2.0 * h);
