@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from moldloft._core import Document
-    from moldloft.fairing.surface import Look
+    from moldloft.fairing.look import Look
     from moldloft.models import Model
     from moldloft.nurbs import Nurbs
     from moldloft.searches import Intersection, NearestPoints
@@ -558,7 +558,8 @@ class Surface(_Located):
         >>> m["plate"].look(3, 5).normals[0, 0].tolist()
         [0.0, 0.0, 1.0]
         """
-        from moldloft.fairing.surface import Look, _parameters
+        from moldloft.fairing.look import Look
+        from moldloft.fairing.surface import _parameters
 
         return Look(self._document.look(self.name, _parameters(u), _parameters(v)))
 

@@ -391,6 +391,11 @@ class Sketch:
         text
             The line.
 
+        Returns
+        -------
+        list of ObjectChange
+            The objects that changed, each with its points, lines, faces and dimensions.
+
         Raises
         ------
         SketchError
@@ -455,12 +460,22 @@ class Sketch:
             A number or an expression.
         name
             The name of the dimension; by default a new one.
+
+        Returns
+        -------
+        list of ObjectChange
+            The objects that changed, as :meth:`edit` gives them.
         """
         given = f'"{value}"' if isinstance(value, str) else repr(float(value))
         return self.edit(f"DIMENSION {name or ''} {axis} {p} TO {q} = {given}")
 
     def drag(self) -> Drag:
         """Edits that count as one step of UNDO and one line of the journal.
+
+        Returns
+        -------
+        Drag
+            To be used in a `with` statement; an exception in it takes all edits back.
 
         Examples
         --------
@@ -491,6 +506,11 @@ class Sketch:
             How far off it may be.
         name
             The object; by default the active one.
+
+        Returns
+        -------
+        SketchSnap or None
+            The place, and the point, line or axis that it is on; None when nothing is within reach.
         """
         found = self._session.snap(self._name(name), [float(u), float(v)], float(reach))
         if found is None:
@@ -506,6 +526,11 @@ class Sketch:
         ----------
         name
             The object; by default the active one.
+
+        Returns
+        -------
+        list of SketchSuggestion or None
+            One for each loose part; None where the picture does not determine a value.
         """
         rows = self._session.suggestions(self._name(name))
         return [None if row is None else SketchSuggestion(*row) for row in rows]
@@ -519,6 +544,11 @@ class Sketch:
         ----------
         name
             The object; by default the active one.
+
+        Returns
+        -------
+        list of (ndarray, ndarray)
+            Vertices, ``(n, 3)``, and triangles, ``(m, 3)``, of each body.
         """
         return self._session.candidates(self._name(name), False)
 
@@ -531,6 +561,11 @@ class Sketch:
         ----------
         name
             The object; by default the active one.
+
+        Returns
+        -------
+        (ndarray, ndarray) or None
+            Vertices, ``(n, 3)``, and triangles, ``(m, 3)``; None when no body is known.
         """
         found = self._session.candidates(self._name(name), True)
         return found[0] if found else None

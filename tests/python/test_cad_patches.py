@@ -201,8 +201,8 @@ def test_what_has_no_patches_is_triangles_and_says_so(name: str, tmp_path: Path)
         BRep_Tool.Triangulation_s(TopoDS.Face(f), TopLoc_Location())
         for f in faces_of(shape, TopAbs_FACE)
     ]
-    assert sum(f.NbTriangles() for f in faces) == model.mesh().triangles().shape[0]
+    assert sum(f.NbTriangles() for f in faces) == len(model.mesh().faces)
     # Formats without triangles refuse by name.
-    with pytest.raises(moldloft.Error, match="`b`") as caught:
+    with pytest.raises(moldloft.Error, match=r"`b(\.k)?`") as caught:
         model.write(tmp_path / "b.igs")
     assert {d.id for d in caught.value.diagnostics} == {"curved-body"}

@@ -41,7 +41,11 @@ STEPS = re.compile(
     r"make (\w+)$|python tools/release\.py (\w+)$|mkdocs build --strict$|rm -f dist/|"
     r"python -m pip install '[a-z-]+[><=.,0-9]*'$|"
     # What needs another toolchain than the house.
-    r"cargo (?:miri|llvm-cov|fuzz) |cargo test -Zbuild-std |for target in "
+    r"cargo (?:miri|llvm-cov|fuzz) |cargo test -Zbuild-std |for target in |"
+    # Other processors, emulated.
+    r"sudo apt-get update && sudo apt-get install -y qemu-user |"
+    r"cargo build -p moldloft --example bits|"
+    r"(?:qemu-\w+ .*)?target/\S*debug/examples/bits \| diff tests/bits\.txt -$"
 )
 
 

@@ -204,8 +204,8 @@ def _asked(path: Path, metres: float, numbers: list[int] | None) -> Imported | s
     if isinstance(sent, str):
         return sent
     answer: dict[str, Any] = json.loads(sent)
-    if "error" in answer:
-        raise FileError(answer["error"].replace(request["path"], request["called"]))
+    if "refused" in answer:
+        raise FileError(answer["refused"].replace(request["path"], request["called"]))
     if "fault" in answer:
         return f"OCCT cannot read the file ({answer['fault']})"
     return _imported(answer, metres)
@@ -250,7 +250,7 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
     try:
         found = of_part(Path(request["path"]), request["metres"], request["faces"])
     except Error as error:
-        return {"error": str(error)}
+        return {"refused": str(error)}
     except MemoryError:
         return {"fault": f"more than {request['memory'] / 2**30:.3g} GiB are needed"}
     except Exception as error:

@@ -179,10 +179,11 @@ def related(row: Row, rows: list[Row]) -> list[str]:
 
 
 def _anchor(row: Row, rows: list[Row]) -> str:
-    """Where an entry is in the page: of two that differ by case, the kind comes first."""
+    """Where an entry is: of those that differ by case alone, kinds come first, libraries last."""
     name = str(row["name"]).lower()
-    twice = not row["is_kind"] and any(r["is_kind"] and r["name"].lower() == name for r in rows)
-    return name + "_1" * twice
+    alike = [r for r in rows if r["name"].lower() == name]
+    before = sorted(alike, key=lambda r: not r["is_kind"]).index(row)
+    return f"{name}_{before}" if before else name
 
 
 def _entry(row: Row, rows: list[Row], pictured: Callable[[Row], bool]) -> list[str]:

@@ -28,6 +28,7 @@ from numpy.typing import ArrayLike
 from moldloft.arguments import explain
 from moldloft.fairing.curve import fair_curve
 from moldloft.fairing.faired import Arc, Fairing
+from moldloft.fairing.look import Look
 from moldloft.fairing.network import NetworkFairing, network
 from moldloft.fairing.page import page, write_page
 from moldloft.fairing.patches import PatchesFairing, patches
@@ -39,7 +40,7 @@ from moldloft.fairing.spline import (
     grid_metric,
     monotone_runs,
 )
-from moldloft.fairing.surface import Look, SplineSurface, SurfaceFairing, fair_surface
+from moldloft.fairing.surface import SplineSurface, SurfaceFairing, fair_surface
 
 __all__ = [
     "Arc",

@@ -99,3 +99,11 @@ def too_large(tol: ArrayLike | None, points: Floats) -> tuple[str, ...]:
 def narrowed(points: Floats, width: int) -> Floats:
     """Points with the columns that the user's had."""
     return np.ascontiguousarray(points[..., :width])
+
+
+def vector_of(v: ArrayLike) -> list[float]:
+    """The three numbers of a vector."""
+    flat = [float(c) for c in np.asarray(v, np.float64).ravel()]
+    if len(flat) != 3:
+        raise FairingError(f"expected a vector of three numbers, found {len(flat)}")
+    return flat

@@ -3,6 +3,7 @@
 // The name under which the fuzz targets ask for their macro.
 extern crate self as libfuzzer_sys;
 
+#[allow(dead_code, reason = "its `main` is that of the example")]
 #[path = "../../examples/bits.rs"]
 mod bits;
 #[path = "../../examples/derivative.rs"]

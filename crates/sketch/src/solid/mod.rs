@@ -22,7 +22,7 @@ pub mod operation;
 mod outline;
 pub mod place;
 pub(crate) mod ruled_faces;
-mod shapes;
+pub mod shapes;
 pub mod surface;
 mod turn;
 pub mod validity;
@@ -31,7 +31,6 @@ use crate::solid::curve::{CurveFault, CurveKind, SketchCurve, SmoothPiece, Trace
 use crate::solid::mass::{DirectedEdge, Mass, MassIntegrals};
 use crate::{DimensionLayout, FaceId, Planes, PointId, SketchObject};
 use moldloft_num::{Real, Vec3};
-pub use shapes::ShapeFault;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 use surface::FaceSurface;
