@@ -77,6 +77,13 @@ pub enum FieldError {
         /// How many are allowed.
         limit: f64,
     },
+    /// The set changes from solid to air within more cells than can be listed.
+    TooRough {
+        /// In how many places so far.
+        places: usize,
+        /// The side of a cell.
+        step: f64,
+    },
     /// Part of the set is thinner than the cells.
     Thin {
         /// Where.
@@ -173,6 +180,10 @@ impl fmt::Display for FieldError {
             Self::TooFine { boxes, limit } => write!(
                 f,
                 "this accuracy needs about {boxes:.1e} boxes, more than the {limit:.0e} allowed"
+            ),
+            Self::TooRough { places, step } => write!(
+                f,
+                "the set may change from solid to air within more than {places} cells of {step:.3e}"
             ),
             Self::Thin { place, step, depth } => write!(
                 f,

@@ -535,7 +535,7 @@ fn product<'a>(
 /// let mut points: Vec<_> =
 ///     xs.iter().flat_map(|&x| zs.map(|z| Vec3::of(x, 0.2 * x + 0.1 * z, z))).collect();
 /// points[20].y += 0.01;
-/// let at = grid_parameters(&points, [7, 6], [ParameterSpacing::Chord; 2], [false; 2], Motion::Ball).unwrap();
+/// let at = grid_parameters(&points, [7, 6], [ParameterSpacing::Chord; 2], [false; 2], (Motion::Ball, &[])).unwrap();
 /// let data = GridData {
 ///     limit: Limit::ball(points.len(), 0.02).unwrap(),
 ///     layouts: at.map(|at| InterpolationSpace::new(3, &at, &[], false).unwrap()),

@@ -21,6 +21,9 @@ pub(super) struct Divided {
 /// Bytes that a block with the surface takes until its triangles are a mesh: 60 000 were measured for spheres.
 const BYTES: u64 = 60_000;
 
+/// Cells, or parts of them, that are listed as open at most.
+const MOST_OPEN: usize = 500_000;
+
 struct Division<'a> {
     grid: &'a Grid,
     leaves: &'a [Leaf],
@@ -28,6 +31,7 @@ struct Division<'a> {
     reuse: Option<&'a Reuse<'a>>,
     computed: AtomicUsize,
     active: AtomicUsize,
+    open: AtomicUsize,
 }
 
 /// Divides the grid wherever the range of the set contains zero, and computes the blocks there.
@@ -40,8 +44,8 @@ pub(super) fn divide(
 ) -> Result<Divided, FieldError> {
     let blocks = grid.cells.map(|n| n / SIDE);
     let size = blocks.into_iter().max().unwrap_or(1).next_power_of_two();
-    let (computed, active) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let division = Division { grid, leaves, options, reuse, computed, active };
+    let [computed, active, open] = [0; 3].map(AtomicUsize::new);
+    let division = Division { grid, leaves, options, reuse, computed, active, open };
     let mut out = Vec::new();
     // Leaves of the division in the order of the tree; the first levels alone, then in parallel.
     let mut front = vec![([0usize; 3], size, tape.clone())];
@@ -126,6 +130,10 @@ impl Division<'_> {
         let active = self.active.fetch_add(block.active, Ordering::Relaxed) + block.active;
         if active as f64 > self.options.limit {
             return Err(FieldError::TooFine { boxes: active as f64, limit: self.options.limit });
+        }
+        let places = block.unresolved.len();
+        if self.open.fetch_add(places, Ordering::Relaxed) + places > MOST_OPEN {
+            return Err(FieldError::TooRough { places: MOST_OPEN, step: self.grid.step });
         }
         Ok(Some((tape, Arc::new(block))))
     }

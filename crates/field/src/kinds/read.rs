@@ -132,7 +132,7 @@ pub fn fault(error: &FieldError) -> CallError {
         FieldError::RailSingular { .. } => "rail-singular",
         FieldError::EmptyBox { .. } => "empty-box",
         FieldError::Unbounded { .. } => "unbounded-set",
-        FieldError::TooFine { .. } => "too-fine",
+        FieldError::TooFine { .. } | FieldError::TooRough { .. } => "too-fine",
         FieldError::ThinBox { .. } => "thin-box",
         FieldError::Thin { .. } => "thin-part",
         FieldError::NotReached { .. } => "accuracy-not-reached",
@@ -164,6 +164,7 @@ pub fn fault(error: &FieldError) -> CallError {
             fault.expected("a box: {low corner}, {high corner}").help("or cut it with planes")
         }
         FieldError::TooFine { .. } => fault.help("use a coarser accuracy, or a smaller box"),
+        FieldError::TooRough { .. } => fault.help("use a set without such waves, or a smaller box"),
         FieldError::ThinBox { depth, .. } => {
             fault.expected(format!("a depth of {depth} or more, or a thicker box"))
         }

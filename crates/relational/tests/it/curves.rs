@@ -362,7 +362,7 @@ fn each_fault_of_the_new_kinds_has_its_id_and_its_place() {
         ("NURBCurve f({A, B, C}, 2, weights = {1, 0, 1});", "no-spline", 3, Some(1)),
         ("NURBCurve f({A, B, C}, 2, weights = {1, 1});", "no-spline", 3, None),
         ("FoilCurve f({A, D, B}, \"68\");", "unknown-name", 1, None),
-        ("FoilCurve f({A, D, B}, 13);", "unknown-name", 1, None),
+        ("FoilCurve f({A, D, B}, 14);", "unknown-name", 1, None),
         ("FoilCurve f({A, D, B}, mean = \"260\");", "unknown-name", 2, None),
         ("FoilCurve f({A, D, B}, camber_at = 1.5);", "out-of-range", 3, None),
         ("FoilCurve f({A, D, B}, \"63\", load = 1.5);", "out-of-range", 4, None),

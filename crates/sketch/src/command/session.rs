@@ -171,6 +171,12 @@ impl Worked {
     }
 }
 
+/// The state before a run of edits that count as one.
+pub(super) struct Transaction {
+    pub(super) before: SessionState,
+    pub(super) journal: usize,
+}
+
 /// Runs commands on objects.
 ///
 /// ```
@@ -204,7 +210,7 @@ pub struct SketchSession {
     /// Replies of the command that is running.
     pub(crate) out: Vec<CommandReply>,
     /// A run of edits that count as one.
-    pub(super) transaction: Option<super::typed::Transaction>,
+    pub(super) transaction: Option<Transaction>,
 }
 
 /// Commands that only look: an open question stays open.

@@ -3,7 +3,7 @@
 
 use super::CommandError;
 use super::info::suggestions;
-use super::session::{CommandReply, SessionState, SketchSession};
+use super::session::{CommandReply, SessionState, SketchSession, Transaction};
 use super::solids::face_of;
 use crate::{
     CoordinateAxis, DimensionExpr, FaceId, Free, LineId, MeasuredQuantity, PointId, SketchObject,
@@ -164,12 +164,6 @@ pub struct CommandReport {
     pub replies: Vec<CommandReply>,
     /// What changed, by object.
     pub changes: Vec<ObjectChange>,
-}
-
-/// The state before a run of edits that count as one.
-pub(super) struct Transaction {
-    before: SessionState,
-    journal: usize,
 }
 
 impl SketchSession {
