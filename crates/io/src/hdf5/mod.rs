@@ -4,6 +4,9 @@
 //! compactly, in one piece or in chunks. Compressed numbers, committed types and links into other files are refused by
 //! name. No address or count of a file is trusted: each read stays inside of the bytes, walks are bounded.
 //!
+//! Own code, though a library reads all of HDF5: that one takes 49 s of processor time to compile, and would be
+//! in the engine of each page; CGNS needs a small part of it.
+//!
 //! `bytes -> Hdf5File -> Group (address of an object header) -> children, texts, numbers`
 
 mod bytes;
