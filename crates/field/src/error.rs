@@ -77,10 +77,10 @@ pub enum FieldError {
         /// How many are allowed.
         limit: f64,
     },
-    /// The set changes from solid to air within more cells than can be listed.
+    /// Nearly all cells of large parts of the box hold the surface: the set has waves smaller than they are.
     TooRough {
-        /// In how many places so far.
-        places: usize,
+        /// How many such cells there are so far.
+        cells: usize,
         /// The side of a cell.
         step: f64,
     },
@@ -181,9 +181,9 @@ impl fmt::Display for FieldError {
                 f,
                 "this accuracy needs about {boxes:.1e} boxes, more than the {limit:.0e} allowed"
             ),
-            Self::TooRough { places, step } => write!(
+            Self::TooRough { cells, step } => write!(
                 f,
-                "the set may change from solid to air within more than {places} cells of {step:.3e}"
+                "the surface is in nearly all of {cells} cells of {step:.3e}: the set has waves smaller than they are"
             ),
             Self::Thin { place, step, depth } => write!(
                 f,

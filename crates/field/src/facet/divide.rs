@@ -21,8 +21,11 @@ pub(super) struct Divided {
 /// Bytes that a block with the surface takes until its triangles are a mesh: 60 000 were measured for spheres.
 const BYTES: u64 = 60_000;
 
-/// Cells, or parts of them, that are listed as open at most.
-const MOST_OPEN: usize = 500_000;
+/// A block is rough when the surface is in more than this part of its cells; so many blocks are a set with waves smaller than
+/// the cells, of which triangles show nothing.
+const ROUGH: f64 = 0.75;
+const CELLS: usize = SIDE * SIDE * SIDE;
+const MOST_ROUGH: usize = 1000;
 
 struct Division<'a> {
     grid: &'a Grid,
@@ -31,7 +34,7 @@ struct Division<'a> {
     reuse: Option<&'a Reuse<'a>>,
     computed: AtomicUsize,
     active: AtomicUsize,
-    open: AtomicUsize,
+    rough: AtomicUsize,
 }
 
 /// Divides the grid wherever the range of the set contains zero, and computes the blocks there.
@@ -44,8 +47,8 @@ pub(super) fn divide(
 ) -> Result<Divided, FieldError> {
     let blocks = grid.cells.map(|n| n / SIDE);
     let size = blocks.into_iter().max().unwrap_or(1).next_power_of_two();
-    let [computed, active, open] = [0; 3].map(AtomicUsize::new);
-    let division = Division { grid, leaves, options, reuse, computed, active, open };
+    let [computed, active, rough] = [0; 3].map(AtomicUsize::new);
+    let division = Division { grid, leaves, options, reuse, computed, active, rough };
     let mut out = Vec::new();
     // Leaves of the division in the order of the tree; the first levels alone, then in parallel.
     let mut front = vec![([0usize; 3], size, tape.clone())];
@@ -124,6 +127,10 @@ impl Division<'_> {
         if let Some(old) = self.reuse.and_then(|reuse| reuse.get(at, &tape)) {
             return Ok(Some((tape, old)));
         }
+        // What is refused ends the work on all threads.
+        if self.rough.load(Ordering::Relaxed) > MOST_ROUGH {
+            return Err(self.too_rough());
+        }
         self.computed.fetch_add(1, Ordering::Relaxed);
         let block = compute(self.grid, at, &tape, self.leaves, scratch)
             .map_err(|at| FieldError::NoValue { at })?;
@@ -131,10 +138,15 @@ impl Division<'_> {
         if active as f64 > self.options.limit {
             return Err(FieldError::TooFine { boxes: active as f64, limit: self.options.limit });
         }
-        let places = block.unresolved.len();
-        if self.open.fetch_add(places, Ordering::Relaxed) + places > MOST_OPEN {
-            return Err(FieldError::TooRough { places: MOST_OPEN, step: self.grid.step });
+        if block.active as f64 > ROUGH * CELLS as f64
+            && self.rough.fetch_add(1, Ordering::Relaxed) >= MOST_ROUGH
+        {
+            return Err(self.too_rough());
         }
         Ok(Some((tape, Arc::new(block))))
+    }
+
+    fn too_rough(&self) -> FieldError {
+        FieldError::TooRough { cells: CELLS * MOST_ROUGH, step: self.grid.step }
     }
 }
