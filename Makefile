@@ -17,7 +17,6 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # What a package that is not there yet is built with.
 PROFILE ?= dev
 optimised: PROFILE = release
-BUILT = $${CARGO_TARGET_DIR:-target}/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))
 
 SOURCES := pyproject.toml Cargo.toml $(shell find crates -name '*.rs' -o -name Cargo.toml -o -name '*.sdl')
 
@@ -68,9 +67,6 @@ $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
 	@echo "installing the packages that the tests need into $(VENV)"
 	@$(BIN)/python -c "$$TEST_PACKAGES" > $(VENV)/test-packages.txt
 	@$(PIP) install --requirement $(VENV)/test-packages.txt
-	@echo "building the language server"
-	@cargo build --quiet --profile $(PROFILE) -p moldloft-lsp
-	@cp $(BUILT)/moldloft-lsp$(EXE) $(BIN)/
 	@touch $@
 
 web: $(PAGE) ## the page of the workbench; needs Node.js

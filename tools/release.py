@@ -1,7 +1,7 @@
 """Builds what is released: ``python tools/release.py [STEP ...]``, by default all of them in turn.
 
 ``engine`` the engine for pages that compute by themselves (if the target for WebAssembly is there)
-``wheel``  the page (if npm is there), the language server, and the wheel with all three inside
+``wheel``  the page (if npm is there), and the wheel with engine, page and language server inside
 ``editor`` the extension for Visual Studio Code of this platform, with the language server inside
 ``sdist``  the source distribution, the notices of bundled software and the bill of materials
 ``papers`` the notices and the bill of materials alone, as packages for conda need them
@@ -240,22 +240,19 @@ def page(npm: str) -> None:
 
 
 def wheel() -> None:
-    """The wheel with the page, the engine, the language server and the notices inside."""
+    """The wheel with page, engine and notices; the extension is the language server as well."""
     npm = shutil.which("npm")
     if npm:
         page(npm)
     else:
         print("npm is not there: the wheel will have no workbench page")
-    package = ROOT / "python" / "moldloft"
-    inside = package / "bin"
-    inside.mkdir(exist_ok=True)
+    inside = ROOT / "python" / "moldloft" / "NOTICES.txt"
     write_papers()
     try:
-        shutil.copy2(server(), inside)
         shutil.copy2(DIST / "NOTICES.txt", inside)
         run(*maturin(), "build", "--profile", PROFILE, "--locked", "--out", DIST)
     finally:
-        shutil.rmtree(inside)
+        inside.unlink()
     for path in sorted(DIST.glob("*.whl")):
         print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
 
@@ -361,9 +358,8 @@ def smoke() -> None:
     newest = max(wheels, key=lambda path: path.stat().st_mtime)
     with zipfile.ZipFile(newest) as archive:
         names = archive.namelist()
-    for wanted in (f"moldloft/bin/moldloft-lsp{EXE}", "moldloft/bin/NOTICES.txt"):
-        if wanted not in names:
-            raise SystemExit(f"{newest.name} lacks {wanted}")
+    if "moldloft/NOTICES.txt" not in names:
+        raise SystemExit(f"{newest.name} lacks the notices of what is bundled")
     page = "moldloft/workbench/page/index.html" in names
     print(f"{newest.name}: workbench page {'inside' if page else 'not inside'}")
     with tempfile.TemporaryDirectory() as folder:
@@ -382,8 +378,8 @@ def smoke() -> None:
         run(command, "--version", cwd=home, env=clean)
         run(command, "new", "boat", cwd=home, env=clean)
         run(command, "build", "boat.sdl", "--to", "gdf", "stl", "step", "png", cwd=home, env=clean)
-        run(command, "lsp", "--where", cwd=home, env=clean)
-        _server_answers(command, home, clean)
+        for words in ([command, "lsp"], [scripts / f"moldloft-lsp{EXE}"]):
+            _server_answers(words, home, clean)
         run(python, "-c", _USE, cwd=home, env=clean)
         run(python, "-m", "pip", "install", "--quiet", f"{newest}[view]")
         _workbench_answers(command, home, clean, page)
@@ -434,7 +430,7 @@ def _workbench_answers(command: Path, home: Path, clean: dict[str, str], page: b
         process.wait(30)
 
 
-def _server_answers(command: Path, home: Path, clean: dict[str, str]) -> None:
+def _server_answers(words: list[str | Path], home: Path, clean: dict[str, str]) -> None:
     """Asks the language server to begin and to end."""
     messages = [
         {"id": 1, "method": "initialize", "params": {"capabilities": {}}},
@@ -447,7 +443,12 @@ def _server_answers(command: Path, home: Path, clean: dict[str, str]) -> None:
         body = json.dumps({"jsonrpc": "2.0", **message}).encode()
         data += b"Content-Length: %d\r\n\r\n%s" % (len(body), body)
     done = subprocess.run(
-        [str(command), "lsp"], input=data, capture_output=True, cwd=home, env=clean, timeout=60
+        [str(word) for word in words],
+        input=data,
+        capture_output=True,
+        cwd=home,
+        env=clean,
+        timeout=60,
     )
     if b'"capabilities"' not in done.stdout:
         raise SystemExit(f"the language server does not answer: {done.stderr.decode()}")

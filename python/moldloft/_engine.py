@@ -1,4 +1,8 @@
-"""The engine process of the workbench: a model runs here, within limits, and can be ended."""
+"""The processes that run models for others: within limits, and ended without loss.
+
+The workbench and the language server start one with :func:`command` and speak to it by its standard
+input and output.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +10,31 @@ import sys
 
 from moldloft import _core
 
-__all__ = ["main"]
+__all__ = ["command", "main"]
+
+#: Runs :func:`main`. Python looks for modules in the working directory first, which may be a
+#: stranger's: that place is taken away before anything is imported.
+_START = """\
+import sys
+if sys.path[:1] == [""]:
+    del sys.path[0]
+from moldloft._engine import main
+main()
+"""
+
+
+def command(*arguments: str) -> list[str]:
+    """The command that starts such a process."""
+    return [sys.executable, "-c", _START, *arguments]
 
 
 def main() -> None:
-    """Answers the parent until it goes: ``_engine MEMORY NAME FOLDER [LIBRARY ...]``."""
-    memory, name, folder, *library = sys.argv[1:]
+    """Answers the parent until it goes.
+
+    The arguments are ``language``, or ``model MEMORY NAME FOLDER [LIBRARY ...]``.
+    """
+    work, *arguments = sys.argv[1:]
+    if work == "language":
+        sys.exit(0 if _core.language_engine() else 1)
+    memory, name, folder, *library = arguments
     _core.engine(int(memory), name, folder or None, library)
-
-
-if __name__ == "__main__":
-    main()

@@ -3,7 +3,6 @@
 use crate::answers::capabilities;
 use crate::server::{Event, Server, folders_of};
 use lsp_server::{Connection, ErrorCode, Message, Response};
-use moldloft::budget::Limits;
 use serde_json::json;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -13,30 +12,16 @@ use std::time::Instant;
 /// The most memory that the engine takes for the texts that are open.
 const MEMORY: u64 = 2 << 30;
 
-/// Serves until the connection ends.
+/// Confines this process and serves until the connection ends.
 pub fn run() -> ExitCode {
     let memory = moldloft::budget::usual_memory().min(MEMORY);
-    moldloft::budget::set_limits(Limits { memory, ..Limits::USUAL });
-    limit(memory);
+    moldloft::budget::confine(memory);
     let (connection, threads) = Connection::stdio();
     let orderly = serve(&connection);
     drop(connection);
     let flushed = threads.join().is_ok();
     if orderly && flushed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
-
-/// Beyond the budget, which counts what the program holds, the system refuses memory to this process.
-#[cfg(unix)]
-fn limit(memory: u64) {
-    /// Code, stacks of threads and what allocators keep.
-    const OWN: u64 = 2 << 30;
-    // Where a limit cannot be set, the budget alone holds.
-    let _ = rlimit::setrlimit(rlimit::Resource::AS, memory + OWN, memory + OWN);
-    let _ = rlimit::setrlimit(rlimit::Resource::CORE, 0, 0);
-}
-
-#[cfg(not(unix))]
-fn limit(_: u64) {}
 
 /// True when the editor said goodbye as the protocol asks.
 fn serve(connection: &Connection) -> bool {

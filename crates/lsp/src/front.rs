@@ -10,7 +10,9 @@ use lsp_types::notification::{self as note, Notification as _};
 use lsp_types::{DidChangeTextDocumentParams, DidOpenTextDocumentParams, TextDocumentItem};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, HashSet};
+use std::ffi::OsString;
 use std::io::{BufReader, BufWriter, Write};
+use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
 use std::sync::mpsc::{self, Sender};
 
@@ -28,6 +30,15 @@ enum FrontEvent {
     EngineGone(u32),
 }
 
+/// What starts an engine: a program that calls [`crate::engine`](crate::engine()).
+#[derive(Clone, Debug)]
+pub struct EngineCommand {
+    /// The program.
+    pub program: PathBuf,
+    /// What it is given.
+    pub arguments: Vec<OsString>,
+}
+
 /// The engine that is running.
 struct EngineProcess {
     number: u32,
@@ -36,15 +47,23 @@ struct EngineProcess {
 }
 
 impl EngineProcess {
-    fn start(number: u32, events: &Sender<FrontEvent>) -> std::io::Result<Self> {
-        let mut child = Command::new(std::env::current_exe()?)
-            .arg("--engine")
+    fn start(
+        number: u32,
+        command: &EngineCommand,
+        events: &Sender<FrontEvent>,
+    ) -> std::io::Result<Self> {
+        let mut child = Command::new(&command.program)
+            .args(&command.arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
             .spawn()?;
         let taken = "a pipe was asked for";
         let input = BufWriter::new(child.stdin.take().expect(taken));
         let mut output = BufReader::new(child.stdout.take().expect(taken));
+        // The engine may not write files, which standard error may be.
+        let mut errors = child.stderr.take().expect(taken);
+        std::thread::spawn(move || std::io::copy(&mut errors, &mut std::io::stderr()));
         let events = events.clone();
         std::thread::spawn(move || {
             while let Ok(Some(message)) = Message::read(&mut output) {
@@ -77,6 +96,7 @@ impl EngineProcess {
 struct EditorFront<'c> {
     editor: &'c Connection,
     engine: EngineProcess,
+    command: EngineCommand,
     events: Sender<FrontEvent>,
     begin: Option<Request>,
     begun: bool,
@@ -92,8 +112,8 @@ struct EditorFront<'c> {
     leaving: bool,
 }
 
-/// Serves until the editor has gone.
-pub fn run() -> ExitCode {
+/// Serves until the editor has gone; a success when it said goodbye as the protocol asks.
+pub fn run(command: EngineCommand) -> ExitCode {
     let (connection, threads) = Connection::stdio();
     let (events, received) = mpsc::channel();
     let (messages, incoming) = (events.clone(), connection.receiver.clone());
@@ -105,7 +125,7 @@ pub fn run() -> ExitCode {
         }
         let _ = messages.send(FrontEvent::EditorGone);
     });
-    let engine = match EngineProcess::start(0, &events) {
+    let engine = match EngineProcess::start(0, &command, &events) {
         Ok(engine) => engine,
         Err(error) => {
             eprintln!("error: the engine cannot be started: {error}");
@@ -115,6 +135,7 @@ pub fn run() -> ExitCode {
     let mut front = EditorFront {
         editor: &connection,
         engine,
+        command,
         events,
         begin: None,
         begun: false,
@@ -241,7 +262,7 @@ impl EditorFront<'_> {
     /// Starts another engine in place of the one that ended; false when that makes no sense.
     fn begin_again(&mut self) -> bool {
         self.ends += 1;
-        let started = EngineProcess::start(self.engine.number + 1, &self.events);
+        let started = EngineProcess::start(self.engine.number + 1, &self.command, &self.events);
         let Ok(engine) = started else {
             eprintln!("error: the engine ended and another cannot be started");
             return false;

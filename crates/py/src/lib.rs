@@ -19,6 +19,7 @@ mod foreign;
 mod formats;
 mod grids;
 mod implicit;
+mod language_server;
 mod limits;
 mod mesh;
 mod nurbs;
@@ -65,6 +66,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::implicit::{PyFacets, PyField, PySet};
+    #[pymodule_export]
+    use crate::language_server::{language_engine, language_server};
     #[pymodule_export]
     use crate::limits::{held_memory, limits, set_limits};
     #[pymodule_export]

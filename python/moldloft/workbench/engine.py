@@ -6,8 +6,9 @@ import asyncio
 import contextlib
 import os
 import struct
-import sys
 from collections.abc import Sequence
+
+from moldloft._engine import command
 
 __all__ = ["Engine", "EngineLostError"]
 
@@ -58,10 +59,7 @@ class Engine:
         """A new process with that text; one that was there is ended."""
         await self.end()
         self._process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-m",
-            "moldloft._engine",
-            *self._arguments,
+            *command("model", *self._arguments),
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.DEVNULL,
