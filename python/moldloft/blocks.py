@@ -273,7 +273,8 @@ class Blocks:
         return [Output(name, data) for name, data in self._core.write(row.name, path.name)]
 
     def __repr__(self) -> str:
-        return f"<Blocks: {len(self)} blocks, {self.cells} cells>"
+        blocks = "1 block" if len(self) == 1 else f"{len(self)} blocks"
+        return f"<Blocks: {blocks}, {self.cells} cells>"
 
 
 def _side(

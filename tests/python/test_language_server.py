@@ -89,6 +89,18 @@ def test_an_editor_is_served(program: str, tmp_path: Path) -> None:
     assert client.ended() == (0, b"")
 
 
+def test_an_editor_that_says_all_in_one_breath_is_answered(tmp_path: Path) -> None:
+    client = Client([str(SCRIPTS / "moldloft"), "lsp"], tmp_path)
+    client.send("initialize", {"capabilities": {}}, id="a")
+    client.send("initialized", {})
+    client.send("shutdown", None, id="b")
+    client.send("exit", None)
+    assert client.process.stdin is not None
+    client.process.stdin.close()
+    assert [client.receive()["id"] for _ in range(2)] == ["a", "b"]
+    assert client.ended() == (0, b"")
+
+
 def test_an_editor_that_goes_without_goodbye_is_a_failure(tmp_path: Path) -> None:
     client = Client([str(SCRIPTS / "moldloft"), "lsp"], tmp_path)
     client.ask("initialize", {"capabilities": {}})

@@ -15,12 +15,16 @@ use std::io::{BufReader, BufWriter, Write};
 use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
 use std::sync::mpsc::{self, Sender};
+use std::time::{Duration, Instant};
 
 /// The id of the request that begins another engine; the editor does not see it.
 const BEGIN_AGAIN: &str = "moldloft-begin-again";
 
 /// Ends of engines without a message of the editor between them, after which no other is started.
 const MOST_ENDS: u32 = 5;
+
+/// How long answers are waited for that were asked for before the goodbye.
+const EXIT_TIMEOUT: Duration = Duration::from_secs(10);
 
 enum FrontEvent {
     Editor(Message),
@@ -149,7 +153,7 @@ pub fn run(command: EngineCommand) -> ExitCode {
     let mut orderly = false;
     // The reader of the editor's messages ends with their end or with `exit`.
     let mut read_out = true;
-    for event in received {
+    for event in &received {
         match event {
             FrontEvent::Editor(message) => {
                 if let Message::Notification(notice) = &message
@@ -172,6 +176,18 @@ pub fn run(command: EngineCommand) -> ExitCode {
             // The editor has gone without a word.
             FrontEvent::EditorGone => break,
             FrontEvent::Engine(..) | FrontEvent::EngineGone(_) => {}
+        }
+    }
+    // An editor that said goodbye in one breath still gets the answers that it asked for.
+    let deadline = Instant::now() + EXIT_TIMEOUT;
+    while orderly && !front.pending.is_empty() {
+        match received.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+            Ok(FrontEvent::Engine(number, message)) if number == front.engine.number => {
+                front.take_engines(message);
+            }
+            Ok(FrontEvent::EngineGone(number)) if number == front.engine.number => break,
+            Ok(_) => {}
+            Err(_) => break,
         }
     }
     front.engine.ended();
