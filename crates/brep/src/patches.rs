@@ -8,6 +8,7 @@
 use crate::labelled::extent;
 use crate::patch::{FittedPatch, PatchBasis, SurfaceField};
 use crate::seams::{FacetNet, ordered};
+use crate::untangle::forget;
 use crate::{
     Brep, BrepEdge, BrepFace, Coedge, FacetFault, FacetFaultKind, LabelledFacets, SurfaceShape,
 };
@@ -17,7 +18,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
 /// Most triangles that a body is divided into.
-const MOST: usize = 16_000;
+const MOST: usize = 48_000;
 
 /// How often sides are halved.
 const ROUNDS: usize = 16;
@@ -55,10 +56,10 @@ impl Brep {
 /// A patch by its corners; of a triangle the first one twice.
 type Corners = [u32; 4];
 
-struct PatchedBody<'a> {
-    net: FacetNet,
-    facets: LabelledFacets,
-    field: &'a SurfaceField<'a>,
+pub struct PatchedBody<'a> {
+    pub net: FacetNet,
+    pub facets: LabelledFacets,
+    pub field: &'a SurfaceField<'a>,
     basis: PatchBasis,
     accuracy: f64,
     size: f64,
@@ -85,7 +86,9 @@ impl<'a> PatchedBody<'a> {
         let basis = PatchBasis::new(degree);
         let mut body =
             Self { net, facets, field, basis, accuracy, size, sides: FxHashMap::default() };
+        body.absorb_pieces();
         body.place_vertices()?;
+        body.untangle();
         Ok(body)
     }
 
@@ -127,8 +130,10 @@ impl<'a> PatchedBody<'a> {
     }
 
     /// The point near another that is on all these surfaces within the accuracy.
-    fn foot(&self, labels: &[u32], start: Vec3, reach: f64) -> Option<Vec3> {
+    pub fn foot(&self, labels: &[u32], start: Vec3, reach: f64) -> Option<Vec3> {
         const STEPS: usize = 80;
+        const NEAR_ENOUGH: f64 = 0.1;
+        const ACROSS: usize = 3;
         let off = |p: Vec3| {
             labels.iter().map(move |&l| {
                 let (f, slope) = (self.field)(l, p);
@@ -148,9 +153,17 @@ impl<'a> PatchedBody<'a> {
         };
         let mut p = start;
         let mut best = (worst(start), start);
-        for _ in 0..STEPS {
+        for k in 0..STEPS {
             let rows: Vec<(f64, Vec3)> = off(p).collect();
-            let mut step = nearest_step(&rows);
+            // Surfaces that touch are one within the accuracy in a whole strip: the nearest place of it will do, and
+            // others may be on another branch of their intersection.
+            let touching = touch(&rows);
+            if touching && best.0 <= NEAR_ENOUGH * self.accuracy {
+                break;
+            }
+            let across =
+                rows.iter().fold(Vec3::zero(), |s, (d, n)| s + *n * *d) / rows.len() as f64;
+            let mut step = if touching && k < ACROSS { across } else { nearest_step(&rows) };
             if !step.is_finite() {
                 break;
             }
@@ -397,6 +410,16 @@ impl<'a> PatchedBody<'a> {
             if round >= SMOOTH_AFTER && halved.len() > MANY.max(4 * fewest) {
                 break;
             }
+            // What is left over after some rounds may be triangles that turned over.
+            if round >= SMOOTH_AFTER
+                && let Some(moved) = self.untangle()
+            {
+                forget(&mut self.sides, &moved);
+                known.retain(|corners, _| corners.iter().all(|v| !moved.contains(v)));
+                apart.retain(|corners| corners.iter().all(|v| !moved.contains(v)));
+                last = None;
+                continue;
+            }
             before = self.net.triangles.len();
             self.halve(halved)?;
             if self.net.triangles.len() > MOST {
@@ -617,6 +640,13 @@ impl<'a> PatchedBody<'a> {
         }
         cycle
     }
+}
+
+/// Whether two of the planes are nearly parallel.
+fn touch(rows: &[(f64, Vec3)]) -> bool {
+    const SINE: f64 = 0.2;
+    let near = |(a, b): (&Vec3, &Vec3)| a.cross(*b).norm() < SINE;
+    (0..rows.len()).any(|i| (0..i).any(|j| near((&rows[i].1, &rows[j].1))))
 }
 
 /// The least step that takes a point onto planes at these distances along these normals, or nearly so where two of them
