@@ -14,6 +14,7 @@ use crate::{
 };
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
+use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
@@ -119,12 +120,16 @@ impl<'a> PatchedBody<'a> {
                 }
             }
         }
-        for (v, own) in labels.iter().enumerate() {
+        let reach = 2.0 * self.facets.step;
+        let placed: Vec<Option<Vec3>> = labels
+            .par_iter()
+            .zip(&self.net.positions)
+            .map(|(own, start)| self.foot(own, *start, reach))
+            .collect();
+        for (v, place) in placed.into_iter().enumerate() {
             let start = self.net.positions[v];
-            match self.foot(own, start, 2.0 * self.facets.step) {
-                Some(p) => self.net.positions[v] = p,
-                None => return Err(self.fault(FacetFaultKind::Vertex, own, start)),
-            }
+            self.net.positions[v] =
+                place.ok_or_else(|| self.fault(FacetFaultKind::Vertex, &labels[v], start))?;
         }
         Ok(())
     }
@@ -200,13 +205,9 @@ impl<'a> PatchedBody<'a> {
         [(a, b), (b, a)].iter().all(|s| self.plane(self.net.across[s] as usize).is_some())
     }
 
-    /// Makes the curve of a side, if it is not known.
-    fn make_side(&mut self, a: u32, b: u32) -> Result<(), FacetFault> {
-        let key = ordered(a, b);
-        if self.sides.contains_key(&key) {
-            return Ok(());
-        }
-        let [p, q] = [key.0, key.1].map(|v| self.net.positions[v as usize]);
+    /// The curve of a side, from its lower vertex.
+    fn side_curve(&self, (a, b): (u32, u32)) -> Result<Vec<Vec3>, FacetFault> {
+        let [p, q] = [a, b].map(|v| self.net.positions[v as usize]);
         let labels = self.both(a, b);
         let straight = self.straight(a, b);
         let last = self.basis.degree;
@@ -224,9 +225,44 @@ impl<'a> PatchedBody<'a> {
             };
             through.push(place);
         }
-        let net = self.basis.curve(&through);
-        self.sides.insert(key, net);
+        Ok(self.basis.curve(&through))
+    }
+
+    /// Makes the curve of a side, if it is not known.
+    fn make_side(&mut self, a: u32, b: u32) -> Result<(), FacetFault> {
+        let key = ordered(a, b);
+        if !self.sides.contains_key(&key) {
+            let net = self.side_curve(key)?;
+            self.sides.insert(key, net);
+        }
         Ok(())
+    }
+
+    /// Makes these patches and their sides, side by side; none where a side fails.
+    fn make_patches(&mut self, which: &[(Corners, u32)]) -> Vec<Result<FittedPatch, FacetFault>> {
+        let around = |[a, b, c, d]: Corners| [(a, b), (b, c), (c, d), (d, a)];
+        let mut keys: Vec<(u32, u32)> = which
+            .iter()
+            .flat_map(|(corners, _)| around(*corners))
+            .filter(|(a, b)| a != b)
+            .map(|(a, b)| ordered(a, b))
+            .filter(|key| !self.sides.contains_key(key))
+            .collect();
+        keys.sort_unstable();
+        keys.dedup();
+        let made: Vec<_> = keys.par_iter().map(|key| self.side_curve(*key)).collect();
+        let mut faults: FxHashMap<(u32, u32), FacetFault> = FxHashMap::default();
+        for (key, side) in keys.into_iter().zip(made) {
+            match side {
+                Ok(net) => drop(self.sides.insert(key, net)),
+                Err(fault) => drop(faults.insert(key, fault)),
+            }
+        }
+        let patch = |(corners, label): &(Corners, u32)| {
+            let fault = around(*corners).into_iter().find_map(|(a, b)| faults.get(&ordered(a, b)));
+            fault.map_or_else(|| Ok(self.patch(*corners, *label)), |fault| Err(fault.clone()))
+        };
+        which.par_iter().map(patch).collect()
     }
 
     /// The control points of a side from one vertex to the other.
@@ -304,13 +340,9 @@ impl<'a> PatchedBody<'a> {
         [t[i], t[i], t[(i + 1) % 3], t[(i + 2) % 3]]
     }
 
-    fn patch(&mut self, corners: Corners, label: u32) -> Result<FittedPatch, FacetFault> {
+    /// The patch between sides that are made.
+    fn patch(&self, corners: Corners, label: u32) -> FittedPatch {
         let [a, b, c, d] = corners;
-        for (u, v) in [(a, b), (b, c), (c, d), (d, a)] {
-            if u != v {
-                self.make_side(u, v)?;
-            }
-        }
         let [low, right, high, left] =
             [self.side(a, b), self.side(b, c), self.side(d, c), self.side(a, d)];
         let n = self.basis.degree;
@@ -355,7 +387,7 @@ impl<'a> PatchedBody<'a> {
         let (_, slope) = (self.field)(label, self.basis.middle(&net));
         let sign = if out.dot(slope) < 0.0 { -1.0 } else { 1.0 };
         let folded = self.basis.folds(&net, label, sign, self.field);
-        Ok(FittedPatch { net, error, folded })
+        FittedPatch { net, error, folded }
     }
 
     /// Patches that are near enough, with sides halved until they are.
@@ -368,19 +400,21 @@ impl<'a> PatchedBody<'a> {
             let all = self.pairs(&apart);
             let mut halved: Vec<(f64, (u32, u32))> = Vec::new();
             let mut before = apart.len();
+            let new: Vec<(Corners, u32)> = all
+                .iter()
+                .filter(|(corners, _)| !known.contains_key(corners))
+                .map(|(corners, k)| (*corners, self.net.labels[*k as usize]))
+                .collect();
+            for ((corners, _), patch) in new.iter().zip(self.make_patches(&new)) {
+                let patch = patch.unwrap_or_else(|fault| {
+                    last = Some(fault);
+                    FittedPatch { net: Vec::new(), error: f64::INFINITY, folded: false }
+                });
+                known.insert(*corners, patch);
+            }
             for (corners, triangle) in &all {
                 let label = self.net.labels[*triangle as usize];
-                let patch = match known.get(corners) {
-                    Some(patch) => patch.clone(),
-                    None => match self.patch(*corners, label) {
-                        Ok(patch) => patch,
-                        Err(fault) => {
-                            last = Some(fault);
-                            let (net, error) = (Vec::new(), f64::INFINITY);
-                            FittedPatch { net, error, folded: false }
-                        }
-                    },
-                };
+                let patch = &known[corners];
                 let near = patch.error <= self.accuracy;
                 let quadrilateral = corners[0] != corners[1];
                 if near && patch.folded && quadrilateral {
@@ -397,7 +431,6 @@ impl<'a> PatchedBody<'a> {
                     }
                     halved.push((long, side));
                 }
-                known.insert(*corners, patch);
             }
             if halved.is_empty() && before == apart.len() {
                 return Ok(all

@@ -21,6 +21,10 @@ const PASSES: usize = 8;
 const PIECE: f64 = 0.3;
 const NEAR: f64 = 0.02;
 
+/// Surfaces of which the normals differ by a smaller sine touch; their border turns by less than this cosine.
+const TOUCHING: f64 = 0.2;
+const STRAIGHT: f64 = 0.75;
+
 /// What mends a triangle.
 #[derive(Clone, Copy)]
 enum Mend {
@@ -135,6 +139,12 @@ impl PatchedBody<'_> {
                     mended = true;
                 }
             }
+            for v in 0..tangle.around.len() as u32 {
+                if let Some(mend) = self.straighten(&tangle, v) {
+                    self.apply(&mut tangle, mend);
+                    mended = true;
+                }
+            }
             changed |= mended;
             if !mended {
                 break;
@@ -227,6 +237,47 @@ impl PatchedBody<'_> {
             }
         }
         Some((before, after))
+    }
+
+    /// What takes a sharp turn out of a border of two surfaces that touch: there its vertex is on another line that
+    /// both have in common.
+    fn straighten(&self, tangle: &Tangle, v: u32) -> Option<Mend> {
+        let labels = tangle.labels_of(v);
+        let at = |v: u32| self.net.positions[v as usize];
+        let &[one, other] = &labels[..] else { return None };
+        let slope = |label: u32| (self.field)(label, at(v)).1.normalized().unwrap_or_default();
+        if slope(one).cross(slope(other)).norm() > TOUCHING {
+            return None;
+        }
+        let &[before, after] = &tangle.border_neighbours(v)[..] else { return None };
+        let turn = |p: Vec3| {
+            let [a, b] = [p - at(before), at(after) - p];
+            a.dot(b) / (a.norm() * b.norm())
+        };
+        let now = turn(at(v));
+        // Also one of no length.
+        if now >= STRAIGHT {
+            return None;
+        }
+        let own = |at_v: Vec3| {
+            let round = tangle.around[v as usize].iter().map(|&n| {
+                let t = tangle.triangles[n as usize];
+                let corners = t.map(|w| if w == v { at_v } else { at(w) });
+                self.quality_at(tangle, corners, tangle.labels[n as usize])
+            });
+            round.fold(1.0, f64::min)
+        };
+        if let Some(place) = self.smoothed(tangle, v)
+            && turn(place) > now.max(STRAIGHT)
+            && own(place) >= own(at(v)).min(LEAST)
+        {
+            return Some(Mend::Move(v, place));
+        }
+        let nearest = [before, after]
+            .into_iter()
+            .min_by(|a, b| at(v).distance(at(*a)).total_cmp(&at(v).distance(at(*b))))?;
+        let (low, high) = self.collapsed(tangle, v, nearest)?;
+        (high >= low.min(LEAST)).then_some(Mend::Collapse(v, nearest))
     }
 
     /// A place between the neighbours of a vertex, on its surfaces.
