@@ -232,28 +232,47 @@ mod tests {
                 [a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s]
             })
         };
-        for (noise, turned) in [(0.0, false), (1e-16, false), (6e-17, true)] {
-            let x = 0.5 - noise;
+        let mut state = 7u64;
+        for round in 0..20 {
+            // Rounding: each vertex its own.
+            let mut noise = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                f64::from((state >> 62) as u32) * 0.5 * f64::EPSILON
+            };
             let corners = [
-                [x, 1.0],
+                [0.5, 1.0],
                 [0.0, 1.0],
                 [0.0, 0.0],
                 [1.0, 0.0],
                 [1.0, 0.68],
                 [0.72, 0.68],
                 [0.72, 0.46],
-                [x, 0.46],
-                [x, 0.68],
+                [0.5, 0.46],
+                [0.5, 0.68],
                 [0.055, 0.68],
                 [0.055, 0.75],
-                [x, 0.75],
-            ]
-            .map(|[x, y]| if turned { [1.0 - y, x] } else { [x, y] });
-            let points: Vec<[f64; 2]> =
-                (0..12).flat_map(|k| line(corners[k], corners[(k + 1) % 12])).collect();
+                [0.5, 0.75],
+            ];
+            let scale = [4.1494, 2.6675];
+            let mut points: Vec<[f64; 2]> = (0..12)
+                .flat_map(|k| line(corners[k], corners[(k + 1) % 12]).collect::<Vec<_>>())
+                .map(|[x, y]| [scale[0] * (x - noise()), scale[1] * (y - noise())])
+                .collect();
             let loops = [(0..points.len()).collect::<Vec<usize>>()];
-            let triangles = planar_triangles(&points, &loops, &[]);
-            assert_eq!(triangles.len(), points.len() - 2, "{noise}");
+            let rim = points.len();
+            if round % 2 == 1 {
+                for (i, j) in (1..12).flat_map(|i| (1..12).map(move |j| (i, j))) {
+                    let [x, y] = [f64::from(i) / 12.0, f64::from(j) / 12.0];
+                    let cut = x > 0.03 && x < 0.53 && y > 0.66 && y < 0.77
+                        || x > 0.47 && y > 0.64
+                        || x > 0.47 && x < 0.75 && y > 0.43;
+                    if !cut {
+                        points.push([scale[0] * x, scale[1] * y]);
+                    }
+                }
+            }
+            let inner: Vec<usize> = (rim..points.len()).collect();
+            let triangles = planar_triangles(&points, &loops, &inner);
             let mut sides: HashMap<(usize, usize), u32> = HashMap::new();
             for t in &triangles {
                 for k in 0..3 {
@@ -261,7 +280,8 @@ mod tests {
                 }
             }
             let once = sides.values().filter(|n| **n == 1).count();
-            assert_eq!(once, points.len(), "{noise}");
+            assert_eq!(once, rim, "{round}");
+            assert_eq!(triangles.len(), 2 * points.len() - rim - 2, "{round}");
         }
     }
 
