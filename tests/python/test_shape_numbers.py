@@ -137,9 +137,10 @@ SHEETS = {
         "ArcSnake ring(q, p, r, type = 6); TrimSurf T(S, {ring}, whole = 1{more});",
         4 - np.pi * 0.16,
     ),
-    # A quarter of a cylinder of radius 1 and length 3, cut along a diagonal of (u, v): a half of it.
+    # A quarter of a cylinder of radius 1 and length 3, cut along a diagonal of (u, v).
     "wrap": (
-        "Line o({0, 0, 0}, {3, 0, 0}); Line l({0, 1, 0}, {3, 1, 0}); RevSurf S(l, o, 0, radians(90));"
+        "Line o({0, 0, 0}, {3, 0, 0}); Line l({0, 1, 0}, {3, 1, 0});"
+        "RevSurf S(l, o, 0, radians(90));"
         "AbsMagnet a(S, 0, 0); AbsMagnet b(S, 1, 0); AbsMagnet c(S, 1, 1);"
         "LineSnake ab(a, b); LineSnake bc(b, c); LineSnake ca(c, a);"
         "TrimSurf T(S, {ab, bc, ca}{more});",
