@@ -8,7 +8,6 @@
 use crate::labelled::extent;
 use crate::patch::{FittedPatch, PatchBasis, SurfaceField};
 use crate::seams::{FacetNet, ordered};
-use crate::untangle::forget;
 use crate::{
     Brep, BrepEdge, BrepFace, Coedge, FacetFault, FacetFaultKind, LabelledFacets, SurfaceShape,
 };
@@ -447,7 +446,7 @@ impl<'a> PatchedBody<'a> {
             if round >= SMOOTH_AFTER
                 && let Some(moved) = self.untangle()
             {
-                forget(&mut self.sides, &moved);
+                self.sides.retain(|(a, b), _| !moved.contains(a) && !moved.contains(b));
                 known.retain(|corners, _| corners.iter().all(|v| !moved.contains(v)));
                 apart.retain(|corners| corners.iter().all(|v| !moved.contains(v)));
                 last = None;

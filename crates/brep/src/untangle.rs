@@ -6,12 +6,12 @@
 use crate::patches::PatchedBody;
 use crate::seams::FacetNet;
 use moldloft_num::Vec3;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
-/// Triangles of a lower quality are mended; that of an even one is 1, of one that is turned over less than 0.
+/// Triangles of a lower quality are corrected; that of an even one is 1, of one that is turned over less than 0.
 const LEAST: f64 = 0.06;
 
-/// What mends must raise the least quality by this.
+/// What corrects them must raise the least quality by this.
 const GAIN: f64 = 1e-3;
 
 /// Walks over all triangles.
@@ -25,9 +25,9 @@ const NEAR: f64 = 0.02;
 const TOUCHING: f64 = 0.2;
 const STRAIGHT: f64 = 0.75;
 
-/// What mends a triangle.
+/// What corrects a triangle.
 #[derive(Clone, Copy)]
-enum Mend {
+enum Repair {
     /// The side from the first vertex to the second gives way to the other diagonal.
     Flip(u32, u32),
     /// The first vertex becomes the second.
@@ -107,7 +107,7 @@ impl PatchedBody<'_> {
         }
     }
 
-    /// Mends triangles that are turned over or slivers; gives the vertices that were moved, or nothing where all is well.
+    /// Corrects triangles that are turned over or slivers; gives the vertices that were moved, or nothing where all is well.
     pub fn untangle(&mut self) -> Option<FxHashSet<u32>> {
         let mut tangle = Tangle {
             triangles: self.net.triangles.clone(),
@@ -129,24 +129,24 @@ impl PatchedBody<'_> {
         tangle.signs.iter_mut().for_each(|s| *s = if *s < 0.0 { -1.0 } else { 1.0 });
         let mut changed = false;
         for _ in 0..PASSES {
-            let mut mended = false;
+            let mut corrected = false;
             for k in 0..tangle.triangles.len() {
                 if tangle.alive[k]
                     && self.quality(&tangle, tangle.triangles[k], tangle.labels[k]) < LEAST
-                    && let Some(mend) = self.best_mend(&tangle, k)
+                    && let Some(repair) = self.best_repair(&tangle, k)
                 {
-                    self.apply(&mut tangle, mend);
-                    mended = true;
+                    self.apply(&mut tangle, repair);
+                    corrected = true;
                 }
             }
             for v in 0..tangle.around.len() as u32 {
-                if let Some(mend) = self.straighten(&tangle, v) {
-                    self.apply(&mut tangle, mend);
-                    mended = true;
+                if let Some(repair) = self.straighten(&tangle, v) {
+                    self.apply(&mut tangle, repair);
+                    corrected = true;
                 }
             }
-            changed |= mended;
-            if !mended {
+            changed |= corrected;
+            if !corrected {
                 break;
             }
         }
@@ -175,23 +175,23 @@ impl PatchedBody<'_> {
         if sides > 0.0 { 2.0 * 3f64.sqrt() * area / sides } else { 0.0 }
     }
 
-    /// The mend that leaves the best of what is round it, if it is better than now.
-    fn best_mend(&self, tangle: &Tangle, k: usize) -> Option<Mend> {
+    /// The correction that leaves the best of what is round it, if it is better than now.
+    fn best_repair(&self, tangle: &Tangle, k: usize) -> Option<Repair> {
         let t = tangle.triangles[k];
-        let mut best: Option<(f64, Mend)> = None;
-        let mut offer = |found: Option<(f64, f64)>, mend: Mend| {
+        let mut best: Option<(f64, Repair)> = None;
+        let mut offer = |found: Option<(f64, f64)>, repair: Repair| {
             if let Some((before, after)) = found
                 && after > before + GAIN
                 && best.as_ref().is_none_or(|(gain, _)| after - before > *gain)
             {
-                best = Some((after - before, mend));
+                best = Some((after - before, repair));
             }
         };
         for i in 0..3 {
             let (a, b) = (t[i], t[(i + 1) % 3]);
-            offer(self.flipped(tangle, a, b), Mend::Flip(a, b));
-            offer(self.collapsed(tangle, a, b), Mend::Collapse(a, b));
-            offer(self.collapsed(tangle, b, a), Mend::Collapse(b, a));
+            offer(self.flipped(tangle, a, b), Repair::Flip(a, b));
+            offer(self.collapsed(tangle, a, b), Repair::Collapse(a, b));
+            offer(self.collapsed(tangle, b, a), Repair::Collapse(b, a));
             if let Some(place) = self.smoothed(tangle, a) {
                 let [before, after] = [self.net.positions[a as usize], place].map(|at| {
                     let own = tangle.around[a as usize].iter().map(|&n| {
@@ -202,10 +202,10 @@ impl PatchedBody<'_> {
                     });
                     own.fold(1.0, f64::min)
                 });
-                offer(Some((before, after)), Mend::Move(a, place));
+                offer(Some((before, after)), Repair::Move(a, place));
             }
         }
-        best.map(|(_, mend)| mend)
+        best.map(|(_, repair)| repair)
     }
 
     /// The least quality of two triangles before and after their diagonal is the other one.
@@ -241,7 +241,7 @@ impl PatchedBody<'_> {
 
     /// What takes a sharp turn out of a border of two surfaces that touch: there its vertex is on another line that
     /// both have in common.
-    fn straighten(&self, tangle: &Tangle, v: u32) -> Option<Mend> {
+    fn straighten(&self, tangle: &Tangle, v: u32) -> Option<Repair> {
         let labels = tangle.labels_of(v);
         let at = |v: u32| self.net.positions[v as usize];
         let &[one, other] = &labels[..] else { return None };
@@ -271,13 +271,13 @@ impl PatchedBody<'_> {
             && turn(place) > now.max(STRAIGHT)
             && own(place) >= own(at(v)).min(LEAST)
         {
-            return Some(Mend::Move(v, place));
+            return Some(Repair::Move(v, place));
         }
         let nearest = [before, after]
             .into_iter()
             .min_by(|a, b| at(v).distance(at(*a)).total_cmp(&at(v).distance(at(*b))))?;
         let (low, high) = self.collapsed(tangle, v, nearest)?;
-        (high >= low.min(LEAST)).then_some(Mend::Collapse(v, nearest))
+        (high >= low.min(LEAST)).then_some(Repair::Collapse(v, nearest))
     }
 
     /// A place between the neighbours of a vertex, on its surfaces.
@@ -299,14 +299,14 @@ impl PatchedBody<'_> {
         self.foot(&labels, middle, self.facets.step)
     }
 
-    fn apply(&mut self, tangle: &mut Tangle, mend: Mend) {
-        match mend {
-            Mend::Move(v, place) => {
+    fn apply(&mut self, tangle: &mut Tangle, repair: Repair) {
+        match repair {
+            Repair::Move(v, place) => {
                 self.net.positions[v as usize] = place;
                 tangle.moved.insert(v);
             }
-            Mend::Flip(a, b) => tangle.flip(a, b),
-            Mend::Collapse(from, to) => tangle.collapse(from, to),
+            Repair::Flip(a, b) => tangle.flip(a, b),
+            Repair::Collapse(from, to) => tangle.collapse(from, to),
         }
     }
 }
@@ -389,9 +389,4 @@ impl Tangle {
             }
         }
     }
-}
-
-/// Forgets what was made with vertices that moved.
-pub fn forget<T>(sides: &mut FxHashMap<(u32, u32), T>, moved: &FxHashSet<u32>) {
-    sides.retain(|(a, b), _| !moved.contains(a) && !moved.contains(b));
 }

@@ -201,7 +201,7 @@ impl<'a> Sewing<'a> {
         runs.iter().map(|run| self.edge(run)).collect()
     }
 
-    /// Makes the curves of snakes side by side; what fails is told where it is needed.
+    /// Makes the curves of snakes side by side; what fails is reported where it is needed.
     fn fit_snakes(&mut self) {
         let long = |s: &Sided<'_>| s.side.vertices.iter().any(|v| *v != s.side.vertices[0]);
         let snakes: Vec<usize> = (0..self.sides.len())
