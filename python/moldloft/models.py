@@ -824,11 +824,16 @@ class Model(Floating, Adapted):
 
     @property
     def export_remarks(self) -> list[_core.Diagnostic]:
-        """What the text or file that was written last does not keep of the model."""
+        """What the text or file that was written last does not keep of the model, or not exactly.
+
+        Notes, such as the error of fitted surfaces, are no warnings of Python.
+        """
         return self._document.export_remarks()
 
     def _warn_of_export(self) -> None:
         for remark in self.export_remarks:
+            if remark.severity == "note":
+                continue
             warnings.warn(str(remark), stacklevel=4)
 
     # -- for other packages ----------------------------------------------------------------

@@ -19,9 +19,13 @@ pytest.importorskip("OCP")
 ROUNDS = 12 if os.environ.get("MOLDLOFT_SOAK") == "1" else 1
 
 
-@pytest.mark.parametrize("ending", ["step", "igs"])
-@pytest.mark.parametrize("seed", range(ROUNDS))
-@pytest.mark.parametrize("name", occt_parts.PARTS)
+CASES = [(n, k, e) for n in occt_parts.PARTS for k in range(ROUNDS) for e in ("step", "igs")]
+if ROUNDS == 1:
+    # OCCT leaves an edge of no length where it cuts the thicker rod along.
+    CASES.append(("cross", 1, "igs"))
+
+
+@pytest.mark.parametrize(("name", "seed", "ending"), CASES)
 def test_parts_stay_closed_bodies(name: str, seed: int, ending: str, tmp_path: Path) -> None:
     from cad_reading import read
     from moldloft.cad.importing import program

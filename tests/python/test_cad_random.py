@@ -22,7 +22,8 @@ import random_models
 pytest.importorskip("OCP")
 
 SKETCHES = Path(__file__).parents[2] / "examples" / "sketch"
-SEEDS = range(104 if os.environ.get("MOLDLOFT_SOAK") == "1" else 8)
+#: The last has a face whose border goes through one line in several places.
+SEEDS = [*range(104)] if os.environ.get("MOLDLOFT_SOAK") == "1" else [*range(8), 51]
 
 
 @dataclass

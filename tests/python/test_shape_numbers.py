@@ -127,3 +127,34 @@ def test_an_unknown_of_a_loft_against_brentq(seed: int) -> None:
 def test_what_is_no_unknown_is_refused(text: str, says: str) -> None:
     with pytest.raises(moldloft.Error, match=says):
         moldloft.loads(text).check()
+
+
+SHEETS = {
+    # A square of 2 by 2 less a circle of 0.2 in (u, v): of 0.4 in space.
+    "hole": (
+        "Line l({0, 0, 0}, {2, 0, 0}); Line m({0, 2, 0}, {2, 2, 0}); RuledSurf S(l, m);"
+        "AbsMagnet p(S, 0.5, 0.5); AbsMagnet q(S, 0.7, 0.5); AbsMagnet r(S, 0.5, 0.7);"
+        "ArcSnake ring(q, p, r, type = 6); TrimSurf T(S, {ring}, whole = 1{more});",
+        4 - np.pi * 0.16,
+    ),
+    # A quarter of a cylinder of radius 1 and length 3, cut along a diagonal of (u, v).
+    "wrap": (
+        "Line o({0, 0, 0}, {3, 0, 0}); Line l({0, 1, 0}, {3, 1, 0});"
+        "RevSurf S(l, o, 0, radians(90));"
+        "AbsMagnet a(S, 0, 0); AbsMagnet b(S, 1, 0); AbsMagnet c(S, 1, 1);"
+        "LineSnake ab(a, b); LineSnake bc(b, c); LineSnake ca(c, a);"
+        "TrimSurf T(S, {ab, bc, ca}{more});",
+        3 * np.pi / 4,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_trimmed_surfaces_have_the_area_of_the_surface_not_of_their_panels(name: str) -> None:
+    text, area = SHEETS[name]
+    for more in ("", ", rim = 3, nu = 2, nv = 2"):
+        m = moldloft.loads(text.replace("{more}", more))
+        assert m.eval("T.area") == pytest.approx(area, rel=1e-9)
+        assert m.eval("area(T)") == pytest.approx(area, rel=1e-9)
+    # Panels are chords of it.
+    assert m.mesh().patches[0].area != pytest.approx(area, rel=1e-3)

@@ -19,6 +19,7 @@ mod meet;
 mod patch;
 mod patches;
 mod seams;
+mod untangle;
 mod volume;
 
 pub use analytic::SurfaceAxes;

@@ -13,11 +13,12 @@ use crate::{
 };
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
+use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
 /// Most triangles that a body is divided into.
-const MOST: usize = 16_000;
+const MOST: usize = 48_000;
 
 /// How often sides are halved.
 const ROUNDS: usize = 16;
@@ -55,10 +56,10 @@ impl Brep {
 /// A patch by its corners; of a triangle the first one twice.
 type Corners = [u32; 4];
 
-struct PatchedBody<'a> {
-    net: FacetNet,
-    facets: LabelledFacets,
-    field: &'a SurfaceField<'a>,
+pub struct PatchedBody<'a> {
+    pub net: FacetNet,
+    pub facets: LabelledFacets,
+    pub field: &'a SurfaceField<'a>,
     basis: PatchBasis,
     accuracy: f64,
     size: f64,
@@ -85,7 +86,9 @@ impl<'a> PatchedBody<'a> {
         let basis = PatchBasis::new(degree);
         let mut body =
             Self { net, facets, field, basis, accuracy, size, sides: FxHashMap::default() };
+        body.absorb_pieces();
         body.place_vertices()?;
+        body.untangle();
         Ok(body)
     }
 
@@ -116,19 +119,25 @@ impl<'a> PatchedBody<'a> {
                 }
             }
         }
-        for (v, own) in labels.iter().enumerate() {
+        let reach = 2.0 * self.facets.step;
+        let placed: Vec<Option<Vec3>> = labels
+            .par_iter()
+            .zip(&self.net.positions)
+            .map(|(own, start)| self.foot(own, *start, reach))
+            .collect();
+        for (v, place) in placed.into_iter().enumerate() {
             let start = self.net.positions[v];
-            match self.foot(own, start, 2.0 * self.facets.step) {
-                Some(p) => self.net.positions[v] = p,
-                None => return Err(self.fault(FacetFaultKind::Vertex, own, start)),
-            }
+            self.net.positions[v] =
+                place.ok_or_else(|| self.fault(FacetFaultKind::Vertex, &labels[v], start))?;
         }
         Ok(())
     }
 
     /// The point near another that is on all these surfaces within the accuracy.
-    fn foot(&self, labels: &[u32], start: Vec3, reach: f64) -> Option<Vec3> {
+    pub fn foot(&self, labels: &[u32], start: Vec3, reach: f64) -> Option<Vec3> {
         const STEPS: usize = 80;
+        const NEAR_ENOUGH: f64 = 0.1;
+        const ACROSS: usize = 3;
         let off = |p: Vec3| {
             labels.iter().map(move |&l| {
                 let (f, slope) = (self.field)(l, p);
@@ -148,9 +157,17 @@ impl<'a> PatchedBody<'a> {
         };
         let mut p = start;
         let mut best = (worst(start), start);
-        for _ in 0..STEPS {
+        for k in 0..STEPS {
             let rows: Vec<(f64, Vec3)> = off(p).collect();
-            let mut step = nearest_step(&rows);
+            // Surfaces that touch are one within the accuracy in a whole strip: the nearest place of it will do, and
+            // others may be on another branch of their intersection.
+            let touching = touch(&rows);
+            if touching && best.0 <= NEAR_ENOUGH * self.accuracy {
+                break;
+            }
+            let across =
+                rows.iter().fold(Vec3::zero(), |s, (d, n)| s + *n * *d) / rows.len() as f64;
+            let mut step = if touching && k < ACROSS { across } else { nearest_step(&rows) };
             if !step.is_finite() {
                 break;
             }
@@ -187,13 +204,9 @@ impl<'a> PatchedBody<'a> {
         [(a, b), (b, a)].iter().all(|s| self.plane(self.net.across[s] as usize).is_some())
     }
 
-    /// Makes the curve of a side, if it is not known.
-    fn make_side(&mut self, a: u32, b: u32) -> Result<(), FacetFault> {
-        let key = ordered(a, b);
-        if self.sides.contains_key(&key) {
-            return Ok(());
-        }
-        let [p, q] = [key.0, key.1].map(|v| self.net.positions[v as usize]);
+    /// The curve of a side, from its lower vertex.
+    fn side_curve(&self, (a, b): (u32, u32)) -> Result<Vec<Vec3>, FacetFault> {
+        let [p, q] = [a, b].map(|v| self.net.positions[v as usize]);
         let labels = self.both(a, b);
         let straight = self.straight(a, b);
         let last = self.basis.degree;
@@ -211,9 +224,44 @@ impl<'a> PatchedBody<'a> {
             };
             through.push(place);
         }
-        let net = self.basis.curve(&through);
-        self.sides.insert(key, net);
+        Ok(self.basis.curve(&through))
+    }
+
+    /// Makes the curve of a side, if it is not known.
+    fn make_side(&mut self, a: u32, b: u32) -> Result<(), FacetFault> {
+        let key = ordered(a, b);
+        if !self.sides.contains_key(&key) {
+            let net = self.side_curve(key)?;
+            self.sides.insert(key, net);
+        }
         Ok(())
+    }
+
+    /// Makes these patches and their sides, side by side; none where a side fails.
+    fn make_patches(&mut self, which: &[(Corners, u32)]) -> Vec<Result<FittedPatch, FacetFault>> {
+        let around = |[a, b, c, d]: Corners| [(a, b), (b, c), (c, d), (d, a)];
+        let mut keys: Vec<(u32, u32)> = which
+            .iter()
+            .flat_map(|(corners, _)| around(*corners))
+            .filter(|(a, b)| a != b)
+            .map(|(a, b)| ordered(a, b))
+            .filter(|key| !self.sides.contains_key(key))
+            .collect();
+        keys.sort_unstable();
+        keys.dedup();
+        let made: Vec<_> = keys.par_iter().map(|key| self.side_curve(*key)).collect();
+        let mut faults: FxHashMap<(u32, u32), FacetFault> = FxHashMap::default();
+        for (key, side) in keys.into_iter().zip(made) {
+            match side {
+                Ok(net) => drop(self.sides.insert(key, net)),
+                Err(fault) => drop(faults.insert(key, fault)),
+            }
+        }
+        let patch = |(corners, label): &(Corners, u32)| {
+            let fault = around(*corners).into_iter().find_map(|(a, b)| faults.get(&ordered(a, b)));
+            fault.map_or_else(|| Ok(self.patch(*corners, *label)), |fault| Err(fault.clone()))
+        };
+        which.par_iter().map(patch).collect()
     }
 
     /// The control points of a side from one vertex to the other.
@@ -291,13 +339,9 @@ impl<'a> PatchedBody<'a> {
         [t[i], t[i], t[(i + 1) % 3], t[(i + 2) % 3]]
     }
 
-    fn patch(&mut self, corners: Corners, label: u32) -> Result<FittedPatch, FacetFault> {
+    /// The patch between sides that are made.
+    fn patch(&self, corners: Corners, label: u32) -> FittedPatch {
         let [a, b, c, d] = corners;
-        for (u, v) in [(a, b), (b, c), (c, d), (d, a)] {
-            if u != v {
-                self.make_side(u, v)?;
-            }
-        }
         let [low, right, high, left] =
             [self.side(a, b), self.side(b, c), self.side(d, c), self.side(a, d)];
         let n = self.basis.degree;
@@ -342,7 +386,7 @@ impl<'a> PatchedBody<'a> {
         let (_, slope) = (self.field)(label, self.basis.middle(&net));
         let sign = if out.dot(slope) < 0.0 { -1.0 } else { 1.0 };
         let folded = self.basis.folds(&net, label, sign, self.field);
-        Ok(FittedPatch { net, error, folded })
+        FittedPatch { net, error, folded }
     }
 
     /// Patches that are near enough, with sides halved until they are.
@@ -355,19 +399,21 @@ impl<'a> PatchedBody<'a> {
             let all = self.pairs(&apart);
             let mut halved: Vec<(f64, (u32, u32))> = Vec::new();
             let mut before = apart.len();
+            let new: Vec<(Corners, u32)> = all
+                .iter()
+                .filter(|(corners, _)| !known.contains_key(corners))
+                .map(|(corners, k)| (*corners, self.net.labels[*k as usize]))
+                .collect();
+            for ((corners, _), patch) in new.iter().zip(self.make_patches(&new)) {
+                let patch = patch.unwrap_or_else(|fault| {
+                    last = Some(fault);
+                    FittedPatch { net: Vec::new(), error: f64::INFINITY, folded: false }
+                });
+                known.insert(*corners, patch);
+            }
             for (corners, triangle) in &all {
                 let label = self.net.labels[*triangle as usize];
-                let patch = match known.get(corners) {
-                    Some(patch) => patch.clone(),
-                    None => match self.patch(*corners, label) {
-                        Ok(patch) => patch,
-                        Err(fault) => {
-                            last = Some(fault);
-                            let (net, error) = (Vec::new(), f64::INFINITY);
-                            FittedPatch { net, error, folded: false }
-                        }
-                    },
-                };
+                let patch = &known[corners];
                 let near = patch.error <= self.accuracy;
                 let quadrilateral = corners[0] != corners[1];
                 if near && patch.folded && quadrilateral {
@@ -384,7 +430,6 @@ impl<'a> PatchedBody<'a> {
                     }
                     halved.push((long, side));
                 }
-                known.insert(*corners, patch);
             }
             if halved.is_empty() && before == apart.len() {
                 return Ok(all
@@ -396,6 +441,16 @@ impl<'a> PatchedBody<'a> {
             fewest = fewest.min(halved.len());
             if round >= SMOOTH_AFTER && halved.len() > MANY.max(4 * fewest) {
                 break;
+            }
+            // What is left over after some rounds may be triangles that turned over.
+            if round >= SMOOTH_AFTER
+                && let Some(moved) = self.untangle()
+            {
+                self.sides.retain(|(a, b), _| !moved.contains(a) && !moved.contains(b));
+                known.retain(|corners, _| corners.iter().all(|v| !moved.contains(v)));
+                apart.retain(|corners| corners.iter().all(|v| !moved.contains(v)));
+                last = None;
+                continue;
             }
             before = self.net.triangles.len();
             self.halve(halved)?;
@@ -617,6 +672,13 @@ impl<'a> PatchedBody<'a> {
         }
         cycle
     }
+}
+
+/// Whether two of the planes are nearly parallel.
+fn touch(rows: &[(f64, Vec3)]) -> bool {
+    const SINE: f64 = 0.2;
+    let near = |(a, b): (&Vec3, &Vec3)| a.cross(*b).norm() < SINE;
+    (0..rows.len()).any(|i| (0..i).any(|j| near((&rows[i].1, &rows[j].1))))
 }
 
 /// The least step that takes a point onto planes at these distances along these normals, or nearly so where two of them

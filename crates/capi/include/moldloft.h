@@ -75,7 +75,7 @@ void mlf_v1_shape_free(mlf_shape *shape);
 int32_t mlf_v1_shape_parameters(const mlf_shape *shape, size_t *count);
 
 /* Points of a shape: `parameters` holds t, or u and v, of `n` points one after the other; `xyz`
- * takes x, y and z of each.
+ * takes x, y and z of each. Many points are shared among threads of the library's own.
  */
 int32_t mlf_v1_points(const mlf_shape *shape, size_t n, const double *parameters, double *xyz);
 

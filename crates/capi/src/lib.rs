@@ -24,6 +24,7 @@ use moldloft_document::{Document, registry};
 use moldloft_host::FileWorld;
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
+use rayon::prelude::*;
 
 /// The call succeeded.
 pub const MLF_OK: i32 = 0;
@@ -261,7 +262,7 @@ pub extern "C" fn mlf_v1_shape_parameters(shape: *const mlf_shape, count: *mut u
 }
 
 /// Points of a shape: `parameters` holds t, or u and v, of `n` points one after the other; `xyz`
-/// takes x, y and z of each.
+/// takes x, y and z of each. Many points are shared among threads of the library's own.
 #[unsafe(no_mangle)]
 pub extern "C" fn mlf_v1_points(
     shape: *const mlf_shape,
@@ -271,32 +272,32 @@ pub extern "C" fn mlf_v1_points(
 ) -> i32 {
     called(|| {
         let shape = shape_of(shape)?;
-        let out: &mut [[f64; 3]] = array_mut(xyz.cast(), n)?;
-        let mut some = vec![Vec3::zero(); n.min(CHUNK)];
-        let mut put = |out: &mut [[f64; 3]], fill: &dyn Fn(&mut [Vec3])| {
-            let some = &mut some[..out.len()];
-            fill(some);
-            out.iter_mut().zip(some).for_each(|(out, p)| *out = p.to_array());
-        };
+        let out: &mut [Vec3] = array_mut(xyz.cast(), n)?;
         match shape {
             ShapeHandle::Curve(curve) => {
                 let ts: &[f64] = array(parameters, n)?;
-                for (out, ts) in out.chunks_mut(CHUNK).zip(ts.chunks(CHUNK)) {
-                    put(out, &|points| curve.grid(ts, points));
+                if n <= CHUNK {
+                    curve.grid(ts, out);
+                    return Ok(());
                 }
+                let chunks = out.par_chunks_mut(CHUNK).zip(ts.par_chunks(CHUNK));
+                chunks.for_each(|(out, ts)| curve.grid(ts, out));
             }
             ShapeHandle::Surface(surface) => {
                 let uv: &[[f64; 2]] = array(parameters.cast(), n)?;
-                for (out, uv) in out.chunks_mut(CHUNK).zip(uv.chunks(CHUNK)) {
-                    put(out, &|points| surface.scattered(uv, points));
+                if n <= CHUNK {
+                    surface.scattered(uv, out);
+                    return Ok(());
                 }
+                let chunks = out.par_chunks_mut(CHUNK).zip(uv.par_chunks(CHUNK));
+                chunks.for_each(|(out, uv)| surface.scattered(uv, out));
             }
         }
         Ok(())
     })
 }
 
-/// So many points are evaluated together.
+/// So many points are evaluated together, by one thread; more by all that the machine has.
 const CHUNK: usize = 1 << 14;
 
 /// First derivatives of a shape by its parameters at `n` points, given as for mlf_v1_points: for
@@ -313,17 +314,16 @@ pub extern "C" fn mlf_v1_slopes(
             ShapeHandle::Curve(curve) => {
                 let ts: &[f64] = array(parameters, n)?;
                 let out: &mut [[f64; 3]] = array_mut(slopes.cast(), n)?;
-                for (out, &t) in out.iter_mut().zip(ts) {
-                    *out = curve.jet(t, Order::First)[1].to_array();
-                }
+                let slopes = out.par_iter_mut().with_min_len(CHUNK).zip(ts);
+                slopes.for_each(|(out, &t)| *out = curve.jet(t, Order::First)[1].to_array());
             }
             ShapeHandle::Surface(surface) => {
                 let uv: &[[f64; 2]] = array(parameters.cast(), n)?;
                 let out: &mut [[[f64; 3]; 2]] = array_mut(slopes.cast(), n)?;
-                for (out, &[u, v]) in out.iter_mut().zip(uv) {
+                out.par_iter_mut().with_min_len(CHUNK).zip(uv).for_each(|(out, &[u, v])| {
                     let jet = surface.jet(u, v, Order::First);
                     *out = [jet.u.to_array(), jet.v.to_array()];
-                }
+                });
             }
         }
         Ok(())

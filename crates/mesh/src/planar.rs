@@ -7,6 +7,9 @@ use std::collections::{HashMap, HashSet};
 /// Points with less than this share of the area to an edge lie on it.
 const ON_EDGE: f64 = 1e-9;
 
+/// Triangles of less than this share of the region's box have three corners in one line.
+const FLAT: f64 = 1e-13;
+
 /// Triangles, counter-clockwise, of the region between `loops` (the first counter-clockwise round the
 /// others, which are clockwise), with the points `inner` inside it as vertices. Every edge of the loops
 /// is an edge of a triangle; within them edges are flipped until no vertex lies in the circumcircle of a
@@ -33,11 +36,19 @@ pub fn planar_triangles(
         triangles: Vec::new(),
         sides: HashMap::new(),
     };
+    let extent = |k: usize| {
+        let all = loops.iter().flatten().map(|&p| points[p][k]);
+        let (low, high) =
+            all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        high - low
+    };
+    let flat = FLAT * extent(0) * extent(1);
     for t in ears {
-        if net.turn(t[0], t[1], t[2]) > 0.0 {
+        if net.turn(t[0], t[1], t[2]) > -flat {
             net.add(t);
         }
     }
+    net.open_flat(flat);
     let mut edges: Vec<(usize, usize)> = Vec::new();
     for t in net.triangles.clone() {
         edges.extend([(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
@@ -105,6 +116,51 @@ impl PlanarTriangulation<'_> {
         Some((at, third))
     }
 
+    /// Gives triangles with three corners in one line, which vertices of the rim in one line make, the third corner of
+    /// the neighbour along their longest side; those without such a neighbour are left out.
+    fn open_flat(&mut self, flat: f64) {
+        let is_flat = |net: &Self, t: [usize; 3]| net.turn(t[0], t[1], t[2]) <= flat;
+        loop {
+            let mut flipped = false;
+            for at in 0..self.triangles.len() {
+                let t = self.triangles[at];
+                if !is_flat(self, t) {
+                    continue;
+                }
+                let length = |k: &usize| {
+                    let [p, q] = [t[*k], t[(k + 1) % 3]].map(|v| self.points[v]);
+                    (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
+                };
+                let Some(k) = (0..3).max_by(|i, j| length(i).total_cmp(&length(j))) else {
+                    continue;
+                };
+                let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
+                let Some((other, d)) = self.left(b, a) else { continue };
+                let new = [[c, a, d], [c, d, b]];
+                if self.rim.contains(&key(a, b)) || new.iter().any(|n| is_flat(self, *n)) {
+                    continue;
+                }
+                self.sides.remove(&(a, b));
+                self.sides.remove(&(b, a));
+                self.set(at, new[0]);
+                self.set(other, new[1]);
+                flipped = true;
+            }
+            if !flipped {
+                break;
+            }
+        }
+        let kept: Vec<[usize; 3]> =
+            self.triangles.iter().copied().filter(|t| !is_flat(self, *t)).collect();
+        if kept.len() < self.triangles.len() {
+            self.triangles.clear();
+            self.sides.clear();
+            for t in kept {
+                self.add(t);
+            }
+        }
+    }
+
     /// Flips edges until each is Delaunay's.
     fn settle(&mut self, mut edges: Vec<(usize, usize)>) {
         // Each flip makes the smallest angles larger; the bound is for rounding only.
@@ -166,6 +222,68 @@ impl PlanarTriangulation<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rims_with_vertices_in_one_line_leave_no_slit() {
+        // A plate with a slot whose mouth is between two stretches of one line, each of several vertices.
+        let line = |a: [f64; 2], b: [f64; 2]| {
+            (0..12).map(move |k| {
+                let s = f64::from(k) / 12.0;
+                [a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s]
+            })
+        };
+        let mut state = 7u64;
+        for round in 0..20 {
+            // Rounding: each vertex its own.
+            let mut noise = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                f64::from((state >> 62) as u32) * 0.5 * f64::EPSILON
+            };
+            let corners = [
+                [0.5, 1.0],
+                [0.0, 1.0],
+                [0.0, 0.0],
+                [1.0, 0.0],
+                [1.0, 0.68],
+                [0.72, 0.68],
+                [0.72, 0.46],
+                [0.5, 0.46],
+                [0.5, 0.68],
+                [0.055, 0.68],
+                [0.055, 0.75],
+                [0.5, 0.75],
+            ];
+            let scale = [4.1494, 2.6675];
+            let mut points: Vec<[f64; 2]> = (0..12)
+                .flat_map(|k| line(corners[k], corners[(k + 1) % 12]).collect::<Vec<_>>())
+                .map(|[x, y]| [scale[0] * (x - noise()), scale[1] * (y - noise())])
+                .collect();
+            let loops = [(0..points.len()).collect::<Vec<usize>>()];
+            let rim = points.len();
+            if round % 2 == 1 {
+                for (i, j) in (1..12).flat_map(|i| (1..12).map(move |j| (i, j))) {
+                    let [x, y] = [f64::from(i) / 12.0, f64::from(j) / 12.0];
+                    let cut = x > 0.03 && x < 0.53 && y > 0.66 && y < 0.77
+                        || x > 0.47 && y > 0.64
+                        || x > 0.47 && x < 0.75 && y > 0.43;
+                    if !cut {
+                        points.push([scale[0] * x, scale[1] * y]);
+                    }
+                }
+            }
+            let inner: Vec<usize> = (rim..points.len()).collect();
+            let triangles = planar_triangles(&points, &loops, &inner);
+            let mut sides: HashMap<(usize, usize), u32> = HashMap::new();
+            for t in &triangles {
+                for k in 0..3 {
+                    *sides.entry(key(t[k], t[(k + 1) % 3])).or_default() += 1;
+                }
+            }
+            let once = sides.values().filter(|n| **n == 1).count();
+            assert_eq!(once, rim, "{round}");
+            assert_eq!(triangles.len(), 2 * points.len() - rim - 2, "{round}");
+        }
+    }
 
     #[test]
     fn a_disc_with_a_hole_and_points_inside() {

@@ -44,7 +44,9 @@ pub use row::{
 };
 pub use search_report::{Remark, SearchReport, SearchStatus};
 pub use sweep::{LocusRef, MovingCurve, MovingPoint, Sweep};
-pub use triangle_body::{Border, BorderCurve, Flaw, Group, TriangleBody, TriangulatedBorder};
+pub use triangle_body::{
+    Border, BorderCurve, Flaw, Group, SheetMeasures, TriangleBody, TriangulatedBorder,
+};
 pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value, Vectors};
 
 /// What the derive macro's output refers to.

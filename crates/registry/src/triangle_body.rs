@@ -62,6 +62,20 @@ pub trait TriangulatedBorder<T: Real>: Send + Sync {
     /// The sheet whose border has vertices at these parameters of each curve, ascending from 0 to 1,
     /// and for each curve which of its vertices these are; `None` when such a border crosses itself.
     fn divided(&self, at: &[Vec<T>]) -> Option<(TriangleBody<T>, Vec<Vec<u32>>)>;
+
+    /// The measures of the part of the surface itself, which its triangles only come near.
+    fn measures(&self) -> Option<SheetMeasures<T>>;
+}
+
+/// Measures of a part of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SheetMeasures<T: Real> {
+    /// Its area.
+    pub area: T,
+    /// The middle of its area.
+    pub centroid: Vec3<T>,
+    /// The volume of the cone from the origin to it.
+    pub volume: T,
 }
 
 /// The way to make a sheet anew.

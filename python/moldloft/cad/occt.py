@@ -34,6 +34,9 @@ __all__ = ["Imported", "ImportedFace", "of_part", "read_shape"]
 _OUTSIDE = 1e-6
 """Parameters this far outside of a surface's are rounded onto its border."""
 
+_NOTHING = 1e-8
+"""A side is left out that spans no more of its surface's parameters."""
+
 _PLACES = 33
 """Places between knots at which a side is compared with an edge of the parameters."""
 
@@ -511,7 +514,8 @@ def _cycle(
         inside = np.clip(trace.points, 0, 1)
         near = np.abs(trace.points - inside) < _OUTSIDE
         trace.points[near] = inside[near]
-        if np.ptp(trace.points, axis=0).max() < 1e-12:
+        # Some programs leave an edge of no length where they cut a closed face.
+        if np.ptp(trace.points, axis=0).max() < _NOTHING:
             continue
         cycle.append((edges.FindIndex(edge), edge.Orientation() == TopAbs_REVERSED, trace))
     return cycle if ordered else _chained(cycle)

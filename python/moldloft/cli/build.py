@@ -176,6 +176,7 @@ def _build(
         outputs: list[Output] = []
         halves: list[str] = []
         refused: list[tuple[str, Error]] = []
+        inexact: list[Any] = []
         folder = Path("." if options.output == "-" else options.output)
         stem = stem_of(options)
         for name in dict.fromkeys(options.to):
@@ -198,6 +199,7 @@ def _build(
             except Error as error:
                 refused.append((name, error))
                 continue
+            inexact += [d for d in model.export_remarks if not row.writer and d.severity == "note"]
             if row.plain_panels and model.symmetry and not options.whole:
                 halves.append(name)
         if refused and (not options.keep_going or not outputs):
@@ -216,6 +218,7 @@ def _build(
         )
     # Remarks of the panelling have joined those of the run.
     report(model.diagnostics)
+    report(list({str(d): d for d in inexact}.values()))
     if mesh.patches and not mesh.closed:
         report(model.junctions())
     report(block_problems(model))

@@ -8,6 +8,7 @@ use moldloft_panel::{FaceOutline, OutlineCurve, OutlineSide};
 use moldloft_picture::PALETTE;
 use moldloft_registry::CurveRef;
 use moldloft_spline::nurbs::{FitOptions, Nurbs, SampledShape, fit, of_curve};
+use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -115,6 +116,7 @@ impl<'a> Sewing<'a> {
     }
 
     pub fn finish(mut self) -> Result<Brep, ExportFailure> {
+        self.fit_snakes();
         for face in 0..self.outlines.len() {
             self.face(face)?;
         }
@@ -199,14 +201,32 @@ impl<'a> Sewing<'a> {
         runs.iter().map(|run| self.edge(run)).collect()
     }
 
+    /// Makes the curves of snakes side by side; what fails is reported where it is needed.
+    fn fit_snakes(&mut self) {
+        let long = |s: &Sided<'_>| s.side.vertices.iter().any(|v| *v != s.side.vertices[0]);
+        let snakes: Vec<usize> = (0..self.sides.len())
+            .filter(|&k| matches!(self.sides[k].side.along, OutlineCurve::Snake(_)))
+            .filter(|&k| long(&self.sides[k]))
+            .collect();
+        let made: Vec<_> = snakes.par_iter().map(|&k| self.fitted(k).ok()).collect();
+        for (k, curve) in snakes.into_iter().zip(made) {
+            self.sides[k].curve = curve;
+        }
+    }
+
     /// The curve of a side, and its trace where it is a snake; made once.
     fn curve(&mut self, side: usize) -> Result<(), ExportFailure> {
         if self.sides[side].curve.is_some() {
             return Ok(());
         }
+        self.sides[side].curve = Some(self.fitted(side)?);
+        Ok(())
+    }
+
+    fn fitted(&self, side: usize) -> Result<(Nurbs<1>, Option<Nurbs<1>>), ExportFailure> {
         let face = self.sides[side].face;
         let surface = &self.surfaces[face];
-        let made = match &self.sides[side].side.along {
+        Ok(match &self.sides[side].side.along {
             OutlineCurve::Edge(k) => (surface.edge(usize::from(*k)), None),
             OutlineCurve::Snake(snake) => {
                 let name = &self.outlines[face].name;
@@ -216,9 +236,7 @@ impl<'a> Sewing<'a> {
                 let trace = trace(snake, surface, self.accuracy).map_err(fault)?;
                 (curve, Some(trace))
             }
-        };
-        self.sides[side].curve = Some(made);
-        Ok(())
+        })
     }
 
     /// The edge of a run, new or known.

@@ -6,55 +6,87 @@ use moldloft_diag::Diagnostic;
 use moldloft_num::{Surface, Vec3};
 use moldloft_panel::FaceOutline;
 use moldloft_spline::nurbs::{FitOptions, NotFitted, Nurbs, of_surface};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Control points within this share of the largest coordinate from a plane lie in it.
 const IN_PLANE: f64 = 1e-12;
 
-/// The NURBS of each outline's surface.
+/// The NURBS of each outline's surface: of one that is another, turned and shifted, that fit moved; fits are made side by
+/// side.
 pub fn all(outlines: &[FaceOutline], accuracy: f64) -> Result<Vec<Arc<Nurbs<2>>>, ExportFailure> {
     let options = FitOptions::within(accuracy);
-    let mut made: Vec<Arc<Nurbs<2>>> = Vec::with_capacity(outlines.len());
-    for (k, outline) in outlines.iter().enumerate() {
-        let known = outlines[..k].iter().position(|o| o.surface.same(&outline.surface));
-        made.push(match known {
-            Some(known) => made[known].clone(),
-            None => {
-                let copied = outlines[..k].iter().zip(&made).find_map(|(other, fit)| {
-                    moved(fit, &*other.surface, &*outline.surface, accuracy)
-                });
-                Arc::new(match copied {
-                    Some(copied) => copied,
-                    None => of_surface(&*outline.surface, &options)
-                        .map_err(|e| not_fitted(&outline.name, &e, accuracy))?,
-                })
-            }
-        });
+    let fitted = |which: &[usize]| -> Vec<Result<Arc<Nurbs<2>>, ExportFailure>> {
+        let fit = |&k: &usize| {
+            let fit = of_surface(&*outlines[k].surface, &options);
+            fit.map(Arc::new).map_err(|e| not_fitted(&outlines[k].name, &e, accuracy))
+        };
+        which.par_iter().map(fit).collect()
+    };
+    let first = |k: usize| outlines.iter().position(|o| o.surface.same(&outlines[k].surface));
+    let firsts: Vec<usize> = (0..outlines.len()).map(|k| first(k).unwrap_or(k)).collect();
+    let (mut leaders, mut followers): (Vec<usize>, Vec<(usize, usize)>) = (Vec::new(), Vec::new());
+    for k in (0..outlines.len()).filter(|&k| firsts[k] == k) {
+        let alike = |l: &&usize| motion(&*outlines[**l].surface, &*outlines[k].surface).is_some();
+        match leaders.iter().find(alike) {
+            Some(&leader) => followers.push((k, leader)),
+            None => leaders.push(k),
+        }
     }
-    Ok(made)
+    let mut made: Vec<Option<Arc<Nurbs<2>>>> = vec![None; outlines.len()];
+    for (k, fit) in leaders.iter().zip(fitted(&leaders)) {
+        made[*k] = Some(fit?);
+    }
+    let mut others = Vec::new();
+    for (k, leader) in followers {
+        let (from, to) = (&*outlines[leader].surface, &*outlines[k].surface);
+        let copied = made[leader].as_ref().and_then(|fit| moved(fit, from, to, accuracy));
+        match copied {
+            Some(copied) => made[k] = Some(Arc::new(copied)),
+            None => others.push(k),
+        }
+    }
+    for (k, fit) in others.iter().zip(fitted(&others)) {
+        made[*k] = Some(fit?);
+    }
+    Ok(firsts.iter().filter_map(|&k| made[k].clone()).collect())
 }
 
 /// Distances below this share of the size count as rounding between a surface and its moved copy.
 const COPIED: f64 = 1e-11;
 
-/// The fit of a surface, turned and shifted onto a copy of that surface, as are the blades of a propeller: a fit is
-/// the spline through its interpolation points, so that it is the copy's where these are turned and shifted alike.
-/// Points between them are compared as well.
-fn moved(
-    fit: &Nurbs<2>,
-    from: &dyn Surface<f64>,
-    to: &dyn Surface<f64>,
-    accuracy: f64,
-) -> Option<Nurbs<2>> {
+/// What turns and shifts a surface onto another.
+struct RigidMotion {
+    /// A place of each, and axes there.
+    origins: [Vec3; 2],
+    axes: [[Vec3; 3]; 2],
+    /// Places that are no farther apart are one.
+    near: f64,
+}
+
+impl RigidMotion {
+    fn place(&self, p: Vec3) -> Vec3 {
+        let d = p - self.origins[0];
+        (0..3).fold(self.origins[1], |sum, k| sum + self.axes[1][k] * d.dot(self.axes[0][k]))
+    }
+
+    fn apart(&self, own: &[Vec3], theirs: &[Vec3]) -> f64 {
+        own.iter().zip(theirs).map(|(p, q)| self.place(*p).distance(*q)).fold(0.0, f64::max)
+    }
+}
+
+fn sampled(surface: &dyn Surface<f64>, axes: &[Vec<f64>; 2]) -> Vec<Vec3> {
+    let mut out = vec![Vec3::zero(); axes[0].len() * axes[1].len()];
+    surface.grid(&axes[0], &axes[1], &mut out, None);
+    out
+}
+
+/// The motion that takes a few places of a surface to those of another, if there is one.
+fn motion(from: &dyn Surface<f64>, to: &dyn Surface<f64>) -> Option<RigidMotion> {
     const FEW: usize = 5;
-    if fit.exact || fit.weights.is_some() || from.joints() != to.joints() {
+    if from.joints() != to.joints() {
         return None;
     }
-    let sampled = |surface: &dyn Surface<f64>, axes: &[Vec<f64>; 2]| {
-        let mut out = vec![Vec3::zero(); axes[0].len() * axes[1].len()];
-        surface.grid(&axes[0], &axes[1], &mut out, None);
-        out
-    };
     let even = || (0..FEW).map(|k| k as f64 / (FEW - 1) as f64).collect::<Vec<f64>>();
     let few = [even(), even()];
     let (own, theirs) = (sampled(from, &few), sampled(to, &few));
@@ -72,17 +104,24 @@ fn moved(
         let z = x.cross(points[c] - points[0]).normalized()?;
         Some([x, z.cross(x), z])
     };
-    let (before, after) = (axes(&own)?, axes(&theirs)?);
-    let place = |p: Vec3| {
-        let d = p - own[0];
-        (0..3).fold(theirs[0], |sum, k| sum + after[k] * d.dot(before[k]))
-    };
-    let apart = |own: &[Vec3], theirs: &[Vec3]| {
-        own.iter().zip(theirs).map(|(p, q)| place(*p).distance(*q)).fold(0.0, f64::max)
-    };
-    if apart(&own, &theirs) > near {
+    let axes = [axes(&own)?, axes(&theirs)?];
+    let motion = RigidMotion { origins: [own[0], theirs[0]], axes, near };
+    (motion.apart(&own, &theirs) <= near).then_some(motion)
+}
+
+/// The fit of a surface, turned and shifted onto a copy of that surface, as are the blades of a propeller: a fit is
+/// the spline through its interpolation points, so that it is the copy's where these are turned and shifted alike.
+/// Points between them are compared as well.
+fn moved(
+    fit: &Nurbs<2>,
+    from: &dyn Surface<f64>,
+    to: &dyn Surface<f64>,
+    accuracy: f64,
+) -> Option<Nurbs<2>> {
+    if fit.exact || fit.weights.is_some() {
         return None;
     }
+    let motion = motion(from, to)?;
     let means: [Vec<f64>; 2] = std::array::from_fn(|d| {
         let p = fit.degrees[d];
         let mean = |w: &[f64]| fit.paces[d].parameter(w.iter().sum::<f64>() / p as f64);
@@ -91,14 +130,14 @@ fn moved(
     let between = means.clone().map(|all| all.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect());
     let mut off = 0.0f64;
     for axes in [means, between] {
-        off = off.max(apart(&sampled(from, &axes), &sampled(to, &axes)));
-        if off > near {
+        off = off.max(motion.apart(&sampled(from, &axes), &sampled(to, &axes)));
+        if off > motion.near {
             return None;
         }
     }
     // Splines enlarge what their points are off by a few times.
     let error = fit.error + 10.0 * off;
-    let points = fit.points.iter().map(|p| place(*p)).collect();
+    let points = fit.points.iter().map(|p| motion.place(*p)).collect();
     (error <= accuracy).then(|| Nurbs { points, error, ..fit.clone() })
 }
 

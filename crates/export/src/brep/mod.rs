@@ -146,6 +146,27 @@ fn check_side(brep: &Brep, axis: usize, letter: char, size: f64) -> Result<(), E
     }
 }
 
+/// What is not written exactly, and how near it is; nothing where all of it is.
+pub(crate) fn fitted(brep: &Brep, document: &Document) -> Option<Diagnostic> {
+    const NAMED: usize = 3;
+    let mut names: Vec<&str> = Vec::new();
+    for face in brep.faces.iter().filter(|f| !f.exact) {
+        let name = face.name.split('.').next().unwrap_or("");
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let shown = names.iter().take(NAMED).map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
+    let more = match names.len().checked_sub(NAMED) {
+        None | Some(0) if names.is_empty() => return None,
+        None | Some(0) => String::new(),
+        Some(n) => format!(" and {n} more"),
+    };
+    let unit = length_unit(document).0;
+    let message = format!("{shown}{more}: fitted within {:.2e} {unit}", brep.error());
+    Some(Diagnostic::remark("fitted-surfaces", message).help("`tolerance` asks for less, or more"))
+}
+
 /// The metres of the model's unit.
 pub(crate) fn metres(document: &Document) -> f64 {
     length_unit(document).1 / 1000.0

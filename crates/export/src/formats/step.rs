@@ -1,6 +1,6 @@
 //! The shape itself as STEP.
 
-use crate::brep::{brep_or_facets, metres};
+use crate::brep::{brep_or_facets, fitted, metres};
 use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_diag::Diagnostic;
@@ -39,7 +39,7 @@ fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
             None => remark,
         }
     });
-    let told = told.collect();
+    let told = told.chain(fitted(&brep, export.document)).collect();
     export.document.set_export_remarks(told);
     let header = StepHeader {
         title: &stem,

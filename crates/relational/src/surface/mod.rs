@@ -35,6 +35,7 @@ mod swept;
 mod tangent_patch;
 mod translated;
 mod trim;
+mod trim_measures;
 
 pub use arcloft::ArcLoftSurf;
 pub use blister::Blister;

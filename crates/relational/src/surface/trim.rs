@@ -3,11 +3,12 @@
 use crate::arguments::{Snake, common_surface};
 use crate::curve::Segment;
 use crate::snake::{OnSurface, edge_trace};
+use crate::surface::trim_measures::{BorderLens, measured};
 use moldloft_mesh::planar_triangles;
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
-    Border, BorderCurve, Build, CallError, Context, CurveRef, Kind, SurfaceRef, TriangleBody,
-    TriangulatedBorder, Value,
+    Border, BorderCurve, Build, CallError, Context, CurveRef, Kind, SheetMeasures, SurfaceRef,
+    TriangleBody, TriangulatedBorder, Value,
 };
 use std::sync::Arc;
 
@@ -141,11 +142,48 @@ impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
     fn divided(&self, at: &[Vec<T>]) -> Option<(TriangleBody<T>, Vec<Vec<u32>>)> {
         self.facets(at).ok()
     }
+
+    fn measures(&self) -> Option<SheetMeasures<T>> {
+        let even = |n: u32| (0..=n).map(|k| T::from(f64::from(k) / f64::from(n))).collect();
+        let at: Vec<Vec<T>> = self.hems.iter().map(|hem| even(hem.usual)).collect();
+        let (region, turned, _) = self.region(&at).ok()?;
+        let (places, triangles) = region.net(self.inside);
+        let triangles: Vec<[Place<T>; 3]> =
+            triangles.into_iter().map(|t| t.map(|k| places[k])).collect();
+        let mut lenses = Vec::new();
+        for (cycle, turned) in self.cycles.iter().zip(turned) {
+            for &(hem, backwards) in cycle {
+                for w in at[hem].windows(2) {
+                    let [from, to] = if backwards != turned { [w[1], w[0]] } else { [w[0], w[1]] };
+                    lenses.push(BorderLens { snake: &self.hems[hem].curve, from, to });
+                }
+            }
+        }
+        Some(measured(&self.surface, &triangles, &lenses))
+    }
 }
 
 impl<T: Real> Trimmed<T> {
     /// The triangles with vertices at these parameters of the hems, and which these vertices are.
     fn facets(&self, at: &[Vec<T>]) -> Result<(TriangleBody<T>, Vec<Vec<u32>>), CallError> {
+        let (region, turned, mut rims) = self.region(at)?;
+        // What was turned round is counted from its other end.
+        let mut first = 0;
+        for (cycle, turned) in self.cycles.iter().zip(turned) {
+            let total: usize = cycle.iter().map(|&(hem, _)| at[hem].len() - 1).sum();
+            if turned {
+                for &(hem, _) in cycle {
+                    rims[hem].iter_mut().for_each(|v| *v = (2 * first + total - 1) as u32 - *v);
+                }
+            }
+            first += total;
+        }
+        Ok((region.facets(&self.surface, self.inside), rims))
+    }
+
+    /// The region within these vertices of the hems, which of its loops were turned round for it, and the numbers of
+    /// the vertices.
+    fn region(&self, at: &[Vec<T>]) -> Result<DividedRegion<T>, CallError> {
         let mut rims: Vec<Vec<u32>> = at.iter().map(|ts| vec![0; ts.len()]).collect();
         let mut first = 0;
         let mut cycles = Vec::with_capacity(self.cycles.len());
@@ -177,20 +215,12 @@ impl<T: Real> Trimmed<T> {
             cycles.push(places);
         }
         let (region, turned) = TrimRegion::new(cycles, self.scale)?;
-        // What was turned round is counted from its other end.
-        let mut first = 0;
-        for (cycle, turned) in self.cycles.iter().zip(turned) {
-            let total: usize = cycle.iter().map(|&(hem, _)| at[hem].len() - 1).sum();
-            if turned {
-                for &(hem, _) in cycle {
-                    rims[hem].iter_mut().for_each(|v| *v = (2 * first + total - 1) as u32 - *v);
-                }
-            }
-            first += total;
-        }
-        Ok((region.facets(&self.surface, self.inside), rims))
+        Ok((region, turned, rims))
     }
 }
+
+/// A region, which of its loops were turned round, and the vertices of each hem.
+type DividedRegion<T> = (TrimRegion<T>, Vec<bool>, Vec<Vec<u32>>);
 
 /// A place of the parameter plane.
 type Place<T> = [T; 2];
@@ -366,7 +396,8 @@ impl<T: Real> TrimRegion<T> {
         Ok((Self { cycles, scale }, reversed))
     }
 
-    fn facets(&self, surface: &SurfaceRef<T>, [nu, nv]: [usize; 2]) -> TriangleBody<T> {
+    /// Places of the region and triangles between them, the border's first.
+    fn net(&self, [nu, nv]: [usize; 2]) -> (Vec<Place<T>>, Vec<[usize; 3]>) {
         let mut places: Vec<Place<T>> = Vec::new();
         let mut loops: Vec<Vec<usize>> = Vec::new();
         for cycle in &self.cycles {
@@ -395,6 +426,11 @@ impl<T: Real> TrimRegion<T> {
         }
         points.extend(inner);
         let triangles = planar_triangles(&points, &loops, &(rim..points.len()).collect::<Vec<_>>());
+        (places, triangles)
+    }
+
+    fn facets(&self, surface: &SurfaceRef<T>, inside: [usize; 2]) -> TriangleBody<T> {
+        let (places, triangles) = self.net(inside);
         let xyz: Vec<Vec3<T>> =
             places.iter().map(|&[u, v]| surface.jet(u, v, Order::Zero).p).collect();
         let triangles = triangles.into_iter().map(|t| t.map(|k| k as u32)).collect();
