@@ -3,8 +3,8 @@
 use crate::format::json::Json;
 use crate::format::script::measure_text;
 use crate::{
-    CoordinateAxis, DimensionLayout, FaceId, LineId, Loose, Mass, Planes, PointId, SketchFace,
-    SketchObject, SketchSolid,
+    CoordinateAxis, DimensionLayout, DimensionRole, FaceId, LineId, Loose, Mass, Planes, PointId,
+    SketchFace, SketchObject, SketchSolid,
 };
 use moldloft_num::Vec3;
 
@@ -77,7 +77,13 @@ pub fn object_data(
         missing: layout.counts.map(|c| c.missing),
         loose: layout.loose.clone(),
         dimensions: (object.dimensions.iter())
-            .map(|(k, d)| (d.name.clone(), measure_text(&d.measure), layout.values.get(k).copied()))
+            .map(|(k, d)| {
+                let value = match d.role {
+                    DimensionRole::Driving => layout.values.get(k).copied(),
+                    DimensionRole::Reference => layout.measured(object, planes, &d.measure),
+                };
+                (d.name.clone(), measure_text(&d.measure), value)
+            })
             .collect(),
         solid,
     }
