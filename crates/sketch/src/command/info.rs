@@ -186,6 +186,21 @@ impl SketchSession {
                 self.out.push(CommandReply { about, ..CommandReply::warning(text) });
             }
         }
+        let guessed = object.drawing.lines.iter().filter(|(_, l)| l.proposed());
+        let guessed: Vec<crate::LineId> = guessed.map(|(id, _)| *id).collect();
+        if !guessed.is_empty() {
+            let list: Vec<String> = (guessed.iter())
+                .map(|id| format!("{id} ({})", object.drawing.line_text(*id)))
+                .collect();
+            let text = format!(
+                "inclined, and taken as oblique because their ends share no plane: lines {}",
+                list.join(", ")
+            );
+            let mut reply = CommandReply::warning(text);
+            reply.next = Some("TYPE line AS H, P or F where one coordinate stays".to_owned());
+            reply.about = ReplySubject::of("taken-as-oblique").lines(guessed);
+            self.out.push(reply);
+        }
         for (kept, gone, distance) in object.drawing.gaps(None) {
             let text = format!("{gone} is {} from {kept} on the page", plain(rounded(distance)));
             let mut reply = CommandReply::warning(text);
