@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,67 +13,46 @@ import numpy as np
 from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import Error, FileError, UnknownNameError
+from moldloft.sketch_values import (
+    DimensionMark,
+    Gradient,
+    ObjectChange,
+    PlaneOfPoints,
+    Reply,
+    ReplySubject,
+    SketchChain,
+    SketchDimension,
+    SketchFace,
+    SketchLine,
+    SketchObject,
+    SketchPoint,
+    SketchSnap,
+    SketchSuggestion,
+)
 from moldloft.storage import read_text
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "DimensionMark",
     "Drag",
     "Gradient",
     "ObjectChange",
+    "PlaneOfPoints",
     "Reply",
+    "ReplySubject",
     "Sketch",
+    "SketchChain",
+    "SketchDimension",
     "SketchError",
+    "SketchFace",
+    "SketchLine",
+    "SketchObject",
+    "SketchPoint",
     "SketchSnap",
     "SketchSuggestion",
 ]
-
-
-@dataclass(frozen=True)
-class Reply:
-    """What a command answered.
-
-    Attributes
-    ----------
-    severity
-        ``"error"`` (the command was refused and changed nothing), ``"warning"`` or ``"note"``.
-    text
-        What is said.
-    next
-        The next step, for errors and questions.
-    code
-        The number of the manual's table of errors, where it has one.
-    file
-        Name and content of a file that SAVE or EXPORT made.
-    """
-
-    severity: str
-    text: str
-    next: str | None = None
-    code: int | None = None
-    file: tuple[str, bytes] | None = None
-
-    @property
-    def is_error(self) -> bool:
-        """Whether the command was refused."""
-        return self.severity == "error"
-
-    def __str__(self) -> str:
-        number = f" {self.code}" if self.code is not None else ""
-        head = "" if self.severity == "note" else f"{self.severity}{number}: "
-        lines = head + self.text
-        return f"{lines}\n  next: {self.next}" if self.next else lines
-
-    def to_dict(self) -> dict[str, Any]:
-        """The reply as plain data, without the bytes of its file."""
-        return {
-            "severity": self.severity,
-            "code": self.code,
-            "text": self.text,
-            "next": self.next,
-            "file": self.file[0] if self.file else None,
-        }
 
 
 class SketchError(Error, ValueError):
@@ -88,122 +66,6 @@ class SketchError(Error, ValueError):
     def rendered(self) -> str:
         """The replies as they are, or the message after ``error:``."""
         return str(self).rstrip() if self.replies else super().rendered
-
-
-@dataclass(frozen=True)
-class Gradient:
-    """Exact derivatives by dimensions, in the order they were asked for.
-
-    Attributes
-    ----------
-    by
-        The names.
-    volume, area
-        Shape ``(n,)``.
-    centroid
-        Shape ``(n, 3)``.
-    points
-        Of the vertices of :meth:`Sketch.mesh` that are corners of the body, ``(n, vertices, 3)``.
-    """
-
-    by: tuple[str, ...]
-    volume: NDArray[np.float64]
-    area: NDArray[np.float64]
-    centroid: NDArray[np.float64]
-    points: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class ObjectChange:
-    """What happened to an object of a sketch.
-
-    Attributes
-    ----------
-    name
-        The object.
-    added, removed
-        Whether it is new, or gone.
-    body
-        Whether the finished body is another.
-    drawn
-        Points that are new or elsewhere on the page.
-    moved
-        Points whose coordinates are others.
-    removed_points
-        Points that are gone.
-    lines, faces
-        Lines and faces that are new, changed or gone.
-    numbers
-        Dimensions, variables and curves that are new, changed or gone.
-    """
-
-    name: str
-    added: bool
-    removed: bool
-    body: bool
-    drawn: tuple[int, ...]
-    moved: tuple[int, ...]
-    removed_points: tuple[int, ...]
-    lines: tuple[int, ...]
-    faces: tuple[int, ...]
-    numbers: tuple[str, ...]
-
-    @staticmethod
-    def _of(row: tuple[str, list[bool], list[list[int]], list[str]]) -> ObjectChange:
-        name, flags, parts, numbers = row
-        drawn, moved, removed, lines, faces = (tuple(p) for p in parts)
-        added, gone, body = flags
-        return ObjectChange(
-            name, added, gone, body, drawn, moved, removed, lines, faces, tuple(numbers)
-        )
-
-
-@dataclass(frozen=True)
-class SketchSnap:
-    """A place on the page that a pointer snaps to.
-
-    Attributes
-    ----------
-    at
-        The place, ``(u, v)``.
-    point
-        The point that is there, or that the extension runs through.
-    line
-        The line that is there.
-    part
-        The part of the line's length, 0 to 1.
-    axis
-        The axis of the extension: ``"X"``, ``"Y"`` or ``"Z"``.
-    """
-
-    at: tuple[float, float]
-    point: int | None = None
-    line: int | None = None
-    part: float | None = None
-    axis: str | None = None
-
-
-@dataclass(frozen=True)
-class SketchSuggestion:
-    """A missing dimension as the picture suggests it.
-
-    Attributes
-    ----------
-    axis
-        ``"X"``, ``"Y"`` or ``"Z"``.
-    p, q
-        From the point ``p`` to the point ``q``.
-    value
-        The distance.
-    guess
-        True when the picture leaves the depth open.
-    """
-
-    axis: str
-    p: int
-    q: int
-    value: float
-    guess: bool
 
 
 class Sketch:
@@ -307,7 +169,7 @@ class Sketch:
         """
         replies: list[Reply] = []
         for line in text.splitlines():
-            new = [Reply(s, t, n, c, f) for s, c, t, n, f in self._session.run_line(line)]
+            new = [Reply._of(row) for row in self._session.run_line(line)]
             replies += new
             bad = next((r for r in new if r.is_error), None)
             if strict and bad is not None:
@@ -402,7 +264,7 @@ class Sketch:
             When a command is refused.
         """
         rows, changes = self._session.report(text)
-        replies = [Reply(s, t, n, c, f) for s, c, t, n, f in rows]
+        replies = [Reply._of(row) for row in rows]
         bad = next((r for r in replies if r.is_error), None)
         if bad is not None:
             raise SketchError(str(bad), replies)
@@ -548,7 +410,8 @@ class Sketch:
         Returns
         -------
         list of (ndarray, ndarray)
-            Vertices, ``(n, 3)``, and triangles, ``(m, 3)``, of each body.
+            Vertices, ``(n, 3)``, and faces, ``(m, 4)``, of each body; a triangle has its last
+            vertex twice.
         """
         return self._session.candidates(self._name(name), False)
 
@@ -565,12 +428,143 @@ class Sketch:
         Returns
         -------
         (ndarray, ndarray) or None
-            Vertices, ``(n, 3)``, and triangles, ``(m, 3)``; None when no body is known.
+            Vertices, ``(n, 3)``, and faces, ``(m, 4)``, a triangle with its last vertex twice; None
+            when no body is known.
         """
         found = self._session.candidates(self._name(name), True)
         return found[0] if found else None
 
+    def check(self, *, name: str | None = None) -> list[Reply]:
+        """What is doubtful, missing or contradictory, as data.
+
+        Parameters
+        ----------
+        name
+            The object; by default the active one, and it stays the active one.
+
+        Returns
+        -------
+        list of Reply
+            Those whose ``about`` says what they are about: doubtful types, gaps, contradictions,
+            missing dimensions with a suggestion, planes that passed each other, what is wrong with
+            the body.
+
+        Examples
+        --------
+        >>> from moldloft import Sketch
+        >>> s = Sketch()
+        >>> _ = s.run("SKETCH A 2D XZ; POINT 1 0 0; POINT 2 90 0; LINE 1 2")
+        >>> [(r.about.kind, r.about.points, r.about.suggestion.value) for r in s.check()]
+        [('missing-dimension', (2,), 90.0)]
+        """
+        active = self.active
+        try:
+            replies = self.run(f'CHECK "{self._name(name)}"')
+        finally:
+            if active is not None and active != self.active:
+                self.run(f'USING "{active}"')
+        return [reply for reply in replies if reply.about is not None]
+
+    def why(self, axis: str, p: int, q: int) -> SketchChain:
+        """The chain of dimensions that determines the distance of two points of the active object.
+
+        Parameters
+        ----------
+        axis
+            ``"X"``, ``"Y"`` or ``"Z"``.
+        p, q
+            Labels of points.
+
+        Returns
+        -------
+        SketchChain
+            Points and dimensions on the way from ``p`` to ``q``, and the distance.
+        """
+        about = self.run(f"WHY {axis} {int(p)} {int(q)}")[-1].about
+        assert about is not None and about.axis is not None
+        return SketchChain(about.axis, about.points, about.names, about.value, about.lines)
+
+    def planes(self) -> list[PlaneOfPoints]:
+        """The dimensioning planes of the active object, by axis and coordinate, free ones last.
+
+        Returns
+        -------
+        list of PlaneOfPoints
+            Each with its points.
+        """
+        found = [reply.about for reply in self.run("EXTENSIONS")]
+        return [
+            PlaneOfPoints(one.axis, one.points, one.value)
+            for one in found
+            if one is not None and one.axis is not None
+        ]
+
+    def marks(self, *, name: str | None = None, view: str | None = None) -> list[DimensionMark]:
+        """Where the dimensions stand on the drawing: dimension lines, witness lines, texts.
+
+        Parameters
+        ----------
+        name
+            The object; by default the active one.
+        view
+            ``"TOP"``, ``"FRONT"``, ``"SIDE"``, ``"ISO"``, ... for a view of the body; by default
+            the page as it was drawn.
+
+        Returns
+        -------
+        list of DimensionMark
+            In the order of the dimensions; those that a view looks along are left out.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such object or view.
+
+        Examples
+        --------
+        >>> from moldloft import Sketch
+        >>> s = Sketch()
+        >>> _ = s.run("SKETCH A 2D XZ; POINT 1 0 0; POINT 2 90 0; LINE 1 2; DIM W X 1 2 = 8")
+        >>> mark = s.marks()[0]
+        >>> mark.text, mark.line[1][0] - mark.line[0][0]
+        ('W 8', 90.0)
+        """
+        return [DimensionMark._of(row) for row in self._session.marks(self._name(name), view)]
+
     # -- objects -----------------------------------------------------------------------------
+
+    def parts(self, name: str | None = None) -> SketchObject:
+        """An object with its points, lines, faces and dimensions as values.
+
+        Parameters
+        ----------
+        name
+            The object; by default the active one.
+
+        Returns
+        -------
+        SketchObject
+            As it is now: later edits do not change it.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such object, or none is active.
+
+        Examples
+        --------
+        >>> from moldloft import Sketch
+        >>> s = Sketch()
+        >>> _ = s.run("SKETCH A 2D XZ; POINT 1 0 0; POINT 2 90 0; LINE 1 2; DIM W X 1 2 = 8")
+        >>> a = s.parts()
+        >>> a.lines[1].type, a.points[2].at, a.points[2].page
+        ('X', (8.0, 0.0, 0.0), (90.0, 0.0))
+        """
+        wanted = self._name(name).lower()
+        for known, data in self.objects.items():
+            if known.lower() == wanted:
+                return SketchObject._of(data)
+        raise UnknownNameError(f"unknown object `{name}` in this sketch")
 
     @property
     def active(self) -> str | None:

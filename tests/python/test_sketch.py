@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -613,3 +615,106 @@ def test_a_program_has_the_unit_of_its_sketches(tmp_path):
     ):
         with pytest.raises(moldloft.ModelError, match=r"is in (ft|mm)"):
             load(text)
+
+
+BLOCK = """SKETCH B; AXES 345 40 90
+POINT 1 0 0; POINT 2 100 -27; POINT 3 177 37; POINT 4 77 64
+POINT 5 0 100; POINT 6 100 73; POINT 7 177 137; POINT 8 77 164
+POLYLINE 1 2 3 4 CLOSE; POLYLINE 5 6 7 8 CLOSE; LINE 1 5; LINE 2 6; LINE 3 7; LINE 4 8
+DIM W X 1 2 10; DIM D Y 2 3 6"""
+
+
+def test_what_is_missing_as_data():
+    sketch = Sketch()
+    sketch.run(BLOCK)
+    (missing,) = sketch.check()
+    assert missing.about.kind == "missing-dimension"
+    assert (missing.about.axis, missing.about.points) == ("Z", (5, 6, 7, 8))
+    suggested = missing.about.suggestion
+    assert (suggested.axis, suggested.p, suggested.guess) == ("Z", 1, False)
+    sketch.dimension("Z", suggested.p, suggested.q, suggested.value, name="H")
+    assert sketch.check() == []
+    with pytest.raises(SketchError) as refused:
+        sketch.run("DIM OTHER Z 2 7 99")
+    about = refused.value.replies[-1].about
+    assert about.kind == "contradictory-dimension" and about.names[:2] == ("OTHER", "H")
+    assert about.value == pytest.approx(99 - suggested.value)
+    assert refused.value.replies[-1].to_dict()["about"]["kind"] == "contradictory-dimension"
+
+
+def test_check_of_another_object_leaves_the_active_one():
+    sketch = Sketch()
+    sketch.run(BLOCK)
+    sketch.run("SKETCH C 2D XZ; POINT 1 0 0; POINT 2 9 0; LINE 1 2")
+    assert sketch.check(name="B")[0].about.axis == "Z"
+    assert sketch.active == "C"
+
+
+def test_chains_and_planes_as_data():
+    sketch = Sketch()
+    sketch.run(BLOCK + "\nDIM H1 Z 1 5 4")
+    chain = sketch.why("X", 4, 7)
+    assert (chain.names, chain.value, chain.points[0], chain.points[-1]) == (("W",), 10.0, 4, 7)
+    assert sketch.why("X", 1, 4) == dataclasses.replace(
+        sketch.why("X", 1, 4), names=(), value=0.0, points=(1, 4)
+    )
+    planes = sketch.planes()
+    assert [(p.axis, p.at) for p in planes] == [
+        ("X", 0), ("X", 10), ("Y", 0), ("Y", 6), ("Z", 0), ("Z", 4),
+    ]  # fmt: skip
+    assert planes[1].points == (2, 3, 6, 7)
+    sketch.run("UNSET H1")
+    assert sketch.planes()[-1].at is None and sketch.why("Z", 1, 5).value is None
+
+
+def test_parts_as_values():
+    sketch = Sketch()
+    sketch.run(BLOCK + "\nDIM H1 Z 1 5 4\nGENERATE FACES")
+    block = sketch.parts("b")
+    assert (block.name, block.state, block.volume, block.area) == ("B", "solid", 240.0, 248.0)
+    assert block.points[7].at == (10.0, 6.0, 4.0) and block.points[7].page == (177.0, 137.0)
+    assert block.lines[1].points == (1, 2) and block.lines[1].type == "X"
+    assert len(block.faces) == 6 and all(len(f.outer) == 4 for f in block.faces.values())
+    assert block.dimensions["W"].value == 10.0 and block.dimensions["W"].measures == "X 1 TO 2"
+    with pytest.raises(UnknownNameError):
+        sketch.parts("nobody")
+
+
+def test_dimension_lines_are_parallel_to_their_axis_and_apart():
+    sketch = Sketch()
+    sketch.run(BLOCK + "\nDIM H1 Z 1 5 4\nGENERATE FACES")
+    angles = {"X": 345, "Y": 40, "Z": 90}
+    marks = sketch.marks()
+    assert [m.text for m in marks] == ["W 10", "D 6", "H1 4"]
+    for mark in marks:
+        (a, b), (c, d) = mark.line
+        along = np.radians(angles[mark.axis])
+        # In the direction of the dimension, for a picture that is drawn to within a unit.
+        assert abs((c - a) * np.sin(along) - (d - b) * np.cos(along)) < 1e-9
+        assert (c - a) * np.cos(along) + (d - b) * np.sin(along) > 70
+        assert mark.at == pytest.approx(((a + c) / 2, (b + d) / 2))
+        for witness, end in zip(mark.witnesses, mark.line, strict=True):
+            ends = np.array(witness)
+            way = ends[1] - ends[0]
+            off = np.array(end) - ends[0]
+            assert abs(way[0] * off[1] - way[1] * off[0]) < 1e-6 * np.hypot(*way)
+    # From the front the depth is not seen, and lengths are true.
+    front = sketch.marks(view="front")
+    assert [m.name for m in front] == ["W", "H1"]
+    (a, b), (c, d) = front[0].line
+    assert (c - a, d - b) == pytest.approx((10, 0))
+    with pytest.raises(UnknownNameError):
+        sketch.marks(view="below")
+
+
+def test_hidden_edges_are_dashed_where_they_are_hidden():
+    sketch = Sketch()
+    sketch.run(BLOCK + "\nDIM H1 Z 1 5 4\nGENERATE FACES\nVIEW ISO\nSHOW LABELS OFF")
+    picture = sketch.run("EXPORT SVG a.svg")[-1].file[1].decode()
+    lines = re.findall(r"<line [^>]*>", picture)
+    dashed = [line for line in lines if "dasharray" in line]
+    assert (len(lines), len(dashed)) == (12, 3)
+    assert "paint-order" not in picture
+    sketch.run("SHOW DIMENSIONS ON")
+    picture = sketch.run("EXPORT SVG a.svg")[-1].file[1].decode()
+    assert picture.count("<polygon") == 6 and ">W 10</text>" in picture

@@ -13,8 +13,8 @@ use moldloft::mesh::Mesh;
 use moldloft::num::Vec3;
 use moldloft::picture::{Camera, Options, StyledPolyline, render};
 use moldloft::sketch::{
-    CommandReply, DrawingHit, Files, ObjectChange, PointId, SketchSession, SketchSolid, Suggestion,
-    script,
+    CommandReply, DimensionMark, DrawingHit, Files, ObjectChange, PointId, ReplySubject,
+    SketchSession, SketchSolid, Suggestion, script,
 };
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -62,9 +62,64 @@ impl Files for Disk {
     }
 }
 
-/// A reply: severity, code, text, next step, and a file to write.
-type Answer<'py> =
-    (&'static str, Option<u16>, String, Option<String>, Option<(String, Bound<'py, PyBytes>)>);
+/// A dimension that the picture suggests: axis, from, to, value, and whether the depth is a guess.
+type Suggested = (String, u32, u32, f64, bool);
+
+/// What a reply is about: kind, points, lines, faces, names, axis, value, place, suggestion.
+type About = (
+    &'static str,
+    Vec<u32>,
+    Vec<u32>,
+    Vec<u32>,
+    Vec<String>,
+    Option<String>,
+    Option<f64>,
+    Option<[f64; 3]>,
+    Option<Suggested>,
+);
+
+/// A reply: severity, code, text, next step, a file to write, and what it is about.
+type Answer<'py> = (
+    &'static str,
+    Option<u16>,
+    String,
+    Option<String>,
+    Option<(String, Bound<'py, PyBytes>)>,
+    Option<About>,
+);
+
+/// A dimension on the page: name, text, value, whether it only measures, axis, place of the text, dimension line,
+/// witness lines.
+type Mark = (
+    String,
+    String,
+    Option<f64>,
+    bool,
+    Option<String>,
+    [f64; 2],
+    Option<[[f64; 2]; 2]>,
+    Vec<[[f64; 2]; 2]>,
+);
+
+fn suggested(s: Suggestion) -> Suggested {
+    (s.axis.to_string(), s.p.0, s.q.0, s.value, s.open)
+}
+
+fn about(subject: ReplySubject) -> Option<About> {
+    (!subject.kind.is_empty()).then(|| {
+        (
+            subject.kind,
+            subject.points.into_iter().map(|p| p.0).collect(),
+            subject.lines.into_iter().map(|l| l.0).collect(),
+            subject.faces.into_iter().map(|f| f.0).collect(),
+            subject.names,
+            subject.axis.map(|a| a.to_string()),
+            subject.value,
+            subject.place,
+            subject.suggestion.map(suggested),
+        )
+    })
+}
 
 /// A session of the sketch language.
 #[pyclass(frozen, name = "SketchSession", module = "moldloft._core")]
@@ -118,7 +173,7 @@ fn answer(py: Python<'_>, reply: CommandReply) -> Answer<'_> {
         _ => "note",
     };
     let file = reply.file.map(|f| (f.name, PyBytes::new(py, &f.bytes)));
-    (severity, reply.code, reply.text, reply.next, file)
+    (severity, reply.code, reply.text, reply.next, file, about(reply.about))
 }
 
 /// Chords of curves within a thousandth of the body's size, unless a tolerance is given.
@@ -230,16 +285,26 @@ impl PySketch {
     }
 
     /// Dimensions that the picture suggests: axis, from, to, value, and whether the depth is a guess.
-    #[allow(clippy::type_complexity)]
-    fn suggestions(
-        &self,
-        py: Python<'_>,
-        name: &str,
-    ) -> PyResult<Vec<Option<(String, u32, u32, f64, bool)>>> {
+    fn suggestions(&self, py: Python<'_>, name: &str) -> PyResult<Vec<Option<Suggested>>> {
         let wanted = name.to_owned();
         let found = self.long(py, move |s| s.suggestions(&wanted))?;
-        let row = |s: Suggestion| (s.axis.to_string(), s.p.0, s.q.0, s.value, s.open);
-        Ok(found.ok_or_else(|| no_object(name))?.into_iter().map(|s| s.map(row)).collect())
+        Ok(found.ok_or_else(|| no_object(name))?.into_iter().map(|s| s.map(suggested)).collect())
+    }
+
+    /// Where the dimensions stand on the page, or in a view of the body.
+    #[pyo3(signature = (name, view=None))]
+    fn marks(&self, py: Python<'_>, name: &str, view: Option<String>) -> PyResult<Vec<Mark>> {
+        self.lock(py).object(name).ok_or_else(|| no_object(name))?;
+        let (wanted, from) = (name.to_owned(), view.clone());
+        let found = self.long(py, move |s| s.dimension_marks(&wanted, from.as_deref()))?;
+        let found = found.ok_or_else(|| {
+            unknown_name(format!("unknown view `{}`", view.as_deref().unwrap_or_default()))
+        })?;
+        let row = |m: DimensionMark| {
+            let axis = m.axis.map(|a| a.to_string());
+            (m.name, m.text, m.value, m.reference, axis, m.at, m.line, m.witnesses)
+        };
+        Ok(found.into_iter().map(row).collect())
     }
 
     /// The bodies that fit a wireframe, likeliest first; or with `preview` the one body that the picture and

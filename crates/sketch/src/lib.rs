@@ -72,7 +72,7 @@ pub mod solid;
 
 pub use command::{
     CommandError, CommandReply, CommandReport, Files, NullFiles, ObjectChange, OutFile,
-    SketchCommand, SketchSession, Suggestion,
+    ReplySubject, SketchCommand, SketchSession, Suggestion,
 };
 pub use dimension::expr::{DimensionExpr, FUNCTIONS, NoValue};
 pub use dimension::layout::{
@@ -92,6 +92,7 @@ pub use drawing::{
 pub use feature::{
     EdgeBlend, EdgeChoice, FaceChoice, Feature, FeatureKind, FeatureOperand, Placement,
 };
+pub use format::dimension_marks::DimensionMark;
 pub use format::script::script;
 pub use format::{dxf, export, json, json_format};
 pub use moldloft_mesh::triangulate;

@@ -149,11 +149,11 @@ class Host:
         if self.journal is not None and length != self.recorded:
             self.journal.append(self.session.journal(self.recorded))
         self.recorded = length
-        for severity, code, text, following, file in answers:
-            reply = Reply(severity, text, following, code, file)
+        for row in answers:
+            reply = Reply._of(row)
             self.replies.append(reply)
-            if file is not None:
-                reply = self._write(reply, file)
+            if reply.file is not None:
+                reply = self._write(reply, reply.file)
             self._show(reply, where)
         if self.journal is not None and self.rewritten:
             # The file holds everything now: running it and then the old journal would do it twice.

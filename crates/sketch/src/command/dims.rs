@@ -5,6 +5,7 @@ use super::args::Args;
 use super::draw::{require_line, require_point, set_letters};
 use super::question::Question;
 use super::session::{CommandReply, SketchSession};
+use super::subject::{ReplySubject, all_missing};
 use super::words::UNITS;
 use crate::dimension::layout::agree;
 use crate::{
@@ -593,10 +594,11 @@ impl SketchSession {
             let missing =
                 CoordinateAxis::ALL.map(|a| format!("{a}: {}", layout.counts[a.index()].missing));
             let lines = self.loose_lines(&object, &view, &layout);
+            let list: Vec<&str> = lines.iter().map(|l| l.0.as_str()).collect();
             let text =
-                format!("dimensions are missing, {}; {}", missing.join(", "), lines.join("; "));
+                format!("dimensions are missing, {}; {}", missing.join(", "), list.join("; "));
             let next = "give them, or see ESTIMATE for suggested values".to_owned();
-            return Err(CommandError::new(404, text, next));
+            return Err(CommandError::new(404, text, next).about(all_missing(lines)));
         }
         self.out.push(CommandReply::note(format!(
             "{}: {} points are exact",
@@ -656,7 +658,24 @@ pub(super) fn rounded(x: f64) -> f64 {
 
 /// A fault of a dimension in words.
 pub(super) fn dimension_fault(fault: &DimensionFault) -> CommandError {
-    match fault {
+    let (kind, names, value): (_, Vec<&String>, _) = match fault {
+        DimensionFault::Redundant { name, path } => {
+            ("redundant-dimension", std::iter::once(name).chain(path).collect(), None)
+        }
+        DimensionFault::Contradictory { name, asked, measured, path } => {
+            let names = std::iter::once(name).chain(path).collect();
+            ("contradictory-dimension", names, Some(asked - measured))
+        }
+        DimensionFault::NoValue { name, reads } => ("no-value", vec![name, reads], None),
+        DimensionFault::Cycle { names } => ("circular-dimensions", names.iter().collect(), None),
+        DimensionFault::NotFinite { name } => ("not-finite", vec![name], None),
+        DimensionFault::OutOfRange { name, value, .. } => {
+            ("out-of-range", vec![name], Some(*value))
+        }
+        DimensionFault::Unsolved { name, residual } => ("unsolved", vec![name], Some(*residual)),
+    };
+    let about = ReplySubject::of(kind).names(names).value(value);
+    let error = match fault {
         DimensionFault::Redundant { name, path } => CommandError::new(
             396,
             format!("{name} is determined already by {}; it agrees", path.join(", ")),
@@ -703,5 +722,6 @@ pub(super) fn dimension_fault(fault: &DimensionFault) -> CommandError {
             ),
             "change it or the dimensions around it",
         ),
-    }
+    };
+    error.about(about)
 }

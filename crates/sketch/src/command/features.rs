@@ -3,6 +3,7 @@
 use super::CommandError;
 use super::args::Args;
 use super::session::{CommandReply, SketchSession};
+use super::subject::ReplySubject;
 use crate::SketchObject;
 use crate::dimension::expr::DimensionExpr;
 use crate::feature::{Feature, FeatureKind, FeatureOperand, Placement};
@@ -313,8 +314,10 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
                 ),
                 "GENERATE FACES finds all faces; or give the missing one with FACE",
             )
+            .about(ReplySubject::of("open-body").points(edges.iter().flatten().copied()))
         }
         NoBody::Flaw(SolidDefect::Crossed { face, sides: [a, b], at }) => {
+            let number = *face;
             let face = face.map_or_else(|| "a face".to_owned(), |f| format!("face {f}"));
             CommandError::new(
                 701,
@@ -327,6 +330,12 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
                     place_text(*at)
                 ),
                 "a dimension has moved lines past each other: UNDO, or change it",
+            )
+            .about(
+                ReplySubject::of("crossed-body")
+                    .faces(number)
+                    .points([a[0], a[1], b[0], b[1]])
+                    .place(*at),
             )
         }
         NoBody::Flaw(SolidDefect::Outside { face, hole }) => {
@@ -345,7 +354,8 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
         ),
         NoBody::Operand { name: inner, why } => {
             let inner = no_body(&SketchObject::new(inner, None), why);
-            CommandError::new(inner.code, format!("{name}: {}", inner.text), inner.next)
+            let text = format!("{name}: {}", inner.text);
+            CommandError { text, ..inner }
         }
         NoBody::NoValue(reads) => CommandError::text(
             format!("{name} reads {reads}, which has no value"),
@@ -353,7 +363,10 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
         ),
         NoBody::Treatment(fault) => {
             let place = fault.at.map(|p| format!(" at {}", place_text(p))).unwrap_or_default();
-            CommandError::new(701, format!("{name}: {}{place}", fault.text), fault.next)
+            let mut about = ReplySubject::of("treatment");
+            about.place = fault.at.map(|p| p.to_array());
+            let text = format!("{name}: {}{place}", fault.text);
+            CommandError::new(701, text, fault.next).about(about)
         }
         NoBody::Axis => CommandError::new(
             701,
@@ -369,12 +382,23 @@ fn combine_error(name: &str, e: &CombineError) -> CommandError {
             701,
             format!("{name}: surfaces do not close, or nearly coincide, at {}", place_text(*p)),
             "CHECK the bodies, or move one of them a little",
-        ),
+        )
+        .about(ReplySubject::of("open-body").place(*p)),
         CombineError::Touching(p) => CommandError::new(
             701,
             format!("{name}: round surfaces touch, or nearly so, at {}", place_text(*p)),
             "let them cross clearly or stay apart",
-        ),
+        )
+        .about(ReplySubject::of("touching-surfaces").place(*p)),
+        CombineError::Coarse(p) => CommandError::new(
+            701,
+            format!(
+                "{name}: surfaces nearly meet at {}, too closely to tell which comes first",
+                place_text(*p)
+            ),
+            "let them meet exactly, cross clearly or stay apart",
+        )
+        .about(ReplySubject::of("nearly-meeting-surfaces").place(*p)),
         CombineError::TooLarge => CommandError::new(
             200,
             format!("{name}: there are too many pieces"),

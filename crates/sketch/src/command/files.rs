@@ -26,7 +26,7 @@ impl SketchSession {
         Json::map([("objects", Json::list(self.objects().iter().map(ObjectData::to_json)))])
     }
 
-    fn data(&mut self, object: &Arc<SketchObject>) -> ObjectData {
+    pub(super) fn data(&mut self, object: &Arc<SketchObject>) -> ObjectData {
         let worked = self.worked(object);
         object_data(object, &worked.view.planes, &worked.layout, worked.solid().cloned())
     }

@@ -4,10 +4,11 @@ use super::args::Args;
 use super::dims::{dimension_fault, rounded};
 use super::draw::require_point;
 use super::session::{CommandReply, DrawingCache, SketchSession};
+use super::subject::{ReplySubject, Suggestion};
 use super::{CommandError, words::CommandTokenKind};
 use crate::{
-    CoordinateAxis, DOUBTFUL, DimensionLayout, DimensionRole, MeasuredQuantity, Planes, PointId,
-    Projection, SketchObject, TypeFault, chain, chain_text,
+    CoordinateAxis, DOUBTFUL, DimensionLayout, DimensionRole, MeasuredQuantity, Planes, Projection,
+    SketchObject, TypeFault, chain, chain_text,
 };
 use moldloft_syntax::number::plain;
 
@@ -29,11 +30,19 @@ impl SketchSession {
             })
             .collect();
         if !untyped.is_empty() {
-            return Some(CommandError::new(
-                402,
-                format!("set line types first: lines {} are untyped", untyped.join(", ")),
-                "TYPE line AS type, or TYPE AUTO",
-            ));
+            return Some(
+                CommandError::new(
+                    402,
+                    format!("set line types first: lines {} are untyped", untyped.join(", ")),
+                    "TYPE line AS type, or TYPE AUTO",
+                )
+                .about(ReplySubject::of("untyped-line").lines(
+                    faults.iter().filter_map(|f| match f {
+                        TypeFault::Untyped { line } => Some(*line),
+                        _ => None,
+                    }),
+                )),
+            );
         }
         faults
             .iter()
@@ -43,16 +52,20 @@ impl SketchSession {
 
     fn type_fault(&self, object: &SketchObject, fault: &TypeFault) -> CommandError {
         let drawing = &object.drawing;
+        let lines_of = |path: &[crate::Reason]| -> Vec<crate::LineId> {
+            let line = |r: &crate::Reason| match r {
+                crate::Reason::Line(id) => Some(*id),
+                _ => None,
+            };
+            path.iter().filter_map(line).collect()
+        };
         let text = |path: &[crate::Reason]| {
             path.iter().map(|r| r.text(drawing)).collect::<Vec<_>>().join(", ")
         };
         match fault {
             TypeFault::Contradiction { line, axis, path } => {
                 // The line that was drawn worst for its type is the likeliest to be wrong.
-                let lines = path.iter().filter_map(|r| match r {
-                    crate::Reason::Line(id) => Some(*id),
-                    _ => None,
-                });
+                let lines = lines_of(path).into_iter();
                 let misfit = |id: &crate::LineId| {
                     let own = drawing.lines.get(id);
                     let own = own.and_then(|l| Some((l, l.free?.single()?)));
@@ -74,6 +87,14 @@ impl SketchSession {
                     ),
                     next,
                 )
+                .about(
+                    // The suspect first, then the line that cannot be, then the others of the path.
+                    ReplySubject::of("type-contradiction")
+                        .axis(*axis)
+                        .lines(suspect)
+                        .lines([*line])
+                        .lines(lines_of(path)),
+                )
             }
             TypeFault::Degraded { line, really, path, .. } => CommandError::new(
                 400,
@@ -84,22 +105,26 @@ impl SketchSession {
                     text(path)
                 ),
                 format!("TYPE {line} AS {}, or retype a line of the path", really.spelling()),
-            ),
+            )
+            .about(ReplySubject::of("type-degraded").lines([*line]).lines(lines_of(path))),
             TypeFault::Coincident { p, q } => CommandError::new(
                 300,
                 format!("points {p} and {q} are in the same three planes, so they coincide"),
                 format!("WELD {p} {q}, or retype a line between them"),
-            ),
+            )
+            .about(ReplySubject::of("coincident-points").points([*p, *q])),
             TypeFault::Loose { point } => CommandError::new(
                 401,
                 format!("point {point} belongs to no line"),
                 format!("draw a line to it, or DELETE POINT {point}"),
-            ),
+            )
+            .about(ReplySubject::of("loose-point").points([*point])),
             TypeFault::Untyped { line } => CommandError::new(
                 402,
                 format!("line {line} is untyped"),
                 format!("TYPE {line} AS type"),
-            ),
+            )
+            .about(ReplySubject::of("untyped-line").lines([*line])),
         }
     }
 
@@ -109,7 +134,7 @@ impl SketchSession {
         object: &SketchObject,
         view: &DrawingCache,
         layout: &DimensionLayout<f64>,
-    ) -> Vec<String> {
+    ) -> Vec<(String, ReplySubject)> {
         (layout.loose.iter().zip(suggestions(object, view, layout)))
             .map(|(loose, suggested)| {
                 let axis = loose.axis;
@@ -131,7 +156,9 @@ impl SketchSession {
                         text.push_str(" (the picture leaves this depth open)");
                     }
                 }
-                text
+                let about = ReplySubject::of("missing-dimension").axis(axis);
+                let about = about.points(loose.points.iter().copied());
+                (text, ReplySubject { suggestion: suggested, ..about })
             })
             .collect()
     }
@@ -145,6 +172,7 @@ impl SketchSession {
             let fault = self.type_fault(&object, &fault);
             let mut reply = CommandReply::warning(fault.text);
             (reply.code, reply.next) = (Some(fault.code), Some(fault.next));
+            reply.about = *fault.about;
             self.out.push(reply);
         }
         for (id, line) in &object.drawing.lines {
@@ -154,20 +182,39 @@ impl SketchSession {
                     object.drawing.line_text(*id),
                     100.0 * line.confidence
                 );
-                self.out.push(CommandReply::warning(text));
+                let about = ReplySubject::of("doubtful-type").lines([*id]).value(line.confidence);
+                self.out.push(CommandReply { about, ..CommandReply::warning(text) });
             }
+        }
+        let guessed = object.drawing.lines.iter().filter(|(_, l)| l.proposed());
+        let guessed: Vec<crate::LineId> = guessed.map(|(id, _)| *id).collect();
+        if !guessed.is_empty() {
+            let list: Vec<String> = (guessed.iter())
+                .map(|id| format!("{id} ({})", object.drawing.line_text(*id)))
+                .collect();
+            let text = format!(
+                "inclined, and taken as oblique because their ends share no plane: lines {}",
+                list.join(", ")
+            );
+            let mut reply = CommandReply::warning(text);
+            reply.next = Some("TYPE line AS H, P or F where one coordinate stays".to_owned());
+            reply.about = ReplySubject::of("taken-as-oblique").lines(guessed);
+            self.out.push(reply);
         }
         for (kept, gone, distance) in object.drawing.gaps(None) {
             let text = format!("{gone} is {} from {kept} on the page", plain(rounded(distance)));
             let mut reply = CommandReply::warning(text);
             reply.next = Some(format!("WELD {kept} {gone} if they are one point"));
+            reply.about = ReplySubject::of("gap").points([kept, gone]).value(distance);
             self.out.push(reply);
         }
         for fault in &layout.faults {
-            self.out.push(CommandReply::warning(dimension_fault(fault).text));
+            let fault = dimension_fault(fault);
+            let about = *fault.about;
+            self.out.push(CommandReply { about, ..CommandReply::warning(fault.text) });
         }
-        for text in self.loose_lines(&object, &view, &layout) {
-            self.out.push(CommandReply::warning(text));
+        for (text, about) in self.loose_lines(&object, &view, &layout) {
+            self.out.push(CommandReply { about, ..CommandReply::warning(text) });
         }
         self.report_validity()?;
         self.report_counts()
@@ -193,7 +240,9 @@ impl SketchSession {
                             "line {id}, {}: its planes passed each other",
                             object.drawing.line_text(*id)
                         );
-                        self.out.push(CommandReply::warning(text));
+                        let about = ReplySubject::of("planes-passed").lines([*id]).axis(axis);
+                        let about = about.value(b - a);
+                        self.out.push(CommandReply { about, ..CommandReply::warning(text) });
                     }
                 }
             }
@@ -205,6 +254,7 @@ impl SketchSession {
             let fault = super::features::no_body(&object, why);
             let mut reply = CommandReply::warning(fault.text);
             (reply.code, reply.next) = (Some(fault.code).filter(|c| *c > 0), Some(fault.next));
+            reply.about = *fault.about;
             self.out.push(reply);
         }
         if let Some(solid) = worked.solid() {
@@ -219,6 +269,7 @@ impl SketchSession {
                         plain(rounded(off))
                     ));
                     reply.code = Some(703);
+                    reply.about = ReplySubject::of("warped-face").faces([*id]).value(off);
                     reply.next =
                         Some("UNDO, or draw a line across it and GENERATE FACES".to_owned());
                     self.out.push(reply);
@@ -245,21 +296,36 @@ impl SketchSession {
             args.end()?;
             require_point(&object, p)?;
             require_point(&object, q)?;
+            let mut about;
             let text = match crate::why(&object.drawing, axis, p, q) {
                 Some(path) => {
+                    about = ReplySubject::of("shared-plane").points([p, q]).value(0.0);
+                    about.lines.extend(path.iter().filter_map(|r| match r {
+                        crate::Reason::Line(id) => Some(*id),
+                        _ => None,
+                    }));
                     let path: Vec<String> = path.iter().map(|r| r.text(&object.drawing)).collect();
                     format!("points {p} and {q} share an {axis} plane by {}", path.join(", "))
                 }
                 None => match chain(&object, planes, axis, p, q) {
-                    Some((way, names)) => format!(
-                        "{axis} from {p} to {q} follows from {} via {}",
-                        names.join(", "),
-                        chain_text(&way)
-                    ),
-                    None => format!("{axis} from {p} to {q} is not determined"),
+                    Some((way, names)) => {
+                        let at = [p, q].map(|p| layout.coordinate(planes, axis, p));
+                        about = ReplySubject::of("chain").points(way.iter().copied()).names(&names);
+                        about = about.value(at[0].zip(at[1]).map(|(a, b)| b - a));
+                        format!(
+                            "{axis} from {p} to {q} follows from {} via {}",
+                            names.join(", "),
+                            chain_text(&way)
+                        )
+                    }
+                    None => {
+                        about = ReplySubject::of("undetermined").points([p, q]);
+                        format!("{axis} from {p} to {q} is not determined")
+                    }
                 },
             };
-            self.out.push(CommandReply::note(text));
+            let about = about.axis(axis);
+            self.out.push(CommandReply { about, ..CommandReply::note(text) });
             return Ok(());
         }
         if args.at_number() {
@@ -268,17 +334,24 @@ impl SketchSession {
             require_point(&object, p)?;
             let reference = object.reference().map_or(p, |r| r.point);
             for axis in CoordinateAxis::ALL {
-                let text = match (
-                    layout.coordinate(planes, axis, p),
-                    chain(&object, planes, axis, reference, p),
-                ) {
-                    (Some(x), Some((way, _))) => {
+                let found = layout.coordinate(planes, axis, p);
+                let mut about = ReplySubject::of(if found.is_some() { "chain" } else { "free" });
+                let text = match (found, chain(&object, planes, axis, reference, p)) {
+                    (Some(x), Some((way, names))) => {
+                        about = about.points(way.iter().copied()).names(&names);
                         format!("{axis} = {} via {}", plain(x), chain_text(&way))
                     }
-                    (Some(x), None) => format!("{axis} = {}", plain(x)),
-                    (None, _) => format!("{axis} is free"),
+                    (Some(x), None) => {
+                        about = about.points([p]);
+                        format!("{axis} = {}", plain(x))
+                    }
+                    (None, _) => {
+                        about = about.points([p]);
+                        format!("{axis} is free")
+                    }
                 };
-                self.out.push(CommandReply::note(text));
+                let about = about.axis(axis).value(found);
+                self.out.push(CommandReply { about, ..CommandReply::note(text) });
             }
             return Ok(());
         }
@@ -345,8 +418,8 @@ impl SketchSession {
                 points.join(",")
             )));
         }
-        for text in self.loose_lines(&object, &view, &layout) {
-            self.out.push(CommandReply::note(text));
+        for (text, about) in self.loose_lines(&object, &view, &layout) {
+            self.out.push(CommandReply { about, ..CommandReply::note(text) });
         }
         Ok(())
     }
@@ -357,19 +430,23 @@ impl SketchSession {
         let object = self.active()?.clone();
         let (view, layout) = self.laid_out(&object);
         for axis in CoordinateAxis::ALL.into_iter().filter(|a| only.is_none_or(|o| o == *a)) {
-            let mut rows: Vec<(Option<f64>, String)> = (0..view.planes.counts()[axis.index()])
+            let mut rows: Vec<(Option<f64>, CommandReply)> = (0..view.planes.counts()
+                [axis.index()])
                 .map(|k| {
                     let points: Vec<String> =
                         view.planes.members(axis, k).iter().map(ToString::to_string).collect();
                     let at = layout.coordinates[axis.index()][k];
                     let value = at.map_or("free".to_owned(), plain);
-                    (at, format!("{axis} plane of {}: {value}", points.join(",")))
+                    let text = format!("{axis} plane of {}: {value}", points.join(","));
+                    let about = ReplySubject::of("plane").axis(axis).value(at);
+                    let about = about.points(view.planes.members(axis, k).iter().copied());
+                    (at, CommandReply { about, ..CommandReply::note(text) })
                 })
                 .collect();
             rows.sort_by(|a, b| {
                 a.0.unwrap_or(f64::INFINITY).total_cmp(&b.0.unwrap_or(f64::INFINITY))
             });
-            self.out.extend(rows.into_iter().map(|r| CommandReply::note(r.1)));
+            self.out.extend(rows.into_iter().map(|r| r.1));
         }
         Ok(())
     }
@@ -562,8 +639,10 @@ impl SketchSession {
             self.state.picture.face = None;
             return Ok(());
         }
-        let what = ["LABELS", "PLANES", "TYPES"].into_iter().find(|w| args.at(w));
-        let Some(what) = what else { return Err(args.wants("LABELS, PLANES, TYPES or FACE")) };
+        let what = ["LABELS", "PLANES", "DIMENSIONS", "TYPES"].into_iter().find(|w| args.at(w));
+        let Some(what) = what else {
+            return Err(args.wants("LABELS, PLANES, DIMENSIONS, TYPES or FACE"));
+        };
         args.skip();
         let off = args.take_short("OFF");
         args.take_short("ON");
@@ -572,6 +651,7 @@ impl SketchSession {
         match what {
             "LABELS" => picture.labels = !off,
             "PLANES" => picture.planes = !off,
+            "DIMENSIONS" => picture.dimensions = !off,
             _ => picture.types = !off,
         }
         Ok(())
@@ -651,21 +731,6 @@ impl SketchSession {
         self.state.picture.view = name;
         Ok(())
     }
-}
-
-/// A dimension that the picture suggests.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Suggestion {
-    /// Its axis.
-    pub axis: CoordinateAxis,
-    /// From.
-    pub p: PointId,
-    /// To, on the positive side.
-    pub q: PointId,
-    /// The distance, to three digits.
-    pub value: f64,
-    /// Whether the picture leaves the depth open, so that the value is a guess.
-    pub open: bool,
 }
 
 /// For each part that is not connected to the reference, the dimension to the nearest known plane.

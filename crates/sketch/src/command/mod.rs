@@ -13,6 +13,7 @@ mod question;
 mod sensitivity;
 mod session;
 mod solids;
+mod subject;
 mod treatments;
 mod typed;
 pub mod verbs;
@@ -20,7 +21,7 @@ pub mod words;
 
 pub use error::CommandError;
 pub use features::no_body;
-pub use info::Suggestion;
 pub(crate) use session::Picture;
 pub use session::{CommandReply, Files, NullFiles, OutFile, SketchSession};
+pub use subject::{ReplySubject, Suggestion};
 pub use typed::{CommandReport, ObjectChange, SketchCommand};

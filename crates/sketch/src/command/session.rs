@@ -2,6 +2,7 @@
 
 use super::args::Args;
 use super::question::Question;
+use super::subject::ReplySubject;
 use super::words::{self, Command};
 use super::{CommandError, verbs};
 use crate::solid::feature::{NoBody, body};
@@ -63,6 +64,8 @@ pub struct CommandReply {
     pub next: Option<String>,
     /// A file to write.
     pub file: Option<OutFile>,
+    /// What it is about, as data.
+    pub about: ReplySubject,
 }
 
 impl CommandReply {
@@ -74,6 +77,7 @@ impl CommandReply {
             text: text.into(),
             next: None,
             file: None,
+            about: ReplySubject::default(),
         }
     }
 
@@ -101,7 +105,8 @@ impl From<CommandError> for CommandReply {
     fn from(f: CommandError) -> CommandReply {
         let code = (f.code > 0).then_some(f.code);
         let severity = Severity::Error;
-        CommandReply { severity, code, text: f.text, next: Some(f.next), file: None }
+        let about = *f.about;
+        CommandReply { severity, code, text: f.text, next: Some(f.next), file: None, about }
     }
 }
 
@@ -110,6 +115,8 @@ impl From<CommandError> for CommandReply {
 pub(crate) struct Picture {
     pub labels: bool,
     pub planes: bool,
+    /// Dimension lines, also without the planes.
+    pub dimensions: bool,
     pub types: bool,
     /// `SKETCH`, `TOP`, `FRONT`, `SIDE` or the name of a projection.
     pub view: String,
@@ -256,6 +263,7 @@ impl SketchSession {
         let picture = Picture {
             labels: true,
             planes: false,
+            dimensions: false,
             types: true,
             view: "SKETCH".into(),
             face: None,

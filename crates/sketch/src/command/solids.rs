@@ -3,9 +3,10 @@
 use super::CommandError;
 use super::args::Args;
 use super::draw::require_point;
-use super::info::{Suggestion, suggestions};
+use super::info::suggestions;
 use super::question::Question;
 use super::session::{CommandReply, MAX_POINTS, SketchSession};
+use super::subject::Suggestion;
 use crate::solid::faces::{Fitted, Polygon, WireframeFit, fit, fit_plane};
 use crate::solid::merge::{self, Placed};
 use crate::{CoordinateAxis, DimensionExpr, FaceId, PointId, SketchFace, SketchObject};
@@ -39,9 +40,10 @@ impl SketchSession {
             Some(at) => Ok(view.planes.ids().iter().copied().zip(at).collect()),
             None => {
                 let lines = self.loose_lines(object, &view, &layout);
-                let text =
-                    format!("{} is not fully dimensioned; {}", object.name, lines.join("; "));
-                Err(CommandError::new(404, text, "CONVERT lists what is missing"))
+                let list: Vec<&str> = lines.iter().map(|l| l.0.as_str()).collect();
+                let text = format!("{} is not fully dimensioned; {}", object.name, list.join("; "));
+                let error = CommandError::new(404, text, "CONVERT lists what is missing");
+                Err(error.about(super::subject::all_missing(lines)))
             }
         }
     }

@@ -6,8 +6,8 @@ use super::info::suggestions;
 use super::session::{CommandReply, SessionState, SketchSession, Transaction};
 use super::solids::face_of;
 use crate::{
-    CoordinateAxis, DimensionExpr, FaceId, Free, LineId, MeasuredQuantity, PointId, SketchObject,
-    SketchSolid, Suggestion,
+    CoordinateAxis, DimensionExpr, DimensionMark, FaceId, Free, LineId, MeasuredQuantity, PointId,
+    SketchObject, SketchSolid, Suggestion,
 };
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
@@ -269,6 +269,31 @@ impl SketchSession {
             out.extend(self.solid_of(&one));
         }
         Ok(out)
+    }
+
+    /// Where the dimensions of an object stand: on the page as drawn, or in a view of the body (`TOP`, `FRONT`, `SIDE`
+    /// or the name of a projection). `None` when there is no such object or view.
+    ///
+    /// ```
+    /// use moldloft_sketch::SketchSession;
+    /// let mut s = SketchSession::new();
+    /// s.run_text("SKETCH A 2D XZ\nPOINT 1 0 0; POINT 2 90 0; LINE 1 2; DIM W X 1 2 = 8");
+    /// let mark = &s.dimension_marks("a", None).unwrap()[0];
+    /// let [from, to] = mark.line.unwrap();
+    /// assert_eq!((mark.text.as_str(), from[0], to[0]), ("W 8", 0.0, 90.0));
+    /// ```
+    pub fn dimension_marks(
+        &mut self,
+        name: &str,
+        view: Option<&str>,
+    ) -> Option<Vec<DimensionMark>> {
+        let view = match view {
+            Some(view) => Some(crate::format::svg::projection(&view.to_ascii_uppercase())?),
+            None => None,
+        };
+        let object = Arc::clone(self.state.objects.get(&name.to_lowercase())?);
+        let data = self.data(&object);
+        Some(crate::format::svg::marks(&object, &data, view.as_ref()))
     }
 
     fn changes_since(&mut self, before: &SessionState) -> Vec<ObjectChange> {

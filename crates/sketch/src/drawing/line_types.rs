@@ -53,8 +53,8 @@ impl Drawing {
 
     /// Types every line that the user has not typed: by its stroke and those parallel to it in space,
     /// judged by the noise of the pen; then by the planes that ends share already, to a fixed point.
-    /// Lines whose ends share nothing are proposed as oblique, confidence one half at most. Returns the
-    /// lines so proposed.
+    /// Lines whose ends share nothing are proposed as oblique: that they are inclined is as sure as their strokes say, but
+    /// not that all three coordinates change along them. Returns the lines so proposed.
     pub fn type_all(&mut self) -> Vec<LineId> {
         let ids: Vec<LineId> = self.lines.keys().copied().collect();
         let verdicts = self.verdicts();
@@ -104,7 +104,7 @@ impl Drawing {
             if let Some(line) = self.lines.get_mut(id) {
                 line.free = Some(Free::OBLIQUE);
                 line.source = LineTypeSource::Inferred;
-                line.confidence = 0.5f64.min(share(id));
+                line.confidence = share(id);
             }
         }
         left

@@ -80,8 +80,15 @@ pub struct DrawnLine {
     pub free: Option<Free>,
     /// Where the type is from.
     pub source: LineTypeSource,
-    /// How sure the type is, 0 to 1; below 0.6 it is listed by CHECK.
+    /// How sure the type is, 0 to 1; below [`DOUBTFUL`](crate::DOUBTFUL) it is listed by CHECK.
     pub confidence: f64,
+}
+
+impl DrawnLine {
+    /// Whether it is inclined as drawn, and taken as oblique only because nothing says which coordinate stays.
+    pub fn proposed(&self) -> bool {
+        self.source == LineTypeSource::Inferred && self.free == Some(Free::OBLIQUE)
+    }
 }
 
 /// Two points said to lie in the same plane perpendicular to `axis`.

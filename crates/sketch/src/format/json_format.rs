@@ -3,8 +3,8 @@
 use crate::format::json::Json;
 use crate::format::script::measure_text;
 use crate::{
-    CoordinateAxis, DimensionLayout, FaceId, LineId, Loose, Mass, Planes, PointId, SketchFace,
-    SketchObject, SketchSolid,
+    CoordinateAxis, DimensionLayout, DimensionRole, FaceId, LineId, Loose, Mass, Planes, PointId,
+    SketchFace, SketchObject, SketchSolid,
 };
 use moldloft_num::Vec3;
 
@@ -17,6 +17,8 @@ pub struct ObjectData {
     pub state: &'static str,
     /// Points and tangent points with their coordinates, as far as determined.
     pub points: Vec<(PointId, [Option<f64>; 3])>,
+    /// Where points are drawn.
+    pub page: Vec<(PointId, [f64; 2])>,
     /// Lines: label, ends, type (`X`, `XY`, `O`, or empty while unknown).
     pub lines: Vec<(LineId, PointId, PointId, &'static str)>,
     /// Faces before curves are built in.
@@ -68,6 +70,7 @@ pub fn object_data(
             "sketch"
         },
         points,
+        page: object.drawing.points.iter().map(|(id, p)| (*id, [p.u, p.v])).collect(),
         lines: lines.collect(),
         faces: object.faces.iter().map(|(id, f)| (*id, f.clone())).collect(),
         volume: mass.filter(|_| !flat).map(|m| m.volume),
@@ -77,7 +80,13 @@ pub fn object_data(
         missing: layout.counts.map(|c| c.missing),
         loose: layout.loose.clone(),
         dimensions: (object.dimensions.iter())
-            .map(|(k, d)| (d.name.clone(), measure_text(&d.measure), layout.values.get(k).copied()))
+            .map(|(k, d)| {
+                let value = match d.role {
+                    DimensionRole::Driving => layout.values.get(k).copied(),
+                    DimensionRole::Reference => layout.measured(object, planes, &d.measure),
+                };
+                (d.name.clone(), measure_text(&d.measure), value)
+            })
             .collect(),
         solid,
     }
@@ -89,7 +98,12 @@ impl ObjectData {
         let numbers = |x: &[f64]| Json::list(x.iter().map(|&x| Json::from(x)));
         let labels = |c: &[PointId]| Json::list(c.iter().map(|p| p.0.into()));
         let points = self.points.iter().map(|(id, at)| {
-            Json::map([("id", id.0.into()), ("at", Json::list(at.iter().map(|x| Json::from(*x))))])
+            let page = self.page.binary_search_by_key(id, |p| p.0).ok();
+            Json::map([
+                ("id", id.0.into()),
+                ("at", Json::list(at.iter().map(|x| Json::from(*x)))),
+                ("page", page.map_or(Json::Null, |k| numbers(&self.page[k].1))),
+            ])
         });
         let lines = self.lines.iter().map(|(id, p, q, free)| {
             Json::map([

@@ -2,9 +2,12 @@
 //! from a side.
 
 use crate::command::Picture;
+use crate::format::dimension_marks::{DimensionMark, Page, dimension_marks};
+use crate::format::hidden_lines::{self, SeenStroke, seen_strokes};
 use crate::format::json_format::ObjectData;
-use crate::{CoordinateAxis, MeasuredQuantity, Projection, SketchObject, SketchSolid};
-use moldloft_num::{Real, Vec3};
+use crate::format::painted_faces::painted_faces;
+use crate::{CoordinateAxis, Projection, SketchObject, SketchSolid};
+use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -30,9 +33,45 @@ fn axis_colour(axis: CoordinateAxis) -> &'static str {
 
 /// Elements on the page, v up, before they are put on paper.
 enum SvgElement {
-    Stroke { from: [f64; 2], to: [f64; 2], colour: &'static str, width: f64, dashed: bool },
-    Area { loops: Vec<Vec<[f64; 2]>>, fill: String },
-    Text { at: [f64; 2], shift: [f64; 2], text: String, colour: &'static str },
+    Stroke {
+        from: [f64; 2],
+        to: [f64; 2],
+        colour: &'static str,
+        width: f64,
+        dashed: bool,
+    },
+    Area {
+        loops: Vec<Vec<[f64; 2]>>,
+        fill: String,
+    },
+    Text {
+        at: [f64; 2],
+        shift: [f64; 2],
+        text: String,
+        colour: &'static str,
+    },
+    /// A dimension line with its arrows.
+    Span {
+        from: [f64; 2],
+        to: [f64; 2],
+        colour: &'static str,
+    },
+    /// A text whose middle is at a place.
+    Centred {
+        at: [f64; 2],
+        text: String,
+        colour: &'static str,
+    },
+}
+
+/// The projection of a view of the body; `None` for the sketch as drawn.
+pub(crate) fn projection(view: &str) -> Option<Projection> {
+    match view {
+        "TOP" => Some(Projection { angle_deg: [0.0, 90.0, 0.0], scale: [1.0, 1.0, 0.0] }),
+        "FRONT" => Some(Projection { angle_deg: [0.0, 0.0, 90.0], scale: [1.0, 0.0, 1.0] }),
+        "SIDE" => Some(Projection { angle_deg: [0.0, 0.0, 90.0], scale: [0.0, 1.0, 1.0] }),
+        name => Projection::preset(name),
+    }
 }
 
 /// The picture of objects; `page` is the part of the page that is drawn on.
@@ -41,16 +80,16 @@ pub(crate) fn svg(
     picture: &Picture,
     page: [f64; 4],
 ) -> String {
-    let view = match picture.view.as_str() {
-        "TOP" => Some(Projection { angle_deg: [0.0, 90.0, 0.0], scale: [1.0, 1.0, 0.0] }),
-        "FRONT" => Some(Projection { angle_deg: [0.0, 0.0, 90.0], scale: [1.0, 0.0, 1.0] }),
-        "SIDE" => Some(Projection { angle_deg: [0.0, 0.0, 90.0], scale: [0.0, 1.0, 1.0] }),
-        name => Projection::preset(name),
-    };
+    let view = projection(&picture.view);
     let mut items = Vec::new();
     for (object, data) in objects {
         match (&view, &data.solid) {
-            (Some(view), Some(solid)) => body(solid, view, object, picture, &mut items),
+            (Some(view), Some(solid)) => {
+                body(solid, view, object, picture, &mut items);
+                if picture.planes || picture.dimensions {
+                    dimensions(object, data, Some(view), &mut items);
+                }
+            }
             _ => sketch(object, data, picture, page, &mut items),
         }
     }
@@ -81,9 +120,11 @@ fn around(items: &[SvgElement]) -> Option<[f64; 4]> {
         |p: &[f64; 2]| b = [b[0].min(p[0]), b[1].min(p[1]), b[2].max(p[0]), b[3].max(p[1])];
     for item in items {
         match item {
-            SvgElement::Stroke { from, to, .. } => [from, to].into_iter().for_each(&mut take),
+            SvgElement::Stroke { from, to, .. } | SvgElement::Span { from, to, .. } => {
+                [from, to].into_iter().for_each(&mut take);
+            }
             SvgElement::Area { loops, .. } => loops.iter().flatten().for_each(&mut take),
-            SvgElement::Text { .. } => {}
+            SvgElement::Text { .. } | SvgElement::Centred { .. } => {}
         }
     }
     (b[0] <= b[2] && b[1] <= b[3]).then(|| {
@@ -110,6 +151,9 @@ fn sketch(
     if picture.planes {
         planes(object, data, size, items);
     }
+    if picture.planes || picture.dimensions {
+        dimensions(object, data, None, items);
+    }
     for line in d.lines.values() {
         let colour = if picture.types { colour(line.free) } else { "#333" };
         let (from, to) = (at(line.p), at(line.q));
@@ -129,7 +173,7 @@ fn sketch(
 }
 
 /// A witness line for each dimensioning plane, from its first point (X-, Y-, Z-planes along Z, X, Y, so
-/// that each runs inside its plane), and the dimensions between them.
+/// that each runs inside its plane).
 fn planes(object: &SketchObject, data: &ObjectData, size: f64, items: &mut Vec<SvgElement>) {
     let d = &object.drawing;
     let derived = crate::Planes::of(d);
@@ -170,26 +214,57 @@ fn planes(object: &SketchObject, data: &ObjectData, size: f64, items: &mut Vec<S
             items.push(SvgElement::Text { at: to, shift: [2.0, 4.0], text, colour });
         }
     }
-    // Dimensions on several axes between the same points are reported one below the other.
-    let mut told: BTreeMap<(crate::PointId, crate::PointId), f64> = BTreeMap::new();
-    for (key, dimension) in &object.dimensions {
-        let MeasuredQuantity::Along { axis, p, q } = dimension.measure else { continue };
-        let (Some(a), Some(b)) = (d.points.get(&p), d.points.get(&q)) else { continue };
-        let value =
-            data.dimensions.iter().find(|x| x.0.eq_ignore_ascii_case(key)).and_then(|x| x.2);
-        let value = value.map_or_else(|| "?".to_owned(), plain);
-        let (from, to) = ([a.u, a.v], [b.u, b.v]);
-        let colour = axis_colour(axis);
-        items.push(SvgElement::Stroke { from, to, colour, width: 0.8, dashed: true });
-        let at = [(a.u + b.u) / 2.0, (a.v + b.v) / 2.0];
-        let text = format!("{} {value}", dimension.name);
-        let row = told.entry((p.min(q), p.max(q))).or_insert(0.0);
-        items.push(SvgElement::Text { at, shift: [3.0, 3.0 + 15.0 * *row], text, colour });
-        *row += 1.0;
+}
+
+/// The dimensions of an object with their lines, on the page or in a view.
+fn dimensions(
+    object: &SketchObject,
+    data: &ObjectData,
+    view: Option<&Projection>,
+    items: &mut Vec<SvgElement>,
+) {
+    for mark in marks(object, data, view) {
+        let colour = mark.axis.map_or("#555", axis_colour);
+        for [from, to] in mark.witnesses {
+            items.push(SvgElement::Stroke { from, to, colour, width: 0.5, dashed: false });
+        }
+        if let Some([from, to]) = mark.line {
+            items.push(SvgElement::Span { from, to, colour });
+        }
+        items.push(SvgElement::Centred { at: mark.at, text: mark.text, colour });
     }
 }
 
-/// A body from a side: faces that look at the viewer from far to near, hidden edges dashed.
+/// Where the dimensions of an object stand, on the page as drawn or in a view of the body.
+pub(crate) fn marks(
+    object: &SketchObject,
+    data: &ObjectData,
+    view: Option<&Projection>,
+) -> Vec<DimensionMark> {
+    let planes = crate::Planes::of(&object.drawing);
+    let known: BTreeMap<crate::PointId, [Option<f64>; 3]> = data.points.iter().copied().collect();
+    let values: BTreeMap<String, f64> =
+        (data.dimensions.iter()).filter_map(|d| Some((d.0.to_lowercase(), d.2?))).collect();
+    let value = |key: &str| values.get(key).copied();
+    match view {
+        Some(view) => {
+            let place = |p: crate::PointId| {
+                let [x, y, z] = *known.get(&p)?;
+                Some(view.project(Vec3::new(x?, y?, z?)))
+            };
+            let page = Page { place: &place, unit: &|axis| view.unit(axis) };
+            dimension_marks(object, &planes, &page, &value)
+        }
+        None => {
+            let drawing = &object.drawing;
+            let place = |p: crate::PointId| drawing.points.get(&p).map(|p| [p.u, p.v]);
+            let page = Page { place: &place, unit: &|axis| drawing.projection.unit(axis) };
+            dimension_marks(object, &planes, &page, &value)
+        }
+    }
+}
+
+/// A body from a side: faces that look at the viewer from far to near, then its edges and outlines, hidden parts dashed.
 fn body(
     solid: &SketchSolid<f64>,
     view: &Projection,
@@ -198,49 +273,24 @@ fn body(
     items: &mut Vec<SvgElement>,
 ) {
     let sight = view.sight(object.drawing.letters.up).normalized().unwrap_or_default();
-    let mut seen = vec![false; solid.edges.len()];
-    let mut front: Vec<(f64, usize, f64)> = Vec::new();
-    for (k, face) in solid.faces.iter().enumerate() {
-        let mut vector = Vec3::zero();
-        let (mut depth, mut count) = (0.0, 0.0);
-        for cycle in &face.loops {
-            let way = walk(solid, cycle);
-            for (n, p) in way.iter().enumerate() {
-                let q = way[(n + 1) % way.len()];
-                vector += (*p - way[0]).cross(q - way[0]);
-                depth += p.dot(sight);
-                count += 1.0;
-            }
-        }
-        let normal = vector.normalized().unwrap_or_default();
-        let facing = if solid.flat { normal.dot(sight).abs() } else { normal.dot(sight) };
-        // A patch of a curve may turn towards the viewer in part.
-        if facing > 1e-9 || face.ruled {
-            face.loops.iter().flatten().for_each(|h| seen[h.0] = true);
-        }
-        if facing > 1e-9 {
-            front.push((depth / Real::max(count, 1.0), k, facing));
-        }
-    }
-    front.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    for (_, k, facing) in front {
-        let face = &solid.faces[k];
+    let loops = |f: usize| -> Vec<Vec<[f64; 2]>> {
         let flat = |p: &Vec3| view.project(*p);
-        let loops: Vec<Vec<[f64; 2]>> =
-            face.loops.iter().map(|c| walk(solid, c).iter().map(flat).collect()).collect();
-        let chosen = face.id.is_some() && face.id == picture.face;
-        items.push(SvgElement::Area { loops, fill: shade(facing, chosen) });
-        for &(e, _) in face.loops.iter().flatten() {
-            edge(solid, e, view, "#222", false, items);
+        (solid.faces[f].loops.iter()).map(|c| walk(solid, c).iter().map(flat).collect()).collect()
+    };
+    let mesh = hidden_lines::mesh(solid);
+    for painted in painted_faces(solid, &mesh, view, sight, &loops) {
+        let id = solid.faces[painted.face].id;
+        let chosen = id.is_some() && id == picture.face;
+        for (loops, facing) in painted.areas {
+            items.push(SvgElement::Area { loops, fill: shade(facing, chosen) });
         }
     }
-    for (e, seen) in seen.iter().enumerate() {
-        if !seen {
-            edge(solid, e, view, "#9ab", true, items);
-        }
+    for SeenStroke { from, to, hidden } in seen_strokes(solid, &mesh, view, sight) {
+        let (colour, width) = if hidden { ("#9ab", 0.9) } else { ("#222", 1.4) };
+        items.push(SvgElement::Stroke { from, to, colour, width, dashed: hidden });
     }
     if picture.labels {
-        for v in &solid.vertices {
+        for v in solid.vertices.iter().filter(|v| object.drawing.points.contains_key(&v.id)) {
             let (at, text) = (view.project(v.at), v.id.to_string());
             items.push(SvgElement::Text { at, shift: [4.0, -4.0], text, colour: "#000" });
         }
@@ -267,25 +317,6 @@ fn walk(solid: &SketchSolid<f64>, cycle: &[(usize, bool)]) -> Vec<Vec3> {
         way.extend(own);
     }
     way
-}
-
-fn edge(
-    solid: &SketchSolid<f64>,
-    e: usize,
-    view: &Projection,
-    colour: &'static str,
-    dashed: bool,
-    items: &mut Vec<SvgElement>,
-) {
-    let way: Vec<[f64; 2]> = solid.polyline(e, CHORDS).iter().map(|p| view.project(*p)).collect();
-    let width = if dashed { 0.9 } else { 1.4 };
-    items.extend(way.windows(2).map(|w| SvgElement::Stroke {
-        from: w[0],
-        to: w[1],
-        colour,
-        width,
-        dashed,
-    }));
 }
 
 /// The elements on paper of 800 units.
@@ -321,17 +352,28 @@ fn paper(items: &[SvgElement], [l, b, r, t]: [f64; 4]) -> String {
                     }
                     path.push_str("Z ");
                 }
-                writeln!(out, "<path d=\"{path}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>")
+                // The border in the same colour closes the hairlines between facets.
+                writeln!(
+                    out,
+                    "<path d=\"{path}\" fill=\"{fill}\" fill-rule=\"evenodd\" \
+                     stroke=\"{fill}\" stroke-width=\"0.6\" stroke-linejoin=\"round\"/>"
+                )
             }
             SvgElement::Text { at, shift, text, colour } => {
                 let [x, y] = place(*at);
-                let [x, y] = apart([x + shift[0], y + shift[1]], text, &mut taken);
-                writeln!(
-                    out,
-                    "<text x=\"{x:.2}\" y=\"{y:.2}\" fill=\"{colour}\" stroke=\"#fff\" \
-                     stroke-width=\"3\" paint-order=\"stroke\">{}</text>",
-                    escaped(text)
-                )
+                let at = apart([x + shift[0], y + shift[1]], text, &mut taken);
+                out.push_str(&haloed(at, text, colour));
+                Ok(())
+            }
+            SvgElement::Centred { at, text, colour } => {
+                let [x, y] = place(*at);
+                let at = apart([x - 0.5 * text_width(text), y + 4.0], text, &mut taken);
+                out.push_str(&haloed(at, text, colour));
+                Ok(())
+            }
+            SvgElement::Span { from, to, colour } => {
+                out.push_str(&span(place(*from), place(*to), colour));
+                Ok(())
             }
         };
     }
@@ -339,12 +381,59 @@ fn paper(items: &[SvgElement], [l, b, r, t]: [f64; 4]) -> String {
     out
 }
 
+/// A text before a white border of its own letters: two texts, as SVG 1.1 paints the border over the letters.
+fn haloed([x, y]: [f64; 2], text: &str, colour: &str) -> String {
+    let text = escaped(text);
+    format!(
+        "<text x=\"{x:.2}\" y=\"{y:.2}\" fill=\"#fff\" stroke=\"#fff\" stroke-width=\"3\" \
+         stroke-linejoin=\"round\">{text}</text>\n\
+         <text x=\"{x:.2}\" y=\"{y:.2}\" fill=\"{colour}\">{text}</text>\n"
+    )
+}
+
+/// A dimension line with arrows at its ends; where it is too short for them they stand outside and point to it.
+fn span(from: [f64; 2], to: [f64; 2], colour: &str) -> String {
+    const ARROW: [f64; 2] = [9.0, 2.6];
+    let d = [to[0] - from[0], to[1] - from[1]];
+    let length = libm::hypot(d[0], d[1]);
+    if length < 1e-6 {
+        return String::new();
+    }
+    let d = [d[0] / length, d[1] / length];
+    let outside = length < 3.0 * ARROW[0];
+    let tail = if outside { 2.0 * ARROW[0] } else { 0.0 };
+    let along = |p: [f64; 2], by: f64| [p[0] + by * d[0], p[1] + by * d[1]];
+    let ([x1, y1], [x2, y2]) = (along(from, -tail), along(to, tail));
+    let mut out = format!(
+        "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"{colour}\" stroke-width=\"0.8\"/>\n"
+    );
+    for (tip, turn) in [(from, 1.0), (to, -1.0)] {
+        let [x, y] = along(tip, turn * if outside { -ARROW[0] } else { ARROW[0] });
+        let n = [-ARROW[1] * d[1], ARROW[1] * d[0]];
+        let _ = writeln!(
+            out,
+            "<polygon points=\"{:.2},{:.2} {:.2},{:.2} {:.2},{:.2}\" fill=\"{colour}\"/>",
+            tip[0],
+            tip[1],
+            x + n[0],
+            y + n[1],
+            x - n[0],
+            y - n[1]
+        );
+    }
+    out
+}
+
+/// The width of a text on paper: letters count as 0.56 of their height, which is about their mean in sans-serif types.
+fn text_width(text: &str) -> f64 {
+    13.0 * 0.56 * text.chars().count() as f64
+}
+
 /// Where a text that should begin at `at` stands clear of those before it: there, else up to four lines
-/// lower or higher, whichever is nearest; where none is free, there all the same. Letters count as 0.56
-/// of their height, which is about their mean in sans-serif types.
+/// lower or higher, whichever is nearest; where none is free, there all the same.
 pub fn apart(at: [f64; 2], text: &str, taken: &mut Vec<[f64; 4]>) -> [f64; 2] {
     const LINE: f64 = 15.0;
-    let width = 13.0 * 0.56 * text.chars().count() as f64;
+    let width = text_width(text);
     let of = |[x, y]: [f64; 2]| [x, y - 11.0, x + width, y + 3.0];
     let free = |b: &[f64; 4]| {
         let clear = |t: &[f64; 4]| b[0] >= t[2] || b[2] <= t[0] || b[1] >= t[3] || b[3] <= t[1];

@@ -8,6 +8,7 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::curve::SmoothPiece;
+use super::nearness::Nearness;
 use super::surface::{Carrier, FaceSurface, Jet, Met, meet};
 use super::{IntersectionEdge, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
 use crate::PointId;
@@ -25,6 +26,8 @@ pub enum CombineError {
     Open(Vec3),
     /// Round surfaces touch without crossing, or nearly so, at this place.
     Touching(Vec3),
+    /// Facets do not tell which of several surfaces that nearly meet come first, at this place.
+    Coarse(Vec3),
     /// There are too many pieces.
     TooLarge,
     /// Nothing is left.
@@ -87,12 +90,19 @@ pub fn united<T: Real>(bodies: &[&SketchSolid<T>]) -> Result<SketchSolid<T>, Com
 }
 
 /// What facets of the bodies stand for.
-struct FacetSource<T> {
-    surfaces: Vec<FaceSurface<T>>,
+pub(super) struct FacetSource<T> {
+    pub(super) surfaces: Vec<FaceSurface<T>>,
     /// By surface: the names of its face.
     names: Vec<Vec<Arc<str>>>,
     /// By edge: its curve where it has a closed form, and the surfaces beside it.
-    edges: Vec<(Option<SmoothPiece<T>>, Vec<u32>)>,
+    pub(super) edges: Vec<(Option<SmoothPiece<T>>, Vec<u32>)>,
+    /// By surface: the edges round its face as they are run, none of a face in triangles; and whether the outward side
+    /// is that of the surface's own normal.
+    pub(super) borders: Vec<(Vec<(u32, bool)>, bool)>,
+    /// By edge: where it begins and ends on its curve.
+    pub(super) ranges: Vec<[f64; 2]>,
+    /// By edge: points along it with directions, where it has no closed form.
+    pub(super) traced: Vec<Vec<(Vec3, Vec3)>>,
 }
 
 /// The facets of bodies, and what they stand for.
@@ -127,6 +137,9 @@ fn build<T: Real>(
                 surfaces: Vec::new(),
                 names: Vec::new(),
                 edges: Vec::new(),
+                borders: Vec::new(),
+                ranges: Vec::new(),
+                traced: Vec::new(),
             });
         }
         add_facets(body, operand, &mut operands[operand], &mut all);
@@ -164,6 +177,13 @@ fn add_facets<T: Real>(
             Some(trace) => trace.carrier,
             None => Some(body.piece((k, true))),
         };
+        let ends = edge.trace.as_ref().zip(piece.as_ref()).and_then(|(trace, piece)| {
+            let (first, last) = (trace.points.first()?, trace.points.last()?);
+            Some([along(piece, first.re()), along(piece, last.re())])
+        });
+        source.ranges.push(ends.unwrap_or([0.0, 1.0]));
+        let nodes = edge.trace.iter().filter(|_| piece.is_none()).flat_map(|t| &t.nodes);
+        source.traced.push(nodes.map(|n| (n.0.re(), n.1.re())).collect());
         source.edges.push((piece, Vec::new()));
     }
     let size = outline.points.iter().map(|p| p.re().distance(outline.points[0].re()));
@@ -204,16 +224,23 @@ fn add_facets<T: Real>(
             source.names.push(last.unwrap_or_default());
         }
         let at = |v: u32| outline.points[v as usize];
+        let ring: Vec<(u32, bool)> =
+            body.faces[f].loops.iter().flatten().map(|h| (h.0 as u32 + first_edge, h.1)).collect();
         if let Some(surface) = body.surface(f) {
-            put(source, surface, outline.strips(body, f));
+            let strips = outline.strips(body, f);
+            let outward = along_normal(&surface, &strips, &|v| at(v).re());
+            source.borders.push((ring, outward));
+            put(source, surface, strips);
             continue;
         }
+        let border = ring;
         let (loops, tags) = outline.loops(body, f);
         let ring: Vec<Vec3<T>> = loops[0].iter().map(|&v| at(v)).collect();
         let Some(normal) = newell(&ring).normalized() else { continue };
         let off = |v: &u32| normal.re().dot(at(*v).re() - ring[0].re()).abs();
         let warped = loops.iter().flatten().map(off).fold(0.0, f64::max) > 1e-10 * size;
         if !warped {
+            source.borders.push((border, true));
             put(source, FaceSurface::Plane { at: ring[0], normal }, vec![(loops, tags)]);
             continue;
         }
@@ -228,11 +255,29 @@ fn add_facets<T: Real>(
             let Some(normal) = newell(&ring).normalized() else { continue };
             let tags = [(a, b), (b, c), (c, a)].map(|e| *side.get(&e).unwrap_or(&INNER));
             let facet = (vec![vec![a, b, c]], vec![tags.to_vec()]);
+            source.borders.push((vec![], true));
             put(source, FaceSurface::Plane { at: ring[0], normal }, vec![facet]);
         }
     }
     let last = body.faces.last().map(|f| f.names.clone()).unwrap_or_default();
     source.names.resize(source.surfaces.len(), last);
+}
+
+/// Whether facets of a round face, counter-clockwise from outside, look to the side of the surface's normal.
+fn along_normal<T: Real>(
+    surface: &FaceSurface<T>,
+    facets: &[LoopsAndTags],
+    at: &dyn Fn(u32) -> Vec3,
+) -> bool {
+    let mut sum = 0.0;
+    for (loops, _) in facets.iter().take(8) {
+        let ring: Vec<Vec3> = loops[0].iter().map(|&v| at(v)).collect();
+        let middle = ring.iter().fold(Vec3::zero(), |s, p| s + *p) / ring.len() as f64;
+        let [u, v] = surface.parameters(middle);
+        let [_, du, dv] = surface.jet(T::from(u), T::from(v)).map(Vec3::re);
+        sum += du.cross(dv).dot(newell(&ring));
+    }
+    sum >= 0.0
 }
 
 /// The loops of a facet, and the edge of the body for each side.
@@ -267,6 +312,11 @@ pub(super) fn triangles_of(
         loops.iter().map(|c| c.iter().map(|v| first[v]).collect()).collect();
     triangulate(&points, &cycles, normal).into_iter().map(|t| t.map(|k| used[k])).collect()
 }
+
+/// How far the ways of the nodes along a chord may miss it, as a share of its length, and how often a chord is halved
+/// to get there: an edge that turns sharply within a chord, or ends where its surfaces touch, needs many.
+const RESOLVED: f64 = 1e-12;
+const MOST_HALVINGS: u32 = 16;
 
 /// Two faces beside a side, and the edge of a body that it is part of.
 type Kind = (usize, usize, Option<(usize, u32)>);
@@ -366,6 +416,16 @@ impl<'a, T: Real> Placing<'a, T> {
             let at = self.corner(v, own, edges)?;
             if let Some(at) = at {
                 self.placed.insert(v, at);
+            }
+        }
+        let near = Nearness { sources: &self.all.sources, scale: self.scale };
+        for (v, (own, _)) in &around {
+            let Some(at) = self.placed.get(v) else { continue };
+            for &f in own {
+                let all = &faces[f].sources;
+                if all.iter().all(|&source| near.outside(at.re(), source)) {
+                    return Err(CombineError::Coarse(at.re()));
+                }
             }
         }
         let mut number: HashMap<u32, usize> = HashMap::new();
@@ -657,16 +717,35 @@ impl<'a, T: Real> Placing<'a, T> {
         let mut nodes = Vec::new();
         let mut places: Vec<Vec<[T; 3]>> = vec![Vec::new(); round.len()];
         let mut at_round: Vec<Option<[f64; 2]>> = vec![None; round.len()];
-        for pair in points.windows(2) {
-            let step = pair[1] - pair[0];
+        let mut chords: Vec<([Vec3<T>; 2], u32)> =
+            points.windows(2).rev().map(|p| ([p[0], p[1]], 0)).collect();
+        while let Some(([from, to], depth)) = chords.pop() {
+            let step = to - from;
             let Some(normal) = step.re().normalized() else { continue };
             let lifted = Vec3::lifted(normal);
             let rate = lifted.dot(step);
-            for (x, w) in GAUSS_8_UNIT {
-                let at = pair[0] + step * T::from(x);
+            let before = start.clone();
+            let across = |x: f64, start: &mut Vec<[f64; 2]>| {
+                let at = from + step * T::from(x);
                 let plane = FaceSurface::Plane { at, normal: lifted };
-                let met = solve(&plane, at.re(), 0.5 * step.re().norm(), &mut start)?;
+                solve(&plane, at.re(), 0.5 * step.re().norm(), start)
+            };
+            let mut own: Vec<(Met<T>, Vec3<T>, f64)> = Vec::with_capacity(GAUSS_8_UNIT.len());
+            for (x, w) in GAUSS_8_UNIT {
+                let met = across(x, &mut start)?;
                 let by = met.moved * (rate * w);
+                own.push((met, by, w));
+            }
+            // The ways of the nodes add up to the chord as far as the rule resolves the edge.
+            let way = own.iter().fold(-step.re(), |sum, n| sum + n.1.re());
+            if depth < MOST_HALVINGS && way.norm() > RESOLVED * step.re().norm() {
+                start = before;
+                let middle = across(0.5, &mut start.clone())?.at;
+                chords.push(([middle, to], depth + 1));
+                chords.push(([from, middle], depth + 1));
+                continue;
+            }
+            for (met, by, w) in own {
                 nodes.push((met.at, by));
                 for (r, &f) in round.iter().enumerate() {
                     let surface = self.surface(f);
@@ -737,7 +816,7 @@ impl<'a, T: Real> Placing<'a, T> {
 }
 
 /// The parameter of the point of a piece nearest to `p`.
-fn along<T: Real>(piece: &SmoothPiece<T>, p: Vec3) -> f64 {
+pub(super) fn along<T: Real>(piece: &SmoothPiece<T>, p: Vec3) -> f64 {
     let at = |s: f64| piece.at(T::from(s)).re();
     let mut s = (0..=16)
         .map(|k| f64::from(k) / 16.0)

@@ -38,7 +38,11 @@ pub enum NoBody {
     Axis,
 }
 
-/// The valid body of an object.
+/// How often chords are cut in three until facets tell where round surfaces meet.
+const FINEST: u32 = 2;
+
+/// The valid body of an object. Where its facets are too coarse to say which surfaces meet, it is made again with finer
+/// ones.
 ///
 /// # Errors
 /// [`NoBody`], with the place.
@@ -47,11 +51,48 @@ pub fn body<T: Real>(
     planes: &Planes,
     layout: &DimensionLayout<T>,
 ) -> Result<SketchSolid<T>, NoBody> {
+    let first = body_at(object, planes, layout, 0);
+    let Err(why) = &first else { return first };
+    if !why.coarse() {
+        return first;
+    }
+    for fineness in 1..=FINEST {
+        match body_at(object, planes, layout, fineness) {
+            Err(why) if why.coarse() => {}
+            // More pieces than can be handled: what the first look says is nearer to the point.
+            Err(NoBody::Combine(CombineError::TooLarge)) => break,
+            found => return found,
+        }
+    }
+    first
+}
+
+impl NoBody {
+    /// Whether finer facets may help.
+    fn coarse(&self) -> bool {
+        let nearly = |e: &CombineError| {
+            matches!(e, CombineError::Coarse(_) | CombineError::Touching(_) | CombineError::Open(_))
+        };
+        match self {
+            NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => nearly(e),
+            NoBody::Operand { why, .. } => why.coarse(),
+            _ => false,
+        }
+    }
+}
+
+fn body_at<T: Real>(
+    object: &SketchObject,
+    planes: &Planes,
+    layout: &DimensionLayout<T>,
+    fineness: u32,
+) -> Result<SketchSolid<T>, NoBody> {
     match &object.feature {
-        Some(feature) => feature.body(layout),
+        Some(feature) => feature.body(layout, fineness),
         None => {
             let mut body = unchecked(object, planes, layout).ok_or(NoBody::Unfinished)?;
             body.name_faces(object);
+            body.fineness = fineness;
             valid(body).map_err(NoBody::Flaw)
         }
     }
@@ -108,7 +149,11 @@ impl Feature {
             .collect()
     }
 
-    fn body<T: Real>(&self, layout: &DimensionLayout<T>) -> Result<SketchSolid<T>, NoBody> {
+    fn body<T: Real>(
+        &self,
+        layout: &DimensionLayout<T>,
+        fineness: u32,
+    ) -> Result<SketchSolid<T>, NoBody> {
         let value = |e: &DimensionExpr| {
             let x = e.eval(&|n| layout.values.get(n).copied());
             x.map_err(|no| NoBody::NoValue(no.name))
@@ -127,7 +172,7 @@ impl Feature {
                 || Estimate::of(&inner.drawing, &planes, inner.reference().map(|r| r.point)?);
             let own = solve(inner, &planes, &own, &estimate);
             let name = inner.name.clone();
-            let body = body(inner, &planes, &own).map(|mut body| {
+            let body = body_at(inner, &planes, &own, fineness).map(|mut body| {
                 body.prefix_names(&operand.prefix);
                 body
             });
@@ -162,7 +207,8 @@ impl Feature {
                 let angle = value(angle)? * (std::f64::consts::PI / 180.0);
                 one_side(section, [p.re(), q.re()]).then_some(()).ok_or(NoBody::Axis)?;
                 let name = |e: usize| side_name(&self.operands[0].object, section, e);
-                let body = turned(section, [p, q], angle, &name).ok_or(NoBody::Axis)?;
+                let mut body = turned(section, [p, q], angle, &name).ok_or(NoBody::Axis)?;
+                body.fineness = fineness;
                 valid(body).map_err(NoBody::Flaw)
             }
             (FeatureKind::Place(place), [body]) => Ok(body.placed(&place.similarity(&value)?)),

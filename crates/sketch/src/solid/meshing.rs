@@ -43,9 +43,13 @@ impl<T: Real> SketchSolid<T> {
         self.mesh_of(self.chords(&by_angle))
     }
 
-    /// Chords per edge, one for each 5° of a round curve.
+    /// Chords per edge, one for each 5° of a round curve, and three for each of them by the body's fineness.
     pub(super) fn angular_chords(&self) -> Vec<usize> {
-        self.chords(&by_angle)
+        let more = 3usize.pow(self.fineness);
+        self.chords(&|piece| match piece {
+            SmoothPiece::Cubic(_) if by_angle(piece) == 1 => 1,
+            _ => by_angle(piece) * more,
+        })
     }
 
     fn mesh_of(&self, chords: Vec<usize>) -> Mesh<T> {

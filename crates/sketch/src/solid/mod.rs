@@ -17,6 +17,7 @@ pub(crate) mod gradient;
 pub(crate) mod mass;
 pub mod merge;
 mod meshing;
+mod nearness;
 mod offset;
 pub mod operation;
 mod outline;
@@ -150,6 +151,8 @@ pub struct SketchSolid<T> {
     /// Round faces with borders of any kind.
     pub trims: Vec<Trim<T>>,
     pub(crate) facets: Option<CombinedMesh<T>>,
+    /// How often the chords of round edges are cut in three where the body is combined with others.
+    pub(crate) fineness: u32,
     steps: BTreeMap<usize, u32>,
 }
 
@@ -506,6 +509,7 @@ impl<T: Real> SolidBuilder<'_, T> {
             steps,
             trims: Vec::new(),
             facets: None,
+            fineness: 0,
         }
     }
 

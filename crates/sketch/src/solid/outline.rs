@@ -15,7 +15,7 @@ pub(super) struct Outline<T> {
 }
 
 impl<T: Real> SketchSolid<T> {
-    /// The facets of the body, with a chord for each 5° of round edges.
+    /// The facets of the body, with a chord for each 5° of round edges or, by the body's fineness, a part of it.
     pub(super) fn outline(&self) -> Outline<T> {
         if let Some(facets) = &self.facets {
             let mut side: HashMap<(u32, u32), u32> = HashMap::new();

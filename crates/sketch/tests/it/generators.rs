@@ -422,6 +422,7 @@ fn types_of_shaken_pictures() {
         }
         let got = f64::from(right as u32) / f64::from(lines as u32);
         println!("±{noise}: {got} of {lines} lines right, {doubted} doubted");
+        assert!(20 * doubted <= lines, "±{noise}: {doubted} of {lines} lines doubted");
         assert!(got >= share, "±{noise}: {got} of {lines} lines right, {doubted} doubted");
     }
 }

@@ -1,0 +1,276 @@
+//! Where dimensions stand on a drawing: dimension lines beside what they measure, witness lines from it, and the
+//! places of their texts.
+
+use crate::{
+    CoordinateAxis, DimensionRole, Drawing, LineId, MeasuredQuantity, Planes, PointId, SketchObject,
+};
+use moldloft_syntax::number::plain;
+use std::collections::BTreeMap;
+
+/// The first dimension line stands off the drawing by this share of its size, and each further one as much more.
+const APART: f64 = 0.05;
+
+/// How much a witness line goes beyond the dimension line, and stays off the drawing, as shares of the same.
+const BEYOND: f64 = 0.012;
+
+/// A dimension as it stands on the page, v up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DimensionMark {
+    /// Its name.
+    pub name: String,
+    /// What is written: its name and value, in brackets when it only measures.
+    pub text: String,
+    /// Its value; `None` while it is unknown.
+    pub value: Option<f64>,
+    /// Whether it only measures.
+    pub reference: bool,
+    /// The axis that it runs along.
+    pub axis: Option<CoordinateAxis>,
+    /// Where the text stands: the middle of the dimension line.
+    pub at: [f64; 2],
+    /// The dimension line, with arrows at both ends, in the direction of the dimension; `None` of slopes, angles and equal lengths.
+    pub line: Option<[[f64; 2]; 2]>,
+    /// The witness lines, from the drawing to beyond the dimension line.
+    pub witnesses: Vec<[[f64; 2]; 2]>,
+}
+
+/// A page: where points are drawn, and the directions of the axes.
+pub(crate) struct Page<'a> {
+    pub place: &'a dyn Fn(PointId) -> Option<[f64; 2]>,
+    pub unit: &'a dyn Fn(CoordinateAxis) -> [f64; 2],
+}
+
+/// A dimension line that is still to be put in its row: the axes of its direction and its witness lines.
+struct Row {
+    mark: usize,
+    axis: CoordinateAxis,
+    across: CoordinateAxis,
+    side: f64,
+    /// Ends in (along, across).
+    ends: [[f64; 2]; 2],
+    /// The first row that is clear of the drawing.
+    clear: f64,
+}
+
+/// The marks of all dimensions of an object; `values` by folded name.
+pub(crate) fn dimension_marks(
+    object: &SketchObject,
+    planes: &Planes,
+    page: &Page<'_>,
+    values: &dyn Fn(&str) -> Option<f64>,
+) -> Vec<DimensionMark> {
+    let drawing = &object.drawing;
+    let places: Vec<(PointId, [f64; 2])> =
+        drawing.points.keys().filter_map(|&p| Some((p, (page.place)(p)?))).collect();
+    let size = {
+        let extent = |k: usize| {
+            let all = places.iter().map(|p| p.1[k]);
+            let (l, h) = all.fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
+            h - l
+        };
+        if places.is_empty() { return vec![] } else { extent(0).max(extent(1)).max(1e-12) }
+    };
+    let middle = |l: LineId| {
+        let line = drawing.lines.get(&l)?;
+        let ([a, b], [c, d]) = ((page.place)(line.p)?, (page.place)(line.q)?);
+        Some([(a + c) / 2.0, (b + d) / 2.0])
+    };
+    let mut marks = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
+    for (key, dimension) in &object.dimensions {
+        let value = values(key);
+        let reference = dimension.role == DimensionRole::Reference;
+        let text = value.map_or_else(|| "?".to_owned(), plain);
+        let text = format!("{} {text}", dimension.name);
+        let mut mark = DimensionMark {
+            name: dimension.name.clone(),
+            text: if reference { format!("({text})") } else { text },
+            value,
+            reference,
+            axis: None,
+            at: [0.0; 2],
+            line: None,
+            witnesses: vec![],
+        };
+        let at = match dimension.measure {
+            MeasuredQuantity::Along { axis, p, q } => {
+                mark.axis = Some(axis);
+                match beside(drawing, planes, page, &places, axis, [p, q]) {
+                    Some(row) => {
+                        rows.push(Row { mark: marks.len(), ..row });
+                        Some([0.0; 2])
+                    }
+                    // An axis that this view looks along.
+                    None => None,
+                }
+            }
+            MeasuredQuantity::Datum { axis, point } => {
+                mark.axis = Some(axis);
+                (page.place)(point)
+            }
+            MeasuredQuantity::Length(l) => drawing.lines.get(&l).and_then(|line| {
+                let (a, b) = ((page.place)(line.p)?, (page.place)(line.q)?);
+                let d = [b[0] - a[0], b[1] - a[1]];
+                let length = libm::hypot(d[0], d[1]);
+                if length < 1e-9 * size {
+                    return None;
+                }
+                let n = [-d[1] / length, d[0] / length];
+                let put = |p: [f64; 2], by: f64| [p[0] + by * n[0], p[1] + by * n[1]];
+                let by = APART * size;
+                mark.line = Some([put(a, by), put(b, by)]);
+                mark.witnesses =
+                    [a, b].map(|p| [put(p, BEYOND * size), put(p, by + BEYOND * size)]).to_vec();
+                Some(put([(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0], by))
+            }),
+            MeasuredQuantity::Slope(l) => middle(l),
+            MeasuredQuantity::Angle(l, m) => common(drawing, page, l, m).or_else(|| middle(l)),
+            MeasuredQuantity::Equal(l, _) => middle(l),
+        };
+        if let Some(at) = at {
+            marks.push(DimensionMark { at, ..mark });
+        }
+    }
+    place_rows(rows, page, size, &mut marks);
+    marks
+}
+
+/// The common end of two lines.
+fn common(drawing: &Drawing, page: &Page<'_>, l: LineId, m: LineId) -> Option<[f64; 2]> {
+    let (a, b) = (drawing.lines.get(&l)?, drawing.lines.get(&m)?);
+    let shared = [a.p, a.q].into_iter().find(|p| *p == b.p || *p == b.q)?;
+    (page.place)(shared)
+}
+
+/// Coordinates of a place along two directions of the page; `None` when they are parallel.
+fn split(at: [f64; 2], a: [f64; 2], w: [f64; 2]) -> Option<[f64; 2]> {
+    let det = a[0] * w[1] - a[1] * w[0];
+    let (m, n) = (libm::hypot(a[0], a[1]), libm::hypot(w[0], w[1]));
+    (det.abs() > 0.05 * m * n && m * n > 0.0)
+        .then(|| [(at[0] * w[1] - at[1] * w[0]) / det, (a[0] * at[1] - a[1] * at[0]) / det])
+}
+
+/// The side on which the dimension line is nearest to the two planes that it measures: from points that a line along
+/// one other axis leads away from, beyond all that is drawn between them.
+fn beside(
+    drawing: &Drawing,
+    planes: &Planes,
+    page: &Page<'_>,
+    places: &[(PointId, [f64; 2])],
+    axis: CoordinateAxis,
+    ends: [PointId; 2],
+) -> Option<Row> {
+    let a = (page.unit)(axis);
+    let of_planes = ends.map(|p| planes.plane(axis, p));
+    let [Some(first), Some(second)] = of_planes else { return None };
+    let mut best: Option<(f64, Row)> = None;
+    for across in CoordinateAxis::ALL.into_iter().filter(|w| *w != axis) {
+        if drawing.section == Some(across) {
+            continue;
+        }
+        let w = (page.unit)(across);
+        let third = CoordinateAxis::ALL.into_iter().find(|t| *t != axis && *t != across);
+        let class = |p: PointId| {
+            third.filter(|t| drawing.section != Some(*t)).and_then(|t| planes.plane(t, p))
+        };
+        for side in [-1.0, 1.0] {
+            // The outermost point of each plane, by its place on the third axis.
+            let mut outer: [BTreeMap<Option<usize>, [f64; 2]>; 2] = Default::default();
+            for &(p, at) in places {
+                let own = planes.plane(axis, p);
+                for (k, plane) in [first, second].into_iter().enumerate() {
+                    if own != Some(plane) {
+                        continue;
+                    }
+                    let Some(at) = split(at, a, w) else { continue };
+                    let known = outer[k].entry(class(p)).or_insert(at);
+                    if side * at[1] > side * known[1] {
+                        *known = at;
+                    }
+                }
+            }
+            for (key, &from) in &outer[0] {
+                let Some(&to) = outer[1].get(key) else { continue };
+                let reach = [from[0].min(to[0]), from[0].max(to[0])];
+                let clear = outermost(drawing, page, [a, w], reach, side);
+                let clear = clear.max(side * from[1]).max(side * to[1]);
+                let cost = (clear - side * from[1]) + (clear - side * to[1]);
+                let row = Row { mark: 0, axis, across, side, ends: [from, to], clear };
+                if best.as_ref().is_none_or(|b| cost < b.0 - 1e-9 * cost.abs()) {
+                    best = Some((cost, row));
+                }
+            }
+        }
+    }
+    best.map(|b| b.1)
+}
+
+/// How far the lines of a drawing reach to a side of an axis, between two places along it.
+fn outermost(
+    drawing: &Drawing,
+    page: &Page<'_>,
+    [a, w]: [[f64; 2]; 2],
+    reach: [f64; 2],
+    side: f64,
+) -> f64 {
+    let mut far = f64::NEG_INFINITY;
+    let slack = 1e-6 * (reach[1] - reach[0]);
+    for line in drawing.lines.values() {
+        let ends = [line.p, line.q].map(|p| (page.place)(p).and_then(|at| split(at, a, w)));
+        let [Some(p), Some(q)] = ends else { continue };
+        let (p, q) = if p[0] <= q[0] { (p, q) } else { (q, p) };
+        let (low, high) = (p[0].max(reach[0] + slack), q[0].min(reach[1] - slack));
+        if low > high {
+            continue;
+        }
+        let wide = q[0] - p[0];
+        for x in [low, high] {
+            let t = if wide > 0.0 { (x - p[0]) / wide } else { 0.0 };
+            far = far.max(side * (p[1] + t * (q[1] - p[1])));
+        }
+        if wide <= 0.0 {
+            far = far.max(side * p[1]).max(side * q[1]);
+        }
+    }
+    far
+}
+
+/// Puts dimension lines into rows beside the drawing, shorter ones nearer, so that none lie on each other.
+fn place_rows(mut rows: Vec<Row>, page: &Page<'_>, size: f64, marks: &mut [DimensionMark]) {
+    rows.sort_by(|x, y| {
+        let long = |r: &Row| (r.ends[1][0] - r.ends[0][0]).abs();
+        long(x).total_cmp(&long(y)).then(x.mark.cmp(&y.mark))
+    });
+    // By direction: what is taken, as (from, to, place across).
+    let mut taken: BTreeMap<(usize, usize, bool), Vec<[f64; 3]>> = BTreeMap::new();
+    for row in rows {
+        let (a, w) = ((page.unit)(row.axis), (page.unit)(row.across));
+        let step = APART * size / libm::hypot(w[0], w[1]).max(1e-12);
+        let [from, to] = row.ends;
+        let (low, high) = (from[0].min(to[0]), from[0].max(to[0]));
+        let key = (row.axis.index(), row.across.index(), row.side > 0.0);
+        let own = taken.entry(key).or_default();
+        let mut at = row.clear + step;
+        // Neighbours in a chain may touch.
+        let slack = 1e-6 * (high - low);
+        loop {
+            let hit = own.iter().find(|t| {
+                t[0] < high - slack && t[1] > low + slack && (t[2] - at).abs() < 0.9 * step
+            });
+            match hit {
+                Some(t) => at = t[2] + step,
+                None => break,
+            }
+        }
+        own.push([low, high, at]);
+        let place = |[x, y]: [f64; 2]| [x * a[0] + y * w[0], x * a[1] + y * w[1]];
+        let beyond = BEYOND / APART * step;
+        let mark = &mut marks[row.mark];
+        let ends = [from, to].map(|e| place([e[0], row.side * at]));
+        mark.line = Some(ends);
+        mark.witnesses = [from, to]
+            .map(|e| [e[1] + row.side * beyond, row.side * (at + beyond)].map(|y| place([e[0], y])))
+            .to_vec();
+        mark.at = [(ends[0][0] + ends[1][0]) / 2.0, (ends[0][1] + ends[1][1]) / 2.0];
+    }
+}

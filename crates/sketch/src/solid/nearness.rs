@@ -1,0 +1,102 @@
+//! Whether exact places agree with the facets that told which surfaces meet.
+//!
+//! Facets are off their surfaces by up to their chords, so they may tell that an edge ends in one face where it ends in
+//! the next. The exact corner is then outside of the face that it was taken to be in.
+
+use super::combine::{FacetSource, along};
+use super::surface::FaceSurface;
+use moldloft_num::{Real, Vec3};
+
+/// Farther off than this share of the bodies, facets are right.
+const FAR: f64 = 2e-2;
+
+/// Places within this share of a border are on it: on borders of closed form, and on others, which are known by points.
+const ON: [f64; 2] = [1e-9, 1e-5];
+
+/// Faces of bodies, with their exact borders.
+pub(super) struct Nearness<'a, T> {
+    pub sources: &'a [FacetSource<T>],
+    pub scale: f64,
+}
+
+/// The point of a border that is nearest to a place.
+struct Nearest {
+    distance: f64,
+    /// How far the place is to the left of the border, as its face is seen from outside.
+    left: f64,
+    /// Whether it is an end of its edge.
+    end: Option<Vec3>,
+    exact: bool,
+}
+
+impl<T: Real> Nearness<'_, T> {
+    /// Whether a place on the surface of a face, near its border, is outside of the face.
+    pub fn outside(&self, at: Vec3, (operand, tag): (usize, u32)) -> bool {
+        let source = &self.sources[operand];
+        let (border, along_normal) = &source.borders[tag as usize];
+        let normal = match &source.surfaces[tag as usize] {
+            FaceSurface::Plane { normal, .. } => normal.re(),
+            surface => {
+                let [u, v] = surface.parameters(at);
+                let [_, du, dv] = surface.jet(T::from(u), T::from(v)).map(Vec3::re);
+                let Some(n) = du.cross(dv).normalized() else { return false };
+                if *along_normal { n } else { -n }
+            }
+        };
+        let mut all: Vec<Nearest> = Vec::new();
+        for &(e, forward) in border {
+            all.extend(self.nearest(at, source, e, forward, normal));
+        }
+        let Some(best) = all.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
+            return false;
+        };
+        let on = self.scale * if all.iter().all(|n| n.exact) { ON[0] } else { ON[1] };
+        if best.distance <= on || best.distance > FAR * self.scale {
+            return false;
+        }
+        match best.end {
+            None => best.left < 0.0,
+            // Nearest is a corner: it stands out of the face where both edges leave the place to their right.
+            Some(end) => {
+                let here = |n: &&Nearest| n.end.is_some_and(|p| p.distance(end) <= on);
+                all.iter().filter(here).all(|n| n.left < 0.0)
+            }
+        }
+    }
+
+    fn nearest(
+        &self,
+        at: Vec3,
+        source: &FacetSource<T>,
+        e: u32,
+        forward: bool,
+        normal: Vec3,
+    ) -> Option<Nearest> {
+        let turn = if forward { 1.0 } else { -1.0 };
+        let left = |p: Vec3, way: Vec3| {
+            let way = (way * turn).normalized().unwrap_or_default();
+            normal.cross(way).dot(at - p)
+        };
+        if let Some(piece) = &source.edges[e as usize].0 {
+            let [from, to] = source.ranges[e as usize];
+            let (low, high) = (from.min(to), from.max(to));
+            let s = along(piece, at);
+            let held = s.clamp(low, high);
+            let p = piece.at(T::from(held)).re();
+            let way = piece.velocity(T::from(held)).re() * if from <= to { 1.0 } else { -1.0 };
+            let end = (s != held || held == low || held == high).then_some(p);
+            return Some(Nearest {
+                distance: p.distance(at),
+                left: left(p, way),
+                end,
+                exact: true,
+            });
+        }
+        let nodes = &source.traced[e as usize];
+        let best = nodes.iter().min_by(|a, b| a.0.distance(at).total_cmp(&b.0.distance(at)))?;
+        // The circle through neighbouring nodes is the edge to the third order; its tangent is enough here.
+        let way = best.1.normalized()?;
+        let p = best.0 + way * way.dot(at - best.0);
+        Some(Nearest { distance: p.distance(at), left: left(p, best.1), end: None, exact: false })
+    }
+}

@@ -1,0 +1,498 @@
+"""Values of sketches: what commands answer and change, and the parts of an object."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.arguments import explain
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = [
+    "DimensionMark",
+    "Gradient",
+    "ObjectChange",
+    "PlaneOfPoints",
+    "Reply",
+    "ReplySubject",
+    "SketchChain",
+    "SketchDimension",
+    "SketchFace",
+    "SketchLine",
+    "SketchObject",
+    "SketchPoint",
+    "SketchSnap",
+    "SketchSuggestion",
+]
+
+
+@dataclass(frozen=True)
+class ReplySubject:
+    """What a reply is about.
+
+    Attributes
+    ----------
+    kind
+        What is said, a stable word: ``"missing-dimension"``, ``"doubtful-type"``, ``"gap"``,
+        ``"planes-passed"``, ``"type-contradiction"``, ``"chain"``, ``"open-body"``, ...
+    points, lines, faces
+        Labels, in the order of the sentence; the points of a chain from its start to its end, the
+        line of a contradiction that is likeliest to be wrong first.
+    names
+        Dimensions, variables and curves.
+    axis
+        ``"X"``, ``"Y"``, ``"Z"`` or None.
+    value
+        The number of the sentence: a distance, a coordinate, a confidence from 0 to 1.
+    place
+        The place in space, ``(x, y, z)``.
+    suggestion
+        The dimension that would supply what is missing.
+    """
+
+    kind: str
+    points: tuple[int, ...] = ()
+    lines: tuple[int, ...] = ()
+    faces: tuple[int, ...] = ()
+    names: tuple[str, ...] = ()
+    axis: str | None = None
+    value: float | None = None
+    place: tuple[float, float, float] | None = None
+    suggestion: SketchSuggestion | None = None
+
+    @staticmethod
+    def _of(row: Any) -> ReplySubject:
+        kind, points, lines, faces, names, axis, value, place, suggestion = row
+        return ReplySubject(
+            kind,
+            tuple(points),
+            tuple(lines),
+            tuple(faces),
+            tuple(names),
+            axis,
+            value,
+            None if place is None else (place[0], place[1], place[2]),
+            None if suggestion is None else SketchSuggestion(*suggestion),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as plain data."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What a command answered.
+
+    Attributes
+    ----------
+    severity
+        ``"error"`` (the command was refused and changed nothing), ``"warning"`` or ``"note"``.
+    text
+        What is said.
+    next
+        The next step, for errors and questions.
+    code
+        The number of the manual's table of errors, where it has one.
+    file
+        Name and content of a file that SAVE or EXPORT made.
+    about
+        What the sentence is about, as data; None for plain answers.
+    """
+
+    severity: str
+    text: str
+    next: str | None = None
+    code: int | None = None
+    file: tuple[str, bytes] | None = None
+    about: ReplySubject | None = None
+
+    @staticmethod
+    def _of(row: Any) -> Reply:
+        severity, code, text, following, file, about = row
+        subject = None if about is None else ReplySubject._of(about)
+        return Reply(severity, text, following, code, file, subject)
+
+    @property
+    def is_error(self) -> bool:
+        """Whether the command was refused."""
+        return self.severity == "error"
+
+    def __str__(self) -> str:
+        number = f" {self.code}" if self.code is not None else ""
+        head = "" if self.severity == "note" else f"{self.severity}{number}: "
+        lines = head + self.text
+        return f"{lines}\n  next: {self.next}" if self.next else lines
+
+    def to_dict(self) -> dict[str, Any]:
+        """The reply as plain data, without the bytes of its file."""
+        return {
+            "severity": self.severity,
+            "code": self.code,
+            "text": self.text,
+            "next": self.next,
+            "file": self.file[0] if self.file else None,
+            "about": self.about.to_dict() if self.about else None,
+        }
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """Exact derivatives by dimensions, in the order they were asked for.
+
+    Attributes
+    ----------
+    by
+        The names.
+    volume, area
+        Shape ``(n,)``.
+    centroid
+        Shape ``(n, 3)``.
+    points
+        Of the vertices of :meth:`Sketch.mesh` that are corners of the body, ``(n, vertices, 3)``.
+    """
+
+    by: tuple[str, ...]
+    volume: NDArray[np.float64]
+    area: NDArray[np.float64]
+    centroid: NDArray[np.float64]
+    points: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ObjectChange:
+    """What happened to an object of a sketch.
+
+    Attributes
+    ----------
+    name
+        The object.
+    added, removed
+        Whether it is new, or gone.
+    body
+        Whether the finished body is another.
+    drawn
+        Points that are new or elsewhere on the page.
+    moved
+        Points whose coordinates are others.
+    removed_points
+        Points that are gone.
+    lines, faces
+        Lines and faces that are new, changed or gone.
+    numbers
+        Dimensions, variables and curves that are new, changed or gone.
+    """
+
+    name: str
+    added: bool
+    removed: bool
+    body: bool
+    drawn: tuple[int, ...]
+    moved: tuple[int, ...]
+    removed_points: tuple[int, ...]
+    lines: tuple[int, ...]
+    faces: tuple[int, ...]
+    numbers: tuple[str, ...]
+
+    @staticmethod
+    def _of(row: tuple[str, list[bool], list[list[int]], list[str]]) -> ObjectChange:
+        name, flags, parts, numbers = row
+        drawn, moved, removed, lines, faces = (tuple(p) for p in parts)
+        added, gone, body = flags
+        return ObjectChange(
+            name, added, gone, body, drawn, moved, removed, lines, faces, tuple(numbers)
+        )
+
+
+@dataclass(frozen=True)
+class SketchSnap:
+    """A place on the page that a pointer snaps to.
+
+    Attributes
+    ----------
+    at
+        The place, ``(u, v)``.
+    point
+        The point that is there, or that the extension runs through.
+    line
+        The line that is there.
+    part
+        The part of the line's length, 0 to 1.
+    axis
+        The axis of the extension: ``"X"``, ``"Y"`` or ``"Z"``.
+    """
+
+    at: tuple[float, float]
+    point: int | None = None
+    line: int | None = None
+    part: float | None = None
+    axis: str | None = None
+
+
+@dataclass(frozen=True)
+class SketchSuggestion:
+    """A missing dimension as the picture suggests it.
+
+    Attributes
+    ----------
+    axis
+        ``"X"``, ``"Y"`` or ``"Z"``.
+    p, q
+        From the point ``p`` to the point ``q``.
+    value
+        The distance.
+    guess
+        True when the picture leaves the depth open.
+    """
+
+    axis: str
+    p: int
+    q: int
+    value: float
+    guess: bool
+
+
+@dataclass(frozen=True)
+class SketchChain:
+    """The dimensions that determine a distance along an axis.
+
+    Attributes
+    ----------
+    axis
+        ``"X"``, ``"Y"`` or ``"Z"``.
+    points
+        The points on the way.
+    names
+        The dimensions between them; empty for points of one plane.
+    value
+        The distance; None while it is not determined.
+    lines
+        For points of one plane, the lines that put them there.
+    """
+
+    axis: str
+    points: tuple[int, ...]
+    names: tuple[str, ...]
+    value: float | None
+    lines: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class PlaneOfPoints:
+    """A dimensioning plane.
+
+    Attributes
+    ----------
+    axis
+        The axis that it is perpendicular to.
+    points
+        The points in it.
+    at
+        Its coordinate; None while it is free.
+    """
+
+    axis: str
+    points: tuple[int, ...]
+    at: float | None
+
+
+@dataclass(frozen=True)
+class DimensionMark:
+    """Where a dimension stands on a drawing, v up.
+
+    Attributes
+    ----------
+    name
+        The dimension.
+    text
+        What is written, in brackets when it only measures.
+    value
+        Its value; None while it is unknown.
+    reference
+        Whether it only measures.
+    axis
+        The axis that it runs along; None for lengths, slopes, angles and equal lengths.
+    at
+        The middle of the text, ``(u, v)``.
+    line
+        The dimension line, ``((u, v), (u, v))``; None where there is none.
+    witnesses
+        The witness lines.
+    """
+
+    name: str
+    text: str
+    value: float | None
+    reference: bool
+    axis: str | None
+    at: tuple[float, float]
+    line: tuple[tuple[float, float], tuple[float, float]] | None
+    witnesses: tuple[tuple[tuple[float, float], tuple[float, float]], ...]
+
+    @staticmethod
+    def _of(row: Any) -> DimensionMark:
+        name, text, value, reference, axis, at, line, witnesses = row
+
+        def ends(pair: Any) -> tuple[tuple[float, float], tuple[float, float]]:
+            (a, b), (c, d) = pair
+            return ((a, b), (c, d))
+
+        return DimensionMark(
+            name,
+            text,
+            value,
+            reference,
+            axis,
+            (at[0], at[1]),
+            None if line is None else ends(line),
+            tuple(ends(w) for w in witnesses),
+        )
+
+
+@dataclass(frozen=True)
+class SketchPoint:
+    """A point of an object.
+
+    Attributes
+    ----------
+    id
+        Its label.
+    at
+        Its coordinates, None where they are free.
+    page
+        Where it is drawn; None for a tangent point of a curve.
+    """
+
+    id: int
+    at: tuple[float | None, float | None, float | None]
+    page: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class SketchLine:
+    """A line of an object.
+
+    Attributes
+    ----------
+    id
+        Its label.
+    points
+        Its ends.
+    type
+        What changes along it: ``"X"``, ``"XY"``, ``"O"``, ...; empty while it is unknown.
+    """
+
+    id: int
+    points: tuple[int, int]
+    type: str
+
+
+@dataclass(frozen=True)
+class SketchFace:
+    """A face of an object.
+
+    Attributes
+    ----------
+    id
+        Its number.
+    outer
+        The points round it.
+    holes
+        The points round each of its holes.
+    """
+
+    id: int
+    outer: tuple[int, ...]
+    holes: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True)
+class SketchDimension:
+    """A dimension of an object.
+
+    Attributes
+    ----------
+    name
+        Its name.
+    measures
+        What it measures, as a command says it: ``"X 1 TO 2"``, ``"LENGTH 4"``, ...
+    value
+        Its value; None while it is unknown.
+    """
+
+    name: str
+    measures: str
+    value: float | None
+
+
+@dataclass(frozen=True)
+class SketchObject:
+    """An object with its parts.
+
+    Attributes
+    ----------
+    name
+        Its name.
+    state
+        ``"sketch"``, ``"planes"`` (fully dimensioned) or ``"solid"``.
+    points, lines, faces
+        Its parts by label.
+    dimensions
+        Its dimensions by name.
+    missing
+        How many dimensions are missing on each axis.
+    volume, area, centroid
+        Of the finished body; None without one, the volume also of a cross section.
+    """
+
+    name: str
+    state: str
+    points: dict[int, SketchPoint]
+    lines: dict[int, SketchLine]
+    faces: dict[int, SketchFace]
+    dimensions: dict[str, SketchDimension]
+    missing: dict[str, int]
+    volume: float | None
+    area: float | None
+    centroid: NDArray[np.float64] | None
+
+    @staticmethod
+    def _of(data: dict[str, Any]) -> SketchObject:
+        def point(row: dict[str, Any]) -> SketchPoint:
+            x, y, z = row["at"]
+            page = row["page"]
+            return SketchPoint(row["id"], (x, y, z), None if page is None else (page[0], page[1]))
+
+        points = [point(row) for row in data["points"]]
+        lines = [
+            SketchLine(row["id"], (row["points"][0], row["points"][1]), row["type"] or "")
+            for row in data["lines"]
+        ]
+        faces = [
+            SketchFace(row["id"], tuple(row["outer"]), tuple(tuple(h) for h in row["holes"]))
+            for row in data["faces"]
+        ]
+        dimensions = [
+            SketchDimension(row["name"], row["measures"], row["value"])
+            for row in data["dimensions"]
+        ]
+        centre = data["centroid"]
+        return SketchObject(
+            data["name"],
+            data["state"],
+            {p.id: p for p in points},
+            {line.id: line for line in lines},
+            {f.id: f for f in faces},
+            {d.name: d for d in dimensions},
+            data["missing"],
+            data["volume"],
+            data["area"],
+            None if centre is None else np.array(centre, dtype=np.float64),
+        )
+
+
+explain(globals())
