@@ -13,8 +13,8 @@ use crate::curve::exact::is_exact;
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
-    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique, moved,
-    rounding,
+    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
+    moved, rounding,
 };
 use crate::optimum::problem::CertifiedSolution;
 use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
@@ -649,7 +649,7 @@ impl Data {
             count: pull.len(),
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
-            adapts: false,
+            adapts: Adaptation::None,
         };
         path.follow(options.goal, norm, conditioned, parts, &pull)
     }

@@ -293,12 +293,13 @@ impl fmt::Display for FairingReport {
             d.sampled,
             d.percent()
         )?;
-        writeln!(
-            f,
-            "certificate        {:.9e}, relative optimality gap <= {:.2e}",
-            self.certificate.value,
-            self.certificate.relative()
-        )?;
+        write!(f, "certificate        {:.9e}, ", self.certificate.value)?;
+        let gap = self.certificate.relative();
+        if d.certified == 0.0 && gap >= 1.0 {
+            writeln!(f, "no optimum is claimed: the points stay as they are")?;
+        } else {
+            writeln!(f, "relative optimality gap <= {gap:.2e}")?;
+        }
         match (self.stopped, self.active) {
             (Some(why), _) => writeln!(f, "steps              {} ({})", self.steps, why.name())?,
             (None, Some(active)) => {
