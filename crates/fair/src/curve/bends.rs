@@ -44,7 +44,7 @@ pub(super) struct BendCounts {
 
 impl BendCounts {
     pub fn samples(space: &Space, points: &[Vec3<f64>]) -> Vec<Sample> {
-        shape::samples(space, points, None, shape::COUNTING)
+        shape::bends(space, points)
     }
 
     pub fn of(samples: &[Sample]) -> Self {

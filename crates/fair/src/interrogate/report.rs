@@ -189,7 +189,11 @@ pub fn data_report(
     }
     let first = data.points.first().copied().unwrap_or_default();
     let size = data.points.iter().map(|p| (*p - first).norm()).fold(0.0, f64::max);
-    let tolerance = data.limit.radii.iter().copied().filter(|r| r.is_finite()).fold(0.0, f64::max);
+    // The one in the middle: released points have another.
+    let mut given: Vec<f64> =
+        data.limit.radii.iter().copied().filter(|r| r.is_finite() && *r > 0.0).collect();
+    given.sort_by(f64::total_cmp);
+    let tolerance = given.get(given.len() / 2).copied().unwrap_or(0.0);
     if tolerance > 0.05 * size {
         notes.push(format!(
             "the tolerance, {tolerance:.3e}, is {:.0} % of the extent of the data: is its unit theirs?",

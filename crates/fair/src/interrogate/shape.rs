@@ -115,7 +115,15 @@ pub fn samples(
 ) -> Vec<Sample> {
     let mut out = Vec::new();
     let shares = (0..=per_span).map(|i| i as f64 / per_span as f64);
-    each_span(space, points, weights, shares, |samples| out.extend(samples));
+    each_span(space, points, weights, (shares, true), |samples| out.extend(samples));
+    out
+}
+
+/// The same as counts want them: without third derivatives.
+pub(crate) fn bends(space: &Space, points: &[Vec3<f64>]) -> Vec<Sample> {
+    let mut out = Vec::new();
+    let shares = (0..=COUNTING).map(|i| i as f64 / COUNTING as f64);
+    each_span(space, points, None, (shares, false), |samples| out.extend(samples));
     out
 }
 
@@ -313,7 +321,7 @@ const LEAST_TURN: f64 = 1e-4;
 /// How often a plane curve turns back: the reversals of its tangent's turning by more than a
 /// ten-thousandth of a radian. 0 for curves in space, which have no sign of curvature.
 pub fn turns_back(space: &Space, points: &[Vec3<f64>]) -> usize {
-    reversals(&samples(space, points, None, COUNTING))
+    reversals(&bends(space, points))
 }
 
 /// The same of samples of a curve.
@@ -347,7 +355,7 @@ pub(crate) const COUNTING: usize = 16;
 /// The number of monotone pieces of the curvature, reversals below a thousandth of its range
 /// ignored (Dill 1981; Farin 2002, ch. 23: few pieces are fair).
 pub fn pieces(space: &Space, points: &[Vec3<f64>]) -> usize {
-    monotone_pieces(&samples(space, points, None, COUNTING), UNCOUNTED)
+    monotone_pieces(&bends(space, points), UNCOUNTED)
 }
 
 /// The share of the curvature's range below which a reversal is not counted.
@@ -358,7 +366,7 @@ pub fn arc_length(space: &Space, points: &[Vec3<f64>], weights: Option<&[f64]>) 
     let rule = gauss_points(0.0, 1.0);
     let mut lengths = Vec::new();
     let mut widths = space.spans().map(|k| space.knot(k + 1) - space.knot(k));
-    each_span(space, points, weights, rule.iter().map(|r| r.0), |samples| {
+    each_span(space, points, weights, (rule.iter().map(|r| r.0), false), |samples| {
         let speed = |(s, (_, w)): (Sample, &(f64, f64))| w * s.derivatives[0].norm();
         let sum: f64 = samples.zip(&rule).map(speed).sum();
         lengths.push(sum * widths.next().expect("a width for each span"));

@@ -191,8 +191,8 @@ fn surfaces_keep_near_data_that_the_measure_does_not_have() {
     // noise may take 1.175, and 0.4 more speak against the measure.
     let mut between = None;
     let (mut narrow, mut wide) = (0, 0);
-    for k in 0..24 {
-        let tolerance = 0.05 * 1.06f64.powi(k);
+    for k in 0..16 {
+        let tolerance = 0.09 * 1.04f64.powi(k);
         let GridFit { fairest_used, used, .. } = made(tolerance);
         let here = format!("tolerance {tolerance}: {used} of {fairest_used}");
         if fairest_used > 1.73 {

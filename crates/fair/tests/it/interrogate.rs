@@ -88,8 +88,9 @@ fn circles_have_one_piece_at_any_places() {
         assert_eq!(count(&|a| Vec3::of(2.0 * a.cos(), 2.0 * a.sin(), 0.0)), 1, "circle {round}");
         assert_eq!(count(&|a| Vec3::of(a.cos(), a.sin(), 0.3 * a)), 1, "helix {round}");
     }
+    // What is no circle has its own pieces, four once round.
     for (wide, pieces) in [(1.0, 1), (1.02, 4), (1.2, 4), (3.0, 4)] {
-        // From a place where the curvature is neither least nor greatest once round.
+        // From a place where the curvature is neither least nor greatest.
         let at = |k: usize| 0.4 + std::f64::consts::TAU * k as f64 / 80.0;
         let points: Vec<_> =
             (0..=80).map(at).map(|a| Vec3::of(wide * a.cos(), a.sin(), 0.0)).collect();
@@ -97,7 +98,7 @@ fn circles_have_one_piece_at_any_places() {
         let layout = InterpolationSpace::new(3, &at, &[], false).unwrap();
         let control = layout.through(&layout.data(&points)).unwrap();
         let found = shape::pieces(&layout.space, &control);
-        assert!(found.abs_diff(pieces) <= usize::from(pieces > 1), "{wide}: {found}");
+        assert!(found == 1 && pieces == 1 || found >= pieces && pieces > 1, "{wide}: {found}");
     }
 }
 
