@@ -404,12 +404,9 @@ impl SignSearch {
 impl Data {
     /// The mean of squared residuals over tolerances, over 1/3.
     pub(super) fn used(&self, residuals: &[f64]) -> f64 {
-        let all: Vec<f64> = residuals
-            .iter()
-            .zip(&self.limit.radii)
-            .zip(self.pulls())
-            .filter_map(|((r, a), pulls)| pulls.then(|| (r / a) * (r / a)))
-            .collect();
+        let each = residuals.iter().zip(&self.limit.radii).zip(self.pulls());
+        let all: Vec<f64> =
+            each.filter(|each| each.1).map(|((r, a), _)| (r / a) * (r / a)).collect();
         all.iter().sum::<f64>() * 3.0 / all.len().max(1) as f64
     }
 
