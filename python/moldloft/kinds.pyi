@@ -7803,6 +7803,19 @@ def FairSurf(
     spacing: _Text | None = ...,
     goal: _Text | None = ...,
     along: _Vector | None = ...,
+    degree_v: _Integer | None = ...,
+    closed_u: _Integer | None = ...,
+    closed_v: _Integer | None = ...,
+    share: _Number | None = ...,
+    tolerances: _Numbers | None = ...,
+    fixed: Sequence[_Integer] | _Array | _Any | None = ...,
+    through: _Vectors | None = ...,
+    through_u: _Numbers | None = ...,
+    through_v: _Numbers | None = ...,
+    normals: _Vectors | None = ...,
+    normals_u: _Numbers | None = ...,
+    normals_v: _Numbers | None = ...,
+    keep: Sequence[_Text] | _Any | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -7836,7 +7849,7 @@ def FairSurf(
     as : text, optional
         Meaning of the points: "fit" or "control". Default fit.
     degree : integer, optional
-        Polynomial degree in both directions. 2 to 9, default 3.
+        Polynomial degree, in both directions or along u. 2 to 9, default 3.
     breaks_u : list of integer, optional
         SparseRows (numbers of points along u, from 1) that are knuckle lines: their points
         stay, and nothing is smoothed across them. A surface through its points has a sharp edge
@@ -7869,6 +7882,35 @@ def FairSurf(
     along : vector, optional
         The direction in which the surface may leave its points, such as {0, 1, 0} for offsets;
         any direction without it.
+    degree_v : integer, optional
+        Polynomial degree along v, if it is another than along u. 2 to 9.
+    closed_u : integer, optional
+        1 for a surface that is closed along u, whose first row of points is not repeated. 0 to
+        1, default 0.
+    closed_v : integer, optional
+        The same along v. 0 to 1, default 0.
+    share : number, optional
+        The share of the goals "budget" (0.8) and "nearest" (0.1), or the measure of "energy".
+    tolerances : farray, optional
+        Tolerances of the points one by one, a grid like these, instead of `tolerance`.
+    fixed : list of integer, optional
+        Numbers of points, from 1 and row by row, (i - 1) n + j in a grid [m, n], that the
+        surface passes through.
+    through : list of point, optional
+        Points that the surface passes through at `through_u`, `through_v`. No derivatives.
+    through_u : list of number, optional
+        Parameters along u, from 0 to 1, of `through`.
+    through_v : list of number, optional
+        Parameters along v of `through`.
+    normals : list of vector, optional
+        Directions that its normal has at `normals_u`, `normals_v`. No derivatives.
+    normals_u : list of number, optional
+        Parameters along u, from 0 to 1, of `normals`.
+    normals_v : list of number, optional
+        Parameters along v of `normals`.
+    keep : list of text, optional
+        What it keeps of the surface through the points, to first order: "volume" (the
+        displacement of a hull) or "area". No derivatives.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.

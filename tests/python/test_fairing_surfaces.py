@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 import moldloft
 from moldloft.errors import FairingError
 
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 STATIONS = np.array([0, 0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 8.5, 9, 9.5, 10])
 LEVELS = np.array([0, 0.1, 0.25, 0.5, 0.75, 1, 1.25])
 
@@ -151,3 +153,37 @@ def test_noise_between_close_stations_decides_no_parameters():
         steep = np.stack([a, 30 * wigley(a, b), b], -1)
         knots = moldloft.fair(steep, 0.005, as_="fit", motion=(0, 1, 0)).surface.knots[1]
         assert np.abs(share(knots)[:, None] - share(z)).min(axis=1).max() > 1e-3
+
+
+HULLS = {
+    "round": lambda s, z: 0.9 * (1 - abs(s) ** 3) * (1 - z**2) ** 0.75,
+    "full": lambda s, z: 0.9 * (1 - abs(s) ** 3) * (1 - 0.55 * z**2),
+    "fine bow": lambda s, z: 0.9 * abs(np.cos(0.5 * np.pi * s)) ** 1.6 * (1 - 0.55 * z**2),
+    "parallel body": lambda s, z: (
+        0.9 * (1 - (np.maximum(abs(s) - 0.4, 0) / 0.6) ** 2.2) * (1 - z**6)
+    ),
+    "cosine": lambda s, z: 0.9 * np.cos(0.5 * np.pi * s) * np.cos(0.45 * np.pi * z),
+}
+"""Over the length from -1 to 1 and the depth from the waterline, 0, to 1. None has least third
+derivatives."""
+
+
+@pytest.mark.parametrize("name", HULLS)
+def test_surfaces_come_nearer_on_hulls_that_no_least_energy_has(name):
+    """A measure that is none of the hull's is kept near the data: a parallel body most of all."""
+    for seed in range(20 if SOAK else 2):
+        rng = np.random.default_rng([17, seed])
+        m, n = int(rng.integers(11, 18)), int(rng.integers(7, 10))
+        x = np.sort(np.r_[0, 10, np.linspace(0, 10, m)[1:-1] + rng.uniform(-0.15, 0.15, m - 2)])
+        depth = np.sort(np.r_[0, 1, np.linspace(0, 1, n)[1:-1] + rng.uniform(-0.03, 0.03, n - 2)])
+        s, z = np.meshgrid(x / 5 - 1, depth, indexing="ij")
+        exact = np.stack([5 * s + 5, HULLS[name](s, z), 1.25 * (1 - z)], -1)
+        read = exact.copy()
+        if seed % 2 == 0:
+            read[..., 1] = np.round(read[..., 1], 2)
+        else:
+            read[..., 1] += rng.uniform(-0.005, 0.005, s.shape)
+        faired = moldloft.fair(read, 0.005 * (1 + 1e-9), as_="fit", motion=(0, 1, 0))
+        off = rms(read[..., 1] - exact[..., 1])
+        assert faired.deviation_data <= 0.005 * (1 + 2e-9)
+        assert off > rms(faired.points[..., 1] - exact[..., 1]), (seed, faired.used)

@@ -28,7 +28,10 @@ def test_known_shapes(name, kind):
     # A polyline of the curve is off it by as much as this.
     assert max(s.data for s in scores) <= 1.002
     random = kind == "random"
-    assert np.median([s.rms for s in scores]) <= 0.5 or (random and name == "naca")
+    # Of 12 draws of an aerofoil at random places 4 leave so wide a gap near the nose that the curve
+    # through exact points is 0.3 to 0.9 off: median 0.53, SciPy 0.56, geomdl 0.74, OCCT 1.19.
+    most = 0.62 if random and name == "naca" else 0.5
+    assert np.median([s.rms for s in scores]) <= most
     if not random:
         assert max(s.rms for s in scores) <= 0.52
         assert max(s.inflections for s in scores) <= 0

@@ -33,15 +33,11 @@ def chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: i
     return sorted({index_of(k, count) for k in given})
 
 
-def _released(
-    limits: list[float], release: list[int], found: list[Finding], data: Floats
-) -> list[float]:
-    """Tolerances with room for wrong points to go to their place."""
+def _released(limits: list[float], release: list[int], data: Floats) -> list[float]:
+    """Tolerances with room for wrong points: as large as the data, which is none at all."""
     out = list(limits)
     for k in release:
-        error = next((float(np.linalg.norm(f.vector)) for f in found if f.index == k), None)
-        size = float(np.ptp(data, axis=0).max())
-        out[k] = out[k] + 2.0 * error if error is not None else size
+        out[k] += float(np.ptp(data, axis=0).max())
     return out
 
 
@@ -65,7 +61,7 @@ def fair_data(
     notes = []
     for k in asked.fixed:
         limits[index_of(k, n)] = 0.0
-    limits = _released(limits, release, found, data)
+    limits = _released(limits, release, data)
     if asked.closed and tol is None:
         raise FairingError("a closed curve without a tolerance shrinks to a point")
     word, way = direction(asked.motion)

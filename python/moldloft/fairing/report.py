@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Finding", "Numbers", "lines_of"]
+__all__ = ["Finding", "Numbers", "certificate_of", "claims_optimum", "lines_of"]
 
 
 @dataclass(frozen=True)
@@ -60,3 +61,31 @@ def lines_of(rows: list[tuple[str, str, str]], tail: list[tuple[str, str]]) -> s
     out += [f"{name:{width}}  {b:>{wide}}  {a:>{wide}}" for name, b, a in rows]
     out += [f"{name:{width}}  {fact}" for name, fact in tail]
     return "\n".join(out)
+
+
+def claims_optimum(gap: float, relative: float) -> bool:
+    """Whether a bound on the gap says anything: no measure is below 0 in any case."""
+    return math.isfinite(gap) and (gap <= 0 or relative < 1)
+
+
+def certificate_of(value: float, gap: float, relative: float, *, moved: bool) -> str:
+    """What is proved of a result: the line of reports.
+
+    Parameters
+    ----------
+    value, gap, relative
+        The measure of the result, the bound on how much less another may measure, and their ratio.
+    moved
+        Whether anything has moved.
+
+    Returns
+    -------
+    str
+        The measure and how far it is from the least, or that no such thing is claimed.
+    """
+    said = f"relative optimality gap <= {relative:.1e}"
+    if not math.isfinite(gap):
+        said = "without a tolerance there is no optimality bound"
+    elif not moved and not claims_optimum(gap, relative):
+        said = "no optimum is claimed: the points stay as they are"
+    return f"{value:.9e}, {said}"

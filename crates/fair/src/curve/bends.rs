@@ -25,7 +25,7 @@ const MORE_PIECES: usize = 2;
 /// Steps of the logarithm of the data's weight, how many of them, and halvings of the last.
 const STEP: f64 = 1.4;
 const LIGHTER: usize = 8;
-const HALVES: usize = 2;
+const HALVES: usize = 1;
 
 /// Steps, and halvings of one of them, on the way between two curves.
 const SHARES: usize = 32;
@@ -44,7 +44,7 @@ pub(super) struct BendCounts {
 
 impl BendCounts {
     pub fn samples(space: &Space, points: &[Vec3<f64>]) -> Vec<Sample> {
-        shape::samples(space, points, None, shape::COUNTING)
+        shape::bends(space, points)
     }
 
     pub fn of(samples: &[Sample]) -> Self {

@@ -10,11 +10,12 @@
 
 use crate::curve::bends::{BendCounts, SolvedFit};
 use crate::curve::exact::is_exact;
+use crate::curve::fit::released;
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
-    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique, moved,
-    rounding,
+    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
+    moved, rounding,
 };
 use crate::optimum::problem::CertifiedSolution;
 use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
@@ -263,14 +264,23 @@ impl Data {
         is_exact(&self.points, &layout.break_data(), closed)
     }
 
+    /// Which data pull: those with a tolerance that were not released.
+    fn pulls(&self) -> Vec<bool> {
+        let open = released(&self.points, &self.limit.radii);
+        let given = self.limit.radii.iter().map(|r| *r > 0.0 && r.is_finite());
+        given.zip(open).map(|(given, open)| given && !open).collect()
+    }
+
     /// The data that pull, as rows of displacements over tolerances.
     fn pull(&self, parts: &Parts<'_>) -> SparseRows {
         let mut pull = SparseRows::new();
+        let pulls = self.pulls();
         for (k, owner) in self.layout.owner.iter().enumerate() {
-            let Some(radius) = owner.map(|i| self.limit.radii[i]) else { continue };
+            let Some(i) = owner.filter(|&i| pulls[i]) else { continue };
+            let radius = self.limit.radii[i];
             let (columns, factors) = self.layout.rows.row(k);
             let free = columns.iter().any(|&c| !parts.frozen[c as usize]);
-            if free && radius > 0.0 && radius.is_finite() {
+            if free {
                 let entries = columns.iter().zip(factors);
                 pull.push(entries.map(|(&c, &f)| (c as usize, f / radius)));
             }
@@ -394,8 +404,9 @@ impl SignSearch {
 impl Data {
     /// The mean of squared residuals over tolerances, over 1/3.
     pub(super) fn used(&self, residuals: &[f64]) -> f64 {
-        let moves = |(r, a): (&f64, &f64)| (*a > 0.0 && a.is_finite()).then(|| (r / a) * (r / a));
-        let all: Vec<f64> = residuals.iter().zip(&self.limit.radii).filter_map(moves).collect();
+        let each = residuals.iter().zip(&self.limit.radii).zip(self.pulls());
+        let all: Vec<f64> =
+            each.filter(|each| each.1).map(|((r, a), _)| (r / a) * (r / a)).collect();
         all.iter().sum::<f64>() * 3.0 / all.len().max(1) as f64
     }
 
@@ -603,8 +614,7 @@ impl Data {
 
     /// The measure of a curve and its squares by their weight.
     pub(super) fn weighed_value(&self, made: &DataFit) -> f64 {
-        let counts = |a: &&f64| **a > 0.0 && a.is_finite();
-        let count = self.limit.radii.iter().filter(counts).count().max(1);
+        let count = self.pulls().into_iter().filter(|p| *p).count().max(1);
         made.certificate.value + made.weight * made.used * count as f64 / 3.0
     }
 
@@ -649,7 +659,7 @@ impl Data {
             count: pull.len(),
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
-            adapts: false,
+            adapts: Adaptation::None,
         };
         path.follow(options.goal, norm, conditioned, parts, &pull)
     }
@@ -747,9 +757,11 @@ pub fn fair_data_with<T: Real>(
     let limited: Vec<usize> =
         (0..radii.len()).filter(|k| radii[*k] > 0.0 && radii[*k].is_finite() && !held(k)).collect();
     let away: Vec<Vec3<f64>> = control.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
+    let pulls = data.pulls();
+    let pulled = |k: &usize| layout.owner[*k].filter(|&i| pulls[i]).map(|i| tolerances[i]);
     for (&k, force) in limited.iter().zip(&solved.forces()) {
         let mut force = *force;
-        if layout.owner[k].is_some() {
+        if pulled(&k).is_some() {
             force += layout.rows.apply(k, &away) * (weight / (radii[k] * radii[k]));
         }
         for &(c, f) in &values.rows[k] {
@@ -771,7 +783,7 @@ pub fn fair_data_with<T: Real>(
     let moving = GoalVariation {
         originals: through(control, &job.points)?,
         tolerances: &own,
-        pulled: limited.iter().filter_map(owner).collect(),
+        pulled: limited.iter().filter_map(pulled).collect(),
         targets: &targets,
         forces,
         rows: &rows,

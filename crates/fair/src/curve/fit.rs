@@ -105,10 +105,65 @@ pub fn parameters_with<T: Real>(
 /// The least share of a chord that its projection must be for stations to count.
 const SHALLOW: f64 = 0.2;
 
+/// A tolerance from this share of the extent on is that of a datum that was released.
+const RELEASED: f64 = 0.5;
+
+/// Which data were released: those with a tolerance as large as half the extent, where others have smaller
+/// ones. Where they were read says nothing about the curve.
+pub(crate) fn released<T: Real>(points: &[Vec3<T>], radii: &[f64]) -> Vec<bool> {
+    let first = points.first().map(|p| p.re()).unwrap_or_default();
+    let extent = points.iter().map(|p| (p.re() - first).norm()).fold(0.0, f64::max);
+    let wide = |r: &f64| *r >= RELEASED * extent;
+    let some = radii.iter().any(|r| *r > 0.0 && !wide(r));
+    (0..points.len()).map(|k| some && radii.get(k).is_some_and(wide)).collect()
+}
+
+/// The points with those that were released between their neighbours, beside where they were read.
+fn placed_between<T: Real>(
+    points: &[Vec3<T>],
+    radii: &[f64],
+    closed: bool,
+) -> Option<Vec<Vec3<T>>> {
+    let n = points.len();
+    let out_of_place = released(points, radii);
+    if !out_of_place.contains(&true) {
+        return None;
+    }
+    // The nearest that is in place, and how many steps away it is.
+    let next = |k: usize, on: bool| {
+        (1..n).find_map(|by| {
+            let at = match (closed, on) {
+                (true, true) => (k + by) % n,
+                (true, false) => (k + n - by) % n,
+                (false, true) => k + by,
+                (false, false) => k.checked_sub(by)?,
+            };
+            (at < n && !out_of_place[at]).then_some((by, at))
+        })
+    };
+    let mut out = points.to_vec();
+    for k in (0..n).filter(|&k| out_of_place[k]) {
+        let (Some((before, a)), Some((after, b))) = (next(k, false), next(k, true)) else {
+            continue;
+        };
+        let chord = points[b] - points[a];
+        let mut share = T::from(before as f64 / (before + after) as f64);
+        if before + after == 2 && chord.re().norm() > 0.0 {
+            let own = (points[k] - points[a]).dot(chord) / chord.dot(chord);
+            if own.re() > 0.1 && own.re() < 0.9 {
+                share = own;
+            }
+        }
+        out[k] = points[a] + chord.map(|c| c * share);
+    }
+    Some(out)
+}
+
 /// The same where points move along a direction only: chords are measured across it, so that
 /// offsets at stations have these for parameters, unless a curve is too steep for that. A step is
 /// as steep as it must be: what the tolerances `radii` of its two points allow is taken off, so
-/// that noise between two close stations does not count.
+/// that noise between two close stations does not count. A datum whose tolerance is as large as half the
+/// extent, where others are smaller, was released: chords run past it.
 ///
 /// # Errors
 /// As [`parameters`].
@@ -118,9 +173,10 @@ pub fn parameters_across<T: Real>(
     closed: bool,
     (motion, radii): (Motion, &[f64]),
 ) -> Result<Vec<T>, FairError> {
-    let (Motion::Along(d), ParameterSpacing::Chord | ParameterSpacing::Centripetal) =
-        (motion, spacing)
-    else {
+    let by_chords = matches!(spacing, ParameterSpacing::Chord | ParameterSpacing::Centripetal);
+    let placed = if by_chords { placed_between(points, radii, closed) } else { None };
+    let points = placed.as_deref().unwrap_or(points);
+    let (Motion::Along(d), true) = (motion, by_chords) else {
         return parameters_with(points, spacing, closed);
     };
     let flat = |p: &Vec3<T>| {

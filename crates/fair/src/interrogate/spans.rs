@@ -23,18 +23,19 @@ fn bernstein(degree: usize, s: f64) -> Vec<f64> {
 /// Calls `f` with the samples of each span at the shares (0 .. 1) of it, in order along the curve.
 ///
 /// Positions, first and second derivatives have the bits of [`crate::interrogate::shape::sample_in`]; third
-/// derivatives are those of the span's Bezier points.
+/// derivatives are those of the span's Bezier points, or zero where they are not asked for.
 pub(crate) fn each_span(
     space: &Space,
     points: &[Vec3<f64>],
     weights: Option<&[f64]>,
-    shares: impl Iterator<Item = f64>,
+    (shares, third): (impl Iterator<Item = f64>, bool),
     mut f: impl FnMut(&mut dyn Iterator<Item = Sample>),
 ) {
     let p = space.degree();
     // Of third derivatives the polynomials; below degree three there are none.
+    let rest = p.checked_sub(3).filter(|_| third);
     let places: Vec<(f64, Vec<f64>)> =
-        shares.map(|s| (s, p.checked_sub(3).map_or(Vec::new(), |d| bernstein(d, s)))).collect();
+        shares.map(|s| (s, rest.map_or(Vec::new(), |d| bernstein(d, s)))).collect();
     let mut bezier = BezierExtraction::default();
     let mut own: Vec<(Vec3<f64>, f64)> = Vec::with_capacity(p + 1);
     let mut thirds = own.clone();
@@ -46,7 +47,7 @@ pub(crate) fn each_span(
             (points[c], weight)
         }));
         thirds.clear();
-        if p >= 3 {
+        if rest.is_some() {
             thirds.extend(bezier.rows(space, k).iter().map(|row| {
                 let add = |(point, weight): (Vec3<f64>, f64), (o, x): (&(Vec3<f64>, f64), &f64)| {
                     (point + o.0 * (o.1 * x), weight + o.1 * x)
@@ -108,7 +109,7 @@ mod tests {
                 for weights in [None, Some(&weights[..])] {
                     let mut spans = space.spans();
                     let shares = [0.0, 0.3, 1.0];
-                    each_span(&space, &points, weights, shares.into_iter(), |samples| {
+                    each_span(&space, &points, weights, (shares.into_iter(), true), |samples| {
                         let k = spans.next().unwrap();
                         for s in samples {
                             let other = sample_in(&space, &points, weights, k, s.t);

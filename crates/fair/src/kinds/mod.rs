@@ -10,6 +10,7 @@ mod patches;
 mod shapes;
 mod snake;
 mod surface;
+mod surface_demands;
 
 use crate::curve::condition::{end_jet, joined};
 use crate::kinds::figures::FairFigures;

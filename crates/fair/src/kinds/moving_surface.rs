@@ -14,15 +14,15 @@ pub(super) struct MovingSurface<T: Real> {
 impl<T: Real> MovingSurface<T> {
     /// The surface as models refer to it; control point (i, j) stands at `i * n + j`, knots run from 0 to 1.
     pub fn referred(
-        degree: usize,
+        degrees: [usize; 2],
         knots: [Vec<T>; 2],
         points: Vec<Vec3<T>>,
     ) -> Result<SurfaceRef<T>, FairError> {
-        let plain = |knots: &[T]| {
-            KnotVector::new(degree, knots.iter().map(|k| k.re()).collect())
+        let plain = |d: usize| {
+            KnotVector::new(degrees[d], knots[d].iter().map(|k| k.re()).collect())
                 .map_err(FairError::Knots)
         };
-        let (u, v) = (plain(&knots[0])?, plain(&knots[1])?);
+        let (u, v) = (plain(0)?, plain(1)?);
         let still = knots.iter().flatten().all(|k| k.is_constant());
         let own = if still {
             points.clone()
@@ -33,7 +33,7 @@ impl<T: Real> MovingSurface<T> {
         if still {
             return Ok(SurfaceRef::new(surface, 0));
         }
-        Ok(SurfaceRef::new(Self { plain: surface, formula: Tensor { degree, knots, points } }, 0))
+        Ok(SurfaceRef::new(Self { plain: surface, formula: Tensor { degrees, knots, points } }, 0))
     }
 }
 
@@ -62,7 +62,7 @@ impl<T: Real> Surface<T> for MovingSurface<T> {
 }
 
 struct Tensor<T> {
-    degree: usize,
+    degrees: [usize; 2],
     knots: [Vec<T>; 2],
     points: Vec<Vec3<T>>,
 }
@@ -70,7 +70,7 @@ struct Tensor<T> {
 impl<T: Real> Tensor<T> {
     /// The span in charge at `t`: that of the last knot of the domain not above it.
     fn span(&self, d: usize, t: f64) -> usize {
-        let (p, knots) = (self.degree, &self.knots[d]);
+        let (p, knots) = (self.degrees[d], &self.knots[d]);
         let n = knots.len() - p - 1;
         let mut k = p + knots[p + 1..n].iter().filter(|k| k.re() <= t).count();
         while k > p && knots[k].re() >= knots[k + 1].re() {
@@ -81,7 +81,7 @@ impl<T: Real> Tensor<T> {
 
     /// De Boor's algorithm (de Boor 1978, ch. X) along direction `d` in span `k`.
     fn blossom<J: Jet<T>>(&self, d: usize, k: usize, t: J, mut c: Vec<Vec3<J>>) -> Vec3<J> {
-        let (p, knots) = (self.degree, &self.knots[d]);
+        let (p, knots) = (self.degrees[d], &self.knots[d]);
         for level in 1..=p {
             for j in (level..=p).rev() {
                 let (low, high) = (knots[k - p + j], knots[k + 1 + j - level]);
@@ -98,13 +98,13 @@ impl<T: Real> SurfaceFormula for Tensor<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
-        let p = self.degree;
+        let [pu, pv] = self.degrees;
         let (ku, kv) = (self.span(0, u.re()), self.span(1, v.re()));
-        let n = self.knots[1].len() - p - 1;
+        let n = self.knots[1].len() - pv - 1;
         let row = |i: usize| {
-            let own = (kv - p..=kv).map(|j| self.points[i * n + j].map(J::fixed)).collect();
+            let own = (kv - pv..=kv).map(|j| self.points[i * n + j].map(J::fixed)).collect();
             self.blossom(1, kv, v, own)
         };
-        self.blossom(0, ku, u, (ku - p..=ku).map(row).collect())
+        self.blossom(0, ku, u, (ku - pu..=ku).map(row).collect())
     }
 }

@@ -127,7 +127,7 @@ impl<T: Real> Build<T> for FairPatches<T> {
             };
             let (sheet, net) = made().map_err(|e| fault(e, &places).in_item(k))?;
             let plain: Vec<Vec3<f64>> = grid.points().iter().map(|p| p.re()).collect();
-            exact = exact && are_exact(&plain, &lines([m, n]), &[]);
+            exact = exact && are_exact(&plain, &lines([m, n], [false; 2]), &[]);
             sheets.push(sheet);
             given.extend(net);
         }

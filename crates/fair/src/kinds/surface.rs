@@ -2,18 +2,19 @@
 
 use super::figures::FairFigures;
 use super::moving_surface::MovingSurface;
+use super::surface_demands::{NumberGrid, PlacedValues, SurfaceDemands, places as points_of};
 use super::{
     ACCURACY, ArgumentFields, GivenKnots, PointRole, faithful, fault, indices, measure, role,
 };
 use crate::{
-    Bound, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Motion, Network,
-    ParameterSpacing, Space, are_exact, fair_grid_with, grid_parameters, interpolate_with_corners,
-    line_findings,
+    Bound, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Motion, MovingGrid,
+    Network, ParameterSpacing, Space, are_exact, fair_grid, fair_grid_with, grid_parameters,
+    interpolate_with_corners, line_findings,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    ArrayShape, Build, CallError, Class, Context, FieldId, FromValue, Kind, SurfaceRef, Value,
-    Vectors,
+    ArrayShape, Build, CallError, Class, Context, FieldId, FromValue, Kind, Point, SurfaceRef,
+    Value, Vectors,
 };
 use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
@@ -59,7 +60,7 @@ pub struct FairSurf<T: Real> {
     /// Meaning of the points: "fit" or "control".
     #[field(default = "fit")]
     r#as: Arc<str>,
-    /// Polynomial degree in both directions.
+    /// Polynomial degree, in both directions or along u.
     #[field(default = 3, min = 2, max = 9)]
     degree: usize,
     /// SparseRows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
@@ -82,7 +83,7 @@ pub struct FairSurf<T: Real> {
     /// Positive weights of the control points (`as = "control"`), a grid like the points, which make
     /// it rational and stay as they are. They count as constants: derivatives do not go through them.
     #[field(default)]
-    weights: Option<Weights>,
+    weights: Option<NumberGrid<T>>,
     /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, none
     /// decreasing; constants too.
     #[field(default)]
@@ -101,30 +102,60 @@ pub struct FairSurf<T: Real> {
     /// direction without it.
     #[field(default)]
     along: Option<Vec3<T>>,
+    /// Polynomial degree along v, if it is another than along u.
+    #[field(default, min = 2, max = 9)]
+    degree_v: Option<usize>,
+    /// 1 for a surface that is closed along u, whose first row of points is not repeated.
+    #[field(default = 0, min = 0, max = 1)]
+    closed_u: usize,
+    /// The same along v.
+    #[field(default = 0, min = 0, max = 1)]
+    closed_v: usize,
+    /// The share of the goals "budget" (0.8) and "nearest" (0.1), or the measure of "energy".
+    #[field(default)]
+    share: Option<T>,
+    /// Tolerances of the points one by one, a grid like these, instead of `tolerance`.
+    #[field(default)]
+    tolerances: Option<NumberGrid<T>>,
+    /// Numbers of points, from 1 and row by row, (i - 1) n + j in a grid [m, n], that the surface passes
+    /// through.
+    #[field(default)]
+    fixed: Option<Vec<usize>>,
+    /// Points that the surface passes through at `through_u`, `through_v`. No derivatives.
+    #[field(default)]
+    through: Option<Vec<Point<T>>>,
+    /// Parameters along u, from 0 to 1, of `through`.
+    #[field(default)]
+    through_u: Option<Vec<T>>,
+    /// Parameters along v of `through`.
+    #[field(default)]
+    through_v: Option<Vec<T>>,
+    /// Directions that its normal has at `normals_u`, `normals_v`. No derivatives.
+    #[field(default)]
+    normals: Option<Vec<Vec3<T>>>,
+    /// Parameters along u, from 0 to 1, of `normals`.
+    #[field(default)]
+    normals_u: Option<Vec<T>>,
+    /// Parameters along v of `normals`.
+    #[field(default)]
+    normals_v: Option<Vec<T>>,
+    /// What it keeps of the surface through the points, to first order: "volume" (the displacement of a
+    /// hull) or "area". No derivatives.
+    #[field(default)]
+    keep: Option<Vec<Arc<str>>>,
 }
+
+/// The fields of what only surfaces near their points have.
+const TOLERANCES: FieldId = FairSurf::<f64>::TOLERANCES;
+const THROUGH: FieldId = FairSurf::<f64>::THROUGH;
+const NORMALS: FieldId = FairSurf::<f64>::NORMALS;
+const KEEP: FieldId = FairSurf::<f64>::KEEP;
+const GOAL: FieldId = FairSurf::<f64>::GOAL;
+const SHARE: FieldId = FairSurf::<f64>::SHARE;
 
 /// The fields of weights and knots.
 const WEIGHTS: FieldId = FairSurf::<f64>::WEIGHTS;
 const KNOTS: [FieldId; 2] = [FairSurf::<f64>::KNOTS_U, FairSurf::<f64>::KNOTS_V];
-
-/// Weights of control points.
-struct Weights {
-    shape: ArrayShape,
-    items: Vec<f64>,
-}
-
-impl<T: Real> FromValue<T> for Weights {
-    const CLASS: Class = Class::Numbers;
-    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
-        match value {
-            Value::Numbers(array) => {
-                let items = array.items.iter().map(|x| x.re()).collect();
-                Ok(Self { shape: array.shape, items })
-            }
-            other => Err(CallError::wrong_class(Class::Numbers, other.class())),
-        }
-    }
-}
 
 impl<T: Real> FairSurf<T> {
     /// Weights and knots, where they have a meaning.
@@ -164,6 +195,66 @@ impl<T: Real> FairSurf<T> {
             }
         }
         Ok(own)
+    }
+}
+
+impl<T: Real> FairSurf<T> {
+    /// The tolerances of the points of a grid.
+    fn tolerances_of(&self, shape: ArrayShape, count: usize) -> Result<Vec<T>, CallError> {
+        let mut all = vec![self.tolerance; count];
+        if let Some(own) = &self.tolerances {
+            if own.shape != shape {
+                return Err(CallError::new("wrong-count", "tolerances are a grid like the points")
+                    .expected(shape.to_string())
+                    .found(own.shape.to_string())
+                    .in_field(TOLERANCES));
+            }
+            all.clone_from(&own.items);
+        }
+        for k in self.fixed.iter().flatten() {
+            match k.checked_sub(1).and_then(|k| all.get_mut(k)) {
+                Some(own) => *own = T::zero(),
+                None => {
+                    return Err(CallError::new("out-of-range", format!("there is no point {k}"))
+                        .expected(format!("numbers of points from 1 to {count}, row by row"))
+                        .found(k.to_string())
+                        .in_field(Self::FIXED));
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// The conditions on a surface near its points.
+    fn demands(&self) -> Result<SurfaceDemands, CallError> {
+        let through = PlacedValues {
+            what: "through",
+            values: points_of(&self.through),
+            at: [&self.through_u, &self.through_v],
+            field: THROUGH,
+        };
+        let normals = PlacedValues {
+            what: "normals",
+            values: self.normals.clone().unwrap_or_default(),
+            at: [&self.normals_u, &self.normals_v],
+            field: NORMALS,
+        };
+        let keep = self.keep.as_deref().unwrap_or_default();
+        SurfaceDemands::of(through, normals, (keep, KEEP))
+    }
+
+    /// The first of what only surfaces near their points have that is given.
+    fn near_only(&self) -> Option<(&'static str, FieldId)> {
+        let given = [
+            (self.tolerances.is_some(), "tolerances", TOLERANCES),
+            (self.fixed.is_some(), "fixed", Self::FIXED),
+            (self.through.is_some(), "through", THROUGH),
+            (self.normals.is_some(), "normals", NORMALS),
+            (self.keep.is_some(), "keep", KEEP),
+            (self.closed_u == 1, "closed_u", Self::CLOSED_U),
+            (self.closed_v == 1, "closed_v", Self::CLOSED_V),
+        ];
+        given.into_iter().find(|g| g.0).map(|g| (g.1, g.2))
     }
 }
 
@@ -226,10 +317,10 @@ pub(super) fn fitted<T: Real>(
     Ok((space, out, marks))
 }
 
-/// The lines of an open grid in both directions.
-pub(super) fn lines([m, n]: [usize; 2]) -> Vec<(Vec<usize>, bool)> {
-    let rows = (0..m).map(|i| ((i * n..(i + 1) * n).collect(), false));
-    let columns = (0..n).map(|j| ((0..m).map(|i| i * n + j).collect(), false));
+/// The lines of a grid in both directions, and which of them are closed.
+pub(super) fn lines([m, n]: [usize; 2], closed: [bool; 2]) -> Vec<(Vec<usize>, bool)> {
+    let rows = (0..m).map(|i| ((i * n..(i + 1) * n).collect(), closed[1]));
+    let columns = (0..n).map(|j| ((0..m).map(|i| i * n + j).collect(), closed[0]));
     rows.chain(columns).collect()
 }
 
@@ -285,30 +376,40 @@ impl<T: Real> Build<T> for FairSurf<T> {
             }
         };
         let spacing = super::spacing(&self.spacing, Self::SPACING)?;
-        let goal = super::goal(&self.goal, Self::GOAL)?;
+        let goal = super::goal_of(&self.goal, self.share.map(|s| s.re()), [GOAL, SHARE])?;
+        let degrees = [self.degree, self.degree_v.unwrap_or(self.degree)];
+        let closed = [self.closed_u == 1, self.closed_v == 1];
+        let tolerances = self.tolerances_of(grid.shape, m * n)?;
+        let demands = self.demands()?;
         let by_data =
             fitted_first && passes.is_none() && !matches!(spacing, ParameterSpacing::Uniform);
-        let weights = self.weights.as_ref().map(|w| w.items.clone());
+        let weights: Option<Vec<f64>> =
+            self.weights.as_ref().map(|w| w.items.iter().map(|x| x.re()).collect());
+        if let Some((what, field)) = self.near_only().filter(|_| !by_data) {
+            let message = format!("`{what}` is for surfaces near their points");
+            return Err(CallError::new("not-near", message)
+                .expected("as = \"fit\", mode = \"optimum\", without spacing \"index\"")
+                .in_field(field));
+        }
         let Rims([south, east, north, west]) = self.rims;
         let rims = [[west, east], [south, north]];
-        let lines = lines([m, n]);
+        let lines = lines([m, n], closed);
         let of_breaks: Vec<usize> = (0..m * n)
             .filter(|k| marks_u.contains(&(k / n)) || marks_v.contains(&(k % n)))
             .collect();
         let make = || -> Result<_, FairError> {
-            let degree = self.degree;
-            for actual in [m, n] {
+            for (actual, degree) in [m, n].into_iter().zip(degrees) {
                 if actual < degree + 2 {
                     return Err(FairError::TooFew { expected: degree + 2, actual });
                 }
             }
             let (spaces, net, marks) = if fitted_first {
-                let (u, net, mu) = fitted(degree, &grid.points(), m, &marks_u)?;
-                let (v, net, mv) = fitted(degree, &turned(&net, u.count()), n, &marks_v)?;
+                let (u, net, mu) = fitted(degrees[0], &grid.points(), m, &marks_u)?;
+                let (v, net, mv) = fitted(degrees[1], &turned(&net, u.count()), n, &marks_v)?;
                 let net = turned(&net, v.count());
                 ([u, v], net, [mu, mv])
             } else {
-                let spaces = [own[0].space(degree, m)?, own[1].space(degree, n)?];
+                let spaces = [own[0].space(degrees[0], m)?, own[1].space(degrees[1], n)?];
                 (spaces, grid.points(), [marks_u.clone(), marks_v.clone()])
             };
             let all: Vec<Vec3<f64>> = grid.points().iter().map(|p| p.re()).collect();
@@ -334,28 +435,77 @@ impl<T: Real> Build<T> for FairSurf<T> {
             let figures = FairFigures::of_moves(super::moves(&points, &net), best.as_ref());
             Ok((spaces, points, figures))
         };
+        let owners = std::cell::RefCell::new(Vec::new());
         let by_points = || -> Result<_, FairError> {
             let points = grid.points();
             let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
-            let limit = Limit::new(motion, vec![self.tolerance.re(); plain.len()])?;
+            for d in [0, 1] {
+                let expected = degrees[d] + 2 + if closed[d] { degrees[d] } else { 0 };
+                let actual = [m, n][d];
+                if actual < expected {
+                    return Err(FairError::TooFew { expected, actual });
+                }
+            }
+            let limit = Limit::new(motion, tolerances.iter().map(|t| t.re()).collect())?;
             let allowed = (motion, limit.radii.as_slice());
-            let at = grid_parameters(&points, [m, n], [spacing; 2], [false; 2], allowed)?;
-            let layout = |at: &[T], marks: &[usize]| {
-                let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
-                InterpolationSpace::new(self.degree, &real, marks, false)
+            let at = grid_parameters(&points, [m, n], [spacing; 2], closed, allowed)?;
+            let layout = |d: usize, marks: &[usize]| {
+                let real: Vec<f64> = at[d].iter().map(|t| t.re()).collect();
+                InterpolationSpace::new(degrees[d], &real, marks, closed[d])
             };
             let data = GridData {
                 limit,
-                layouts: [layout(&at[0], &marks_u)?, layout(&at[1], &marks_v)?],
+                layouts: [layout(0, &marks_u)?, layout(1, &marks_v)?],
                 rims,
                 points: plain,
             };
-            let tolerances = vec![self.tolerance; points.len()];
             let at = [at[0].as_slice(), at[1].as_slice()];
-            let (made, fit) =
-                fair_grid_with(&data, measure, goal, ACCURACY, &points, &tolerances, at)?;
+            let (made, fit) = if demands.is_empty() {
+                fair_grid_with(&data, measure, goal, ACCURACY, &points, &tolerances, at)?
+            } else {
+                let mut numbers = points
+                    .iter()
+                    .flat_map(|p| p.to_array())
+                    .chain(at.iter().flat_map(|a| a.iter().copied()))
+                    .chain(tolerances.iter().copied());
+                if !numbers.all(|x| x.is_constant()) {
+                    return Err(FairError::Goal(
+                        "derivatives of surfaces with conditions are not known: take the surface \
+                         without them",
+                    ));
+                }
+                let (conditions, whose) = demands.conditions(&data)?;
+                *owners.borrow_mut() = whose;
+                let fit = fair_grid(&data, measure, goal, &conditions, 1e-9)?;
+                let knots =
+                    |d: usize| data.layouts[d].space.knots().iter().map(|&k| T::from(k)).collect();
+                let points = fit.points.iter().map(|&p| Vec3::lifted(p)).collect();
+                (MovingGrid { points, knots: [knots(0), knots(1)] }, fit)
+            };
             let findings = line_findings(&data.points, &lines, &of_breaks);
-            Ok((made, FairFigures::of_surface(&fit, &data.limit.radii, findings.len())))
+            let figures = FairFigures::of_surface(&fit, &data.limit.radii, findings.len());
+            // Others see a closed direction as an open one that repeats its first points.
+            let spaces = data.layouts.each_ref().map(|layout| &layout.space);
+            let along = |d: usize, net: &[Vec3<T>], count: usize| {
+                let across = net.len() / count;
+                let mut out = Vec::new();
+                let mut open = Vec::new();
+                for k in 0..across {
+                    let line: Vec<Vec3<T>> = (0..count).map(|i| net[i * across + k]).collect();
+                    let (knots, line) = spaces[d].open_form(&made.knots[d], &line);
+                    out.resize(line.len() * across, Vec3::zero());
+                    for (i, p) in line.into_iter().enumerate() {
+                        out[i * across + k] = p;
+                    }
+                    open = knots;
+                }
+                (open, out)
+            };
+            let counts = spaces.map(|space| space.count());
+            let (u, net) = along(0, &made.points, counts[0]);
+            let (v, net) = along(1, &turned(&net, net.len() / counts[1]), counts[1]);
+            let net = turned(&net, v.len() - degrees[1] - 1);
+            Ok((MovingGrid { points: net, knots: [u, v] }, figures))
         };
         let about = |e: FairError| match e {
             FairError::Weight { .. } => {
@@ -364,15 +514,26 @@ impl<T: Real> Build<T> for FairSurf<T> {
             FairError::Unsorted { .. }
             | FairError::Knots(_)
             | FairError::Count { what: "knots", .. } => {
-                let along = usize::from(own[0].space(self.degree, m).is_ok());
+                let along = usize::from(own[0].space(degrees[0], m).is_ok());
                 CallError::new("bad-knots", e.to_string()).in_field(KNOTS[along])
+            }
+            FairError::Degree { expected, actual } if actual != degrees[0] => {
+                CallError::new("out-of-range", e.to_string())
+                    .expected(format!("degree {expected} or more for this measure"))
+                    .found(actual.to_string())
+                    .in_field(Self::DEGREE_V)
+            }
+            FairError::Goal(why) => CallError::new("no-goal", why).in_field(GOAL),
+            FairError::Energy { .. } => CallError::new("no-goal", e.to_string()).in_field(SHARE),
+            FairError::Contradiction { conditions, miss, .. } if !demands.is_empty() => {
+                demands.refused(&conditions, &owners.borrow(), miss)
             }
             e => fault(e, &places),
         };
         if by_data {
             let (made, figures) = by_points().map_err(about)?;
             let surface =
-                MovingSurface::referred(self.degree, made.knots, made.points).map_err(about)?;
+                MovingSurface::referred(degrees, made.knots, made.points).map_err(about)?;
             return Ok(Value::Surface(surface.with_figures(&figures.members())));
         }
         let (spaces, points, figures) = make().map_err(about)?;

@@ -12,10 +12,10 @@
 use crate::curve::exact::{all_exact, between_breaks};
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
-    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique, moved,
-    rounding,
+    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
+    moved, rounding, tightened,
 };
-use crate::optimum::{Bounded, DataLimits, Parts};
+use crate::optimum::{Bounded, DataLimits, Parts, Solved};
 use crate::{
     Certificate, Condition, EndContinuity, FairError, InterpolationSpace, Limit, Measure, Motion,
     Network, ParameterSpacing, RowNorm, SparseRows, parameters_across,
@@ -455,7 +455,7 @@ impl GridData {
             count: pull.len(),
             noise: rounding(&rows, norm, original),
             original,
-            adapts: false,
+            adapts: Adaptation::Surface,
         };
         // The measure of closed lines is never small, so that it does not show what a move is worth.
         let closed = self.layouts.iter().any(|layout| layout.space.is_closed());
@@ -653,9 +653,6 @@ pub fn fair_grid_with<T: Real>(
              measure",
         ));
     }
-    parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
-    let solved = parts.whole()?;
-    let control = &solved.optimum.points;
     // The measure's rows as knots, sites and weights move.
     let scaled = |rows: &[Vec<(usize, T)>], by: &[T]| -> Vec<Vec<(usize, T)>> {
         let one = |(row, w): (&Vec<(usize, T)>, &T)| {
@@ -672,40 +669,70 @@ pub fn fair_grid_with<T: Real>(
     let mv = times(spaces[1].measure(measure)?, unit(measure, v));
     let mut rows = products(&mu, &scaled(&bases[1], &wv), nv);
     rows.rows.extend(products(&scaled(&bases[0], &wu), &mv, nv).rows);
-    let mut forces: Vec<Vec3<T>> =
-        rows.slope(control).into_iter().map(|f| f - Vec3::lifted(f.re())).collect();
-    // Forces at the sites act through rows that move.
     let radii = data.radii();
     let all = data.rows();
     let columns = sv.len();
     let free = |k: &usize| all.row(*k).0.iter().any(|&c| !parts.frozen[c as usize]);
     let limited: Vec<usize> =
         (0..radii.len()).filter(|k| radii[*k] > 0.0 && radii[*k].is_finite() && free(k)).collect();
-    let away: Vec<Vec3<f64>> = control.iter().zip(&original).map(|(p, q)| *p - *q).collect();
-    for (&k, force) in limited.iter().zip(&solved.forces()) {
-        let mut force = *force;
-        if data.owner(k / columns, k % columns).is_some() {
-            force += all.apply(k, &away) * (weight / (radii[k] * radii[k]));
-        }
-        for &(c, f) in &values.rows[k] {
-            let change = f - T::from(f.re());
-            forces[c] += force.map_real(|x| change * x);
-        }
-    }
     let largest = tolerances.iter().copied().reduce(|a, b| if b.re() > a.re() { b } else { a });
     let largest = largest.unwrap_or_else(T::zero);
     let of = |k: &usize| data.owner(k / columns, k % columns).map_or(largest, |i| tolerances[i]);
     let own: Vec<T> = limited.iter().map(of).collect();
-    let moving = GoalVariation {
-        originals: through(control, &original)?,
-        tolerances: &own,
-        pulled: pulling.iter().map(|&(_, i)| tolerances[i]).collect(),
-        targets: &[],
-        forces,
-        rows: &rows,
-        budget: T::zero(),
-        start: &start,
+    // What moves with a solution, where data pull with a weight.
+    let moving = |solved: &Solved, weight: f64, budget: T| -> Result<_, FairError> {
+        let control = &solved.optimum.points;
+        let mut forces: Vec<Vec3<T>> =
+            rows.slope(control).into_iter().map(|f| f - Vec3::lifted(f.re())).collect();
+        // Forces at the sites act through rows that move.
+        let away: Vec<Vec3<f64>> = control.iter().zip(&original).map(|(p, q)| *p - *q).collect();
+        for (&k, force) in limited.iter().zip(&solved.forces()) {
+            let mut force = *force;
+            if data.owner(k / columns, k % columns).is_some() {
+                force += all.apply(k, &away) * (weight / (radii[k] * radii[k]));
+            }
+            for &(c, f) in &values.rows[k] {
+                let change = f - T::from(f.re());
+                forces[c] += force.map_real(|x| change * x);
+            }
+        }
+        Ok(GoalVariation {
+            originals: through(control, &original)?,
+            tolerances: &own,
+            pulled: pulling.iter().map(|&(_, i)| tolerances[i]).collect(),
+            targets: &[],
+            forces,
+            rows: &rows,
+            budget,
+            start: &start,
+        })
     };
+    if found.between && share < 1.0 {
+        return Err(FairError::Goal(
+            "how far this surface moves hangs on what the fairest takes of it, whose derivatives are \
+             not known there: take the goal \"budget\"",
+        ));
+    }
+    let mut budget = T::zero();
+    if let (Goal::Near(share), true) = (goal, found.between) {
+        // What the fairest takes moves, too.
+        parts.pull = None;
+        let fairest = parts.whole()?;
+        let optimum = fairest.optimum.clone();
+        let whole = GoalOptimum { share: 1.0, weight: 0.0, optimum, ..found.clone() };
+        check_unique(&mut parts, &whole, &pull)?;
+        let own = moving(&fairest, 0.0, T::zero())?;
+        let control = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, own)?;
+        let mean = pulling.len() as f64 / 3.0;
+        let used = pulling.iter().fold(T::zero(), |sum, &(k, i)| {
+            let off = values.apply(k, &control) - points[i];
+            sum + off.dot(off) / (tolerances[i] * tolerances[i])
+        }) / mean;
+        budget = tightened(share, used, pulling.len()) * mean;
+    }
+    parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
+    let solved = parts.whole()?;
+    let moving = moving(&solved, weight, budget)?;
     let points = moved(&parts, &solved, goal, &found, &pull, moving)?;
     drop(solved);
     drop(parts);

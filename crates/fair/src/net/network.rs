@@ -7,8 +7,8 @@ use crate::error::check_finite;
 use crate::net::patches::{PlacedNet, SeamCondition};
 use crate::optimum::certificate::gap;
 use crate::optimum::goal::{
-    Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_unique, moved,
-    rounding,
+    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_unique,
+    moved, rounding,
 };
 use crate::optimum::{Bounded, Optimum, Parts};
 use crate::{
@@ -418,7 +418,7 @@ impl Network {
             count: pull.len(),
             noise: rounding(&rows, norm, &self.points),
             original: &self.points,
-            adapts: !conditioned,
+            adapts: if conditioned { Adaptation::None } else { Adaptation::Network },
         };
         let found = path.follow(goal, norm, conditioned, parts, &pull)?;
         Ok((found, pull, owners))

@@ -62,6 +62,9 @@ pub struct Optimum {
 /// The gap, as a share of the measure, to which the weight of a budget is looked for.
 const WEIGHED: f64 = 1e-8;
 
+/// The same that rounding may leave of very many.
+const NEARLY: f64 = 1e-4;
+
 /// The frame that points move in: the directions that matter.
 pub(crate) struct MotionAxes {
     pub axes: Vec<Vec3<f64>>,
@@ -276,15 +279,27 @@ impl<'a> Parts<'a> {
         self.solved(&frame, &problem, before)
     }
 
-    /// The weight beside the measure of the squares of `pull` at which these are at most `most` in sum,
-    /// nearly; none where the search does not end there.
-    pub fn weight_of(&self, pull: &SparseRows, most: f64) -> Result<Option<f64>, FairError> {
+    /// The least of the measure where the squares of `pull` are at most `most` in sum, and the weight of
+    /// these beside the measure at which it is the least, too, nearly; none where the search does not end there.
+    pub fn within(
+        &self,
+        pull: &SparseRows,
+        most: f64,
+    ) -> Result<Option<(f64, Optimum)>, FairError> {
         let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
         let mut problem = self.problem(&frame);
         problem.squares = Some((pull.clone(), most));
         let solution = problem::solve(&problem, WEIGHED, 0.0, 0.0, None)?;
-        let good = solution.gap <= 1e3 * WEIGHED * solution.value && solution.weight.is_normal();
-        Ok(good.then_some(solution.weight))
+        let good = solution.gap <= NEARLY * solution.value && solution.weight.is_normal();
+        if !good {
+            return Ok(None);
+        }
+        // Squares are solved as halves.
+        let certificate = Certificate { value: 2.0 * solution.value, gap: 2.0 * solution.gap };
+        let points = self.moved(&frame, &solution.x);
+        let active = active(&problem, &solution);
+        let optimum = Optimum { points, certificate, iterations: solution.iterations, active };
+        Ok(Some((solution.weight, optimum)))
     }
 
     /// The optimum with the numbers or their derivatives of `points`, `tolerances` (per control

@@ -64,6 +64,44 @@ fn the_twisted_cubic_has_its_torsion() {
     );
 }
 
+/// Points of a circle or a helix at random places know of one curvature, whatever a spline through them
+/// does between; an oval has its own pieces.
+#[test]
+fn circles_have_one_piece_at_any_places() {
+    let rounds = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 2000 } else { 60 };
+    let mut random = moldloft_testing::Lcg::new(4);
+    for round in 0..rounds {
+        let n = 12 + round % 40;
+        let mut turns: Vec<f64> = (0..n).map(|_| 0.5 + random.centred()).collect();
+        turns.sort_by(f64::total_cmp);
+        turns.dedup_by(|a, b| *a - *b < 2e-3);
+        let longest = turns.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+        // Spans of more than that are not resolved.
+        let whole = (1.0 + 4.5 * (0.5 + random.centred())).min(0.9 / longest);
+        let count = |shape: &dyn Fn(f64) -> Vec3<f64>| {
+            let points: Vec<_> = turns.iter().map(|t| shape(whole * t)).collect();
+            let at = parameters(&points, ParameterSpacing::Chord, false).unwrap();
+            let layout = InterpolationSpace::new(3, &at, &[], false).unwrap();
+            let control = layout.through(&layout.data(&points)).unwrap();
+            shape::pieces(&layout.space, &control)
+        };
+        assert_eq!(count(&|a| Vec3::of(2.0 * a.cos(), 2.0 * a.sin(), 0.0)), 1, "circle {round}");
+        assert_eq!(count(&|a| Vec3::of(a.cos(), a.sin(), 0.3 * a)), 1, "helix {round}");
+    }
+    // What is no circle has its own pieces, four once round.
+    for (wide, pieces) in [(1.0, 1), (1.02, 4), (1.2, 4), (3.0, 4)] {
+        // From a place where the curvature is neither least nor greatest.
+        let at = |k: usize| 0.4 + std::f64::consts::TAU * k as f64 / 80.0;
+        let points: Vec<_> =
+            (0..=80).map(at).map(|a| Vec3::of(wide * a.cos(), a.sin(), 0.0)).collect();
+        let at = parameters(&points, ParameterSpacing::Chord, false).unwrap();
+        let layout = InterpolationSpace::new(3, &at, &[], false).unwrap();
+        let control = layout.through(&layout.data(&points)).unwrap();
+        let found = shape::pieces(&layout.space, &control);
+        assert!(found == 1 && pieces == 1 || found >= pieces && pieces > 1, "{wide}: {found}");
+    }
+}
+
 /// Runs are counted with hysteresis, inflections where the curve turns over, cusps of the
 /// orthotomic stand there.
 #[test]
