@@ -162,5 +162,5 @@ def on_post_build(config: Any) -> None:
             continue
         page = folder / living
         command = [sys.executable, "-m", "moldloft", "export", "--html", str(path), "-o", str(page)]
-        engine = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.gz"
+        engine = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.xz"
         subprocess.run(command + ([] if engine.exists() else ["--still"]), check=True)

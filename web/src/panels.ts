@@ -38,7 +38,7 @@ export function stepped(value: number, low: number, high: number, whole: boolean
 }
 
 export function parametersPanel(host: HTMLElement, act: Actions): void {
-  const rows = new Map<string, { row: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; reset: HTMLButtonElement; p: Param }>()
+  const rows = new Map<string, { row: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; reset: HTMLButtonElement; p: Param; wanted: number | null }>()
   let built = ''
   const empty = h('p', { class: 'quiet' }, 'No parameters. Declare one: param float beam = 4 in [3, 5];')
   const box = h('div', { class: 'params' })
@@ -58,17 +58,26 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
       const reset = h('button', { class: 'icon', title: `${p.name} as before`, 'aria-label': `reset ${p.name}` }, '↺')
       const name = h('button', { class: 'link name', title: 'Show in the program' }, p.name)
       const row = h('div', { class: 'param' }, name, field, reset, slider)
-      const entry = { row, slider, field, reset, p }
+      const entry = { row, slider, field, reset, p, wanted: null as number | null }
       rows.set(p.name, entry)
       const step = (value: number) => {
         const v = stepped(Math.min(high, Math.max(low, value)), low, high, p.whole)
         slider.value = String(v)
         field.value = p.whole ? String(v) : shown(v, 7)
         slider.setAttribute('aria-valuetext', `${field.value} ${model.unit}`)
+        entry.wanted = v
         act.set(p.name, v)
       }
+      const commit = () => {
+        const { wanted } = entry
+        void act.commit().then(() => {
+          if (entry.wanted !== wanted) return
+          entry.wanted = null
+          show(entry)
+        })
+      }
       slider.addEventListener('input', () => step(slider.valueAsNumber))
-      slider.addEventListener('change', () => void act.commit())
+      slider.addEventListener('change', commit)
       slider.addEventListener('keydown', (event) => {
         const by = (high - low) / 100
         const moves: Record<string, number> = {
@@ -77,7 +86,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
         if (!(event.key in moves) || p.whole) return
         event.preventDefault()
         step(slider.valueAsNumber + moves[event.key])
-        void act.commit()
+        commit()
       })
       const enter = () => {
         const x = Number(field.value.replace('−', '-').replace(',', '.'))
@@ -98,6 +107,12 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
     }
   }
 
+  function show({ p, slider, field }: { p: Param; slider: HTMLInputElement; field: HTMLInputElement }): void {
+    if (!dragging(slider)) slider.value = String(p.value)
+    if (document.activeElement !== field) field.value = text(p)
+    slider.setAttribute('aria-valuetext', `${text(p)} ${model.unit}`.trim())
+  }
+
   /** Values when the page was opened, for reset. */
   const begin = new Map<string, number>()
   on('params', () => {
@@ -112,9 +127,8 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
       const entry = rows.get(p.name)
       if (!entry) continue
       entry.p = p
-      if (document.activeElement !== entry.slider || !dragging(entry.slider)) entry.slider.value = String(p.value)
-      if (document.activeElement !== entry.field) entry.field.value = text(p)
-      entry.slider.setAttribute('aria-valuetext', `${text(p)} ${model.unit}`.trim())
+      // What a hand has just asked for stays: the engine may still answer what it was asked before.
+      if (entry.wanted === null) show(entry)
       const moved = p.value !== begin.get(p.name)
       entry.row.classList.toggle('moved', moved)
       entry.reset.disabled = !moved || act.still

@@ -1,6 +1,7 @@
 // The engine in the page: a session in WebAssembly, see `crates/wasm`. It answers one request at a time; when it
 // fails, a new instance is made of the same module by who asked.
 
+import { XzReadableStream } from 'xz-decompress'
 import { Frame } from './frame'
 
 interface Engine {
@@ -13,7 +14,7 @@ interface Engine {
 }
 
 export interface Beginning {
-  /** The engine: its bytes packed by gzip, in base64 or as they are. */
+  /** The engine: its bytes packed by XZ, in base64 or as they are. */
   packed: string | ArrayBuffer
   name: string
   text: string
@@ -45,7 +46,7 @@ function decoded(text: string): Uint8Array<ArrayBuffer> {
 
 async function compiled(packed: string | ArrayBuffer): Promise<WebAssembly.Module> {
   const bytes = typeof packed === 'string' ? decoded(packed) : packed
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))
+  const stream = new XzReadableStream(new Blob([bytes]).stream()) as ReadableStream<Uint8Array<ArrayBuffer>>
   return WebAssembly.compileStreaming(new Response(stream, { headers: { 'Content-Type': 'application/wasm' } }))
 }
 
