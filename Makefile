@@ -34,7 +34,7 @@ PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildca
 # Without Node.js everything but the workbench is there.
 WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
 
-ENGINE := python/moldloft/workbench/wasm/engine.wasm.gz
+ENGINE := python/moldloft/workbench/wasm/engine.wasm.xz
 # `demo` makes one without optimisation, a quarter of the work: the same bits, for tests.
 ENGINE_PROFILE ?= engine
 WASM := wasm32-unknown-unknown
@@ -83,9 +83,7 @@ engine: ## the engine for `export --html`; needs the target wasm32-unknown-unkno
 		echo "the engine for pages needs the target $(WASM): rustup target add $(WASM)"; exit 1; }
 	@echo "building the engine for pages (it takes a while)"
 	@cargo build --quiet --profile $(ENGINE_PROFILE) --target $(WASM) -p moldloft-wasm
-	@mkdir -p $(dir $(ENGINE))
-	@gzip -9 -n -c $${CARGO_TARGET_DIR:-target}/$(WASM)/$(ENGINE_PROFILE)/moldloft_engine.wasm > $(ENGINE).new
-	@mv $(ENGINE).new $(ENGINE)
+	@$(PYTHON) tools/pack_engine.py $${CARGO_TARGET_DIR:-target}/$(WASM)/$(ENGINE_PROFILE)/moldloft_engine.wasm $(ENGINE)
 
 living: $(VENV)/.with-tests $(VENV)/.with-browser ## the tests of the engine for pages and of pages with it
 	@$(BIN)/python -m pytest tests/python/test_engine_in_page.py tests/python/test_workbench_page.py tests/python/test_vscode_page.py

@@ -73,7 +73,7 @@ def on_config(config: Any) -> Any:
     return config
 
 
-#: `make site` sets it: the models of the gallery stand in the site as pages that one can turn and change.
+#: `make site` sets it: all examples stand in the site as pages that one can turn and change.
 LIVING = bool(os.environ.get("MOLDLOFT_LIVING"))
 
 _LINK = re.compile(r"\]\(((?:\.\./)+[^)#\s]+)(#[^)]*)?\)")
@@ -118,16 +118,21 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
             return f"]({up}changes.md)"
         if not (ROOT / target).is_file():
             return f"](https://github.com/moldloft/moldloft/tree/main/{target})"
-        return f"]({up}source/{target}.txt)"
+        source = f"]({up}source/{target}.txt)"
+        if not LIVING or (living := _living(target)) is None:
+            return source
+        words = "open it: turn it, change its parameters" if here == "gallery.md" else "open it"
+        return f'{source} · <a href="{up}gallery/{living}">{words}</a>'
 
-    if here == "gallery.md" and LIVING:
-        markdown = re.sub(
-            r"^\[`(\w+)\.sdl`\]\(\S+\)$",
-            r'\g<0> · <a href="gallery/\1.html">open it: turn it, change its parameters</a>',
-            markdown,
-            flags=re.M,
-        )
     return _LINK.sub(moved, markdown)
+
+
+def _living(target: str) -> str | None:
+    """The name of the page on which an example lives."""
+    found = re.fullmatch(r"examples/(\w+)/(\w+)\.sdl", target)
+    if found is None:
+        return None
+    return f"{found[2]}.html" if found[1] == "gallery" else f"{found[1]}-{found[2]}.html"
 
 
 #: What the theme loads from another server when the site is opened from a folder; without it there is no search there.
@@ -146,13 +151,16 @@ def on_post_template(output_content: str, template_name: str, config: Any) -> st
 
 
 def on_post_build(config: Any) -> None:
-    """Writes the pages of the gallery's models beside its page."""
+    """Writes the pages of all examples."""
     if not LIVING:
         return
     folder = Path(config.site_dir) / "gallery"
     folder.mkdir(exist_ok=True)
-    for path in sorted((ROOT / "examples" / "gallery").glob("*.sdl")):
-        page = folder / f"{path.stem}.html"
+    for path in sorted((ROOT / "examples").glob("*/*.sdl")):
+        living = _living(path.relative_to(ROOT).as_posix())
+        if living is None:
+            continue
+        page = folder / living
         command = [sys.executable, "-m", "moldloft", "export", "--html", str(path), "-o", str(page)]
-        engine = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.gz"
+        engine = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.xz"
         subprocess.run(command + ([] if engine.exists() else ["--still"]), check=True)

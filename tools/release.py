@@ -13,7 +13,6 @@
 
 from __future__ import annotations
 
-import gzip
 import hashlib
 import importlib.util
 import json
@@ -31,6 +30,8 @@ import venv
 import zipfile
 from pathlib import Path
 from typing import Any
+
+from pack_engine import packed
 
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
@@ -220,9 +221,9 @@ def engine() -> None:
         "cargo", "build", "--profile", "engine", "--locked", "--target", WASM, "-p", "moldloft-wasm"
     )
     built = (TARGET / WASM / "engine" / "moldloft_engine.wasm").read_bytes()
-    path = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.gz"
+    path = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.xz"
     path.parent.mkdir(exist_ok=True)
-    path.write_bytes(gzip.compress(built, 9, mtime=0))
+    path.write_bytes(packed(built))
     print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
 
 

@@ -947,6 +947,37 @@ class Model(Floating, Adapted):
         self._warn_of_export()
         return text
 
+    def view(self, *, height: int = 600, follow: bool = True) -> Any:
+        """The workbench's page in a notebook's cell: sliders, drags, typing, hydrostatics.
+
+        The page computes by itself, with the engine in WebAssembly, and gives the same bits. With
+        ``anywidget`` installed (extra ``notebook``) this model follows what is done in the page;
+        after changes in Python ``refresh()`` of the result shows them. Without it, or with
+        ``follow=False``, the page is part of the notebook, stays alive in an exported one, and
+        changes no model of Python.
+
+        Parameters
+        ----------
+        height
+            Of the cell, in pixels.
+        follow
+            Whether this model follows the page.
+
+        Returns
+        -------
+        object
+            What the notebook shows.
+
+        Raises
+        ------
+        Error
+            When the package has no engine for pages, the model calls Python functions, or a
+            parameter was given a value that the text cannot state as a number.
+        """
+        from moldloft.notebook import shown
+
+        return shown(self, height, follow)
+
     def _repr_html_(self) -> str:
         from moldloft.display import model_html
 

@@ -1,13 +1,12 @@
 // The engine for pages outside of one: answers requests, and prints a hash of each reply.
 //
-// Standard input is JSON: the packed engine's path, what it begins with, the requests.
+// Standard input is JSON: the engine in base64, what it begins with, the requests.
 
 import { createHash } from 'node:crypto'
 import { readFileSync } from 'node:fs'
-import { gunzipSync } from 'node:zlib'
 
-const { packed, name, text, files, requests } = JSON.parse(readFileSync(0, 'utf8'))
-const module = await WebAssembly.compile(gunzipSync(readFileSync(packed)))
+const { engine: packed, name, text, files, requests } = JSON.parse(readFileSync(0, 'utf8'))
+const module = await WebAssembly.compile(Buffer.from(packed, 'base64'))
 const bytesAt = (at, length) => new Uint8Array(engine.memory.buffer, at, length)
 const panicked = (at, length) => console.error(new TextDecoder().decode(bytesAt(at, length)))
 const engine = new WebAssembly.Instance(module, { env: { panicked } }).exports

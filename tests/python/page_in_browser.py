@@ -19,7 +19,7 @@ CHROMIUM = next(
     filter(None, map(shutil.which, ["chromium", "chromium-browser", "google-chrome"])), None
 )
 PAGE = ROOT / "python" / "moldloft" / "workbench" / "page" / "index.html"
-ENGINE = PAGE.parents[1] / "wasm" / "engine.wasm.gz"
+ENGINE = PAGE.parents[1] / "wasm" / "engine.wasm.xz"
 
 needs_page = [
     pytest.mark.skipif(

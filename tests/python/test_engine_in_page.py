@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import lzma
 import os
 import random
 import shutil
@@ -18,7 +19,7 @@ from conftest import ROOT
 from moldloft import _core
 
 NODE = shutil.which("node")
-ENGINE = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.gz"
+ENGINE = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.xz"
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 
 pytestmark = [
@@ -67,7 +68,7 @@ def _differences(path: Path, requests: list[dict[str, Any]]) -> list[str]:
         for p, f, n, d in session.files()
     ]
     data = {
-        "packed": str(ENGINE),
+        "engine": base64.b64encode(lzma.decompress(ENGINE.read_bytes())).decode(),
         "name": path.name,
         "text": text,
         "files": files,

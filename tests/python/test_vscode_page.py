@@ -42,7 +42,7 @@ const document = { fileName: "/models/model.sdl", version: 1, getText: () => tex
 process.stdout.write(html(webview, { page, engine }, document))
 """
 
-TYPES = {".js": "text/javascript", ".css": "text/css", ".gz": "application/gzip"}
+TYPES = {".js": "text/javascript", ".css": "text/css", ".xz": "application/x-xz"}
 
 TEXT = (
     "param float w = 2 in [1, 3];\nAbsPoint A(0, 0, 0); AbsPoint B(w, 0, 0); Line l(A, B);\n"

@@ -180,6 +180,60 @@ def test_sheets_follow_the_model(bench: Callable[..., Bench]) -> None:
     assert not b.faults
 
 
+FORM = (
+    "param float w = 2 in [1, 3];\nAbsPoint A(0, 0, 0); AbsPoint B(w, 0, 1); AbsPoint C(0, 1, 0);\n"
+    "AbsPoint D(2, 1, 2); Line l(A, B); Line m(C, D);\n"
+    'CLoftSurf s({l, m}, ends = "natural", divisions = {4, 4});\n'
+)
+
+
+def test_the_inspector_is_a_form_of_all_arguments(bench: Callable[..., Bench]) -> None:
+    b = bench(FORM, "form.sdl")
+    inspector = b.page.get_by_role("region", name="inspector")
+    tree = b.page.get_by_role("tree", name="objects")
+    tree.get_by_role("treeitem", name=re.compile("^s ?CLoftSurf")).click()
+    # One of several words.
+    ends = inspector.get_by_role("combobox", name="ends")
+    ends.wait_for()
+    assert {"notaknot", "natural", "periodic"} <= set(ends.locator("option").all_inner_texts())
+    ends.select_option("bessel")
+    b.until(lambda: 'ends = "bessel"' in b.text())
+    # A list of parents, as the program spells it.
+    curves = inspector.get_by_role("textbox", name="curves")
+    b.until(lambda: curves.input_value() == "{l, m}")
+    curves.fill("{m, l}")
+    curves.press("Enter")
+    b.until(lambda: "CLoftSurf s({m, l}" in b.text())
+    # What is not given is written by its name.
+    degree = inspector.get_by_role("textbox", name="degree")
+    degree.fill("1")
+    degree.press("Enter")
+    b.until(lambda: "degree = 1" in b.text())
+    b.until(lambda: not b.hand("model.faults"))
+    # An expression, and a number that becomes one; each is a step of the history.
+    folded = tree.get_by_role("treeitem", name=re.compile("^▸? ?Points"))
+    if folded.get_attribute("aria-expanded") == "false":
+        folded.click()
+    tree.get_by_role("treeitem", name=re.compile("^B ?AbsPoint")).click()
+    x = inspector.get_by_role("textbox", name="x", exact=True)
+    b.until(lambda: x.input_value() == "w")
+    x.fill("2*w")
+    x.press("Enter")
+    b.until(lambda: "B(2*w, 0, 1)" in b.text())
+    z = inspector.get_by_role("textbox", name="B.z")
+    z.fill("w/2")
+    z.press("Enter")
+    b.until(lambda: "B(2*w, 0, w/2)" in b.text())
+    b.page.get_by_role("textbox", name="program").focus()
+    steps = ["B(2*w, 0, 1)", "B(w, 0, 1)", 's({m, l}, ends = "bessel", div', "s({l, m}, ends"]
+    for text in steps:
+        b.page.keyboard.press("Control+z")
+        b.until(lambda text=text: text in b.text())
+    b.page.keyboard.press("Control+z")
+    b.until(lambda: b.text() == FORM)
+    assert not b.faults
+
+
 HOSTILE = "<img src=x onerror=alert(1)>"
 
 

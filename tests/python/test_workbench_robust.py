@@ -7,6 +7,8 @@ import os
 import random
 import signal
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 from page_in_browser import Bench, children, needs_page
 
@@ -124,3 +126,38 @@ def test_nothing_is_lost_by_a_wild_hand(bench: Callable[..., Bench]) -> None:
     b.until(lambda: all(not i["stale"] for i in b.hand("items()")), 60)
     # Where a test puts many lines at once the browser itself tries to style them, in vain.
     assert not [f for f in b.faults if "inline style" not in f]
+
+
+def test_nothing_is_lost_when_servers_are_killed(tmp_path: Path, browser: Any) -> None:
+    path = tmp_path / "killed.sdl"
+    path.write_text(MODEL, encoding="utf-8")
+    chance = random.Random(7)
+    accepted = MODEL
+    for k in range(20 if SOAK else 3):
+        b = Bench(path, browser)
+        try:
+            # All that the page reported as accepted is there, whenever the server ended.
+            assert b.text() == accepted
+            assert [i for i in b.hand("items()") if i["object"] == "s"]
+            slid(b, chance)
+            program = b.page.get_by_role("textbox", name="program")
+            program.focus()
+            b.page.keyboard.press("Control+End")
+            b.page.keyboard.insert_text(f"AbsPoint K{k}({k}, 0, 0);\n")
+            b.page.evaluate("() => window.moldloft.settled()")
+            accepted = b.text()
+            if chance.random() < 0.5:
+                b.page.keyboard.type("# and more")
+            b.process.kill()
+            b.process.wait(60)
+            b.page.get_by_text("The server does not answer").wait_for()
+            # The page has its text and its picture still, and takes more of it.
+            b.page.keyboard.insert_text("# typed alone\n")
+            assert b.text().startswith(accepted) and b.text().endswith("# typed alone\n")
+            assert b.hand("items()")
+            # What was on its way when the server ended may have arrived.
+            found = kept(b)
+            assert b.text().startswith(found) and found.startswith(accepted)
+            accepted = found
+        finally:
+            b.close()

@@ -3,13 +3,17 @@
 import './style.css'
 import { Editor } from './editor'
 import { BlockPlanes } from './blocks'
-import { ramp, type Scale } from './colour'
-import { h, shown, store, stored } from './dom'
+import { drawAxes } from './axes'
+import { Analysis } from './analysis'
+import { h, store, stored } from './dom'
+import { Foreign } from './foreign'
 import type { Frame } from './frame'
 import { Hands } from './hands'
 import { door, Host } from './host'
+import { Cell } from './notebook'
 import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
 import { LivingLink, WorkerEngine } from './living'
+import { help, palette, type Command } from './palette'
 import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
 import { Sheets, type SheetName } from './sheets'
 import { changed, model } from './state'
@@ -19,12 +23,16 @@ import type { Standard } from './camera'
 const nonce = document.querySelector<HTMLMetaElement>('meta[name=nonce]')?.content ?? ''
 /** The editor that the page is inside of, if any: the text is there. */
 let host = null as Host | null
+/** The notebook's cell that the page is inside of, if any: it follows the text. */
+let cell = null as Cell | null
+let inCell = false
 
 /** The link: a server has an engine; a file carries its last scene, and an engine where the package has one. */
 function linked(): Link & { start(): Promise<void> } {
   const carried = document.getElementById('moldloft-model')
   if (!carried?.textContent) return new SocketLink()
-  const { hello, frames, files, host: where } = JSON.parse(carried.textContent)
+  const { hello, frames, files, host: where, cell: within } = JSON.parse(carried.textContent)
+  inCell = within === true
   const api = where ? door() : null
   if (api) {
     host = new Host(api, hello, where)
@@ -46,7 +54,7 @@ function linked(): Link & { start(): Promise<void> } {
     if (document.readyState === 'loading') await new Promise((r) => document.addEventListener('DOMContentLoaded', r, { once: true }))
     return { packed: part('moldloft-engine'), name: hello.name, files }
   }
-  const living = new LivingLink(hello, first.open ?? null, new WorkerEngine(make, beginning))
+  const living = new LivingLink(hello, first.open ?? null, new WorkerEngine(make, beginning), !inCell)
   living.onReady = () => {
     document.body.dataset.engine = 'ready'
     showSaved()
@@ -62,7 +70,6 @@ let online = false
 let fitted = false
 let theirs: string | null = null
 let contours = stored('contours', true)
-let field = ''
 let instance = ''
 /** For tests: when frames came, how long they took. */
 const stamps: { kind: string; from: number; to: number }[] = []
@@ -165,28 +172,7 @@ themeButton.addEventListener('click', () => {
   applyTheme()
 })
 
-view.onFrame = () => {
-  const c = axes.getContext('2d')
-  if (!c) return
-  const { right: r, up: u } = view.camera
-  c.clearRect(0, 0, 144, 144)
-  c.lineWidth = 3.5
-  c.font = '600 21px system-ui'
-  c.textAlign = 'center'
-  c.textBaseline = 'middle'
-  const inks = ['#c0443c', '#35905a', '#4478c8']
-  const order = [0, 1, 2].sort((a, b) => view.camera.towards.getComponent(a) - view.camera.towards.getComponent(b))
-  for (const k of order) {
-    const [x, y] = [72 + 46 * r.getComponent(k), 72 - 46 * u.getComponent(k)]
-    c.strokeStyle = c.fillStyle = inks[k]
-    c.beginPath()
-    c.moveTo(72, 72)
-    c.lineTo(x, y)
-    c.stroke()
-    const reach = Math.hypot(x - 72, y - 72)
-    if (reach > 9) c.fillText('xyz'[k], 72 + ((x - 72) * (reach + 15)) / reach, 72 + ((y - 72) * (reach + 15)) / reach)
-  }
-}
+view.onFrame = () => drawAxes(axes, view.camera)
 
 // What the page does.
 
@@ -269,7 +255,7 @@ const actions: Actions & { hidden: Set<string>; selected: () => string } = {
     let found: any = null
     inspecting.push(async () => {
       const { head } = await link.ask('inspect', by ? { name, by } : { name })
-      found = head.object
+      found = head
     })
     await inspecting.settled().catch(() => undefined)
     return found
@@ -300,7 +286,7 @@ view.hidden = hidden
 
 const editor = new Editor(editorHost, link, nonce.startsWith('__') ? '' : nonce, [
   { key: 'Mod-s', run: () => (void save(), true) },
-  { key: 'Mod-k', run: () => (palette(), true) },
+  { key: 'Mod-k', run: () => (openPalette(), true) },
 ])
 editor.onTrouble = (words) => say(words)
 editor.onPending = () => showSaved()
@@ -406,10 +392,10 @@ function take(frame: Frame): void {
     view.fit()
   }
   if (head.rev !== undefined && head.rev !== model.rev && head.watched === undefined && model.watched.length) measure()
-  if (scene && field) fields.push(undefined)
-  if (scene && combs.size) combing.push(undefined)
-  if (scene && view.clip) sectioning.push(undefined)
-  if (scene && foreign.length) deviating.push(undefined)
+  if (scene) {
+    analysis.refresh()
+    foreign.refresh()
+  }
   if (head.rev !== undefined && head.rev !== model.rev) planes.refresh()
   if (head.rev !== undefined && head.rev !== model.rev) {
     model.rev = head.rev
@@ -454,6 +440,7 @@ link.onMessage = (message) => {
     case 'updates':
       dirty = message.dirty
       editor.received(message.updates, message.from)
+      cell?.changed()
       showSaved()
       break
     case 'saved':
@@ -468,7 +455,7 @@ link.onMessage = (message) => {
       else {
         warn('')
         if (!link.local) void link.ask('watch', { expressions: model.watched.map((w) => w.expression) }).catch(() => undefined)
-        void relay()
+        void foreign.again()
       }
       break
     case 'full':
@@ -486,6 +473,7 @@ async function begin(hello: any): Promise<void> {
   document.title = `${hello.name} · Moldloft`
   dirty = hello.dirty
   editor.begin(hello.text, hello.version, again)
+  if (inCell) cell ??= new Cell(editor)
   if (hello.words) editor.words(hello.words)
   if (hello.watched) {
     model.watched = hello.watched
@@ -507,175 +495,22 @@ async function begin(hello: any): Promise<void> {
   }
 }
 
-// Colours by numbers, combs, sections.
-
-const SIGNED = new Set(['gaussian_curvature', 'mean_curvature', 'largest_curvature', 'smallest_curvature'])
-let by = ''
-const fields = new Newest<void>(async () => {
-  if (!field) return
-  try {
-    const frame = await link.ask('field', by ? { field, by } : { field })
-    view.field(frame, SIGNED.has(field))
-    view.overlay('arrows', field === 'derivative' ? view.arrows() : null, 0x8a2d1f)
-    showLegend()
-  } catch (error) {
-    say((error as Error).message)
-  }
+const planes = new BlockPlanes(planesHost, view, link, { say, legend: () => analysis.legend() })
+const foreign = new Foreign(view, link, { say, legend: () => analysis.legend() })
+const analysis = new Analysis(view, link, legend, section, {
+  say,
+  painted: () => buildToolbar(),
+  other: () => (foreign.scale ? { scale: foreign.scale, name: `deviation, ${model.unit}` } : planes.scale && { scale: planes.scale, name: 'scaled Jacobian' }),
 })
-
-function showLegend(): void {
-  const s = view.paint === 'field' ? view.fieldScale : deviation ?? planes.scale
-  legend.hidden = !s
-  if (!s) return
-  const bar = $('div', { class: 'ramp' })
-  bar.style.background = ramp(s.signed)
-  const name = view.paint !== 'field' ? (deviation ? `deviation, ${model.unit}` : 'scaled Jacobian') : field === 'derivative' ? `motion by ${by}` : field.replace('_', ' ')
-  legend.replaceChildren($('span', { class: 'key' }, name), bar, $('span', { class: 'mono low' }, shown(s.low, 3)), $('span', { class: 'mono high' }, shown(s.high, 3)))
-}
-
-function paint(p: Paint, name = '', parameter = ''): void {
-  ;[view.paint, field, by] = [p, name, parameter]
-  showLegend()
-  if (name !== 'derivative') view.overlay('arrows', null)
-  if (p === 'field') fields.push(undefined)
-  view.settle()
-  buildToolbar()
-}
-
-const combs = new Set<string>()
-const combing = new Newest<void>(async () => {
-  const frame = await link.ask('combs', { names: [...combs] })
-  const runs: number[][] = []
-  const size = view.box.isEmpty() ? 1 : view.box.min.distanceTo(view.box.max)
-  for (const comb of frame.head.combs ?? []) {
-    const [p, b, k] = [frame.floats(comb.position), frame.floats(comb.bend), frame.floats(comb.curvature)]
-    // One sharp place does not flatten all others.
-    const most = [...k].sort((x, y) => x - y)[Math.floor(0.95 * (k.length - 1))] || 1
-    const factor = (0.12 * size) / most
-    const tips: number[] = []
-    for (let j = 0; j < p.length; j += 3) {
-      const share = Math.min(1, (2.5 * most) / Math.max(k[j / 3], 1e-30))
-      const tip = [0, 1, 2].map((c) => p[j + c] - factor * share * b[j + c])
-      tips.push(...tip)
-      runs.push([p[j], p[j + 1], p[j + 2], ...tip])
-    }
-    runs.push(tips)
-  }
-  view.overlay('combs', runs, 0x2f8f7f)
-})
-function comb(): void {
-  const o = model.objects.find((k) => k.name === selected)
-  if (!o || !['curve', 'snake'].includes(o.class)) return say('Select a curve first')
-  if (!combs.delete(o.name)) combs.add(o.name)
-  if (combs.size) combing.push(undefined)
-  else view.overlay('combs', null)
-}
-
-// Meshes and offsets of other programs over the model.
-
-interface Foreign {
-  name: string
-  position: Float32Array
-  triangle: Uint32Array
-  edge: Uint32Array
-  deviation: Float32Array | null
-}
-let foreign: Foreign[] = []
-let deviation: Scale | null = null
-const files = new Map<string, string>()
-const LARGEST_OVERLAY = 11 << 20
-
-function laid(frame: Frame): void {
-  const { overlays } = frame.head
-  foreign = (overlays as any[]).map((o) => {
-    const old = foreign.find((f) => f.name === o.name)
-    return {
-      name: o.name,
-      position: o.position ? frame.floats(o.position) : old!.position,
-      triangle: o.triangle ? frame.numbers(o.triangle) : old!.triangle,
-      edge: o.edge ? frame.numbers(o.edge) : old!.edge,
-      deviation: o.deviation ? frame.floats(o.deviation) : null,
-    }
-  })
-  deviation = view.foreign(foreign)
-  showLegend()
-  const words = (overlays as any[]).map((o) => (o.rms === undefined ? `${o.name}: the model has no surface to compare with` : `${o.name}: rms ${shown(o.rms, 4)}, largest ${shown(o.largest, 4)} ${model.unit}`))
-  if (words.length) say(words.join(' · '))
-}
-const deviating = new Newest<void>(async () => {
-  if (foreign.length) await link.ask('deviation').then(laid, () => undefined)
-})
-
-async function lay(file: File): Promise<void> {
-  if (file.size > LARGEST_OVERLAY) return say(`${file.name} is larger than ${LARGEST_OVERLAY >> 20} MiB`)
-  const bytes = new Uint8Array(await file.arrayBuffer())
-  let raw = ''
-  for (let k = 0; k < bytes.length; k += 0x8000) raw += String.fromCharCode(...bytes.subarray(k, k + 0x8000))
-  try {
-    laid(await link.ask('overlay', { name: file.name, data: btoa(raw) }))
-    files.set(file.name, btoa(raw))
-  } catch (error) {
-    say((error as Error).message)
-  }
-}
-async function unlay(): Promise<void> {
-  files.clear()
-  laid(await link.ask('remove_overlay'))
-}
-/** A new engine is given them again. */
-async function relay(): Promise<void> {
-  for (const [name, data] of files) await link.ask('overlay', { name, data }).then(laid, (error) => say(error.message))
-}
-function choose(): void {
-  const input = $('input', { type: 'file', accept: '.stl,.obj,.gdf,.csv,.txt,.dat,.xyz', multiple: true })
-  input.addEventListener('change', () => [...(input.files ?? [])].forEach((f) => void lay(f)))
-  input.click()
-}
 viewHost.addEventListener('dragover', (e) => e.preventDefault())
 viewHost.addEventListener('drop', (e) => {
   e.preventDefault()
-  if (!link.still) for (const f of e.dataTransfer?.files ?? []) void lay(f)
+  if (!link.still) for (const f of e.dataTransfer?.files ?? []) void foreign.lay(f)
 })
-
-const planes = new BlockPlanes(planesHost, view, link, { say, legend: showLegend })
-
-const sectioning = new Newest<void>(async () => {
-  if (!view.clip) return view.overlay('section', null)
-  const frame = await link.ask('section', { axis: view.clip.axis, value: view.clip.value })
-  view.overlay('section', (frame.head.lines as any[]).map((part) => Array.from(frame.floats(part))), 0xc2412d)
-})
-function cut(axis: number | null): void {
-  if (axis === null || view.box.isEmpty()) {
-    view.clip = null
-    section.hidden = true
-    sectioning.push(undefined)
-    view.draw()
-    return
-  }
-  const [low, high] = [view.box.min.getComponent(axis), view.box.max.getComponent(axis)]
-  view.clip = { axis, value: (low + high) / 2, flip: false }
-  const slider = $('input', { type: 'range', min: low, max: high, step: 'any', 'aria-label': `section at ${'xyz'[axis]}` })
-  slider.value = String(view.clip.value)
-  const out = $('span', { class: 'mono' }, shown(view.clip.value, 5))
-  const move = () => {
-    view.clip!.value = slider.valueAsNumber
-    out.textContent = shown(slider.valueAsNumber, 5)
-    view.draw()
-    sectioning.push(undefined)
-  }
-  slider.addEventListener('input', move)
-  section.replaceChildren(`section ${'xyz'[axis]} =`, slider, out, $('button', { onclick: () => ((view.clip!.flip = !view.clip!.flip), view.draw()) }, 'Flip'), $('button', { class: 'icon', 'aria-label': 'no section', onclick: () => cut(null) }, '×'))
-  section.hidden = false
-  move()
-}
 
 // Commands: one table for buttons, keys and the palette.
 
-interface Command {
-  name: string
-  keys?: string
-  run: () => void
-}
+const openPalette = () => palette([...commands(), ...model.objects.slice(0, 2000).map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))])
 
 const looks: [Standard, string, string][] = [
   ['iso', 'Isometric', '1'], ['profile', 'Profile', '2'], ['plan', 'Plan', '3'], ['body', 'Body plan from the bow', '4'], ['stern', 'From the stern', '5'], ['starboard', 'Profile from the other side', '6'], ['bottom', 'From below', '7'],
@@ -733,18 +568,18 @@ function commands(): Command[] {
     ...looks.map(([n, words, key]) => ({ name: `View: ${words}`, keys: key, run: () => look(n) })),
     { name: 'Perspective or orthographic', keys: 'O', run: () => ((view.camera.perspective = !view.camera.perspective), view.fit()) },
     ...styles.map(([n, words, key]) => ({ name: `Style: ${words}`, keys: key, run: () => setStyle(n) })),
-    { name: 'Colour: patches apart', run: () => paint('patches') },
-    { name: 'Colour: of the model', run: () => paint('model') },
-    { name: 'Colour: zebra stripes', keys: 'Z', run: () => paint(view.paint === 'zebra' ? 'patches' : 'zebra') },
-    { name: 'Colour: reflection lines', run: () => paint('reflection') },
-    { name: 'Colour: isophotes', run: () => paint('isophotes') },
-    { name: 'Colour: highlight lines', run: () => paint('highlight') },
-    { name: 'Colour: Gaussian curvature', run: () => paint('field', 'gaussian_curvature') },
-    { name: 'Colour: mean curvature', run: () => paint('field', 'mean_curvature') },
-    { name: 'Colour: largest curvature', run: () => paint('field', 'largest_curvature') },
-    { name: 'Colour: smallest curvature', run: () => paint('field', 'smallest_curvature') },
-    ...['aspect', 'skew', 'warp', 'jump'].map((m) => ({ name: `Colour: panel ${m}`, run: () => paint('field', m) })),
-    ...model.params.map((p) => ({ name: `Colour: motion by ${p.name}`, run: () => paint('field', 'derivative', p.name) })),
+    { name: 'Colour: patches apart', run: () => analysis.paint('patches') },
+    { name: 'Colour: of the model', run: () => analysis.paint('model') },
+    { name: 'Colour: zebra stripes', keys: 'Z', run: () => analysis.paint(view.paint === 'zebra' ? 'patches' : 'zebra') },
+    { name: 'Colour: reflection lines', run: () => analysis.paint('reflection') },
+    { name: 'Colour: isophotes', run: () => analysis.paint('isophotes') },
+    { name: 'Colour: highlight lines', run: () => analysis.paint('highlight') },
+    { name: 'Colour: Gaussian curvature', run: () => analysis.paint('field', 'gaussian_curvature') },
+    { name: 'Colour: mean curvature', run: () => analysis.paint('field', 'mean_curvature') },
+    { name: 'Colour: largest curvature', run: () => analysis.paint('field', 'largest_curvature') },
+    { name: 'Colour: smallest curvature', run: () => analysis.paint('field', 'smallest_curvature') },
+    ...['aspect', 'skew', 'warp', 'jump'].map((m) => ({ name: `Colour: panel ${m}`, run: () => analysis.paint('field', m) })),
+    ...model.params.map((p) => ({ name: `Colour: motion by ${p.name}`, run: () => analysis.paint('field', 'derivative', p.name) })),
     ...[['point', 'points', '.'], ['curve', 'curves', ','], ['contour', 'contours', 'C'], ['patch', 'surfaces', ''], ['grid', 'grids', '']].map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => layer(k) })),
     { name: 'Show or hide the mirror image', keys: 'M', run: () => ((view.mirror = !view.mirror), view.settle()) },
     { name: 'Hide or show the selected object', keys: 'H', run: () => selected && actions.toggle(selected) },
@@ -757,10 +592,10 @@ function commands(): Command[] {
       if (!hands.measuring) view.overlay('measure', null)
       buildToolbar()
     } },
-    { name: 'Lay a mesh or offsets over the model (STL, OBJ, GDF, table)', run: choose },
-    { name: 'Remove what lies over the model', run: () => void unlay().catch((e) => say(e.message)) },
-    { name: 'Curvature comb of the selected curve', keys: 'K', run: comb },
-    ...[0, 1, 2].map((k) => ({ name: `Section across ${'xyz'[k]}`, keys: `Shift+${'XYZ'[k]}`, run: () => cut(view.clip?.axis === k ? null : k) })),
+    { name: 'Lay a mesh or offsets over the model (STL, OBJ, GDF, table)', run: () => foreign.choose() },
+    { name: 'Remove what lies over the model', run: () => void foreign.remove().catch((e) => say(e.message)) },
+    { name: 'Curvature comb of the selected curve', keys: 'K', run: () => analysis.toggleComb(selected) },
+    ...[0, 1, 2].map((k) => ({ name: `Section across ${'xyz'[k]}`, keys: `Shift+${'XYZ'[k]}`, run: () => analysis.cut(view.clip?.axis === k ? null : k) })),
     { name: 'Plane of a volume block, folded cells', keys: 'B', run: () => planes.toggle() },
     ...SHEETS.map(([n, words], k) => ({ name: `Sheet: ${words}`, keys: `Alt+${k + 1}`, run: () => sheet(n) })),
     { name: 'Go to the program', keys: 'Ctrl+1', run: () => editor.view.focus() },
@@ -772,7 +607,7 @@ function commands(): Command[] {
     { name: 'Picture as PNG', run: () => void download('png') },
     ...[['svg', 'Lines plan as SVG'], ['stl', 'Mesh as STL'], ['obj', 'Mesh as OBJ'], ['gltf', 'Mesh as glTF'], ['gdf', 'Panels for WAMIT'], ['vtp', 'Mesh for ParaView']].map(([f, w]) => ({ name: `Download: ${w}`, run: () => void download(f) })),
     { name: 'Light or dark', run: () => themeButton.click() },
-    { name: 'Help', keys: 'F1', run: help },
+    { name: 'Help', keys: 'F1', run: () => help(commands()) },
   ]
 }
 
@@ -784,6 +619,7 @@ function buildToolbar(): void {
     s.addEventListener('change', () => run(s.value))
     return s
   }
+  const { field, by } = analysis
   const value = view.paint === 'field' ? (field === 'derivative' ? `d:${by}` : field) : view.paint
   toolbar.replaceChildren(
     button('⤢', 'Fit the model (F)', () => view.fit()),
@@ -800,7 +636,7 @@ function buildToolbar(): void {
     choice('colour', value, [
       ['patches', 'Patches apart'], ['model', 'Colours of the model'], ['zebra', 'Zebra'], ['reflection', 'Reflection lines'], ['isophotes', 'Isophotes'], ['highlight', 'Highlight lines'],
       ...(link.still ? [] : ([['gaussian_curvature', 'Gaussian curvature'], ['mean_curvature', 'Mean curvature'], ['largest_curvature', 'Largest curvature'], ['smallest_curvature', 'Smallest curvature'], ['aspect', 'Panel aspect'], ['skew', 'Panel skewness'], ['warp', 'Panel warp'], ['jump', 'Jump of panel area'], ...model.params.map((p) => [`d:${p.name}`, `Motion by ${p.name}`])] as [string, string][])),
-    ], (v) => (['patches', 'model', 'zebra', 'reflection', 'isophotes', 'highlight'].includes(v) ? paint(v as Paint) : v.startsWith('d:') ? paint('field', 'derivative', v.slice(2)) : paint('field', v))),
+    ], (v) => (['patches', 'model', 'zebra', 'reflection', 'isophotes', 'highlight'].includes(v) ? analysis.paint(v as Paint) : v.startsWith('d:') ? analysis.paint('field', 'derivative', v.slice(2)) : analysis.paint('field', v))),
     button('•', 'Points (.)', () => layer('point'), view.layers.point),
     button('∿', 'Curves (,)', () => layer('curve'), view.layers.curve),
     button('≋', 'Contours (C)', () => layer('contour'), view.layers.contour),
@@ -810,58 +646,8 @@ function buildToolbar(): void {
 }
 for (const [name, words] of SHEETS) tabs.append($('button', { role: 'tab', 'aria-selected': name === 'model', 'data-sheet': name, onclick: () => sheet(name), disabled: link.still && name !== 'model' && name !== 'graph' }, words))
 
-function palette(): void {
-  const all = [...commands(), ...model.objects.slice(0, 2000).map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))]
-  const input = $('input', { type: 'text', placeholder: 'Type a command or the name of an object', 'aria-label': 'command', role: 'combobox', 'aria-expanded': 'true', 'aria-controls': 'commands' })
-  const list = $('ul', { role: 'listbox', id: 'commands', 'aria-label': 'commands' })
-  const dialog = $('dialog', { class: 'palette', 'aria-label': 'commands' }, input, list)
-  let found: Command[] = []
-  let at = 0
-  const run = (c: Command | undefined) => {
-    dialog.close()
-    c?.run()
-  }
-  const build = () => {
-    const words = input.value.toLowerCase().split(/\s+/).filter(Boolean)
-    found = all.filter((c) => words.every((w) => c.name.toLowerCase().includes(w))).slice(0, 60)
-    at = Math.max(0, Math.min(at, found.length - 1))
-    list.replaceChildren(...found.map((c, k) => $('li', { role: 'option', 'aria-selected': k === at, id: `command-${k}`, onclick: () => run(c) }, c.name, c.keys ? $('kbd', {}, c.keys) : '')))
-    list.children[at]?.scrollIntoView({ block: 'nearest' })
-    input.setAttribute('aria-activedescendant', found.length ? `command-${at}` : '')
-  }
-  input.addEventListener('input', () => ((at = 0), build()))
-  input.addEventListener('keydown', (e) => {
-    if (e.key === 'ArrowDown') at++
-    else if (e.key === 'ArrowUp') at--
-    else if (e.key === 'Enter') return run(found[at])
-    else return
-    e.preventDefault()
-    at = (at + found.length) % Math.max(1, found.length)
-    build()
-  })
-  dialog.addEventListener('close', () => dialog.remove())
-  dialog.addEventListener('click', (e) => e.target === dialog && dialog.close())
-  document.body.append(dialog)
-  dialog.showModal()
-  build()
-  input.focus()
-}
-
-function help(): void {
-  const rows = commands().filter((c) => c.keys).map((c) => $('tr', {}, $('td', {}, $('kbd', {}, c.keys!)), $('td', {}, c.name)))
-  const hand = [['drag', 'orbit'], ['right or middle drag, Shift+drag', 'pan'], ['wheel, pinch', 'zoom to the pointer'], ['click', 'select'], ['double click', 'go to the declaration'], ['drag a point', 'move it: the number in the text follows'], ['X Y Z while dragging', 'along an axis; with Shift across it'], ['S while dragging', 'on the surface under the pointer'], ['digits while dragging', 'enter the value'], ['Alt while dragging', 'no snapping'], ['Esc', 'take it back']]
-  const table = (body: Node[]) => $('table', {}, $('tbody', {}, ...body))
-  const half = Math.ceil(rows.length / 2)
-  const dialog = $('dialog', { class: 'help', 'aria-label': 'help' }, $('h2', { tabindex: -1, autofocus: true }, 'Keys and gestures'),
-    $('div', { class: 'columns' }, table(hand.map(([k, w]) => $('tr', {}, $('td', {}, k), $('td', {}, w)))), table(rows.slice(0, half)), table(rows.slice(half))),
-    $('button', { class: 'primary', onclick: () => dialog.close() }, 'Close'))
-  dialog.addEventListener('close', () => dialog.remove())
-  document.body.append(dialog)
-  dialog.showModal()
-}
-
-paletteButton.addEventListener('click', palette)
-helpButton.addEventListener('click', help)
+paletteButton.addEventListener('click', openPalette)
+helpButton.addEventListener('click', () => help(commands()))
 saveButton.addEventListener('click', () => void save())
 
 addEventListener('keydown', (e) => {
@@ -870,7 +656,7 @@ addEventListener('keydown', (e) => {
   const name = `${e.ctrlKey || e.metaKey ? 'Ctrl+' : ''}${e.altKey ? 'Alt+' : ''}${e.shiftKey && e.key.length === 1 && /[a-z]/i.test(e.key) ? 'Shift+' : ''}${e.key.length === 1 ? e.key.toUpperCase() : e.key}`
   if (name === 'Ctrl+K') {
     e.preventDefault()
-    return palette()
+    return openPalette()
   }
   if (name === 'Ctrl+Z' && !typing) {
     e.preventDefault()
@@ -882,7 +668,7 @@ addEventListener('keydown', (e) => {
   if (e.key === 'Escape' && !typing) {
     if (hands.busy) hands.cancel()
     else if (hands.measuring) commands().find((c) => c.keys === 'D')!.run()
-    else if (view.clip) cut(null)
+    else if (view.clip) analysis.cut(null)
     else if (planes.shown) planes.close()
     else actions.select('', 'view')
     return
@@ -938,5 +724,6 @@ Object.assign(window, {
   },
 })
 
+if (inCell) document.body.dataset.host = 'cell'
 inside()?.begin({ editor: () => editor, say, cursor: (offset) => editor.onCursor(offset) })
 void link.start().catch((error) => warn(error.message))

@@ -38,7 +38,7 @@ export function stepped(value: number, low: number, high: number, whole: boolean
 }
 
 export function parametersPanel(host: HTMLElement, act: Actions): void {
-  const rows = new Map<string, { row: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; reset: HTMLButtonElement; p: Param }>()
+  const rows = new Map<string, { row: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; reset: HTMLButtonElement; p: Param; wanted: number | null }>()
   let built = ''
   const empty = h('p', { class: 'quiet' }, 'No parameters. Declare one: param float beam = 4 in [3, 5];')
   const box = h('div', { class: 'params' })
@@ -58,17 +58,26 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
       const reset = h('button', { class: 'icon', title: `${p.name} as before`, 'aria-label': `reset ${p.name}` }, '↺')
       const name = h('button', { class: 'link name', title: 'Show in the program' }, p.name)
       const row = h('div', { class: 'param' }, name, field, reset, slider)
-      const entry = { row, slider, field, reset, p }
+      const entry = { row, slider, field, reset, p, wanted: null as number | null }
       rows.set(p.name, entry)
       const step = (value: number) => {
         const v = stepped(Math.min(high, Math.max(low, value)), low, high, p.whole)
         slider.value = String(v)
         field.value = p.whole ? String(v) : shown(v, 7)
         slider.setAttribute('aria-valuetext', `${field.value} ${model.unit}`)
+        entry.wanted = v
         act.set(p.name, v)
       }
+      const commit = () => {
+        const { wanted } = entry
+        void act.commit().then(() => {
+          if (entry.wanted !== wanted) return
+          entry.wanted = null
+          show(entry)
+        })
+      }
       slider.addEventListener('input', () => step(slider.valueAsNumber))
-      slider.addEventListener('change', () => void act.commit())
+      slider.addEventListener('change', commit)
       slider.addEventListener('keydown', (event) => {
         const by = (high - low) / 100
         const moves: Record<string, number> = {
@@ -77,7 +86,7 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
         if (!(event.key in moves) || p.whole) return
         event.preventDefault()
         step(slider.valueAsNumber + moves[event.key])
-        void act.commit()
+        commit()
       })
       const enter = () => {
         const x = Number(field.value.replace('−', '-').replace(',', '.'))
@@ -98,6 +107,12 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
     }
   }
 
+  function show({ p, slider, field }: { p: Param; slider: HTMLInputElement; field: HTMLInputElement }): void {
+    if (!dragging(slider)) slider.value = String(p.value)
+    if (document.activeElement !== field) field.value = text(p)
+    slider.setAttribute('aria-valuetext', `${text(p)} ${model.unit}`.trim())
+  }
+
   /** Values when the page was opened, for reset. */
   const begin = new Map<string, number>()
   on('params', () => {
@@ -112,9 +127,8 @@ export function parametersPanel(host: HTMLElement, act: Actions): void {
       const entry = rows.get(p.name)
       if (!entry) continue
       entry.p = p
-      if (document.activeElement !== entry.slider || !dragging(entry.slider)) entry.slider.value = String(p.value)
-      if (document.activeElement !== entry.field) entry.field.value = text(p)
-      entry.slider.setAttribute('aria-valuetext', `${text(p)} ${model.unit}`.trim())
+      // What a hand has just asked for stays: the engine may still answer what it was asked before.
+      if (entry.wanted === null) show(entry)
       const moved = p.value !== begin.get(p.name)
       entry.row.classList.toggle('moved', moved)
       entry.reset.disabled = !moved || act.still
@@ -239,6 +253,69 @@ export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string
   on(['objects', 'selection'], build)
 }
 
+/** An argument of an object: its numbers, or its spelling in the program, which can be changed like typing. */
+function formRow(f: any, version: number, act: Actions, chips: (names: string[]) => HTMLElement): HTMLElement {
+  const unit = f.unit ? h('span', { class: 'unit' }, f.unit) : ''
+  const row = (...value: (Node | string)[]) => h('div', { class: 'fact' }, h('span', { class: 'key', title: f.help }, f.name), h('span', { class: 'value' }, ...value))
+  const { written } = f
+  if (f.numbers.length && !f.switch) {
+    // One that is typed over by an expression becomes it.
+    const other = f.numbers.length === 1 && written?.text ? (text: string) => act.apply([{ from: written.place[0], to: written.place[1], insert: text }], version) : null
+    return row(...f.numbers.map((n: any) => numberField(n, act, other)), unit)
+  }
+  const plain = f.objects.length ? chips(f.objects) : f.value === null ? '' : shown(f.value)
+  if (!written || act.still) return row(plain, unit)
+  // A text without its quotes; what is no plain text is spelled as it is.
+  const quotes = f.class === 'text' && /^("[^"]*")?$/.test(written.text ?? '')
+  const before = quotes ? (written.text ?? '').slice(1, -1) : written.text ?? ''
+  const write = (now: string) => {
+    if (now === before || (!now && written.text === null)) return
+    if (!now && !quotes) return act.say(`${f.name}: leave it out in the program`)
+    if (quotes && /["\n]/.test(now)) return act.say('A text has no quotes in it')
+    const spelled = quotes ? `"${now}"` : now
+    act.apply([{ from: written.place[0], to: written.place[1], insert: written.text === null ? `, ${f.name} = ${spelled}` : spelled }], version)
+  }
+  if (f.switch && /^[01]?$/.test(before)) {
+    const box = h('input', { type: 'checkbox', 'aria-label': f.name, checked: (before || String(f.value)) === '1' })
+    box.addEventListener('change', () => write(box.checked ? '1' : '0'))
+    return row(box)
+  }
+  const words: string[] = f.words.length > 1 ? f.words : []
+  if (quotes && (words.includes(before) || (!before && words.length))) {
+    const now = before || (f.value ?? '')
+    const list = words.includes(now) ? words : [now, ...words]
+    const choice = h('select', { 'aria-label': f.name }, ...list.map((w) => h('option', { value: w, selected: w === now }, w || '(not given)')))
+    choice.addEventListener('change', () => write(choice.value))
+    return row(choice)
+  }
+  const input = h('input', { type: 'text', class: 'source', 'aria-label': f.name, spellcheck: 'false', placeholder: f.value === null ? '' : shown(f.value) })
+  input.value = before
+  input.addEventListener('keydown', (e) => {
+    if (e.key === 'Enter') input.blur()
+    if (e.key === 'Escape') {
+      input.value = before
+      input.blur()
+    }
+  })
+  input.addEventListener('blur', () => write(input.value.trim()))
+  return row(f.objects.length ? plain : '', input, unit)
+}
+
+/** A number of the text. */
+function numberField(n: any, act: Actions, other: ((text: string) => void) | null): HTMLInputElement {
+  const input = h('input', { type: 'text', inputmode: 'decimal', class: 'number', 'aria-label': n.path, title: n.path, disabled: act.still })
+  input.value = shown(n.value, 9)
+  input.addEventListener('keydown', (e) => e.key === 'Enter' && (input.blur(), undefined))
+  input.addEventListener('blur', () => {
+    const x = Number(input.value.replace('−', '-'))
+    const text = input.value.trim()
+    if (text && Number.isFinite(x) && shown(x, 9) !== shown(n.value, 9)) void act.write({ [n.path]: x })
+    else if (text && !Number.isFinite(x) && other) other(text)
+    else input.value = shown(n.value, 9)
+  })
+  return input
+}
+
 export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () => string }): void {
   let by: string | null = stored<string | null>('by', null)
   let serial = 0
@@ -250,14 +327,15 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
       return
     }
     if (by && !model.params.some((p) => p.name === by)) by = null
-    let o: any
+    let found: any
     try {
-      o = await act.inspect(name, by)
+      found = await act.inspect(name, by)
     } catch {
       return
     }
+    const o = found?.object
     if (now !== serial || !o) return
-    if (host.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement) return
+    if (host.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement && document.activeElement.type === 'text') return
     const link = (n: string) => h('button', { class: 'chip', onclick: () => act.select(n, 'tree'), onpointerenter: () => act.hover(n), onpointerleave: () => act.hover('') }, n)
     const chips = (names: string[]) => {
       const box = h('span', { class: 'chips' }, ...names.slice(0, 40).map(link))
@@ -265,25 +343,9 @@ export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () 
       return box
     }
     const rows: HTMLElement[] = []
-    const line = (title: string, help: string, ...value: (Node | string)[]) => rows.push(h('div', { class: 'fact' }, h('span', { class: 'key', title: help }, title), h('span', { class: 'value' }, ...value)))
-    for (const f of o.fields) {
-      if (f.numbers.length) {
-        const inputs = f.numbers.map((n: any) => {
-          const input = h('input', { type: 'text', inputmode: 'decimal', class: 'number', 'aria-label': n.path, title: n.path, disabled: act.still })
-          input.value = shown(n.value, 9)
-          const enter = () => {
-            const x = Number(input.value.replace('−', '-'))
-            if (input.value.trim() && Number.isFinite(x) && shown(x, 9) !== shown(n.value, 9)) void act.write({ [n.path]: x })
-            else input.value = shown(n.value, 9)
-          }
-          input.addEventListener('keydown', (e) => e.key === 'Enter' && (input.blur(), undefined))
-          input.addEventListener('blur', enter)
-          return input
-        })
-        line(f.name, f.help, ...inputs, f.unit ? h('span', { class: 'unit' }, f.unit) : '')
-      } else if (f.objects.length) line(f.name, f.help, chips(f.objects))
-      else line(f.name, f.help, shown(f.value), f.unit ? h('span', { class: 'unit' }, ` ${f.unit}`) : '')
-    }
+    const absent: HTMLElement[] = []
+    for (const f of o.fields) (f.value === null && !f.objects.length ? absent : rows).push(formRow(f, found.version, act, chips))
+    if (absent.length) rows.push(h('details', { class: 'absent' }, h('summary', {}, `Not given (${absent.length})`), ...absent))
     const values = o.values as any[]
     const derivative = h('select', { 'aria-label': 'derivative by' }, h('option', { value: '' }, 'd/d …'), ...model.params.map((p) => h('option', { value: p.name, selected: p.name === by }, `d/d ${p.name}`)))
     derivative.addEventListener('change', () => {

@@ -2,6 +2,7 @@
 
 use crate::document::{Document, ObjectSource};
 use moldloft_diag::{Diagnostic, Span};
+use moldloft_lang::run::program::{self, ArgumentPlace};
 use moldloft_syntax::sdl::StmtKind;
 
 impl Document {
@@ -10,6 +11,18 @@ impl Document {
         let graph = self.graph();
         let span = self.declared_at(&self.plain, graph.get(graph.find(name)?)?)?;
         (self.sources.ids().next() == Some(span.file)).then_some(span)
+    }
+
+    /// Where an argument of an object is in the main text, or could be; nothing for model files and for objects that
+    /// share their statement with others.
+    pub fn argument_place(&self, object: &str, field: &str) -> Option<ArgumentPlace> {
+        if !matches!(self.source, ObjectSource::Program) {
+            return None;
+        }
+        let graph = self.graph();
+        let object = graph.get(graph.find(object)?)?;
+        let field = object.row.field(field)?;
+        program::argument_place(&self.modules, &self.plain.env, object, field)
     }
 
     /// Whether [`Document::set`] can change the number of an object, such as `P21.y`.

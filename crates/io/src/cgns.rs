@@ -108,7 +108,7 @@ fn zone(
     let rind = rind(file, grid, dimensions).map_err(|found| here("rind planes", found))?;
     let arrays = labelled(file, grid, "DataArray_t")?;
     let count = size.iter().try_fold(1usize, |all, n| all.checked_mul(*n));
-    let Some(count) = count.filter(|count| *count <= 1 << 32) else {
+    let Some(count) = count.filter(|count| (*count as u64) <= 1 << 32) else {
         return Err(here("fewer points", format!("{size:?}")));
     };
     let mut planes: [Vec<f64>; 3] = Default::default();

@@ -129,6 +129,12 @@ pub trait Surface<T: Real>: Send + Sync {
         }
     }
 
+    /// What [`Surface::jet`] gives along the line at one `u`, at each of `vs`: for surfaces that do much at a `u` before they
+    /// look at v.
+    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>> {
+        vs.iter().map(|&v| self.jet(u, T::from(v), order)).collect()
+    }
+
     /// Positions at many parameter pairs in any order. `out` has the length of `uv`.
     fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
         for (x, &[u, v]) in out.iter_mut().zip(uv) {

@@ -19,19 +19,24 @@ const TRIALS: usize = 5;
 /// The knuckles along u and along v, ascending, between 0 and 1.
 pub(crate) fn knuckles(surface: &dyn Surface<f64>) -> [Vec<f64>; 2] {
     let [mut us, mut vs] = surface.breaks();
-    us.retain(|&at| turns(at, |u, v| surface.jet(u, v, Order::First).u));
-    vs.retain(|&at| turns(at, |v, u| surface.jet(u, v, Order::First).v));
+    let along = |u| surface.line(u, &trials(), Order::First).into_iter().map(|jet| jet.u).collect();
+    us.retain(|&at| turns(at, along));
+    let across = |v| trials().iter().map(|&u| surface.jet(u, v, Order::First).v).collect();
+    vs.retain(|&at| turns(at, across));
     [us, vs]
 }
 
+/// The places along a break.
+fn trials() -> [f64; TRIALS] {
+    std::array::from_fn(|i| (i as f64 + 0.37) / TRIALS as f64)
+}
+
 /// True when the tangents before and after a break differ in direction somewhere along it.
-fn turns(at: f64, tangent: impl Fn(f64, f64) -> Vec3) -> bool {
+fn turns(at: f64, tangents: impl Fn(f64) -> Vec<Vec3>) -> bool {
+    let differ = |(a, b): (Vec3, Vec3)| {
+        let size = a.norm() * b.norm();
+        size > 0.0 && (a.cross(b).norm() > TURN * size || a.dot(b) < 0.0)
+    };
     let inside = ASIDE < at && at < 1.0 - ASIDE;
-    inside
-        && (0..TRIALS).any(|i| {
-            let along = (i as f64 + 0.37) / TRIALS as f64;
-            let (a, b) = (tangent(at - ASIDE, along), tangent(at + ASIDE, along));
-            let size = a.norm() * b.norm();
-            size > 0.0 && (a.cross(b).norm() > TURN * size || a.dot(b) < 0.0)
-        })
+    inside && tangents(at - ASIDE).into_iter().zip(tangents(at + ASIDE)).any(differ)
 }

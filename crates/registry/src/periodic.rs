@@ -121,6 +121,12 @@ impl<T: Real> Surface<T> for SurfaceRef<T> {
         }
         self.shape.grid(us, vs, points, normals);
     }
+    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>> {
+        if beyond(&[u.re()]) || beyond(vs) {
+            return vs.iter().map(|&v| SurfaceRef::jet(self, u, T::from(v), order)).collect();
+        }
+        self.shape.line(u, vs, order)
+    }
     fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
         if uv.iter().any(|w| beyond(w)) {
             let closed = self.closed();

@@ -3,10 +3,10 @@
 use crate::drag::{own_numbers, state};
 use crate::text::unit;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_document::Document;
+use moldloft_document::{ArgumentPlace, Document};
 use moldloft_model::Object;
 use moldloft_num::Vec3;
-use moldloft_registry::{Unit, Value as Quantity};
+use moldloft_registry::{Class, Unit, Value as Quantity};
 use rustc_hash::FxHasher;
 use serde_json::{Value, json};
 use std::hash::{Hash, Hasher};
@@ -156,6 +156,27 @@ pub fn values(document: &mut Document, expressions: &[String], by: Option<&str>)
     expressions.iter().map(&mut one).collect()
 }
 
+/// The words in double quotes of a line of help: what a text may be.
+fn quoted(help: &str) -> Vec<&str> {
+    help.split('"').skip(1).step_by(2).collect()
+}
+
+/// How the text gives an argument: its place and spelling, or the place where it can be given. Nothing for model files and
+/// for objects that share their statement with others.
+fn written(document: &Document, text: &str, object: &str, field: &str) -> Value {
+    match document.argument_place(object, field) {
+        Some(ArgumentPlace::Written(span)) => {
+            let spelled = text.get(span.start as usize..span.end as usize);
+            json!({"place": place(document, text, span), "text": spelled})
+        }
+        Some(ArgumentPlace::After(span)) => {
+            let at = unit(text, span.end as usize);
+            json!({"place": [at, at], "text": null})
+        }
+        None => Value::Null,
+    }
+}
+
 /// All about an object.
 pub fn inspected(
     document: &mut Document,
@@ -170,9 +191,6 @@ pub fn inspected(
     let called = |key: &moldloft_num::trace::Key| Some(graph.get(*key)?.name.to_string());
     let mut fields = Vec::new();
     for (field, arg) in object.row.fields.iter().zip(&object.args) {
-        if matches!(arg, Quantity::Unset) {
-            continue;
-        }
         let base = format!("{name}.{}", field.name);
         let mut numbers = Vec::new();
         for path in settable
@@ -191,9 +209,16 @@ pub fn inspected(
             "help": field.help,
             "class": field.class.name(),
             "unit": if field.unit == Unit::Angle { "rad" } else { "" },
-            "value": if objects.is_empty() { quantity(arg) } else { json!(null) },
+            "value": match arg {
+                Quantity::Unset => Value::Null,
+                _ if objects.is_empty() => quantity(arg),
+                _ => Value::Null,
+            },
             "objects": objects,
             "numbers": numbers,
+            "words": if field.class == Class::Text { quoted(field.help) } else { Vec::new() },
+            "switch": field.class == Class::Integer && (field.min, field.max) == (Some(0.0), Some(1.0)),
+            "written": written(document, text, name, field.name),
         }));
     }
     let (members, is_point): (&[&str], bool) = match object.value() {

@@ -88,7 +88,7 @@ const { view, read } = require("../src/view.js");
 function folder() {
   const made = mkdtempSync(join(tmpdir(), "moldloft-view-"));
   mkdirSync(join(made, "page", "assets"), { recursive: true });
-  for (const name of ["index.html", "worker.js", "engine.wasm.gz", "assets/index-1.js", "assets/index-1.css"]) writeFileSync(join(made, "page", name), "");
+  for (const name of ["index.html", "worker.js", "engine.wasm.xz", "assets/index-1.js", "assets/index-1.css"]) writeFileSync(join(made, "page", name), "");
   return made;
 }
 

@@ -7,6 +7,7 @@ import html
 import json
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path, PurePath
 from typing import Any
 
@@ -16,7 +17,7 @@ from moldloft.workbench.hub import head_of
 from moldloft.workbench.page import engine_packed, page_files, worker_script
 from moldloft.workbench.text import applied, read
 
-__all__ = ["exported_page"]
+__all__ = ["exported_page", "page_of", "with_values"]
 
 # A page with an engine runs scripts and WebAssembly of its own, and asks nothing of anybody.
 _POLICY = (
@@ -54,39 +55,59 @@ def exported_page(
     Error
         When a value cannot be set, or the page was not built.
     """
-    stored = read(path)
-    session = _core.Session(path.name, stored.text, str(path.resolve().parent), list(library))
+    folder = path.resolve().parent
+    return page_of(
+        path.name, read(path).text, folder, values=values, library=library, living=living
+    )
 
-    def asked(**request: object) -> bytes:
-        frame = session.answer(json.dumps(request))
-        if "error" in (head := head_of(frame)):
-            why = str(head["error"])
-            raise Error(why)
-        return frame
 
+def page_of(
+    name: str,
+    text: str,
+    folder: Path | None,
+    *,
+    values: Mapping[str, float] | None = None,
+    library: Sequence[str] = (),
+    living: bool = True,
+    cell: bool = False,
+) -> bytes:
+    """The page of a text: as :func:`exported_page`.
+
+    Parameters
+    ----------
+    name
+        What it is called; the ending says what it is.
+    text
+        The text.
+    folder
+        The folder that it may read; none without one.
+    values, library, living
+        As for :func:`exported_page`.
+    cell
+        Whether the page is shown by a notebook's cell, which follows its text.
+
+    Raises
+    ------
+    Error
+        When a value cannot be set, or the page was not built.
+    """
+    session = _core.Session(name, text, None if folder is None else str(folder), list(library))
+    asked = partial(_asked, session)
     asked(kind="show", contours=True)
-    if values:
+    engine = engine_packed() if living else None
+    if values and engine is not None:
+        # The page's own engine begins with the text: what differs is written into it.
+        text = with_values(session, text, values)
+        asked(kind="text", text=text)
+    elif values:
         asked(kind="set", values=dict(values))
     objects = head_of(asked(kind="sync")).get("objects", [])
     shown = any(o["class"] in ("surface", "mesh") for o in objects)
     watched = _WATCHED if shown else []
-    engine = engine_packed() if living else None
-    text = stored.text
-    if values and engine is not None:
-        # The page's own engine begins with the text: what differs is written into it.
-        reply = head_of(asked(kind="commit"))
-        if reply.get("kept"):
-            names = ", ".join(reply["kept"])
-            raise Error(
-                f"`{names}` follows from an expression: change the text, or leave the engine out "
-                "(`--still`)"
-            )
-        text = _edited(text, reply.get("edits", []))
-        asked(kind="text", text=text)
     frames = {"open": asked(kind="sync", tab=1)}
     hello = {
         "kind": "hello",
-        "name": path.name,
+        "name": name,
         "text": text,
         "version": 0,
         "dirty": False,
@@ -96,9 +117,46 @@ def exported_page(
     data = {
         "hello": hello,
         "frames": {kind: base64.b64encode(frame).decode() for kind, frame in frames.items()},
-        "files": [] if engine is None else _carried(session.files(), path.resolve().parent),
+        "files": [] if engine is None else _carried(session.files(), folder),
+        "cell": cell and engine is not None,
     }
-    return _assembled(path.name, json.dumps(data), engine).encode()
+    return _assembled(name, json.dumps(data), engine).encode()
+
+
+def _asked(session: _core.Session, **request: object) -> bytes:
+    frame = session.answer(json.dumps(request))
+    if "error" in (head := head_of(frame)):
+        why = str(head["error"])
+        raise Error(why)
+    return frame
+
+
+def with_values(session: _core.Session, text: str, values: Mapping[str, float]) -> str:
+    """The text of a session with values of parameters, and literals of objects, written into it.
+
+    Parameters
+    ----------
+    session
+        A session of the text.
+    text
+        The text.
+    values
+        The values by name.
+
+    Raises
+    ------
+    Error
+        When a value cannot be set, or no number of the text is what it would change.
+    """
+    _asked(session, kind="set", values=dict(values))
+    reply = head_of(_asked(session, kind="commit"))
+    if reply.get("kept"):
+        names = ", ".join(reply["kept"])
+        raise Error(
+            f"`{names}` follows from an expression: change the text, or leave the engine out "
+            "(`--still`)"
+        )
+    return _edited(text, reply.get("edits", []))
 
 
 def _edited(text: str, edits: Sequence[Mapping[str, Any]]) -> str:
@@ -114,7 +172,7 @@ def _edited(text: str, edits: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _carried(
-    files: Sequence[tuple[str, str | None, str, bytes]], folder: Path
+    files: Sequence[tuple[str, str | None, str, bytes]], folder: Path | None
 ) -> list[dict[str, str | None]]:
     """The files that the model read, under names that say nothing of this machine."""
 
@@ -122,7 +180,9 @@ def _carried(
         if name is None:
             return None
         place = PurePath(name)
-        return place.relative_to(folder).as_posix() if place.is_relative_to(folder) else place.name
+        if folder is not None and place.is_relative_to(folder):
+            return place.relative_to(folder).as_posix()
+        return place.name
 
     return [
         {

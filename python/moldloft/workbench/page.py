@@ -42,8 +42,8 @@ def page_files() -> dict[str, bytes]:
 
 
 def engine_packed() -> bytes | None:
-    """The engine in WebAssembly, packed by gzip; ``None`` when it was not built."""
-    engine = _FOLDER / "wasm" / "engine.wasm.gz"
+    """The engine in WebAssembly, packed by XZ; ``None`` when it was not built."""
+    engine = _FOLDER / "wasm" / "engine.wasm.xz"
     return engine.read_bytes() if engine.is_file() else None
 
 

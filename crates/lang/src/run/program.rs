@@ -52,6 +52,15 @@ pub enum NotLiteral {
     Default,
 }
 
+/// Where an argument of an object is in the main text, or could be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArgumentPlace {
+    /// The expression.
+    Written(Span),
+    /// It is not given: it can be written by its name at the end of this place.
+    After(Span),
+}
+
 /// Runs `f` where a deeply nested program finds enough stack.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
@@ -255,6 +264,37 @@ pub fn literal<T: Scalar>(
         return Err(NotLiteral::Shared { span: m.program[expr].span });
     }
     Ok((origin.module as usize, literal))
+}
+
+/// Where an argument of an object is in the main text, or could be; nothing for objects that share their
+/// statement with others.
+pub fn argument_place<T: Scalar>(
+    modules: &Modules,
+    env: &Environment<T>,
+    object: &Object<T>,
+    field: usize,
+) -> Option<ArgumentPlace> {
+    let origin = env.origins.get(object.origin as usize)?;
+    if origin.repeated || origin.module != 0 {
+        return None;
+    }
+    let m = modules.get(0);
+    let StmtKind::Object { args, .. } = m.program[origin.stmt].kind else { return None };
+    let args = &m.program[args];
+    let spans: Vec<Span> = args.iter().map(|a| m.program[a.value].span).collect();
+    let unnamed = args.iter().filter(|a| a.name.is_none()).count();
+    let row = &object.row;
+    if row.fields.get(field)?.variadic && unnamed > field + 1 {
+        // A list that was given as so many arguments.
+        let unnamed: Vec<Span> =
+            args.iter().zip(&spans).filter(|(a, _)| a.name.is_none()).map(|(_, s)| *s).collect();
+        let (first, last) = (unnamed.get(field)?, unnamed.last()?);
+        return Some(ArgumentPlace::Written(Span { end: last.end, ..*first }));
+    }
+    Some(match fault_location::argument(m, args, row, unnamed, field) {
+        Some(expr) => ArgumentPlace::Written(m.program[expr].span),
+        None => ArgumentPlace::After(*spans.last()?),
+    })
 }
 
 fn computed(m: &crate::source::module::Module, expr: ExprId) -> NotLiteral {

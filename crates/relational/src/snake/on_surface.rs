@@ -3,6 +3,8 @@
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Order, Real};
 use moldloft_registry::SurfaceRef;
+use std::cell::RefCell;
+use std::collections::HashMap;
 
 /// The curve X(t) = S(w(t)) of a path w(t) = (u, v, 0) in the parameter plane of a surface.
 pub struct OnSurface<T: Real, P> {
@@ -29,9 +31,13 @@ impl<T: Real, P: Curve<T>> Curve<T> for OnSurface<T, P> {
         let mut spans = vec![0.0];
         spans.extend(&breaks);
         spans.push(1.0);
+        // Each line of the surface is looked for at the same places of the path.
+        let known: RefCell<HashMap<u64, [f64; 2]>> = RefCell::default();
         let path = |t: f64| {
-            let [w, ..] = self.path.jet(T::from(t), Order::Zero);
-            [w.x.re(), w.y.re()]
+            *known.borrow_mut().entry(t.to_bits()).or_insert_with(|| {
+                let [w, ..] = self.path.jet(T::from(t), Order::Zero);
+                [w.x.re(), w.y.re()]
+            })
         };
         breaks.extend(self.surface.crossings(&path, &spans));
         breaks.sort_by(f64::total_cmp);

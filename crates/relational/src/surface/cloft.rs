@@ -285,13 +285,47 @@ impl<T: Real> Loft<T> {
         spline.ok()
     }
 
-    /// Position and derivatives by v, carrying their derivatives by u.
-    fn across<J: Jet<T>>(&self, u: J, v: T, order: Order) -> CurveJet<J> {
-        let column = self.column(&self.points(u));
+    /// Position and derivatives by v on a column, carrying their derivatives by u.
+    fn across<J: Jet<T>>(
+        &self,
+        column: Option<&InterpolatingSpline<J>>,
+        v: T,
+        order: Order,
+    ) -> CurveJet<J> {
         match (column.map(|spline| spline.jet(J::fixed(v), order)), &self.about) {
             (Some(jet), Some(about)) => about.places(jet),
             (Some(jet), None) => jet,
             (None, _) => [nowhere(); 3],
+        }
+    }
+
+    /// The jets at one u and each of `vs`: the column is interpolated once.
+    fn on_column(&self, u: T, vs: &[T], order: Order, jets: &mut [SurfJet<T>]) {
+        let zero = SurfJet::default();
+        match order {
+            Order::Zero => {
+                let column = self.column(&self.points(u));
+                for (jet, &v) in jets.iter_mut().zip(vs) {
+                    *jet = SurfJet { p: self.across(column.as_ref(), v, order)[0], ..zero };
+                }
+            }
+            Order::First => {
+                let column = self.column(&self.points(Uni1::parameter(u)));
+                for (jet, &v) in jets.iter_mut().zip(vs) {
+                    let [p, d, _] = self.across(column.as_ref(), v, order);
+                    let (u, v) = (p.map(|a| a.t), d.map(|a| a.f));
+                    *jet = SurfJet { p: p.map(|a| a.f), u, v, ..zero };
+                }
+            }
+            Order::Second => {
+                let column = self.column(&self.points(Uni2::parameter(u)));
+                for (jet, &v) in jets.iter_mut().zip(vs) {
+                    let [p, d, dd] = self.across(column.as_ref(), v, order);
+                    let (u, v) = (p.map(|a| a.t), d.map(|a| a.f));
+                    let (uu, uv, vv) = (p.map(|a| a.tt), d.map(|a| a.t), dd.map(|a| a.f));
+                    *jet = SurfJet { p: p.map(|a| a.f), u, v, uu, uv, vv };
+                }
+            }
         }
     }
 
@@ -329,7 +363,7 @@ impl<T: Real> Loft<T> {
 }
 
 impl<T: Real> Loft<T> {
-    fn point_by_point(
+    fn column_by_column(
         &self,
         us: &[f64],
         vs: &[f64],
@@ -337,12 +371,14 @@ impl<T: Real> Loft<T> {
         mut normals: Option<&mut [Vec3<T>]>,
     ) {
         let order = if normals.is_some() { Order::First } else { Order::Zero };
+        let places: Vec<T> = vs.iter().map(|&v| T::from(v)).collect();
+        let mut jets = vec![SurfJet::default(); vs.len()];
         for (i, &u) in us.iter().enumerate() {
-            for (j, &v) in vs.iter().enumerate() {
-                let jet = Surface::jet(self, T::from(u), T::from(v), order);
-                points[i * vs.len() + j] = jet.p;
+            self.on_column(T::from(u), &places, order, &mut jets);
+            for (k, jet) in (i * vs.len()..).zip(&jets) {
+                points[k] = jet.p;
                 if let Some(normals) = normals.as_deref_mut() {
-                    normals[i * vs.len() + j] = jet.normal();
+                    normals[k] = jet.normal();
                 }
             }
         }
@@ -355,20 +391,16 @@ fn nowhere<S: Real>() -> Vec3<S> {
 
 impl<T: Real> Surface<T> for Loft<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
-        let mut jet = SurfJet::default();
-        match order {
-            Order::Zero => jet.p = self.across(u, v, order)[0],
-            Order::First => {
-                let [p, d, _] = self.across(Uni1::parameter(u), v, order);
-                (jet.p, jet.u, jet.v) = (p.map(|a| a.f), p.map(|a| a.t), d.map(|a| a.f));
-            }
-            Order::Second => {
-                let [p, d, dd] = self.across(Uni2::parameter(u), v, order);
-                (jet.p, jet.u, jet.v) = (p.map(|a| a.f), p.map(|a| a.t), d.map(|a| a.f));
-                (jet.uu, jet.uv, jet.vv) = (p.map(|a| a.tt), d.map(|a| a.t), dd.map(|a| a.f));
-            }
-        }
-        jet
+        let mut jet = [SurfJet::default()];
+        self.on_column(u, &[v], order, &mut jet);
+        jet[0]
+    }
+
+    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>> {
+        let places: Vec<T> = vs.iter().map(|&v| T::from(v)).collect();
+        let mut jets = vec![SurfJet::default(); vs.len()];
+        self.on_column(u, &places, order, &mut jets);
+        jets
     }
 
     fn grid(
@@ -379,7 +411,7 @@ impl<T: Real> Surface<T> for Loft<T> {
         normals: Option<&mut [Vec3<T>]>,
     ) {
         if self.about.is_some() {
-            return self.point_by_point(us, vs, points, normals);
+            return self.column_by_column(us, vs, points, normals);
         }
         widest(
             #[inline(always)]

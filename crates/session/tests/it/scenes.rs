@@ -185,6 +185,34 @@ fn names_come_back_as_they_are() {
 }
 
 #[test]
+fn an_inspector_knows_what_texts_may_be_and_what_may_not_be_written_here() {
+    let text = "# é
+AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 1); AbsPoint C(0, 2, 0); AbsPoint D(1, 2, 2);
+Line l(A, B); Line m(C, D);
+CLoftSurf s({l, m}, ends = \"natural\"); for (k = 1:2) { AbsPoint rib(k, 0, 0); }";
+    let mut s = session(text);
+    let mut field = |object: &str, name: &str| {
+        let found = ask(&mut s, json!({"kind": "inspect", "name": object})).head["object"].clone();
+        let fields = found["fields"].as_array().unwrap_or_else(|| panic!("{object}: {found}"));
+        fields.iter().find(|f| f["name"] == name).unwrap().clone()
+    };
+    let ends = field("s", "ends");
+    assert_eq!(ends["written"]["text"], "\"natural\"");
+    assert!(ends["words"].as_array().unwrap().contains(&json!("periodic")));
+    assert_eq!(field("s", "curves")["written"]["text"], "{l, m}");
+    // Places count UTF-16 units, not bytes.
+    let place = field("s", "curves")["written"]["place"].clone();
+    let at = text[..text.find("{l, m}").unwrap()].encode_utf16().count();
+    assert_eq!(place, json!([at, at + 6]));
+    assert!(field("s", "degree")["written"]["text"].is_null());
+    let ribs = ask(&mut s, json!({"kind": "open"})).head["objects"].clone();
+    let rib = ribs.as_array().unwrap().last().unwrap()["name"].as_str().unwrap().to_string();
+    // Both ribs have one statement.
+    let rib = ask(&mut s, json!({"kind": "inspect", "name": rib})).head["object"].clone();
+    assert_eq!(rib["fields"][0]["written"], json!(null));
+}
+
+#[test]
 fn an_inspector_sees_fields_parents_children_values_and_derivatives() {
     let text =
         "param float w = 2 in [1, 3]; AbsPoint A(0, 0, 0); AbsPoint B(w, 0, 0); Line l(A, B);";
@@ -204,6 +232,13 @@ fn an_inspector_sees_fields_parents_children_values_and_derivatives() {
     assert_eq!(b["fields"][0]["numbers"], json!([]));
     let at = text.find("l(").unwrap();
     assert_eq!(about(&mut s, "l")["declared"], json!([at, at + 1]));
+    // Every argument by its spelling, and those that are not given by where they can be.
+    assert_eq!(b["fields"][0]["written"]["text"], "w");
+    let p = text.find("w, 0, 0").unwrap();
+    assert_eq!(b["fields"][0]["written"]["place"], json!([p, p + 1]));
+    let relabel = l["fields"].as_array().unwrap().iter().find(|f| f["name"] == "relabel").unwrap();
+    let end = text.find("B);").unwrap() + 1;
+    assert_eq!(relabel["written"], json!({"place": [end, end], "text": null}));
     let missing = ask(&mut s, json!({"kind": "inspect", "name": "Z"}));
     assert!(missing.head["error"].as_str().unwrap().contains("`Z`"));
 }

@@ -1,0 +1,138 @@
+// What is asked about a shape and drawn over it: colours by numbers with their legend, combs of curves, a section plane.
+
+import { ramp, type Scale } from './colour'
+import { h, shown } from './dom'
+import { Newest, type Link } from './link'
+import { model } from './state'
+import type { Paint, View } from './view'
+
+/** Fields whose sign matters. */
+const SIGNED = new Set(['gaussian_curvature', 'mean_curvature', 'largest_curvature', 'smallest_curvature'])
+
+export interface AnalysisActions {
+  say(words: string): void
+  /** The choice of colours has changed. */
+  painted(): void
+  /** The colours of what else has a scale: its name too. */
+  other(): { scale: Scale; name: string } | null
+}
+
+export class Analysis {
+  /** The field that colours show, and its parameter. */
+  field = ''
+  by = ''
+  private readonly combs = new Set<string>()
+  private readonly colouring = new Newest<void>(() => this.colour())
+  private readonly combing = new Newest<void>(() => this.comb())
+  private readonly cutting = new Newest<void>(() => this.section())
+
+  constructor(private readonly view: View, private readonly link: Link, private readonly legendHost: HTMLElement, private readonly sectionHost: HTMLElement, private readonly act: AnalysisActions) {}
+
+  /** The scene has changed. */
+  refresh(): void {
+    if (this.field) this.colouring.push(undefined)
+    if (this.combs.size) this.combing.push(undefined)
+    if (this.view.clip) this.cutting.push(undefined)
+  }
+
+  paint(paint: Paint, field = '', by = ''): void {
+    const { view } = this
+    view.paint = paint
+    ;[this.field, this.by] = [field, by]
+    this.legend()
+    if (field !== 'derivative') view.overlay('arrows', null)
+    if (paint === 'field') this.colouring.push(undefined)
+    view.settle()
+    this.act.painted()
+  }
+
+  private async colour(): Promise<void> {
+    const { view, field, by } = this
+    if (!field) return
+    try {
+      const frame = await this.link.ask('field', by ? { field, by } : { field })
+      view.field(frame, SIGNED.has(field))
+      view.overlay('arrows', field === 'derivative' ? view.arrows() : null, 0x8a2d1f)
+      this.legend()
+    } catch (error) {
+      this.act.say((error as Error).message)
+    }
+  }
+
+  legend(): void {
+    const { view, field } = this
+    const name = field === 'derivative' ? `motion by ${this.by}` : field.replace('_', ' ')
+    const found = view.paint === 'field' ? view.fieldScale && { scale: view.fieldScale, name } : this.act.other()
+    this.legendHost.hidden = !found
+    if (!found) return
+    const { scale: s } = found
+    const bar = h('div', { class: 'ramp' })
+    bar.style.background = ramp(s.signed)
+    this.legendHost.replaceChildren(h('span', { class: 'key' }, found.name), bar, h('span', { class: 'mono low' }, shown(s.low, 3)), h('span', { class: 'mono high' }, shown(s.high, 3)))
+  }
+
+  /** Shows or removes the comb of a curve. */
+  toggleComb(name: string): void {
+    const o = model.objects.find((k) => k.name === name)
+    if (!o || !['curve', 'snake'].includes(o.class)) return this.act.say('Select a curve first')
+    if (!this.combs.delete(o.name)) this.combs.add(o.name)
+    if (this.combs.size) this.combing.push(undefined)
+    else this.view.overlay('combs', null)
+  }
+
+  private async comb(): Promise<void> {
+    const { view } = this
+    const frame = await this.link.ask('combs', { names: [...this.combs] })
+    const runs: number[][] = []
+    const size = view.box.isEmpty() ? 1 : view.box.min.distanceTo(view.box.max)
+    for (const comb of frame.head.combs ?? []) {
+      const [p, b, k] = [frame.floats(comb.position), frame.floats(comb.bend), frame.floats(comb.curvature)]
+      // One sharp place does not flatten all others.
+      const most = [...k].sort((x, y) => x - y)[Math.floor(0.95 * (k.length - 1))] || 1
+      const factor = (0.12 * size) / most
+      const tips: number[] = []
+      for (let j = 0; j < p.length; j += 3) {
+        const share = Math.min(1, (2.5 * most) / Math.max(k[j / 3], 1e-30))
+        const tip = [0, 1, 2].map((c) => p[j + c] - factor * share * b[j + c])
+        tips.push(...tip)
+        runs.push([p[j], p[j + 1], p[j + 2], ...tip])
+      }
+      runs.push(tips)
+    }
+    view.overlay('combs', runs, 0x2f8f7f)
+  }
+
+  /** Cuts across an axis, or no more. */
+  cut(axis: number | null): void {
+    const { view, sectionHost } = this
+    if (axis === null || view.box.isEmpty()) {
+      view.clip = null
+      sectionHost.hidden = true
+      this.cutting.push(undefined)
+      view.draw()
+      return
+    }
+    const [low, high] = [view.box.min.getComponent(axis), view.box.max.getComponent(axis)]
+    view.clip = { axis, value: (low + high) / 2, flip: false }
+    const slider = h('input', { type: 'range', min: low, max: high, step: 'any', 'aria-label': `section at ${'xyz'[axis]}` })
+    slider.value = String(view.clip.value)
+    const out = h('span', { class: 'mono' }, shown(view.clip.value, 5))
+    const move = () => {
+      view.clip!.value = slider.valueAsNumber
+      out.textContent = shown(slider.valueAsNumber, 5)
+      view.draw()
+      this.cutting.push(undefined)
+    }
+    slider.addEventListener('input', move)
+    sectionHost.replaceChildren(`section ${'xyz'[axis]} =`, slider, out, h('button', { onclick: () => ((view.clip!.flip = !view.clip!.flip), view.draw()) }, 'Flip'), h('button', { class: 'icon', 'aria-label': 'no section', onclick: () => this.cut(null) }, '×'))
+    sectionHost.hidden = false
+    move()
+  }
+
+  private async section(): Promise<void> {
+    const { view } = this
+    if (!view.clip) return view.overlay('section', null)
+    const frame = await this.link.ask('section', { axis: view.clip.axis, value: view.clip.value })
+    view.overlay('section', (frame.head.lines as any[]).map((part) => Array.from(frame.floats(part))), 0xc2412d)
+  }
+}

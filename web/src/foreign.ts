@@ -1,0 +1,84 @@
+// Meshes and offsets of other programs over the model, coloured by their deviation.
+
+import type { Scale } from './colour'
+import { h, shown } from './dom'
+import type { Frame } from './frame'
+import { Newest, type Link } from './link'
+import { model } from './state'
+import type { View } from './view'
+
+interface ForeignMesh {
+  name: string
+  position: Float32Array
+  triangle: Uint32Array
+  edge: Uint32Array
+  deviation: Float32Array | null
+}
+
+/** The largest file: in base64 it is one message. */
+const LARGEST = 11 << 20
+
+export class Foreign {
+  /** The colours of the deviation, when something is shown. */
+  scale: Scale | null = null
+  private meshes: ForeignMesh[] = []
+  private readonly files = new Map<string, string>()
+  private readonly deviating = new Newest<void>(async () => {
+    if (this.meshes.length) await this.link.ask('deviation').then((f) => this.laid(f), () => undefined)
+  })
+
+  constructor(private readonly view: View, private readonly link: Link, private readonly act: { say(words: string): void; legend(): void }) {}
+
+  /** The model has changed. */
+  refresh(): void {
+    if (this.meshes.length) this.deviating.push(undefined)
+  }
+
+  private laid(frame: Frame): void {
+    const overlays = frame.head.overlays as any[]
+    this.meshes = overlays.map((o) => {
+      const old = this.meshes.find((f) => f.name === o.name)
+      return {
+        name: o.name,
+        position: o.position ? frame.floats(o.position) : old!.position,
+        triangle: o.triangle ? frame.numbers(o.triangle) : old!.triangle,
+        edge: o.edge ? frame.numbers(o.edge) : old!.edge,
+        deviation: o.deviation ? frame.floats(o.deviation) : null,
+      }
+    })
+    this.scale = this.view.foreign(this.meshes)
+    this.act.legend()
+    const words = overlays.map((o) => (o.rms === undefined ? `${o.name}: the model has no surface to compare with` : `${o.name}: rms ${shown(o.rms, 4)}, largest ${shown(o.largest, 4)} ${model.unit}`))
+    if (words.length) this.act.say(words.join(' · '))
+  }
+
+  async lay(file: File): Promise<void> {
+    if (file.size > LARGEST) return this.act.say(`${file.name} is larger than ${LARGEST >> 20} MiB`)
+    const bytes = new Uint8Array(await file.arrayBuffer())
+    let raw = ''
+    for (let k = 0; k < bytes.length; k += 0x8000) raw += String.fromCharCode(...bytes.subarray(k, k + 0x8000))
+    try {
+      this.laid(await this.link.ask('overlay', { name: file.name, data: btoa(raw) }))
+      this.files.set(file.name, btoa(raw))
+    } catch (error) {
+      this.act.say((error as Error).message)
+    }
+  }
+
+  async remove(): Promise<void> {
+    this.files.clear()
+    this.laid(await this.link.ask('remove_overlay'))
+  }
+
+  /** A new engine is given them again. */
+  async again(): Promise<void> {
+    for (const [name, data] of this.files) await this.link.ask('overlay', { name, data }).then((f) => this.laid(f), (error) => this.act.say(error.message))
+  }
+
+  /** Lets a person choose files. */
+  choose(): void {
+    const input = h('input', { type: 'file', accept: '.stl,.obj,.gdf,.csv,.txt,.dat,.xyz', multiple: true })
+    input.addEventListener('change', () => [...(input.files ?? [])].forEach((f) => void this.lay(f)))
+    input.click()
+  }
+}
