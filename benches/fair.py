@@ -2,7 +2,7 @@
 
 SciPy's splines have no bound on the deviation: `make_splprep` takes a budget for the sum of
 squares and `make_smoothing_spline` a weight, so both are sought by bisection until the largest
-distance of a data point is just within the bound; the time of one call at the end is told, and that
+distance of a data point is just within the bound; the time of one call at the end is reported, and that
 of the search. All curves are compared where the data are: largest distance, squared jumps of the
 third derivative (in units of the mean distance of the data's parameters), monotone pieces of the
 curvature. Ends are free, as SciPy's are.
@@ -31,7 +31,7 @@ def noisy(n: int) -> tuple[np.ndarray, float]:
     return np.column_stack([x, y + noise * (random.random(n) - 0.5)]), noise
 
 
-def told(name: str, seconds: float, curve: object, points: np.ndarray, at: np.ndarray) -> str:
+def reported(name: str, seconds: float, curve: object, points: np.ndarray, at: np.ndarray) -> str:
     """A line about a curve that gives positions and derivatives at data parameters."""
     here = curve(at, 0)
     far = np.linalg.norm(here - points, axis=1).max()
@@ -93,18 +93,18 @@ def main() -> None:
         print(f"{n} points, bound {tol:.2e}")
         for measure in ("second", "jumps"):
             seconds, curve = ours(points, tol, measure=measure)
-            print("  " + told(f"ours, optimum of {measure}", seconds, curve, points, at))
+            print("  " + reported(f"ours, optimum of {measure}", seconds, curve, points, at))
         seconds, curve = ours(points, tol, measure="jumps", as_="points")
-        print("  " + told("ours, optimum of jumps, points", seconds, curve, points, at))
+        print("  " + reported("ours, optimum of jumps, points", seconds, curve, points, at))
         seconds, curve = ours(points, tol, mode="faithful")
-        print("  " + told("ours, faithful, n steps", seconds, curve, points, at))
+        print("  " + reported("ours, faithful, n steps", seconds, curve, points, at))
 
         def smoothing(weight: float, points: np.ndarray = points, at: np.ndarray = at) -> object:
             parts = [make_smoothing_spline(at, points[:, c], lam=weight) for c in (0, 1)]
             return lambda t, k: np.column_stack([p(t, nu=k) for p in parts])
 
         one, search, curve = sought(smoothing, points, at, tol, 1e-8, 1e12)
-        print("  " + told("SciPy make_smoothing_spline", one, curve, points, at))
+        print("  " + reported("SciPy make_smoothing_spline", one, curve, points, at))
         print(f"  {'  with its search':34} {1e3 * search:10.2f} ms")
         if n <= 2000:
 
@@ -113,7 +113,7 @@ def main() -> None:
                 return lambda t, k: spline(t, nu=k).T
 
             one, search, curve = sought(knots, points, at, tol, 1e-6 * n * tol**2, 4.0 * n * tol**2)
-            print("  " + told("SciPy make_splprep", one, curve, points, at))
+            print("  " + reported("SciPy make_splprep", one, curve, points, at))
             print(f"  {'  with its search':34} {1e3 * search:10.2f} ms")
 
 

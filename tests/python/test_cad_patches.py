@@ -132,7 +132,7 @@ def test_bodies_on_any_surfaces_are_valid_solids_of_the_stated_accuracy(
         warnings.simplefilter("error")
         (step,) = model.write(tmp_path / "b.step", tolerance=tolerance)
         (iges,) = model.write(tmp_path / "b.igs", tolerance=tolerance)
-    # Told on the screen, too, but no warning.
+    # Printed as well, but no warning.
     assert [d.id for d in model.export_remarks] == ["fitted-surfaces"]
     written = step.read_text()
     stated = re.search(r"'deviation',LENGTH_MEASURE\(([^)]*)\)", written)

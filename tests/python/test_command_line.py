@@ -88,9 +88,9 @@ def test_several_models_and_patterns(cli, tmp_path) -> None:
         (["xyzzy"], "unknown command `xyzzy`"),
     ],
 )
-def test_a_wrong_word_is_a_line_with_the_right_one(cli, words, told) -> None:
+def test_a_wrong_word_is_a_line_with_the_right_one(cli, words, reported) -> None:
     done = cli(*words, status=2)
-    assert told in done.stderr and done.stdout == ""
+    assert reported in done.stderr and done.stdout == ""
     assert done.stderr.startswith("error: ") and done.stderr.count("\n") <= 3
 
 

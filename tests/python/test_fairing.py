@@ -22,7 +22,7 @@ sys.path.insert(0, str(DATA))
 import make_data  # noqa: E402
 
 
-def told(cli, *arguments):
+def reported(cli, *arguments):
     """The report of ``moldloft fair`` as data."""
 
     def refuse(word):
@@ -120,7 +120,7 @@ def test_the_table_by_the_command(cli, tmp_path, name):
     row = TABLE[name]
     closed = ["--closed"] if name == "circle.csv" else []
     asked = [DATA / name, "--tol", row["tol"], *closed, "--as", "control"]
-    best = told(cli, *asked, "-o", "faired.csv")
+    best = reported(cli, *asked, "-o", "faired.csv")
     largest, jumps, second = row["input"]
     close(best["largest_jump_before"], largest, 1e-6)
     close(best["jumps_before"], jumps, 1e-6)
@@ -137,7 +137,7 @@ def test_the_table_by_the_command(cli, tmp_path, name):
     close(rms(make_data_points(name), name), row["rms"][0], 0.1)
     n = len(points)
     for times, (second, jumps) in zip((1, 10), row["steps"], strict=True):
-        stepped = told(cli, *asked, "--mode", "faithful", "--passes", times)
+        stepped = reported(cli, *asked, "--mode", "faithful", "--passes", times)
         assert stepped["steps"] == times * n and stepped["stopped"] == "steps"
         close(stepped["measure_after"], second, 0.05)
         close(stepped["jumps_after"], jumps, 0.3)
@@ -148,12 +148,12 @@ def test_the_table_by_the_command(cli, tmp_path, name):
                 for k, when in enumerate(("before", "after")):
                     if word in row:
                         assert abs(stepped[f"{key}_{when}"] - row[word][k]) <= 1
-    literal = told(cli, *asked, "--mode", "literal", "--steps", 100_000)
+    literal = reported(cli, *asked, "--mode", "literal", "--steps", 100_000)
     assert literal["stopped"] == "stalled"
     assert row["stalls"] / 10 <= literal["steps"] <= row["stalls"] * 10
     for measure in ("jumps", "jump-lengths"):
         if measure in row:
-            close(told(cli, *asked, "--measure", measure)["value"], row[measure], 1e-3)
+            close(reported(cli, *asked, "--measure", measure)["value"], row[measure], 1e-3)
 
 
 def make_data_points(name):
@@ -162,21 +162,21 @@ def make_data_points(name):
 
 def test_the_surface_of_the_notes(cli):
     hull = DATA / "wigley.p3d"
-    plain = told(cli, hull, "--tol", "0")
+    plain = reported(cli, hull, "--tol", "0")
     close(plain["jumps_u_before"], 1.5976e-4, 1e-4)
     close(plain["jumps_v_before"], 1.0820e-4, 1e-4)
     close(plain["measure_before"], 3.59334e-5 + 5.98370e-5, 1e-6)
     assert plain["deviation_certified"] == 0 and plain["measure_after"] == plain["measure_before"]
     for tol, second in ((2e-4, 6.221144e-5), (1e-4, 6.672774e-5)):
-        best = told(cli, hull, "--tol", tol)
+        best = reported(cli, hull, "--tol", tol)
         close(best["value"], second, 1e-6)
         assert best["gap_relative"] < 1e-7 and best["deviation_certified"] <= tol
     for tol, (u, v) in ((2e-4, (8.9e-10, 6.9e-10)), (1e-4, (1.8e-8, 6.4e-9))):
-        best = told(cli, hull, "--tol", tol, "--measure", "jumps")
+        best = reported(cli, hull, "--tol", tol, "--measure", "jumps")
         close(best["jumps_u_after"], u, 0.1)
         close(best["jumps_v_after"], v, 0.1)
     for passes, (u, v) in ((1, (4.59e-6, 4.2e-8)), (2, (1.5e-7, 1.6e-8)), (10, (2.66e-6, 5.5e-8))):
-        faithful = told(cli, hull, "--tol", 2e-4, "--passes", passes)
+        faithful = reported(cli, hull, "--tol", 2e-4, "--passes", passes)
         assert faithful["mode"] == "faithful"
         close(faithful["jumps_u_after"], u, 0.3)
         close(faithful["jumps_v_after"], v, 0.3)
@@ -238,7 +238,7 @@ def test_a_log_replays_to_the_bit(cli, tmp_path):
 
 def test_zero_changes_no_bit(cli, tmp_path):
     for role in ("control", "points"):
-        told(cli, DATA / "section.csv", "--tol", 0, "--as", role, "-o", "same.csv")
+        reported(cli, DATA / "section.csv", "--tol", 0, "--as", role, "-o", "same.csv")
         assert np.array_equal(
             np.loadtxt(tmp_path / "same.csv", delimiter=",", skiprows=1),
             make_data_points("section.csv"),
@@ -463,12 +463,12 @@ def test_fairing_in_a_model():
 
 def test_objects_of_models_by_the_command(cli, model_file, tmp_path):
     path = model_file(PROGRAM)
-    curve = told(cli, f"{path}:keel", "--tol", "0.01", "-o", "keel.csv", "--set", "bulge=0.6")
+    curve = reported(cli, f"{path}:keel", "--tol", "0.01", "-o", "keel.csv", "--set", "bulge=0.6")
     assert curve["as"] == "fit" and curve["fit_error"] <= 1e-4
     assert curve["deviation_certified"] <= 0.01 * (1 + 1e-12)
-    surface = told(cli, f"{path}:deck", "--tol", "0.01", "-o", "deck.vts")
+    surface = reported(cli, f"{path}:deck", "--tol", "0.01", "-o", "deck.vts")
     assert surface["fit_error"] <= 1e-4
-    rows = told(cli, f"{path}:rough", "--tol", "0.01")
+    rows = reported(cli, f"{path}:rough", "--tol", "0.01")
     assert rows["as"] == "control" and rows["points"] == 9
     assert "which object" in cli("fair", path, "--tol", 1, status=1).stderr
     assert "`kiel`" in cli("fair", f"{path}:kiel", "--tol", 1, status=1).stderr
@@ -482,16 +482,16 @@ def test_files_go_and_come(cli, tmp_path, model_file):
     rows = ["NACA 0012", "41. 41.", ""]
     rows += [f"{x:.4f} {y:.4f}" for x, y in upper] + [""] + [f"{x:.4f} {y:.4f}" for x, y in lower]
     path = model_file("\n".join(rows) + "\n", "naca.dat")
-    data = told(cli, path, "--tol", 1e-4, "--as", "control", "-o", "out.dat")
+    data = reported(cli, path, "--tol", 1e-4, "--as", "control", "-o", "out.dat")
     assert data["points"] == 81
     out = (tmp_path / "out.dat").read_text().splitlines()
     assert out[0] == "NACA 0012" and out[1].split() == ["41.", "41."] and len(out) == 86
-    again = told(cli, "out.dat", "--tol", 0, "--as", "control")
+    again = reported(cli, "out.dat", "--tol", 0, "--as", "control")
     close(again["measure_after"], data["measure_after"], 1e-12)
     # Blanks, tabs and semicolons, comments and Fortran's exponents.
     for sign in (" ", "\t", "; "):
         text = "# a comment\n" + "\n".join(f"{k}{sign}{k * k}.0D-1" for k in range(8))
-        assert told(cli, model_file(text, "p.txt"), "--tol", 0.1)["points"] == 8
+        assert reported(cli, model_file(text, "p.txt"), "--tol", 0.1)["points"] == 8
     # Closed files that repeat their first point.
     ring = make_data_points("circle.csv")
     text = "\n".join(f"{x!r},{y!r}" for x, y in [*ring.tolist(), ring[0].tolist()])
@@ -501,7 +501,7 @@ def test_files_go_and_come(cli, tmp_path, model_file):
     out = np.loadtxt(tmp_path / "ring2.csv", delimiter=",")
     assert len(out) == 65 and out[0].tobytes() == out[-1].tobytes()
     # Several curves are a network.
-    lines = told(cli, DATA / "lines.csv", "--tol", "0.006", "--along", "0,1,0", "-o", "l.csv")
+    lines = reported(cli, DATA / "lines.csv", "--tol", "0.006", "--along", "0,1,0", "-o", "l.csv")
     assert (lines["curves"], lines["shared"], lines["points"]) == (34, 273, 273)
     assert len((tmp_path / "l.csv").read_text().splitlines()) == 1 + 2 * 273 + 33
 
@@ -521,9 +521,9 @@ def test_plot3d_in_every_layout(cli, tmp_path, model_file):
     grid = make_data.wigley()
     for layout in ("text", "stream", "records"):
         path = model_file(plot3d(grid, layout), f"{layout}.p3d")
-        data = told(cli, path, "--tol", 2e-4, "-o", f"out-{layout}.p3d")
+        data = reported(cli, path, "--tol", 2e-4, "-o", f"out-{layout}.p3d")
         close(data["value"], 6.221144e-5, 1e-6)
-        again = told(cli, f"out-{layout}.p3d", "--tol", 0)
+        again = reported(cli, f"out-{layout}.p3d", "--tol", 0)
         close(again["measure_before"], data["measure_after"], 1e-12)
     file = files.read_grids(tmp_path / "out-stream.p3d")
     assert file.grids[0].shape == (41, 17, 3) and file.layout == "stream"

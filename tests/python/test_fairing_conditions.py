@@ -18,7 +18,7 @@ sys.path.insert(0, str(DATA))
 import make_data  # noqa: E402
 
 
-def told(cli, *arguments):
+def reported(cli, *arguments):
     return json.loads(cli("fair", *arguments, "--json").stdout)
 
 
@@ -64,7 +64,7 @@ def test_a_join_by_the_command(cli, model_file, tmp_path):
 
     path, other = model_file(text(middle), "m.csv"), model_file(text(fore), "f.csv")
     asked = [path, "--tol", "0.02", "--as", "fit", "--join", other]
-    told(cli, *asked, "-o", "out.csv")
+    reported(cli, *asked, "-o", "out.csv")
     out = np.loadtxt(tmp_path / "out.csv", delimiter=",")
     a = fairing.Spline.interpolate(fore)
     wanted = moldloft.fair(middle, 0.02, as_="fit", joins=[a])
@@ -126,7 +126,7 @@ def test_surfaces_keep_rims_points_and_areas(cli, tmp_path):
     was = area(before)
     assert abs(area(kept.surface) - was) < 0.7 * abs(area(free.surface) - was)
     # The same by the command.
-    data = told(
+    data = reported(
         cli, DATA / "wigley.p3d", "--as", "fit", "--tol", "2e-4",
         "--rims", "u0=curvature,v1=position",
         "--through", f"0.3,0.6={','.join(map(repr, place.tolist()))}", "--keep", "volume",
@@ -218,7 +218,7 @@ def test_curves_of_every_form(cli, model_file):
 
     path = DATA / "waisted-noise.csv"
     given = ["--knots", numbers(knots, "k.txt"), "--weights", numbers(weights, "w.txt")]
-    data = told(cli, path, "--tol", "2e-4", "--as", "fit", "--degree", "4", *given)
+    data = reported(cli, path, "--tol", "2e-4", "--as", "fit", "--degree", "4", *given)
     assert data["degree"] == 4 and data["measure_after"] == pytest.approx(faired.after.measure)
     swapped = knots.copy()
     swapped[[20, 30]] = swapped[[30, 20]]

@@ -56,9 +56,9 @@ def test_blocks_of_a_file_are_faired_as_one(cli, tmp_path):
     fore, aft = hull()
     path, out = tmp_path / "hull.p3d", tmp_path / "faired.p3d"
     write_plot3d(path, [fore, aft])
-    told = json.loads(cli("fair", path, "--tol", "0.02", "-o", out, "--json").stdout)
-    assert told["seams"] == [[[0, "u1"], [1, "u0"]]] and told["keeps"] == "curvature"
-    assert told["deviation_certified"] <= 0.02 + 1e-12 and told["gap"] >= 0
+    reported = json.loads(cli("fair", path, "--tol", "0.02", "-o", out, "--json").stdout)
+    assert reported["seams"] == [[[0, "u1"], [1, "u0"]]] and reported["keeps"] == "curvature"
+    assert reported["deviation_certified"] <= 0.02 + 1e-12 and reported["gap"] >= 0
     faired = read_grids(out).grids
     assert [g.shape for g in faired] == [fore.shape, aft.shape]
     assert np.abs(faired[0][-1] - faired[1][0]).max() < 1e-6
@@ -81,10 +81,10 @@ def test_weights_and_knots_of_surfaces_in_files(cli, tmp_path):
     weights.write_text("\n".join(f"{1 + 0.1 * (k % 3)}" for k in range(64)))
     knots.write_text("0 0 0 0 0.1 0.4 0.5 0.8 1 1 1 1\n")
     words = ("--weights", weights, "--knots", knots, "--knots-v", knots)
-    told = json.loads(cli("fair", path, "--tol", "0.02", *words, "--json").stdout)
-    assert told["deviation_certified"] <= 0.02 + 1e-12
+    reported = json.loads(cli("fair", path, "--tol", "0.02", *words, "--json").stdout)
+    assert reported["deviation_certified"] <= 0.02 + 1e-12
     plain = json.loads(cli("fair", path, "--tol", "0.02", "--json").stdout)
-    assert told["measure_before"] != pytest.approx(plain["measure_before"])
+    assert reported["measure_before"] != pytest.approx(plain["measure_before"])
     weights.write_text("1 2 3\n")
     done = cli("fair", path, "--tol", "0.02", "--weights", weights, status=1)
     assert "expected 8 x 8 weights, found 3" in done.stderr

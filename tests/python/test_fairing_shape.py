@@ -313,9 +313,9 @@ def test_the_command_and_its_page(cli, model_file, tmp_path):
         path, "--tol", "2e-3", "--shape", f"straight=1-{a}", "--shape", f"arc={a + 1}-{b}",
         "--shape", f"straight={b + 1}-30:0,1",
     ]  # fmt: skip
-    told = json.loads(cli("fair", *asked, "--report", "page.html", "--json").stdout)
-    assert told["arcs"][0]["points"] == [a + 1, b]
-    assert told["arcs"][0]["radius"] == pytest.approx(BILGE, rel=0.01)
+    reported = json.loads(cli("fair", *asked, "--report", "page.html", "--json").stdout)
+    assert reported["arcs"][0]["points"] == [a + 1, b]
+    assert reported["arcs"][0]["radius"] == pytest.approx(BILGE, rel=0.01)
     html = (tmp_path / "page.html").read_text()
     assert html.count("<svg") == 3
     assert "radius 1.4" in html or "radius 1.39" in html

@@ -123,10 +123,10 @@ def test_what_is_asked_is_kept(cli, tmp_path):
     from moldloft.grids import write_plot3d
 
     write_plot3d(tmp_path / "hull.p3d", [noisy])
-    told = json.loads(
+    reported = json.loads(
         cli("fair", "hull.p3d", "--tol", "6e-3", "--as", "fit", "-o", "o.p3d", "--json").stdout
     )
-    assert told["goal"] == "near" and told["deviation_data"] <= 6e-3 * (1 + 1e-12)
+    assert reported["goal"] == "near" and reported["deviation_data"] <= 6e-3 * (1 + 1e-12)
 
 
 def test_noise_between_close_stations_decides_no_parameters():

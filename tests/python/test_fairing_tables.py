@@ -126,8 +126,8 @@ def test_a_table_of_offsets(cli, tmp_path):
     file = read_points(path)
     assert file.offsets and file.comma and len(file.blocks) == 15 + 7
     done = cli("fair", path, "--tol", 0.005, "-o", "out.csv", "--json")
-    told = json.loads(done.stdout)
-    assert told["curves"] == 22 and told["shared"] == 105
+    reported = json.loads(done.stdout)
+    assert reported["curves"] == 22 and reported["shared"] == 105
     out = read_points(tmp_path / "out.csv")
     assert out.table is not None and out.table.shape == (105, 3)
     before, after = file.table, out.table

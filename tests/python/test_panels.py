@@ -111,8 +111,8 @@ def test_the_command_tells_all_of_it(tmp_path, capsys: pytest.CaptureFixture[str
     assert data["quality"]["side"]["quads"] == 16
     path.write_text(BOX.replace("{0, 2}", "{9, 2}"))
     assert main(["check", str(path), "--quality"]) == 0
-    told = capsys.readouterr()
-    assert "divisions-contradict" in told.out + told.err
+    reported = capsys.readouterr()
+    assert "divisions-contradict" in reported.out + reported.err
 
 
 def test_a_check_tells_what_contradicts_itself_in_panels_and_cells(
@@ -131,9 +131,9 @@ def test_a_check_tells_what_contradicts_itself_in_panels_and_cells(
     )
     for command in (["check"], ["build", "-o", str(tmp_path)]):
         assert main([*command, str(path)]) == 0
-        told = capsys.readouterr().err
-        assert "negative-jacobian" in told and "8 of the 16 cells of `V`" in told, told
-        assert "in cell (" in told and "move its faces apart" in told
+        reported = capsys.readouterr().err
+        assert "negative-jacobian" in reported and "8 of the 16 cells of `V`" in reported, reported
+        assert "in cell (" in reported and "move its faces apart" in reported
     assert main(["check", str(path), "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert [d["id"] for d in data["diagnostics"]] == ["negative-jacobian"]

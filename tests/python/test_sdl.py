@@ -39,8 +39,8 @@ def test_run_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str
     )
     out = tmp_path / "out"
     assert main(["run", str(program), "-o", str(out)]) == 0
-    told = capsys.readouterr().out
-    assert told.startswith("hello 2\nwrote ")
+    reported = capsys.readouterr().out
+    assert reported.startswith("hello 2\nwrote ")
     assert (out / "sub" / "points.txt").read_text() == "1 2 3\n1 2 3\n"
     assert main(["run", str(program), "-o", str(out), "--json"]) == 0
     data = json.loads(capsys.readouterr().out)

@@ -132,13 +132,15 @@ def test_pyright_finds_each_mistake_and_no_other(tmp_path: Path) -> None:
     (tmp_path / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
     call = [command, "--outputjson", "--pythonpath", sys.executable, "--project", str(tmp_path)]
     done = subprocess.run(call, capture_output=True, text=True, cwd=tmp_path, timeout=300)
-    told = json.loads(done.stdout)["generalDiagnostics"]
-    found = {row["range"]["start"]["line"] + 1 for row in told if row["severity"] == "error"}
+    reported = json.loads(done.stdout)["generalDiagnostics"]
+    found = {row["range"]["start"]["line"] + 1 for row in reported if row["severity"] == "error"}
     lines = USER.splitlines()
     wrong = {k for k, line in enumerate(lines, 1) if line.endswith("# wrong")}
     missed = [lines[k - 1].strip() for k in sorted(wrong - found)]
     assert not missed, f"not found: {missed}"
-    assert found == wrong, [row for row in told if row["range"]["start"]["line"] + 1 not in wrong]
+    assert found == wrong, [
+        row for row in reported if row["range"]["start"]["line"] + 1 not in wrong
+    ]
 
 
 def test_the_stubs_are_those_of_the_registry() -> None:

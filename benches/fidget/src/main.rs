@@ -81,8 +81,8 @@ fn best<R>(mut f: impl FnMut() -> R) -> (f64, R) {
 /// system does not tell.
 fn cpu() -> f64 {
     static START: OnceLock<Instant> = OnceLock::new();
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat");
-    let nanoseconds = told.ok().and_then(|t| t.split(' ').next()?.parse::<f64>().ok());
+    let reported = std::fs::read_to_string("/proc/thread-self/schedstat");
+    let nanoseconds = reported.ok().and_then(|t| t.split(' ').next()?.parse::<f64>().ok());
     nanoseconds
         .map_or_else(|| START.get_or_init(Instant::now).elapsed().as_secs_f64(), |t| t * 1e-9)
 }

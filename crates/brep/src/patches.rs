@@ -373,7 +373,7 @@ impl<'a> PatchedBody<'a> {
                         l[i] * (1.0 - v) + h[i] * v + e[j] * (1.0 - u) + r[j] * u - bilinear;
                     match self.foot(&[label], guess, reach) {
                         Some(p) => p,
-                        // Told by its distance.
+                        // Recognised by its distance.
                         None => guess,
                     }
                 };

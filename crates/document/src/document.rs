@@ -580,7 +580,7 @@ impl Document {
         if let Some((clock, panelled)) = &self.panelled
             && *clock == self.plain.graph.last_change()
         {
-            all.extend(panelled.panelling.remarks().iter().map(|remark| self.told(remark)));
+            all.extend(panelled.panelling.remarks().iter().map(|remark| self.reported(remark)));
         }
         all
     }
@@ -593,10 +593,10 @@ impl Document {
     pub fn junctions(&mut self) -> Result<Vec<Diagnostic>, Diagnostic> {
         let panelled = self.panelled()?;
         let remarks = panelled.panelling.junctions(&self.plain.graph);
-        Ok(remarks.iter().map(|remark| self.told(remark)).collect())
+        Ok(remarks.iter().map(|remark| self.reported(remark)).collect())
     }
 
-    fn told(&self, remark: &moldloft_panel::PanelNote) -> Diagnostic {
+    fn reported(&self, remark: &moldloft_panel::PanelNote) -> Diagnostic {
         let severity = if remark.is_error() { Diagnostic::error } else { Diagnostic::warning };
         let mut diagnostic = severity(remark.id(), remark.to_string()).help(remark.help());
         let object =

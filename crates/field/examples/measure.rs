@@ -20,8 +20,8 @@ fn best(n: usize, mut f: impl FnMut()) -> f64 {
 /// system does not tell.
 fn cpu() -> f64 {
     static START: OnceLock<Instant> = OnceLock::new();
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat");
-    let nanoseconds = told.ok().and_then(|t| t.split(' ').next()?.parse::<f64>().ok());
+    let reported = std::fs::read_to_string("/proc/thread-self/schedstat");
+    let nanoseconds = reported.ok().and_then(|t| t.split(' ').next()?.parse::<f64>().ok());
     nanoseconds
         .map_or_else(|| START.get_or_init(Instant::now).elapsed().as_secs_f64(), |t| t * 1e-9)
 }
@@ -73,17 +73,17 @@ fn main() {
     if let Ok(one) = rayon::ThreadPoolBuilder::new().num_threads(1).build() {
         let time = one.install(|| mean(10, || drop(common::facets(&set, &like, 7))));
         let name = format!("like libfive's, {:.1} ms of one thread", time * 1e3);
-        told(&name, &common::facets(&set, &like, 7));
+        reported(&name, &common::facets(&set, &like, 7));
     }
     for depth in [6, 7, 8] {
         let f = common::facets(&set, &common::cube(4.0), depth);
-        told(&format!("depth {depth}"), &f);
+        reported(&format!("depth {depth}"), &f);
         if depth > 6 {
             for accuracy in [3e-4, 2e-4, 1.5e-4] {
                 let mut simple = None;
                 let time = best(1, || simple = f.simplified(accuracy).ok());
                 if let Some(simple) = simple {
-                    told(
+                    reported(
                         &format!("  simplified to {accuracy:.1e} in {:.0} ms", time * 1e3),
                         &simple,
                     );
@@ -93,7 +93,7 @@ fn main() {
     }
 }
 
-fn told(name: &str, f: &moldloft_field::Facets) {
+fn reported(name: &str, f: &moldloft_field::Facets) {
     let all = f.centre_distances();
     let rms = (all.iter().map(|d| d * d).sum::<f64>() / all.len() as f64).sqrt();
     println!(

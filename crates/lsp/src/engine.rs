@@ -26,11 +26,11 @@ pub fn run() -> ExitCode {
 /// True when the editor said goodbye as the protocol asks.
 fn serve(connection: &Connection) -> bool {
     let Ok((id, params)) = connection.initialize_start() else { return false };
-    let told = json!({
+    let reported = json!({
         "capabilities": capabilities(),
         "serverInfo": {"name": "moldloft-lsp", "version": env!("CARGO_PKG_VERSION")},
     });
-    if connection.initialize_finish(id, told).is_err() {
+    if connection.initialize_finish(id, reported).is_err() {
         return false;
     }
     let mut folders = folders_of(&params["workspaceFolders"]);

@@ -296,8 +296,8 @@ impl EditorFront<'_> {
             self.held.insert(uri.clone(), why.clone());
         }
         let said = format!("the engine ended ({how}) and was started again; all texts are kept");
-        let told = json!({"type": 2, "message": said});
-        self.to_editor(Notification::new(note::LogMessage::METHOD.into(), told));
+        let reported = json!({"type": 2, "message": said});
+        self.to_editor(Notification::new(note::LogMessage::METHOD.into(), reported));
         for (id, method) in std::mem::take(&mut self.pending) {
             if method == "initialize" {
                 self.pending.insert(id, method);

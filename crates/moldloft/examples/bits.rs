@@ -37,7 +37,7 @@ const FORMATS: [&str; 6] = ["gdf", "svg", "p3d", "volume-p3d", "sdl", "ms2"];
 /// Everything that a document is asked for, under one hash, and how many vertices that was, if any.
 fn of(mut document: Document, formats: &[&str]) -> String {
     let mut hash = Hash::new();
-    let mut told = String::new();
+    let mut reported = String::new();
     for fault in document.diagnostics() {
         // Ids and places: words may be improved.
         hash.bytes(fault.id.as_bytes());
@@ -67,7 +67,7 @@ fn of(mut document: Document, formats: &[&str]) -> String {
         Ok(panelled) => {
             let mesh = &panelled.mesh;
             if !mesh.positions().is_empty() {
-                told = format!("{} vertices", mesh.positions().len());
+                reported = format!("{} vertices", mesh.positions().len());
             }
             hash.numbers(mesh.positions().iter().flat_map(|p| [p.x, p.y, p.z]));
             for corner in mesh.faces().iter().flatten() {
@@ -96,12 +96,12 @@ fn of(mut document: Document, formats: &[&str]) -> String {
             }
         }
     }
-    format!("{:016x} {told}", hash.0)
+    format!("{:016x} {reported}", hash.0)
 }
 
 /// Where the repository is.
 pub fn root() -> PathBuf {
-    // Elsewhere than where it was built it is told.
+    // Elsewhere than where it was built it is given.
     std::env::var_os("MOLDLOFT_ROOT")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."), PathBuf::from)
 }

@@ -14,7 +14,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 
-/// The system's allocator, until it is told to refuse.
+/// The system's allocator, until it is set to refuse.
 struct Refusing;
 
 const NEVER: i64 = i64::MAX;
@@ -105,7 +105,7 @@ fn model(text: &str) -> Document {
 }
 
 /// Everything that one asks of a model, as text with every digit.
-fn told(document: &mut Document) -> Outcome {
+fn reported(document: &mut Document) -> Outcome {
     if document.has_errors() {
         return Err(ids(&document.diagnostics()));
     }
@@ -124,10 +124,10 @@ fn told(document: &mut Document) -> Outcome {
 type Operation = (&'static str, &'static str, fn(&mut Document) -> Outcome);
 
 const OPERATIONS: &[Operation] = &[
-    ("write", HULL, told),
+    ("write", HULL, reported),
     ("set", HULL, |d| {
         let before = d.text();
-        let made = d.set(&[("beam".into(), 4.5)]).map_err(|f| ids(&f)).and_then(|_| told(d));
+        let made = d.set(&[("beam".into(), 4.5)]).map_err(|f| ids(&f)).and_then(|_| reported(d));
         // Back, as a person would.
         let back = d.set(&[("beam".into(), 5.0)]).map_err(|f| ids(&f));
         assert!(made.is_err() || back.is_err() || d.text() == before);
@@ -135,7 +135,7 @@ const OPERATIONS: &[Operation] = &[
     }),
     ("text", HULL, |d| {
         d.set_text(&HULL.replace("-1.4", "-1.5"));
-        let made = told(d);
+        let made = reported(d);
         d.set_text(HULL);
         made
     }),
@@ -160,8 +160,8 @@ const OPERATIONS: &[Operation] = &[
         }
         Ok(found)
     }),
-    ("faired", FAIRED, told),
-    ("body", BODY, told),
+    ("faired", FAIRED, reported),
+    ("body", BODY, reported),
 ];
 
 /// The operation; when it was refused, with what the model says of itself: why it has no mesh, say.
@@ -284,7 +284,11 @@ fn of_sessions(points: usize, tally: &mut Tally) {
             assert_eq!(session.text(), HULL);
             session.answer(r#"{"id": 6, "kind": "set", "values": {"beam": 5}}"#);
             session.document().run();
-            assert_eq!(told(session.document()), told(&mut model(HULL)), "session after {at}");
+            assert_eq!(
+                reported(session.document()),
+                reported(&mut model(HULL)),
+                "session after {at}"
+            );
         }
     }
 }
@@ -346,8 +350,8 @@ fn main() {
     request();
     // Threads of the pool are there before anything is refused.
     assert!(!model(HULL).has_errors(), "{:?}", model(HULL).diagnostics());
-    told(&mut model(HULL)).unwrap();
-    told(&mut model(BODY)).unwrap();
+    reported(&mut model(HULL)).unwrap();
+    reported(&mut model(BODY)).unwrap();
     let points = rounds(6, 420);
     let mut tally = Tally::default();
     of_documents(points, &mut tally);

@@ -84,9 +84,9 @@ class Session:
         if model.has_errors:
             diagnostics = model.diagnostics
             new = [d for d in diagnostics if (d.id, d.message) not in known]
-            told = "\n".join(str(d) for d in new or diagnostics)
+            reported = "\n".join(str(d) for d in new or diagnostics)
             model.text = text
-            raise ModelError(told, new or diagnostics)
+            raise ModelError(reported, new or diagnostics)
         self._before.append(text)
         new = [d for d in model.diagnostics if (d.id, d.message) not in known]
         return model.printed[printed:] + [str(d).rstrip() for d in new]

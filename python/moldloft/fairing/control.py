@@ -239,7 +239,7 @@ def uneven(data: Floats) -> list[str]:
 def result(
     made: Prepared,
     faired: Spline,
-    told: dict[str, Any],
+    reported: dict[str, Any],
     tol: ArrayLike | None,
     mode: str,
     width: int,
@@ -248,10 +248,10 @@ def result(
 ) -> Fairing:
     """The report of a faired spline."""
     original, spline = made.spline, faired
-    before, after = Numbers(**told["before"]), Numbers(**told["after"])
-    far, certificate = told["deviation"], told["certificate"]
+    before, after = Numbers(**reported["before"]), Numbers(**reported["after"])
+    far, certificate = reported["deviation"], reported["certificate"]
     certified, sampled = far["certified"], far["sampled"]
-    notes = list(told["notes"])
+    notes = list(reported["notes"])
     if made.role in ("points", "control") and not made.own:
         notes += uneven(data)
     if made.role == "points":
@@ -268,7 +268,7 @@ def result(
         rows = faired(made.parameters)
     else:
         rows = faired.control_points
-    log = (told["log_index"], told["log_to"]) if "log_index" in told else None
+    log = (reported["log_index"], reported["log_to"]) if "log_index" in reported else None
     largest = None if tol is None else float(np.max(np.asarray(tol, np.float64)))
     residuals = None
     if made.parameters is not None:
@@ -283,7 +283,7 @@ def result(
         tol=largest,
         as_="control" if made.role == "spline" else made.role,
         mode=mode,
-        measure=told["measure"],
+        measure=reported["measure"],
         breaks=made.breaks,
         before=before,
         after=after,
@@ -293,13 +293,13 @@ def result(
         length=original.length if made.role == "points" else far["length"],
         value=certificate["value"],
         gap=certificate["gap"],
-        steps=told["steps"],
-        stopped=told["stopped"],
-        active=told["active"],
+        steps=reported["steps"],
+        stopped=reported["stopped"],
+        active=reported["active"],
         findings=made.findings,
         corrected=made.corrected,
-        jump_lengths_before=told["jumps_before"],
-        jump_lengths_after=told["jumps_after"],
+        jump_lengths_before=reported["jumps_before"],
+        jump_lengths_after=reported["jumps_after"],
         notes=tuple(notes),
         seconds=seconds,
         log=log,

@@ -294,14 +294,14 @@ def fair_curve(
     }
     if conditions and mode != "optimum":
         raise FairingError("only the optimum keeps conditions; take mode `optimum`")
-    core, told = spline._core.fair(chosen)
+    core, reported = spline._core.fair(chosen)
     if stay and tol is not None:
         # Which curve is the fairest was not asked.
-        told["certificate"]["gap"] = told["certificate"]["value"]
+        reported["certificate"]["gap"] = reported["certificate"]["value"]
         own_knots = made.role == "fit" and (own.given or count is not None)
-        told["notes"] = [*told["notes"], EXACT_NEAREST if own_knots else EXACT]
+        reported["notes"] = [*reported["notes"], EXACT_NEAREST if own_knots else EXACT]
     seconds = time.perf_counter() - started
-    return result(made, Spline._of(core), told, tol, mode, width, seconds, data)
+    return result(made, Spline._of(core), reported, tol, mode, width, seconds, data)
 
 
 explain(globals())

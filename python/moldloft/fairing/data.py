@@ -83,7 +83,7 @@ def fair_data(
             raise FairingError(f"expected {n} rising parameters in [0, 1]")
     measure = _data_measure(asked.measure, asked.degree)
     shape, shape_labels = shape_conditions(asked.shape, n)
-    core, original, told = _core.Spline.fair_data(
+    core, original, reported = _core.Spline.fair_data(
         data,
         {
             "tolerance": limits,
@@ -107,16 +107,16 @@ def fair_data(
         },
     )
     for k in release:
-        off = float(told["residuals"][k])
+        off = float(reported["residuals"][k])
         notes.append(f"point {k + 1} was released: the curve passes {off:.3e} from it")
     faired, before = Spline._of(core), Spline._of(original)
-    arcs = tuple(Arc(a, b, r, np.asarray(c), off) for (a, b), r, c, off in told["arcs"])
+    arcs = tuple(Arc(a, b, r, np.asarray(c), off) for (a, b), r, c, off in reported["arcs"])
     notes += [str(arc) for arc in arcs]
-    rows = faired(told["at"])
+    rows = faired(reported["at"])
     # What the curve passes through to rounding has not moved by a bit.
-    still = told["residuals"] <= 64 * np.finfo(float).eps * np.abs(data).max()
+    still = reported["residuals"] <= 64 * np.finfo(float).eps * np.abs(data).max()
     rows[still] = data[still]
-    far, certificate = told["deviation"], told["certificate"]
+    far, certificate = reported["deviation"], reported["certificate"]
     taken = {*breaks, *release}
     return Fairing(
         points=narrowed(rows, width),
@@ -128,26 +128,26 @@ def fair_data(
         mode="optimum",
         measure=measure,
         breaks=tuple(breaks),
-        before=Numbers(**told["before"]),
-        after=Numbers(**told["after"]),
+        before=Numbers(**reported["before"]),
+        after=Numbers(**reported["after"]),
         deviation_certified=far["certified"],
         deviation_sampled=far["sampled"],
         deviation_control=far["control"],
         length=far["length"],
         value=certificate["value"],
         gap=certificate["gap"],
-        steps=told["steps"],
+        steps=reported["steps"],
         stopped=None,
-        active=told["active"],
+        active=reported["active"],
         findings=tuple(f for f in found if f.index not in taken),
         corrected=tuple(f for f in found if f.index in taken),
-        jump_lengths_before=told["jumps_before"],
-        jump_lengths_after=told["jumps_after"],
-        notes=(*told["notes"], *notes),
+        jump_lengths_before=reported["jumps_before"],
+        jump_lengths_after=reported["jumps_after"],
+        notes=(*reported["notes"], *notes),
         seconds=time.perf_counter() - started,
         goal=asked.goal[0],
-        residuals=told["residuals"],
-        used=told["used"],
-        parameters=told["at"],
+        residuals=reported["residuals"],
+        used=reported["used"],
+        parameters=reported["at"],
         arcs=arcs,
     )

@@ -263,10 +263,10 @@ class Fairing:
             ("time", f"{1e3 * self.seconds:.3g} ms"),
         ]
         text = lines_of(rows, tail)
-        told = [f"corrected: {f.text}" for f in self.corrected]
-        told += [f"note: {f.text}" for f in self.findings]
-        told += [f"note: {note}" for note in self.notes]
-        return "\n".join([text, *told])
+        reported = [f"corrected: {f.text}" for f in self.corrected]
+        reported += [f"note: {f.text}" for f in self.findings]
+        reported += [f"note: {note}" for note in self.notes]
+        return "\n".join([text, *reported])
 
     def plot(self, path: str | PathLike[str]) -> None:
         """Draw shape, zoom, curvature, comb, jumps, metric and displacement into a file.

@@ -304,7 +304,7 @@ def network(
     stay = stay and _core.are_exact(data, lists, sorted(marked))
     web = _core.Web(data, [(o, c, m) for (o, c), m in zip(lists, marks, strict=True)], degree)
     word, way = direction(motion)
-    faired, told = web.fair(
+    faired, reported = web.fair(
         {
             "tolerance": [0.0] * count if stay else radii(tol, count),
             "motion": word,
@@ -324,7 +324,7 @@ def network(
     )
     if stay:
         # Which network is the fairest was not asked.
-        told["certificate"]["gap"] = told["certificate"]["value"]
+        reported["certificate"]["gap"] = reported["certificate"]["value"]
     pairs = []
     for (own, closed), own_marks in zip(lists, marks, strict=True):
         spaced = "index" if index else spacing
@@ -344,19 +344,19 @@ def network(
         mode=mode,
         measure=measure,
         shared=int((uses > 1).sum()),
-        measure_before=told["measure_before"],
-        measure_after=told["measure_after"],
-        jumps_before=told["jumps_before"],
-        jumps_after=told["jumps_after"],
-        deviation_certified=told["certified"],
+        measure_before=reported["measure_before"],
+        measure_after=reported["measure_after"],
+        jumps_before=reported["jumps_before"],
+        jumps_after=reported["jumps_after"],
+        deviation_certified=reported["certified"],
         deviation_curves=max(p[3] for p in pairs),
         deviation_curves_certified=max(p[2] for p in pairs),
         goal=wanted[0],
-        used=told["used"],
+        used=reported["used"],
         findings=along_lines(data, lists, marked),
         notes=(*too_large(tol, data), *((EXACT,) if stay else ())),
-        value=told["certificate"]["value"],
-        gap=told["certificate"]["gap"],
+        value=reported["certificate"]["value"],
+        gap=reported["certificate"]["gap"],
         seconds=seconds,
     )
 

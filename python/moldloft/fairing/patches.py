@@ -237,13 +237,13 @@ def patches(
     for least in tries:
         chosen["tolerance"] = radii(least, count)
         try:
-            cores, found, told = _core.Net.joined(parts, seams, chosen)
+            cores, found, reported = _core.Net.joined(parts, seams, chosen)
         except FairingError:
             if least == tries[-1]:
                 raise
             continue
         if least != tol:
-            told["certificate"]["gap"] = told["certificate"]["value"]
+            reported["certificate"]["gap"] = reported["certificate"]["value"]
         break
     faired = [SplineSurface._of(core) for core in cores]
     seconds = time.perf_counter() - started
@@ -258,13 +258,13 @@ def patches(
         tol=tol,
         as_=as_,
         measure=measure,
-        measure_before=told["measure_before"],
-        measure_after=told["measure_after"],
-        jumps_before=told["jumps_before"],
-        jumps_after=told["jumps_after"],
-        deviation_certified=told["certified"],
-        deviation_sampled=told["sampled"],
-        value=told["certificate"]["value"],
-        gap=told["certificate"]["gap"],
+        measure_before=reported["measure_before"],
+        measure_after=reported["measure_after"],
+        jumps_before=reported["jumps_before"],
+        jumps_after=reported["jumps_after"],
+        deviation_certified=reported["certified"],
+        deviation_sampled=reported["sampled"],
+        value=reported["certificate"]["value"],
+        gap=reported["certificate"]["gap"],
         seconds=seconds,
     )

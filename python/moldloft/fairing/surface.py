@@ -598,7 +598,7 @@ def _fair_data(
     spaced, spaced_way = spacing_of(options["spacing"])
     wanted = goal_of(options["goal"])
     measure = options["measure"] or ("variation" if min(degree) >= 3 else "bending")
-    core, before, at, told = _core.Net.fair_data(
+    core, before, at, reported = _core.Net.fair_data(
         data.reshape(-1, 3),
         (m, n),
         {
@@ -619,7 +619,7 @@ def _fair_data(
     )
     faired, original = SplineSurface._of(core), SplineSurface._of(before)
     moved = faired.grid(np.asarray(at[0]), np.asarray(at[1]))
-    residuals = told["residuals"].reshape(m, n)
+    residuals = reported["residuals"].reshape(m, n)
     # What the surface passes through to rounding has not moved by a bit.
     still = residuals <= 64 * np.finfo(float).eps * np.abs(data).max()
     moved[still] = data[still]
@@ -633,21 +633,21 @@ def _fair_data(
         as_="fit",
         mode="optimum",
         measure=measure,
-        measure_before=told["measure_before"],
-        measure_after=told["measure_after"],
-        jumps_before=told["jumps_before"],
-        jumps_after=told["jumps_after"],
+        measure_before=reported["measure_before"],
+        measure_after=reported["measure_after"],
+        jumps_before=reported["jumps_before"],
+        jumps_after=reported["jumps_after"],
         jumps_along=((jumps_before[0], jumps_after[0]), (jumps_before[1], jumps_after[1])),
-        deviation_certified=told["certified"],
-        deviation_sampled=told["sampled"],
+        deviation_certified=reported["certified"],
+        deviation_sampled=reported["sampled"],
         extent=float(np.linalg.norm(np.ptp(data.reshape(-1, 3), axis=0))),
-        value=told["certificate"]["value"],
-        gap=told["certificate"]["gap"],
+        value=reported["certificate"]["value"],
+        gap=reported["certificate"]["gap"],
         passes=None,
         seconds=time.perf_counter() - started,
         goal=wanted[0],
         residuals=residuals,
-        used=told["used"],
+        used=reported["used"],
     )
 
 
@@ -829,10 +829,10 @@ def fair_surface(
     stay = tol is not None and stays_near(goal, free) and lines_exact(data, around, breaks)
     if stay:
         chosen["tolerance"] = [0.0] * (m * n)
-    core, told = surface._core.fair(chosen)
+    core, reported = surface._core.fair(chosen)
     if stay:
         # Which surface is the fairest was not asked.
-        told["certificate"]["gap"] = told["certificate"]["value"]
+        reported["certificate"]["gap"] = reported["certificate"]["value"]
     faired = SplineSurface._of(core)
     seconds = time.perf_counter() - started
     jumps_before, jumps_after = surface.measure("jumps"), faired.measure("jumps")
@@ -845,16 +845,16 @@ def fair_surface(
         as_=as_,
         mode=mode,
         measure=measure,
-        measure_before=told["measure_before"],
-        measure_after=told["measure_after"],
-        jumps_before=told["jumps_before"],
-        jumps_after=told["jumps_after"],
+        measure_before=reported["measure_before"],
+        measure_after=reported["measure_after"],
+        jumps_before=reported["jumps_before"],
+        jumps_after=reported["jumps_after"],
         jumps_along=((jumps_before[0], jumps_after[0]), (jumps_before[1], jumps_after[1])),
-        deviation_certified=told["certified"],
-        deviation_sampled=told["sampled"],
+        deviation_certified=reported["certified"],
+        deviation_sampled=reported["sampled"],
         extent=float(np.linalg.norm(np.ptp(data.reshape(-1, 3), axis=0))),
-        value=told["certificate"]["value"],
-        gap=told["certificate"]["gap"],
+        value=reported["certificate"]["value"],
+        gap=reported["certificate"]["gap"],
         passes=passes if mode == "faithful" else None,
         seconds=seconds,
         stayed=stay,

@@ -122,9 +122,9 @@ fn folded_cells_are_told() {
     );
     let mut document = sound(&text);
     let blocked = document.blocked().unwrap();
-    let told = blocked.diagnostics();
-    assert_eq!(told.iter().filter(|d| d.id == "negative-jacobian").count(), 2, "{told:?}");
-    assert!(format!("{:?}", told[0]).contains("left-handed"), "{told:?}");
+    let reported = blocked.diagnostics();
+    assert_eq!(reported.iter().filter(|d| d.id == "negative-jacobian").count(), 2, "{reported:?}");
+    assert!(format!("{:?}", reported[0]).contains("left-handed"), "{reported:?}");
     assert_eq!(blocked.report.blocks[0].folded, 8);
     let crossed = &blocked.report.blocks[1];
     assert!(crossed.folded > 0 && crossed.folded <= 16 && crossed.worst.scaled_jacobian < 0.0);

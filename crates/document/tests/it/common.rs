@@ -21,12 +21,12 @@ pub fn open(text: &str) -> Document {
 /// A document of a program without faults.
 pub fn sound(text: &str) -> Document {
     let document = open(text);
-    assert!(document.diagnostics().is_empty(), "{}\n{text}", told(&document).join("\n"));
+    assert!(document.diagnostics().is_empty(), "{}\n{text}", reported(&document).join("\n"));
     document
 }
 
 /// A line for each diagnostic: severity, id, place, message.
-pub fn told(document: &Document) -> Vec<String> {
+pub fn reported(document: &Document) -> Vec<String> {
     document.diagnostics().iter().map(|d| line(document, d)).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Components: a file of objects inserted with parents of the caller's.
 
-use crate::common::{ids, number, told, vector, with_files};
+use crate::common::{ids, number, reported, vector, with_files};
 use moldloft_document::Document;
 use moldloft_num::Vec3;
 use moldloft_registry::Value;
@@ -23,7 +23,7 @@ const BOAT: &str = "param float length = 8; AbsPoint A(0, 0, 1); AbsPoint B(leng
 
 fn boat() -> Document {
     let document = with_files(BOAT, &[KEEL]);
-    assert!(document.diagnostics().is_empty(), "{:?}", told(&document));
+    assert!(document.diagnostics().is_empty(), "{:?}", reported(&document));
     document
 }
 
@@ -104,7 +104,7 @@ fn components_nest_and_stand_in_loops() {
     let text = "for (i = 1:2) { AbsPoint at(i, 0, 0); Component mast(\"rig.sdl\", foot = at); }
                 float foot = 7; float own = mast[2].out.x;";
     let mut document = with_files(text, &[KEEL, rig]);
-    assert!(document.diagnostics().is_empty(), "{:?}", told(&document));
+    assert!(document.diagnostics().is_empty(), "{:?}", reported(&document));
     assert_eq!(vector(&mut document, "mast[2].top"), Vec3::of(2.0, 0.0, 5.0));
     assert_eq!(vector(&mut document, "mast[1].plate.tip"), Vec3::of(1.0, 0.0, 0.25));
     assert_eq!((number(&mut document, "own"), number(&mut document, "foot")), (6.0, 7.0));
@@ -120,7 +120,7 @@ fn model_files_are_components_too() {
     let text =
         "AbsPoint P(0, 0, 1); Component post(\"post.ms2\", A = P); Component own(\"post.ms2\");";
     let mut document = with_files(text, &[file]);
-    assert!(document.diagnostics().is_empty(), "{:?}", told(&document));
+    assert!(document.diagnostics().is_empty(), "{:?}", reported(&document));
     assert_eq!(vector(&mut document, "post.B"), Vec3::of(0.0, 0.0, 9.0));
     assert_eq!(vector(&mut document, "own.l(1)"), Vec3::of(1.0, 2.0, 11.0));
     document.set(&[("post.h".into(), 2.0)]).unwrap();
@@ -148,7 +148,7 @@ fn what_is_no_component() {
         ("Component c(\"keel.sdl\"); AbsPoint p(c.tep.x, 0, 0);", "unknown-name", "c.tep"),
     ] {
         let document = with_files(text, &[KEEL, bad, own]);
-        let found = told(&document);
+        let found = reported(&document);
         if ids(&document).first().map(String::as_str) != Some(id) || !found[0].contains(says) {
             wrong.push(format!("{text}: {found:?}"));
         }

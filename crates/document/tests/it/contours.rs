@@ -1,6 +1,6 @@
 //! Contours of all families, and lists of objects.
 
-use crate::common::{ids, number, open, sound, told};
+use crate::common::{ids, number, open, reported, sound};
 use moldloft_document::ContourSection;
 use std::f64::consts::PI;
 
@@ -123,8 +123,8 @@ fn lists_and_contours_that_are_none() {
         ("RealList e({0.5, 1}); BCurve x(e);", "not-a-list", "points"),
     ] {
         let document = open(&format!("{BODY}{text}"));
-        assert_eq!(ids(&document), [id], "{text}: {:?}", told(&document));
-        assert!(told(&document)[0].contains(says), "{text}: {:?}", told(&document));
+        assert_eq!(ids(&document), [id], "{text}: {:?}", reported(&document));
+        assert!(reported(&document)[0].contains(says), "{text}: {:?}", reported(&document));
     }
 }
 
@@ -163,6 +163,6 @@ fn what_sections_do_not_measure_is_reported() {
         ("CylinderContours c(axis, 1, 1, 0, 1); print(c.areas);", "not-planar"),
     ] {
         let document = open(&format!("{ridge}{text}"));
-        assert_eq!(ids(&document), [id], "{text}: {:?}", told(&document));
+        assert_eq!(ids(&document), [id], "{text}: {:?}", reported(&document));
     }
 }

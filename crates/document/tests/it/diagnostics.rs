@@ -8,7 +8,7 @@
 //! `MOLDLOFT_ACCEPT=1 cargo test -p moldloft-lang --test diagnostics` writes the present output
 //! into the files.
 
-use crate::common::{ids, line, open, told, with_files};
+use crate::common::{ids, line, open, reported, with_files};
 use moldloft_document::Document;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -109,8 +109,8 @@ fn every_diagnostic_has_its_place() {
     for path in files() {
         for case in read(&path).1 {
             let document = open(&case.text);
-            for told in told(&document) {
-                assert!(!told.contains("] - "), "{}: {told}", case.name);
+            for reported in reported(&document) {
+                assert!(!reported.contains("] - "), "{}: {reported}", case.name);
             }
         }
     }
@@ -219,7 +219,7 @@ fn loads() {
     let text = "load \"lib.sdl\"; print width(2);";
     let lib = ("lib.sdl", "float base = 1; function float width(float x) { return x + base; }");
     let document = with_files(text, &[lib]);
-    assert_eq!(document.printed(), ["3"], "{:?}", told(&document));
+    assert_eq!(document.printed(), ["3"], "{:?}", reported(&document));
     // Twice is once; a file may come by way of another.
     let other = ("other.sdl", "load \"lib.sdl\"; float more = width(3);");
     let twice = "load \"lib.sdl\"; load \"other.sdl\"; load \"lib.sdl\"; print more;";
@@ -237,7 +237,7 @@ fn loads() {
     assert_eq!((document.printed().join(","), ids(&document)), ("1".into(), vec![]));
     // What is missing is said where it is asked for.
     let document = with_files("float x = 1;\nload \"lid.sdl\";\nprint x;", &[lib]);
-    assert_eq!(told(&document), ["error[cannot-read] 2:1 unknown file `lid.sdl`"]);
+    assert_eq!(reported(&document), ["error[cannot-read] 2:1 unknown file `lid.sdl`"]);
     assert_eq!(document.printed(), ["1"]);
 }
 
@@ -257,12 +257,12 @@ fn a_program_may_redefine_a_library_routine() {
 #[test]
 fn faults_of_a_loaded_file_are_told_at_every_run() {
     let mut document = with_files("load \"lib.sdl\"; param p = 1;", &[("lib.sdl", "float x = ;")]);
-    let first = told(&document);
+    let first = reported(&document);
     assert_eq!(first.len(), 1, "{first:?}");
     document.run();
-    assert_eq!(told(&document), first);
+    assert_eq!(reported(&document), first);
     document.set(&[("p".into(), 2.0)]).unwrap();
-    assert_eq!(told(&document), first);
+    assert_eq!(reported(&document), first);
 }
 
 #[test]
@@ -270,7 +270,7 @@ fn set_refuses_what_a_run_would() {
     let text = "param float w = 2 in [1, 3]; param int n = 2; AbsPoint A(w, 2*w, 0.5);\n\
                 AbsPoint B(0, 0, 0); BCurve c({A, B}, degree = 1); for (i = 1:2) AbsPoint p(i, 0.25, 0); RelPoint r(B);";
     let mut document = open(text);
-    assert!(!document.has_errors(), "{:?}", told(&document));
+    assert!(!document.has_errors(), "{:?}", reported(&document));
     let mut refused = |name: &str, value: f64, id: &str, says: &str| {
         let before = document.text();
         let faults = document.set(&[("B.x".into(), 9.0), (name.into(), value)]).unwrap_err();
@@ -301,7 +301,7 @@ fn set_refuses_what_a_run_would() {
 fn an_expression_changes_nothing() {
     let text = "function float f(float x) { AbsPoint P(x, 0, 0); return P.x; } float y = f(2); AbsPoint Q(y, 0, 0);";
     let mut document = open(text);
-    assert!(!document.has_errors(), "{:?}", told(&document));
+    assert!(!document.has_errors(), "{:?}", reported(&document));
     assert!(document.eval("f(3)").is_err());
     assert_eq!(crate::common::number(&mut document, "P.x"), 2.0);
     assert_eq!(document.graph().len(), 2);
@@ -335,7 +335,7 @@ fn deleting_and_renaming_are_checked() {
                 for (i = 1:2) AbsPoint p(i, 0, 0);\nAbsPoint C(s, B.y, 0); # far\nAbsPoint D(0, 0, 0);\n\
                 subroutine f(AbsPoint D) { RelPoint r(D, 1); } f(A);";
     let mut document = open(text);
-    assert!(document.diagnostics().is_empty(), "{:?}", told(&document));
+    assert!(document.diagnostics().is_empty(), "{:?}", reported(&document));
     for (name, id) in [
         ("A", "has-dependents"),
         ("l", "has-dependents"),
@@ -367,7 +367,7 @@ fn deleting_and_renaming_are_checked() {
     assert_eq!(document.text(), text);
     document.set(&[("A.x".into(), -1234.5)]).unwrap();
     document.rename("B", "bow").unwrap();
-    assert!(document.diagnostics().is_empty(), "{:?}\n{}", told(&document), document.text());
+    assert!(document.diagnostics().is_empty(), "{:?}\n{}", reported(&document), document.text());
     assert!(
         document.text().contains("AbsPoint bow(1, w, 0);\nLine l(A, bow)")
             && document.text().contains("bow.y")

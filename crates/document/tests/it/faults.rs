@@ -1,7 +1,7 @@
 //! Refusals that need more than a program: files, floating, solids, models too large; and the bad
 //! input of which designers are most often guilty, each with what was expected and how to fix it.
 
-use crate::common::{WATER, ids, open, sound, told};
+use crate::common::{WATER, ids, open, reported, sound};
 use moldloft_document::{Document, FloatRequest, FlotationOptions, Immersion, registry};
 
 #[test]
@@ -12,7 +12,7 @@ fn sketches_that_cannot_be_met_and_that_read_too_much() {
     let document = Document::from_text(registry(), Box::new(files), "m.sdl", text);
     let found = document.diagnostics();
     let unsolved = found.iter().find(|d| d.id == "sketch-unsolved");
-    let unsolved = unsolved.unwrap_or_else(|| panic!("{:?}", told(&document)));
+    let unsolved = unsolved.unwrap_or_else(|| panic!("{:?}", reported(&document)));
     assert!(unsolved.message.contains("`a`") && !unsolved.help.is_empty(), "{unsolved:?}");
     assert_eq!(document.sources().slice(unsolved.span()), text);
 
@@ -24,7 +24,7 @@ fn sketches_that_cannot_be_met_and_that_read_too_much() {
     let files = many.into_iter().map(|(name, text)| (&*name.leak(), &*text.leak())).collect();
     let files = Box::new(crate::common::Files(files));
     let document = Document::from_text(registry(), files, "m.sdl", "load \"f0.skt\";");
-    assert!(ids(&document).contains(&"too-many-files".to_string()), "{:?}", told(&document));
+    assert!(ids(&document).contains(&"too-many-files".to_string()), "{:?}", reported(&document));
 }
 
 /// A sloping side.
@@ -156,7 +156,7 @@ fn whole(text: &str, id: &str) {
     let document = open(text);
     let found = document.diagnostics();
     let own: Vec<_> = found.iter().filter(|d| d.id == id).collect();
-    assert_eq!(own.len(), 1, "{id}: {:?}", told(&document));
+    assert_eq!(own.len(), 1, "{id}: {:?}", reported(&document));
     let expectation = own[0].expectation().unwrap_or_default();
     assert!(
         expectation.contains("expected") && expectation.contains("found"),

@@ -1,7 +1,7 @@
 //! Element-wise statements in one pass against operators applied one after the other to whole arrays:
 //! the same bits and the same messages, for plain and dual numbers.
 
-use crate::common::{Random, rounds, told};
+use crate::common::{Random, reported, rounds};
 use moldloft_document::{Document, NoFiles, registry};
 use moldloft_registry::Value;
 
@@ -146,7 +146,7 @@ fn one_pass_changes_no_bit_and_no_message() {
         let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
         let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
         plain.with_plain_operators();
-        assert_eq!(told(&fused), told(&plain), "round {round}\n{text}");
+        assert_eq!(reported(&fused), reported(&plain), "round {round}\n{text}");
         for name in ["f", "c", "d", "s", "t", "r0", "r1", "r2", "r3", "r4"] {
             match (fused.eval(name), plain.eval(name)) {
                 (Ok(a), Ok(b)) => {
@@ -184,7 +184,7 @@ fn targets_may_overlap_their_sources() {
                 surface s[3,3]; s[1,] = c[1:3]; s[2,] = c[4:6]; s[3,] = c[7:9]; s[,1] = s[1,]; s = s + s[3,3];\n\
                 float q = 0; for (i = 1:9) { c = c*1; c += c[i]; q += c[9].x; }";
     let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
-    assert!(!fused.has_errors(), "{:?}", told(&fused));
+    assert!(!fused.has_errors(), "{:?}", reported(&fused));
     let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
     plain.with_plain_operators();
     for name in ["a", "b", "c", "s", "q"] {
@@ -208,7 +208,7 @@ fn rows_of_all_lengths_are_done_to_the_last_element() {
              d = (c .* q)*sin(a) + {{a, -a, abs(a)}};\n}}"
         );
         let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
-        assert!(!fused.has_errors(), "{n}: {:?}", told(&fused));
+        assert!(!fused.has_errors(), "{n}: {:?}", reported(&fused));
         let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
         plain.with_plain_operators();
         for name in ["a", "c", "d"] {
@@ -232,7 +232,7 @@ fn arrays_filled_in_place_are_no_others() {
     let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
     let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
     plain.with_plain_operators();
-    assert_eq!(told(&fused), told(&plain));
+    assert_eq!(reported(&fused), reported(&plain));
     for name in ["b", "c", "d", "e", "u"] {
         let (a, b) = (fused.eval(name).unwrap(), plain.eval(name).unwrap());
         assert_eq!(bits(&a), bits(&b), "{name}");
@@ -253,7 +253,7 @@ fn long_chains_go_in_parts() {
          curve g = ({cross} .* {{1, 2, 3}}) + ({cross} .* {{a, a, a}}) + ({cross} .* d)*a + ({cross}) * 7 + ({cross} .* {{0, 0, 1}});"
     );
     let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
-    assert!(!fused.has_errors(), "{:?}", told(&fused));
+    assert!(!fused.has_errors(), "{:?}", reported(&fused));
     let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
     plain.with_plain_operators();
     for name in ["b", "e", "f", "g"] {
@@ -309,7 +309,7 @@ fn speed_of_the_bezier_statement() {
         };
         let least = |body: &str| {
             let mut m = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text(body));
-            assert!(!m.has_errors(), "{:?}", told(&m));
+            assert!(!m.has_errors(), "{:?}", reported(&m));
             let mut least = f64::INFINITY;
             for _ in 0..24 {
                 let start = std::time::Instant::now();

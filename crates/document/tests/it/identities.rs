@@ -1,7 +1,7 @@
 //! Edges that are one by construction: what is made of the same things and lies in one place joins, what
 //! only lies in one place is an error that states the line to write, and nothing else joins.
 
-use crate::common::{Random, ids, open, rounds, sound, told};
+use crate::common::{Random, ids, open, reported, rounds, sound};
 use moldloft_document::{Document, Panelled};
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{SurfaceRef, Value};
@@ -558,7 +558,11 @@ fn equal_numbers_join_nothing_but_are_reported() {
     let apart = format!("{text}\n{line}").replace("B2(4, 0, 0)", "B2(4, 0, 0.25)");
     let d = open(&apart);
     assert_eq!(ids(&d), ["edges-apart"]);
-    assert!(told(&d)[0].contains("0.25 at t = 1 of the first, at (4, 0, 0)"), "{:?}", told(&d));
+    assert!(
+        reported(&d)[0].contains("0.25 at t = 1 of the first, at (4, 0, 0)"),
+        "{:?}",
+        reported(&d)
+    );
     let near = apart.replace("low.v1);", "low.v1, tolerance = 0.3);");
     let mut d = sound(&near);
     let p = panelled(&mut d);
@@ -573,7 +577,7 @@ fn a_join_takes_whole_edges() {
         SubSnake half(r, s);";
     let d = open(&format!("{text} Join j(top.v1, half);"));
     assert_eq!(ids(&d), ["not-an-edge"]);
-    assert!(told(&d)[0].contains("a part of an edge"), "{:?}", told(&d));
+    assert!(reported(&d)[0].contains("a part of an edge"), "{:?}", reported(&d));
     let d = open(&format!("{text} Join j(top.v2, half);"));
     assert_eq!(ids(&d), ["unknown-member"]);
 }

@@ -1,7 +1,7 @@
 //! A model that was edited equals one opened from its text, bit for bit, and no more is evaluated
 //! than must be.
 
-use crate::common::{Random, number, open, rounds, sound, told};
+use crate::common::{Random, number, open, reported, rounds, sound};
 use moldloft_document::Document;
 use moldloft_num::Order;
 use moldloft_registry::Value;
@@ -33,7 +33,7 @@ fn seen(document: &mut Document) -> String {
         }
         Err(fault) => drop(writeln!(out, "{}", fault.message)),
     }
-    for line in told(document).iter().chain(document.printed()) {
+    for line in reported(document).iter().chain(document.printed()) {
         let _ = writeln!(out, "{line}");
     }
     out
@@ -443,7 +443,7 @@ fn failures_block_their_children_only() {
         document.graph().objects().filter(|o| o.blocked_by().is_some()).map(|o| &*o.name).collect();
     assert_eq!(blocked, ["b", "r", "S"]);
     // The failure, and the line of no length.
-    assert_eq!(document.diagnostics().len(), 2, "{:?}", told(&document));
+    assert_eq!(document.diagnostics().len(), 2, "{:?}", reported(&document));
     assert_eq!(number(&mut document, "l.length"), 0.0);
     assert!(document.eval("r.x").is_err());
     // What stays blocked is not evaluated on and on.
@@ -547,7 +547,11 @@ fn panels_after_changes_are_those_of_a_fresh_start() {
     let text = SHELL;
     let mut random = Random::new(23);
     let mut document = open(text);
-    assert!(!told(&document).iter().any(|d| d.starts_with("error")), "{:?}", told(&document));
+    assert!(
+        !reported(&document).iter().any(|d| d.starts_with("error")),
+        "{:?}",
+        reported(&document)
+    );
     let ranges = [("w", 3.0, 7.0), ("k", 0.0, 2.0), ("t", 0.2, 0.8), ("size", 0.5, 2.0)];
     let mut values: Vec<(String, f64)> = Vec::new();
     for round in 0..rounds(1500) {

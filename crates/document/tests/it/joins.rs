@@ -1,6 +1,6 @@
 //! Divisions along chains of patches, vertices shared by identity, and what is reported for joins.
 
-use crate::common::{Random, WATER, ids, open, rounds, sound, told};
+use crate::common::{Random, WATER, ids, open, reported, rounds, sound};
 use moldloft_document::{Document, Panelled};
 use moldloft_num::Vec3;
 use moldloft_panel::PanelNote;
@@ -204,7 +204,7 @@ fn sizes_and_spacings() {
         ("tags = 3", "wrong-class"),
     ] {
         let d = open(&strips([&format!(", {wrong}"), "", ""]));
-        assert_eq!(ids(&d), [id], "{wrong}: {:?}", told(&d));
+        assert_eq!(ids(&d), [id], "{wrong}: {:?}", reported(&d));
     }
 }
 
@@ -335,10 +335,10 @@ fn contradictory_counts_open_the_panels_and_not_the_body() {
     let mut answers = Vec::new();
     for divisions in [6, 12, 5, 2] {
         let mut d = open(&stern(outline, divisions));
-        let told = ids(&d);
+        let reported = ids(&d);
         d.panelled().unwrap();
         let contradicts = d.diagnostics().iter().any(|x| x.id == "divisions-contradict");
-        assert_eq!(contradicts, divisions != 6, "{divisions}: {told:?}");
+        assert_eq!(contradicts, divisions != 6, "{divisions}: {reported:?}");
         // What is said by the counts is not said again by the corners.
         assert_eq!(d.junctions().unwrap(), [], "{divisions}");
         let request = |heel| FloatRequest { immersion: Immersion::Level(0.2), trim: 0.0, heel };
@@ -386,10 +386,10 @@ fn corners_that_miss_their_neighbours_are_told() {
         )
     };
     let mut d = sound(&text("Line am(A, M); Line mb(M, B);"));
-    let told = d.junctions().unwrap();
-    let said: Vec<_> = told.iter().map(|t| t.message.as_str()).collect();
+    let reported = d.junctions().unwrap();
+    let said: Vec<_> = reported.iter().map(|t| t.message.as_str()).collect();
     let (id, first) = (
-        &told[0].id,
+        &reported[0].id,
         "the corner (u, v) = (1, 0) of `left` is in the middle of edge v = 0 of \
          `top` at u = 0.350000 but is not joined to it, at (1.4, 0, 0)",
     );
@@ -574,7 +574,7 @@ fn a_rolled_fillet_joins_what_is_left_of_both_surfaces() {
     );
     assert_eq!(pieces(&mut sound(&between)), (1, 1));
     let wrong = open(&text.replace("ContactSnake low(S, 1)", "ContactSnake low(floor, 1)"));
-    assert!(ids(&wrong).contains(&"no-contact".to_string()), "{:?}", told(&wrong));
+    assert!(ids(&wrong).contains(&"no-contact".to_string()), "{:?}", reported(&wrong));
 }
 
 #[test]

@@ -418,11 +418,11 @@ fn damaged_files() {
         let Ok(program) = document.convert(ModelFormat::Sdl) else { continue };
         converted += 1;
         let again = open_sdl(&program);
-        let told = again.diagnostics();
+        let reported = again.diagnostics();
         let built = |d: &moldloft_diag::Diagnostic| {
             d.object.as_deref().is_some_and(|o| again.graph().find(o).is_some())
         };
-        let ours: Vec<_> = told.iter().filter(|d| d.is_error() && !built(d)).collect();
+        let ours: Vec<_> = reported.iter().filter(|d| d.is_error() && !built(d)).collect();
         assert!(ours.is_empty(), "{text}\n{program}\n{ours:#?}");
         let back = again.convert(ModelFormat::ModelFile).unwrap();
         let reread = open(&back);

@@ -1,7 +1,7 @@
 //! Damaged programs: none panics, none hangs, and the model that went through them all equals one
 //! opened from the last text.
 
-use crate::common::{Random, ids, open, rounds, told};
+use crate::common::{Random, ids, open, reported, rounds};
 use moldloft_registry::Value;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -92,7 +92,7 @@ fn damaged_programs_neither_panic_nor_hang() {
         slowest = slowest.max(start.elapsed());
         assert!(!ids(&document).iter().any(|id| id == "internal-error"), "round {round}\n{text}");
         let mut again = open(&text);
-        assert_eq!(told(&document), told(&again), "round {round}\n{text}");
+        assert_eq!(reported(&document), reported(&again), "round {round}\n{text}");
         assert_eq!(document.printed(), again.printed(), "round {round}\n{text}");
         let names = |d: &moldloft_document::Document| {
             d.graph().objects().map(|o| o.name.clone()).collect::<Vec<_>>()

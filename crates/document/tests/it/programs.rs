@@ -4,7 +4,7 @@
 //!
 //! `MOLDLOFT_FUZZ_SECONDS` runs each test so long instead of the usual number of rounds.
 
-use crate::common::{Random, ids, open, rounds, told};
+use crate::common::{Random, ids, open, reported, rounds};
 use moldloft_document::{Document, NoFiles, registry};
 use moldloft_registry::Value;
 use std::time::{Duration, Instant};
@@ -38,7 +38,7 @@ fn go_on(round: usize, long: usize, start: Instant) -> bool {
     }
 }
 
-/// Another seed in each long run, told so that a failure can be made again.
+/// Another seed in each long run, printed so that a failure can be made again.
 fn seed(plain: u64) -> u64 {
     let given = std::env::var("MOLDLOFT_FUZZ_SEED").ok().and_then(|s| s.parse().ok());
     let seed = given.unwrap_or(plain);
@@ -281,7 +281,7 @@ fn programs_of_the_grammar() {
         if r.chance(25) {
             let mut plain = Document::from_text(registry(), Box::new(NoFiles), "model.sdl", &text);
             plain.with_plain_operators();
-            assert_eq!(told(&fused), told(&plain), "round {round}\n{text}");
+            assert_eq!(reported(&fused), reported(&plain), "round {round}\n{text}");
             assert_eq!(fused.printed(), plain.printed(), "round {round}\n{text}");
             for name in ["x", "v", "w", "a", "b", "c", "d", "s", "t"] {
                 if let (Ok(p), Ok(q)) = (fused.eval(name), plain.eval(name)) {

@@ -82,7 +82,7 @@ fn open_edges(document: &mut Document) -> usize {
 #[test]
 fn neighbours_along_a_relabelled_curve_share_its_vertices() {
     // Two ruled surfaces on one relabelled curve: 8 divisions of it are inner edges.
-    let pair = |first: &str, second: &str, told: usize| {
+    let pair = |first: &str, second: &str, reported: usize| {
         let text = format!(
             "{WING} AbsBead b(r, 0.25); AbsBead d(r, 0.75); SubCurve whole(b, d);
              Relabel bent({{0, 0.3, 1}}, degree = 1); SubCurve part(b, d, relabel = bent);
@@ -92,7 +92,7 @@ fn neighbours_along_a_relabelled_curve_share_its_vertices() {
         let mut document = sound(&text);
         let panels = document.panelled().unwrap();
         let remarks = panels.panelling.remarks();
-        assert_eq!(remarks.len(), told, "{remarks:?}");
+        assert_eq!(remarks.len(), reported, "{remarks:?}");
         open_edges(&mut document)
     };
     let all = 2 * 2 * (8 + 3);
@@ -173,11 +173,11 @@ fn laws_that_are_none_are_refused() {
         ("BSurf x({A, B, C, D}, nu = 2, nv = 2, relabel = cosine);", "unknown-argument", "relabel"),
     ] {
         let document = open(&format!("{WING} {statement}"));
-        assert_eq!(ids(&document), [id], "{statement}: {:?}", crate::common::told(&document));
+        assert_eq!(ids(&document), [id], "{statement}: {:?}", crate::common::reported(&document));
         assert!(
-            crate::common::told(&document)[0].contains(says),
+            crate::common::reported(&document)[0].contains(says),
             "{:?}",
-            crate::common::told(&document)
+            crate::common::reported(&document)
         );
     }
     // What a failed law blocks says so; repaired, it comes back.

@@ -1,7 +1,7 @@
 //! Code for what is done on numbers against the interpreter: random ordinary programs, run by both. The same values
 //! bit by bit, the same diagnostics with all places and notes, the same prints, the same count of steps.
 
-use crate::common::{Random, told};
+use crate::common::{Random, reported};
 use moldloft_diag::{Diagnostic, Severity};
 use moldloft_document::{Document, NoFiles, registry};
 use moldloft_registry::Value;
@@ -268,7 +268,7 @@ fn compare(text: &str, most: u64, what: &str) -> (Document, usize) {
         d.diagnostics().iter().map(|d| format!("{d:?}")).collect()
     };
     if all(&coded) != all(&plain) {
-        assert_eq!(told(&coded), told(&plain), "{what}\n{text}");
+        assert_eq!(reported(&coded), reported(&plain), "{what}\n{text}");
         assert_eq!(all(&coded), all(&plain), "{what}\n{text}");
     }
     assert_eq!(coded.printed(), plain.printed(), "{what}\n{text}");

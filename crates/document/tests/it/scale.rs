@@ -1,6 +1,6 @@
 //! Sizes: what is large must be fast, what is too large must be refused with a clear diagnostic.
 
-use crate::common::{ids, number, open, sound, told, vector};
+use crate::common::{ids, number, open, reported, sound, vector};
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
@@ -24,13 +24,13 @@ fn endless(what: &str, text: &str) {
     assert!(
         ids(&document).iter().any(|id| id == "too-many-steps"),
         "{what}: {:?}",
-        told(&document)
+        reported(&document)
     );
 }
 
 fn refused(what: &str, text: &str, id: &str) {
     let document = timed(what, || open(text));
-    assert!(ids(&document).iter().any(|found| found == id), "{what}: {:?}", told(&document));
+    assert!(ids(&document).iter().any(|found| found == id), "{what}: {:?}", reported(&document));
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn shapes_nested_too_deep_are_refused() {
         writeln!(text, "MirrSurf S{k}(S{}, \"y=0\", visible = 0);", k - 1).unwrap();
     }
     let document = timed("a thousand mirrors", || open(&text));
-    assert_eq!(ids(&document), ["nested-too-deep"], "{:?}", told(&document));
+    assert_eq!(ids(&document), ["nested-too-deep"], "{:?}", reported(&document));
     // What is just deep enough is evaluated on a small stack, with derivatives.
     let mut text = text.lines().take(98).collect::<Vec<_>>().join("\n");
     text.push_str("\nUVSnake s(S96, \"u\", 0.25);\nAbsRing r(s, 0.5);");
@@ -118,7 +118,7 @@ fn lofts_nested_too_deep_are_refused() {
         writeln!(text, "UVSnake a{k}(S{k}, \"v\", 0.001);").unwrap();
     }
     let document = timed("a hundred lofts", || open(&text));
-    assert_eq!(ids(&document), ["nested-too-deep"], "{:?}", told(&document));
+    assert_eq!(ids(&document), ["nested-too-deep"], "{:?}", reported(&document));
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn many_children_of_one_object() {
     let renamed = text.replace("P(", "R(").replace("(P,", "(R,").replace("RelR(", "RelP(");
     let renamed = renamed.replace("AbsPoint P", "AbsPoint R");
     let applied = timed("another parent", || document.set_text(&renamed));
-    assert!(document.diagnostics().is_empty(), "{:?}", told(&document).first());
+    assert!(document.diagnostics().is_empty(), "{:?}", reported(&document).first());
     assert_eq!(applied.objects, N + 1);
     timed("removing them", || document.set_text("AbsPoint R(0, 0, 0);"));
     assert_eq!(document.graph().len(), 1);

@@ -2,7 +2,7 @@
 //! libraries that they load: the figures are of closed forms of the bodies.
 #![allow(clippy::excessive_precision)] // figures as computed to more digits than a double has
 
-use crate::common::{number, told, vector};
+use crate::common::{number, reported, vector};
 use moldloft_document::{Document, NoFiles, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::{Value, Vectors};
@@ -15,7 +15,7 @@ const FIGURE_5: &str = include_str!("fixtures/figure5.sdl");
 /// A program that runs without errors.
 fn run(text: &str) -> Document {
     let document = Document::from_text(registry(), Box::new(NoFiles), "program.sdl", text);
-    assert!(!document.has_errors(), "{}", told(&document).join("\n"));
+    assert!(!document.has_errors(), "{}", reported(&document).join("\n"));
     document
 }
 
@@ -321,7 +321,7 @@ fn grids_are_nested() {
     let plane = vectors(&mut m, "uref[1,]");
     for times in [1, 2] {
         m.refine(times).unwrap();
-        assert!(!m.has_errors(), "{}", told(&m).join("\n"));
+        assert!(!m.has_errors(), "{}", reported(&m).join("\n"));
         let parts = 1 << times;
         let fine = vectors(&mut m, "body");
         let n = 19 * parts + 1;
@@ -345,8 +345,8 @@ fn grids_are_nested() {
 fn errors_of_the_missile_are_told_at_the_call() {
     let fails = |text: &str, says: &str| {
         let document = Document::from_text(registry(), Box::new(NoFiles), "program.sdl", text);
-        let told = told(&document);
-        assert!(told.iter().any(|t| t.contains(says)), "{told:?} do not say {says}");
+        let reported = reported(&document);
+        assert!(reported.iter().any(|t| t.contains(says)), "{reported:?} do not say {says}");
         for d in document.diagnostics() {
             let name = document.sources().name(d.span().file);
             assert_eq!(name, Some("program.sdl"), "{d:?}");

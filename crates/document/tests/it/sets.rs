@@ -1,6 +1,6 @@
 //! Fields and sets in the language: operators, grouping, objects, measures, facets, derivatives.
 
-use crate::common::{ids, number, open, sound, told, vector};
+use crate::common::{ids, number, open, reported, sound, vector};
 use moldloft_document::Document;
 use moldloft_registry::Value;
 use std::f64::consts::PI;
@@ -30,7 +30,7 @@ fn holds(text: &str) {
 
 /// The ids and messages of a text's diagnostics.
 fn faults(text: &str) -> Vec<String> {
-    told(&open(&format!("AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z);\n{text}")))
+    reported(&open(&format!("AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z);\n{text}")))
 }
 
 #[test]
@@ -237,16 +237,16 @@ fn blends_touch_and_say_where_they_would_not() {
          field b = liming(x, y, rail, lambda = 0.3); assert degree(b) == 2;
          field four = liming(x, y, rail, plane({1, 1, 0}, {1, 1, 0})); assert degree(four) == 2;",
     );
-    let told = faults(
+    let reported = faults(
         "field a = sphere({0, 0, 0}, 1); field b = sphere({1, 0, 0}, 1);
          field q = liming(a, b, sphere({0.5, 0, 0}, 0.7), low = {-3, -3, -3}, high = {3, 3, 3});",
     );
-    assert!(told[0].contains("rail-inside") && told[0].contains("near ("), "{told:?}");
-    let told = faults(
+    assert!(reported[0].contains("rail-inside") && reported[0].contains("near ("), "{reported:?}");
+    let reported = faults(
         "field a = sphere({0, 0, 0}, 1); field b = sphere({1, 0, 0}, 1); field p = plane({1, 0, 0}, {0, 0, 0});
          field q = zhang(a, b, p, plane({0, 1, 0}, {0, 0, 0}), low = {-3, -3, -3}, high = {3, 3, 3});",
     );
-    assert!(told[0].contains("rails-meet"), "{told:?}");
+    assert!(reported[0].contains("rails-meet"), "{reported:?}");
 }
 
 #[test]
@@ -299,9 +299,9 @@ fn bad_input_is_told() {
         ("set t = tetrahedron({0,0,0}, {1,0,0}, {0,1,0}, {1,1,0});", "degenerate", "tetrahedron"),
         ("set t = scaled(cuboid({0,0,0}, {1,1,1}), 0);", "degenerate", "map"),
     ] {
-        let told = faults(text);
-        let found = told.first().cloned().unwrap_or_default();
-        assert!(found.contains(&format!("[{id}]")) && found.contains(part), "{text}: {told:?}");
+        let reported = faults(text);
+        let found = reported.first().cloned().unwrap_or_default();
+        assert!(found.contains(&format!("[{id}]")) && found.contains(part), "{text}: {reported:?}");
     }
 }
 
@@ -312,12 +312,14 @@ fn facets_tell_where_they_are_not_the_set() {
          set wedge = set(plane({0, -0.15, 1}, {0, 0, 0})) & set(plane({0, -0.15, -1}, {0, 0, 0}));
          SetBody blade(wedge, {-1, -1, -1}, {1, 1, 1}, depth = 3); SetBody ball(set(sphere({0, 0, 0}, 1)), depth = 4);",
     );
-    let told = told(&model);
+    let reported = reported(&model);
     let about = |id: &str, object: &str| {
-        told.iter().any(|d| d.contains(&format!("[{id}]")) && d.contains(&format!("`{object}`")))
+        reported
+            .iter()
+            .any(|d| d.contains(&format!("[{id}]")) && d.contains(&format!("`{object}`")))
     };
-    assert!(about("touching-bodies", "touching") && about("blunt-edges", "blade"), "{told:?}");
-    assert!(!told.iter().any(|d| d.contains("`ball`")), "{told:?}");
+    assert!(about("touching-bodies", "touching") && about("blunt-edges", "blade"), "{reported:?}");
+    assert!(!reported.iter().any(|d| d.contains("`ball`")), "{reported:?}");
     // Places are asked for by the members of these names: the shared edge is along z.
     let places = model.eval("touching.touching").unwrap();
     let Value::Vectors(places) = places else { panic!("{places:?}") };
@@ -383,12 +385,12 @@ fn lines_and_points_are_sets() {
         let Value::Number(slope) = slope[0][0] else { panic!() };
         close(slope, exact);
     }
-    let told = faults(
+    let reported = faults(
         "AbsPoint A(1, 1, 0); AbsPoint B(2, 0, 0); BCurve bow({O, A, B}); set s = set(bow);",
     );
-    assert!(told[0].contains("[not-straight]"), "{told:?}");
-    let told = faults("set s = set(\"x\");");
-    assert!(told[0].contains("wrong-class"), "{told:?}");
+    assert!(reported[0].contains("[not-straight]"), "{reported:?}");
+    let reported = faults("set s = set(\"x\");");
+    assert!(reported[0].contains("wrong-class"), "{reported:?}");
 }
 
 #[test]
@@ -497,7 +499,7 @@ fn curves_surfaces_and_bodies_become_fields() {
     let offset = 2.0 + 0.5 * 10.0 + PI * 0.25 * 4.0 + 4.0 / 3.0 * PI * 0.125;
     let found = number(&mut model, "volume(outer, {-1,-1,-1}, {2,3,3}, 1e-3)");
     assert!((found - offset).abs() < 2e-2, "{found} {offset}");
-    let open = told(&open(
+    let open = reported(&open(
         "MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4}); field f = inside(b);",
     ));
     assert!(open[0].contains("not-closed"), "{open:?}");

@@ -1,6 +1,6 @@
 //! Solve sets: closed forms, derivatives through the solution, and what has none.
 
-use crate::common::{ids, number, open, sound, told};
+use crate::common::{ids, number, open, reported, sound};
 use moldloft_document::{Document, SolveStatus};
 use moldloft_registry::Value;
 
@@ -108,7 +108,7 @@ fn sets_follow_one_another() {
         "param float x = 1; param float y = 1; SolveSet first({x}, {x - y}); SolveSet second({y}, {y - 3});",
     );
     assert_eq!(ids(&wrong), ["unsolved"]);
-    assert!(told(&wrong)[0].contains("`first` depends on `y`"), "{:?}", told(&wrong));
+    assert!(reported(&wrong)[0].contains("`first` depends on `y`"), "{:?}", reported(&wrong));
 }
 
 /// The trim of a hull: the draft at which it displaces what it weighs (a wall-sided box has a closed
@@ -164,7 +164,7 @@ fn what_has_no_solution_says_so() {
         ("SolveSet s({x}, {y*0});", "", ""),
     ] {
         let document = open(&format!("{head} {set}"));
-        let found = told(&document);
+        let found = reported(&document);
         let right = match id {
             "" => found.is_empty(),
             _ => ids(&document) == [id] && found[0].contains(says),

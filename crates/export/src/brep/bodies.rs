@@ -66,7 +66,7 @@ pub fn add(
     }
     match body.patches(brep, accuracy, size)? {
         None => Ok(true),
-        // A body of such faces alone is told by them.
+        // A body of such faces alone is recognised by them.
         Some(patches) => Err(refused.unwrap_or(patches).into()),
     }
 }
@@ -160,7 +160,7 @@ impl SetOfBody<'_> {
         scale: [f64; 2],
     ) -> Option<Diagnostic> {
         match places {
-            Err(fault) => Some(told(self.name, &fault)),
+            Err(fault) => Some(reported(self.name, &fault)),
             Ok(places) => elsewhere(made, self.set, self.over, places, step, scale)
                 .map(|place| missed(self.name, place, step)),
         }
@@ -331,7 +331,7 @@ fn missed(name: &str, place: Vec3, step: f64) -> Diagnostic {
     .help(HELP)
 }
 
-fn told(name: &str, fault: &FacetFault) -> Diagnostic {
+fn reported(name: &str, fault: &FacetFault) -> Diagnostic {
     let surfaces = fault.surfaces.join("` and `");
     let of = if surfaces.is_empty() { format!("`{name}`") } else { format!("`{surfaces}`") };
     let what = match fault.kind {

@@ -83,14 +83,14 @@ pub fn brep_or_facets(
         let mesh = &panelled.mesh;
         let made = exact_body(&mut brep, document, mesh, &name, [accuracy, size]);
         if let Err(fault) = made {
-            let told = fault.diagnostics("step");
+            let reported = fault.diagnostics("step");
             // Parts that facets miss, too, and what ran out of its limits are errors.
-            let faces_only = told.iter().all(|d| d.id == "curved-body");
-            if !faces_only || told.is_empty() {
-                return Err(ExportFailure::from(told));
+            let faces_only = reported.iter().all(|d| d.id == "curved-body");
+            if !faces_only || reported.is_empty() {
+                return Err(ExportFailure::from(reported));
             }
             brep.faceted.push(faceted::part(document, mesh, &name));
-            refused.extend(told.into_iter().take(1));
+            refused.extend(reported.into_iter().take(1));
         }
     }
     for (axis, letter) in ['x', 'y', 'z'].into_iter().enumerate() {

@@ -21,8 +21,8 @@ pub const FORMAT: Format = Format {
 fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let stem = export.stem().to_string();
     let brep = brep(export.document, export.options.tolerance, &stem)?;
-    let told = fitted(&brep, export.document).into_iter().collect();
-    export.document.set_export_remarks(told);
+    let reported = fitted(&brep, export.document).into_iter().collect();
+    export.document.set_export_remarks(reported);
     let metres = metres(export.document);
     let header = IgesHeader { title: &stem, metres, version: env!("CARGO_PKG_VERSION") };
     Ok(export.main_file(iges::write(&brep, &header)?))

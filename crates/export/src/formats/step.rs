@@ -22,7 +22,7 @@ pub const FORMAT: Format = Format {
 fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let stem = export.stem().to_string();
     let (brep, refused) = brep_or_facets(export.document, export.options.tolerance, &stem)?;
-    let told = brep.faceted.iter().zip(&refused).map(|(part, why)| {
+    let reported = brep.faceted.iter().zip(&refused).map(|(part, why)| {
         let count = part.triangles.len();
         let remark = Diagnostic::warning(
             "as-triangles",
@@ -39,8 +39,8 @@ fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
             None => remark,
         }
     });
-    let told = told.chain(fitted(&brep, export.document)).collect();
-    export.document.set_export_remarks(told);
+    let reported = reported.chain(fitted(&brep, export.document)).collect();
+    export.document.set_export_remarks(reported);
     let header = StepHeader {
         title: &stem,
         metres: metres(export.document),

@@ -104,10 +104,10 @@ fn bodies_that_touch_are_split_and_told() {
             };
             let own = bounds(&set, 1e-3).unwrap().unwrap();
             let f = facet(&set, &own, &FacetOptions::new(Resolution::Depth(5))).unwrap();
-            let told = format!("{name}, seed {seed}: {:?}", f.touching());
+            let reported = format!("{name}, seed {seed}: {:?}", f.touching());
             sound(&f);
-            assert_eq!(f.bodies(), bodies, "{told}");
-            assert_eq!(!f.touching().is_empty(), place.is_some(), "{told}");
+            assert_eq!(f.bodies(), bodies, "{reported}");
+            assert_eq!(!f.touching().is_empty(), place.is_some(), "{reported}");
             if let (Some(place), false) = (place, moved) {
                 let off = |p: &Vec3| {
                     let d = *p - place;
@@ -117,13 +117,13 @@ fn bodies_that_touch_are_split_and_told() {
                         .map(f64::abs)
                         .fold(0.0, f64::max)
                 };
-                assert!(f.touching().iter().any(|p| off(p) < 1e-4), "{told}");
+                assert!(f.touching().iter().any(|p| off(p) < 1e-4), "{reported}");
             }
-            assert!(cuts || f.undecided.is_empty(), "{told}: {:?}", f.undecided);
+            assert!(cuts || f.undecided.is_empty(), "{reported}: {:?}", f.undecided);
             for pair in crossing_faces(&f.mesh, None) {
                 let corner = f.mesh.positions()[f.mesh.faces()[pair[0]][0] as usize];
                 let near = |b: &Box3| b.centre().distance(corner) < 5.0 * f.step;
-                assert!(!cuts || f.undecided.iter().any(near), "{told}");
+                assert!(!cuts || f.undecided.iter().any(near), "{reported}");
             }
         }
     }

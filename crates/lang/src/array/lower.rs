@@ -508,10 +508,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let long = text.chars().count() > 40 || text.contains('\n') || text.is_empty();
             *text = if long { side.into() } else { format!("`{text}`") };
         }
-        let mut told = diagnostic;
-        told.message =
+        let mut reported = diagnostic;
+        reported.message =
             format!("shapes differ: {} is {}, {} is {}", texts[0], shapes[0], texts[1], shapes[1]);
-        told = told.labelled(spans[0], shapes[0]).note_at(spans[1], shapes[1]);
+        reported = reported.labelled(spans[0], shapes[0]).note_at(spans[1], shapes[1]);
         let mut seen = Vec::new();
         for span in spans {
             if let Some((name, at, shape)) = self.origin_of_shape(m, span)
@@ -519,17 +519,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 && !shape.is_empty()
             {
                 seen.push(at);
-                told = told.note_at(at, format!("`{name}` is declared here: {shape}"));
+                reported = reported.note_at(at, format!("`{name}` is declared here: {shape}"));
             }
         }
         let grid = |s: &str| s.contains(',');
         if grid(shapes[0]) != grid(shapes[1]) {
-            told = told.help(
+            reported = reported.help(
                 "spread_i(a, n) and spread_j(a, m) repeat a row over a grid; nothing is repeated \
                  silently",
             );
         }
-        told
+        reported
     }
 
     /// The first array named in a part of the text: its name, declaration and shape.

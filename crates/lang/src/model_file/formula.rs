@@ -116,12 +116,12 @@ impl<T: Scalar> Producer<'_, '_, T> {
             self.env.scope.globals[name.0 as usize] =
                 Some(ScopedBinding { span: Span::UNKNOWN, what });
         }
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         let loader = crate::source::module::Loader {
             world: self.host.world,
             registry: self.registry,
             sources: &mut *self.host.sources,
-            diagnostics: &mut told,
+            diagnostics: &mut reported,
             converted: self.host.converted,
         };
         let mut interpreter = crate::run::interpreter::Interpreter::new(

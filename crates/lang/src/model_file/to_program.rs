@@ -197,13 +197,13 @@ impl ToProgram<'_> {
         for line in &model.header {
             let (key, rest) = (model.slice(line.key), model.slice(line.rest));
             // Where the way back would put them, the arguments tell enough.
-            let told = match key {
+            let reported = match key {
                 _ if told_others || line.key.start > first_other => false,
                 "Units" => rest == units && !rest.is_empty(),
                 "Symmetry" => !legacy && !symmetry.is_empty() && rest == planes(&symmetry),
                 _ => false,
             };
-            if !told {
+            if !reported {
                 told_others = true;
                 lines.push((line.key.start, format!("{key}: {rest}").trim_end().to_string()));
             }

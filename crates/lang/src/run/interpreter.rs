@@ -109,7 +109,7 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     /// The components under way, by module.
     pub components: Vec<usize>,
     /// What was reported already: a statement that is executed often reports each fault once.
-    told: HashSet<(Cow<'static, str>, Span)>,
+    reported: HashSet<(Cow<'static, str>, Span)>,
     /// Failed objects that were reported to the program when it read them.
     pub blocked: HashSet<Key>,
     /// Objects that the expression under way has read, while that is to be noted.
@@ -157,7 +157,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             limits,
             turns: 0,
             components: Vec::new(),
-            told: HashSet::new(),
+            reported: HashSet::new(),
             blocked: HashSet::new(),
             reads: ReadLog::default(),
             assigned: HashMap::new(),
@@ -218,7 +218,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let diagnostic = self.at_call(diagnostic);
         self.usage.errors += usize::from(diagnostic.is_error());
         let span = diagnostic.span();
-        if self.told.insert((diagnostic.id.clone(), span)) {
+        if self.reported.insert((diagnostic.id.clone(), span)) {
             self.loader.diagnostics.push(diagnostic);
         }
         if self.usage.errors >= MOST_ERRORS && !self.env.stopped {

@@ -97,7 +97,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let flow = flow.ok_or_else(silent)?;
         self.usage.held = held;
         if callee.library && std::mem::take(&mut self.abandoned) {
-            // Told already; a caller in the library is left as well.
+            // Reported already; a caller in the library is left as well.
             self.abandoned = m.library;
             return Err(silent());
         }

@@ -182,7 +182,7 @@ impl<'a> Semantics<'a> {
                 .help("add one at the end of the function"),
             );
         }
-        // A subroutine is called as a statement, a function stands in expressions: they are told apart.
+        // A subroutine is called as a statement, a function stands in expressions: they are distinguished.
         let known = self.registry.get(word).is_some_and(|row| !row.kind);
         if routine.result.is_none() {
             return;

@@ -32,7 +32,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// `load "dam.skt"`: once, at file level.
     pub fn load_sketch(&mut self, path: &str, id: StmtId, span: Span) -> Result<(), Diagnostic> {
         let file = self.modules.load_sketch(self.current, path, span, &mut self.loader)?;
-        // The parser has told that it stands in a loop or subroutine.
+        // The parser has reported that it stands in a loop or subroutine.
         if !self.env.scope.frame().global || !self.env.scope.frame().loops.is_empty() {
             return Ok(());
         }

@@ -154,10 +154,10 @@ impl Uses {
 pub(super) fn unread(m: &Module, routine: &Routine) -> Vec<Diagnostic> {
     let mut uses = Uses::default();
     uses.list(m, routine.body);
-    let mut told = HashSet::new();
+    let mut reported = HashSet::new();
     let mut found = Vec::new();
     for &(symbol, span) in &uses.declared {
-        if uses.read.contains(&symbol) || !told.insert(symbol) {
+        if uses.read.contains(&symbol) || !reported.insert(symbol) {
             continue;
         }
         let word = m.program.name(symbol);

@@ -125,7 +125,7 @@ impl SketchFile {
                     Some(_) => whole,
                     None => Span::new(file, start as u32, (start + line.len()) as u32),
                 };
-                faults.extend(session.run_line(line).into_iter().filter_map(|r| told(r, span)));
+                faults.extend(session.run_line(line).into_iter().filter_map(|r| reported(r, span)));
                 if session.over() {
                     break;
                 }
@@ -194,7 +194,7 @@ fn different_units(objects: &[Drawn]) -> Option<Diagnostic> {
 }
 
 /// A reply as a diagnostic; notes are nothing wrong.
-fn told(reply: moldloft_sketch::CommandReply, span: Span) -> Option<Diagnostic> {
+fn reported(reply: moldloft_sketch::CommandReply, span: Span) -> Option<Diagnostic> {
     let code = reply.code.map_or(String::new(), |c| format!(" [{c}]"));
     let text = format!("{}{code}", reply.text);
     let diagnostic = match reply.severity {

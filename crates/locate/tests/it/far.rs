@@ -53,8 +53,8 @@ fn from_far_away_the_foremost_point_is_the_nearest() {
                 assert!(x.dot(d) > most_surface - slack, "{far}: {x:?} along {d:?}");
             }
             // The distance is reported as it is.
-            let told = surface.nearest(&s, p).distance / far;
-            assert!((told - 1.0).abs() < 1e-4, "{far}: {told}");
+            let reported = surface.nearest(&s, p).distance / far;
+            assert!((reported - 1.0).abs() < 1e-4, "{far}: {reported}");
         }
     }
 }

@@ -156,7 +156,7 @@ fn diagnostics_come_as_one_types() {
     assert_eq!(client.published(), Vec::<Value>::new());
     client.input = None;
     let status = client.child.wait().unwrap();
-    assert!(!status.success(), "an end without shutdown is told");
+    assert!(!status.success(), "an end without shutdown is a failure");
 }
 
 /// Programs that do not come to an end in a good while, each in its own way.
@@ -173,7 +173,7 @@ fn endless_programs_do_not_occupy_the_server() {
     let mut client = Client::start();
     client.open("float x = 1;\n");
     for text in ENDLESS {
-        // Told soon, with its place, and the rest of the text is still known.
+        // Reported soon, with its place, and the rest of the text is still known.
         let found = client.change(2, json!([{"text": text}]));
         assert_eq!(found.len(), 1, "{found:?}");
         let (code, message) = (&found[0]["code"], found[0]["message"].as_str().unwrap());

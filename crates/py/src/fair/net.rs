@@ -137,9 +137,9 @@ impl Net {
             let nv = self.spaces[1].count();
             network.strands.rotate_left(nv);
         }
-        let (told, points) = solved(py, network, &options)?;
+        let (reported, points) = solved(py, network, &options)?;
         let (spaces, weights) = (self.spaces.clone(), self.weights.clone());
-        Ok((Self { spaces, points, weights }, told))
+        Ok((Self { spaces, points, weights }, reported))
     }
 
     /// Fairs a grid of data, point (i, j) at `i * n + j`: the faired net, the net through the data, the
@@ -252,7 +252,7 @@ impl Net {
             }
         }
         let network = Network::joined(&sheets, &seams).map_err(fair_error)?;
-        let (told, points) = solved(py, network.clone(), &options)?;
+        let (reported, points) = solved(py, network.clone(), &options)?;
         let net = |(k, old): (usize, &PyRef<'_, Net>)| Self {
             spaces: old.spaces.clone(),
             points: network.sheet(k, &points),
@@ -260,7 +260,7 @@ impl Net {
         };
         let side = |s: &Seam, k: usize| (s.sheets[k], s.edges[k].direction, s.edges[k].end);
         let pairs = seams.iter().map(|s| [side(s, 0), side(s, 1)]).collect();
-        Ok((nets.iter().enumerate().map(net).collect(), pairs, told))
+        Ok((nets.iter().enumerate().map(net).collect(), pairs, reported))
     }
 }
 
@@ -345,9 +345,9 @@ impl Web {
         }
         let mut network = Network::new(self.points.clone(), strands, limit).map_err(fair_error)?;
         network.kept = get(&options, "fixed")?;
-        let (told, points) = solved(py, network, &options)?;
+        let (reported, points) = solved(py, network, &options)?;
         let fill = |out: &mut [Vec3]| out.copy_from_slice(&points);
-        Ok((arrays::filled(py, [points.len(), 3], fill).0, told))
+        Ok((arrays::filled(py, [points.len(), 3], fill).0, reported))
     }
 }
 
@@ -387,15 +387,15 @@ fn solved<'py>(
         }
         (network.report_with(measure, mode, conditions), owners)
     })?;
-    let told = match done {
-        (Ok(told), _) => told,
+    let reported = match done {
+        (Ok(reported), _) => reported,
         (Err(FairError::Contradiction { conditions, ends, miss }), owners) => {
             return Err(contradiction(&conditions, ends, miss, &owners, &labels));
         }
         (Err(other), _) => return Err(fair_error(other)),
     };
-    let dict = dictionary(py, &told)?;
-    Ok((dict, told.points))
+    let dict = dictionary(py, &reported)?;
+    Ok((dict, reported.points))
 }
 
 fn dictionary<'py>(py: Python<'py>, r: &NetworkReport) -> PyResult<Bound<'py, PyDict>> {

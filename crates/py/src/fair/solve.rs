@@ -1,7 +1,7 @@
 //! From options to reports.
 
 use super::arguments::{certificate, fair_error, measure, refused};
-use super::spline::{Spline, spacing, told};
+use super::spline::{Spline, reported, spacing};
 use moldloft::fair::{
     Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, EndContinuity, FairError,
     FairingReport, Goal, InterpolationSpace, Job, KnotRemovalOptions, Limit, Mode, Motion,
@@ -149,22 +149,22 @@ pub fn curve<'py>(
     let labels: Vec<String> = get(options, "labels")?;
     let logged = matches!(&mode, Mode::KnotRemoval(options) if options.log);
     let done = crate::work::interruptible(py, &Default::default(), move || {
-        let told = report(&job, &mode)?;
+        let reported = report(&job, &mode)?;
         // The steps are made again for their log: a log of all steps is not always wanted.
         let log = match &mode {
             Mode::KnotRemoval(options) if logged => knot_removal(&job, options)?.log,
             _ => Vec::new(),
         };
-        Ok::<_, FairError>((told, log))
+        Ok::<_, FairError>((reported, log))
     })?;
-    let (told, log) = match done {
+    let (reported, log) = match done {
         Ok(done) => done,
         Err(FairError::Contradiction { conditions, ends, miss }) => {
             return Err(contradiction(&conditions, ends, miss, &owners, &labels));
         }
         Err(other) => return Err(fair_error(other)),
     };
-    let dict = dictionary(py, &told)?;
+    let dict = dictionary(py, &reported)?;
     if logged {
         let index: Vec<u32> = log.iter().map(|m| m.index).collect();
         let to: Vec<Vec3> = log.iter().map(|m| m.to).collect();
@@ -174,7 +174,7 @@ pub fn curve<'py>(
     }
     let faired = Spline {
         space: spline.space.clone(),
-        points: told.points,
+        points: reported.points,
         weights: spline.weights.clone(),
     };
     Ok((faired, dict))
@@ -324,7 +324,7 @@ pub fn data<'py>(
     let done = crate::work::interruptible(py, &Default::default(), move || {
         data_report(&data, &chosen).map(|made| (data, made))
     })?;
-    let (data, (made, told)) = match done {
+    let (data, (made, reported)) = match done {
         Ok(done) => done,
         Err(FairError::Contradiction { conditions, ends, miss }) => {
             return Err(contradiction(&conditions, ends, miss, &owners, &labels));
@@ -332,7 +332,7 @@ pub fn data<'py>(
         Err(other) => return Err(unshaped(other)),
     };
     let space = data.layout.space.clone();
-    let dict = dictionary(py, &told)?;
+    let dict = dictionary(py, &reported)?;
     let off = |k: usize| {
         let t = data.layout.at[one.of[k]];
         (shape::sample_at(&space, &made.points, None, t).point - points[k]).norm()
@@ -409,7 +409,7 @@ fn dictionary<'py>(py: Python<'py>, r: &FairingReport) -> PyResult<Bound<'py, Py
     dict.set_item("steps", r.steps)?;
     dict.set_item("stopped", r.stopped.map(|s| s.name()))?;
     dict.set_item("active", r.active)?;
-    dict.set_item("findings", r.findings.iter().copied().map(told).collect::<Vec<_>>())?;
+    dict.set_item("findings", r.findings.iter().copied().map(reported).collect::<Vec<_>>())?;
     dict.set_item("jumps_before", r.jumps[0].to_pyarray(py))?;
     dict.set_item("jumps_after", r.jumps[1].to_pyarray(py))?;
     dict.set_item("notes", &r.notes)?;

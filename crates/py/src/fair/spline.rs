@@ -69,7 +69,7 @@ impl Spline {
         Ok(job)
     }
 
-    fn told<'py>(&self, py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyDict>> {
+    fn reported<'py>(&self, py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyDict>> {
         let (a, b) = self.space.domain();
         let dict = PyDict::new(py);
         let numbers = |f: &dyn Fn(&Sample) -> f64| -> Bound<'py, PyArray1<f64>> {
@@ -276,13 +276,13 @@ impl Spline {
             };
             ts.iter().map(one).collect()
         });
-        self.told(py, &samples)
+        self.reported(py, &samples)
     }
 
     /// The same on every span, ends of spans from both sides.
     fn spans<'py>(&self, py: Python<'py>, per_span: usize) -> PyResult<Bound<'py, PyDict>> {
         let samples = py.detach(|| self.samples(per_span));
-        self.told(py, &samples)
+        self.reported(py, &samples)
     }
 
     fn comb<'py>(
@@ -346,8 +346,8 @@ impl Spline {
     }
 
     /// Rows of word, control point, vector, sentence.
-    fn findings(&self) -> PyResult<Vec<Told>> {
-        Ok(moldloft::fair::findings(&self.job()?).into_iter().map(told).collect())
+    fn findings(&self) -> PyResult<Vec<Reported>> {
+        Ok(moldloft::fair::findings(&self.job()?).into_iter().map(reported).collect())
     }
 
     /// Fairs: the faired spline and the report.
@@ -362,9 +362,9 @@ impl Spline {
 }
 
 /// A finding as a word, a control point, a vector and a sentence.
-pub type Told = (&'static str, usize, [f64; 3], String);
+pub type Reported = (&'static str, usize, [f64; 3], String);
 
-pub fn told(finding: Finding) -> Told {
+pub fn reported(finding: Finding) -> Reported {
     let text = finding.to_string();
     match finding {
         Finding::Corner { index, turn } => ("corner", index, turn.to_array(), text),
@@ -373,7 +373,7 @@ pub fn told(finding: Finding) -> Told {
 }
 
 /// A finding about data as a word, a point, a vector and a sentence.
-fn told_of(points: &[Vec3], finding: DataFinding) -> Told {
+fn told_of(points: &[Vec3], finding: DataFinding) -> Reported {
     let text = finding.to_string();
     match finding {
         DataFinding::WrongDigit { index, expected, .. } => {
@@ -385,7 +385,7 @@ fn told_of(points: &[Vec3], finding: DataFinding) -> Told {
 
 /// What stands out among data at any spacing: kind, point, vector, sentence.
 #[pyfunction]
-pub fn data_findings(points: PyReadonlyArray2<'_, f64>, closed: bool) -> PyResult<Vec<Told>> {
+pub fn data_findings(points: PyReadonlyArray2<'_, f64>, closed: bool) -> PyResult<Vec<Reported>> {
     let points = vectors(&points)?;
     let found = moldloft::fair::data_findings(&points, closed);
     Ok(found.into_iter().map(|f| told_of(&points, f)).collect())
@@ -398,7 +398,7 @@ pub fn line_findings(
     points: PyReadonlyArray2<'_, f64>,
     lines: Vec<(Vec<usize>, bool)>,
     marked: Vec<usize>,
-) -> PyResult<Vec<(usize, Told)>> {
+) -> PyResult<Vec<(usize, Reported)>> {
     let points = vectors(&points)?;
     check_lines(&points, &lines)?;
     let found = moldloft::fair::line_findings(&points, &lines, &marked);

@@ -135,7 +135,7 @@ impl Feature {
         objects
             .iter()
             .map(|&object| {
-                // The names of a feature are told apart already.
+                // The names of a feature differ already.
                 let names = || object.variables.keys().chain(object.dimensions.keys());
                 let plain = object.feature.is_some() && !names().any(|n| taken.contains(n));
                 let prefix = if plain {

@@ -159,8 +159,8 @@ fn arcs_and_circles_are_imported() {
         let mut s = SketchSession::with_files(Box::new(Shelf(text)));
         let replies = s.run_text(&format!("SKETCH P 2D XY\nIMPORT \"{file}\""));
         assert!(replies.iter().all(|r| !r.is_error()), "{file}: {replies:?}");
-        let told = replies.iter().find(|r| r.text.contains("not drawn"));
-        assert!(told.is_some(), "{file}: {replies:?}");
+        let reported = replies.iter().find(|r| r.text.contains("not drawn"));
+        assert!(reported.is_some(), "{file}: {replies:?}");
         let object = s.object("P").unwrap();
         assert_eq!((object.drawing.points.len(), object.drawing.lines.len()), (8, 8), "{file}");
         assert_eq!((object.curves.len(), object.variables.len()), (3, 1), "{file}");

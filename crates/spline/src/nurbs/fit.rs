@@ -165,7 +165,7 @@ impl<'a, 's, const D: usize> Fitter<'a, 's, D> {
     /// Few parameters of an axis: its ends, and places inside each span.
     fn probes(&self, d: usize) -> Vec<f64> {
         let mut all = vec![0.0];
-        // Many spans are told from few of them.
+        // Many spans are distinguished from few of them.
         let step = (self.ends[d].len() / 12).max(1);
         for span in self.ends[d].windows(2).step_by(step) {
             all.extend([0.137, 0.521, 0.874].map(|x| span[0] + x * (span[1] - span[0])));
