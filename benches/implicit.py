@@ -1,7 +1,7 @@
 """Implicit solids beside Manifold's `level_set`: the svLis manual's T-piece at equal cell size.
 
-Manifold takes a Python function of one point, so most of its time is Python's; its times are reported
-for what they are. Quality is compared too: distance of triangle centres from the surface,
+Manifold takes a Python function of one point, so most of its time is Python's; its times are
+reported for what they are. Quality is compared too: distance of triangle centres from the surface,
 self-intersections, volume. fidget is timed by a program of its own, `cargo run --release` in
 `benches/fidget`. libfive is in no registry (PyPI has an old source package only): its figures in
 docs/performance.md are those of another day, with fidget's of that day beside them.
@@ -47,9 +47,7 @@ def best(runs: int, work: Callable[[], object]) -> tuple[float, object]:
     return min(times), result
 
 
-def reported(
-    name: str, seconds: float, triangles: int, rms: float, volume: float, cut: int
-) -> None:
+def report(name: str, seconds: float, triangles: int, rms: float, volume: float, cut: int) -> None:
     print(
         f"{name:28} {1e3 * seconds:9.1f} ms  {triangles:7} triangles  centre rms {rms:.2e}  "
         f"volume {volume - 25.097:+.4f}  crossing pairs {cut}"
@@ -91,13 +89,13 @@ def main() -> None:
         seconds, facets = best(5, Fresh(part, depth))
         rms = float(np.sqrt(np.mean(facets.centre_distances() ** 2)))
         count = len(facets.triangles)
-        reported(f"depth {depth}", seconds, count, rms, facets.volume, facets.crossings())
+        report(f"depth {depth}", seconds, count, rms, facets.volume, facets.crossings())
         print(f"{'':28} undecided boxes {len(facets.undecided)} of {facets.summary['cells']} cells")
         if depth > 6:
             seconds, simple = best(1, lambda facets=facets, rms=rms: facets.simplified(4 * rms))
             rms = float(np.sqrt(np.mean(simple.centre_distances() ** 2)))
             count = len(simple.triangles)
-            reported("  simplified", seconds, count, rms, simple.volume, simple.crossings())
+            report("  simplified", seconds, count, rms, simple.volume, simple.crossings())
     seconds, mass = best(3, lambda: part.mass(LOW, HIGH, depth=7))
     low, high = mass.volume_bracket
     print(f"mass at depth 7: {1e3 * seconds:.1f} ms, {mass.volume:.6f} in [{low:.4f}, {high:.4f}]")
@@ -126,7 +124,7 @@ def main() -> None:
         vertices = np.asarray(mesh.vert_properties)[:, :3].astype(float)
         triangles = np.asarray(mesh.tri_verts)
         rms = centre_rms(part, vertices, triangles)
-        reported(f"manifold level_set, {edge}", seconds, len(triangles), rms, solid.volume(), -1)
+        report(f"manifold level_set, {edge}", seconds, len(triangles), rms, solid.volume(), -1)
 
 
 if __name__ == "__main__":
