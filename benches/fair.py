@@ -2,10 +2,10 @@
 
 SciPy's splines have no bound on the deviation: `make_splprep` takes a budget for the sum of
 squares and `make_smoothing_spline` a weight, so both are sought by bisection until the largest
-distance of a data point is just within the bound; the time of one call at the end is
-reported, and that of the search. All curves are compared where the data are: largest distance, squared jumps of the
-third derivative (in units of the mean distance of the data's parameters), monotone pieces of the
-curvature. Ends are free, as SciPy's are.
+distance of a data point is just within the bound; the time of one call at the end is reported, and
+that of the search. All curves are compared where the data are: largest distance, squared jumps of
+the third derivative (in units of the mean distance of the data's parameters), monotone pieces of
+the curvature. Ends are free, as SciPy's are.
 
 Run with `python benches/fair.py [points …]`.
 """
