@@ -118,9 +118,11 @@ pub(crate) fn released<T: Real>(points: &[Vec3<T>], radii: &[f64]) -> Vec<bool> 
     (0..points.len()).map(|k| some && radii.get(k).is_some_and(wide)).collect()
 }
 
-/// The points with those that were released between their neighbours, beside where they were read.
+/// The points with those that were released between their neighbours, beside where they were read: `seen` are
+/// the points as far as they do not move.
 fn placed_between<T: Real>(
     points: &[Vec3<T>],
+    seen: &[Vec3<T>],
     radii: &[f64],
     closed: bool,
 ) -> Option<Vec<Vec3<T>>> {
@@ -148,9 +150,10 @@ fn placed_between<T: Real>(
         };
         let chord = points[b] - points[a];
         let mut share = T::from(before as f64 / (before + after) as f64);
-        if before + after == 2 && chord.re().norm() > 0.0 {
-            let own = (points[k] - points[a]).dot(chord) / chord.dot(chord);
-            if own.re() > 0.1 && own.re() < 0.9 {
+        let way = seen[b] - seen[a];
+        if before + after == 2 && way.re().norm() > 0.0 {
+            let own = (seen[k] - seen[a]).dot(way) / way.dot(way);
+            if own.re() > 0.0 && own.re() < 1.0 {
                 share = own;
             }
         }
@@ -174,16 +177,18 @@ pub fn parameters_across<T: Real>(
     (motion, radii): (Motion, &[f64]),
 ) -> Result<Vec<T>, FairError> {
     let by_chords = matches!(spacing, ParameterSpacing::Chord | ParameterSpacing::Centripetal);
-    let placed = if by_chords { placed_between(points, radii, closed) } else { None };
-    let points = placed.as_deref().unwrap_or(points);
     let (Motion::Along(d), true) = (motion, by_chords) else {
-        return parameters_with(points, spacing, closed);
+        let placed = if by_chords { placed_between(points, points, radii, closed) } else { None };
+        return parameters_with(placed.as_deref().unwrap_or(points), spacing, closed);
     };
     let flat = |p: &Vec3<T>| {
         let along = p.x * d.x + p.y * d.y + p.z * d.z;
         *p - Vec3::new(along * d.x, along * d.y, along * d.z)
     };
     let projected: Vec<Vec3<T>> = points.iter().map(flat).collect();
+    // What moves along a direction stays at its station.
+    let placed = placed_between(points, &projected, radii, closed);
+    let points = placed.as_deref().unwrap_or(points);
     let n = points.len();
     let steps = if closed { n } else { n.saturating_sub(1) };
     let shallow = (0..steps).all(|k| {

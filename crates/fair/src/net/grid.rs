@@ -13,7 +13,7 @@ use crate::curve::exact::{all_exact, between_breaks};
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
     Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
-    moved, rounding, tightened,
+    moved, rounding,
 };
 use crate::optimum::{Bounded, DataLimits, Parts, Solved};
 use crate::{
@@ -680,7 +680,7 @@ pub fn fair_grid_with<T: Real>(
     let of = |k: &usize| data.owner(k / columns, k % columns).map_or(largest, |i| tolerances[i]);
     let own: Vec<T> = limited.iter().map(of).collect();
     // What moves with a solution, where data pull with a weight.
-    let moving = |solved: &Solved, weight: f64, budget: T| -> Result<_, FairError> {
+    let moving = |solved: &Solved, weight: f64| -> Result<_, FairError> {
         let control = &solved.optimum.points;
         let mut forces: Vec<Vec3<T>> =
             rows.slope(control).into_iter().map(|f| f - Vec3::lifted(f.re())).collect();
@@ -703,36 +703,20 @@ pub fn fair_grid_with<T: Real>(
             targets: &[],
             forces,
             rows: &rows,
-            budget,
+            budget: T::zero(),
             start: &start,
         })
     };
-    if found.between && share < 1.0 {
+    if found.between {
+        // What the fairest takes moves by limits that are not always decided.
         return Err(FairError::Goal(
-            "how far this surface moves hangs on what the fairest takes of it, whose derivatives are \
-             not known there: take the goal \"budget\"",
+            "the budget of this surface hangs on what the fairest takes of it, whose derivatives are not \
+             known: take the goal \"budget\"",
         ));
-    }
-    let mut budget = T::zero();
-    if let (Goal::Near(share), true) = (goal, found.between) {
-        // What the fairest takes moves, too.
-        parts.pull = None;
-        let fairest = parts.whole()?;
-        let optimum = fairest.optimum.clone();
-        let whole = GoalOptimum { share: 1.0, weight: 0.0, optimum, ..found.clone() };
-        check_unique(&mut parts, &whole, &pull)?;
-        let own = moving(&fairest, 0.0, T::zero())?;
-        let control = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, own)?;
-        let mean = pulling.len() as f64 / 3.0;
-        let used = pulling.iter().fold(T::zero(), |sum, &(k, i)| {
-            let off = values.apply(k, &control) - points[i];
-            sum + off.dot(off) / (tolerances[i] * tolerances[i])
-        }) / mean;
-        budget = tightened(share, used, pulling.len()) * mean;
     }
     parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
     let solved = parts.whole()?;
-    let moving = moving(&solved, weight, budget)?;
+    let moving = moving(&solved, weight)?;
     let points = moved(&parts, &solved, goal, &found, &pull, moving)?;
     drop(solved);
     drop(parts);

@@ -207,9 +207,16 @@ fn surfaces_keep_near_data_that_the_measure_does_not_have() {
         }
     }
     assert!(narrow > 0 && wide > 0, "{narrow} {wide}");
-    // Between the two the budget hangs on what the fairest takes, and its derivatives, too.
+    // Between the two the budget hangs on what the fairest takes: its derivatives are not known.
     let tolerance = between.expect("the budget is continuous");
-    derivatives_are_differences(&points, [9, 7], tolerance, Measure::Variation, Goal::Near(0.8));
+    let mut moving: Vec<Vec3<Dual4>> = points.iter().map(|&p| Vec3::lifted(p)).collect();
+    moving[15].y = Dual4::seeded(points[15].y, 0);
+    let radii = vec![tolerance; points.len()];
+    let at = grid_parameters(&moving, [9, 7], chords, [false; 2], (Motion::Ball, &radii)).unwrap();
+    let data = spaced(&points, [9, 7], tolerance, Motion::Ball, chords);
+    let (at, all) = ([at[0].as_slice(), at[1].as_slice()], vec![Dual4::from(tolerance); 63]);
+    let made = fair_grid_with(&data, Measure::Variation, Goal::Near(0.8), 1e-13, &moving, &all, at);
+    assert!(matches!(made, Err(FairError::Goal(why)) if why.contains("goal \"budget\"")));
 }
 
 /// Derivatives of a surface by two coordinates of data and the tolerance, against differences.
