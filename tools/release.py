@@ -31,8 +31,6 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
-from pack_engine import packed
-
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
 WINDOWS = platform.system() == "Windows"
@@ -220,11 +218,9 @@ def engine() -> None:
     run(
         "cargo", "build", "--profile", "engine", "--locked", "--target", WASM, "-p", "moldloft-wasm"
     )
-    built = (TARGET / WASM / "engine" / "moldloft_engine.wasm").read_bytes()
+    built = TARGET / WASM / "engine" / "moldloft_engine.wasm"
     path = ROOT / "python" / "moldloft" / "workbench" / "wasm" / "engine.wasm.xz"
-    path.parent.mkdir(exist_ok=True)
-    path.write_bytes(packed(built))
-    print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
+    run(sys.executable, str(ROOT / "tools" / "pack_engine.py"), str(built), str(path))
 
 
 def server() -> Path:
@@ -342,6 +338,8 @@ print("python:", m)
 _EXTRAS = {
     "plot": "m.hydrostatic_table([0.2, 0.3, 0.4]).plot('table.png')",
     "prompt": "import moldloft.cli.editor, prompt_toolkit",
+    "notebook": "from moldloft.workbench.page import engine_packed; import anywidget; "
+    "assert engine_packed() is None or m.view().text == m.text",
     "grids": "from moldloft.files import commit, produce; import pathlib; "
     "commit(pathlib.Path(), produce(m, 'cgns', pathlib.Path('boat.cgns')))",
     "study": "from moldloft.study import component; "

@@ -31,7 +31,7 @@ function render({ model, el }) {
   const page = (message, buffers) => {
     if (message.kind === 'page') frame.srcdoc = new TextDecoder().decode(buffers[0])
   }
-  // What the page was sent last, or sent itself: neither side sends it back.
+  // The text that both sides have: neither sends it back.
   let known = model.get('text')
   const tell = () => {
     if (model.get('text') === known) return

@@ -301,7 +301,7 @@ def test_the_recipe_is_of_the_schema() -> None:
     assert built and built[1] in host
 
 
-@pytest.mark.parametrize("extra", ["plot", "prompt", "grids", "study", "hydro", "cad"])
+@pytest.mark.parametrize("extra", ["plot", "prompt", "notebook", "grids", "study", "hydro", "cad"])
 def test_the_smoke_test_of_an_extra_runs(
     extra: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cli
 ) -> None:

@@ -293,7 +293,7 @@ export class Editor {
       const expected = d.expected ? `\nexpected ${d.expected}` : ''
       const help = (d.help ?? []).map((t: string) => `\n${t}`).join('')
       const actions = d.edit
-        ? [{ name: d.edit.title, apply: (v: EditorView) => v.dispatch({ changes: { from: d.edit.place[0], to: d.edit.place[1], insert: d.edit.insert } }) }]
+        ? [{ name: d.edit.title, apply: (v: EditorView) => d.edit.place[1] <= v.state.doc.length && v.dispatch({ changes: { from: d.edit.place[0], to: d.edit.place[1], insert: d.edit.insert } }) }]
         : []
       shown.push({ from, to, severity: d.severity === 'note' ? 'info' : d.severity, message: d.message + expected + found + help, actions })
     }
@@ -334,6 +334,7 @@ export class Editor {
     try {
       const { head } = await this.link.ask('hover', { offset: pos })
       if (!head.markdown || !head.place) return null
+      if (head.place[1] > this.view.state.doc.length) return null
       return { pos: head.place[0], end: head.place[1], create: () => ({ dom: explained(head.markdown) }) }
     } catch {
       return null

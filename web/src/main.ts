@@ -294,7 +294,8 @@ let cursorTimer = 0
 editor.onCursor = (offset) => {
   clearTimeout(cursorTimer)
   cursorTimer = window.setTimeout(() => {
-    const word = editor.view.state.wordAt(offset)
+    // The text may be shorter than it was when the cursor stood there.
+    const word = offset > editor.view.state.doc.length ? null : editor.view.state.wordAt(offset)
     const name = word ? editor.view.state.sliceDoc(word.from, word.to) : ''
     if (name && name !== selected && model.objects.some((o) => o.name === name)) actions.select(name, 'text')
   }, 120)

@@ -45,6 +45,6 @@ pub use measures::contour_lines::ContourSection;
 pub use measures::floating::{FloatAnswer, FloatRequest, FlotationOptions, Immersion, WeightItem};
 pub use measures::hydrostatics::HydrostaticsOptions as FloatOptions;
 pub use measures::surface_fields::PatchAnalysis;
-pub use moldloft_lang::run::program::ArgumentPlace;
+pub use moldloft_lang::run::program::ArgumentInText;
 pub use moldloft_lang::{NoFiles, Param, ReadText, SolveStatus, TextReadError, World, registry};
 pub use solve::SolveReport;

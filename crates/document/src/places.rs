@@ -2,7 +2,7 @@
 
 use crate::document::{Document, ObjectSource};
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_lang::run::program::{self, ArgumentPlace};
+use moldloft_lang::run::program::{self, ArgumentInText};
 use moldloft_syntax::sdl::StmtKind;
 
 impl Document {
@@ -15,7 +15,7 @@ impl Document {
 
     /// Where an argument of an object is in the main text, or could be; nothing for model files and for objects that
     /// share their statement with others.
-    pub fn argument_place(&self, object: &str, field: &str) -> Option<ArgumentPlace> {
+    pub fn argument_place(&self, object: &str, field: &str) -> Option<ArgumentInText> {
         if !matches!(self.source, ObjectSource::Program) {
             return None;
         }

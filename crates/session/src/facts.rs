@@ -3,7 +3,7 @@
 use crate::drag::{own_numbers, state};
 use crate::text::unit;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_document::{ArgumentPlace, Document};
+use moldloft_document::{ArgumentInText, Document};
 use moldloft_model::Object;
 use moldloft_num::Vec3;
 use moldloft_registry::{Class, Unit, Value as Quantity};
@@ -165,11 +165,11 @@ fn quoted(help: &str) -> Vec<&str> {
 /// for objects that share their statement with others.
 fn written(document: &Document, text: &str, object: &str, field: &str) -> Value {
     match document.argument_place(object, field) {
-        Some(ArgumentPlace::Written(span)) => {
+        Some(ArgumentInText::Written(span)) => {
             let spelled = text.get(span.start as usize..span.end as usize);
             json!({"place": place(document, text, span), "text": spelled})
         }
-        Some(ArgumentPlace::After(span)) => {
+        Some(ArgumentInText::After(span)) => {
             let at = unit(text, span.end as usize);
             json!({"place": [at, at], "text": null})
         }

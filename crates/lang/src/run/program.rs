@@ -54,7 +54,7 @@ pub enum NotLiteral {
 
 /// Where an argument of an object is in the main text, or could be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ArgumentPlace {
+pub enum ArgumentInText {
     /// The expression.
     Written(Span),
     /// It is not given: it can be written by its name at the end of this place.
@@ -273,7 +273,7 @@ pub fn argument_place<T: Scalar>(
     env: &Environment<T>,
     object: &Object<T>,
     field: usize,
-) -> Option<ArgumentPlace> {
+) -> Option<ArgumentInText> {
     let origin = env.origins.get(object.origin as usize)?;
     if origin.repeated || origin.module != 0 {
         return None;
@@ -289,11 +289,11 @@ pub fn argument_place<T: Scalar>(
         let unnamed: Vec<Span> =
             args.iter().zip(&spans).filter(|(a, _)| a.name.is_none()).map(|(_, s)| *s).collect();
         let (first, last) = (unnamed.get(field)?, unnamed.last()?);
-        return Some(ArgumentPlace::Written(Span { end: last.end, ..*first }));
+        return Some(ArgumentInText::Written(Span { end: last.end, ..*first }));
     }
     Some(match fault_location::argument(m, args, row, unnamed, field) {
-        Some(expr) => ArgumentPlace::Written(m.program[expr].span),
-        None => ArgumentPlace::After(*spans.last()?),
+        Some(expr) => ArgumentInText::Written(m.program[expr].span),
+        None => ArgumentInText::After(*spans.last()?),
     })
 }
 
