@@ -118,8 +118,9 @@ def measures(shape: TopoDS_Shape, *, curved: bool) -> np.ndarray | None:
         return None
     volume, area = GProp_GProps(), GProp_GProps()
     if curved:
-        BRepGProp.VolumeProperties_s(shape, volume, 1e-9, False, False)
-        BRepGProp.SurfaceProperties_s(shape, area, 1e-9, False)
+        # With 1e-9 its centroids are off by as much.
+        BRepGProp.VolumeProperties_s(shape, volume, 1e-11, False, False)
+        BRepGProp.SurfaceProperties_s(shape, area, 1e-11, False)
     else:
         BRepGProp.VolumeProperties_s(shape, volume)
         BRepGProp.SurfaceProperties_s(shape, area)

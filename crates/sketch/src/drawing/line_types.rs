@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 /// How far a line may lean off an axis and still be named after it: 5 % of the slope (manual, p. 10).
 pub const NAMING_TOLERANCE: f64 = 0.05;
 
-/// Below this a type is worth a look: of lines drawn within ±2 on 400, 1.8 % fall below.
-pub const DOUBTFUL: f64 = 0.95;
+/// Below this a type is worth a look: of lines drawn within ±4 on 400, 1 to 3 % fall below.
+pub const DOUBTFUL: f64 = 0.9;
 
 /// The confidence of a line that is inclined only because it would leave others no length.
-const MENDED: f64 = 0.9;
+const MENDED: f64 = 0.85;
 
 /// What a unit of the logarithm of a line's odds counts against a line that loses its length.
 const SURENESS: f64 = 1.0;

@@ -12,9 +12,10 @@ const CHORDS: usize = 24;
 /// How far a chord of a mesh may be off its face, as a share of the body.
 const CHORD: f64 = 5e-4;
 
-/// How much nearer a facet must be to hide an edge of another face, and of its own, as shares of the body: facets of a
-/// round face stand before its own border by their chords.
+/// How much nearer a facet of a round face must be to hide an edge of another face, and of its own, as shares of the body:
+/// it stands before its own border by its chords. Facets of plane faces are exact.
 const BEFORE: [f64; 2] = [2e-3, 2e-2];
+const BEFORE_PLANE: f64 = 1e-7;
 
 /// A part of an edge on the page, and whether a face is before it.
 pub(super) struct SeenStroke {
@@ -26,6 +27,7 @@ pub(super) struct SeenStroke {
 /// A facet as it covers the page.
 struct Cover {
     face: usize,
+    round: bool,
     corners: [[f64; 2]; 3],
     depths: [f64; 3],
     low: [f64; 2],
@@ -54,7 +56,7 @@ pub(super) fn seen_strokes(
     sight: Vec3,
 ) -> Vec<SeenStroke> {
     let size = size(solid);
-    let covers = covers(mesh, view, sight);
+    let covers = covers(solid, mesh, view, sight);
     let mut beside: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
     for (f, face) in solid.faces.iter().enumerate() {
         for &(e, _) in face.loops.iter().flatten() {
@@ -71,7 +73,7 @@ pub(super) fn seen_strokes(
         pieces.extend(way.windows(2).map(|w| ([w[0], w[1]], own.clone())));
     }
     if !solid.flat {
-        pieces.extend(outlines(mesh, sight));
+        pieces.extend(outlines(solid, mesh, sight));
     }
     let mut out = Vec::new();
     for (ends, own) in &pieces {
@@ -86,8 +88,7 @@ pub(super) fn seen_strokes(
 fn smooth(solid: &SketchSolid<f64>, e: usize, own: &BTreeSet<usize>) -> bool {
     let faces: Vec<usize> = own.iter().copied().collect();
     let [a, b] = faces[..] else { return false };
-    let round = |f: usize| solid.faces[f].ruled || solid.faces[f].trim.is_some();
-    if !(round(a) && round(b)) {
+    if !(round(solid, a) && round(solid, b)) {
         return false;
     }
     let way = solid.polyline(e, CHORDS);
@@ -105,6 +106,10 @@ fn smooth(solid: &SketchSolid<f64>, e: usize, own: &BTreeSet<usize>) -> bool {
     }
 }
 
+fn round(solid: &SketchSolid<f64>, face: usize) -> bool {
+    solid.faces.get(face).is_some_and(|f| f.ruled || f.trim.is_some())
+}
+
 fn triangles(mesh: &Mesh<f64>) -> impl Iterator<Item = (usize, [u32; 3])> + '_ {
     mesh.patches().iter().enumerate().flat_map(move |(f, patch)| {
         mesh.faces()[patch.faces.clone()].iter().flat_map(move |&[a, b, c, d]| {
@@ -114,7 +119,12 @@ fn triangles(mesh: &Mesh<f64>) -> impl Iterator<Item = (usize, [u32; 3])> + '_ {
     })
 }
 
-fn covers(mesh: &Mesh<f64>, view: &Projection, sight: Vec3) -> Vec<Cover> {
+fn covers(
+    solid: &SketchSolid<f64>,
+    mesh: &Mesh<f64>,
+    view: &Projection,
+    sight: Vec3,
+) -> Vec<Cover> {
     let at = |v: u32| mesh.positions()[v as usize];
     triangles(mesh)
         .map(|(face, t)| {
@@ -124,6 +134,7 @@ fn covers(mesh: &Mesh<f64>, view: &Projection, sight: Vec3) -> Vec<Cover> {
             };
             Cover {
                 face,
+                round: round(solid, face),
                 corners,
                 depths: t.map(|v| at(v).dot(sight)),
                 low: [reach(0, f64::min), reach(1, f64::min)],
@@ -133,8 +144,8 @@ fn covers(mesh: &Mesh<f64>, view: &Projection, sight: Vec3) -> Vec<Cover> {
         .collect()
 }
 
-/// Sides of facets of one face between one that looks at the viewer and one that looks away.
-fn outlines(mesh: &Mesh<f64>, sight: Vec3) -> Vec<Piece> {
+/// Sides of facets of round faces between one that looks at the viewer and one that looks away.
+fn outlines(solid: &SketchSolid<f64>, mesh: &Mesh<f64>, sight: Vec3) -> Vec<Piece> {
     let at = |v: u32| mesh.positions()[v as usize];
     let mut sides: BTreeMap<(u32, u32), Vec<(usize, bool)>> = BTreeMap::new();
     for (face, t) in triangles(mesh) {
@@ -145,11 +156,11 @@ fn outlines(mesh: &Mesh<f64>, sight: Vec3) -> Vec<Piece> {
             sides.entry((a.min(b), a.max(b))).or_default().push((face, facing));
         }
     }
-    let turning = |found: &&[(usize, bool)]| matches!(found, [a, b] if a.1 != b.1);
+    // Edges of plane faces are drawn already.
+    let turning = |found: &&[(usize, bool)]| matches!(found, [a, b] if a.1 != b.1 && round(solid, a.0) && round(solid, b.0));
     sides
         .iter()
         .filter(|(_, found)| turning(&found.as_slice()))
-        // Facets of one face; where two faces of one round surface meet, their edge is no line of the drawing.
         .map(|(&(a, b), found)| ([at(a), at(b)], found.iter().map(|f| f.0).collect()))
         .collect()
 }
@@ -174,13 +185,17 @@ fn cut(
         if apart(0) || apart(1) {
             continue;
         }
-        let before = BEFORE[usize::from(own.contains(&cover.face))] * size;
+        let before = match cover.round {
+            true => BEFORE[usize::from(own.contains(&cover.face))] * size,
+            false => BEFORE_PLANE * size,
+        };
         hidden.extend(cover.hides([a, b], [da, db], before));
     }
     hidden.sort_by(|x, y| x[0].total_cmp(&y[0]));
     let point = |t: f64| [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
     let mut put = |from: f64, to: f64, hidden: bool| {
-        if to - from > 1e-9 {
+        // Shorter than can be seen: where a face that hides the piece ends in it.
+        if to - from > 1e-4 {
             out.push(SeenStroke { from: point(from), to: point(to), hidden });
         }
     };

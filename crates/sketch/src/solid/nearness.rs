@@ -1,6 +1,6 @@
-//! Whether exact places agree with the facets from which it was found which surfaces meet.
+//! Whether exact places agree with the facets that decided which surfaces meet.
 //!
-//! Facets are off their surfaces by up to their chords, so they may tell that an edge ends in one face where it ends in
+//! Facets are off their surfaces by up to their chords, so an edge may seem to end in one face where it ends in
 //! the next. The exact corner is then outside of the face that it was taken to be in.
 
 use super::combine::{FacetSource, along};

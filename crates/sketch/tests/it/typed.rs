@@ -186,3 +186,123 @@ fn arcs_and_circles_are_imported() {
         assert_eq!(imported(again.object("P").unwrap()), imported(s.object("P").unwrap()));
     }
 }
+
+/// Any commands as data, in and out of drags, with numbers and names that no one would give: nothing panics, what is
+/// asked between them is answered, and the journal makes the same objects again.
+#[test]
+fn any_typed_commands() {
+    use moldloft_testing::{Random, rounds};
+    let mut random = Random::new(31);
+    for round in 0..rounds(4, 5_000) {
+        let mut s = SketchSession::new();
+        let mut dragging = false;
+        for _ in 0..40 {
+            let number = |r: &mut Random| match r.below(12) {
+                0 => f64::NAN,
+                1 => f64::INFINITY,
+                2 => -1e308,
+                3 => 0.0,
+                4 => 1e-300,
+                _ => (r.below(9) as f64 - 2.0) * 10.0,
+            };
+            let expression = |r: &mut Random| {
+                let odd = ["W*2", "R+W", "1/0", "W", "sqrt(-1)"];
+                let parsed = DimensionExpr::parse(odd[r.below(odd.len())]);
+                match (r.chance(30), parsed) {
+                    (true, Ok(e)) => e,
+                    _ => DimensionExpr::number((r.below(9) + 1) as f64),
+                }
+            };
+            let names = ["W", "R", "A B", "\"", "", "W;QUIT", "µ", "a.b"];
+            let name = |r: &mut Random| names[r.below(names.len())].to_owned();
+            let point = |r: &mut Random| PointId(*r.pick(&[0, 1, 2, 3, 4, 5, 6, u32::MAX]));
+            let line = |r: &mut Random| LineId(*r.pick(&[0, 1, 2, 3, 4, 5, u32::MAX]));
+            let axis = |r: &mut Random| *r.pick(&CoordinateAxis::ALL);
+            let command = match random.below(16) {
+                0 => SketchCommand::Sketch {
+                    name: name(&mut random),
+                    section: random.chance(70).then_some(CoordinateAxis::Y),
+                },
+                1..=4 => SketchCommand::Point {
+                    id: random.chance(80).then(|| point(&mut random)),
+                    at: [number(&mut random), number(&mut random)],
+                },
+                5..=7 => SketchCommand::Line {
+                    p: point(&mut random),
+                    q: point(&mut random),
+                    free: random.chance(30).then(|| Free::along(axis(&mut random))),
+                },
+                8 => SketchCommand::Type { line: line(&mut random), free: Free::OBLIQUE },
+                9 | 10 => SketchCommand::Dimension {
+                    name: random.chance(50).then(|| name(&mut random)),
+                    measure: match random.below(4) {
+                        0 => MeasuredQuantity::Length(line(&mut random)),
+                        1 => MeasuredQuantity::Angle(line(&mut random), line(&mut random)),
+                        _ => MeasuredQuantity::Along {
+                            axis: axis(&mut random),
+                            p: point(&mut random),
+                            q: point(&mut random),
+                        },
+                    },
+                    value: expression(&mut random),
+                },
+                11 => SketchCommand::Variable {
+                    name: name(&mut random),
+                    value: expression(&mut random),
+                },
+                12 => {
+                    SketchCommand::Set { name: name(&mut random), value: expression(&mut random) }
+                }
+                13 => match random.below(3) {
+                    0 => SketchCommand::DeletePoint(point(&mut random)),
+                    1 => SketchCommand::DeleteLine(line(&mut random)),
+                    _ => SketchCommand::DeleteDimension(name(&mut random)),
+                },
+                14 => match random.below(2) {
+                    0 => SketchCommand::GenerateFaces,
+                    _ => SketchCommand::Extrude(expression(&mut random)),
+                },
+                _ => match random.below(2) {
+                    0 => SketchCommand::Undo,
+                    _ => SketchCommand::Redo,
+                },
+            };
+            s.edit(&command);
+            match random.below(12) {
+                0 => dragging = s.begin().is_ok() || dragging,
+                1 if dragging => {
+                    s.commit();
+                    dragging = false;
+                }
+                2 if dragging => {
+                    s.rollback();
+                    dragging = false;
+                }
+                3 => {
+                    for name in s.names() {
+                        s.suggestions(&name);
+                        let _ = s.candidates(&name);
+                        s.preview(&name);
+                        s.dimension_marks(&name, None);
+                        s.dimension_marks(&name, Some("iso"));
+                        let object = s.object(&name).unwrap();
+                        object.drawing.snap([number(&mut random), 0.0], number(&mut random));
+                    }
+                    s.report("CHECK");
+                }
+                _ => {}
+            }
+        }
+        if dragging {
+            s.commit();
+        }
+        let mut again = SketchSession::new();
+        for line in s.journal() {
+            again.run_line(line);
+        }
+        let texts = |s: &SketchSession| -> Vec<String> {
+            s.names().iter().filter_map(|n| s.object(n)).map(script).collect()
+        };
+        assert_eq!(texts(&s), texts(&again), "round {round}: {:#?}", s.journal());
+    }
+}
