@@ -102,7 +102,11 @@ fn sample(document: &mut Document, numbers: &[String], base: Option<&Sample>) ->
             Some(Value::Curve(c)) => {
                 close(&mut sample, xyz(TS.iter().map(|&t| c.jet(t, Order::Zero)[0]).collect()));
             }
-            Some(Value::Body(m)) => close(&mut sample, xyz(vec![m.centroid])),
+            Some(Value::Body(m)) => {
+                // Of the part of the surface where it is one, as the expression has it.
+                let part = m.border.as_ref().and_then(|border| border.0.measures());
+                close(&mut sample, xyz(vec![part.map_or(m.centroid, |part| part.centroid)]));
+            }
             Some(Value::Surface(s)) => {
                 let at = |(&u, &v): (&f64, &f64)| s.jet(u, v, Order::Zero).p;
                 close(&mut sample, xyz(TS.iter().zip(&US).map(at).collect()));
