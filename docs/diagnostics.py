@@ -30,7 +30,7 @@ Errors stop what depends on them and nothing else; warnings and notes do not cha
 `tests/python/test_diagnostics_page.py`.
 """
 
-#: Diagnostics without a program: they need an interrupt, a fault of ours, a rare failure of an iteration, or the workbench.
+#: Diagnostics without a program: they need an interrupt, a fault of ours, a rare failure of an iteration, derivatives, or the workbench.
 WITHOUT = {
     "accuracy-not-reached",
     "border-not-joined",
@@ -41,6 +41,7 @@ WITHOUT = {
     "faces-apart",
     "faces-tangled",
     "internal-error",
+    "no-derivative",
     "no-distance",
     "no-mesh",
     "no-model",

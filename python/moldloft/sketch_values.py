@@ -112,7 +112,7 @@ class Reply:
     about: ReplySubject | None = None
 
     @staticmethod
-    def _of(row: Any) -> Reply:
+    def from_row(row: Any) -> Reply:
         severity, code, text, following, file, about = row
         subject = None if about is None else ReplySubject._of(about)
         return Reply(severity, text, following, code, file, subject)

@@ -169,7 +169,7 @@ class Sketch:
         """
         replies: list[Reply] = []
         for line in text.splitlines():
-            new = [Reply._of(row) for row in self._session.run_line(line)]
+            new = [Reply.from_row(row) for row in self._session.run_line(line)]
             replies += new
             bad = next((r for r in new if r.is_error), None)
             if strict and bad is not None:
@@ -264,7 +264,7 @@ class Sketch:
             When a command is refused.
         """
         rows, changes = self._session.report(text)
-        replies = [Reply._of(row) for row in rows]
+        replies = [Reply.from_row(row) for row in rows]
         bad = next((r for r in replies if r.is_error), None)
         if bad is not None:
             raise SketchError(str(bad), replies)
@@ -558,7 +558,7 @@ class Sketch:
         >>> _ = s.run("SKETCH A 2D XZ; POINT 1 0 0; POINT 2 90 0; LINE 1 2; DIM W X 1 2 = 8")
         >>> a = s.parts()
         >>> a.lines[1].type, a.points[2].at, a.points[2].page
-        ('X', (8.0, 0.0, 0.0), (90.0, 0.0))
+        ('X', (8, 0, 0), (90, 0))
         """
         wanted = self._name(name).lower()
         for known, data in self.objects.items():

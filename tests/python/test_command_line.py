@@ -74,7 +74,7 @@ def test_several_models_and_patterns(cli, tmp_path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "reported"),
     [
         (["bulid", HULL], "did you mean `build`?"),
         (["build", HULL, "--wach"], "did you mean `--watch`?"),

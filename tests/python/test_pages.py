@@ -102,6 +102,11 @@ from pathlib import Path
 Path("hull.sdl").write_text({blocks(ROOT / "README.md", "sdl")[0]!r})
 """
 
+_TEE = f"""
+from pathlib import Path
+Path("tee.sdl").write_text({blocks(ROOT / "docs" / "tutorials" / "product.md", "sdl")[0]!r})
+"""
+
 #: What a page's Python blocks take as given.
 GIVEN = {
     "README.md": _README,
@@ -110,6 +115,7 @@ GIVEN = {
     "cad.md": _HULL,
     "panels.md": _HULL,
     "grids.md": _GRIDS,
+    "product.md": _TEE,
 }
 
 

@@ -50,8 +50,9 @@ def typed(b: Bench, chance: random.Random) -> None:
 def slid(b: Bench, chance: random.Random) -> None:
     """A slider is moved."""
     sliders = b.page.locator(".params input[type=range]")
-    if sliders.count():
-        sliders.nth(chance.randrange(sliders.count())).focus()
+    if count := sliders.count():
+        # In one step: a parameter may go with the text that it is in.
+        sliders.evaluate_all("(all, k) => all[k]?.focus()", chance.randrange(count))
         for _ in range(chance.randrange(1, 4)):
             b.page.keyboard.press(chance.choice(MOVES))
 

@@ -716,6 +716,7 @@ Object.assign(window, {
     settled: async () => {
       await editor.synced()
       await setting.settled()
+      await writing
     },
     camera: () => ({ azimuth: view.camera.azimuth, elevation: view.camera.elevation, reach: view.camera.reach }),
     camera_set: (azimuth: number, elevation: number) => {

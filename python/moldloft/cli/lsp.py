@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
-import signal
 import sys
 from pathlib import Path
 
-from moldloft import _core
-from moldloft._engine import command
+from moldloft import __version__
 from moldloft.errors import Error
+from moldloft.language_server import serve
 
 __all__ = ["add", "main", "run"]
 
@@ -37,10 +36,7 @@ def run(options: argparse.Namespace) -> int:
             raise Error(f"`{path}` is not there\nhelp: `moldloft lsp` is the same server")
         print(path)
         return 0
-    # Nothing of Python runs while it serves: an interrupt ends the process, as it does any program.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    program, *arguments = command("language")
-    return 0 if _core.language_server(program, arguments) else 1
+    return 0 if serve() else 1
 
 
 def main() -> int:
@@ -48,8 +44,6 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         prog="moldloft-lsp", description="The language server of Moldloft, for editors."
     )
-    parser.add_argument(
-        "-V", "--version", action="version", version=f"%(prog)s {_core.__version__}"
-    )
+    parser.add_argument("-V", "--version", action="version", version=f"%(prog)s {__version__}")
     add(parser)
     return run(parser.parse_args())

@@ -150,7 +150,7 @@ class Host:
             self.journal.append(self.session.journal(self.recorded))
         self.recorded = length
         for row in answers:
-            reply = Reply._of(row)
+            reply = Reply.from_row(row)
             self.replies.append(reply)
             if reply.file is not None:
                 reply = self._write(reply, reply.file)

@@ -41,7 +41,7 @@ pub(crate) struct Page<'a> {
 }
 
 /// A dimension line that is still to be put in its row: the axes of its direction and its witness lines.
-struct Row {
+struct UnplacedMark {
     mark: usize,
     axis: CoordinateAxis,
     across: CoordinateAxis,
@@ -76,7 +76,7 @@ pub(crate) fn dimension_marks(
         Some([(a + c) / 2.0, (b + d) / 2.0])
     };
     let mut marks = Vec::new();
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<UnplacedMark> = Vec::new();
     for (key, dimension) in &object.dimensions {
         let value = values(key);
         let reference = dimension.role == DimensionRole::Reference;
@@ -97,7 +97,7 @@ pub(crate) fn dimension_marks(
                 mark.axis = Some(axis);
                 match beside(drawing, planes, page, &places, axis, [p, q]) {
                     Some(row) => {
-                        rows.push(Row { mark: marks.len(), ..row });
+                        rows.push(UnplacedMark { mark: marks.len(), ..row });
                         Some([0.0; 2])
                     }
                     // An axis that this view looks along.
@@ -159,11 +159,11 @@ fn beside(
     places: &[(PointId, [f64; 2])],
     axis: CoordinateAxis,
     ends: [PointId; 2],
-) -> Option<Row> {
+) -> Option<UnplacedMark> {
     let a = (page.unit)(axis);
     let of_planes = ends.map(|p| planes.plane(axis, p));
     let [Some(first), Some(second)] = of_planes else { return None };
-    let mut best: Option<(f64, Row)> = None;
+    let mut best: Option<(f64, UnplacedMark)> = None;
     for across in CoordinateAxis::ALL.into_iter().filter(|w| *w != axis) {
         if drawing.section == Some(across) {
             continue;
@@ -195,7 +195,7 @@ fn beside(
                 let clear = outermost(drawing, page, [a, w], reach, side);
                 let clear = clear.max(side * from[1]).max(side * to[1]);
                 let cost = (clear - side * from[1]) + (clear - side * to[1]);
-                let row = Row { mark: 0, axis, across, side, ends: [from, to], clear };
+                let row = UnplacedMark { mark: 0, axis, across, side, ends: [from, to], clear };
                 if best.as_ref().is_none_or(|b| cost < b.0 - 1e-9 * cost.abs()) {
                     best = Some((cost, row));
                 }
@@ -236,9 +236,14 @@ fn outermost(
 }
 
 /// Puts dimension lines into rows beside the drawing, shorter ones nearer, so that none lie on each other.
-fn place_rows(mut rows: Vec<Row>, page: &Page<'_>, size: f64, marks: &mut [DimensionMark]) {
+fn place_rows(
+    mut rows: Vec<UnplacedMark>,
+    page: &Page<'_>,
+    size: f64,
+    marks: &mut [DimensionMark],
+) {
     rows.sort_by(|x, y| {
-        let long = |r: &Row| (r.ends[1][0] - r.ends[0][0]).abs();
+        let long = |r: &UnplacedMark| (r.ends[1][0] - r.ends[0][0]).abs();
         long(x).total_cmp(&long(y)).then(x.mark.cmp(&y.mark))
     });
     // By direction: what is taken, as (from, to, place across).

@@ -16,7 +16,7 @@ pub(super) struct PaintedFace {
 }
 
 /// A facet on the page, with its depths.
-struct Facet {
+struct PaintedFacet {
     corners: [[f64; 2]; 3],
     depths: [f64; 3],
     facing: f64,
@@ -55,9 +55,9 @@ fn facets(
     mesh: &Mesh<f64>,
     view: &Projection,
     sight: Vec3,
-) -> Vec<Vec<Facet>> {
+) -> Vec<Vec<PaintedFacet>> {
     let at = |v: u32| mesh.positions()[v as usize];
-    let mut out: Vec<Vec<Facet>> = (0..solid.faces.len()).map(|_| Vec::new()).collect();
+    let mut out: Vec<Vec<PaintedFacet>> = (0..solid.faces.len()).map(|_| Vec::new()).collect();
     for (f, patch) in mesh.patches().iter().enumerate() {
         let Some(own) = out.get_mut(f) else { break };
         for &[a, b, c, d] in &mesh.faces()[patch.faces.clone()] {
@@ -69,7 +69,11 @@ fn facets(
                 let facing = if solid.flat { facing.abs() } else { facing };
                 if facing > 1e-6 {
                     let corners = [p, q, r].map(|p| view.project(p));
-                    own.push(Facet { corners, depths: [p, q, r].map(|p| p.dot(sight)), facing });
+                    own.push(PaintedFacet {
+                        corners,
+                        depths: [p, q, r].map(|p| p.dot(sight)),
+                        facing,
+                    });
                 }
             }
         }
@@ -78,14 +82,14 @@ fn facets(
 }
 
 /// Faces from far to near: one that another one covers somewhere comes before it.
-fn order(front: &[usize], facets: &[Vec<Facet>], mean: &dyn Fn(usize) -> f64) -> Vec<usize> {
+fn order(front: &[usize], facets: &[Vec<PaintedFacet>], mean: &dyn Fn(usize) -> f64) -> Vec<usize> {
     let mut left: Vec<usize> = front.to_vec();
     left.sort_by(|&a, &b| mean(a).total_cmp(&mean(b)).then(a.cmp(&b)));
     let count: usize = front.iter().map(|&f| facets[f].len()).sum();
     if count > MOST_COMPARED {
         return left;
     }
-    let bounds = |t: &Facet| {
+    let bounds = |t: &PaintedFacet| {
         let [p, q, r] = t.corners;
         [0, 1].map(|k| [p[k].min(q[k]).min(r[k]), p[k].max(q[k]).max(r[k])])
     };
@@ -116,9 +120,9 @@ fn order(front: &[usize], facets: &[Vec<Facet>], mean: &dyn Fn(usize) -> f64) ->
 
 /// Whether the first face is nearer than the second where both are seen, by the place where they differ most.
 fn covers(
-    a: &[Facet],
+    a: &[PaintedFacet],
     boxes_a: &[[[f64; 2]; 2]],
-    b: &[Facet],
+    b: &[PaintedFacet],
     boxes_b: &[[[f64; 2]; 2]],
 ) -> Option<bool> {
     let mut most = 0.0f64;
@@ -178,7 +182,7 @@ fn clipped(a: &[[f64; 2]; 3], b: &[[f64; 2]; 3]) -> Vec<[f64; 2]> {
     if area.abs() > 1e-6 * whole { rest } else { vec![] }
 }
 
-fn depth(t: &Facet, at: [f64; 2]) -> Option<f64> {
+fn depth(t: &PaintedFacet, at: [f64; 2]) -> Option<f64> {
     let [p, q, r] = t.corners;
     let area = cross(p, q, r);
     if area == 0.0 {

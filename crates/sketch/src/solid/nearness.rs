@@ -20,7 +20,7 @@ pub(super) struct Nearness<'a, T> {
 }
 
 /// The point of a border that is nearest to a place.
-struct Nearest {
+struct NearestOfBorder {
     distance: f64,
     /// How far the place is to the left of the border, as its face is seen from outside.
     left: f64,
@@ -43,7 +43,7 @@ impl<T: Real> Nearness<'_, T> {
                 if *along_normal { n } else { -n }
             }
         };
-        let mut all: Vec<Nearest> = Vec::new();
+        let mut all: Vec<NearestOfBorder> = Vec::new();
         for &(e, forward) in border {
             all.extend(self.nearest(at, source, e, forward, normal));
         }
@@ -58,7 +58,7 @@ impl<T: Real> Nearness<'_, T> {
             None => best.left < 0.0,
             // Nearest is a corner: it stands out of the face where both edges leave the place to their right.
             Some(end) => {
-                let here = |n: &&Nearest| n.end.is_some_and(|p| p.distance(end) <= on);
+                let here = |n: &&NearestOfBorder| n.end.is_some_and(|p| p.distance(end) <= on);
                 all.iter().filter(here).all(|n| n.left < 0.0)
             }
         }
@@ -71,7 +71,7 @@ impl<T: Real> Nearness<'_, T> {
         e: u32,
         forward: bool,
         normal: Vec3,
-    ) -> Option<Nearest> {
+    ) -> Option<NearestOfBorder> {
         let turn = if forward { 1.0 } else { -1.0 };
         let left = |p: Vec3, way: Vec3| {
             let way = (way * turn).normalized().unwrap_or_default();
@@ -85,7 +85,7 @@ impl<T: Real> Nearness<'_, T> {
             let p = piece.at(T::from(held)).re();
             let way = piece.velocity(T::from(held)).re() * if from <= to { 1.0 } else { -1.0 };
             let end = (s != held || held == low || held == high).then_some(p);
-            return Some(Nearest {
+            return Some(NearestOfBorder {
                 distance: p.distance(at),
                 left: left(p, way),
                 end,
@@ -97,6 +97,11 @@ impl<T: Real> Nearness<'_, T> {
         // The circle through neighbouring nodes is the edge to the third order; its tangent is enough here.
         let way = best.1.normalized()?;
         let p = best.0 + way * way.dot(at - best.0);
-        Some(Nearest { distance: p.distance(at), left: left(p, best.1), end: None, exact: false })
+        Some(NearestOfBorder {
+            distance: p.distance(at),
+            left: left(p, best.1),
+            end: None,
+            exact: false,
+        })
     }
 }
