@@ -113,6 +113,18 @@ class Reply:
 
     @staticmethod
     def from_row(row: Any) -> Reply:
+        """The reply of a row of the session's answers.
+
+        Parameters
+        ----------
+        row
+            Severity, number, text, what is asked for next, file and subject.
+
+        Returns
+        -------
+        Reply
+            The same as an object.
+        """
         severity, code, text, following, file, about = row
         subject = None if about is None else ReplySubject._of(about)
         return Reply(severity, text, following, code, file, subject)
