@@ -323,7 +323,12 @@ class Floating:
         centre = None if cg is None else [float(x) for x in cg]
         if centre is not None and len(centre) != 3:
             raise Error(f"a centre of gravity is x, y, z, not {len(centre)} numbers")
-        for _, _, trim, heel, _, _ in rows:
+        for given, number, trim, heel, _, _ in rows:
+            if given == "draft" and not number >= 0:
+                raise Error(
+                    f"a draft is the depth of the lowest point: expected 0 or more, found {number:g}\n"
+                    "help: the height of the water in the model's axes is `level`"
+                )
             for name, angle in (("trim", trim), ("heel", heel)):
                 if not abs(angle) <= _MOST_TURN:
                     raise Error(

@@ -88,8 +88,14 @@ def test_the_wheel(tmp_path: Path):
     build = [sys.executable, "-m", "maturin", "build", "--profile", profile, "--strip", "--quiet"]
     subprocess.run([*build, "--out", str(tmp_path)], cwd=ROOT, check=True, timeout=1200)
     (wheel,) = tmp_path.glob("*.whl")
-    # The aim is 8 MB; every kind is compiled for plain and for dual numbers and for their jets.
-    assert not SOAK or wheel.stat().st_size < 12_000_000
+    # The size that is published; every kind is compiled for plain and dual numbers and their jets.
+    stated = re.search(
+        r"^\| wheel with page.*? \| ([\d.]+) MB;",
+        (ROOT / "docs" / "performance.md").read_text(),
+        re.M,
+    )
+    assert stated
+    assert not SOAK or wheel.stat().st_size < 1.01e6 * float(stated[1])
     assert "abi3" in wheel.name
     names = set(zipfile.ZipFile(wheel).namelist())
     assert {"moldloft/py.typed", "moldloft/_core.pyi", "moldloft/cli/build.py"} <= names

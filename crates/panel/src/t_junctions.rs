@@ -6,6 +6,7 @@ use crate::notes::PanelNote;
 use crate::panelling::Panelling;
 use crate::patch_values::PatchValues;
 use crate::topology::EdgeRun;
+use moldloft_mesh::Tag;
 use moldloft_model::Graph;
 use moldloft_num::{Order, Vec3};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -176,7 +177,8 @@ impl Panelling {
             let second = there(0.7);
             for &other in first.intersection(&second) {
                 let own = (side.patch, side.edge);
-                if self.along_one_curve(own, other) {
+                let beside = self.of_symmetry(own.0) != self.of_symmetry(other.0);
+                if beside || self.along_one_curve(own, other) {
                     continue;
                 }
                 let pair = [own.min(other), own.max(other)];
@@ -198,6 +200,12 @@ impl Panelling {
             (pair, a)
         });
         merged.collect()
+    }
+
+    /// True for a part of a plane of symmetry.
+    fn of_symmetry(&self, patch: usize) -> bool {
+        let tags = &self.structure.patches[patch].tags;
+        Tag::among(tags.iter().map(|t| &**t)) == Tag::Symmetry
     }
 
     /// True for edges along a common stretch: their counts contradict, which is said elsewhere.
@@ -253,7 +261,8 @@ impl Panelling {
                     let itself = side.patch == patch || side.vertices.contains(&vertex);
                     let known_loose =
                         || self.at_loose_place(patch, corner, (side.patch, side.edge));
-                    if itself || skipped([patch, side.patch]) || known_loose() {
+                    let beside = self.of_symmetry(patch) != self.of_symmetry(side.patch);
+                    if itself || beside || skipped([patch, side.patch]) || known_loose() {
                         continue;
                     }
                     let Some(surface) = &known.surfaces[side.patch] else { continue };
@@ -261,6 +270,13 @@ impl Panelling {
                         let [u, v] = on_edge(side.edge, t);
                         surface.jet(u, v, Order::Zero).p
                     };
+                    // All parameters of a side without length are one place, which the sides beside it hold, too.
+                    let [from, to] = side.ts;
+                    let first = point(from);
+                    let same = |t: f64| point(t).distance(first) <= SAME_PLACE * size;
+                    if same(0.5 * (from + to)) && same(to) {
+                        continue;
+                    }
                     let (t, distance) = nearest(&point, side.ts, p);
                     if distance > SAME_PLACE * size || !reported.insert((patch, corner, side.patch))
                     {

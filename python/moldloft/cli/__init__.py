@@ -69,7 +69,7 @@ EXAMPLES = {
   moldloft eval hull.sdl '-P21.y' --set beam=4 --json""",
     "hydro": """\
   moldloft hydro hull.sdl --draft 1.2 --density salt
-  moldloft hydro hull.sdl --table -0.5,1,16 --csv table.csv --plot table.png
+  moldloft hydro hull.sdl --table 0.5,2,16 --csv table.csv --plot table.png
   moldloft hydro hull.sdl --displacement 40 --cg 0,0,1.2 --density 1 --gz -10,90,21
   moldloft hydro hull.sdl --weights --density salt --criteria""",
     "render": """\

@@ -402,6 +402,30 @@ fn corners_that_miss_their_neighbours_are_told() {
     assert_eq!(d.panelled().unwrap().mesh.report().euler, 1, "a disc");
 }
 
+/// A cone of two grids, whose apex is a row of one place, and a plane that ends on its side.
+fn cone_and_plane(tags: &str, join: &str) -> String {
+    format!(
+        "BSurf skin({{{{0, 0, 0}}, {{0, 0, 0}}, {{0, 0, 0}}, {{4, 1, 0}}, {{4, 0.7, 0.7}}, {{4, 0, 1}}}}, nu = 2, nv = 3, degree_u = 1,
+             degree_v = 1, divisions = {{4, 6}});
+         BSurf plane({{{{0, 0, 0}}, {{-2, 1, 0}}, {{4, 1, 0}}, {{4, 3, 0}}}}, nu = 2, nv = 2, degree_u = 1, degree_v = 1,
+             divisions = {{4, 3}}{tags});
+         {join}"
+    )
+}
+
+#[test]
+fn a_corner_in_the_apex_of_a_grid_is_joined_by_the_edges_that_end_there() {
+    let reported = |text: String| -> Vec<String> {
+        let mut d = sound(&text);
+        d.junctions().unwrap().iter().map(|t| t.id.clone()).collect()
+    };
+    let joined = reported(cone_and_plane("", "Join j(skin.v0, plane.v0);"));
+    assert_eq!(joined, Vec::<String>::new());
+    assert!(!reported(cone_and_plane("", "")).is_empty());
+    // A plane of symmetry is none of the body's patches.
+    assert_eq!(reported(cone_and_plane(", tags = \"symmetry\"", "")), Vec::<String>::new());
+}
+
 #[test]
 fn what_lies_in_a_coordinate_plane_has_exact_zeros() {
     // Half a turn: the sine of pi is not zero.

@@ -140,7 +140,7 @@ impl<T: Real> Build<T> for CopyPoint<T> {
 
 /// The weighted sum of points: X = sum w_i P_i.
 ///
-/// There is a warning when the weights do not add up to 1. Weights that do make it a blend that moves with its points; the weights 1, -1, 1 give
+/// Weights that do not add up to 1 raise a warning: only with a sum of 1 the blend moves with its points. The weights 1, -1, 1 give
 /// the fourth corner of a parallelogram. Equal weights when none are given.
 #[derive(Kind)]
 #[kind(

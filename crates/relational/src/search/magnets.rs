@@ -111,7 +111,7 @@ pub(super) fn on_ray<T: Real>(
 /// The projection of a point onto a surface: along the surface's normal (the foot of the
 /// perpendicular), along a direction, or away from a point.
 ///
-/// From a magnet it is what Newton's method leads to; without one the nearest of all. A foot that
+/// From a magnet it is what Newton's method leads to; without one the nearest of all. A foot
 /// beyond an edge is clamped to the edge and reported.
 #[derive(Kind)]
 #[kind(

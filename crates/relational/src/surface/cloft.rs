@@ -23,7 +23,9 @@ use moldloft_spline::{End, Ends, InterpolatingSpline, InterpolationError, Piecew
     example = "AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); \
                AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); \
                BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8}); \
-               AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0.5); Line shaft(O, X); CLoftSurf blade({a, b, c}, about = shaft);"
+               AbsPoint O(0, -5, 0); AbsPoint X(2, -5, 0); Line shaft(O, X); Line p({0, -5, 1}, {0, -5, 3}); \
+               Line q({1, -4.6, 0.9}, {1.2, -4, 2.8}); Line r({2, -4.3, 0.7}, {2.4, -3.2, 2.4}); \
+               CLoftSurf blade({p, q, r}, about = shaft);"
 )]
 pub struct CLoftSurf<T: Real> {
     /// Master curves, two or more, in order of v.
@@ -56,8 +58,10 @@ pub struct CLoftSurf<T: Real> {
     example = "AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); \
                AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); \
                AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); \
-               XLoftSurf hull(1, {a, b, c, d}); XLoftSurf N(1, {d, c, a}, ends = \"natural\"); \
-               AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0); Line shaft(O, X); XLoftSurf R(3, {a, b, c, d}, about = shaft);"
+               XLoftSurf hull(1, {a, b, c, d}, ends = \"natural\"); \
+               AbsPoint O(0, -5, 0); AbsPoint X(2, -5, 0); Line shaft(O, X); Line p({0, -5, 1}, {0, -5, 3}); \
+               Line q({1, -4.6, 0.9}, {1.2, -4, 2.8}); Line r({2, -4.3, 0.7}, {2.4, -3.2, 2.4}); \
+               XLoftSurf blade(3, {r, q, p}, about = shaft);"
 )]
 pub struct XLoftSurf<T: Real> {
     /// The independent coordinate: 1 for x, 2 for y, 3 for z; with `about` 1 for r, 2 for theta, 3 for the
