@@ -326,7 +326,7 @@ class Floating:
         for given, number, trim, heel, _, _ in rows:
             if given == "draft" and not number >= 0:
                 raise Error(
-                    f"a draft is the depth of the lowest point: expected 0 or more, found {number:g}\n"
+                    f"a draft is the depth of the lowest point: expected >= 0, found {number:g}\n"
                     "help: the height of the water in the model's axes is `level`"
                 )
             for name, angle in (("trim", trim), ("heel", heel)):

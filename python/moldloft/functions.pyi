@@ -1190,6 +1190,57 @@ def set_shell(
         set tank = set_shell(cuboid({0, 0, 0}, {1, 1, 1}), 0.1); assert abs(volume(tank) - 0.488) < 1e-9;
     """
     ...
+def convex_hull(
+    sets: Sequence[_Set] | _Any,
+) -> SetShape:
+    """The convex hull of sets: the smallest convex set that holds all of them.
+
+    Its surface is of planes, balls, cylinders and cones, and smooth where balls span it. The sets are unions of bounded
+    polyhedra and balls, or of cylinders and right prisms of one axis between the same two planes.
+
+    Parameters
+    ----------
+    sets : list of set
+        The sets.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        set pill = convex_hull({set(sphere({0, 0, 0}, 1)), set(sphere({3, 0, 0}, 1))}); assert abs(volume(pill) - 13/3*PI) < 1e-6;
+    """
+    ...
+def minkowski_sum(
+    a: _Set,
+    b: _Set,
+) -> SetShape:
+    """The Minkowski sum of two sets: all sums of a point of one and a point of the other.
+
+    With a ball it is the set grown by its radius, with round edges. Each set is a union of convex parts, as for
+    `convex_hull`; a cylinder or prism may be added to another of its axis, or to a ball.
+
+    Parameters
+    ----------
+    a : set
+        A set.
+    b : set
+        The other.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        set soft = minkowski_sum(cuboid({0, 0, 0}, {3, 2, 1}), sphere({0, 0, 0}, 0.2)); assert abs(volume(soft) - (6 + 22*0.2 + 6*PI*0.04 + 4/3*PI*0.008)) < 1e-6;
+    """
+    ...
 def set_fillet(
     a: _Set,
     b: _Set,

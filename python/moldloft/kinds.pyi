@@ -512,7 +512,7 @@ def BlendPoint(
 ) -> PointHandle:
     """The weighted sum of points: X = sum w_i P_i.
 
-    There is a warning when the weights do not add up to 1. Weights that do make it a blend that moves with its points; the weights 1, -1, 1 give
+    Weights that do not add up to 1 raise a warning: only with a sum of 1 the blend moves with its points. The weights 1, -1, 1 give
     the fourth corner of a parallelogram. Equal weights when none are given.
 
     Parameters
@@ -1405,7 +1405,7 @@ def ProjMagnet(
     """The projection of a point onto a surface: along the surface's normal (the foot of the
     perpendicular), along a direction, or away from a point.
 
-    From a magnet it is what Newton's method leads to; without one the nearest of all. A foot that
+    From a magnet it is what Newton's method leads to; without one the nearest of all. A foot
     beyond an edge is clamped to the edge and reported.
 
     Parameters
@@ -4252,7 +4252,7 @@ def CLoftSurf(
     -----
     In the language::
 
-        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8}); AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0.5); Line shaft(O, X); CLoftSurf blade({a, b, c}, about = shaft);
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8}); AbsPoint O(0, -5, 0); AbsPoint X(2, -5, 0); Line shaft(O, X); Line p({0, -5, 1}, {0, -5, 3}); Line q({1, -4.6, 0.9}, {1.2, -4, 2.8}); Line r({2, -4.3, 0.7}, {2.4, -3.2, 2.4}); CLoftSurf blade({p, q, r}, about = shaft);
     """
     ...
 def XLoftSurf(
@@ -4309,7 +4309,7 @@ def XLoftSurf(
     -----
     In the language::
 
-        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); XLoftSurf hull(1, {a, b, c, d}); XLoftSurf N(1, {d, c, a}, ends = "natural"); AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0); Line shaft(O, X); XLoftSurf R(3, {a, b, c, d}, about = shaft);
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); XLoftSurf hull(1, {a, b, c, d}, ends = "natural"); AbsPoint O(0, -5, 0); AbsPoint X(2, -5, 0); Line shaft(O, X); Line p({0, -5, 1}, {0, -5, 3}); Line q({1, -4.6, 0.9}, {1.2, -4, 2.8}); Line r({2, -4.3, 0.7}, {2.4, -3.2, 2.4}); XLoftSurf blade(3, {r, q, p}, about = shaft);
     """
     ...
 def ArcLoftSurf(

@@ -130,6 +130,11 @@ pub enum FieldError {
         /// What it was made as.
         kind: &'static str,
     },
+    /// Sets of which no convex hull or Minkowski sum is known in closed form.
+    NoHull {
+        /// What was found.
+        found: String,
+    },
     /// Two faces that meet in no edge of the set.
     NoEdge {
         /// Their names.
@@ -218,6 +223,9 @@ impl fmt::Display for FieldError {
                 f,
                 "the distance from a {kind} has no closed form; planes, balls, cylinders, cones and tori have one"
             ),
+            Self::NoHull { found } => {
+                write!(f, "no convex hull or Minkowski sum is known of {found}")
+            }
             Self::NoEdge { faces: [a, b] } => {
                 write!(f, "there is no edge between faces called `{a}` and `{b}`")
             }

@@ -21,7 +21,7 @@ mod set;
 mod shapes;
 mod text;
 
-pub use design::{Edges, chamfer_edges, fillet_sets, round_edges};
+pub use design::{Edges, chamfer_edges, convex_hull, fillet_sets, minkowski_sum, round_edges};
 pub use error::FieldError;
 pub use expr::algebra::{GradientRange, Hessian, Unary, ValueGradient};
 pub use expr::blend::{

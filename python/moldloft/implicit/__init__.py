@@ -55,6 +55,7 @@ from moldloft.implicit.fields import (
     torus,
     twist,
 )
+from moldloft.implicit.hulls import convex_hull, minkowski_sum
 from moldloft.implicit.primitives import cuboid, everything, nothing, point, segment, tetrahedron
 from moldloft.implicit.sets import Set, load, loads
 
@@ -80,6 +81,7 @@ __all__ = [
     "check_rail",
     "check_rails",
     "cone",
+    "convex_hull",
     "cos",
     "cuboid",
     "cyclide",
@@ -94,6 +96,7 @@ __all__ = [
     "loads",
     "maximum",
     "minimum",
+    "minkowski_sum",
     "nothing",
     "plane",
     "point",

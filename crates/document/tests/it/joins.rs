@@ -417,7 +417,7 @@ fn cone_and_plane(tags: &str, join: &str) -> String {
 fn a_corner_in_the_apex_of_a_grid_is_joined_by_the_edges_that_end_there() {
     let reported = |text: String| -> Vec<String> {
         let mut d = sound(&text);
-        d.junctions().unwrap().iter().map(|t| t.id.clone()).collect()
+        d.junctions().unwrap().iter().map(|t| t.id.to_string()).collect()
     };
     let joined = reported(cone_and_plane("", "Join j(skin.v0, plane.v0);"));
     assert_eq!(joined, Vec::<String>::new());

@@ -3,6 +3,11 @@
 //! All are sets of fields again: their surfaces have closed forms, and derivatives by every parameter. Edges are named by the
 //! two faces that meet in them, which change of parameters leaves as they are.
 
+mod convex;
+mod hull;
+
+pub use convex::{convex_hull, minkowski_sum};
+
 use crate::expr::blend::fillet;
 use crate::expr::form::Form;
 use crate::measure::certified::{Effort, certified};

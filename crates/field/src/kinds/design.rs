@@ -186,6 +186,54 @@ impl<T: Real> Build<T> for SetShell<T> {
     }
 }
 
+/// The convex hull of sets: the smallest convex set that holds all of them.
+///
+/// Its surface is of planes, balls, cylinders and cones, and smooth where balls span it. The sets are unions of bounded
+/// polyhedra and balls, or of cylinders and right prisms of one axis between the same two planes.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "convex_hull",
+    example = "set pill = convex_hull({set(sphere({0, 0, 0}, 1)), set(sphere({3, 0, 0}, 1))}); assert abs(volume(pill) - 13/3*PI) < 1e-6;"
+)]
+pub struct ConvexHull<T: Real> {
+    /// The sets.
+    #[field(min_items = 1)]
+    sets: Vec<SetArgument<T>>,
+}
+
+impl<T: Real> Build<T> for ConvexHull<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let sets: Vec<Set<T>> = self.sets.into_iter().map(|s| s.0).collect();
+        set(crate::convex_hull(&sets))
+    }
+}
+
+/// The Minkowski sum of two sets: all sums of a point of one and a point of the other.
+///
+/// With a ball it is the set grown by its radius, with round edges. Each set is a union of convex parts, as for
+/// `convex_hull`; a cylinder or prism may be added to another of its axis, or to a ball.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "minkowski_sum",
+    example = "set soft = minkowski_sum(cuboid({0, 0, 0}, {3, 2, 1}), sphere({0, 0, 0}, 0.2)); assert abs(volume(soft) - (6 + 22*0.2 + 6*PI*0.04 + 4/3*PI*0.008)) < 1e-6;"
+)]
+pub struct MinkowskiSum<T: Real> {
+    /// A set.
+    a: SetArgument<T>,
+    /// The other.
+    b: SetArgument<T>,
+}
+
+impl<T: Real> Build<T> for MinkowskiSum<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        set(crate::minkowski_sum(&self.a.0, &self.b.0))
+    }
+}
+
 /// The union of two sets with fillets where their faces meet.
 #[derive(Kind)]
 #[kind(

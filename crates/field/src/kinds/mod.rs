@@ -61,6 +61,8 @@ pub fn rows() -> Vec<Row> {
         design::Repeated,
         design::SetOffset,
         design::SetShell,
+        design::ConvexHull,
+        design::MinkowskiSum,
         design::FilletSets,
         design::RoundEdges,
         design::ChamferEdges,

@@ -139,6 +139,7 @@ pub fn fault(error: &FieldError) -> CallError {
         FieldError::NotClosed { .. } => "not-closed",
         FieldError::ManyFaces { .. } | FieldError::RoundSides => "faces-tangled",
         FieldError::NoDistance { .. } => "no-distance",
+        FieldError::NoHull { .. } => "no-hull",
         FieldError::NoEdge { .. } => "no-edge",
         FieldError::Outside => "no-text",
         FieldError::Spent(spent) => spent.id(),
@@ -175,6 +176,9 @@ pub fn fault(error: &FieldError) -> CallError {
         FieldError::ManyFaces { .. } | FieldError::RoundSides => {
             fault.help("take set(inside(body)), the set by distances from its triangles")
         }
+        FieldError::NoHull { .. } => fault.expected(
+            "bounded polyhedra and balls, or cylinders and right prisms of one axis between the same two planes",
+        ),
         FieldError::EmptyBox { .. } => {
             fault.expected("low and high corners that differ along x, y and z")
         }

@@ -195,6 +195,22 @@ impl PySet {
         made.map(|s| self.from(s)).map_err(plain_error)
     }
 
+    /// The convex hull of sets.
+    #[staticmethod]
+    fn convex_hull(py: Python<'_>, sets: Vec<PyRef<'_, PySet>>) -> PyResult<Self> {
+        let inner: Vec<Set> = sets.iter().map(|s| s.inner.clone()).collect();
+        let slots = sets.iter().fold(Slots::default(), |all, s| all.with(&s.slots));
+        let made = py.detach(|| moldloft::field::convex_hull(&inner)).map_err(plain_error)?;
+        Ok(Self { inner: made, slots })
+    }
+
+    /// The Minkowski sum with another set.
+    fn minkowski_sum(&self, py: Python<'_>, o: &Self) -> PyResult<Self> {
+        let (a, b) = (&self.inner, &o.inner);
+        let made = py.detach(|| moldloft::field::minkowski_sum(a, b)).map_err(plain_error)?;
+        Ok(Self { inner: made, slots: self.slots.with(&o.slots) })
+    }
+
     #[staticmethod]
     fn blended(
         kind: &str,
