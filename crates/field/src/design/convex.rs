@@ -210,7 +210,7 @@ impl<T: Real> Spanning<T> {
                 let ball = o.balls[0];
                 let mut prism = self.clone().reduced().prism()?;
                 prism.ends = prism.ends.map(|p| p + ball.centre);
-                prism.discs.iter_mut().for_each(|d| d.centre = d.centre + ball.centre);
+                prism.discs.iter_mut().for_each(|d| d.centre += ball.centre);
                 prism.rounded(ball.radius)
             }
             _ => {
