@@ -6,6 +6,7 @@ use super::names::Meaning;
 use super::vectors::CodeValue;
 use crate::functions::builtins::BUILTINS;
 use crate::functions::elementary::{self, Elementary};
+use crate::run::parts;
 use crate::source::module::Name;
 use crate::value::ops;
 use moldloft_diag::Span;
@@ -172,34 +173,15 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let m = &self.units[self.unit].m;
         let mut stack = vec![id];
         while let Some(id) = stack.pop() {
-            match m.program[id].kind {
-                ExprKind::Paren(e) | ExprKind::Magnitude(e) => stack.push(e),
-                ExprKind::List(items) => stack.extend(&m.program[items]),
-                ExprKind::Unary { operand, .. } => stack.push(operand),
-                ExprKind::Binary { left, right, .. } => stack.extend([left, right]),
-                ExprKind::Member { base, .. } => stack.push(base),
-                ExprKind::Chain(items) => stack.extend(operands(&m.program[items])),
-                ExprKind::Index { base, subs } => {
-                    stack.push(base);
-                    for sub in &m.program[subs] {
-                        match *sub {
-                            Subscript::Whole => {}
-                            Subscript::At(at) => stack.push(at),
-                            Subscript::Range { from, to, step } => {
-                                stack.extend([from, to, step].into_iter().flatten());
-                            }
-                        }
-                    }
+            let mut inner = parts::of_expression(m, id);
+            if let ExprKind::Call { callee, .. } = m.program[id].kind {
+                let Some(symbol) = m.program.as_name(callee) else { return true };
+                if self.scope.routines.contains_key(&m.names[symbol.0 as usize]) {
+                    return true;
                 }
-                ExprKind::Call { callee, args } => {
-                    let Some(symbol) = m.program.as_name(callee) else { return true };
-                    if self.scope.routines.contains_key(&m.names[symbol.0 as usize]) {
-                        return true;
-                    }
-                    stack.extend(m.program[args].iter().map(|arg| arg.value));
-                }
-                ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Text(_) | ExprKind::Error => {}
+                inner.remove(0);
             }
+            stack.extend(inner);
         }
         false
     }
