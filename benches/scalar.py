@@ -1,4 +1,4 @@
-"""Statements on numbers beside CPython: a sum, a call, elements, a branch, a loop in a loop.
+"""Statements on numbers and vectors beside CPython: sums, calls, elements, branches, loops, points.
 
 Run with `python benches/scalar.py`. Both run on one thread, one after the other; times are the
 least of several repetitions, of processor time, for one turn of the loop: the difference of a long
@@ -79,6 +79,34 @@ def nested(n: int) -> float:
     return s
 
 
+def vectors(n: int) -> tuple[float, float, float]:
+    v = (1.0, 2.0, 3.0)
+    for i in range(1, n + 1):
+        v = (v[0] * 0.5 + i, v[1] * 0.5 + 1, v[2] * 0.5 + v[0])
+    return v
+
+
+def smoothed(n: int) -> list[tuple[float, float, float]]:
+    c = [(float(k), k % 2.0, 0.0) for k in range(100)]
+
+    def smooth(d: list[tuple[float, float, float]], turns: int) -> None:
+        for _ in range(turns):
+            for k in range(1, 99):
+                (x, y, z), (u, v, w) = d[k - 1], d[k + 1]
+                d[k] = ((x + u) / 2, (y + v) / 2, (z + w) / 2)
+
+    smooth(c, n // 98)
+    return c
+
+
+def walked(n: int) -> float:
+    a = [0.5] * n
+    s = 0.0
+    for x in a:
+        s = s * 0.5 + x
+    return s
+
+
 CASES: list[tuple[str, Callable[[int], object], str]] = [
     ("sum", total, "float s = 0; for (i = 1:{n}) s += 1/i^2;"),
     (
@@ -105,6 +133,24 @@ CASES: list[tuple[str, Callable[[int], object], str]] = [
         "loop in a loop",
         nested,
         "float s = 0; for (i = 1:{n}/10) for (j = 1:10) s += i*j;",
+    ),
+    (
+        "vector",
+        vectors,
+        "vector v = {{1, 2, 3}}; for (i = 1:{n}) v = v*.5 + {{i, 1, v.x}};",
+    ),
+    (
+        "points by reference",
+        smoothed,
+        "curve c[100]; for (k = 1:100) c[k] = {{k - 1, mod(k - 1, 2), 0}};"
+        "subroutine smooth(returned curve d, int turns) {{"
+        " for (t = 1:turns) for (k = 2:99) d[k] = (d[k - 1] + d[k + 1])/2; }}"
+        "smooth(c, floor({n}/98));",
+    ),
+    (
+        "foreach",
+        walked,
+        "farray a[{n}]; a = .5; float s = 0; foreach (x in a) s = s*.5 + x;",
     ),
 ]
 

@@ -427,6 +427,8 @@ def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = Fals
     """Write surface grids as one binary STL.
 
     Quads are split along their shorter diagonal; triangles without area, at poles, are left out.
+    Facets face out of closed bodies, whichever way their surfaces run, and out of open ones as far
+    as their rims say where that is; nearly flat surfaces face along r_i x r_j.
 
     Parameters
     ----------
@@ -435,7 +437,7 @@ def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = Fals
     grids
         Arrays (ni, nj, 3).
     flip
-        Facets face against r_i x r_j instead of along it.
+        Facets face the other way.
 
     Returns
     -------

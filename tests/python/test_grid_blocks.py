@@ -548,19 +548,44 @@ def test_refusals_of_h_grids_and_metrics(call: str, match: str) -> None:
         moldloft.loads(f"{text} print {call};")
 
 
-def test_a_viscous_wing_body_has_no_collapsed_corners(tmp_path: Path) -> None:
+def viscous(**parameters: float) -> moldloft.Model:
+    """The example with fewer points, at a place of its parameters' ranges."""
     path = Path(__file__).parents[2] / "examples/wingbody/viscous.sdl"
     text = path.read_text()
     for name, n in (("ni = 65", "ni = 41"), ("layers = 31", "layers = 21")):
         assert name in text
         text = text.replace(name, n)
-    m = moldloft.loads(text)
-    p = (
-        np.moveaxis(np.asarray(m["grid"]), 0, 2)
-        if np.asarray(m["grid"]).shape[0] == 21
-        else m["grid"]
-    )
-    p = np.asarray(p)
+    for name, x in parameters.items():
+        text, count = re.subn(rf"(param float {name} = )[0-9.]+", rf"\g<1>{x!r}", text)
+        assert count == 1
+    return moldloft.loads(text)
+
+
+def draw(seed: int) -> dict[str, float]:
+    """Parameters: the corners of their ranges, then places in them."""
+    ranges = {"first": (0.0002, 0.003), "a": (1.6, 2.4), "b": (0.25, 0.35)}
+    if seed < 8:
+        return {name: ends[seed >> k & 1] for k, (name, ends) in enumerate(ranges.items())}
+    rng = random.Random(seed)
+    return {name: round(rng.uniform(*ends), 5) for name, ends in ranges.items()}
+
+
+@pytest.mark.parametrize("seed", range(40) if SOAK else (5, 8))
+def test_a_viscous_wing_body_is_sound_in_all_its_range(seed: int) -> None:
+    parameters = draw(seed)
+    p = np.asarray(viscous(**parameters)["grid"])
+    # Its own assertions are of folds and scaled Jacobians.
+    for axis in range(3):
+        assert np.linalg.norm(np.diff(p, axis=axis), axis=-1).min() > 0.1 * parameters["first"]
+    assert np.abs(p[:, 0, :, 1]).max() == 0
+    # Beside the root of the wing a node goes farther to be that far from both walls.
+    first = np.linalg.norm(p[:, :, 1] - p[:, :, 0], axis=-1)
+    assert first.min() > 0.99 * parameters["first"]
+
+
+def test_a_viscous_wing_body_has_no_collapsed_corners(tmp_path: Path) -> None:
+    m = viscous()
+    p = np.asarray(m["grid"])
     for axis in range(3):
         assert np.linalg.norm(np.diff(p, axis=axis), axis=-1).min() > 1e-5
     assert np.abs(p[:, 0, :, 1]).max() == 0

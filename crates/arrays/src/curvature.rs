@@ -129,11 +129,11 @@ fn forms<T: Real>(jet: &SurfJet<T>) -> Option<(Vec3<T>, [T; 6])> {
 /// A number at each point of a grid; at singular ones (poles) the mean of the next line's.
 fn at_points<T: Real>(
     grid: &SurfaceGrid<T>,
-    field: FieldId,
+    (field, context): (FieldId, &Context),
     f: impl Fn(&SurfJet<T>) -> Option<Vec3<T>>,
 ) -> Result<Vec<Vec3<T>>, CallError> {
     let (m, n) = (grid.m, grid.n);
-    let all: Vec<Option<Vec3<T>>> = jets(grid, field)?.iter().map(f).collect();
+    let all: Vec<Option<Vec3<T>>> = jets(grid, field, &context.budget)?.iter().map(f).collect();
     let mut known = Vec::with_capacity(m * n);
     for k in 0..m * n {
         let (i, j) = (k / n, k % n);
@@ -182,12 +182,12 @@ pub struct Gauss<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Gauss<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let k = |jet: &SurfJet<T>| {
             let (_, [e, f, g, l, m, n]) = forms(jet)?;
             Some(Vec3::new((l * n - m * m) / (e * g - f * f), T::zero(), T::zero()))
         };
-        let values = at_points(&self.s.0, Self::S, k)?;
+        let values = at_points(&self.s.0, (Self::S, context), k)?;
         Ok(grid_of(&self.s.0, values))
     }
 }
@@ -209,13 +209,13 @@ pub struct Mean<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Mean<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let h = |jet: &SurfJet<T>| {
             let (_, [e, f, g, l, m, n]) = forms(jet)?;
             let h = (e * n - f * m * 2.0 + g * l) / ((e * g - f * f) * 2.0);
             Some(Vec3::new(h, T::zero(), T::zero()))
         };
-        let values = at_points(&self.s.0, Self::S, h)?;
+        let values = at_points(&self.s.0, (Self::S, context), h)?;
         Ok(grid_of(&self.s.0, values))
     }
 }
@@ -236,8 +236,9 @@ pub struct Normals<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Normals<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let all = at_points(&self.s.0, Self::S, |jet| forms(jet).map(|(normal, _)| normal))?;
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
+        let all =
+            at_points(&self.s.0, (Self::S, context), |jet| forms(jet).map(|(normal, _)| normal))?;
         let unit = |v: Vec3<T>| v.normalized().unwrap_or(v);
         let all = all.into_iter().map(unit).collect();
         Ok(vectors(ArrayShape::Grid(self.s.0.m, self.s.0.n), all))

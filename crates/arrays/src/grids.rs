@@ -1,10 +1,12 @@
 //! Structured grids: interpolated from edges and faces, smoothed, measured.
 
 use crate::value::{GridArg, Points, surface};
+use moldloft_budget::Budget;
 use moldloft_grid::{
     Blend, Elliptic, Faces, FailureCause, GridError, GridSide, Hyperbolic, MarchBoundary, Method,
-    QualityMetric, Smoothed, Stop, Support, SurfaceGrid, Wall, elliptic_until, folded_cells,
-    framed, hyperbolic_curve_until, hyperbolic_until, quality, transfinite, transfinite_block,
+    QualityMetric, Smoothed, Stop, Support, SurfaceGrid, Wall, elliptic_until, folded_cells_until,
+    framed, hyperbolic_curve_until, hyperbolic_until, quality_until, transfinite_block_until,
+    transfinite_until,
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
@@ -104,7 +106,7 @@ pub struct Tfi<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Tfi<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let blend = match &*self.kind {
             "arc" => Blend::Arc,
             "linear" => Blend::Linear,
@@ -118,7 +120,9 @@ impl<T: Scalar> Build<T> for Tfi<T> {
         let Value::List(items) = &self.s else {
             let GridArg(grid) =
                 GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
-            return transfinite(&grid, blend).map(surface).map_err(|error| fault(error, Self::S));
+            return transfinite_until(&grid, blend, &context.budget)
+                .map(surface)
+                .map_err(|error| fault(error, Self::S));
         };
         let place = |k: usize| move |fault: CallError| fault.in_item(k).in_field(Self::S);
         match items.len() {
@@ -139,7 +143,9 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                     }
                 }
                 let grid = framed(&edges).map_err(|error| fault(error, Self::S))?;
-                transfinite(&grid, blend).map(surface).map_err(|error| fault(error, Self::S))
+                transfinite_until(&grid, blend, &context.budget)
+                    .map(surface)
+                    .map_err(|error| fault(error, Self::S))
             }
             6 => {
                 let mut faces: Vec<SurfaceGrid<T>> = Vec::with_capacity(6);
@@ -147,7 +153,8 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                     faces.push(GridArg::from_value(item).map_err(place(k))?.0);
                 }
                 let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6, Self::S))?;
-                let layers = transfinite_block(&faces).map_err(|error| fault(error, Self::S))?;
+                let layers = transfinite_block_until(&faces, &context.budget)
+                    .map_err(|error| fault(error, Self::S))?;
                 Ok(Value::list(layers.into_iter().map(surface)))
             }
             n => Err(fault_of_count(n, Self::S)),
@@ -297,7 +304,11 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             );
         }
         let smoothed = done.grid;
-        let folded = if allowed { Vec::new() } else { folded_cells(&smoothed) };
+        let folded = match allowed {
+            true => Vec::new(),
+            false => folded_cells_until(&smoothed, &context.budget)
+                .map_err(|spent| fault(spent.into(), Self::S))?,
+        };
         if let Some(&[i, j]) = folded.first() {
             let error = GridError::Folded { count: folded.len(), at: [i + 1, j + 1], layer: None };
             return Err(fault(error, Self::S).help(
@@ -632,7 +643,7 @@ pub struct QualityOf<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for QualityOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         if let Value::List(layers) = &self.s {
             let block = crate::volumes::volume(layers, Self::S)?;
             return crate::volumes::quality(&block, &self.metric, Self::METRIC);
@@ -646,7 +657,8 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
                 Self::S,
             ));
         }
-        let values = quality(&grid, metric);
+        let values = quality_until(&grid, metric, &context.budget)
+            .map_err(|spent| fault(spent.into(), Self::S))?;
         Ok(crate::value::numbers(ArrayShape::Grid(grid.m - 1, grid.n - 1), values))
     }
 }
@@ -666,14 +678,16 @@ pub struct Folds<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Folds<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         if let Value::List(layers) = &self.s {
             let count = crate::volumes::folded(&crate::volumes::volume(layers, Self::S)?);
             return Ok(Value::Number(T::from(count as f64)));
         }
         let GridArg(grid) =
             GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
-        Ok(Value::Number(T::from(folded_cells(&grid).len() as f64)))
+        let folded = folded_cells_until(&grid, &context.budget)
+            .map_err(|spent| fault(spent.into(), Self::S))?;
+        Ok(Value::Number(T::from(folded.len() as f64)))
     }
 }
 
@@ -694,7 +708,7 @@ pub struct Report<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Report<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         use std::fmt::Write;
         if let Value::List(layers) = &self.s {
             let block = crate::volumes::volume(layers, Self::S)?;
@@ -710,12 +724,15 @@ impl<T: Scalar> Build<T> for Report<T> {
             ));
         }
         let n = grid.n - 1;
-        let folded = folded_cells(&grid).len();
+        let folded = folded_cells_until(&grid, &context.budget)
+            .map_err(|spent| fault(spent.into(), Self::S))?
+            .len();
         let mut text = format!("grid [{},{}], {folded} folded cells\n", grid.m, grid.n);
         let _ =
             writeln!(text, "{:<11}{:>13}{:>13}{:>13}  worst cell", "metric", "min", "mean", "max");
         for metric in QualityMetric::ALL {
-            let values = quality(&grid, metric);
+            let values = quality_until(&grid, metric, &context.budget)
+                .map_err(|spent| fault(spent.into(), Self::S))?;
             let low_is_worse =
                 matches!(metric, QualityMetric::ScaledJacobian | QualityMetric::Area);
             let worse = |x: f64, y: f64| if low_is_worse { x < y } else { x > y };
@@ -736,6 +753,7 @@ impl<T: Scalar> Build<T> for Report<T> {
 pub fn jets<T: Real>(
     grid: &SurfaceGrid<T>,
     field: FieldId,
+    budget: &Budget,
 ) -> Result<Vec<moldloft_num::SurfJet<T>>, CallError> {
     if grid.m.min(grid.n) < 3 {
         return Err(fault(GridError::TooFew { expected: 3, actual: [grid.m, grid.n] }, field));
@@ -743,5 +761,10 @@ pub fn jets<T: Real>(
     let spline = through(grid, field)?;
     let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
     let (m, n) = (grid.m, grid.n);
-    Ok((0..m * n).map(|k| spline.jet(even(k / n, m), even(k % n, n), Order::Second)).collect())
+    let mut all = Vec::with_capacity(m * n);
+    for i in 0..m {
+        budget.poll().map_err(|spent| fault(spent.into(), field))?;
+        all.extend((0..n).map(|j| spline.jet(even(i, m), even(j, n), Order::Second)));
+    }
+    Ok(all)
 }

@@ -3,6 +3,8 @@
 //! A mask is an array of 0 and 1, as comparisons of arrays give; any number but 0 counts as 1.
 
 use crate::value::{Farray, Numbers, farray, numbers};
+use moldloft_budget::{Budget, Spent};
+use moldloft_grid::GridError;
 use moldloft_num::Vec3;
 use moldloft_registry::{
     ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value,
@@ -220,11 +222,43 @@ pub struct Sort<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Sort<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let mut row = self.a.row().map_err(|fault| fault.in_field(Self::A))?;
-        row.sort_by(|a, b| a.re().total_cmp(&b.re()));
-        Ok(farray(row))
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
+        let row = self.a.row().map_err(|fault| fault.in_field(Self::A))?;
+        let sorted = sorted_until(row, &context.budget);
+        let spent = |spent| crate::grids::fault(GridError::Spent(spent), Self::A);
+        sorted.map(farray).map_err(spent)
     }
+}
+
+/// So many numbers are sorted between two looks at what is left of the budget.
+const SORTED_AT_ONCE: usize = 1 << 16;
+
+/// The numbers in order, equal ones as they were: long rows piece by piece, then merged.
+fn sorted_until<T: Scalar>(mut row: Vec<T>, budget: &Budget) -> Result<Vec<T>, Spent> {
+    for piece in row.chunks_mut(SORTED_AT_ONCE) {
+        budget.poll()?;
+        piece.sort_by(|a, b| a.re().total_cmp(&b.re()));
+    }
+    let mut width = SORTED_AT_ONCE;
+    while width < row.len() {
+        let mut merged = Vec::with_capacity(row.len());
+        for pair in row.chunks(2 * width) {
+            let (mut a, mut b) = pair.split_at(width.min(pair.len()));
+            while let ([x, ..], [y, ..]) = (a, b) {
+                let from = if y.re().total_cmp(&x.re()).is_lt() { &mut b } else { &mut a };
+                merged.push(from[0]);
+                *from = &from[1..];
+                if merged.len() % SORTED_AT_ONCE == 0 {
+                    budget.poll()?;
+                }
+            }
+            merged.extend_from_slice(a);
+            merged.extend_from_slice(b);
+        }
+        row = merged;
+        width *= 2;
+    }
+    Ok(row)
 }
 
 /// The sums of the first, the first two, ... numbers of a row.

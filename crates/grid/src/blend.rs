@@ -3,6 +3,7 @@
 //! Holds: the edges of the result are those given, to the bit.
 
 use crate::{GridError, GridSide, SurfaceGrid};
+use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
 use rayon::prelude::*;
 
@@ -93,6 +94,18 @@ pub fn transfinite<T: Real>(
     grid: &SurfaceGrid<T>,
     blend: Blend,
 ) -> Result<SurfaceGrid<T>, GridError> {
+    transfinite_until(grid, blend, &Budget::default())
+}
+
+/// As [`transfinite`]; ends early when `budget` is spent.
+///
+/// # Errors
+/// As [`transfinite`], and [`GridError::Spent`].
+pub fn transfinite_until<T: Real>(
+    grid: &SurfaceGrid<T>,
+    blend: Blend,
+    budget: &Budget,
+) -> Result<SurfaceGrid<T>, GridError> {
     grid.check_edges()?;
     let (m, n) = (grid.m, grid.n);
     let [first_i, last_i, first_j, last_j] = GridSide::ALL.map(|edge| grid.edge(edge));
@@ -124,6 +137,9 @@ pub fn transfinite<T: Real>(
         .zip(pz.par_chunks_mut(rows * n))
         .enumerate();
     let fill = |(c, ((x, y), z)): (usize, ((&mut [T], &mut [T]), &mut [T]))| {
+        if budget.is_spent() {
+            return;
+        }
         pulp::Arch::new().dispatch(Fill { frame: &frame, first: c * rows, planes: [x, y, z] });
     };
     if m * n < PARALLEL {
@@ -132,6 +148,7 @@ pub fn transfinite<T: Real>(
     } else {
         chunks.for_each(fill);
     }
+    budget.poll()?;
     Ok(SurfaceGrid { m, n, planes })
 }
 

@@ -4,6 +4,7 @@
 
 use crate::surface_grid::SAME;
 use crate::{GridError, SurfaceGrid};
+use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
 
 /// The six faces of a block of ni by nj by nk points: i = 1 and ni (each [nj, nk]), j = 1 and nj
@@ -20,6 +21,17 @@ pub type Faces<T> = [SurfaceGrid<T>; 6];
 /// # Errors
 /// [`GridError::FaceSizes`]; [`GridError::FacesApart`] where two faces do not share their edge.
 pub fn transfinite_block<T: Real>(faces: &Faces<T>) -> Result<Vec<SurfaceGrid<T>>, GridError> {
+    transfinite_block_until(faces, &Budget::default())
+}
+
+/// As [`transfinite_block`]; ends early when `budget` is spent.
+///
+/// # Errors
+/// As [`transfinite_block`], and [`GridError::Spent`].
+pub fn transfinite_block_until<T: Real>(
+    faces: &Faces<T>,
+    budget: &Budget,
+) -> Result<Vec<SurfaceGrid<T>>, GridError> {
     let [ni, nj, nk] = [faces[4].m, faces[4].n, faces[0].n];
     let expected = [[nj, nk], [nj, nk], [ni, nk], [ni, nk], [ni, nj], [ni, nj]];
     for (k, (face, expected)) in faces.iter().zip(expected).enumerate() {
@@ -35,7 +47,8 @@ pub fn transfinite_block<T: Real>(faces: &Faces<T>) -> Result<Vec<SurfaceGrid<T>
     let parameters = [block.parameters(0), block.parameters(1), block.parameters(2)];
     let means = [0, 1, 2].map(|axis| mean(&parameters[axis], block.size[axis]));
     let layer = |k: usize| {
-        SurfaceGrid::from_fn(ni, nj, |i, j| {
+        budget.poll()?;
+        Ok(SurfaceGrid::from_fn(ni, nj, |i, j| {
             if let Some(p) = block.on_face([i, j, k]) {
                 return p;
             }
@@ -44,9 +57,9 @@ pub fn transfinite_block<T: Real>(faces: &Faces<T>) -> Result<Vec<SurfaceGrid<T>
                 blended(&parameters[axis], [i, j, k][axis], rough, axis)
             });
             block.inside([i, j, k], x)
-        })
+        }))
     };
-    Ok((0..nk).map(layer).collect())
+    (0..nk).map(layer).collect()
 }
 
 struct TransfiniteBlock<'a, T> {

@@ -28,8 +28,8 @@ mod volume_elliptic;
 mod volume_grid;
 mod zebra;
 
-pub use blend::{Blend, transfinite};
-pub use block::{Faces, transfinite_block};
+pub use blend::{Blend, transfinite, transfinite_until};
+pub use block::{Faces, transfinite_block, transfinite_block_until};
 pub use block_quality::{BlockMetric, block_quality};
 pub use control::{WallReport, wall_cells};
 pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
@@ -40,7 +40,7 @@ pub use marching::{
     Support, hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,
 };
 pub use pole_cells::PoleCell;
-pub use quality::{QualityMetric, folded_cells, quality};
+pub use quality::{QualityMetric, folded_cells, folded_cells_until, quality, quality_until};
 pub use surface_grid::{GridSide, SurfaceGrid, framed};
 pub use volume_elliptic::{
     EllipticVolume, FaceWall, FaceWallReport, SmoothedVolume, elliptic_volume_until,

@@ -1,6 +1,7 @@
 //! Measures of the cells of a surface grid.
 
 use crate::SurfaceGrid;
+use moldloft_budget::{Budget, Spent};
 use moldloft_num::{Real, Vec3};
 
 /// What is measured of each cell.
@@ -64,16 +65,42 @@ impl QualityMetric {
 /// Sides without length (at poles) do not count: the cell is a triangle then. A cell without area
 /// has scaled Jacobian 0 and skew 1, aspect and edge ratio infinite unless it is a point.
 pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: QualityMetric) -> Vec<T> {
+    measured(grid, metric, &|| Ok(())).expect("nothing ends it")
+}
+
+/// As [`quality`]; ends early when `budget` is spent.
+///
+/// # Errors
+/// What it is spent on.
+pub fn quality_until<T: Real>(
+    grid: &SurfaceGrid<T>,
+    metric: QualityMetric,
+    budget: &Budget,
+) -> Result<Vec<T>, Spent> {
+    measured(grid, metric, &|| budget.poll())
+}
+
+/// The metric of each cell, as long as the work may go on.
+fn measured<T: Real>(
+    grid: &SurfaceGrid<T>,
+    metric: QualityMetric,
+    go_on: &dyn Fn() -> Result<(), Spent>,
+) -> Result<Vec<T>, Spent> {
     if grid.m < 2 || grid.n < 2 {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let cells = GridCells { grid, m: grid.m - 1, n: grid.n - 1 };
     let each = |f: &dyn Fn(usize, usize) -> T| {
-        (0..cells.m * cells.n).map(|k| f(k / cells.n, k % cells.n)).collect()
+        let mut all = Vec::with_capacity(cells.m * cells.n);
+        for i in 0..cells.m {
+            go_on()?;
+            all.extend((0..cells.n).map(|j| f(i, j)));
+        }
+        Ok(all)
     };
     match metric {
         QualityMetric::ScaledJacobian => {
-            let normals = cells.reference_normals();
+            let normals = cells.reference_normals(go_on)?;
             each(&|i, j| cells.scaled_jacobian(i, j, normals[i * cells.n + j]))
         }
         QualityMetric::Skew => each(&|i, j| cells.skew(i, j)),
@@ -113,11 +140,29 @@ pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: QualityMetric) -> Vec<T> 
 /// In a plane grid all cells are compared with the sign of the whole; in a curved one with the mean
 /// normal of the cells around, so of a large fold its border is reported.
 pub fn folded_cells<T: Real>(grid: &SurfaceGrid<T>) -> Vec<[usize; 2]> {
+    folded(grid, &|| Ok(())).expect("nothing ends it")
+}
+
+/// As [`folded_cells`]; ends early when `budget` is spent.
+///
+/// # Errors
+/// What it is spent on.
+pub fn folded_cells_until<T: Real>(
+    grid: &SurfaceGrid<T>,
+    budget: &Budget,
+) -> Result<Vec<[usize; 2]>, Spent> {
+    folded(grid, &|| budget.poll())
+}
+
+fn folded<T: Real>(
+    grid: &SurfaceGrid<T>,
+    go_on: &dyn Fn() -> Result<(), Spent>,
+) -> Result<Vec<[usize; 2]>, Spent> {
     let plain = grid.re();
     let n = grid.n.saturating_sub(1).max(1);
-    let jacobians = quality(&plain, QualityMetric::ScaledJacobian);
+    let jacobians = measured(&plain, QualityMetric::ScaledJacobian, go_on)?;
     let folded = jacobians.iter().enumerate().filter(|(_, x)| **x < 0.0);
-    folded.map(|(k, _)| [k / n, k % n]).collect()
+    Ok(folded.map(|(k, _)| [k / n, k % n]).collect())
 }
 
 struct GridCells<'a, T> {
@@ -172,15 +217,21 @@ impl<T: Real> GridCells<'_, T> {
     }
 
     /// The direction that a cell's normal is compared with.
-    fn reference_normals(&self) -> Vec<Vec3<f64>> {
-        let all: Vec<Vec3> =
-            (0..self.m * self.n).map(|k| self.normal(k / self.n, k % self.n).re()).collect();
+    fn reference_normals(
+        &self,
+        go_on: &dyn Fn() -> Result<(), Spent>,
+    ) -> Result<Vec<Vec3<f64>>, Spent> {
+        let mut all: Vec<Vec3> = Vec::with_capacity(self.m * self.n);
+        for i in 0..self.m {
+            go_on()?;
+            all.extend((0..self.n).map(|j| self.normal(i, j).re()));
+        }
         let total = all.iter().fold(Vec3::zero(), |sum, v| sum + *v);
         let swept = all.iter().map(|v| v.norm()).sum::<f64>();
         // Plane: no normal leaves the line of the total.
         let across = |v: &Vec3| v.cross(total).norm() > 1e-9 * v.norm() * total.norm();
         if total.norm() > 1e-6 * swept && !all.iter().any(across) {
-            return vec![total / total.norm(); all.len()];
+            return Ok(vec![total / total.norm(); all.len()]);
         }
         let around = |k: usize| {
             let (i, j) = (k / self.n, k % self.n);
@@ -192,7 +243,12 @@ impl<T: Real> GridCells<'_, T> {
             }
             sum.normalized().unwrap_or_default()
         };
-        (0..all.len()).map(around).collect()
+        let mut around_all = Vec::with_capacity(all.len());
+        for i in 0..self.m {
+            go_on()?;
+            around_all.extend((i * self.n..(i + 1) * self.n).map(around));
+        }
+        Ok(around_all)
     }
 
     fn scaled_jacobian(&self, i: usize, j: usize, reference: Vec3) -> T {

@@ -46,6 +46,7 @@ mod text;
 pub mod aqwa;
 pub mod cgns;
 pub mod drawing;
+mod facing;
 pub mod gdf;
 pub mod gltf;
 pub mod hams;

@@ -7,7 +7,7 @@
 
 use crate::error::{check_positions, check_single};
 use crate::text::{TextLine, put, quoted, real, utf8, word};
-use crate::{FilePosition, ReadError, StructuredGrid, WriteError};
+use crate::{FilePosition, ReadError, StructuredGrid, WriteError, facing};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::Vec3;
 
@@ -170,7 +170,8 @@ fn built(corners: Vec<Vec3>, name: &str, place: FilePosition) -> Result<Mesh, Re
 }
 
 /// The surfaces as one binary STL. Quads are split along their shorter diagonal; triangles without
-/// area at poles are dropped. Facets face along r_i x r_j, or against it when `flip`.
+/// area at poles are dropped. Facets face out of closed bodies, whichever way their surfaces run, and out of open ones
+/// as far as their rims say where that is; else along r_i x r_j. With `flip` they face the other way.
 ///
 /// # Errors
 /// No grids; blocks that are no surfaces; coordinates that are not finite in single precision.
@@ -183,11 +184,12 @@ pub fn write_grids(
     let cannot = |what| WriteError::CannotHold { format: "STL", what };
     let mut builder = TopologyBuilder::new();
     let mut positions: Vec<Vec3> = Vec::new();
+    if blocks.iter().any(|block| block.size[2] != 1 || block.size[0].min(block.size[1]) < 2) {
+        return Err(cannot("grids with fewer than two points along an index"));
+    }
+    let turned = facing::turned(blocks);
     for (number, block) in blocks.iter().enumerate() {
-        let [m, n, k] = block.size;
-        if k != 1 || m < 2 || n < 2 {
-            return Err(cannot("grids with fewer than two points along an index"));
-        }
+        let [m, n, _] = block.size;
         let first = u32::try_from(positions.len())
             .ok()
             .filter(|first| first.checked_add((m * n) as u32).is_some())
@@ -197,7 +199,7 @@ pub fn write_grids(
         builder.add_vertices(m * n).map_err(large)?;
         let vertices = (first..first + (m * n) as u32).collect();
         let info = PatchInfo::new(format!("grid {}", number + 1));
-        builder.add_block(info, m, n, vertices, flip).map_err(large)?;
+        builder.add_block(info, m, n, vertices, flip != turned[number]).map_err(large)?;
     }
     let mesh = Mesh::new(builder.build().into(), positions);
     let mesh = mesh.map_err(|_| WriteError::TooLarge { what: "points", count: 0 })?;

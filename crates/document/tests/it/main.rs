@@ -27,4 +27,5 @@ mod sets;
 mod sketches;
 mod solve;
 mod sweeps;
+mod vector_code;
 mod workspace;

@@ -240,7 +240,7 @@ impl Programs {
 }
 
 /// The bits of all numbers; those of what is not a number say nothing.
-fn bits(value: &Value<f64>) -> Vec<u64> {
+pub(crate) fn bits(value: &Value<f64>) -> Vec<u64> {
     let of = |x: &f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
     match value {
         Value::Number(x) => vec![of(x)],
@@ -251,12 +251,12 @@ fn bits(value: &Value<f64>) -> Vec<u64> {
     }
 }
 
-fn opened(text: &str) -> Document {
+pub(crate) fn opened(text: &str) -> Document {
     Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text)
 }
 
 /// Both runs of a program, compared; how many diagnostics there are.
-fn compare(text: &str, most: u64, what: &str) -> (Document, usize) {
+pub(crate) fn compare(text: &str, most: u64, what: &str) -> (Document, usize) {
     let mut coded = opened("");
     let mut plain = opened("");
     coded.with_steps(most);

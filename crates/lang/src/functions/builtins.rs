@@ -198,7 +198,7 @@ pub const BUILTINS: [Builtin; 31] = [
         arguments: (2, usize::MAX),
         action: Action::WriteGrids(GridFormat::Stl),
         signature: "write_stl(name, words, s1, s2, ...)",
-        doc: "Writes surfaces as binary STL, triangles without area at poles left out; \"flip\" reverses the normals.",
+        doc: "Writes surfaces as binary STL, facets out of the body, triangles without area at poles left out; \"flip\" reverses the normals.",
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);",
     },
     Builtin {

@@ -1,8 +1,9 @@
 //! Names that are used before they are declared, and cycles among them.
 
+use crate::run::parts;
 use crate::source::module::Module;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_syntax::sdl::{ExprId, ExprKind, Ident, StmtId, StmtKind, Subscript, Symbol};
+use moldloft_syntax::sdl::{ExprId, ExprKind, Ident, StmtId, StmtKind, Symbol};
 use std::collections::{HashMap, HashSet};
 
 /// A declaration that stands after its use.
@@ -45,13 +46,7 @@ pub(crate) fn declared_later(m: &Module, symbol: Symbol, used: Span) -> Option<L
                 }
                 objects.entry(name.symbol).or_insert((name, values));
             }
-            StmtKind::Block(list) => stack.extend(&m.program[list]),
-            StmtKind::If { then, otherwise, .. } => {
-                stack.push(then);
-                stack.extend(otherwise);
-            }
-            StmtKind::ForRange { body, .. } | StmtKind::Foreach { body, .. } => stack.push(body),
-            _ => {}
+            _ => stack.extend(parts::of_statement(m, id).inner),
         }
     }
     let &(name, _) = objects
@@ -104,23 +99,7 @@ pub(crate) fn names_in(m: &Module, expr: ExprId, f: &mut impl FnMut(Symbol)) {
     while let Some(expr) = stack.pop() {
         match m.program[expr].kind {
             ExprKind::Name(symbol) => f(symbol),
-            ExprKind::Paren(e) | ExprKind::Magnitude(e) => stack.push(e),
-            ExprKind::List(items) => stack.extend(&m.program[items]),
-            ExprKind::Unary { operand, .. } => stack.push(operand),
-            ExprKind::Binary { left, right, .. } => stack.extend([left, right]),
-            ExprKind::Member { base, .. } => stack.push(base),
-            ExprKind::Index { base, subs } => {
-                stack.push(base);
-                stack.extend(m.program[subs].iter().filter_map(|s| match s {
-                    Subscript::At(e) => Some(*e),
-                    _ => None,
-                }));
-            }
-            ExprKind::Call { callee, args } => {
-                stack.push(callee);
-                stack.extend(m.program[args].iter().map(|a| a.value));
-            }
-            _ => {}
+            _ => stack.extend(parts::of_expression(m, expr)),
         }
     }
 }

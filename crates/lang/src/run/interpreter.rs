@@ -472,9 +472,14 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         kind: StmtKind,
         span: Span,
     ) -> Result<Flow<T>, Diagnostic> {
-        if matches!(kind, StmtKind::While { .. } | StmtKind::ForRange { .. } | StmtKind::For { .. })
-            && let Some(flow) = self.loop_by_code(m, id)
-        {
+        let is_loop = matches!(
+            kind,
+            StmtKind::While { .. }
+                | StmtKind::ForRange { .. }
+                | StmtKind::For { .. }
+                | StmtKind::Foreach { .. }
+        );
+        if is_loop && let Some(flow) = self.loop_by_code(m, id) {
             return Ok(flow);
         }
         match kind {

@@ -9,6 +9,7 @@ pub mod inserted;
 pub mod interpreter;
 mod loops;
 mod objects;
+mod parts;
 pub mod program;
 mod read_log;
 mod routine;

@@ -8,14 +8,15 @@
 
 use crate::functions::builtins::BUILTINS;
 use crate::functions::files::predeclared;
+use crate::run::parts::{self, StatementParts};
 use crate::run::unused;
 use crate::source::module::{Module, Modules, Name, RoutineAt};
 use crate::value::variables::described;
 use moldloft_diag::{Diagnostic, Severity, Span, nearest};
 use moldloft_registry::{Registry, Row};
 use moldloft_syntax::sdl::{
-    Arg, AssignOp, BinaryOp, ChainItem, Declarator, ExprId, ExprKind, Formal, Ident, NodeList,
-    Routine, StmtId, StmtKind, Subscript, Symbol, Type, UnaryOp,
+    Arg, AssignOp, BinaryOp, Declarator, ExprId, ExprKind, Formal, Ident, NodeList, Routine,
+    StmtId, StmtKind, Symbol, Type, UnaryOp,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -222,22 +223,16 @@ impl<'a> Semantics<'a> {
         let m = place.m;
         let judged = !self.executed.has(place.module, id);
         let stmt = m.program[id];
-        let mut values: Vec<ExprId> = Vec::new();
+        let StatementParts { values, inner } = parts::of_statement(m, id);
         match stmt.kind {
-            StmtKind::Block(list) => self.list(place, list),
+            StmtKind::Block(list) => return self.list(place, list),
             StmtKind::Declare { ty, items, .. } => {
                 for item in &m.program[items] {
-                    values.extend(&m.program[item.dims]);
-                    values.extend(item.value);
                     if judged {
                         self.declaration(place, ty, item);
                     }
                     self.pi(m, item.name, item.value);
                 }
-            }
-            StmtKind::Param { value, range, .. } => {
-                values.push(value);
-                values.extend(range.into_iter().flat_map(|(low, high)| [low, high]));
             }
             StmtKind::Object { kind, args, .. } => {
                 let word = m.program.name(kind.symbol);
@@ -256,10 +251,8 @@ impl<'a> Semantics<'a> {
                         self.say(diagnostic);
                     }
                 }
-                values.extend(m.program[args].iter().map(|arg| arg.value));
             }
             StmtKind::Assign { target, op, value } => {
-                values.extend([target, value]);
                 if judged && op == AssignOp::Set {
                     self.assignment(place, target, value);
                 }
@@ -268,51 +261,16 @@ impl<'a> Semantics<'a> {
                     self.pi(m, name, Some(value));
                 }
             }
-            StmtKind::Call(expr) => values.push(expr),
-            StmtKind::If { condition, then, otherwise } => {
-                values.push(condition);
-                self.statement(place, then);
-                if let Some(otherwise) = otherwise {
-                    self.statement(place, otherwise);
-                }
-            }
-            StmtKind::While { condition, body } => {
-                values.push(condition);
-                self.statement(place, body);
-            }
-            StmtKind::ForRange { from, to, step, body, .. } => {
-                values.extend([Some(from), Some(to), step].into_iter().flatten());
-                self.statement(place, body);
-            }
-            StmtKind::For { start, condition, step, body } => {
-                values.extend(condition);
-                for stmt in [start, Some(body), step].into_iter().flatten() {
-                    self.statement(place, stmt);
-                }
-            }
-            StmtKind::Foreach { list, body, .. } => {
-                values.push(list);
-                self.statement(place, body);
-            }
-            StmtKind::Print(list) => values.extend(&m.program[list]),
-            StmtKind::Assert { condition, message } => {
-                values.push(condition);
-                values.extend(message);
-            }
             StmtKind::Return(value) => {
-                values.extend(value);
                 if let (true, Some(value), Some(result)) =
                     (judged, value, place.routine.and_then(|routine| routine.result))
                 {
                     self.fits(place, result.0, false, value, None);
                 }
             }
-            StmtKind::Load(_)
-            | StmtKind::Routine(_)
-            | StmtKind::Break
-            | StmtKind::Continue
-            | StmtKind::Error => {}
+            _ => {}
         }
+        inner.into_iter().for_each(|stmt| self.statement(place, stmt));
         if judged {
             values.into_iter().for_each(|expr| self.expression(place, expr));
         }
@@ -324,13 +282,10 @@ impl<'a> Semantics<'a> {
         let mut stack = vec![expr];
         while let Some(id) = stack.pop() {
             let expr = m.program[id];
+            let mut inner = parts::of_expression(m, id);
             match expr.kind {
                 ExprKind::Name(symbol) => self.name(place, symbol, expr.span),
-                ExprKind::Paren(inner) | ExprKind::Magnitude(inner) => stack.push(inner),
-                ExprKind::List(items) => stack.extend(&m.program[items]),
-                ExprKind::Unary { operand, .. } => stack.push(operand),
                 ExprKind::Binary { op, left, right } => {
-                    stack.extend([right, left]);
                     let named = [left, right].map(|side| self.dims(place, side));
                     if let ([Some(a), Some(b)], true) = (named, op != BinaryOp::Dot)
                         && a != b
@@ -338,40 +293,22 @@ impl<'a> Semantics<'a> {
                         self.differ(place, [left, right], [&a, &b], expr.span);
                     }
                 }
-                ExprKind::Chain(items) => {
-                    stack.extend(m.program[items].iter().rev().filter_map(|item| match item {
-                        ChainItem::Operand(operand) => Some(*operand),
-                        _ => None,
-                    }));
-                }
-                ExprKind::Index { base, subs } => {
-                    stack.push(base);
-                    for sub in &m.program[subs] {
-                        match *sub {
-                            Subscript::Whole => {}
-                            Subscript::At(at) => stack.push(at),
-                            Subscript::Range { from, to, step } => {
-                                stack.extend([from, to, step].into_iter().flatten());
-                            }
-                        }
-                    }
-                }
                 ExprKind::Member { base, .. } => {
                     // `hydrostatics.volume` and `mesh.area` belong to the whole model.
                     let word = m.program.as_name(base).map(|symbol| m.program.name(symbol));
-                    if !matches!(word, Some("hydrostatics" | "mesh")) {
-                        stack.push(base);
+                    if matches!(word, Some("hydrostatics" | "mesh")) {
+                        inner.clear();
                     }
                 }
                 ExprKind::Call { callee, args } => {
-                    match m.program.as_name(callee) {
-                        Some(symbol) => self.call(place, symbol, callee, args, expr.span),
-                        None => stack.push(callee),
+                    if let Some(symbol) = m.program.as_name(callee) {
+                        inner.remove(0);
+                        self.call(place, symbol, callee, args, expr.span);
                     }
-                    stack.extend(m.program[args].iter().rev().map(|arg| arg.value));
                 }
-                ExprKind::Number(_) | ExprKind::Text(_) | ExprKind::Error => {}
+                _ => {}
             }
+            stack.extend(inner.into_iter().rev());
         }
     }
 

@@ -1,10 +1,9 @@
 //! What a program has and does not use: variables of routines that are never read, routines that nothing calls.
 
+use crate::run::parts::{self, StatementParts};
 use crate::source::module::{Module, Name};
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_syntax::sdl::{
-    ChainItem, ExprId, ExprKind, NodeList, Routine, StmtId, StmtKind, Subscript, Symbol,
-};
+use moldloft_syntax::sdl::{ExprId, ExprKind, NodeList, Routine, StmtId, StmtKind, Symbol};
 use std::collections::HashSet;
 
 /// The names that statements read, and those that they declare for themselves.
@@ -22,69 +21,20 @@ impl Uses {
     }
 
     fn statement(&mut self, m: &Module, stmt: StmtId) {
-        let mut values: Vec<ExprId> = Vec::new();
+        let StatementParts { mut values, inner } = parts::of_statement(m, stmt);
         match m.program[stmt].kind {
-            StmtKind::Block(list) => self.list(m, list),
-            StmtKind::Declare { global, items, .. } => {
-                for item in &m.program[items] {
-                    if !global {
-                        self.declared.push((item.name.symbol, item.name.span));
-                    }
-                    values.extend(&m.program[item.dims]);
-                    values.extend(item.value);
-                }
+            StmtKind::Declare { global: false, items, .. } => {
+                let names = m.program[items].iter().map(|item| item.name);
+                self.declared.extend(names.map(|name| (name.symbol, name.span)));
             }
-            StmtKind::Param { value, range, .. } => {
-                values.push(value);
-                values.extend(range.into_iter().flat_map(|(low, high)| [low, high]));
-            }
-            StmtKind::Object { kind, args, .. } => {
-                self.read.insert(kind.symbol);
-                values.extend(m.program[args].iter().map(|arg| arg.value));
-            }
+            StmtKind::Object { kind, .. } => drop(self.read.insert(kind.symbol)),
             StmtKind::Assign { target, value, .. } => {
+                values = vec![value];
                 self.target(m, target, &mut values);
-                values.push(value);
             }
-            StmtKind::Call(expr) => values.push(expr),
-            StmtKind::If { condition, then, otherwise } => {
-                values.push(condition);
-                self.statement(m, then);
-                if let Some(otherwise) = otherwise {
-                    self.statement(m, otherwise);
-                }
-            }
-            StmtKind::While { condition, body } => {
-                values.push(condition);
-                self.statement(m, body);
-            }
-            StmtKind::ForRange { from, to, step, body, .. } => {
-                values.extend([Some(from), Some(to), step].into_iter().flatten());
-                self.statement(m, body);
-            }
-            StmtKind::For { start, condition, step, body } => {
-                values.extend(condition);
-                for stmt in [start, step, Some(body)].into_iter().flatten() {
-                    self.statement(m, stmt);
-                }
-            }
-            StmtKind::Foreach { list, body, .. } => {
-                // Its elements may be assigned through the variable.
-                values.push(list);
-                self.statement(m, body);
-            }
-            StmtKind::Print(list) => values.extend(&m.program[list]),
-            StmtKind::Assert { condition, message } => {
-                values.push(condition);
-                values.extend(message);
-            }
-            StmtKind::Return(value) => values.extend(value),
-            StmtKind::Load(_)
-            | StmtKind::Routine(_)
-            | StmtKind::Break
-            | StmtKind::Continue
-            | StmtKind::Error => {}
+            _ => {}
         }
+        inner.into_iter().for_each(|stmt| self.statement(m, stmt));
         values.into_iter().for_each(|expr| self.expression(m, expr));
     }
 
@@ -96,15 +46,7 @@ impl Uses {
                 ExprKind::Name(_) => return,
                 ExprKind::Paren(inner) | ExprKind::Member { base: inner, .. } => at = inner,
                 ExprKind::Index { base, subs } => {
-                    for sub in &m.program[subs] {
-                        match *sub {
-                            Subscript::Whole => {}
-                            Subscript::At(at) => values.push(at),
-                            Subscript::Range { from, to, step } => {
-                                values.extend([from, to, step].into_iter().flatten());
-                            }
-                        }
-                    }
+                    values.extend(parts::of_subscripts(m, subs));
                     at = base;
                 }
                 _ => return values.push(at),
@@ -115,37 +57,10 @@ impl Uses {
     fn expression(&mut self, m: &Module, expr: ExprId) {
         let mut stack = vec![expr];
         while let Some(id) = stack.pop() {
-            match m.program[id].kind {
-                ExprKind::Name(symbol) => drop(self.read.insert(symbol)),
-                ExprKind::Paren(inner) | ExprKind::Magnitude(inner) => stack.push(inner),
-                ExprKind::List(items) => stack.extend(&m.program[items]),
-                ExprKind::Unary { operand, .. } => stack.push(operand),
-                ExprKind::Binary { left, right, .. } => stack.extend([left, right]),
-                ExprKind::Chain(items) => {
-                    stack.extend(m.program[items].iter().filter_map(|item| match item {
-                        ChainItem::Operand(operand) => Some(*operand),
-                        _ => None,
-                    }));
-                }
-                ExprKind::Index { base, subs } => {
-                    stack.push(base);
-                    for sub in &m.program[subs] {
-                        match *sub {
-                            Subscript::Whole => {}
-                            Subscript::At(at) => stack.push(at),
-                            Subscript::Range { from, to, step } => {
-                                stack.extend([from, to, step].into_iter().flatten());
-                            }
-                        }
-                    }
-                }
-                ExprKind::Member { base, .. } => stack.push(base),
-                ExprKind::Call { callee, args } => {
-                    stack.push(callee);
-                    stack.extend(m.program[args].iter().map(|arg| arg.value));
-                }
-                ExprKind::Number(_) | ExprKind::Text(_) | ExprKind::Error => {}
+            if let ExprKind::Name(symbol) = m.program[id].kind {
+                self.read.insert(symbol);
             }
+            stack.extend(parts::of_expression(m, id));
         }
     }
 }

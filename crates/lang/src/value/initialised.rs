@@ -103,6 +103,17 @@ impl Known {
         }
     }
 
+    /// Notes that the vector at this position in memory of a grid was given a value.
+    #[inline(always)]
+    pub fn give_vector_at(&mut self, k: usize, [m, n]: [usize; 2], point: impl Fn() -> Vec3) {
+        self.give_at(k);
+        let (i, j) = (k / n, k % n);
+        if (i == 0 || i + 1 == m) && (j == 0 || j + 1 == n) {
+            let [a, b] = [i, j].map(Selection::at);
+            self.give_edges([m, n], a, b, |_, _| point());
+        }
+    }
+
     /// Notes that the elements at these positions in memory were given a value.
     pub fn give_each<T: Real>(&mut self, positions: &[usize], value: &Value<T>) {
         let shape = match value {

@@ -29,6 +29,24 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let mut sure = true;
         self.range(start, fault, fault, Some((what, origin)), |this| {
             match (what, item.dims.len()) {
+                (Poisonable::Variable(variable), 0) if ty == Type::Vector => {
+                    let to = this.units[unit].variables[variable as usize].register;
+                    match item.value {
+                        Some(value) if this.is_vector(value) => {
+                            let a = this.vector(id, value)?;
+                            sure = false;
+                            this.emit(ScalarOp::CopyVector { to, a })?;
+                        }
+                        Some(_) => return Err(Unfit::Statement),
+                        None => {
+                            let a = this.constant(T::zero());
+                            for c in 0..3 {
+                                this.emit(ScalarOp::Copy { to: to + c, a })?;
+                            }
+                        }
+                    }
+                    this.emit(ScalarOp::Declare { variable, origin }).map(drop)
+                }
                 (Poisonable::Variable(variable), 0) => {
                     let to = this.units[unit].variables[variable as usize].register;
                     let (from, safe) = match item.value {
@@ -62,7 +80,12 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 }
                 (Poisonable::Array(_), 0 | 3..) => Err(Unfit::Statement),
                 (Poisonable::Array(array), count) => {
-                    if item.value.is_some() {
+                    let fits = match ty {
+                        Type::Curve => count == 1,
+                        Type::Surface => count == 2,
+                        _ => true,
+                    };
+                    if item.value.is_some() || !fits {
                         return Err(Unfit::Statement);
                     }
                     let dims: Vec<ExprId> = m.program[item.dims].to_vec();
@@ -96,6 +119,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         op: AssignOp,
         value: ExprId,
     ) -> Result<(), Unfit> {
+        if self.assigned_vector(id, target, op, value)? {
+            return Ok(());
+        }
         let m = self.units[self.unit].m.clone();
         let spans = [target, value].map(|e| m.program[e].span);
         match m.program[target].kind {
@@ -160,7 +186,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                         to
                     }
                 };
-                let (array, places) = self.places(id, base, subs, CodeNote::Target(target))?;
+                let (array, _, places) = self.places(id, base, subs, CodeNote::Target(target))?;
                 let op = match places[..] {
                     [i] => ScalarOp::Store { array, i, a },
                     [i, j] => ScalarOp::Store2 { array, i, j, a },

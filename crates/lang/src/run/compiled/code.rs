@@ -47,6 +47,11 @@ pub(super) enum ScalarOp {
         to: u16,
         a: u16,
     },
+    /// Three registers.
+    CopyVector {
+        to: u16,
+        a: u16,
+    },
     Add {
         to: u16,
         a: u16,
@@ -61,6 +66,14 @@ pub(super) enum ScalarOp {
         to: u16,
         a: u16,
         b: u16,
+    },
+    /// `to = a*b` and, as the next operation would do it, `sum = to + c`.
+    MulThenAdd {
+        to: u16,
+        a: u16,
+        b: u16,
+        sum: u16,
+        c: u16,
     },
     Div {
         to: u16,
@@ -165,6 +178,43 @@ pub(super) enum ScalarOp {
         j: u16,
         a: u16,
     },
+    /// A vector, three registers from `to`, of a curve or a surface.
+    LoadVector {
+        to: u16,
+        array: u16,
+        i: u16,
+    },
+    LoadVector2 {
+        to: u16,
+        array: u16,
+        i: u16,
+        j: u16,
+    },
+    StoreVector {
+        array: u16,
+        i: u16,
+        a: u16,
+    },
+    StoreVector2 {
+        array: u16,
+        i: u16,
+        j: u16,
+        a: u16,
+    },
+    /// One component of an element.
+    StorePart {
+        array: u16,
+        i: u16,
+        a: u16,
+        part: u8,
+    },
+    StorePart2 {
+        array: u16,
+        i: u16,
+        j: u16,
+        a: u16,
+        part: u8,
+    },
     /// `a.d1`, `a.d2`.
     Extent {
         to: u16,
@@ -197,7 +247,7 @@ pub(super) enum ScalarOp {
         variable: u16,
         origin: u16,
     },
-    /// `farray a[m]`, `farray a[m,n]`; no second register for a row.
+    /// `farray a[m]`, `farray a[m,n]`, a curve or a surface; no second register for a row.
     DeclareArray {
         array: u16,
         m: u16,
@@ -242,6 +292,26 @@ pub(super) enum ScalarOp {
         at: u16,
         test: u16,
     },
+    /// A `foreach` begins: it walks through the elements that the array has now, which stay in an array of its own.
+    WalkBegin {
+        at: u16,
+        array: u16,
+        from: u16,
+    },
+    WalkTest {
+        at: u16,
+        array: u16,
+        variable: u16,
+        origin: u16,
+        exit: u16,
+    },
+    WalkNext {
+        at: u16,
+        test: u16,
+    },
+    WalkEnd {
+        array: u16,
+    },
     /// The number of a turn's name, where the variable may have none.
     Label {
         at: u16,
@@ -259,6 +329,9 @@ pub(super) enum ScalarOp {
     /// A routine is called whose code stands here.
     Called,
     Return {
+        a: u16,
+    },
+    ReturnVector {
         a: u16,
     },
     /// `return;`, or the end of a routine.
@@ -283,8 +356,9 @@ pub(super) const NO_LABEL: u16 = u16::MAX;
 #[derive(Clone, Debug)]
 pub(super) struct CodeVariable {
     pub name: Name,
+    /// Its register, that of the first component of a vector.
     pub register: u16,
-    /// The type; `None` when it depends on what was executed.
+    /// The type; `None` when it is a number's that depends on what was executed.
     pub ty: Option<Type>,
     /// What was there when the region began.
     pub captured: Option<Captured>,
@@ -295,16 +369,25 @@ pub(super) struct CodeVariable {
 /// What a name was when a region was compiled, and must be when it is entered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Captured {
-    Number(Type),
+    /// A number or a vector.
+    Variable(Type),
     Param(usize),
-    Array,
+    Array(Type),
+    /// A variable of the file that was passed by reference.
+    OfFile(Name),
+    /// A variable of another call that was passed by reference.
+    Passed(Type),
+    PassedArray(Type),
     Nothing,
 }
 
-/// An array of numbers of a unit.
+/// An array of numbers or vectors of a unit.
 #[derive(Clone, Debug)]
 pub(super) struct CodeArray {
-    pub name: Name,
+    /// `None` for what a `foreach` walks through.
+    pub name: Option<Name>,
+    /// An farray, a curve or a surface.
+    pub ty: Type,
     pub captured: bool,
     pub declared: bool,
 }
@@ -332,8 +415,17 @@ pub(super) struct CodeSite {
 /// An argument of a call.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CodeArgument {
-    Number { from: u16 },
-    Array { from: u16 },
+    Number {
+        from: u16,
+    },
+    Vector {
+        from: u16,
+    },
+    Array {
+        from: u16,
+    },
+    /// A variable of the file, by reference: the routine's code knows it.
+    OfFile,
 }
 
 /// What a fault at a place of the code is.
@@ -361,7 +453,7 @@ pub(super) struct CodeRange {
     pub start: u16,
     pub end: u16,
     pub span: Span,
-    /// NamePlace faults go that have no place.
+    /// Where faults go that have no place.
     pub fault: Span,
     /// The variable or array that is poisoned by a fault, and its declaration.
     pub poison: Option<(Poisonable, u16)>,
@@ -382,8 +474,10 @@ pub(super) struct CodeUnit<T: Real> {
     pub code: Vec<ScalarOp>,
     pub variables: Vec<CodeVariable>,
     pub arrays: Vec<CodeArray>,
-    /// The formal arguments: variables and arrays.
-    pub formals: Vec<Poisonable>,
+    /// The formal arguments: variables and arrays; `None` for those passed by reference.
+    pub formals: Vec<Option<Poisonable>>,
+    /// The formal arguments that are variables of the file: their names, declarations, and whose they are.
+    pub references: Vec<(Name, Span, Name)>,
     /// What the registers hold when a call begins: constants.
     pub template: Vec<T>,
     pub sites: Vec<CodeSite>,
@@ -392,7 +486,7 @@ pub(super) struct CodeUnit<T: Real> {
     /// The code of subscripts and dimensions, and what is asked again after a fault in it: which of several faults
     /// comes first is the interpreter's to say.
     pub inner: Vec<(u16, u16, CodeNote)>,
-    /// NamePlace variables are declared, and as what.
+    /// Where variables are declared, and as what.
     pub origins: Vec<(Span, Type)>,
     /// The statements, each with its module: code of other routines may stand in that of a unit.
     pub statements: Vec<(usize, StmtId)>,
@@ -414,6 +508,7 @@ impl<T: Real> CodeUnit<T> {
             variables: Vec::new(),
             arrays: Vec::new(),
             formals: Vec::new(),
+            references: Vec::new(),
             template: Vec::new(),
             sites: Vec::new(),
             notes: Vec::new(),
@@ -470,7 +565,7 @@ pub(super) struct CodeRegion<T: Real> {
     pub generation: Generation,
 }
 
-/// NamePlace a name is looked for.
+/// Where a name is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NamePlace {
     Frame,

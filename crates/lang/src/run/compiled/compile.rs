@@ -53,6 +53,8 @@ pub(super) struct UnitProgress<T> {
     constants: Vec<(T, u16)>,
     free: Vec<u16>,
     taken: Vec<u16>,
+    free_vectors: Vec<u16>,
+    taken_vectors: Vec<u16>,
     registers: u16,
     compiled: usize,
     left: usize,
@@ -71,12 +73,15 @@ pub(super) struct RegionCompiler<'a, T: Scalar> {
     pub units: Vec<CodeUnit<T>>,
     pub progress: Vec<UnitProgress<T>>,
     pub names: Vec<HashMap<Name, Poisonable>>,
+    /// The formal arguments of each unit that are variables of the file, and which.
+    pub references: Vec<HashMap<Name, Name>>,
     pub entry: usize,
     /// The unit under way.
     pub unit: usize,
     pub guards: Vec<(Name, NamePlace, Captured)>,
     pub functions: Vec<(&'static str, Elementary<T>)>,
-    by_routine: HashMap<(usize, u32), usize>,
+    /// The units of routines, one for each choice of the file's variables that are passed by reference.
+    by_routine: HashMap<(usize, u32, Vec<Option<Name>>), usize>,
     hidden: HashSet<((u8, usize, u32), Name)>,
     refused: HashSet<(usize, u32)>,
     restart: bool,
@@ -103,6 +108,7 @@ pub(super) fn compile<T: Scalar>(
             units: Vec::new(),
             progress: Vec::new(),
             names: Vec::new(),
+            references: Vec::new(),
             entry: usize::from(!global),
             unit: 0,
             guards: Vec::new(),
@@ -173,6 +179,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         self.units.push(CodeUnit::new(module, m, routine));
         self.progress.push(UnitProgress::default());
         self.names.push(HashMap::new());
+        self.references.push(HashMap::new());
         self.units.len() - 1
     }
 
@@ -192,37 +199,46 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let code = &mut self.units[unit];
         code.marks = vec![UNDECLARED; code.variables.len()];
         for (k, formal) in code.formals.iter().enumerate() {
-            if let Poisonable::Variable(v) = formal {
+            if let Some(Poisonable::Variable(v)) = formal {
                 code.marks[*v as usize] = declared_by(k as u16);
             }
         }
         let code = &mut self.units[unit].code;
         for k in 1..code.len() {
-            if let (ScalarOp::Step(a), ScalarOp::Step(b)) = (code[k - 1], code[k])
-                && b == a + 1
-            {
-                code[k - 1] = ScalarOp::Steps(a);
+            match (code[k - 1], code[k]) {
+                (ScalarOp::Step(a), ScalarOp::Step(b)) if b == a + 1 => {
+                    code[k - 1] = ScalarOp::Steps(a);
+                }
+                // The sum stays where it is, for jumps to it and for its faults.
+                (ScalarOp::Mul { to, a, b }, ScalarOp::Add { to: sum, a: x, b: y })
+                    if (x == to) != (y == to) =>
+                {
+                    let c = if x == to { y } else { x };
+                    code[k - 1] = ScalarOp::MulThenAdd { to, a, b, sum, c };
+                }
+                _ => {}
             }
         }
     }
 
-    /// The unit of a routine.
+    /// The unit of a routine; `roots` are the variables of the file that it gets by reference.
     ///
     /// # Errors
     /// When the interpreter must call it.
-    pub fn routine(&mut self, at: RoutineAt) -> Result<usize, Unfit> {
+    pub fn routine(&mut self, at: RoutineAt, roots: &[Option<Name>]) -> Result<usize, Unfit> {
         let key = (at.module, at.routine.0);
         if self.refused.contains(&key) || self.units.len() >= MOST_UNITS {
             return Err(Unfit::Statement);
         }
-        if let Some(&unit) = self.by_routine.get(&key) {
+        let with_roots = (key.0, key.1, roots.to_vec());
+        if let Some(&unit) = self.by_routine.get(&with_roots) {
             return Ok(unit);
         }
         let outer = self.unit;
         let unit = self.new_unit(at.module, Some(at));
-        self.by_routine.insert(key, unit);
+        self.by_routine.insert(with_roots, unit);
         self.unit = unit;
-        let outcome = self.routine_of(unit, at);
+        let outcome = self.routine_of(unit, at, roots);
         self.unit = outer;
         self.finish(unit);
         if outcome.is_err() {
@@ -233,29 +249,49 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(unit)
     }
 
-    fn routine_of(&mut self, unit: usize, at: RoutineAt) -> Result<(), Unfit> {
+    fn routine_of(
+        &mut self,
+        unit: usize,
+        at: RoutineAt,
+        roots: &[Option<Name>],
+    ) -> Result<(), Unfit> {
         let m = self.units[unit].m.clone();
         let routine = m.program[at.routine];
-        let plain = |ty: Type| matches!(ty, Type::Int | Type::Float);
-        if m.library || routine.result.is_some_and(|(ty, _)| !plain(ty)) {
+        let plain = |ty: Type| matches!(ty, Type::Int | Type::Float | Type::Vector);
+        // What becomes of a fault depends on whose routine it is.
+        if m.library != self.units[self.entry].m.library
+            || routine.result.is_some_and(|(ty, _)| !plain(ty))
+        {
             return Err(Unfit::Unit);
         }
-        for formal in &m.program[routine.formals] {
-            if formal.returned || formal.multiple {
-                return Err(Unfit::Unit);
-            }
+        for (formal, root) in m.program[routine.formals].iter().zip(roots) {
             let name = m.names[formal.name.symbol.0 as usize];
-            if self.is_hidden(unit, name) || self.names[unit].contains_key(&name) {
+            if formal.multiple
+                || self.is_hidden(unit, name)
+                || self.names[unit].contains_key(&name)
+                || self.references[unit].contains_key(&name)
+            {
                 return Err(Unfit::Unit);
             }
             let ty = formal.ty.0;
+            if let Some(root) = root {
+                self.references[unit].insert(name, *root);
+                self.units[unit].references.push((name, formal.name.span, *root));
+                self.units[unit].formals.push(None);
+                self.units[unit].origins.push((formal.name.span, ty));
+                continue;
+            }
             let what = match ty {
-                Type::Int | Type::Float => self.new_variable(unit, name, Some(ty), None, false),
-                Type::Farray => self.new_array(unit, name, false, false),
+                Type::Int | Type::Float | Type::Vector => {
+                    self.new_variable(unit, name, Some(ty), None, false)
+                }
+                Type::Farray | Type::Curve | Type::Surface => {
+                    self.new_array(unit, Some(name), ty, false, false)
+                }
                 _ => return Err(Unfit::Unit),
             };
             self.set_known(what, true, true);
-            self.units[unit].formals.push(what);
+            self.units[unit].formals.push(Some(what));
             self.units[unit].origins.push((formal.name.span, ty));
         }
         let list = ids(&m, routine.body);
@@ -335,6 +371,24 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         register
     }
 
+    /// Three registers of their own, one behind the other.
+    pub fn three_registers(&mut self, unit: usize) -> u16 {
+        let first = self.register(unit);
+        self.register(unit);
+        self.register(unit);
+        first
+    }
+
+    /// Three registers until the end of the statement.
+    pub fn scratch_vector(&mut self) -> u16 {
+        let first = match self.progress[self.unit].free_vectors.pop() {
+            Some(first) => first,
+            None => self.three_registers(self.unit),
+        };
+        self.progress[self.unit].taken_vectors.push(first);
+        first
+    }
+
     pub fn constant(&mut self, x: T) -> u16 {
         let known = self.progress[self.unit].constants.iter().find(|(y, _)| y.bits_eq(x));
         if let Some((_, register)) = known {
@@ -370,7 +424,8 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             ScalarOp::Jump { to }
             | ScalarOp::JumpUnless { to, .. }
             | ScalarOp::JumpIfNot { to, .. }
-            | ScalarOp::ForTest { exit: to, .. } => *to = here,
+            | ScalarOp::ForTest { exit: to, .. }
+            | ScalarOp::WalkTest { exit: to, .. } => *to = here,
             other => unreachable!("{other:?} does not jump"),
         }
         Ok(())
@@ -416,6 +471,8 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let done = &mut self.progress[unit];
         let taken = std::mem::take(&mut done.taken);
         done.free.extend(taken);
+        let taken = std::mem::take(&mut done.taken_vectors);
+        done.free_vectors.extend(taken);
         match outcome {
             Err(Unfit::Statement) => {
                 let code = &mut self.units[unit];
@@ -540,7 +597,8 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                     Some(Ok(Meaning::Own(what @ Poisonable::Variable(k)))) => {
                         (sure, variable) = (self.known(what).live, k);
                         let variable = &self.units[self.unit].variables[k as usize];
-                        if matches!(variable.captured, Some(Captured::Param(_))) {
+                        let param = matches!(variable.captured, Some(Captured::Param(_)));
+                        if param || variable.ty == Some(Type::Vector) {
                             return Err(Unfit::Statement);
                         }
                         variable.register
@@ -583,6 +641,10 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             StmtKind::Return(value) => {
                 simple(self);
                 match value {
+                    Some(value) if self.is_vector(value) => {
+                        let a = self.vector(id, value)?;
+                        self.emit(ScalarOp::ReturnVector { a }).map(drop)
+                    }
                     Some(value) => {
                         let a = self.value(id, value, None)?;
                         self.emit(ScalarOp::Return { a }).map(drop)
@@ -592,9 +654,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             }
             StmtKind::Routine(_) => Ok(()),
             StmtKind::Load(_) => Err(Unfit::Unit),
+            StmtKind::Foreach { variable, list, body } => self.foreach(variable, list, body),
             StmtKind::Object { .. }
             | StmtKind::Param { .. }
-            | StmtKind::Foreach { .. }
             | StmtKind::Print(_)
             | StmtKind::Assert { .. }
             | StmtKind::Error => Err(Unfit::Statement),
@@ -608,7 +670,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     }
 
     /// The body of a loop and what follows each turn; the loop stays open for the jumps out of it.
-    fn looped(
+    pub(super) fn looped(
         &mut self,
         at: u16,
         labelled: bool,
@@ -641,7 +703,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(())
     }
 
-    fn breaks_here(&mut self) -> Result<(), Unfit> {
+    pub(super) fn breaks_here(&mut self) -> Result<(), Unfit> {
         let breaks = self.closed.pop().unwrap_or_default();
         self.land_all(&breaks)
     }
@@ -651,7 +713,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     }
 
     /// What a loop's statements declare is not sure at the head of the loop.
-    fn forget(&mut self, list: &[StmtId]) -> Result<(), Unfit> {
+    pub(super) fn forget(&mut self, list: &[StmtId]) -> Result<(), Unfit> {
         let m = self.units[self.unit].m.clone();
         let mut all = Vec::new();
         super::names::declared(&m, list, &mut |name, _, _| all.push(name));
@@ -664,13 +726,13 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(())
     }
 
-    fn sure(&self) -> (Vec<Sure>, Vec<Sure>) {
+    pub(super) fn sure(&self) -> (Vec<Sure>, Vec<Sure>) {
         let progress = &self.progress[self.unit];
         (progress.variables.clone(), progress.arrays.clone())
     }
 
     /// Back to what was sure; what was met since keeps what is known of it.
-    fn restore(&mut self, (variables, arrays): &(Vec<Sure>, Vec<Sure>)) {
+    pub(super) fn restore(&mut self, (variables, arrays): &(Vec<Sure>, Vec<Sure>)) {
         let (n, k) = (self.units[self.unit].variables.len(), self.units[self.unit].arrays.len());
         let captured: Vec<bool> = (0..n)
             .map(|v| {

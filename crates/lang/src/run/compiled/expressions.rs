@@ -1,17 +1,19 @@
 //! Expressions of numbers to code.
 
-use super::code::{CodeArgument, CodeNote, NO_LABEL, Poisonable, ScalarOp};
+use super::code::{CodeArgument, CodeNote, CodeVariable, NO_LABEL, Poisonable, ScalarOp};
 use super::compile::{RegionCompiler, Unfit, relation};
 use super::names::Meaning;
+use super::vectors::CodeValue;
 use crate::functions::builtins::BUILTINS;
 use crate::functions::elementary::{self, Elementary};
+use crate::run::parts;
+use crate::source::module::Name;
 use crate::value::ops;
 use moldloft_diag::Span;
 use moldloft_num::Real;
 use moldloft_registry::{Implementation, Scalar};
 use moldloft_syntax::sdl::{
-    Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, NodeList, Step, StmtId, Subscript,
-    Symbol, Type, UnaryOp,
+    Arg, BinaryOp, ChainItem, ExprId, ExprKind, NodeList, StmtId, Subscript, Symbol, Type, UnaryOp,
 };
 
 /// A function of numbers that combines two, for `min`, `max` and `sum` of several arguments.
@@ -33,6 +35,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             ExprKind::Number(literal) => self.constant(T::from(m.program[literal].value)),
             ExprKind::Name(symbol) => self.name(symbol, expr.span)?,
             ExprKind::Paren(inner) => return self.value(stmt, inner, want),
+            ExprKind::Magnitude(inner) if self.is_vector(inner) => {
+                self.length(stmt, inner, expr.span)?
+            }
             ExprKind::Magnitude(inner) => {
                 let a = self.value(stmt, inner, None)?;
                 let to = self.result(want);
@@ -68,6 +73,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 self.land(end)?;
                 to
             }
+            ExprKind::Binary { op: BinaryOp::Dot, left, right } => {
+                self.dot_product(stmt, left, right)?
+            }
             ExprKind::Binary { op, left, right } => {
                 let (a, b) = self.both(stmt, left, right)?;
                 let to = self.result(want);
@@ -93,18 +101,26 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 }
                 to
             }
-            ExprKind::Chain(items) => self.chain(stmt, items)?,
+            ExprKind::Chain(items) => match self.chain_of(stmt, items)? {
+                CodeValue::Number(at) => at,
+                CodeValue::Vector(_) => return Err(Unfit::Statement),
+            },
             ExprKind::Index { base, subs } => self.element(stmt, id, base, subs)?,
-            ExprKind::Member { base, name, .. } => {
+            ExprKind::Member { base, name, or_dot } => {
                 let k = match m.program.name(name) {
-                    "d1" => 0,
-                    "d2" => 1,
-                    _ => return Err(Unfit::Statement),
+                    "d1" => Some(0),
+                    "d2" => Some(1),
+                    _ => None,
                 };
-                let array = self.array(base)?;
-                let to = self.scratch();
-                self.noted(ScalarOp::Extent { to, array, k }, CodeNote::Expression(id))?;
-                to
+                match k {
+                    Some(k) => {
+                        let (array, _) = self.array_of(base)?;
+                        let to = self.scratch();
+                        self.noted(ScalarOp::Extent { to, array, k }, CodeNote::Expression(id))?;
+                        to
+                    }
+                    None => self.component_of(stmt, base, name, or_dot)?,
+                }
             }
             ExprKind::Call { callee, args } => self.call(stmt, id, callee, args)?,
             ExprKind::Text(_) | ExprKind::List(_) | ExprKind::Error => {
@@ -140,8 +156,11 @@ impl<T: Scalar> RegionCompiler<'_, T> {
 
     /// The register, or a copy when a call may change the variable that it is.
     pub fn kept(&mut self, a: u16, copied: bool) -> Result<u16, Unfit> {
-        let variable = self.units[self.unit].variables.iter().any(|v| v.register == a);
-        if !copied || !variable {
+        let holds = |v: &CodeVariable| {
+            let count = if v.ty == Some(Type::Vector) { 3 } else { 1 };
+            (v.register..v.register + count).contains(&a)
+        };
+        if !copied || !self.units[self.unit].variables.iter().any(holds) {
             return Ok(a);
         }
         let to = self.scratch();
@@ -154,34 +173,15 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let m = &self.units[self.unit].m;
         let mut stack = vec![id];
         while let Some(id) = stack.pop() {
-            match m.program[id].kind {
-                ExprKind::Paren(e) | ExprKind::Magnitude(e) => stack.push(e),
-                ExprKind::List(items) => stack.extend(&m.program[items]),
-                ExprKind::Unary { operand, .. } => stack.push(operand),
-                ExprKind::Binary { left, right, .. } => stack.extend([left, right]),
-                ExprKind::Member { base, .. } => stack.push(base),
-                ExprKind::Chain(items) => stack.extend(operands(&m.program[items])),
-                ExprKind::Index { base, subs } => {
-                    stack.push(base);
-                    for sub in &m.program[subs] {
-                        match *sub {
-                            Subscript::Whole => {}
-                            Subscript::At(at) => stack.push(at),
-                            Subscript::Range { from, to, step } => {
-                                stack.extend([from, to, step].into_iter().flatten());
-                            }
-                        }
-                    }
+            let mut inner = parts::of_expression(m, id);
+            if let ExprKind::Call { callee, .. } = m.program[id].kind {
+                let Some(symbol) = m.program.as_name(callee) else { return true };
+                if self.scope.routines.contains_key(&m.names[symbol.0 as usize]) {
+                    return true;
                 }
-                ExprKind::Call { callee, args } => {
-                    let Some(symbol) = m.program.as_name(callee) else { return true };
-                    if self.scope.routines.contains_key(&m.names[symbol.0 as usize]) {
-                        return true;
-                    }
-                    stack.extend(m.program[args].iter().map(|arg| arg.value));
-                }
-                ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Text(_) | ExprKind::Error => {}
+                inner.remove(0);
             }
+            stack.extend(inner);
         }
         false
     }
@@ -204,43 +204,6 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             _ => return Err(Unfit::Statement),
         };
         self.noted(code, CodeNote::Finite(op.spelling(), span)).map(drop)
-    }
-
-    fn chain(&mut self, stmt: StmtId, items: NodeList<ChainItem>) -> Result<u16, Unfit> {
-        let m = self.units[self.unit].m.clone();
-        let all: Vec<ExprId> = operands(&m.program[items]).collect();
-        let mut values = Vec::with_capacity(all.len());
-        for (k, &operand) in all.iter().enumerate() {
-            let a = self.value(stmt, operand, None)?;
-            let later = all[k + 1..].iter().any(|&next| self.calls(next));
-            values.push(self.kept(a, later)?);
-        }
-        let mut next = values.into_iter();
-        let mut stack: Vec<(u16, Span)> = Vec::new();
-        for step in m.program.grouped(items, Grouping::Numbers) {
-            let entry = match step {
-                Step::Push(expr) => (next.next().ok_or(Unfit::Statement)?, m.program[expr].span),
-                Step::Unary(op, span) => {
-                    let (a, inner) = stack.pop().ok_or(Unfit::Statement)?;
-                    let to = self.scratch();
-                    match op {
-                        UnaryOp::Plus => self.emit(ScalarOp::Copy { to, a })?,
-                        UnaryOp::Minus => self.emit(ScalarOp::Negate { to, a })?,
-                        UnaryOp::Not => self.emit(ScalarOp::Not { to, a })?,
-                    };
-                    (to, span.to(inner))
-                }
-                Step::Binary(op, _) => {
-                    let (b, of_right) = stack.pop().ok_or(Unfit::Statement)?;
-                    let (a, of_left) = stack.pop().ok_or(Unfit::Statement)?;
-                    let (to, span) = (self.scratch(), of_left.to(of_right));
-                    self.arithmetic(op, to, a, b, span)?;
-                    (to, span)
-                }
-            };
-            stack.push(entry);
-        }
-        stack.pop().map(|(at, _)| at).ok_or(Unfit::Statement)
     }
 
     /// True when a variable has a value wherever this place of the code is reached.
@@ -279,6 +242,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     /// The register of what a name means.
     pub fn name(&mut self, symbol: Symbol, span: Span) -> Result<u16, Unfit> {
         let what = self.meaning(symbol)?;
+        if self.variable_type(what) == Some(Type::Vector) {
+            return Err(Unfit::Statement);
+        }
         self.live(what, CodeNote::Name(symbol, span))?;
         Ok(match what {
             Meaning::Constant(x) => self.constant(T::from(x)),
@@ -297,30 +263,32 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         })
     }
 
-    /// The number of an array that an expression names.
-    fn array(&mut self, id: ExprId) -> Result<u16, Unfit> {
+    /// The number of an array that an expression names, and its type.
+    pub fn array_of(&mut self, id: ExprId) -> Result<(u16, Type), Unfit> {
         let m = self.units[self.unit].m.clone();
         let ExprKind::Name(symbol) = m.program[id].kind else { return Err(Unfit::Statement) };
         let what = self.meaning(symbol)?;
         let array = match what {
-            Meaning::Own(Poisonable::Array(k)) => k,
-            Meaning::OfFile(Poisonable::Array(k)) => k | super::code::OF_FILE,
+            Meaning::Own(Poisonable::Array(k)) => (k, self.units[self.unit].arrays[k as usize].ty),
+            Meaning::OfFile(Poisonable::Array(k)) => {
+                (k | super::code::OF_FILE, self.units[0].arrays[k as usize].ty)
+            }
             _ => return Err(Unfit::Statement),
         };
         self.live(what, CodeNote::Name(symbol, m.program[id].span))?;
         Ok(array)
     }
 
-    /// An array and the registers of its subscripts.
+    /// An array, its type, and the registers of its subscripts.
     pub fn places(
         &mut self,
         stmt: StmtId,
         base: ExprId,
         subs: NodeList<Subscript>,
         note: CodeNote,
-    ) -> Result<(u16, Vec<u16>), Unfit> {
+    ) -> Result<(u16, Type, Vec<u16>), Unfit> {
         let m = self.units[self.unit].m.clone();
-        let array = self.array(base)?;
+        let (array, ty) = self.array_of(base)?;
         let start = self.here()?;
         let mut places = Vec::new();
         for sub in &m.program[subs] {
@@ -329,7 +297,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         }
         let end = self.here()?;
         self.units[self.unit].inner.push((start, end, note));
-        Ok((array, places))
+        Ok((array, ty, places))
     }
 
     /// The element that an expression names.
@@ -345,7 +313,10 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             return Err(Unfit::Statement);
         }
         let note = CodeNote::Expression(id);
-        let (array, places) = self.places(stmt, base, subs, note)?;
+        let (array, ty, places) = self.places(stmt, base, subs, note)?;
+        if ty != Type::Farray {
+            return Err(Unfit::Statement);
+        }
         let to = self.scratch();
         let op = match places[..] {
             [i] => ScalarOp::Load { to, array, i },
@@ -378,6 +349,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let symbol = m.program.as_name(callee).ok_or(Unfit::Statement)?;
         let name = m.names[symbol.0 as usize];
         if self.scope.routines.contains_key(&name) {
+            if self.is_vector(id) {
+                return Err(Unfit::Statement);
+            }
             let to = self.scratch();
             return self.routine_call(stmt, id, callee, args, Some(to)).map(|_| to);
         }
@@ -432,6 +406,37 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(to)
     }
 
+    /// The variable of the file that a returned argument names.
+    ///
+    /// # Errors
+    /// For what else may be passed by reference, and what may not.
+    fn root_of(&mut self, arg: ExprId, asked: Type) -> Result<Name, Unfit> {
+        let m = self.units[self.unit].m.clone();
+        let symbol = m.program.as_name(m.program.bare(arg)).ok_or(Unfit::Statement)?;
+        let what = self.meaning(symbol)?;
+        if !self.is_live(what) || self.is_param(what) {
+            return Err(Unfit::Statement);
+        }
+        let file = &self.units[0];
+        let (name, found) = match what {
+            Meaning::Own(_) if self.unit != 0 => return Err(Unfit::Statement),
+            Meaning::Own(Poisonable::Variable(k)) | Meaning::OfFile(Poisonable::Variable(k)) => {
+                let variable = &file.variables[k as usize];
+                (Some(variable.name), variable.ty.unwrap_or(Type::Float))
+            }
+            Meaning::Own(Poisonable::Array(k)) | Meaning::OfFile(Poisonable::Array(k)) => {
+                let array = &file.arrays[k as usize];
+                (array.name, array.ty)
+            }
+            Meaning::Constant(_) => return Err(Unfit::Statement),
+        };
+        let number = |ty: Type| if ty == Type::Int { Type::Float } else { ty };
+        match name {
+            Some(name) if number(found) == number(asked) => Ok(name),
+            _ => Err(Unfit::Statement),
+        }
+    }
+
     /// The call of a routine of the program; its value is put into `to`, where one is wanted.
     pub fn routine_call(
         &mut self,
@@ -453,17 +458,35 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         {
             return Ok(());
         }
-        let unit = self.routine(at)?;
-        let of = self.units[unit].m.clone();
+        let of = self.modules.get(at.module).clone();
         let routine = of.program[at.routine];
         let formals = &of.program[routine.formals];
         let given: Vec<ExprId> = m.program[args].iter().map(|arg| arg.value).collect();
         if given.len() != formals.len() || (to.is_some() && routine.result.is_none()) {
             return Err(Unfit::Statement);
         }
+        let mut roots = Vec::with_capacity(given.len());
+        for (&arg, formal) in given.iter().zip(formals) {
+            let root = if formal.returned { Some(self.root_of(arg, formal.ty.0)?) } else { None };
+            // Elements that are written twice are the interpreter's to refuse.
+            if root.is_some() && roots.contains(&root) {
+                return Err(Unfit::Statement);
+            }
+            roots.push(root);
+        }
+        let unit = self.routine(at, &roots)?;
         let mut all = Vec::with_capacity(given.len());
         for (k, (&arg, formal)) in given.iter().zip(formals).enumerate() {
             all.push(match formal.ty.0 {
+                _ if formal.returned => CodeArgument::OfFile,
+                Type::Vector => {
+                    if !self.is_vector(arg) {
+                        return Err(Unfit::Statement);
+                    }
+                    let a = self.vector(stmt, arg)?;
+                    let later = given[k + 1..].iter().any(|&next| self.calls(next));
+                    CodeArgument::Vector { from: self.kept_vector(a, later)? }
+                }
                 Type::Int | Type::Float => {
                     let a = self.value(stmt, arg, None)?;
                     let later = given[k + 1..].iter().any(|&next| self.calls(next));
@@ -482,7 +505,10 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                     if given[k + 1..].iter().any(|&next| self.calls(next)) {
                         return Err(Unfit::Statement);
                     }
-                    let from = self.array(arg)?;
+                    let (from, ty) = self.array_of(arg)?;
+                    if ty != formal.ty.0 {
+                        return Err(Unfit::Statement);
+                    }
                     self.noted(ScalarOp::HasValue { array: from }, CodeNote::Expression(arg))?;
                     CodeArgument::Array { from }
                 }
@@ -498,7 +524,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
 }
 
 /// The operands of a chain, in the order of the text.
-fn operands(items: &[ChainItem]) -> impl Iterator<Item = ExprId> + '_ {
+pub(super) fn operands(items: &[ChainItem]) -> impl Iterator<Item = ExprId> + '_ {
     items.iter().filter_map(|item| match item {
         ChainItem::Operand(operand) => Some(*operand),
         _ => None,

@@ -38,7 +38,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             formal.ty.0 == Type::Float && !formal.returned && !formal.multiple
         };
         let float = routine.result.is_some_and(|(ty, _)| ty == Type::Float);
-        if of.library
+        if of.library != m.library
             || !float
             || !distinct
             || !formals.iter().all(plain)

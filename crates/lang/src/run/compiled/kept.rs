@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 /// The code of a region, as far as there is some.
 pub(super) enum RegionState<T: Real> {
-    /// The code, and how often it did not fit what was found.
-    Kept(Arc<CodeRegion<T>>, u8),
+    /// The code, once for each meaning of its names that was met.
+    Kept(Vec<Arc<CodeRegion<T>>>),
     Never(Generation),
 }
 

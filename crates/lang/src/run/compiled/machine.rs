@@ -15,7 +15,7 @@ use crate::value::initialised::Known;
 use crate::value::ops;
 use crate::value::variables::{self, MOST_INT};
 use moldloft_diag::Diagnostic;
-use moldloft_num::Real;
+use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value};
 use moldloft_syntax::sdl::{StmtKind, Type};
 
@@ -40,6 +40,7 @@ enum Departure<T> {
         site: u16,
     },
     Return(T),
+    ReturnVector([T; 3]),
     Leave,
     End,
     Interpret {
@@ -84,12 +85,22 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     true => continue,
                     false => CodeOutcome::Stop,
                 },
-                Departure::Return(x) => match machine.returns_plainly(region, x) {
+                Departure::Return(x) => match machine.returns_plainly(region, &[x]) {
                     Some(held) => {
                         self.usage.held = held;
                         continue;
                     }
                     None => self.returned_from(region, machine, Some(Value::Number(x))),
+                },
+                Departure::ReturnVector(v) => match machine.returns_plainly(region, &v) {
+                    Some(held) => {
+                        self.usage.held = held;
+                        continue;
+                    }
+                    None => {
+                        let v = Value::Vector(Vec3::from(v));
+                        self.returned_from(region, machine, Some(v))
+                    }
                 },
                 Departure::Look => match self.may_not_go_on(region, machine) {
                     true => CodeOutcome::Stop,
@@ -160,6 +171,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     _ => &mut arrays_of_file[(a & !OF_FILE) as usize],
                 }
             }};
+        }
+        macro_rules! three {
+            ($r:expr) => {
+                own[$r as usize..$r as usize + 3]
+            };
         }
         macro_rules! leave {
             ($why:expr) => {{
@@ -237,9 +253,21 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     }
                 }
                 ScalarOp::Copy { to, a } => at!(to) = at!(a),
+                ScalarOp::CopyVector { to, a } => {
+                    own.copy_within(a as usize..a as usize + 3, to as usize);
+                }
                 ScalarOp::Add { to, a, b } => finite!(to, at!(a) + at!(b)),
                 ScalarOp::Sub { to, a, b } => finite!(to, at!(a) - at!(b)),
                 ScalarOp::Mul { to, a, b } => finite!(to, at!(a) * at!(b)),
+                ScalarOp::MulThenAdd { to, a, b, sum, c } => {
+                    finite!(to, at!(a) * at!(b));
+                    let x = at!(to) + at!(c);
+                    // A sum that is not finite is told by the operation that follows.
+                    if x.is_finite() || ieee {
+                        at!(sum) = x;
+                        pc += 1;
+                    }
+                }
                 ScalarOp::Div { to, a, b } => finite!(to, at!(a) / at!(b)),
                 ScalarOp::Power { to, a, b } => finite!(to, ops::power(at!(a), at!(b))),
                 // As `powi` does it.
@@ -324,6 +352,49 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     array.write()[i * n + j] = x;
                     array.known.give_at(i * n + j);
                 }
+                ScalarOp::LoadVector { to, array, i } => {
+                    let i = at!(i).re();
+                    let array = array!(array);
+                    let ArrayShape::Row(n) = array.shape else { fault!() };
+                    let Some(k) = place(i, n) else { fault!() };
+                    three!(to).copy_from_slice(&array.vector(k));
+                }
+                ScalarOp::LoadVector2 { to, array, i, j } => {
+                    let (i, j) = (at!(i).re(), at!(j).re());
+                    let array = array!(array);
+                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
+                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
+                    three!(to).copy_from_slice(&array.vector(i * n + j));
+                }
+                ScalarOp::StoreVector { array, i, a } => {
+                    let (i, v) = (at!(i).re(), [at!(a), at!(a + 1), at!(a + 2)]);
+                    let array = array!(array);
+                    let ArrayShape::Row(n) = array.shape else { fault!() };
+                    let Some(k) = place(i, n) else { fault!() };
+                    array.put_vector(k, v, None);
+                }
+                ScalarOp::StoreVector2 { array, i, j, a } => {
+                    let (i, j) = (at!(i).re(), at!(j).re());
+                    let v = [at!(a), at!(a + 1), at!(a + 2)];
+                    let array = array!(array);
+                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
+                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
+                    array.put_vector(i * n + j, v, None);
+                }
+                ScalarOp::StorePart { array, i, a, part } => {
+                    let (i, x) = (at!(i).re(), at!(a));
+                    let array = array!(array);
+                    let ArrayShape::Row(n) = array.shape else { fault!() };
+                    let Some(k) = place(i, n) else { fault!() };
+                    array.put_vector(k, [x; 3], Some(part));
+                }
+                ScalarOp::StorePart2 { array, i, j, a, part } => {
+                    let (i, j, x) = (at!(i).re(), at!(j).re(), at!(a));
+                    let array = array!(array);
+                    let ArrayShape::Grid(m, n) = array.shape else { fault!() };
+                    let (Some(i), Some(j)) = (place(i, m), place(j, n)) else { fault!() };
+                    array.put_vector(i * n + j, [x; 3], Some(part));
+                }
                 ScalarOp::Extent { to, array, k } => {
                     let array = array!(array);
                     let n = match (array.shape, k) {
@@ -384,8 +455,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         fault!();
                     }
                     machine.held = held;
+                    let zeros = || vec![T::zero(); count as usize];
+                    let items = match code.arrays[array as usize].ty {
+                        Type::Farray => ArrayItems::Owned(zeros()),
+                        _ => ArrayItems::OwnedVectors([zeros(), zeros(), zeros()]),
+                    };
                     *array!(array) = ArrayRegister {
-                        items: ArrayItems::Owned(vec![T::zero(); count as usize]),
+                        items,
                         shape,
                         known: Known::nothing(count as usize),
                         mark: declared_by(origin),
@@ -434,6 +510,37 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         for_test!(at, variable, register, origin, exit, kept);
                     }
                 }
+                ScalarOp::WalkBegin { at, array, from } => {
+                    let walked = array!(from).passed(declared_by(0));
+                    at!(at) = T::zero();
+                    at!(at + 1) = T::from(walked.shape.count() as f64);
+                    arrays[array as usize] = walked;
+                }
+                ScalarOp::WalkTest { at, array, variable, origin, exit } => {
+                    let k = at!(at).re();
+                    if k < at!(at + 1).re() {
+                        let (walked, k) = (&arrays[array as usize], k as usize);
+                        let register = code.variables[variable as usize].register;
+                        match code.arrays[array as usize].ty {
+                            Type::Farray => at!(register) = walked.read()[k],
+                            _ => three!(register).copy_from_slice(&walked.vector(k)),
+                        }
+                        marks[variable as usize] = declared_by(origin);
+                        step!();
+                        turned += 1;
+                        at!(at + 2) = T::from((k + 1) as f64);
+                        at!(at + 3) = T::from(turned as f64);
+                    } else {
+                        pc = exit as usize;
+                    }
+                }
+                ScalarOp::WalkNext { at, test } => {
+                    at!(at) = T::from(at!(at).re() + 1.0);
+                    pc = test as usize;
+                }
+                ScalarOp::WalkEnd { array } => {
+                    arrays[array as usize] = ArrayRegister::nothing(UNDECLARED);
+                }
                 ScalarOp::Label { at, variable } => {
                     let live = is_live(marks[variable as usize]);
                     let register = code.variables[variable as usize].register;
@@ -455,6 +562,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
                 ScalarOp::Call { to, site } => leave!(Departure::Call { to, site }),
                 ScalarOp::Return { a } => leave!(Departure::Return(at!(a))),
+                ScalarOp::ReturnVector { a } => {
+                    leave!(Departure::ReturnVector([at!(a), at!(a + 1), at!(a + 2)]))
+                }
                 ScalarOp::Leave => leave!(Departure::Leave),
                 ScalarOp::End => leave!(Departure::End),
                 ScalarOp::Interpret { site } => leave!(Departure::Interpret { site }),
@@ -510,12 +620,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         for (k, (formal, argument)) in callee.formals.iter().zip(&called.args).enumerate() {
             match (*formal, *argument) {
-                (Poisonable::Variable(v), CodeArgument::Number { from }) => {
+                (None, CodeArgument::OfFile) => {}
+                (Some(Poisonable::Variable(v)), CodeArgument::Vector { from }) => {
+                    let to = first + callee.variables[v as usize].register as usize;
+                    let from = machine.first + from as usize;
+                    machine.registers.copy_within(from..from + 3, to);
+                }
+                (Some(Poisonable::Variable(v)), CodeArgument::Number { from }) => {
                     let register = callee.variables[v as usize].register as usize;
                     machine.registers[first + register] =
                         machine.registers[machine.first + from as usize];
                 }
-                (Poisonable::Array(a), CodeArgument::Array { from }) => {
+                (Some(Poisonable::Array(a)), CodeArgument::Array { from }) => {
                     let own = machine.first_array + from as usize;
                     let of_file = (from & !OF_FILE) as usize;
                     let from = if from & OF_FILE == 0 { own } else { of_file };
@@ -577,6 +693,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             })
         });
         match flow.unwrap_or(Flow::Stop) {
+            _ if self.is_abandoned(region) => CodeOutcome::Return(None),
             Flow::Return(value) => self.returned_from(region, machine, value),
             Flow::Stop => CodeOutcome::Stop,
             // No statement that is left to the interpreter ends a loop of the code.
@@ -655,6 +772,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Some(Value::Number(x)) => {
                 let to = machine.first + call.to as usize;
                 machine.registers[to] = x;
+                machine.pc += 1;
+                CodeOutcome::Next
+            }
+            Some(Value::Vector(v)) => {
+                let to = machine.first + call.to as usize;
+                machine.registers[to..to + 3].copy_from_slice(&v.to_array());
                 machine.pc += 1;
                 CodeOutcome::Next
             }
@@ -765,8 +888,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if self.env.stopped {
             return CodeOutcome::Stop;
         }
+        self.abandoned |= region.units[region.entry].m.library;
+        if self.is_abandoned(region) {
+            return CodeOutcome::Return(None);
+        }
         machine.pc = range.end as usize;
         CodeOutcome::Next
+    }
+
+    /// True when an error has ended the library's routines that are under way.
+    fn is_abandoned(&self, region: &CodeRegion<T>) -> bool {
+        self.abandoned && region.units[region.entry].m.library
     }
 }
 
@@ -774,7 +906,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 fn type_by<T: Real>(code: &CodeUnit<T>, variable: u16, mark: u32) -> Type {
     match (declaration(mark), code.variables[variable as usize].captured) {
         (Some((origin, _)), _) => code.origins[origin].1,
-        (None, Some(super::code::Captured::Number(ty))) => ty,
+        (None, Some(super::code::Captured::Variable(ty) | super::code::Captured::Passed(ty))) => ty,
         _ => Type::Float,
     }
 }

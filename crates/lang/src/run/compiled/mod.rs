@@ -21,6 +21,8 @@ pub(crate) mod kept;
 mod machine;
 mod names;
 mod registers;
+mod vectors;
+mod walks;
 
 use crate::run::interpreter::{Flow, Interpreter};
 use crate::source::module::{Module, Name};
@@ -34,7 +36,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 /// So many times a region is compiled, and then no more.
-const MOST_MISFITS: u8 = 6;
+const MOST_OF_ONE: usize = 6;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// Executes a loop by its code, if it has some; its own step is counted already.
@@ -49,7 +51,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     fn by_code(&mut self, m: &Module, start: RegionStart) -> Option<Flow<T>> {
         if self.inputs.settings.without_code
-            || m.library
             || self.run.extent() == Extent::Edit
             || !self.env.scope.given.is_empty()
             || !std::ptr::eq(&**self.modules.get(self.current), m)
@@ -58,34 +59,41 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let key = (self.current, start);
         let generation = self.generation();
-        let mut misfits = 0;
+        let mut compiled = 0;
+        if let Some(RegionState::Kept(all)) = self.code.regions.get_mut(&key) {
+            all.retain(|region| region.generation == generation);
+        }
         let region = match self.code.regions.get(&key) {
             Some(RegionState::Never(of)) if *of == generation => return None,
-            Some(RegionState::Kept(region, kept)) => match self.fits(region) {
-                true => Some(region.clone()),
-                false => {
-                    misfits = kept + 1;
-                    None
-                }
-            },
+            Some(RegionState::Kept(all)) => {
+                compiled = all.len();
+                all.iter().find(|region| self.fits(region)).cloned()
+            }
             _ => None,
         };
         let region = match region {
             Some(region) => region,
             None => {
-                let region = match misfits < MOST_MISFITS {
-                    true => self.compiled(start),
-                    false => None,
-                };
-                match region {
+                // A routine that gets now this variable, now that one by reference has code for each.
+                if compiled >= MOST_OF_ONE {
+                    return None;
+                }
+                match self.compiled(start) {
                     Some(region) => {
                         let region = Arc::new(region);
-                        let kept = RegionState::Kept(region.clone(), misfits);
-                        self.code.regions.insert(key, kept);
+                        match self.code.regions.get_mut(&key) {
+                            Some(RegionState::Kept(all)) => all.push(region.clone()),
+                            _ => {
+                                let all = vec![region.clone()];
+                                self.code.regions.insert(key, RegionState::Kept(all));
+                            }
+                        }
                         region
                     }
                     None => {
-                        self.code.regions.insert(key, RegionState::Never(generation));
+                        if compiled == 0 {
+                            self.code.regions.insert(key, RegionState::Never(generation));
+                        }
                         return None;
                     }
                 }

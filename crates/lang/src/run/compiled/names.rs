@@ -4,15 +4,18 @@ use super::code::{Captured, CodeArray, CodeVariable, NamePlace, Poisonable};
 use super::compile::{RegionCompiler, Unfit};
 use crate::functions::files::predeclared;
 use crate::source::module::{Module, Name};
-use crate::source::scope::{Binding, ScopedBinding};
+use crate::source::scope::{Binding, Scope, ScopedBinding};
 use moldloft_registry::{Scalar, Value};
-use moldloft_syntax::sdl::{NodeList, StmtId, StmtKind, Symbol, Type};
+use moldloft_syntax::sdl::{ExprId, NodeList, StmtId, StmtKind, Symbol, Type};
 
 /// How a statement gives names a meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Declares {
-    Number(Type),
-    Array,
+    /// A number or a vector.
+    Variable(Type),
+    Array(Type),
+    /// An element of what the expression means.
+    Element(ExprId),
     /// Something that code does not hold.
     Other,
 }
@@ -33,8 +36,8 @@ pub(super) fn declared(
             StmtKind::Declare { global, ty, items } => {
                 for item in &m.program[items] {
                     let how = match (ty.0, item.dims.len()) {
-                        (Type::Int | Type::Float, 0) => Declares::Number(ty.0),
-                        (Type::Farray, _) => Declares::Array,
+                        (Type::Int | Type::Float | Type::Vector, 0) => Declares::Variable(ty.0),
+                        (Type::Farray | Type::Curve | Type::Surface, _) => Declares::Array(ty.0),
                         _ => Declares::Other,
                     };
                     f(name(item.name.symbol), how, global);
@@ -49,14 +52,14 @@ pub(super) fn declared(
             }
             StmtKind::While { body, .. } => stack.push(body),
             StmtKind::ForRange { variable, body, .. } => {
-                f(name(variable.symbol), Declares::Number(Type::Float), false);
+                f(name(variable.symbol), Declares::Variable(Type::Float), false);
                 stack.push(body);
             }
             StmtKind::For { start, step, body, .. } => {
                 stack.extend([start, step, Some(body)].into_iter().flatten());
             }
-            StmtKind::Foreach { variable, body, .. } => {
-                f(name(variable.symbol), Declares::Other, false);
+            StmtKind::Foreach { variable, list, body } => {
+                f(name(variable.symbol), Declares::Element(list), false);
                 stack.push(body);
             }
             StmtKind::Load(_) => loads = true,
@@ -74,6 +77,43 @@ pub(super) fn declared(
     !loads
 }
 
+/// The room that a variable needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum RoomKind {
+    /// A number; of no type when that depends on what is executed.
+    Number(Option<Type>),
+    Vector,
+    Array(Type),
+}
+
+impl RoomKind {
+    /// The room for what is declared in these ways; `None` when there is none for all.
+    fn of(hows: &[Declares]) -> Option<Self> {
+        let (&first, rest) = hows.split_first()?;
+        let alike = rest.iter().all(|how| *how == first);
+        match first {
+            Declares::Array(ty) if alike => Some(RoomKind::Array(ty)),
+            Declares::Variable(Type::Vector) if alike => Some(RoomKind::Vector),
+            Declares::Variable(ty) => {
+                let number =
+                    |how: &Declares| matches!(how, Declares::Variable(Type::Int | Type::Float));
+                hows.iter().all(number).then_some(RoomKind::Number(Some(ty).filter(|_| alike)))
+            }
+            _ => None,
+        }
+    }
+
+    /// True when it is the room of what was there before as well.
+    fn takes(self, captured: Captured) -> bool {
+        match captured {
+            Captured::Variable(Type::Vector) => self == RoomKind::Vector,
+            Captured::Variable(_) => matches!(self, RoomKind::Number(_)),
+            Captured::Array(ty) => self == RoomKind::Array(ty),
+            _ => false,
+        }
+    }
+}
+
 /// What a name means in code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Meaning {
@@ -85,17 +125,36 @@ pub(super) enum Meaning {
 }
 
 /// What is bound, as far as code can hold it.
-pub(super) fn held<T: Scalar>(bound: &ScopedBinding<T>) -> Option<Captured> {
+pub(super) fn held<T: Scalar>(scope: &Scope<T>, bound: &ScopedBinding<T>) -> Option<Captured> {
     match &bound.what {
-        Binding::Variable {
-            ty: ty @ (Type::Int | Type::Float), value: Value::Number(_), ..
-        } => Some(Captured::Number(*ty)),
-        Binding::Variable { ty: Type::Farray, value: Value::Numbers(_) | Value::Unset, .. } => {
-            Some(Captured::Array)
-        }
+        Binding::Variable { ty, value, .. } => match (ty, value) {
+            (Type::Int | Type::Float, Value::Number(_)) | (Type::Vector, Value::Vector(_)) => {
+                Some(Captured::Variable(*ty))
+            }
+            (Type::Farray, Value::Numbers(_) | Value::Unset)
+            | (Type::Curve | Type::Surface, Value::Vectors(_) | Value::Unset) => {
+                Some(Captured::Array(*ty))
+            }
+            _ => None,
+        },
         Binding::Param(number) => Some(Captured::Param(*number)),
+        Binding::Reference(place) if place.section.is_none() && place.component.is_none() => {
+            match (held(scope, scope.root(place)?)?, place.frame) {
+                (Captured::Variable(_) | Captured::Array(_), None) => {
+                    Some(Captured::OfFile(place.name))
+                }
+                (Captured::Variable(ty), Some(_)) => Some(Captured::Passed(ty)),
+                (Captured::Array(ty), Some(_)) => Some(Captured::PassedArray(ty)),
+                _ => None,
+            }
+        }
         _ => None,
     }
+}
+
+/// The type of the elements of an array.
+pub(super) fn element_type(ty: Type) -> Type {
+    if ty == Type::Farray { Type::Float } else { Type::Vector }
 }
 
 impl<T: Scalar> RegionCompiler<'_, T> {
@@ -119,28 +178,31 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             }
         }
         for name in names {
-            if self.is_hidden(unit, name) || self.names[unit].contains_key(&name) {
+            if self.is_hidden(unit, name)
+                || self.names[unit].contains_key(&name)
+                || self.references[unit].contains_key(&name)
+            {
                 // A formal argument that is declared again.
                 self.redeclared(unit, name);
                 continue;
             }
-            let mut hows = all.iter().filter(|(n, _)| *n == name).map(|(_, how)| *how);
-            let first = hows.next().unwrap_or(Declares::Other);
-            let array = first == Declares::Array;
-            let alike = hows.all(|how| (how == Declares::Array) == array && how != Declares::Other);
-            if first == Declares::Other || !alike {
+            let hows: Vec<Declares> = all
+                .iter()
+                .filter(|(n, _)| *n == name)
+                .map(|(_, how)| self.resolved(unit, *how, &all))
+                .collect();
+            let Some(kind) = RoomKind::of(&hows) else {
                 self.hide(unit, name);
                 continue;
-            }
+            };
             // What it is before the region begins.
             let before = match unit == self.entry {
                 true => self.bound_here(name),
                 false => None,
             };
             let captured = match before {
-                Some(bound) => match held(bound) {
-                    Some(Captured::Array) if array => Some(Captured::Array),
-                    Some(Captured::Number(ty)) if !array => Some(Captured::Number(ty)),
+                Some(bound) => match held(self.scope, bound) {
+                    Some(captured) if kind.takes(captured) => Some(captured),
                     _ => {
                         self.hide(unit, name);
                         continue;
@@ -152,20 +214,16 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 let place = if of_file { NamePlace::File } else { NamePlace::Frame };
                 self.guard(name, place, captured.unwrap_or(Captured::Nothing));
             }
-            let mut tys: Vec<Type> = all
-                .iter()
-                .filter_map(|(n, how)| match how {
-                    Declares::Number(ty) if *n == name => Some(*ty),
-                    _ => None,
-                })
-                .collect();
-            if let Some(Captured::Number(ty)) = captured {
-                tys.push(ty);
-            }
-            let what = match array {
-                true => self.new_array(unit, name, captured.is_some(), true),
-                false => {
-                    let ty = tys.first().copied().filter(|ty| tys.iter().all(|t| t == ty));
+            let what = match kind {
+                RoomKind::Array(ty) => {
+                    self.new_array(unit, Some(name), ty, captured.is_some(), true)
+                }
+                RoomKind::Vector => {
+                    self.new_variable(unit, name, Some(Type::Vector), captured, true)
+                }
+                RoomKind::Number(ty) => {
+                    let same = |captured| ty.map(Captured::Variable) == Some(captured);
+                    let ty = ty.filter(|_| captured.is_none_or(same));
                     self.new_variable(unit, name, ty, captured, true)
                 }
             };
@@ -176,9 +234,42 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(())
     }
 
+    /// What a `foreach` declares follows from what it walks through.
+    fn resolved(&self, unit: usize, how: Declares, all: &[(Name, Declares)]) -> Declares {
+        let Declares::Element(list) = how else { return how };
+        let m = &self.units[unit].m;
+        let Some(symbol) = m.program.as_name(list) else { return Declares::Other };
+        let name = m.names[symbol.0 as usize];
+        let mut declared = all.iter().filter(|(n, _)| *n == name).map(|(_, how)| *how);
+        let array = match (declared.next(), self.names[unit].get(&name)) {
+            (Some(Declares::Array(ty)), _) => Some(ty),
+            (Some(_), _) => None,
+            (None, Some(Poisonable::Array(k))) => Some(self.units[unit].arrays[*k as usize].ty),
+            (None, Some(Poisonable::Variable(_))) => None,
+            (None, None) => {
+                let own = || self.scope.frame().local(name).filter(|_| unit == self.entry);
+                let bound = match self.references[unit].get(&name) {
+                    Some(of_file) => self.scope.global(*of_file),
+                    None => own().or_else(|| self.scope.global(name)),
+                };
+                match bound.and_then(|bound| held(self.scope, bound)) {
+                    Some(Captured::Array(ty) | Captured::PassedArray(ty)) => Some(ty),
+                    Some(Captured::OfFile(name)) => {
+                        match self.scope.global(name).and_then(|bound| held(self.scope, bound)) {
+                            Some(Captured::Array(ty)) => Some(ty),
+                            _ => None,
+                        }
+                    }
+                    _ => None,
+                }
+            }
+        };
+        array.map_or(Declares::Other, |ty| Declares::Variable(element_type(ty)))
+    }
+
     /// Notes that a formal argument is declared again in its routine: code does not hold what changes its type.
     fn redeclared(&mut self, unit: usize, name: Name) {
-        if self.names[unit].contains_key(&name) {
+        if self.names[unit].contains_key(&name) || self.references[unit].contains_key(&name) {
             self.hide(unit, name);
         }
     }
@@ -199,7 +290,10 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         captured: Option<Captured>,
         declared: bool,
     ) -> Poisonable {
-        let register = self.register(unit);
+        let register = match ty {
+            Some(Type::Vector) => self.three_registers(unit),
+            _ => self.register(unit),
+        };
         let at = self.units[unit].variables.len() as u16;
         let variable = CodeVariable { name, register, ty, captured, declared };
         self.units[unit].variables.push(variable);
@@ -211,14 +305,17 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     pub fn new_array(
         &mut self,
         unit: usize,
-        name: Name,
+        name: Option<Name>,
+        ty: Type,
         captured: bool,
         declared: bool,
     ) -> Poisonable {
         let at = self.units[unit].arrays.len() as u16;
-        self.units[unit].arrays.push(CodeArray { name, captured, declared });
+        self.units[unit].arrays.push(CodeArray { name, ty, captured, declared });
         let what = Poisonable::Array(at);
-        self.names[unit].insert(name, what);
+        if let Some(name) = name {
+            self.names[unit].insert(name, what);
+        }
         what
     }
 
@@ -244,13 +341,20 @@ impl<T: Scalar> RegionCompiler<'_, T> {
             }
             return Ok(Meaning::Own(what));
         }
-        if unit == self.entry && unit != 0 {
+        let mut name = name;
+        if let Some(&of_file) = self.references[unit].get(&name) {
+            name = of_file;
+        } else if unit == self.entry && unit != 0 {
             if let Some(bound) = self.scope.frame().local(name) {
-                let captured = held(bound).ok_or(Unfit::Statement)?;
+                let captured = held(self.scope, bound).ok_or(Unfit::Statement)?;
                 self.guard(name, NamePlace::Frame, captured);
-                return Ok(Meaning::Own(self.capture(unit, name, captured)));
+                match captured {
+                    Captured::OfFile(of_file) => name = of_file,
+                    _ => return Ok(Meaning::Own(self.capture(unit, name, captured))),
+                }
+            } else {
+                self.guard(name, NamePlace::Frame, Captured::Nothing);
             }
-            self.guard(name, NamePlace::Frame, Captured::Nothing);
         }
         let of_file = |what| if unit == 0 { Meaning::Own(what) } else { Meaning::OfFile(what) };
         if self.is_hidden(0, name) {
@@ -261,7 +365,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         }
         match self.scope.global(name) {
             Some(bound) => {
-                let captured = held(bound).ok_or(Unfit::Statement)?;
+                let captured = held(self.scope, bound).ok_or(Unfit::Statement)?;
                 self.guard(name, NamePlace::File, captured);
                 Ok(of_file(self.capture(0, name, captured)))
             }
@@ -274,8 +378,12 @@ impl<T: Scalar> RegionCompiler<'_, T> {
 
     fn capture(&mut self, unit: usize, name: Name, captured: Captured) -> Poisonable {
         let what = match captured {
-            Captured::Array => self.new_array(unit, name, true, false),
-            Captured::Number(ty) => self.new_variable(unit, name, Some(ty), Some(captured), false),
+            Captured::Array(ty) | Captured::PassedArray(ty) => {
+                self.new_array(unit, Some(name), ty, true, false)
+            }
+            Captured::Variable(ty) | Captured::Passed(ty) => {
+                self.new_variable(unit, name, Some(ty), Some(captured), false)
+            }
             _ => self.new_variable(unit, name, Some(Type::Float), Some(captured), false),
         };
         self.set_known_in(unit, what, true, true);
@@ -297,7 +405,12 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     pub fn is_free(&mut self, symbol: Symbol) -> bool {
         let unit = self.unit;
         let name = self.units[unit].m.names[symbol.0 as usize];
-        if [unit, 0].iter().any(|&u| self.names[u].contains_key(&name) || self.is_hidden(u, name)) {
+        let taken = |u: usize| {
+            self.names[u].contains_key(&name)
+                || self.references[u].contains_key(&name)
+                || self.is_hidden(u, name)
+        };
+        if taken(unit) || taken(0) {
             return false;
         }
         if unit == self.entry && unit != 0 {

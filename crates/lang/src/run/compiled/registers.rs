@@ -5,8 +5,9 @@ use crate::run::interpreter::Interpreter;
 use crate::source::module::Name;
 use crate::source::scope::{Binding, CallFrame, LoopIteration, ScopedBinding};
 use crate::value::initialised::Known;
-use moldloft_num::Real;
-use moldloft_registry::{Array, ArrayShape, Scalar, Value};
+use crate::value::subarray::Place;
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Array, ArrayShape, Scalar, Value, Vectors};
 use moldloft_syntax::sdl::Type;
 use std::sync::Arc;
 
@@ -18,9 +19,12 @@ pub(super) enum ArrayItems<T> {
     Owned(Vec<T>),
     /// Something else holds it as well.
     Shared(Arc<Array<T>>),
+    /// All x, all y, all z of vectors.
+    OwnedVectors([Vec<T>; 3]),
+    SharedVectors(Arc<Vectors<T>>),
 }
 
-/// An array of numbers in code.
+/// An array of numbers or vectors in code.
 #[derive(Debug)]
 pub(super) struct ArrayRegister<T> {
     pub items: ArrayItems<T>,
@@ -67,7 +71,37 @@ impl<T: Real> ArrayRegister<T> {
         match &self.items {
             ArrayItems::Owned(items) => items,
             ArrayItems::Shared(array) => &array.items,
-            ArrayItems::Nothing => &[],
+            _ => &[],
+        }
+    }
+
+    /// The vector at a position in memory.
+    #[inline(always)]
+    pub fn vector(&self, k: usize) -> [T; 3] {
+        match &self.items {
+            ArrayItems::OwnedVectors(planes) => planes.each_ref().map(|plane| plane[k]),
+            ArrayItems::SharedVectors(array) => array.planes.each_ref().map(|plane| plane[k]),
+            _ => unreachable!("a curve or a surface holds vectors"),
+        }
+    }
+
+    /// Puts a vector to a position in memory, all of it or one component.
+    #[inline(always)]
+    pub fn put_vector(&mut self, k: usize, v: [T; 3], part: Option<u8>) {
+        if let ArrayItems::SharedVectors(_) = &self.items {
+            self.own();
+        }
+        let ArrayItems::OwnedVectors(planes) = &mut self.items else { return };
+        match part {
+            Some(part) => planes[part as usize][k] = v[part as usize],
+            None => planes.iter_mut().zip(v).for_each(|(plane, x)| plane[k] = x),
+        }
+        match self.shape {
+            ArrayShape::Row(_) => self.known.give_at(k),
+            ArrayShape::Grid(m, n) => {
+                let point = || Vec3::from(planes.each_ref().map(|plane| plane[k].re()));
+                self.known.give_vector_at(k, [m, n], point);
+            }
         }
     }
 
@@ -85,11 +119,13 @@ impl<T: Real> ArrayRegister<T> {
 
     #[cold]
     fn own(&mut self) {
-        let items = std::mem::replace(&mut self.items, ArrayItems::Nothing);
-        if let ArrayItems::Shared(array) = items {
-            let items = Arc::try_unwrap(array).map_or_else(|kept| kept.items.clone(), |a| a.items);
-            self.items = ArrayItems::Owned(items);
-        }
+        self.items = match std::mem::replace(&mut self.items, ArrayItems::Nothing) {
+            ArrayItems::Shared(array) => ArrayItems::Owned(Arc::unwrap_or_clone(array).items),
+            ArrayItems::SharedVectors(array) => {
+                ArrayItems::OwnedVectors(Arc::unwrap_or_clone(array).planes)
+            }
+            other => other,
+        };
     }
 
     /// Takes the value of a variable.
@@ -101,6 +137,13 @@ impl<T: Real> ArrayRegister<T> {
                 self.items = match Arc::try_unwrap(array) {
                     Ok(array) => ArrayItems::Owned(array.items),
                     Err(array) => ArrayItems::Shared(array),
+                };
+            }
+            Value::Vectors(array) => {
+                self.shape = array.shape;
+                self.items = match Arc::try_unwrap(array) {
+                    Ok(array) => ArrayItems::OwnedVectors(array.planes),
+                    Err(array) => ArrayItems::SharedVectors(array),
                 };
             }
             other => {
@@ -117,6 +160,10 @@ impl<T: Real> ArrayRegister<T> {
                 Value::Numbers(Arc::new(Array { shape: self.shape, items }))
             }
             ArrayItems::Shared(array) => Value::Numbers(array),
+            ArrayItems::OwnedVectors(planes) => {
+                Value::Vectors(Arc::new(Vectors { shape: self.shape, planes }))
+            }
+            ArrayItems::SharedVectors(array) => Value::Vectors(array),
             ArrayItems::Nothing => Value::Unset,
         };
         (value, std::mem::take(&mut self.known))
@@ -124,14 +171,17 @@ impl<T: Real> ArrayRegister<T> {
 
     /// The same for a routine, which gets it by value.
     pub fn passed(&mut self, mark: u32) -> Self {
-        if let ArrayItems::Owned(_) = &self.items
-            && let ArrayItems::Owned(items) =
-                std::mem::replace(&mut self.items, ArrayItems::Nothing)
-        {
-            self.items = ArrayItems::Shared(Arc::new(Array { shape: self.shape, items }));
-        }
+        let shape = self.shape;
+        self.items = match std::mem::replace(&mut self.items, ArrayItems::Nothing) {
+            ArrayItems::Owned(items) => ArrayItems::Shared(Arc::new(Array { shape, items })),
+            ArrayItems::OwnedVectors(planes) => {
+                ArrayItems::SharedVectors(Arc::new(Vectors { shape, planes }))
+            }
+            other => other,
+        };
         let items = match &self.items {
             ArrayItems::Shared(array) => ArrayItems::Shared(array.clone()),
+            ArrayItems::SharedVectors(array) => ArrayItems::SharedVectors(array.clone()),
             _ => ArrayItems::Nothing,
         };
         Self { items, shape: self.shape, known: Known::default(), mark }
@@ -146,7 +196,7 @@ pub(super) struct WaitingCall {
     pub registers: usize,
     pub marks: usize,
     pub arrays: usize,
-    /// NamePlace the value of the call that it made goes, and its place.
+    /// Where the value of the call that it made goes, and its place.
     pub to: u16,
     pub site: u16,
     pub held: usize,
@@ -162,7 +212,7 @@ pub(super) struct RegisterMachine<T> {
     pub waiting: Vec<WaitingCall>,
     pub unit: usize,
     pub pc: usize,
-    /// NamePlace the registers, marks and arrays of the call under way begin.
+    /// Where the registers, marks and arrays of the call under way begin.
     pub first: usize,
     pub first_mark: usize,
     pub first_array: usize,
@@ -222,18 +272,24 @@ impl<T: Scalar> RegisterMachine<T> {
         self.held = call.held;
     }
 
-    /// Goes back to the call that waits with a number for a float, when no frame of the interpreter was made: the
-    /// usual case. Gives the elements that are held then.
+    /// Goes back to the call that waits with a number for a float, or a vector for a vector, when no frame of the
+    /// interpreter was made: the usual case. Gives the elements that are held then.
     #[inline]
-    pub fn returns_plainly(&mut self, region: &CodeRegion<T>, x: T) -> Option<usize> {
-        if self.result_of(region) != Some(Type::Float) || self.framed {
+    pub fn returns_plainly(&mut self, region: &CodeRegion<T>, x: &[T]) -> Option<usize> {
+        let fits = match self.result_of(region) {
+            Some(Type::Float) => x.len() == 1,
+            Some(Type::Vector) => x.len() == 3,
+            _ => false,
+        };
+        if !fits || self.framed {
             return None;
         }
         let call = self.waiting.pop()?;
         self.back_to(call);
         self.pc += 1;
         if call.to != NO_LABEL {
-            self.registers[self.first + call.to as usize] = x;
+            let to = self.first + call.to as usize;
+            self.registers[to..to + x.len()].copy_from_slice(x);
         }
         Some(call.held)
     }
@@ -264,7 +320,7 @@ impl<T: Scalar> RegisterMachine<T> {
         }
     }
 
-    /// NamePlace the part of the call number `at` begins, 0 being the region's own: unit, registers, marks, arrays.
+    /// Where the part of the call number `at` begins, 0 being the region's own: unit, registers, marks, arrays.
     fn part(&self, at: usize) -> [usize; 4] {
         match self.waiting.get(at) {
             Some(call) => [call.unit, call.registers, call.marks, call.arrays],
@@ -288,6 +344,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let locals = &mut self.env.scope.frames.get_mut(at)?.locals;
                 locals.iter_mut().find(|(n, _)| *n == name).map(|(_, bound)| bound)
             }
+        }
+    }
+
+    /// The same, or what it stands for, when it was passed by reference.
+    fn root_in(&mut self, frame: VariableFrame, name: Name) -> Option<&mut ScopedBinding<T>> {
+        match self.bound_in(frame, name)?.what {
+            Binding::Reference(place) => self.env.scope.root_mut(&place),
+            _ => self.bound_in(frame, name),
         }
     }
 
@@ -317,10 +381,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let code = &region.units[unit];
         for (k, variable) in code.variables.iter().enumerate() {
             let mark = machine.marks[marks + k];
-            let value = Value::Number(machine.registers[registers + variable.register as usize]);
+            let at = registers + variable.register as usize;
+            let value = match variable.ty {
+                Some(Type::Vector) => {
+                    let [x, y, z] = [0, 1, 2].map(|c| machine.registers[at + c]);
+                    Value::Vector(Vec3 { x, y, z })
+                }
+                _ => Value::Number(machine.registers[at]),
+            };
             let Some((origin, failed)) = declaration(mark) else {
-                if let (AS_BEFORE, Some(Captured::Number(_))) = (mark, variable.captured)
-                    && let Some(bound) = self.bound_in(frame, variable.name)
+                if let (AS_BEFORE, Some(Captured::Variable(_) | Captured::Passed(_))) =
+                    (mark, variable.captured)
+                    && let Some(bound) = self.root_in(frame, variable.name)
                     && let Binding::Variable { value: old, .. } = &mut bound.what
                 {
                     *old = value;
@@ -335,6 +407,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return;
         }
         for (k, array) in code.arrays.iter().enumerate() {
+            let Some(name) = array.name else { continue };
             let register = &mut machine.arrays[arrays + k];
             let mark = register.mark;
             if mark == UNDECLARED {
@@ -342,7 +415,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             let (value, known) = register.give();
             let Some((origin, failed)) = declaration(mark) else {
-                if let Some(bound) = self.bound_in(frame, array.name)
+                if let Some(bound) = self.root_in(frame, name)
                     && let Binding::Variable { value: old, known: of, .. } = &mut bound.what
                 {
                     (*old, *of) = (value, known);
@@ -351,12 +424,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             };
             let (span, ty) = code.origins[origin];
             // An argument takes any shape, a declared array its own.
-            let fixed = !code.formals.contains(&Poisonable::Array(k as u16));
+            let fixed = !code.formals.contains(&Some(Poisonable::Array(k as u16)));
             let what = match failed {
                 true => Binding::Poisoned,
                 false => Binding::Variable { ty, value, fixed, known },
             };
-            self.bind_in(frame, array.name, ScopedBinding { span, what });
+            self.bind_in(frame, name, ScopedBinding { span, what });
         }
     }
 
@@ -378,26 +451,30 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             if !is_live(machine.marks[marks + k]) {
                 continue;
             }
-            match self.bound_in(frame, variable.name).map(|bound| &bound.what) {
+            match self.root_in(frame, variable.name).map(|bound| &bound.what) {
                 Some(Binding::Variable { value: Value::Number(x), .. }) => {
                     machine.registers[to] = *x;
+                }
+                Some(Binding::Variable { value: Value::Vector(v), .. }) => {
+                    machine.registers[to..to + 3].copy_from_slice(&v.to_array());
                 }
                 other => unreachable!("a variable in code has become {other:?}"),
             }
         }
         for (k, array) in code.arrays.iter().enumerate() {
+            let Some(name) = array.name else { continue };
             let register = &mut machine.arrays[arrays + k];
             if !is_live(register.mark) {
                 continue;
             }
-            match self.bound_in(frame, array.name).map(|bound| &mut bound.what) {
+            match self.root_in(frame, name).map(|bound| &mut bound.what) {
                 Some(Binding::Variable { value, known, .. }) => register.take(value, known),
                 other => unreachable!("an array in code has become {other:?}"),
             }
         }
     }
 
-    /// NamePlace the parts that the interpreter can see stand: the file's, the region's own, the call's under way.
+    /// Where the parts that the interpreter can see stand: the file's, the region's own, the call's under way.
     fn visible(
         &self,
         region: &CodeRegion<T>,
@@ -442,6 +519,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             frame.loops = outer.loops.clone();
             frame.loops.extend(self.loops_at(machine, caller.registers, &site.loops));
             frame.called = Some((site.span, region.units[caller.unit].module as u32));
+            for &(name, span, of_file) in &region.units[machine.part(at)[0]].references {
+                let what = Binding::Reference(Place::whole(None, of_file));
+                frame.locals.push((name, ScopedBinding { span, what }));
+            }
             self.env.scope.frames.push(frame);
             machine.framed = true;
             if at < depth {
@@ -491,7 +572,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             false => self.env.scope.frame().local(name),
         };
         match bound {
-            Some(bound) => super::names::held(bound),
+            Some(bound) => super::names::held(&self.env.scope, bound),
             None => Some(Captured::Nothing),
         }
     }
