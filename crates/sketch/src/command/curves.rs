@@ -266,7 +266,7 @@ pub(super) fn unbuilt_reply(unbuilt: &UnbuiltCurve) -> CommandReply {
         UnbuiltReason::Curve(fault) => curve_fault(name, fault),
         UnbuiltReason::Crowded(p) => CommandError::new(
             0,
-            format!("{name} stays a curve: more than three lines meet at point {p}"),
+            format!("{name} stays a curve: too many lines of faces meet at point {p}"),
             "KEEP says so",
         ),
         UnbuiltReason::Taken(p) => CommandError::new(

@@ -67,25 +67,7 @@ impl SketchSession {
                     CoordinateAxis::Y => n.y = -1.0,
                     CoordinateAxis::Z => n.z = 1.0,
                 }
-                let polygons = fit_plane(&positions, &edges, n);
-                let fits = if polygons.is_empty() {
-                    vec![]
-                } else {
-                    vec![WireframeFit {
-                        faces: polygons.clone(),
-                        internal: vec![],
-                        branching: vec![],
-                        scribed: vec![],
-                        volume: 0.0,
-                    }]
-                };
-                Fitted {
-                    candidates: polygons.len(),
-                    polygons,
-                    fits,
-                    complete: true,
-                    ..Fitted::default()
-                }
+                fit_plane(&positions, &edges, n)
             }
             None => fit(&positions, &edges),
         };

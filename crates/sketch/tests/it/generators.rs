@@ -5,7 +5,7 @@ use moldloft_sketch::*;
 use moldloft_testing::{Random, rounds};
 use std::f64::consts::PI;
 
-fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> SketchObject {
+pub fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> SketchObject {
     let mut object = with_faces(cuboid(size));
     object.name = name.to_owned();
     object.reference = Some(Reference { point: PointId(1), at });
@@ -13,7 +13,7 @@ fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> SketchObject {
 }
 
 /// A bar of diameter `d` along z, its axis at `at`, from z = `low` to `high`.
-fn bar(name: &str, d: f64, at: [f64; 2], [low, high]: [f64; 2]) -> SketchObject {
+pub fn bar(name: &str, d: f64, at: [f64; 2], [low, high]: [f64; 2]) -> SketchObject {
     let r = d / 2.0;
     let mut object = block(name, [d, d, high - low], [at[0] - r, at[1] - r, low]);
     for (c, corner) in [("c1", [2, 1, 4]), ("c2", [6, 5, 8])] {
@@ -22,7 +22,7 @@ fn bar(name: &str, d: f64, at: [f64; 2], [low, high]: [f64; 2]) -> SketchObject 
     object
 }
 
-fn measured(s: &mut SketchSession, name: &str) -> Option<[f64; 2]> {
+pub fn measured(s: &mut SketchSession, name: &str) -> Option<[f64; 2]> {
     let o = s.objects().into_iter().find(|o| o.name == name).unwrap();
     Some([o.volume?, o.area?])
 }

@@ -12,6 +12,7 @@ mod generators;
 mod gradient;
 mod json;
 mod letters;
+mod near_misses;
 mod pictures;
 mod projection;
 mod session;
