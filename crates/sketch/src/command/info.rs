@@ -361,7 +361,8 @@ impl SketchSession {
             return Err(CommandError::text(
                 format!("there is no dimension {name}"),
                 "LIST DIMENSIONS lists them",
-            ));
+            )
+            .about(ReplySubject::of("unknown-name").names([&name])));
         };
         let text = match (d.role, &d.measure) {
             (DimensionRole::Reference, MeasuredQuantity::Along { axis, p, q }) => {
@@ -624,7 +625,8 @@ impl SketchSession {
                 return Err(CommandError::text(
                     format!("there is no face {id}"),
                     "LIST FACES lists them",
-                ));
+                )
+                .about(ReplySubject::of("unknown-face").faces([id])));
             };
             let text: Vec<String> = face.outer.iter().map(ToString::to_string).collect();
             let text = format!("face {id} runs {}", text.join(" "));

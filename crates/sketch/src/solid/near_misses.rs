@@ -39,8 +39,14 @@ pub(super) struct Facets<'a, T> {
 #[derive(Clone, Copy)]
 enum Stratum<'a, T> {
     Vertex(Vec3),
-    Plane { at: Vec3, normal: Vec3 },
-    Line { at: Vec3, way: Vec3 },
+    Plane {
+        at: Vec3,
+        normal: Vec3,
+    },
+    Line {
+        at: Vec3,
+        way: Vec3,
+    },
     Edge(&'a SmoothPiece<T>),
     /// Through points of an edge that has no closed form.
     Traced([Vec3; 4]),
@@ -251,7 +257,10 @@ impl<T: Real> Facets<'_, T> {
                     let part = |p: Vec3| way.dot(p - ends[0]) / reach;
                     let nearest = |third: f64| {
                         let at = ends[0].lerp(ends[1], third);
-                        nodes.iter().map(|n| n.0).min_by(|p, q| p.distance(at).total_cmp(&q.distance(at)))
+                        nodes
+                            .iter()
+                            .map(|n| n.0)
+                            .min_by(|p, q| p.distance(at).total_cmp(&q.distance(at)))
                     };
                     let [Some(p), Some(q)] = [1.0 / 3.0, 2.0 / 3.0].map(nearest) else { continue };
                     let through = [(0.0, ends[0]), (part(p), p), (part(q), q), (1.0, ends[1])];
@@ -299,7 +308,8 @@ impl<T: Real> Facets<'_, T> {
         let mut x: Vec<f64> = start(a);
         x.extend(start(b));
         let places = |x: &[f64]| {
-            let free = |s: &Stratum<'_, T>| matches!(s, Stratum::Plane { .. } | Stratum::Line { .. });
+            let free =
+                |s: &Stratum<'_, T>| matches!(s, Stratum::Plane { .. } | Stratum::Line { .. });
             if free(&a.stratum) {
                 let (q, dq) = b.stratum.at(&x[n..], Vec3::zero());
                 let (p, dp) = a.stratum.at(&[], q);

@@ -102,8 +102,11 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// Labels of the old body for vertices at its places; the others go on counting.
+    /// Labels of the old body for vertices at its places, the others go on counting; and its curves, with what is
+    /// to be said about them.
     fn named_after(mut self, old: &SketchSolid<T>) -> SketchSolid<T> {
+        self.curves.clone_from(&old.curves);
+        self.unbuilt.clone_from(&old.unbuilt);
         let size = old.vertices.iter().map(|v| v.at.re().norm()).fold(0.0, f64::max);
         let mut next = old.vertices.iter().map(|v| v.id.0).max().unwrap_or(0);
         let mut taken: Vec<PointId> = Vec::new();

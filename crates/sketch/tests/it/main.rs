@@ -6,6 +6,7 @@ mod common;
 mod dimensions;
 mod dxf_lines;
 mod errors;
+mod errors_enumerated;
 mod expressions;
 mod faces;
 mod generators;

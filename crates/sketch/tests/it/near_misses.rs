@@ -80,15 +80,18 @@ fn bars_and_walls_at_a_hair() {
             tally.compare(&mut s, "CUT A B INTO C", cut, g, &what);
         } else {
             let out = [disc - area, round_ - arc];
-            let united = [
-                240.0 + length * out[0],
-                268.0 + 2.0 * out[0] + length * (out[1] - chord),
-            ];
+            let united =
+                [240.0 + length * out[0], 268.0 + 2.0 * out[0] + length * (out[1] - chord)];
             tally.compare(&mut s, "UNION A B INTO C", united, g, &what);
         }
     }
     println!("{} right, {} refused", tally.right, tally.refused);
-    assert!(tally.right > 3 * tally.refused / 2, "{} right, {} refused", tally.right, tally.refused);
+    assert!(
+        tally.right > 3 * tally.refused / 2,
+        "{} right, {} refused",
+        tally.right,
+        tally.refused
+    );
 }
 
 /// Two bars at right angles whose axes are apart by the sum of their radii, less a hair.
