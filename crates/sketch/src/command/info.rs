@@ -175,14 +175,16 @@ impl SketchSession {
             reply.about = *fault.about;
             self.out.push(reply);
         }
+        let confidences = object.drawing.confidences();
         for (id, line) in &object.drawing.lines {
-            if line.free.is_some() && line.confidence < DOUBTFUL {
+            let confidence = confidences[id];
+            if line.free.is_some() && confidence < DOUBTFUL {
                 let text = format!(
                     "line {id}, {}: the type is doubtful ({:.0} %)",
                     object.drawing.line_text(*id),
-                    100.0 * line.confidence
+                    100.0 * confidence
                 );
-                let about = ReplySubject::of("doubtful-type").lines([*id]).value(line.confidence);
+                let about = ReplySubject::of("doubtful-type").lines([*id]).value(confidence);
                 self.out.push(CommandReply { about, ..CommandReply::warning(text) });
             }
         }
