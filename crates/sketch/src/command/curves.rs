@@ -4,6 +4,7 @@ use super::CommandError;
 use super::args::Args;
 use super::draw::{require_line, require_point};
 use super::session::{CommandReply, SketchSession};
+use super::subject::ReplySubject;
 use crate::solid::curve::{CurveFault, CurveKind, SketchCurve, trace};
 use crate::solid::{UnbuiltCurve, UnbuiltReason};
 use crate::{PointId, SketchObject};
@@ -38,7 +39,8 @@ impl SketchSession {
                     300,
                     "the two lines have no common end",
                     "name two lines that meet",
-                ));
+                )
+                .about(ReplySubject::of("lines-apart").points([a.p, a.q, b.p, b.q])));
             };
             vec![if a.p == m { a.q } else { a.p }, m, if b.p == m { b.q } else { b.p }]
         } else if args.take("CORNER") {
@@ -64,6 +66,11 @@ impl SketchSession {
                     return Err(CommandError::text(
                         text,
                         format!("give the end points: CORNER {m} a b"),
+                    )
+                    .about(
+                        ReplySubject::of("corner-of-many-lines")
+                            .points([m])
+                            .points(ends.iter().copied()),
                     ));
                 };
                 vec![a, m, b]
@@ -78,7 +85,8 @@ impl SketchSession {
                     300,
                     format!("point {p} twice in a corner"),
                     "name three points",
-                ));
+                )
+                .about(ReplySubject::of("point-twice").points([p])));
             }
         }
         let unit = object.units.as_deref();
@@ -148,7 +156,8 @@ impl SketchSession {
                         300,
                         format!("line {}-{} does not go on from point {at}", line.p, line.q),
                         "name lines in a row",
-                    ));
+                    )
+                    .about(ReplySubject::of("lines-apart").points([at, line.p, line.q])));
                 }
                 points.push(next);
             }
@@ -235,27 +244,32 @@ fn curve_fault(name: &str, fault: &CurveFault) -> CommandError {
         CurveFault::NoValue { reads } => CommandError::text(
             format!("{name} reads {reads}, which has no value"),
             format!("VARIABLE {reads} defines it"),
-        ),
+        )
+        .about(ReplySubject::of("no-value").names([&name.to_owned(), reads])),
         CurveFault::NotPositive { value } => CommandError::new(
             310,
             format!("{name} has the size {}", plain(*value)),
             "give a positive size",
-        ),
+        )
+        .about(ReplySubject::of("size-not-positive").names([&name.to_owned()]).value(*value)),
         CurveFault::Degenerate => CommandError::new(
             300,
             format!("the lines of {name} are parallel, or two of its points coincide"),
             "choose lines that meet at an angle",
-        ),
+        )
+        .about(ReplySubject::of("degenerate-curve").names([&name.to_owned()])),
         CurveFault::TooLarge { largest } => CommandError::new(
             310,
             format!("{name} is too large: its tangent point is beyond the end of a line"),
             format!("at most {} fits", plain(super::dims::rounded(*largest))),
-        ),
+        )
+        .about(ReplySubject::of("curve-too-large").names([&name.to_owned()]).value(*largest)),
         CurveFault::Undetermined => CommandError::new(
             404,
             format!("the points of {name} are not determined yet"),
             "CONVERT says what is missing",
-        ),
+        )
+        .about(ReplySubject::of("undetermined-points").names([&name.to_owned()])),
     }
 }
 
@@ -266,34 +280,35 @@ pub(super) fn unbuilt_reply(unbuilt: &UnbuiltCurve) -> CommandReply {
         UnbuiltReason::Curve(fault) => curve_fault(name, fault),
         UnbuiltReason::Crowded(p) => CommandError::new(
             0,
-            format!("{name} stays a curve: more than three lines meet at point {p}"),
+            format!("{name} stays a curve: too many lines of faces meet at point {p}"),
             "KEEP says so",
-        ),
+        ).about(ReplySubject::of("curve-not-built").names([name]).points([*p])),
         UnbuiltReason::Taken(p) => CommandError::new(
             0,
             format!("{name} stays a curve: another one has taken the corner at point {p}"),
             "remove one of them",
-        ),
+        ).about(ReplySubject::of("curve-not-built").names([name]).points([*p])),
         UnbuiltReason::Face(f) => CommandError::new(
             0,
             format!("face {f} is not plane with {name} and has not four edges"),
             "bend the opposite edge, or divide the face",
-        ),
+        ).about(ReplySubject::of("curve-not-built").names([name]).faces([*f])),
         UnbuiltReason::NoEdge => CommandError::new(
             0,
             format!(
                 "{name} stays a curve: its lines are no edges of faces, or it is not inscribed in them"
             ),
             "KEEP says so",
-        ),
+        ).about(ReplySubject::of("curve-not-built").names([name])),
         UnbuiltReason::Overlap(p, q) => CommandError::new(
             310,
             format!("{name} and its neighbour do not fit on the line from {p} to {q} together"),
             "make one of them smaller",
-        ),
+        ).about(ReplySubject::of("curve-not-built").names([name]).points([*p, *q])),
     };
     let mut reply = CommandReply::warning(fault.text);
     reply.code = (fault.code > 0).then_some(fault.code);
     reply.next = Some(fault.next);
+    reply.about = *fault.about;
     reply
 }

@@ -46,7 +46,8 @@ impl SketchSession {
                         "points {p} and {q} are not on a principal line, so the axis is unknown"
                     ),
                     format!("DIMENSION X {p} {q}, or Y, or Z"),
-                ));
+                )
+                .about(ReplySubject::of("unknown-axis").points([p, q])));
             }
         };
         if object.drawing.lines.is_empty() {
@@ -54,7 +55,8 @@ impl SketchSession {
                 398,
                 format!("there are no planes on axis {axis}: no line fixes any point there"),
                 "draw lines first",
-            ));
+            )
+            .about(ReplySubject::of("no-planes").axis(axis)));
         }
         let at_value = args.len() > 0
             && !args.at("REVERSED")
@@ -103,7 +105,8 @@ impl SketchSession {
                 396,
                 format!("points {p} and {q} are in one {axis} plane, by {}", path.join(", ")),
                 "dimension two different planes, or retype a line of the path",
-            ));
+            )
+            .about(ReplySubject::of("one-plane").points([p, q]).axis(axis)));
         }
         let mut role = DimensionRole::Driving;
         if let Some((way, names)) = chain(&object, planes, axis, p, q) {
@@ -134,6 +137,13 @@ impl SketchSession {
                         396,
                         text,
                         format!("change or delete one of {}", names.join(", ")),
+                    )
+                    .about(
+                        ReplySubject::of("determined-already")
+                            .points([p, q])
+                            .axis(axis)
+                            .names(&names)
+                            .value(m),
                     ));
                 }
                 _ => {
@@ -142,6 +152,12 @@ impl SketchSession {
                         396,
                         text,
                         format!("give values to {}", names.join(", ")),
+                    )
+                    .about(
+                        ReplySubject::of("determined-already")
+                            .points([p, q])
+                            .axis(axis)
+                            .names(&names),
                     ));
                 }
             }
@@ -165,7 +181,8 @@ impl SketchSession {
                     300,
                     format!("line {first} twice"),
                     "name two lines",
-                ));
+                )
+                .about(ReplySubject::of("line-twice").lines([first])));
             }
         }
         let measure = match (kind, second) {
@@ -219,7 +236,8 @@ impl SketchSession {
                 404,
                 format!("{name} cannot be measured yet: its points are not determined"),
                 "give it a value, or the missing dimensions; CHECK lists them",
-            ));
+            )
+            .about(ReplySubject::of("undetermined-points").names([&name])));
         };
         self.out.push(CommandReply::note(format!("{name} measures {}", plain(x))));
         let dimension =
@@ -258,6 +276,11 @@ impl SketchSession {
         }
         let mut reply = CommandReply::note(text);
         reply.next = Some("YES takes it; or give the value".to_owned());
+        reply.about = ReplySubject::of("suggested-value")
+            .points([p, q])
+            .axis(axis)
+            .names([&name])
+            .value(value);
         self.out.push(reply);
         self.question = Some(Question::Dimension { name, axis, p, q, value });
         Ok(())
@@ -305,7 +328,8 @@ impl SketchSession {
             return Err(CommandError::text(
                 format!("`{name}` cannot be read in expressions"),
                 "use a letter, then letters, digits, `_` and `.`",
-            ));
+            )
+            .about(ReplySubject::of("name-not-free").names([&name])));
         }
         // Other functions are known by their brackets.
         if crate::FUNCTIONS[..10].contains(&name.to_ascii_lowercase().as_str())
@@ -314,13 +338,15 @@ impl SketchSession {
             return Err(CommandError::text(
                 format!("{name} means something in expressions"),
                 "choose another name",
-            ));
+            )
+            .about(ReplySubject::of("name-not-free").names([&name])));
         }
         if object.has_name(&name) {
             return Err(CommandError::text(
                 format!("{name} exists already"),
                 format!("SET {name} changes its value; or choose another name"),
-            ));
+            )
+            .about(ReplySubject::of("name-not-free").names([&name])));
         }
         Ok(name)
     }
@@ -400,14 +426,16 @@ impl SketchSession {
                     return Err(CommandError::text(
                         format!("the numbers of {} are in {old}", object.name),
                         format!("SET UNITS {unit} CONVERT converts them"),
-                    ));
+                    )
+                    .about(ReplySubject::of("other-unit").names([&object.name])));
                 }
                 Some(old) if given => {
                     if object.feature.is_some() {
                         return Err(CommandError::text(
                             format!("{} is made of others", object.name),
                             "convert its parts before they are combined",
-                        ));
+                        )
+                        .about(ReplySubject::of("made-of-others").names([&object.name])));
                     }
                     let factor = size(&old).zip(size(&unit)).map_or(1.0, |(a, b)| a / b);
                     *self.active_mut()? = crate::merge::scaled(object, factor);
@@ -451,7 +479,8 @@ impl SketchSession {
             Some(near) => format!("did you mean {near}?"),
             None => "LIST DIMENSIONS and LIST VARIABLES list them".to_owned(),
         };
-        Err(CommandError::text(format!("unknown dimension or variable {name}"), next))
+        Err(CommandError::text(format!("unknown dimension or variable {name}"), next)
+            .about(ReplySubject::of("unknown-name").names([&name.to_string()])))
     }
 
     /// Changes or adds a dimension, unless that makes a new fault.
@@ -519,7 +548,8 @@ impl SketchSession {
                 return Err(CommandError::text(
                     format!("there is no dimension {name}"),
                     "LIST DIMENSIONS lists them",
-                ));
+                )
+                .about(ReplySubject::of("unknown-name").names([&name])));
             }
         }
         self.report_counts()
@@ -557,7 +587,8 @@ impl SketchSession {
             return Err(CommandError::text(
                 format!("there is no dimension {name} along an axis"),
                 "LIST DIMENSIONS lists them",
-            ));
+            )
+            .about(ReplySubject::of("unknown-name").names([&name])));
         };
         std::mem::swap(p, q);
         self.report_validity()
@@ -572,14 +603,16 @@ impl SketchSession {
                 101,
                 format!("object {} has no points yet", object.name),
                 "draw some, or INPUT it",
-            ));
+            )
+            .about(ReplySubject::of("no-points").names([&object.name])));
         }
         if object.drawing.lines.is_empty() {
             return Err(CommandError::new(
                 102,
                 format!("object {} has no lines", object.name),
                 "draw some",
-            ));
+            )
+            .about(ReplySubject::of("no-lines").names([&object.name])));
         }
         let (view, layout) = self.laid_out(&object);
         if let Some(fault) = self.first_type_fault(&object, &view.planes) {
@@ -642,7 +675,8 @@ fn in_range(
             Err(CommandError::text(
                 format!("{name} = {} is outside its range, {low} to {high}", plain(x)),
                 format!("give a number in it, or another range: SET {name} {} IN lo hi", plain(x)),
-            ))
+            )
+            .about(ReplySubject::of("out-of-range").names([&name.to_owned()]).value(x)))
         }
         _ => Ok(()),
     }

@@ -3,6 +3,7 @@
 use super::CommandError;
 use super::args::Args;
 use super::session::{CommandReply, MAX_POINTS, SketchSession};
+use super::subject::ReplySubject;
 use super::words::CommandTokenKind;
 use crate::{
     Align, CoordinateAxis, Drawing, DrawnLine, DrawnPoint, FaceId, Free, LineId, LineTypeSource,
@@ -51,7 +52,8 @@ impl SketchSession {
                         old.name
                     ),
                     "sketch another object, or EXTRUDE this one",
-                ));
+                )
+                .about(ReplySubject::of("section-or-space").names([&old.name])));
             }
             _ => self.insert(SketchObject::new(&name, section)),
         }
@@ -124,13 +126,15 @@ impl SketchSession {
                 300,
                 format!("a line from point {p} to itself has no length"),
                 "give two points",
-            ));
+            )
+            .about(ReplySubject::of("no-length").points([p])));
         }
         if let Some(other) = object.drawing.line_between(p, q).filter(|l| Some(*l) != id) {
             return Err(CommandError::text(
                 format!("line {other} joins points {p} and {q} already"),
                 format!("use line {other}"),
-            ));
+            )
+            .about(ReplySubject::of("line-twice").lines([other]).points([p, q])));
         }
         let drawing = &object.drawing;
         let mut line =
@@ -213,7 +217,8 @@ impl SketchSession {
                 300,
                 format!("{part} is not inside the line"),
                 "give a part between 0 and 1",
-            ));
+            )
+            .about(ReplySubject::of("outside-of-line").lines([id]).value(part)));
         }
         let object = self.active_mut()?;
         let line = require_line(object, id)?;
@@ -271,7 +276,8 @@ impl SketchSession {
                 300,
                 format!("point {p} is itself already"),
                 "give two points",
-            ));
+            )
+            .about(ReplySubject::of("no-length").points([p])));
         }
         object.draw().weld(p.min(q), p.max(q));
         let gone = object.drop_dangling();
@@ -329,7 +335,8 @@ impl SketchSession {
                         return Err(CommandError::text(
                             format!("there is no face {id}"),
                             "LIST FACES lists them",
-                        ));
+                        )
+                        .about(ReplySubject::of("unknown-face").faces([id])));
                     }
                 }
                 _ => {
@@ -339,7 +346,8 @@ impl SketchSession {
                             105,
                             format!("object {} has no curves", object.name),
                             "ARC, CIRCLE, QUADRATIC, CUBIC and ELLIPSE draw them",
-                        ));
+                        )
+                        .about(ReplySubject::of("no-curves").names([&object.name])));
                     }
                     let key = name.to_ascii_lowercase();
                     let found = match kind {
@@ -352,7 +360,8 @@ impl SketchSession {
                         return Err(CommandError::text(
                             format!("there is no {word} {name}"),
                             format!("LIST {kind}S lists them"),
-                        ));
+                        )
+                        .about(ReplySubject::of("unknown-name").names([&name])));
                     }
                 }
             }
@@ -498,7 +507,8 @@ impl SketchSession {
                 return Err(CommandError::text(
                     format!("points {first} and {q} are not aligned on {axis}"),
                     "WHY lists the dimensions that determine them",
-                ));
+                )
+                .about(ReplySubject::of("not-aligned").points([first, q]).axis(axis)));
             }
         }
         Ok(())
@@ -523,7 +533,8 @@ pub(super) fn line_type(drawing: &Drawing, args: &mut Args) -> Result<Option<Fre
             406,
             format!("in this cross section no line runs along {normal}"),
             "use F for lines that are parallel to neither axis",
-        )),
+        )
+        .about(ReplySubject::of("section-line").axis(normal))),
         _ => Ok(Some(free)),
     }
 }
@@ -538,7 +549,8 @@ pub(super) fn require_point(object: &SketchObject, p: PointId) -> Result<(), Com
     } else {
         (0, format!("no point {p} in {}", object.name))
     };
-    Err(CommandError::new(code, text, "draw it with POINT, or see LIST POINTS"))
+    let error = CommandError::new(code, text, "draw it with POINT, or see LIST POINTS");
+    Err(error.about(ReplySubject::of("unknown-point").points([p])))
 }
 
 /// The line must exist.
@@ -550,6 +562,7 @@ pub(super) fn require_line(object: &SketchObject, id: LineId) -> Result<DrawnLin
             (0, format!("no line {id} in {}", object.name))
         };
         CommandError::new(code, text, "draw it with LINE, or see LIST LINES")
+            .about(ReplySubject::of("unknown-line").lines([id]))
     })
 }
 

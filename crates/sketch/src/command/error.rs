@@ -19,7 +19,8 @@ pub struct CommandError {
 impl CommandError {
     /// A fault with its next step.
     pub fn new(code: u16, text: impl Into<String>, next: impl Into<String>) -> CommandError {
-        CommandError { code, text: text.into(), next: next.into(), about: Box::default() }
+        let about = Box::new(ReplySubject::of(kind(code)));
+        CommandError { code, text: text.into(), next: next.into(), about }
     }
 
     /// The same with what it is about.
@@ -31,5 +32,36 @@ impl CommandError {
     /// A fault of the text of a command.
     pub fn text(text: impl Into<String>, next: impl Into<String>) -> CommandError {
         CommandError::new(0, text, next)
+    }
+}
+
+/// What an error of a code is about that has no narrower kind of its own.
+fn kind(code: u16) -> &'static str {
+    match code {
+        101 => "no-points",
+        102 => "no-lines",
+        105 => "unknown-axis",
+        110 => "unknown-object",
+        112 => "no-active-object",
+        113 => "no-cross-section",
+        114 => "cross-section",
+        191 | 192 => "usage",
+        200 => "too-large",
+        300 => "no-length",
+        310 => "size",
+        396 => "determined-already",
+        398 => "no-planes",
+        399 | 600 => "file",
+        400 => "type-contradiction",
+        401 => "loose-point",
+        402 => "untyped-line",
+        404 => "missing-dimension",
+        405 => "axes",
+        406 => "line-type",
+        411 => "unsolved",
+        700 => "face-turned",
+        701 | 703 => "no-body",
+        702 => "choice",
+        _ => "command",
     }
 }

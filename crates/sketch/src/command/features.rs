@@ -37,7 +37,8 @@ impl SketchSession {
                     114,
                     format!("{} is a cross section; only solids are combined", object.name),
                     "EXTRUDE it first",
-                ));
+                )
+                .about(ReplySubject::of("cross-section").names([&object.name])));
             }
             self.require_body(&object)?;
             parts.push(object);
@@ -46,16 +47,20 @@ impl SketchSession {
             return Err(CommandError::text(
                 format!("{verb} wants two objects, not {} twice", parts[0].name),
                 "COPY makes another",
-            ));
+            )
+            .about(ReplySubject::of("object-twice").names([&parts[0].name])));
         }
         let operands = Feature::operands(&[&parts[0], &parts[1]]);
         let feature = Feature { kind: FeatureKind::Boolean(operation), operands };
         self.make(feature, &target, |why| match why {
-            NoBody::Combine(CombineError::Empty) => Some(CommandError::new(
-                701,
-                format!("{verb} of {} and {} leaves nothing", parts[0].name, parts[1].name),
-                "MOVE one of them, or CHECK the dimensions",
-            )),
+            NoBody::Combine(CombineError::Empty) => Some(
+                CommandError::new(
+                    701,
+                    format!("{verb} of {} and {} leaves nothing", parts[0].name, parts[1].name),
+                    "MOVE one of them, or CHECK the dimensions",
+                )
+                .about(ReplySubject::of("nothing-left").names([&parts[0].name, &parts[1].name])),
+            ),
             _ => None,
         })
     }
@@ -82,7 +87,8 @@ impl SketchSession {
                     701,
                     format!("{} has no faces yet", object.name),
                     format!("GENERATE FACES {}", object.name),
-                ));
+                )
+                .about(ReplySubject::of("no-faces").names([&object.name])));
             }
         }
         let (view, layout) = self.laid_out(object);
@@ -152,7 +158,8 @@ impl SketchSession {
                 113,
                 format!("{} is not a cross section", object.name),
                 "SKETCH name 2D starts one",
-            ));
+            )
+            .about(ReplySubject::of("no-cross-section").names([&object.name])));
         }
         if angle.literal().is_some_and(|a| a == 0.0 || !a.is_finite()) {
             return Err(CommandError::new(
@@ -281,7 +288,8 @@ impl SketchSession {
                 114,
                 format!("{} is a cross section; only solids are placed anywhere", object.name),
                 "EXTRUDE it first, or turn it by 90, 180 or 270",
-            ));
+            )
+            .about(ReplySubject::of("cross-section").names([&object.name])));
         }
         self.require_body(&object)?;
         let operands = vec![FeatureOperand { object: object.into(), prefix: String::new() }];
@@ -302,7 +310,8 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             404,
             format!("{name} has no faces or is not fully dimensioned"),
             "CONVERT says what is missing; then GENERATE FACES",
-        ),
+        )
+        .about(ReplySubject::of("no-faces").names([name])),
         NoBody::Flaw(SolidDefect::Open(edges)) => {
             let list: Vec<String> =
                 edges.iter().take(12).map(|[p, q]| format!("{p}-{q}")).collect();
@@ -351,7 +360,8 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             300,
             format!("{name} has coordinates that are not finite"),
             "CHECK the dimensions",
-        ),
+        )
+        .about(ReplySubject::of("not-finite").names([name])),
         NoBody::Operand { name: inner, why } => {
             let inner = no_body(&SketchObject::new(inner, None), why);
             let text = format!("{name}: {}", inner.text);
@@ -360,7 +370,8 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
         NoBody::NoValue(reads) => CommandError::text(
             format!("{name} reads {reads}, which has no value"),
             format!("VARIABLE {reads} defines it"),
-        ),
+        )
+        .about(ReplySubject::of("no-value").names([name, reads])),
         NoBody::Treatment(fault) => {
             let place = fault.at.map(|p| format!(" at {}", place_text(p))).unwrap_or_default();
             let mut about = ReplySubject::of("treatment");
@@ -372,7 +383,8 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             701,
             format!("{name}: the section lies on both sides of the line it is turned about"),
             "change the dimension that moved it",
-        ),
+        )
+        .about(ReplySubject::of("section-across-axis").names([name])),
     }
 }
 
@@ -403,9 +415,11 @@ fn combine_error(name: &str, e: &CombineError) -> CommandError {
             200,
             format!("{name}: there are too many pieces"),
             "combine smaller objects",
-        ),
+        )
+        .about(ReplySubject::of("too-many-pieces").names([&name.to_owned()])),
         CombineError::Empty => {
             CommandError::new(701, format!("{name}: nothing is left"), "CHECK the dimensions")
+                .about(ReplySubject::of("nothing-left").names([&name.to_owned()]))
         }
     }
 }

@@ -175,14 +175,16 @@ impl SketchSession {
             reply.about = *fault.about;
             self.out.push(reply);
         }
+        let confidences = object.drawing.confidences();
         for (id, line) in &object.drawing.lines {
-            if line.free.is_some() && line.confidence < DOUBTFUL {
+            let confidence = confidences[id];
+            if line.free.is_some() && confidence < DOUBTFUL {
                 let text = format!(
                     "line {id}, {}: the type is doubtful ({:.0} %)",
                     object.drawing.line_text(*id),
-                    100.0 * line.confidence
+                    100.0 * confidence
                 );
-                let about = ReplySubject::of("doubtful-type").lines([*id]).value(line.confidence);
+                let about = ReplySubject::of("doubtful-type").lines([*id]).value(confidence);
                 self.out.push(CommandReply { about, ..CommandReply::warning(text) });
             }
         }
@@ -361,7 +363,8 @@ impl SketchSession {
             return Err(CommandError::text(
                 format!("there is no dimension {name}"),
                 "LIST DIMENSIONS lists them",
-            ));
+            )
+            .about(ReplySubject::of("unknown-name").names([&name])));
         };
         let text = match (d.role, &d.measure) {
             (DimensionRole::Reference, MeasuredQuantity::Along { axis, p, q }) => {
@@ -624,7 +627,8 @@ impl SketchSession {
                 return Err(CommandError::text(
                     format!("there is no face {id}"),
                     "LIST FACES lists them",
-                ));
+                )
+                .about(ReplySubject::of("unknown-face").faces([id])));
             };
             let text: Vec<String> = face.outer.iter().map(ToString::to_string).collect();
             let text = format!("face {id} runs {}", text.join(" "));

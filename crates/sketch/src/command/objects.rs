@@ -3,6 +3,7 @@
 use super::CommandError;
 use super::args::Args;
 use super::session::{CommandReply, SketchSession};
+use super::subject::ReplySubject;
 use std::sync::Arc;
 
 impl SketchSession {
@@ -29,7 +30,8 @@ impl SketchSession {
             return Err(CommandError::text(
                 format!("object {} exists already", other.name),
                 "choose another name, or DELETE it",
-            ));
+            )
+            .about(ReplySubject::of("name-not-free").names([&other.name])));
         }
         Ok(name.to_lowercase())
     }

@@ -593,6 +593,7 @@ impl SketchSession {
                 None => "LIST OBJECTS lists them".to_owned(),
             };
             CommandError::new(110, format!("there is no object {name}"), next)
+                .about(ReplySubject::of("unknown-object").names([&name.to_owned()]))
         })
     }
 

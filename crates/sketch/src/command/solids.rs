@@ -6,7 +6,7 @@ use super::draw::require_point;
 use super::info::suggestions;
 use super::question::Question;
 use super::session::{CommandReply, MAX_POINTS, SketchSession};
-use super::subject::Suggestion;
+use super::subject::{ReplySubject, Suggestion};
 use crate::solid::faces::{Fitted, Polygon, WireframeFit, fit, fit_plane};
 use crate::solid::merge::{self, Placed};
 use crate::{CoordinateAxis, DimensionExpr, FaceId, PointId, SketchFace, SketchObject};
@@ -27,14 +27,16 @@ impl SketchSession {
                 101,
                 format!("object {} has no points yet", object.name),
                 "draw some, or INPUT it",
-            ));
+            )
+            .about(ReplySubject::of("no-points").names([&object.name])));
         }
         if object.drawing.lines.is_empty() {
             return Err(CommandError::new(
                 102,
                 format!("object {} has no lines", object.name),
                 "draw some",
-            ));
+            )
+            .about(ReplySubject::of("no-lines").names([&object.name])));
         }
         match layout.positions(&view.planes) {
             Some(at) => Ok(view.planes.ids().iter().copied().zip(at).collect()),
@@ -67,25 +69,7 @@ impl SketchSession {
                     CoordinateAxis::Y => n.y = -1.0,
                     CoordinateAxis::Z => n.z = 1.0,
                 }
-                let polygons = fit_plane(&positions, &edges, n);
-                let fits = if polygons.is_empty() {
-                    vec![]
-                } else {
-                    vec![WireframeFit {
-                        faces: polygons.clone(),
-                        internal: vec![],
-                        branching: vec![],
-                        scribed: vec![],
-                        volume: 0.0,
-                    }]
-                };
-                Fitted {
-                    candidates: polygons.len(),
-                    polygons,
-                    fits,
-                    complete: true,
-                    ..Fitted::default()
-                }
+                fit_plane(&positions, &edges, n)
             }
             None => fit(&positions, &edges),
         };
@@ -110,13 +94,18 @@ impl SketchSession {
                 701,
                 format!("two lines cross at {at} without a point"),
                 "SPLIT both and WELD the points, or correct the dimensions",
-            ));
+            )
+            .about(ReplySubject::of("lines-cross").place(*p)));
         }
         if !fitted.open.is_empty() {
             return Err(CommandError::new(
                 701,
                 format!("faces do not close: {}", open_text(&positions, &edges, &ids, &fitted)),
                 "add the missing lines, or CHECK types and dimensions",
+            )
+            .about(
+                ReplySubject::of("open-lines")
+                    .points(fitted.open.iter().flatten().filter_map(|v| ids.get(*v).copied())),
             ));
         }
         if fitted.fits.is_empty() {
@@ -248,7 +237,8 @@ impl SketchSession {
                 110,
                 format!("there is no object {key}"),
                 "GENERATE FACES again",
-            ));
+            )
+            .about(ReplySubject::of("unknown-object").names([&key])));
         };
         Arc::make_mut(object).faces = (1..).map(FaceId).zip(chosen).collect();
         self.state.active = Some(key);
@@ -441,7 +431,8 @@ impl SketchSession {
                     401,
                     "the points of the face are in no line",
                     "draw its lines first",
-                ));
+                )
+                .about(ReplySubject::of("loose-point").points(c.iter().copied())));
             }
         }
         let mut cycles = cycles.into_iter();
@@ -467,14 +458,16 @@ impl SketchSession {
                 113,
                 format!("{} is not a cross section", object.name),
                 "SKETCH name 2D starts one",
-            ));
+            )
+            .about(ReplySubject::of("no-cross-section").names([&object.name])));
         };
         if axis.is_some_and(|a| a != normal) {
             return Err(CommandError::new(
                 113,
                 format!("the section is perpendicular to {normal}"),
                 format!("EXTRUDE {normal} value"),
-            ));
+            )
+            .about(ReplySubject::of("no-cross-section").names([&object.name]).axis(normal)));
         }
         if 2 * object.drawing.points.len() > MAX_POINTS {
             return Err(CommandError::new(
@@ -498,7 +491,8 @@ impl SketchSession {
                 101,
                 format!("object {} has no points yet", object.name),
                 "draw some",
-            ));
+            )
+            .about(ReplySubject::of("no-points").names([&object.name])));
         };
         *self.active_mut()? = solid;
         self.faces_if_complete()
@@ -594,7 +588,8 @@ impl SketchSession {
                     114,
                     format!("{} is a cross section; only solids are merged", object.name),
                     "EXTRUDE it first",
-                ));
+                )
+                .about(ReplySubject::of("cross-section").names([&object.name])));
             }
             let at = self.placed(&object)?;
             parts.push((object, at));

@@ -15,7 +15,7 @@ use crate::{CoordinateAxis, FaceId, LineId, PointId};
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReplySubject {
-    /// What is said, a stable word such as `missing-dimension`; empty for what is only a sentence.
+    /// What is said, a stable word such as `missing-dimension`; every error has one, what is only a sentence none.
     pub kind: &'static str,
     /// Points, in the order of the sentence; of a chain from its start to its end.
     pub points: Vec<PointId>,
@@ -23,7 +23,7 @@ pub struct ReplySubject {
     pub lines: Vec<LineId>,
     /// Faces.
     pub faces: Vec<FaceId>,
-    /// Dimensions, variables and curves.
+    /// Dimensions, variables, curves and objects.
     pub names: Vec<String>,
     /// The axis.
     pub axis: Option<CoordinateAxis>,

@@ -3,6 +3,7 @@
 use super::CommandError;
 use super::args::Args;
 use super::session::SketchSession;
+use super::subject::ReplySubject;
 use super::words::CommandTokenKind;
 use crate::dimension::expr::DimensionExpr;
 use crate::feature::{
@@ -53,7 +54,8 @@ impl SketchSession {
                     object.name
                 ),
                 "EXTRUDE or REVOLVE it first; ARC rounds a corner of a section",
-            ));
+            )
+            .about(ReplySubject::of("cross-section").names([&object.name])));
         }
         self.require_body(&object)?;
         Ok(object)

@@ -1,5 +1,6 @@
 //! Types of lines from their slopes, and from planes that their ends share.
 
+use crate::drawing::face_loops::{face_loops, impossible};
 use crate::drawing::noise::Verdict;
 use crate::drawing::planes::Planes;
 use crate::{CoordinateAxis, Drawing, DrawnLine, Free, LineId, LineTypeSource, PointId};
@@ -9,14 +10,24 @@ use std::collections::BTreeMap;
 /// How far a line may lean off an axis and still be named after it: 5 % of the slope (manual, p. 10).
 pub const NAMING_TOLERANCE: f64 = 0.05;
 
-/// Below this a type is worth a look: of lines drawn within ±4 on 400, 1 to 3 % fall below.
-pub const DOUBTFUL: f64 = 0.9;
+/// Below this a type is worth a look: of lines drawn within ±1, ±2 and ±4 on 400, 0.6, 1.6 and 4 % fall below, and
+/// with them half of those that are wrong.
+pub const DOUBTFUL: f64 = 0.97;
 
 /// The confidence of a line that is inclined only because it would leave others no length.
 const MENDED: f64 = 0.85;
 
-/// What a unit of the logarithm of a line's odds counts against a line that loses its length.
-const SURENESS: f64 = 1.0;
+/// What a line that loses its length, or a face loop that cannot be plane, weighs against the logarithm of odds.
+const FAULT: f64 = 9.0;
+
+/// What each further line of a group adds to its odds.
+const FELLOW: f64 = 1.7;
+
+/// What it costs that a line is not parallel to those that it seemed parallel to.
+const LEAVES: f64 = 1.0;
+
+/// Groups of which pairs are tried as well.
+const MOST_PAIRED: usize = 12;
 
 /// Groups of parallel lines that are tried as inclined where types contradict each other, the least sure first.
 const MOST_TRIED: usize = 60;
@@ -49,6 +60,22 @@ impl Drawing {
             None => (None, 0.0),
         };
         self.lines.insert(id, DrawnLine { free, confidence, source: LineTypeSource::Auto, ..line });
+    }
+
+    /// How sure the types of lines are that nobody has typed: by the noise of the pen, whether they were typed by slope
+    /// or all together.
+    pub fn confidences(&self) -> BTreeMap<LineId, f64> {
+        let verdicts = self.verdicts();
+        let of = |id: &LineId, line: &DrawnLine| {
+            let stored = line.confidence;
+            let Some(verdict) = verdicts.get(id) else { return stored };
+            if line.source != LineTypeSource::Auto || line.free.is_none() || stored == MENDED {
+                return stored;
+            }
+            let same = line.free.and_then(Free::single) == verdict.axis;
+            if same { verdict.share } else { 1.0 - verdict.share }
+        };
+        self.lines.iter().map(|(id, line)| (*id, of(id, line))).collect()
     }
 
     /// Types every line that the user has not typed: by its stroke and those parallel to it in space,
@@ -111,41 +138,60 @@ impl Drawing {
     }
 
     /// Inclined lines that happen to be drawn along an axis make planes of different places one, so that other
-    /// lines lose their length: as long as that is so, the lines are taken as inclined with which most of it goes,
-    /// against how sure they were.
+    /// lines lose their length, and face loops cannot be plane: the groups of parallel lines are taken as inclined
+    /// that make the whole likeliest, one or two at a time, as long as that gains anything.
     fn mend(&mut self, verdicts: &BTreeMap<LineId, Verdict>) {
         let mut groups: BTreeMap<usize, (f64, Vec<LineId>)> = BTreeMap::new();
         for (&id, verdict) in verdicts {
             let line = &self.lines[&id];
             if verdict.axis.is_some() && line.source == LineTypeSource::Auto {
-                let group = groups.entry(verdict.group).or_insert((verdict.share, Vec::new()));
+                let odds = Real::ln(verdict.share / (1.0 - verdict.share).max(1e-12));
+                let group = groups.entry(verdict.group).or_insert((odds, Vec::new()));
+                // That each line of a group runs along an axis is likely before it is looked at.
+                group.0 += if group.1.is_empty() { 0.0 } else { FELLOW };
                 group.1.push(id);
             }
         }
+        let odds = |share: f64| Real::ln(share.max(1e-12) / (1.0 - share).max(1e-12));
         let mut left: Vec<(f64, Vec<LineId>)> = groups.into_values().collect();
+        // One line of a group is inclined and the others are not, if it only seemed to be parallel to them.
+        let single: Vec<(f64, Vec<LineId>)> = (left.iter().filter(|g| g.1.len() > 1))
+            .flat_map(|g| g.1.iter())
+            .map(|id| (odds(verdicts[id].alone).max(0.0) + LEAVES, vec![*id]))
+            .collect();
+        left.extend(single);
         left.sort_by(|a, b| a.0.total_cmp(&b.0));
         left.truncate(MOST_TRIED);
-        let mut score = self.collapsed();
+        let loops = if self.section.is_none() { face_loops(&self.lines) } else { vec![] };
+        let inclined = self.section.map(Free::across);
+        let mut score = self.collapsed(&loops);
         while score > 0 {
-            let inclined = self.section.map(Free::across);
-            let mut best: Option<(f64, usize, usize)> = None;
-            for (k, (share, ids)) in left.iter().enumerate() {
+            let mut best: Option<(f64, usize, Vec<usize>)> = None;
+            let singles = (0..left.len()).map(|k| vec![k]);
+            let few = left.len().min(MOST_PAIRED);
+            let pairs = (0..few).flat_map(|k| (0..k).map(move |j| vec![k, j]));
+            for tried in singles.chain(pairs) {
+                let cost: f64 = tried.iter().map(|&k| left[k].0).sum();
+                let ids: Vec<LineId> =
+                    tried.iter().flat_map(|&k| left[k].1.iter().copied()).collect();
                 let old: Vec<Option<Free>> = ids.iter().map(|id| self.lines[id].free).collect();
-                self.retype(ids, |_| inclined);
-                let found = self.collapsed();
-                self.retype(ids, |k| old[k]);
-                // What stays wrong, against how sure the lines were.
-                let price = found as f64 + SURENESS * Real::ln(share / (1.0 - share).max(1e-12));
-                if found < score && best.is_none_or(|b| price < b.0) {
-                    best = Some((price, found, k));
+                self.retype(&ids, |_| inclined);
+                let found = self.collapsed(&loops);
+                self.retype(&ids, |k| old[k]);
+                let price = FAULT * (found as f64 - score as f64) + cost;
+                if found < score && price < best.as_ref().map_or(0.0, |b| b.0) {
+                    best = Some((price, found, tried));
                 }
             }
-            let Some((_, found, k)) = best else { return };
-            let (_, ids) = left.remove(k);
-            self.retype(&ids, |_| inclined);
-            for id in &ids {
-                if let Some(line) = self.lines.get_mut(id) {
-                    line.confidence = MENDED;
+            let Some((_, found, mut tried)) = best else { return };
+            tried.sort_unstable_by(|a, b| b.cmp(a));
+            for k in tried {
+                let (_, ids) = left.remove(k);
+                self.retype(&ids, |_| inclined);
+                for id in &ids {
+                    if let Some(line) = self.lines.get_mut(id) {
+                        line.confidence = MENDED;
+                    }
                 }
             }
             score = found;
@@ -162,7 +208,7 @@ impl Drawing {
 
     /// How many lines along an axis have no length in the planes of the others or lie on one another, how many points
     /// coincide, and whether everything lies in one plane.
-    fn collapsed(&self) -> usize {
+    fn collapsed(&self, loops: &[Vec<LineId>]) -> usize {
         let planes = Planes::of(self);
         let lines = self.lines.values().filter(|l| {
             l.free.and_then(Free::single).is_some_and(|axis| planes.same(axis, l.p, l.q))
@@ -175,7 +221,14 @@ impl Drawing {
         let closed = self.lines.len() > self.points.len();
         let flat = planes.counts().iter().filter(|n| **n == 1).count();
         let flat = if self.section.is_none() && closed { flat } else { 0 };
-        lines.count() + coincident + flat + self.overlapping()
+        // A line without a type runs along an axis if the planes of its ends say so.
+        let free = |id: &LineId| {
+            let line = &self.lines[id];
+            let by_planes = || Free::those(|a| !planes.same(a, line.p, line.q));
+            line.free.or_else(|| by_planes().filter(|f| f.single().is_some()))
+        };
+        let bent = loops.iter().filter(|l| impossible(l.iter().map(free))).count();
+        lines.count() + coincident + flat + self.overlapping() + bent
     }
 
     /// How many pairs of lines along one axis leave a point to the same side, or to both sides of it with a line

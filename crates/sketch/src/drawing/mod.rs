@@ -2,6 +2,7 @@
 
 pub(crate) mod axis;
 pub(crate) mod estimate;
+mod face_loops;
 pub(crate) mod line_types;
 mod noise;
 pub(crate) mod planes;

@@ -12,12 +12,22 @@ use std::collections::BTreeMap;
 /// How much of all lines run along an axis, before they are looked at.
 const PRINCIPAL: f64 = 0.85;
 
+/// How many lines of a drawing what is usual is worth.
+const USUAL_LINES: f64 = 6.0;
+
 /// From here on a line counts as surely typed.
 const SURE: f64 = 0.9;
 
 /// The noise of a steady hand, as a share of the longest line, and how many lines that is worth.
-const STEADY: f64 = 2.5e-3;
-const STEADY_LINES: f64 = 5.0;
+const STEADY: f64 = 2e-3;
+const STEADY_LINES: f64 = 2.0;
+
+/// Between these shares of the longest line the noise is taken to be.
+const LEAST: f64 = 1.2e-3;
+const MOST: f64 = 0.02;
+
+/// Strokes that differ by more of their noise than this are not parallel, whatever hangs at their ends.
+const APART: f64 = 3.5;
 
 /// Directions at which an inclined line is tried.
 const DIRECTIONS: usize = 720;
@@ -31,6 +41,8 @@ pub(crate) struct Verdict {
     pub share: f64,
     /// The lines that were judged together have one number.
     pub group: usize,
+    /// The share of the axis by this line alone.
+    pub alone: f64,
 }
 
 /// A line as it is judged.
@@ -60,8 +72,27 @@ impl Drawing {
                 (length > 0.0).then(|| (a, [x / length, y / length]))
             })
             .collect();
-        let sigma = self.pen_noise(&strokes, &axes);
-        let alone: Vec<Verdict> = strokes.iter().map(|s| judge(&[s], &axes, sigma)).collect();
+        let mut sigma = self.pen_noise(&strokes, &axes);
+        let size = strokes.iter().map(|s| s.length).fold(0.0, f64::max);
+        // How many run along an axis differs from drawing to drawing: the drawing's own share, from what is usual.
+        let mut usual = PRINCIPAL;
+        let mut alone: Vec<Verdict> = Vec::new();
+        for _ in 0..3 {
+            alone = strokes.iter().map(|s| judge(&[s], &axes, sigma, usual)).collect();
+            let along = |v: &Verdict| if v.axis.is_some() { v.share } else { 1.0 - v.share };
+            let sum = alone.iter().map(along).sum::<f64>() + USUAL_LINES * PRINCIPAL;
+            usual = sum / (alone.len() as f64 + USUAL_LINES);
+            // The noise by all lines that are likely along an axis.
+            let (mut squares, mut weight) = (STEADY_LINES * (STEADY * size).powi(2), STEADY_LINES);
+            for (v, s) in alone.iter().zip(&strokes) {
+                let Some(axis) = v.axis else { continue };
+                let Some((_, unit)) = axes.iter().find(|a| a.0 == axis) else { continue };
+                let miss = s.d[0] * unit[1] - s.d[1] * unit[0];
+                squares += v.share * miss * miss / 2.0;
+                weight += v.share;
+            }
+            sigma = Real::sqrt(squares / weight).clamp(LEAST * size, MOST * size);
+        }
         // The lines beside each point, with their verdicts.
         let mut at: BTreeMap<PointId, Vec<usize>> = BTreeMap::new();
         for (k, s) in strokes.iter().enumerate() {
@@ -93,7 +124,7 @@ impl Drawing {
                     let parallel = at.get(&far).into_iter().flatten().copied().find(|&m| {
                         m != k && strokes[m].ends.contains(&far) && strokes[m].ends.contains(&end)
                     });
-                    if let Some(m) = parallel {
+                    if let Some(m) = parallel.filter(|&m| agree(s, &strokes[m], sigma)) {
                         group.join(k, m);
                     }
                 }
@@ -103,10 +134,17 @@ impl Drawing {
         for (k, s) in strokes.iter().enumerate() {
             members.entry(group.find(k)).or_default().push(s);
         }
+        let index: BTreeMap<LineId, usize> =
+            strokes.iter().enumerate().map(|(k, s)| (s.id, k)).collect();
         let mut out = BTreeMap::new();
         for (&group, own) in &members {
-            let verdict = Verdict { group, ..judge(own, &axes, sigma) };
-            out.extend(own.iter().map(|s| (s.id, verdict)));
+            let verdict = Verdict { group, ..judge(own, &axes, sigma, usual) };
+            for s in own {
+                let single = alone[index[&s.id]];
+                let share =
+                    if single.axis == verdict.axis { single.share } else { 1.0 - single.share };
+                out.insert(s.id, Verdict { alone: share, ..verdict });
+            }
         }
         out
     }
@@ -127,18 +165,35 @@ impl Drawing {
         // That a few lines are exact says little: with them counts what a steady hand does.
         let (n, usual) = (off.len() as f64, (STEADY * size).max(found));
         let mean = (n * found * found + STEADY_LINES * usual * usual) / (n + STEADY_LINES);
-        Real::sqrt(mean).clamp(1.2e-3 * size, 0.02 * size)
+        Real::sqrt(mean).clamp(LEAST * size, MOST * size)
     }
 }
 
+/// Whether two strokes may be parallel in space: then they are in the picture, but for the noise of their ends.
+fn agree(a: &Stroke, b: &Stroke, sigma: f64) -> bool {
+    let across = (a.d[0] * b.d[1] - a.d[1] * b.d[0]).abs();
+    let spread = sigma * Real::sqrt(2.0 * (a.length * a.length + b.length * b.length));
+    across <= APART * spread
+}
+
 /// The likeliest direction of parallel strokes.
-fn judge(strokes: &[&Stroke], axes: &[(CoordinateAxis, [f64; 2])], sigma: f64) -> Verdict {
+fn judge(
+    strokes: &[&Stroke],
+    axes: &[(CoordinateAxis, [f64; 2])],
+    sigma: f64,
+    usual: f64,
+) -> Verdict {
     let spread = 2.0 * 2.0 * sigma * sigma;
     // The logarithm of the likelihood that all run in a direction.
     let fits = |[x, y]: [f64; 2]| -> f64 {
         -strokes.iter().map(|s| (s.d[0] * y - s.d[1] * x).powi(2) / spread).sum::<f64>()
     };
-    let weight = PRINCIPAL / axes.len().max(1) as f64;
+    // A prism of many edges is rarely an oblique one: the more lines are parallel, the likelier an axis is.
+    let count = strokes.len() as f64;
+    let times = 1.0 + libm::log2(count);
+    let [usual, rare] = [usual, 1.0 - usual].map(|p| Real::exp(times * Real::ln(p.max(1e-9))));
+    let (usual, rare) = (usual / (usual + rare), rare / (usual + rare));
+    let weight = usual / axes.len().max(1) as f64;
     let principal: Vec<f64> = axes.iter().map(|a| weight * Real::exp(fits(a.1))).collect();
     let step = std::f64::consts::PI / DIRECTIONS as f64;
     // The mean over all directions, by the strokes' own one where they leave a narrow peak.
@@ -161,14 +216,16 @@ fn judge(strokes: &[&Stroke], axes: &[(CoordinateAxis, [f64; 2])], sigma: f64) -
         let peak = Real::exp(fits([Real::cos(own), Real::sin(own)]));
         peak * width * Real::sqrt(2.0 * std::f64::consts::PI) / std::f64::consts::PI
     };
-    let free = (1.0 - PRINCIPAL) * mean;
+    let free = rare * mean;
     let all = principal.iter().sum::<f64>() + free;
     if all <= 0.0 {
-        return Verdict { axis: None, share: 1.0, group: 0 };
+        return Verdict { axis: None, share: 1.0, group: 0, alone: 1.0 };
     }
     let best = (0..axes.len()).max_by(|&a, &b| principal[a].total_cmp(&principal[b]));
     match best.filter(|&k| principal[k] > free) {
-        Some(k) => Verdict { axis: Some(axes[k].0), share: principal[k] / all, group: 0 },
-        None => Verdict { axis: None, share: free / all, group: 0 },
+        Some(k) => {
+            Verdict { axis: Some(axes[k].0), share: principal[k] / all, group: 0, alone: 1.0 }
+        }
+        None => Verdict { axis: None, share: free / all, group: 0, alone: 1.0 },
     }
 }

@@ -8,6 +8,7 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::curve::SmoothPiece;
+use super::near_misses::Facets;
 use super::nearness::Nearness;
 use super::surface::{Carrier, FaceSurface, Jet, Met, meet};
 use super::{IntersectionEdge, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
@@ -122,6 +123,32 @@ fn build<T: Real>(
     [crossing, fitted]: [bool; 2],
     rule: &dyn Fn([i32; 2]) -> bool,
 ) -> Result<(SketchSolid<T>, bool), CombineError> {
+    let mut all = facetted(bodies, operand_of);
+    let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
+    if let Some(place) = all.unclear(&plain, crossing) {
+        return Err(CombineError::Coarse(place));
+    }
+    let arranged = arrangement::arrange(&plain, std::mem::take(&mut all.facets), crossing, rule)?;
+    if arranged.faces.is_empty() {
+        return Err(CombineError::Empty);
+    }
+    let body = Placing::new(&all, &arranged, extent(&plain), fitted).finish(bodies[0].flat)?;
+    Ok((body, arranged.changed))
+}
+
+/// A place where a body's own faces or edges, its neighbours aside, are nearer to each other than facets tell: it may
+/// cross itself there by less than a chord, or not quite.
+pub(super) fn unclear<T: Real>(body: &SketchSolid<T>) -> Option<Vec3> {
+    if body.edges.iter().all(|e| e.piece.is_none() && e.trace.is_none()) {
+        return None;
+    }
+    let all = facetted(&[body], &[0]);
+    let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
+    all.unclear(&plain, true)
+}
+
+/// The facets of bodies by operand; faces and edges of bodies of one operand are numbered on.
+fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize]) -> Facetted<T> {
     let mut all = Facetted {
         points: Vec::new(),
         facets: Vec::new(),
@@ -131,7 +158,6 @@ fn build<T: Real>(
     };
     let mut operands: Vec<FacetSource<T>> = Vec::new();
     for (body, &operand) in bodies.iter().zip(operand_of) {
-        // The faces and edges of bodies of one operand are numbered on.
         if operand >= operands.len() {
             operands.push(FacetSource {
                 surfaces: Vec::new(),
@@ -145,17 +171,20 @@ fn build<T: Real>(
         add_facets(body, operand, &mut operands[operand], &mut all);
     }
     all.sources = operands;
-    let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
-    let arranged = arrangement::arrange(&plain, std::mem::take(&mut all.facets), crossing, rule)?;
-    if arranged.faces.is_empty() {
-        return Err(CombineError::Empty);
+    all
+}
+
+impl<T: Real> Facetted<T> {
+    fn unclear(&self, points: &[Vec3], within: bool) -> Option<Vec3> {
+        let scale = extent(points);
+        let (vertex, facets, sources) = (&self.vertex[..], &self.facets[..], &self.sources[..]);
+        Facets { points, vertex, facets, sources, scale }.unclear(within)
     }
-    let scale = {
-        let far = plain.iter().map(|p| p.distance(plain[0]));
-        far.fold(0.0, f64::max).max(f64::MIN_POSITIVE)
-    };
-    let body = Placing::new(&all, &arranged, scale, fitted).finish(bodies[0].flat)?;
-    Ok((body, arranged.changed))
+}
+
+/// The greatest distance from the first point.
+fn extent(points: &[Vec3]) -> f64 {
+    points.iter().map(|p| p.distance(points[0])).fold(0.0, f64::max).max(f64::MIN_POSITIVE)
 }
 
 /// The facets of a body: plane faces whole, round ones in strips.

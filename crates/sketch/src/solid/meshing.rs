@@ -7,10 +7,10 @@ use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 
 impl<T: Real> SketchSolid<T> {
-    /// Chords per edge: as curves ask, else as `usual` says; both ends of a patch agree.
-    fn chords(&self, usual: &dyn Fn(&SmoothPiece<T>) -> usize) -> Vec<usize> {
+    /// Chords per edge: as curves ask where that is wanted, else as `usual` says; both ends of a patch agree.
+    fn chords(&self, usual: &dyn Fn(&SmoothPiece<T>) -> usize, asked: bool) -> Vec<usize> {
         let mut chords: Vec<usize> = (self.edges.iter())
-            .map(|e| match (e.piece, e.curve.and_then(|c| self.steps.get(&c))) {
+            .map(|e| match (e.piece, e.curve.filter(|_| asked).and_then(|c| self.steps.get(&c))) {
                 (None, _) => 1,
                 (Some(_), Some(&steps)) => steps.clamp(1, 720) as usize,
                 (Some(piece), None) => usual(&piece),
@@ -34,22 +34,25 @@ impl<T: Real> SketchSolid<T> {
 
     /// A mesh of triangles and quads within `tolerance` of curves; faces are its patches.
     pub fn mesh(&self, tolerance: f64) -> Mesh<T> {
-        self.mesh_of(self.chords(&|piece| piece.chords(tolerance)))
+        self.mesh_of(self.chords(&|piece| piece.chords(tolerance), true))
     }
 
     /// The same with a chord for each 5° of a round curve and 20 for each cubic, as in 1983, so that
     /// there are as many triangles whatever the sizes are.
     pub fn faceted(&self) -> Mesh<T> {
-        self.mesh_of(self.chords(&by_angle))
+        self.mesh_of(self.chords(&by_angle, true))
     }
 
     /// Chords per edge, one for each 5° of a round curve, and three for each of them by the body's fineness.
     pub(super) fn angular_chords(&self) -> Vec<usize> {
         let more = 3usize.pow(self.fineness);
-        self.chords(&|piece| match piece {
-            SmoothPiece::Cubic(_) if by_angle(piece) == 1 => 1,
-            _ => by_angle(piece) * more,
-        })
+        self.chords(
+            &|piece| match piece {
+                SmoothPiece::Cubic(_) if by_angle(piece) == 1 => 1,
+                _ => by_angle(piece) * more,
+            },
+            false,
+        )
     }
 
     fn mesh_of(&self, chords: Vec<usize>) -> Mesh<T> {

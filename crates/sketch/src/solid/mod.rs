@@ -17,6 +17,7 @@ pub(crate) mod gradient;
 pub(crate) mod mass;
 pub mod merge;
 mod meshing;
+mod near_misses;
 mod nearness;
 mod offset;
 pub mod operation;
@@ -346,17 +347,22 @@ impl<T: Real> SolidBuilder<'_, T> {
         if self.corners.contains_key(&at) {
             return Err(UnbuiltReason::Taken(at));
         }
-        let neighbours = self.neighbours(at);
-        if !ends.iter().all(|e| neighbours.contains(e)) {
-            return Err(UnbuiltReason::NoEdge);
-        }
-        if neighbours.len() > 3 {
-            return Err(UnbuiltReason::Crowded(at));
-        }
+        self.corner_is_free(at, ends)?;
         let ids = [PointId(self.next), PointId(self.next.saturating_add(1))];
         self.next = self.next.saturating_add(2);
         self.corners.insert(at, RoundedCorner { curve, ends, tangents, piece, ids });
         Ok(())
+    }
+
+    /// Whether a curve between two of its lines can take the place of a corner. Of a third line a solid makes two, with
+    /// a patch between them; a flat figure has no place for that.
+    fn corner_is_free(&self, at: PointId, ends: [PointId; 2]) -> Result<(), UnbuiltReason> {
+        let neighbours = self.neighbours(at);
+        if !ends.iter().all(|e| neighbours.contains(e)) {
+            return Err(UnbuiltReason::NoEdge);
+        }
+        let most = if self.object.drawing.section.is_some() { 2 } else { 3 };
+        if neighbours.len() > most { Err(UnbuiltReason::Crowded(at)) } else { Ok(()) }
     }
 
     /// The points that share an edge of a face with `at`.
@@ -393,6 +399,10 @@ impl<T: Real> SolidBuilder<'_, T> {
         let way = [(b, m, a), (m, a, c), (a, c, b), (c, b, m)];
         if way.iter().any(|(_, at, _)| self.corners.contains_key(at)) {
             return Err(UnbuiltReason::Taken(m));
+        }
+        // All four or none.
+        for (from, at, to) in way {
+            self.corner_is_free(at, [from, to])?;
         }
         for (from, at, to) in way {
             let [pf, p, pt] = [from, at, to].map(|id| self.place.of(id));

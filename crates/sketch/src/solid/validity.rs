@@ -5,7 +5,7 @@
 //! arrangement, which keeps what the surface winds around once or more: a hole that a dimension moves
 //! half out of the body becomes a notch, one that has left is gone.
 
-use super::combine::{CombineError, newell, resolved};
+use super::combine::{CombineError, newell, resolved, unclear};
 use super::{SketchSolid, SolidFace};
 use crate::FaceId;
 use crate::PointId;
@@ -51,7 +51,7 @@ pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidD
     if body.flat {
         return match crossed_cycle(&body, true).or_else(|| strayed_hole(&body)) {
             Some(flaw) => Err(flaw),
-            None => Ok(body),
+            None => clear(body),
         };
     }
     let open = open_edges(&body);
@@ -60,19 +60,27 @@ pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidD
     }
     let suspect = suspect(&body);
     if !suspect && shells(&body) == Shells::Outward {
-        return Ok(body);
+        return clear(body);
     }
     if let Some(flaw) = crossed_cycle(&body, false) {
         return Err(flaw);
     }
     if !suspect && shells(&body) == Shells::Inward {
         body.turn_over();
-        return Ok(body);
+        return clear(body);
     }
     match resolved(&body) {
         Ok((_, false)) => Ok(body),
         Ok((new, true)) => Ok(new.named_after(&body)),
         Err(e) => Err(SolidDefect::Unresolved(e)),
+    }
+}
+
+/// A body that does not cross itself, if its facets tell that.
+fn clear<T: Real>(body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
+    match unclear(&body) {
+        Some(place) => Err(SolidDefect::Unresolved(CombineError::Coarse(place))),
+        None => Ok(body),
     }
 }
 
@@ -94,8 +102,11 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// Labels of the old body for vertices at its places; the others go on counting.
+    /// Labels of the old body for vertices at its places, the others go on counting; and its curves, with what is
+    /// to be said about them.
     fn named_after(mut self, old: &SketchSolid<T>) -> SketchSolid<T> {
+        self.curves.clone_from(&old.curves);
+        self.unbuilt.clone_from(&old.unbuilt);
         let size = old.vertices.iter().map(|v| v.at.re().norm()).fold(0.0, f64::max);
         let mut next = old.vertices.iter().map(|v| v.id.0).max().unwrap_or(0);
         let mut taken: Vec<PointId> = Vec::new();

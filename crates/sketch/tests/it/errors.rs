@@ -22,12 +22,14 @@ fn many_lines() -> String {
     text + "0\nEOF\n"
 }
 
-fn session() -> SketchSession {
+pub fn session() -> SketchSession {
     let files = Shelf(BTreeMap::from([
         ("broken.json", "{\"format\": \"sketch\"".to_owned()),
         ("broken.dxf", "LINE\n".to_owned()),
         ("empty.dxf", "0\nSECTION\n0\nEOF\n".to_owned()),
         ("large.dxf", many_lines()),
+        ("far.dxf", "0\nSECTION\n0\nLINE\n10\n0\n20\n0\n11\n3e9\n21\n0\n0\nEOF\n".to_owned()),
+        ("again.skt", "RUN \"again.skt\"\n".to_owned()),
         ("two.skt", "SKETCH P\nSKETCH Q\n".to_owned()),
     ]));
     SketchSession::with_files(Box::new(files))
@@ -38,14 +40,14 @@ fn image(s: &mut SketchSession) -> (String, Option<String>) {
     (text, s.active_object().map(|o| o.name.clone()))
 }
 
-const SQUARE: &str = "SKETCH A 2D XY; POINT 1 0 0; POINT 2 9 0; POINT 3 9 9; POINT 4 0 9
+pub const SQUARE: &str = "SKETCH A 2D XY; POINT 1 0 0; POINT 2 9 0; POINT 3 9 9; POINT 4 0 9
     POLYLINE 1 2 3 4 CLOSE";
 
 /// A box whose top is drawn oblique, so that each of its corners has its own height.
-const PRISM: &str = "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 90 2; POINT 3 91 30; POINT 4 1 29
+pub const PRISM: &str = "SKETCH A 2D XZ; POINT 1 0 0; POINT 2 90 2; POINT 3 91 30; POINT 4 1 29
 POLYLINE 1 2 3 4 CLOSE; DIM W X 1 2 8; DIM H Z 1 4 2; EXTRUDE 5";
 
-const LOOSE_TOP: &str = "SKETCH A
+pub const LOOSE_TOP: &str = "SKETCH A
     POINT 1 0 0; POINT 2 97 -26; POINT 3 173 38; POINT 4 77 64
     POINT 5 0 100; POINT 6 97 74; POINT 7 173 138; POINT 8 77 164
     LINE 1 1 2 TYPE X; LINE 2 2 3 TYPE Y; LINE 3 3 4 TYPE X; LINE 4 4 1 TYPE Y
@@ -56,7 +58,7 @@ const LOOSE_TOP: &str = "SKETCH A
     GENERATE FACES";
 
 /// Code, what is done before, the command, and a part of what is said.
-const TABLE: &[(u16, &str, &str, &str)] = &[
+pub const TABLE: &[(u16, &str, &str, &str)] = &[
     (101, "SKETCH A", "CONVERT", "A has no points"),
     (101, "SKETCH A", "LINE 1 2", "points"),
     (102, "SKETCH A; POINT 1 0 0", "CONVERT", "A has no lines"),

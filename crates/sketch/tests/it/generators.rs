@@ -5,7 +5,7 @@ use moldloft_sketch::*;
 use moldloft_testing::{Random, rounds};
 use std::f64::consts::PI;
 
-fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> SketchObject {
+pub fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> SketchObject {
     let mut object = with_faces(cuboid(size));
     object.name = name.to_owned();
     object.reference = Some(Reference { point: PointId(1), at });
@@ -13,7 +13,7 @@ fn block(name: &str, size: [f64; 3], at: [f64; 3]) -> SketchObject {
 }
 
 /// A bar of diameter `d` along z, its axis at `at`, from z = `low` to `high`.
-fn bar(name: &str, d: f64, at: [f64; 2], [low, high]: [f64; 2]) -> SketchObject {
+pub fn bar(name: &str, d: f64, at: [f64; 2], [low, high]: [f64; 2]) -> SketchObject {
     let r = d / 2.0;
     let mut object = block(name, [d, d, high - low], [at[0] - r, at[1] - r, low]);
     for (c, corner) in [("c1", [2, 1, 4]), ("c2", [6, 5, 8])] {
@@ -22,7 +22,7 @@ fn bar(name: &str, d: f64, at: [f64; 2], [low, high]: [f64; 2]) -> SketchObject 
     object
 }
 
-fn measured(s: &mut SketchSession, name: &str) -> Option<[f64; 2]> {
+pub fn measured(s: &mut SketchSession, name: &str) -> Option<[f64; 2]> {
     let o = s.objects().into_iter().find(|o| o.name == name).unwrap();
     Some([o.volume?, o.area?])
 }
@@ -365,13 +365,16 @@ fn four_bars_keep_their_side() {
     }
 }
 
-/// Pictures of the numbered cases in random proportions with a pen that shakes.
+/// Pictures of the numbered cases in random proportions with a pen that shakes. The constants of the method were chosen
+/// on the draws of the starts 1000 to 3000; these are others. The long run has 1 800 pictures of each noise.
 #[test]
 fn types_of_shaken_pictures() {
-    for (noise, share) in [(1.0, 0.985), (2.0, 0.98), (4.0, 0.965)] {
-        let mut random = Random::new(noise as u64);
-        let (mut lines, mut right, mut doubted) = (0, 0, 0);
-        for _ in 0..rounds(2, 20) {
+    let long = rounds(0, 1) > 0;
+    let asked = if long { [0.997, 0.995, 0.985] } else { [0.985, 0.98, 0.965] };
+    for (noise, share) in [1.0, 2.0, 4.0].into_iter().zip(asked) {
+        let mut random = Random::new(21_000 + noise as u64);
+        let (mut lines, mut right, mut doubted, mut caught) = (0, 0, 0, 0);
+        for _ in 0..rounds(4, 200) {
             for case in cases() {
                 let mut object = case.object.clone();
                 // Other distances between the planes, in the same order.
@@ -417,12 +420,20 @@ fn types_of_shaken_pictures() {
                     lines += 1;
                     right += usize::from(same);
                     doubted += usize::from(found.confidence < DOUBTFUL);
+                    caught += usize::from(!same && found.confidence < DOUBTFUL);
                 }
             }
         }
         let got = f64::from(right as u32) / f64::from(lines as u32);
-        println!("±{noise}: {got} of {lines} lines right, {doubted} doubted");
+        let wrong = lines - right;
+        println!(
+            "±{noise}: {got} of {lines} lines right, {doubted} doubted, {caught} of {wrong} wrong ones"
+        );
         assert!(20 * doubted <= lines, "±{noise}: {doubted} of {lines} lines doubted");
+        assert!(
+            !long || 5 * caught >= 2 * wrong,
+            "±{noise}: doubts catch {caught} of {wrong} wrong lines"
+        );
         assert!(got >= share, "±{noise}: {got} of {lines} lines right, {doubted} doubted");
     }
 }

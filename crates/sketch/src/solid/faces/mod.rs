@@ -125,11 +125,16 @@ pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
 
 /// The regions of a wireframe that lies in one plane, counter-clockwise against `normal`: the faces of
 /// a cross section. A closed figure inside another is a hole, one inside a hole is material again.
-/// Edges with a loose end are left out.
-pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Vec<Polygon> {
+/// Edges with a loose end are left out. Where edges cross without a vertex there is no fit.
+pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Fitted {
+    let mut fitted = Fitted { complete: true, ..Fitted::default() };
     let mut wire = Wireframe::new(positions, edges);
-    wire.prune();
+    fitted.dangling = wire.prune();
     let drawn = wire.vertices.len();
+    fitted.crossings = wire.vertices[positions.len()..].to_vec();
+    if !fitted.crossings.is_empty() {
+        return fitted;
+    }
     let sheets = regions::sheets(&wire);
     let mut regions: Vec<SheetRegion> = (sheets.iter().enumerate())
         .flat_map(|(k, sheet)| regions::regions(&wire, k, sheet))
@@ -152,7 +157,13 @@ pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Vec<
     let up = |r: &SheetRegion| sheets[r.sheet].normal.dot(normal) > 0.0;
     let mut faces: Vec<Polygon> = regions.iter().map(|r| build.polygon(&r.loops, up(r))).collect();
     faces.sort();
-    faces
+    fitted.candidates = faces.len();
+    fitted.polygons.clone_from(&faces);
+    if !faces.is_empty() {
+        let (internal, branching, scribed) = (vec![], vec![], vec![]);
+        fitted.fits = vec![WireframeFit { faces, internal, branching, scribed, volume: 0.0 }];
+    }
+    fitted
 }
 
 struct FitBuilder<'a> {
