@@ -132,6 +132,7 @@ impl PatchedBody<'_> {
             let mut corrected = false;
             for k in 0..tangle.triangles.len() {
                 if tangle.alive[k]
+                    && self.is_shown_surface(tangle.labels[k])
                     && self.quality(&tangle, tangle.triangles[k], tangle.labels[k]) < LEAST
                     && let Some(repair) = self.best_repair(&tangle, k)
                 {
@@ -245,6 +246,9 @@ impl PatchedBody<'_> {
         let labels = tangle.labels_of(v);
         let at = |v: u32| self.net.positions[v as usize];
         let &[one, other] = &labels[..] else { return None };
+        if !self.is_shown_surface(one) && !self.is_shown_surface(other) {
+            return None;
+        }
         let slope = |label: u32| (self.field)(label, at(v)).1.normalized().unwrap_or_default();
         if slope(one).cross(slope(other)).norm() > TOUCHING {
             return None;
