@@ -20,8 +20,14 @@ use std::collections::BTreeMap;
 /// Most triangles that a body is divided into.
 const MOST: usize = 48_000;
 
-/// How often sides are halved.
-const ROUNDS: usize = 16;
+/// So many times as many are expected where there is no use in dividing.
+const MUCH: f64 = 4.0;
+
+/// How often sides are halved, and triangles corrected between.
+const ROUNDS: usize = 48;
+
+/// How often triangles are corrected: after that, what is corrected is slivers that halving made.
+const CORRECTIONS: usize = 6;
 
 /// More patches than that, and than four times the fewest so far, that are off after some rounds are a kink.
 const MANY: usize = 200;
@@ -79,6 +85,8 @@ pub struct PatchedBody<'a> {
     pub field: &'a SurfaceField<'a>,
     /// For each surface, whether its faces are wanted.
     shown: Vec<bool>,
+    /// For each surface 1 where its gradient points outwards, else -1; known once triangles are corrected.
+    pub signs: Vec<f64>,
     basis: PatchBasis,
     accuracy: f64,
     size: f64,
@@ -104,11 +112,20 @@ impl<'a> PatchedBody<'a> {
             return Err(FacetFault { kind, surfaces: Vec::new(), place });
         };
         let basis = PatchBasis::new(degree);
-        let mut body =
-            Self { net, facets, field, shown, basis, accuracy, size, sides: FxHashMap::default() };
+        let mut body = Self {
+            net,
+            facets,
+            field,
+            shown,
+            signs: Vec::new(),
+            basis,
+            accuracy,
+            size,
+            sides: FxHashMap::default(),
+        };
         body.absorb_pieces();
         body.place_vertices()?;
-        body.untangle();
+        body.untangle(None);
         Ok(body)
     }
 
@@ -444,6 +461,7 @@ impl<'a> PatchedBody<'a> {
         let mut apart: FxHashSet<Corners> = FxHashSet::default();
         let mut last = None;
         let mut fewest = usize::MAX;
+        let (mut corrected, mut corrections) = (false, 0);
         for round in 0..ROUNDS {
             let all = self.pairs(&apart);
             let mut halved: Vec<(f64, (u32, u32))> = Vec::new();
@@ -480,6 +498,9 @@ impl<'a> PatchedBody<'a> {
                     halved.push((long, side));
                 }
             }
+            if round == 0 && self.expected(&all, &known) > MUCH * MOST as f64 {
+                return Err(self.too_many());
+            }
             if halved.is_empty() && before == apart.len() {
                 return Ok(all
                     .into_iter()
@@ -492,9 +513,15 @@ impl<'a> PatchedBody<'a> {
                 break;
             }
             // What is left over after some rounds may be triangles that turned over.
-            if round >= SMOOTH_AFTER
-                && let Some(moved) = self.untangle()
-            {
+            let bad = |(corners, _): &&(Corners, u32)| {
+                let patch = &known[corners];
+                patch.error > self.accuracy || patch.folded
+            };
+            corrected = !corrected && round >= SMOOTH_AFTER && corrections < CORRECTIONS;
+            corrections += usize::from(corrected);
+            let round_bad: FxHashSet<u32> =
+                all.iter().filter(bad).flat_map(|(corners, _)| *corners).collect();
+            if corrected && let Some(moved) = self.untangle(Some(&round_bad)) {
                 self.sides.retain(|(a, b), _| !moved.contains(a) && !moved.contains(b));
                 known.retain(|corners, _| corners.iter().all(|v| !moved.contains(v)));
                 apart.retain(|corners| corners.iter().all(|v| !moved.contains(v)));
@@ -504,7 +531,7 @@ impl<'a> PatchedBody<'a> {
             before = self.net.triangles.len();
             self.halve(halved)?;
             if self.net.triangles.len() > MOST {
-                break;
+                return Err(self.too_many());
             }
             if self.net.triangles.len() > before {
                 last = None;
@@ -512,6 +539,21 @@ impl<'a> PatchedBody<'a> {
         }
         let place = self.net.positions.first().copied().unwrap_or_default();
         Err(last.unwrap_or_else(|| self.fault(FacetFaultKind::Patch, &[], place)))
+    }
+
+    /// How many triangles it may take until all patches are near enough, by the order of their errors.
+    fn expected(&self, all: &[(Corners, u32)], known: &FxHashMap<Corners, FittedPatch>) -> f64 {
+        let order = 2.0 / (self.basis.degree + 1) as f64;
+        let of = |(corners, _): &(Corners, u32)| {
+            let times = known[corners].error / self.accuracy;
+            if times > 1.0 && times.is_finite() { libm::pow(times, order) } else { 1.0 }
+        };
+        2.0 * all.iter().map(of).sum::<f64>()
+    }
+
+    fn too_many(&self) -> FacetFault {
+        let place = self.net.positions.first().copied().unwrap_or_default();
+        self.fault(FacetFaultKind::Many, &[], place)
     }
 
     fn longest(&self, [a, b, c, d]: Corners) -> (u32, u32) {

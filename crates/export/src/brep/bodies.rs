@@ -24,7 +24,7 @@ use moldloft_registry::{FromValue, Point, Value};
 use std::collections::HashMap;
 
 /// Levels of cells that are tried for exact faces, and for patches.
-const LEVELS: std::ops::RangeInclusive<u32> = 6..=8;
+const LEVELS: std::ops::RangeInclusive<u32> = 5..=8;
 const PATCH_LEVELS: std::ops::RangeInclusive<u32> = 4..=6;
 
 /// Places along an edge that are compared with the set, for the length of a cell.
@@ -33,9 +33,11 @@ const PLACES: f64 = 6.0;
 /// A part that cells pass over.
 const THIN: &str = "thin-part";
 
-/// The volume of a body is proved to this part of it, with at most so many cells.
+/// The volume of a body is proved to this part of it, with at most so many cells: fewer where the facets prove that
+/// they miss nothing.
 const SHARE: f64 = 1e-9;
 const PROOF: usize = 20_000;
+const CHECK: usize = 4_000;
 
 /// What helps with a body that is refused.
 const HELP: &str = "write it as stl, 3mf or obj, or hide it";
@@ -90,7 +92,7 @@ impl SetOfBody<'_> {
 
     /// Adds the body as exact faces, or with patches.
     fn add(&self, brep: &mut Brep, accuracy: f64, size: f64) -> Result<(), ExportFailure> {
-        let exact = self.exact(brep, accuracy, size)?;
+        let exact = if self.is_plain() { self.exact(brep, accuracy, size)? } else { Some(None) };
         let Some(refused) = exact else { return Ok(()) };
         // Coarser facets miss such parts, too.
         if let Some(thin) = refused.as_ref().filter(|d| d.id == THIN) {
@@ -101,6 +103,15 @@ impl SetOfBody<'_> {
             // A body of such faces alone is recognised by them.
             Some(patches) => Err(refused.unwrap_or(patches).into()),
         }
+    }
+
+    /// Whether all surfaces that are shown may be exact ones; more is known of facets.
+    fn is_plain(&self) -> bool {
+        const KINDS: [&str; 5] = ["plane", "sphere", "cylinder", "cone", "torus"];
+        let prefix = format!("{}.", self.name);
+        let shown = self.mesh.patches().iter().map(|p| &p.info);
+        let own = |name: &str| name == self.name || name.starts_with(&prefix);
+        shown.filter(|i| own(&i.name)).all(|i| KINDS.contains(&i.kind.as_str()))
     }
 
     /// Adds the sheets of the set, as open faces.
@@ -153,8 +164,13 @@ impl SetOfBody<'_> {
         size: f64,
     ) -> Result<Option<Option<Diagnostic>>, ExportFailure> {
         let mut last = None;
+        let mut before = f64::INFINITY;
         for level in LEVELS {
             let facets = self.facets(level)?;
+            // The thinnest side of a box asks for finer cells than coarse levels.
+            if std::mem::replace(&mut before, facets.step) == facets.step {
+                continue;
+            }
             let (labelled, step) = (labelled(&facets, self.mesh, self.name), facets.step);
             if labelled.surfaces.iter().any(Option::is_none) {
                 return Ok(Some(None));
@@ -184,12 +200,22 @@ impl SetOfBody<'_> {
         size: f64,
     ) -> Result<Option<Diagnostic>, ExportFailure> {
         let mut last = None;
+        let mut before = f64::INFINITY;
         for level in PATCH_LEVELS {
             let facets = self.facets(level)?;
+            if std::mem::replace(&mut before, facets.step) == facets.step {
+                continue;
+            }
             let field = field_of(&facets);
             let mut made = Brep::default();
             let labelled = labelled(&facets, self.mesh, self.name);
             let places = made.add_patches(labelled, &field, accuracy, size);
+            // Finer cells only make more.
+            if let Err(fault) = &places
+                && fault.kind == FacetFaultKind::Many
+            {
+                return Ok(Some(reported(self.name, fault)));
+            }
             let fault = match self.judged(&made, places, facets.step, [accuracy, size]) {
                 None => self.wrong_volume(&made, &facets)?,
                 fault => fault,
@@ -234,7 +260,8 @@ impl SetOfBody<'_> {
             // Triangles are as far from their surfaces as their centres.
             None => (shown.volume, facets.worst_centre() * shown.area),
         };
-        let effort = Effort { cells: PROOF, ..Effort::to(SHARE * volume.abs()) };
+        let cells = if facets.unresolved.is_empty() { CHECK } else { PROOF };
+        let effort = Effort { cells, ..Effort::to(SHARE * volume.abs()) };
         let proved = certified(self.set, self.over, &effort, &Default::default()).map_err(|e| {
             Diagnostic::error(
                 "cannot-write",
@@ -406,8 +433,13 @@ fn reported(name: &str, fault: &FacetFault) -> Diagnostic {
         FacetFaultKind::Edge => "meet, or touch, in an edge that is not found",
         FacetFaultKind::Vertex => "meet in a corner that is not found",
         FacetFaultKind::Surface => "is none of the surfaces that formats have",
+        FacetFaultKind::Many => "takes tens of thousands of patches for this tolerance, some",
         FacetFaultKind::Patch => "has a kink, or turns too fast for patches,",
     };
+    let help = match fault.kind {
+        FacetFaultKind::Many => "ask for a larger `tolerance`, or write it as stl, 3mf or obj",
+        _ => HELP,
+    };
     Diagnostic::error("curved-body", format!("{of} {what} near {}", place_of(fault.place)))
-        .help(HELP)
+        .help(help)
 }
