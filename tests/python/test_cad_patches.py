@@ -192,10 +192,61 @@ def test_such_bodies_come_back(tmp_path: Path) -> None:
     assert mesh.volume == pytest.approx(4 / 3 * math.pi * 1.4, rel=0.05)
 
 
-#: A kink, a sheet, a cone's tip at the end of an ellipsoid's field.
+@pytest.mark.parametrize("seed", range(12 if SOAK else 2))
+def test_sheets_of_sets_are_open_shells_of_their_area(seed: int, tmp_path: Path) -> None:
+    from cad_reading import read
+
+    rng = np.random.default_rng(seed)
+    a, b, r = _numbers(rng, -0.4, 0.4, 2) + _numbers(rng, 0.2, 0.7, 1)
+    text = (
+        f"field q = z - ({a})*x*y - ({b})*x^2; Line l({{0, 0, 0}}, {{0, 0, 1}});"
+        f"set s = attributes(set(abs(q)), colour = 11) - set(cylinder(l, {r}));"
+        "SetBody b(s, {-1, -1, -1}, {1, 1, 1}, depth = 5);"
+    )
+    model = moldloft.loads(XYZ + text)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        (step,) = model.write(tmp_path / "b.step", tolerance=1e-5)
+        (iges,) = model.write(tmp_path / "b.igs", tolerance=1e-5)
+    found, flat = read(step, accuracy=1e-6), read(iges, accuracy=1e-6)
+    assert found.valid and flat.valid and found.faces == flat.faces
+    assert (found.solids, found.shells, found.closed) == (0, 1, 0) and found.colours
+    # The square without the disc, by Gauss's rule along rays from the disc to the edge.
+    places, weights = np.polynomial.legendre.leggauss(40)
+    exact = 0.0
+    for k in range(4):
+        angle = np.pi / 4 * (places + 2 * k)
+        edge = 1 / np.cos(np.pi / 4 * places)
+        along = r + (edge - r)[:, None] * (places + 1) / 2
+        x, y = along * np.cos(angle)[:, None], along * np.sin(angle)[:, None]
+        slope = np.sqrt(1 + (a * y + 2 * b * x) ** 2 + (a * x) ** 2)
+        exact += np.einsum("i,j,ij->", weights, weights, slope * along * ((edge - r) / 2)[:, None])
+    exact *= np.pi / 4
+    assert found.area == pytest.approx(exact, rel=1e-4)
+
+
+def test_a_sheet_beside_a_solid_ends_on_it(tmp_path: Path) -> None:
+    from cad_reading import read
+
+    text = XYZ + (
+        "Line l({0, 0, 0}, {0, 0, 1}); set s = set(abs(z)) | set(sphere({0, 0, 0}, 0.5));"
+        "SetBody b(s, {-1, -1, -1}, {1, 1, 1}, depth = 5);"
+    )
+    (step,) = moldloft.loads(text).write(tmp_path / "b.step")
+    found = read(step, accuracy=1e-9)
+    assert found.valid and (found.solids, found.shells, found.closed) == (1, 2, 1)
+    # A ball, and a square less its equator's disc.
+    assert found.volume == pytest.approx(math.pi / 6, rel=1e-6)
+    assert found.area == pytest.approx(math.pi + 4 - math.pi / 4, rel=1e-5)
+
+
+#: A kink; two sheets whose common line is a part of the set.
 WITHOUT = {
     "kink": "field k = abs(x)*1.0 + 0.3*x + y^2 + z^2 - 1; SetBody b(set(k), depth = 5);",
-    "sheet": "field q = z - 0.2*x*y; SetBody b(set(abs(q)), {-1, -1, -1}, {1, 1, 1}, depth = 5);",
+    "line": (
+        "set a = set(abs(z)); set c = set(abs(x)); set box = cuboid({-1, -0.5, -1}, {1, 0.5, 1});"
+        "SetBody b(((a | c) - box) | (a & c), {-1, -1, -1}, {1, 1, 1}, depth = 5);"
+    ),
 }
 
 
@@ -213,7 +264,7 @@ def test_what_has_no_patches_is_triangles_and_says_so(name: str, tmp_path: Path)
     with pytest.warns(UserWarning, match=r"`b` is written as \d+ triangles, without surfaces"):
         (file,) = model.write(tmp_path / "b.step")
     text = file.read_text()
-    kind = "SHELL" if name == "sheet" else "SOLID"
+    kind = "SHELL" if name == "line" else "SOLID"
     assert f"=TESSELLATED_{kind}('b'" in text and "1 body of triangles" in text
     assert "triangles, no surfaces; their middles are within" in text
     # OCCT has them all, where they were.

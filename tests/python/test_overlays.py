@@ -282,6 +282,30 @@ def test_distances_from_a_ball_are_those_of_its_formula() -> None:
     assert "ball" in found.summary()
 
 
+def test_the_sign_is_that_of_the_side_to_which_panels_face() -> None:
+    lines = "Line a({0, 0, 0}, {4, 0, 0}); Line b({0, 3, 0}, {4, 3, 0});"
+    for turned, sign in [("", 1), (", orientation = 1", -1)]:
+        model = moldloft.loads(f"{lines} RuledSurf s(a, b{turned});")
+        found = overlays.deviation(model, [[1, 1, 0.5], [1, 1, -0.25]])
+        assert found.distances == pytest.approx([0.5 * sign, -0.25 * sign])
+
+
+def test_distances_from_an_imported_solid_are_positive_outside(tmp_path: Path) -> None:
+    pytest.importorskip("OCP")
+    from cad_models import box
+    from moldloft.cad.importing import load_cad
+
+    # One half of the faces of another program run against their surfaces.
+    rng = np.random.default_rng(7)
+    (path,) = moldloft.loads(box(1, 2, 3)).write(tmp_path / "box.step")
+    points = rng.uniform(-1, 4, (200, 3))
+    found = overlays.deviation(load_cad(path), points)
+    inside = ((points > 0) & (points < [1, 2, 3])).all(axis=1)
+    sure = ~found.beside
+    assert sure.sum() > 50 and inside.sum() > 3
+    assert ((found.distances < 0) == inside)[sure].all()
+
+
 def test_images_count_and_edges_are_told_from_faces() -> None:
     model = moldloft.loads(
         'Model info(symmetry = "y"); Line a({0, 1, 0}, {4, 1, 0}); Line b({0, 1, 3}, {4, 1, 3});'

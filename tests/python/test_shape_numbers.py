@@ -158,3 +158,22 @@ def test_trimmed_surfaces_have_the_area_of_the_surface_not_of_their_panels(name:
         assert m.eval("area(T)") == pytest.approx(area, rel=1e-9)
     # Panels are chords of it.
     assert m.mesh().patches[0].area != pytest.approx(area, rel=1e-3)
+
+
+def test_trimmed_surfaces_weigh_by_their_area() -> None:
+    plate = """
+    Line {n}a({{{x}, 0, {z}}}, {{{x} + 4, 0, {z}}});
+    Line {n}b({{{x}, 2, {z}}}, {{{x} + 4, 2, {z}}});
+    RuledSurf {n}s({n}a, {n}b, visible = 0);
+    AbsMagnet {n}1({n}s, 0, 0); AbsMagnet {n}2({n}s, {share}, 0);
+    AbsMagnet {n}3({n}s, {share}, 1); AbsMagnet {n}4({n}s, 0, 1);
+    LineSnake {n}k({n}1, {n}2); LineSnake {n}l({n}2, {n}3);
+    LineSnake {n}m({n}3, {n}4); LineSnake {n}n({n}4, {n}1);
+    TrimSurf {n}({n}s, {{{n}k, {n}l, {n}m, {n}n}});
+    """
+    text = plate.format(n="p", x=0, z=1, share=0.5) + plate.format(n="q", x=10, z=7, share=0.25)
+    model = moldloft.loads(text + "CentroidPoint c({p, q}); Weight w(p, per = 3);")
+    # Areas of 4 and 2, with their middles at x = 1 and 10.5: not the cones from the origin.
+    assert model.eval("p.area") == pytest.approx(4, rel=1e-9)
+    assert model["c"].value == pytest.approx([(4 * 1 + 2 * 10.5) / 6, 1, 3], rel=1e-9)
+    assert model.eval("w.mass") == pytest.approx(12, rel=1e-9)

@@ -70,6 +70,8 @@ pub enum FacetFaultKind {
     Surface,
     /// No patches come within the accuracy of the surface, or they fold.
     Patch,
+    /// It takes too many patches to come within the accuracy.
+    Many,
 }
 
 /// Sides of triangles between the same two faces, from corner to corner.
@@ -219,9 +221,8 @@ impl LabelledBody {
                 }
                 let mut others: Vec<u32> = Vec::new();
                 for &k in own {
-                    let t = self.net.triangles[k];
                     for i in 0..3 {
-                        let other = self.net.across[&(t[(i + 1) % 3], t[i])] as usize;
+                        let other = self.net.beyond(k, i);
                         if self.net.groups[other] != *group {
                             others.push(self.net.labels[other]);
                         }
@@ -311,8 +312,12 @@ impl LabelledBody {
                 if a > b {
                     continue;
                 }
-                let other = self.net.across[&(b, a)] as usize;
-                if let Some(&seam) = self.net.seams.get(&(a, b)) {
+                let other = self.net.beyond(k, i);
+                let seam = match self.net.seams.is_empty() {
+                    true => None,
+                    false => self.net.seams.get(&(a, b)),
+                };
+                if let Some(&seam) = seam {
                     borders.insert((a, b), [self.net.labels[k], seam]);
                 } else if self.net.groups[k] != self.net.groups[other] {
                     borders.insert((a, b), [self.net.labels[k], self.net.labels[other]]);
@@ -370,6 +375,7 @@ impl LabelledBody {
             };
         }
         // A cut may have made two faces of one.
+        self.net.settle();
         let before = std::mem::take(&mut self.net.groups);
         self.net.groups = self.net.connected();
         let axes = std::mem::take(&mut self.axes);

@@ -7,6 +7,12 @@ use std::f64::consts::PI;
 /// Places at which the distance of a patch is taken, along each parameter.
 const DISTANCES: usize = 8;
 
+/// Those of them that are tried first.
+const TRIED: [usize; 2] = [1, 5];
+
+/// Places at which the normal of a patch is compared with that of the surface, along each parameter.
+const NORMALS: [f64; 5] = [0.04, 0.3, 0.5, 0.7, 0.96];
+
 /// A surface's function and its gradient at a point, by the number of the surface.
 pub type SurfaceField<'a> = dyn Fn(u32, Vec3) -> (f64, Vec3) + Sync + 'a;
 
@@ -19,6 +25,10 @@ pub struct PatchBasis {
     inverse: Vec<Vec<f64>>,
     /// The Bernstein polynomials where distances are taken.
     rows: Vec<Vec<f64>>,
+    /// For each order, the factors of the values there in the Chebyshev coefficient.
+    chebyshev: [[f64; DISTANCES]; DISTANCES],
+    /// The Bernstein polynomials where normals are taken, and their derivatives.
+    normals: [[Vec<f64>; 2]; NORMALS.len()],
 }
 
 /// A patch and what is known of it.
@@ -42,7 +52,14 @@ impl PatchBasis {
                 bernstein(degree, 0.5 * (1.0 - libm::cos(PI * (k as f64 + 0.5) / DISTANCES as f64)))
             })
             .collect();
-        Self { degree, at, inverse, rows }
+        let chebyshev = std::array::from_fn(|k| {
+            let scale = if k == 0 { 1.0 } else { 2.0 } / DISTANCES as f64;
+            std::array::from_fn(|i| {
+                scale * libm::cos(PI * k as f64 * (i as f64 + 0.5) / DISTANCES as f64)
+            })
+        });
+        let normals = NORMALS.map(|t| [bernstein(degree, t), slope(degree, t)]);
+        Self { degree, at, inverse, rows, chebyshev, normals }
     }
 
     /// The control points of a curve through points at the places.
@@ -85,41 +102,59 @@ impl PatchBasis {
     }
 
     /// A bound of the distance of a patch from a surface, |f| / |f'|: the sum of its Chebyshev coefficients, the last
-    /// two orders counted three times for those that are not known.
-    pub fn distance(&self, net: &[Vec3], surface: u32, field: &SurfaceField<'_>) -> f64 {
+    /// two orders counted three times for those that are not known. Where it is more than `enough`, it may be the
+    /// distance at one place only.
+    pub fn distance(
+        &self,
+        net: &[Vec3],
+        surface: u32,
+        field: &SurfaceField<'_>,
+        enough: f64,
+    ) -> f64 {
         let n = DISTANCES;
-        let mut values = vec![0.0; n * n];
-        for (i, u) in self.rows.iter().enumerate() {
-            for (j, v) in self.rows.iter().enumerate() {
-                let p = self.blend(net, u, v);
-                let (f, slope) = field(surface, p);
-                values[i * n + j] = if f == 0.0 { 0.0 } else { f / slope.norm() };
+        let off = |p: Vec3| {
+            let (f, slope) = field(surface, p);
+            if f == 0.0 { 0.0 } else { f / slope.norm() }
+        };
+        for i in TRIED {
+            for j in TRIED {
+                let far = off(self.blend(net, &self.rows[i], &self.rows[j])).abs();
+                if far > enough {
+                    return if far.is_finite() { far } else { f64::INFINITY };
+                }
             }
         }
-        let cosine = |k: usize, i: usize| libm::cos(PI * k as f64 * (i as f64 + 0.5) / n as f64);
-        let scale = |k: usize| if k == 0 { 1.0 } else { 2.0 } / n as f64;
-        let half: Vec<f64> = (0..n * n)
-            .map(|at| {
-                let (k, j) = (at / n, at % n);
-                scale(k) * (0..n).map(|i| cosine(k, i) * values[i * n + j]).sum::<f64>()
-            })
-            .collect();
+        let mut values = [[0.0; DISTANCES]; DISTANCES];
+        for (u, own) in self.rows.iter().zip(&mut values) {
+            let line = self.across(net, u);
+            for (v, value) in self.rows.iter().zip(own) {
+                let p = line.iter().zip(v).fold(Vec3::zero(), |sum, (p, w)| sum + *p * *w);
+                *value = off(p);
+            }
+        }
         let mut bound = 0.0;
-        for k in 0..n {
-            for l in 0..n {
-                let c = scale(l) * (0..n).map(|j| cosine(l, j) * half[k * n + j]).sum::<f64>();
+        for (k, along) in self.chebyshev.iter().enumerate() {
+            let half: [f64; DISTANCES] = std::array::from_fn(|j| {
+                along.iter().zip(&values).map(|(c, row)| c * row[j]).sum::<f64>()
+            });
+            for (l, across) in self.chebyshev.iter().enumerate() {
+                let c: f64 = across.iter().zip(&half).map(|(c, h)| c * h).sum();
                 bound += c.abs() * if k + 2 >= n || l + 2 >= n { 3.0 } else { 1.0 };
             }
         }
         if bound.is_finite() { bound } else { f64::INFINITY }
     }
 
+    /// The control points of the curve of a patch at a first parameter, by its Bernstein polynomials.
+    fn across(&self, net: &[Vec3], u: &[f64]) -> Vec<Vec3> {
+        let n = self.degree + 1;
+        (0..n).map(|j| (0..n).fold(Vec3::zero(), |sum, i| sum + net[i * n + j] * u[i])).collect()
+    }
+
     /// True where the patch's normal is not on the surface's side that `sign` says.
     pub fn folds(&self, net: &[Vec3], surface: u32, sign: f64, field: &SurfaceField<'_>) -> bool {
-        const PLACES: [f64; 5] = [0.04, 0.3, 0.5, 0.7, 0.96];
         const LEAST: f64 = 0.3;
-        let rows: Vec<[Vec<f64>; 2]> =
-            PLACES.iter().map(|t| [bernstein(self.degree, *t), slope(self.degree, *t)]).collect();
+        let rows = &self.normals;
         rows.iter().any(|[u, du]| {
             rows.iter().any(|[v, dv]| {
                 let normal = self.blend(net, du, v).cross(self.blend(net, u, dv));

@@ -20,8 +20,14 @@ use std::collections::BTreeMap;
 /// Most triangles that a body is divided into.
 const MOST: usize = 48_000;
 
-/// How often sides are halved.
-const ROUNDS: usize = 16;
+/// So many times as many are expected where there is no use in dividing.
+const MUCH: f64 = 4.0;
+
+/// How often sides are halved, and triangles corrected between.
+const ROUNDS: usize = 48;
+
+/// How often triangles are corrected: after that, what is corrected is slivers that halving made.
+const CORRECTIONS: usize = 6;
 
 /// More patches than that, and than four times the fewest so far, that are off after some rounds are a kink.
 const MANY: usize = 200;
@@ -47,7 +53,24 @@ impl Brep {
         accuracy: f64,
         size: f64,
     ) -> Result<Vec<Vec3>, FacetFault> {
-        let mut body = PatchedBody::new(facets, field, accuracy, size)?;
+        let shown = vec![true; facets.surfaces.len()];
+        self.add_sheet(facets, shown, field, accuracy, size)
+    }
+
+    /// Adds those faces of a body that are on some of its surfaces, for each of which `shown` says whether it is one; gives
+    /// places on them. The other surfaces say where these faces end.
+    ///
+    /// # Errors
+    /// As [`Self::add_patches`].
+    pub fn add_sheet(
+        &mut self,
+        facets: LabelledFacets,
+        shown: Vec<bool>,
+        field: &SurfaceField<'_>,
+        accuracy: f64,
+        size: f64,
+    ) -> Result<Vec<Vec3>, FacetFault> {
+        let mut body = PatchedBody::new(facets, shown, field, accuracy, size)?;
         let patches = body.fit()?;
         body.into_brep(self, patches)
     }
@@ -60,6 +83,10 @@ pub struct PatchedBody<'a> {
     pub net: FacetNet,
     pub facets: LabelledFacets,
     pub field: &'a SurfaceField<'a>,
+    /// For each surface, whether its faces are wanted.
+    shown: Vec<bool>,
+    /// For each surface 1 where its gradient points outwards, else -1; known once triangles are corrected.
+    pub signs: Vec<f64>,
     basis: PatchBasis,
     accuracy: f64,
     size: f64,
@@ -70,6 +97,7 @@ pub struct PatchedBody<'a> {
 impl<'a> PatchedBody<'a> {
     fn new(
         mut facets: LabelledFacets,
+        shown: Vec<bool>,
         field: &'a SurfaceField<'a>,
         accuracy: f64,
         size: f64,
@@ -84,12 +112,36 @@ impl<'a> PatchedBody<'a> {
             return Err(FacetFault { kind, surfaces: Vec::new(), place });
         };
         let basis = PatchBasis::new(degree);
-        let mut body =
-            Self { net, facets, field, basis, accuracy, size, sides: FxHashMap::default() };
+        let mut body = Self {
+            net,
+            facets,
+            field,
+            shown,
+            signs: Vec::new(),
+            basis,
+            accuracy,
+            size,
+            sides: FxHashMap::default(),
+        };
         body.absorb_pieces();
         body.place_vertices()?;
-        body.untangle();
+        body.untangle(None);
         Ok(body)
+    }
+
+    /// Whether a triangle is of a face that is wanted.
+    fn is_shown(&self, triangle: usize) -> bool {
+        self.is_shown_surface(self.net.labels[triangle])
+    }
+
+    /// Whether faces on a surface are wanted.
+    pub fn is_shown_surface(&self, label: u32) -> bool {
+        self.shown[label as usize]
+    }
+
+    /// Whether a triangle becomes a part of a patch.
+    fn is_curved(&self, triangle: usize) -> bool {
+        self.is_shown(triangle) && self.plane(triangle).is_none()
     }
 
     fn plane(&self, triangle: usize) -> Option<&SurfaceShape> {
@@ -127,6 +179,9 @@ impl<'a> PatchedBody<'a> {
             .collect();
         for (v, place) in placed.into_iter().enumerate() {
             let start = self.net.positions[v];
+            if !labels[v].iter().any(|l| self.shown[*l as usize]) {
+                continue;
+            }
             self.net.positions[v] =
                 place.ok_or_else(|| self.fault(FacetFaultKind::Vertex, &labels[v], start))?;
         }
@@ -138,6 +193,8 @@ impl<'a> PatchedBody<'a> {
         const STEPS: usize = 80;
         const NEAR_ENOUGH: f64 = 0.1;
         const ACROSS: usize = 3;
+        /// What is nearer than this share of the accuracy is on the surfaces.
+        const ON: f64 = 1e-6;
         let off = |p: Vec3| {
             labels.iter().map(move |&l| {
                 let (f, slope) = (self.field)(l, p);
@@ -149,16 +206,20 @@ impl<'a> PatchedBody<'a> {
                 }
             })
         };
-        let worst = |p: Vec3| {
-            let far = |m: f64, (d, _): (f64, Vec3)| {
+        let worst = |rows: &[(f64, Vec3)]| {
+            let far = |m: f64, (d, _): &(f64, Vec3)| {
                 if d.is_nan() { f64::INFINITY } else { m.max(d.abs()) }
             };
-            off(p).fold(0.0f64, far)
+            rows.iter().fold(0.0f64, far)
         };
         let mut p = start;
-        let mut best = (worst(start), start);
+        let mut rows: Vec<(f64, Vec3)> = off(p).collect();
+        let mut best = (worst(&rows), start);
+        let on = (ON * self.accuracy).max(1e-15 * self.size);
         for k in 0..STEPS {
-            let rows: Vec<(f64, Vec3)> = off(p).collect();
+            if best.0 <= on {
+                break;
+            }
             // Surfaces that touch are one within the accuracy in a whole strip: the nearest place of it will do, and
             // others may be on another branch of their intersection.
             let touching = touch(&rows);
@@ -177,11 +238,13 @@ impl<'a> PatchedBody<'a> {
                 step = step * (0.5 * reach / long);
             }
             p -= step;
-            let now = worst(p);
+            rows.clear();
+            rows.extend(off(p));
+            let now = worst(&rows);
             if now < best.0 {
                 best = (now, p);
             }
-            if now <= 1e-15 * self.size || long <= 1e-16 * self.size {
+            if long <= 1e-16 * self.size {
                 break;
             }
         }
@@ -281,7 +344,7 @@ impl<'a> PatchedBody<'a> {
         let at = |v: u32| self.net.positions[v as usize];
         let mut candidates: Vec<(f64, Corners, [usize; 2])> = Vec::new();
         for (k, t) in self.net.triangles.iter().enumerate() {
-            if self.plane(k).is_some() {
+            if !self.is_curved(k) {
                 continue;
             }
             for i in 0..3 {
@@ -321,7 +384,7 @@ impl<'a> PatchedBody<'a> {
             }
         }
         for (k, t) in self.net.triangles.iter().enumerate() {
-            if !used[k] && self.plane(k).is_none() {
+            if !used[k] && self.is_curved(k) {
                 made.push((self.corners_of(*t), k as u32));
             }
         }
@@ -380,7 +443,10 @@ impl<'a> PatchedBody<'a> {
             }
         }
         let net = self.basis.patch(&through, [&left, &right, &low, &high]);
-        let error = self.basis.distance(&net, label, self.field);
+        let error = self.basis.distance(&net, label, self.field, self.accuracy);
+        if error > self.accuracy {
+            return FittedPatch { net, error, folded: false };
+        }
         let [p, q, s, t] = corners.map(|v| self.net.positions[v as usize]);
         let out = (s - p).cross(t - q);
         let (_, slope) = (self.field)(label, self.basis.middle(&net));
@@ -395,6 +461,7 @@ impl<'a> PatchedBody<'a> {
         let mut apart: FxHashSet<Corners> = FxHashSet::default();
         let mut last = None;
         let mut fewest = usize::MAX;
+        let (mut corrected, mut corrections) = (false, 0);
         for round in 0..ROUNDS {
             let all = self.pairs(&apart);
             let mut halved: Vec<(f64, (u32, u32))> = Vec::new();
@@ -431,6 +498,9 @@ impl<'a> PatchedBody<'a> {
                     halved.push((long, side));
                 }
             }
+            if round == 0 && self.expected(&all, &known) > MUCH * MOST as f64 {
+                return Err(self.too_many());
+            }
             if halved.is_empty() && before == apart.len() {
                 return Ok(all
                     .into_iter()
@@ -443,9 +513,15 @@ impl<'a> PatchedBody<'a> {
                 break;
             }
             // What is left over after some rounds may be triangles that turned over.
-            if round >= SMOOTH_AFTER
-                && let Some(moved) = self.untangle()
-            {
+            let bad = |(corners, _): &&(Corners, u32)| {
+                let patch = &known[corners];
+                patch.error > self.accuracy || patch.folded
+            };
+            corrected = !corrected && round >= SMOOTH_AFTER && corrections < CORRECTIONS;
+            corrections += usize::from(corrected);
+            let round_bad: FxHashSet<u32> =
+                all.iter().filter(bad).flat_map(|(corners, _)| *corners).collect();
+            if corrected && let Some(moved) = self.untangle(Some(&round_bad)) {
                 self.sides.retain(|(a, b), _| !moved.contains(a) && !moved.contains(b));
                 known.retain(|corners, _| corners.iter().all(|v| !moved.contains(v)));
                 apart.retain(|corners| corners.iter().all(|v| !moved.contains(v)));
@@ -455,7 +531,7 @@ impl<'a> PatchedBody<'a> {
             before = self.net.triangles.len();
             self.halve(halved)?;
             if self.net.triangles.len() > MOST {
-                break;
+                return Err(self.too_many());
             }
             if self.net.triangles.len() > before {
                 last = None;
@@ -463,6 +539,21 @@ impl<'a> PatchedBody<'a> {
         }
         let place = self.net.positions.first().copied().unwrap_or_default();
         Err(last.unwrap_or_else(|| self.fault(FacetFaultKind::Patch, &[], place)))
+    }
+
+    /// How many triangles it may take until all patches are near enough, by the order of their errors.
+    fn expected(&self, all: &[(Corners, u32)], known: &FxHashMap<Corners, FittedPatch>) -> f64 {
+        let order = 2.0 / (self.basis.degree + 1) as f64;
+        let of = |(corners, _): &(Corners, u32)| {
+            let times = known[corners].error / self.accuracy;
+            if times > 1.0 && times.is_finite() { libm::pow(times, order) } else { 1.0 }
+        };
+        2.0 * all.iter().map(of).sum::<f64>()
+    }
+
+    fn too_many(&self) -> FacetFault {
+        let place = self.net.positions.first().copied().unwrap_or_default();
+        self.fault(FacetFaultKind::Many, &[], place)
     }
 
     fn longest(&self, [a, b, c, d]: Corners) -> (u32, u32) {
@@ -553,13 +644,18 @@ impl<'a> PatchedBody<'a> {
             edges.push(brep.edges.len());
             brep.edges.push(BrepEdge { ends, curve, ellipse: None });
         }
-        let cavities = self.net.cavities();
+        // Of a sheet no side is the outer one.
+        let whole = self.shown.iter().all(|s| *s);
+        let cavities = self.net.cavities().into_iter().map(|c| c && whole).collect::<Vec<_>>();
         let mut by_group: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (k, g) in self.net.groups.iter().enumerate() {
             by_group.entry(*g).or_default().push(k);
         }
         let mut gap = 1e-14 * self.size;
         for (own, members) in by_group {
+            if !self.is_shown(members[0]) {
+                continue;
+            }
             let label = self.net.labels[members[0]] as usize;
             let extent = extent(members.iter().flat_map(|&k| self.net.corners(k)));
             let patch = own.checked_sub(plane_groups).map(|k| &patches[k as usize]);
@@ -611,7 +707,8 @@ impl<'a> PatchedBody<'a> {
         let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (&(a, b), &k) in &self.net.across {
             let other = self.net.across[&(b, a)];
-            if self.net.groups[k as usize] != self.net.groups[other as usize] {
+            let shown = self.is_shown(k as usize) || self.is_shown(other as usize);
+            if shown && self.net.groups[k as usize] != self.net.groups[other as usize] {
                 next.entry(a).or_default().push(b);
             }
         }

@@ -25,6 +25,8 @@ pub struct FacetNet {
     pub groups: Vec<u32>,
     /// The triangle on the left of each directed side.
     pub across: FxHashMap<(u32, u32), u32>,
+    /// The triangle across each side of each triangle; empty once one was divided.
+    neighbours: Vec<[u32; 3]>,
     /// The plane of each cut side, by its vertices in order.
     pub seams: BTreeMap<(u32, u32), u32>,
     /// Vertices whose places are known.
@@ -47,10 +49,9 @@ impl FacetNet {
                 }
             }
         }
-        if across.keys().any(|&(a, b)| !across.contains_key(&(b, a))) {
-            return None;
-        }
+        let neighbours = neighbours(&triangles, &across)?;
         let mut net = Self {
+            neighbours,
             positions,
             groups: vec![u32::MAX; triangles.len()],
             triangles,
@@ -86,6 +87,24 @@ impl FacetNet {
         Some(net)
     }
 
+    /// The triangle across a side of a triangle.
+    pub fn beyond(&self, triangle: usize, side: usize) -> usize {
+        match self.neighbours.get(triangle) {
+            Some(own) => own[side] as usize,
+            None => {
+                let t = self.triangles[triangle];
+                self.across[&(t[(side + 1) % 3], t[side])] as usize
+            }
+        }
+    }
+
+    /// Finds the triangles across sides anew, where triangles were divided.
+    pub fn settle(&mut self) {
+        if self.neighbours.is_empty() {
+            self.neighbours = neighbours(&self.triangles, &self.across).unwrap_or_default();
+        }
+    }
+
     /// The number of the face of each triangle: those of one surface that hang together, seams apart.
     pub fn connected(&self) -> Vec<u32> {
         let mut groups = vec![u32::MAX; self.triangles.len()];
@@ -100,9 +119,9 @@ impl FacetNet {
                 let t = self.triangles[k];
                 for i in 0..3 {
                     let (a, b) = (t[i], t[(i + 1) % 3]);
-                    let other = self.across[&(b, a)] as usize;
+                    let other = self.beyond(k, i);
                     let one = self.labels[other] == self.labels[k];
-                    let cut = self.seams.contains_key(&ordered(a, b));
+                    let cut = !self.seams.is_empty() && self.seams.contains_key(&ordered(a, b));
                     if one && !cut && groups[other] == u32::MAX {
                         groups[other] = count;
                         queue.push(other);
@@ -125,6 +144,7 @@ impl FacetNet {
 
     /// Puts a vertex on a side.
     pub fn split(&mut self, a: u32, b: u32, at: Vec3) -> u32 {
+        self.neighbours.clear();
         let m = self.positions.len() as u32;
         self.positions.push(at);
         for (x, y) in [(a, b), (b, a)] {
@@ -147,6 +167,7 @@ impl FacetNet {
 
     /// A triangle beside another, of the same surface and face.
     fn add(&mut self, t: [u32; 3], like: u32) {
+        self.neighbours.clear();
         let n = self.triangles.len() as u32;
         self.triangles.push(t);
         self.labels.push(self.labels[like as usize]);
@@ -563,9 +584,8 @@ impl FacetNet {
             while let Some(k) = queue.pop() {
                 let [a, b, c] = self.corners(k).map(|p| p - origin);
                 volume += a.dot(b.cross(c));
-                let t = self.triangles[k];
                 for i in 0..3 {
-                    let other = self.across[&(t[(i + 1) % 3], t[i])] as usize;
+                    let other = self.beyond(k, i);
                     if shell[other] == usize::MAX {
                         shell[other] = own;
                         queue.push(other);
@@ -576,6 +596,21 @@ impl FacetNet {
         }
         shell.into_iter().map(|s| volumes[s] < 0.0).collect()
     }
+}
+
+/// The triangle across each side of each triangle; none where a side is of one alone.
+fn neighbours(
+    triangles: &[[u32; 3]],
+    across: &FxHashMap<(u32, u32), u32>,
+) -> Option<Vec<[u32; 3]>> {
+    let beyond = |t: &[u32; 3]| {
+        let mut own = [0; 3];
+        for (i, other) in own.iter_mut().enumerate() {
+            *other = *across.get(&(t[(i + 1) % 3], t[i]))?;
+        }
+        Some(own)
+    };
+    triangles.iter().map(beyond).collect()
 }
 
 fn surface_radius(surface: &SurfaceShape) -> Option<f64> {

@@ -43,8 +43,6 @@ struct Tangle {
     alive: Vec<bool>,
     /// The triangles round each vertex.
     around: Vec<Vec<u32>>,
-    /// For each surface 1 where its gradient points outwards, else -1.
-    signs: Vec<f64>,
     moved: FxHashSet<u32>,
 }
 
@@ -107,39 +105,45 @@ impl PatchedBody<'_> {
         }
     }
 
-    /// Corrects triangles that are turned over or slivers; gives the vertices that were moved, or nothing where all is well.
-    pub fn untangle(&mut self) -> Option<FxHashSet<u32>> {
+    /// Corrects triangles that are turned over or slivers, all or those round some vertices; gives the vertices that were
+    /// moved, or nothing where all is well.
+    pub fn untangle(&mut self, round: Option<&FxHashSet<u32>>) -> Option<FxHashSet<u32>> {
         let mut tangle = Tangle {
             triangles: self.net.triangles.clone(),
             labels: self.net.labels.clone(),
             alive: vec![true; self.net.triangles.len()],
             around: vec![Vec::new(); self.net.positions.len()],
-            signs: vec![0.0; self.facets.surfaces.len()],
             moved: FxHashSet::default(),
         };
         for (k, t) in tangle.triangles.iter().enumerate() {
             for &v in t {
                 tangle.around[v as usize].push(k as u32);
             }
-            let [a, b, c] = self.net.corners(k);
-            let label = tangle.labels[k];
-            let slope = (self.field)(label, (a + b + c) / 3.0).1.normalized().unwrap_or_default();
-            tangle.signs[label as usize] += (b - a).cross(c - a).dot(slope);
         }
-        tangle.signs.iter_mut().for_each(|s| *s = if *s < 0.0 { -1.0 } else { 1.0 });
+        if self.signs.is_empty() {
+            self.signs = self.outward();
+        }
+        let near = |t: &[u32; 3]| round.is_none_or(|own| t.iter().any(|v| own.contains(v)));
+        let mut walked: Vec<usize> =
+            (0..tangle.triangles.len()).filter(|k| near(&tangle.triangles[*k])).collect();
         let mut changed = false;
         for _ in 0..PASSES {
             let mut corrected = false;
-            for k in 0..tangle.triangles.len() {
+            for &k in &walked {
                 if tangle.alive[k]
-                    && self.quality(&tangle, tangle.triangles[k], tangle.labels[k]) < LEAST
+                    && self.is_shown_surface(tangle.labels[k])
+                    && self.quality(tangle.triangles[k], tangle.labels[k]) < LEAST
                     && let Some(repair) = self.best_repair(&tangle, k)
                 {
                     self.apply(&mut tangle, repair);
                     corrected = true;
                 }
             }
-            for v in 0..tangle.around.len() as u32 {
+            // What is round them may have become worse.
+            let mut vertices: Vec<u32> = walked.iter().flat_map(|&k| tangle.triangles[k]).collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            for &v in &vertices {
                 if let Some(repair) = self.straighten(&tangle, v) {
                     self.apply(&mut tangle, repair);
                     corrected = true;
@@ -148,6 +152,15 @@ impl PatchedBody<'_> {
             changed |= corrected;
             if !corrected {
                 break;
+            }
+            if round.is_some() {
+                walked = vertices
+                    .iter()
+                    .flat_map(|v| &tangle.around[*v as usize])
+                    .map(|k| *k as usize)
+                    .collect();
+                walked.sort_unstable();
+                walked.dedup();
             }
         }
         if !changed {
@@ -163,15 +176,27 @@ impl PatchedBody<'_> {
         Some(tangle.moved)
     }
 
-    /// How even a triangle is, and that it is on its surface's side.
-    fn quality(&self, tangle: &Tangle, t: [u32; 3], label: u32) -> f64 {
-        self.quality_at(tangle, t.map(|v| self.net.positions[v as usize]), label)
+    /// For each surface 1 where its gradient points outwards, else -1.
+    fn outward(&self) -> Vec<f64> {
+        let mut signs = vec![0.0; self.facets.surfaces.len()];
+        for k in 0..self.net.triangles.len() {
+            let [a, b, c] = self.net.corners(k);
+            let label = self.net.labels[k];
+            let slope = (self.field)(label, (a + b + c) / 3.0).1.normalized().unwrap_or_default();
+            signs[label as usize] += (b - a).cross(c - a).dot(slope);
+        }
+        signs.iter().map(|s| if *s < 0.0 { -1.0 } else { 1.0 }).collect()
     }
 
-    fn quality_at(&self, tangle: &Tangle, [a, b, c]: [Vec3; 3], label: u32) -> f64 {
+    /// How even a triangle is, and that it is on its surface's side.
+    fn quality(&self, t: [u32; 3], label: u32) -> f64 {
+        self.quality_at(t.map(|v| self.net.positions[v as usize]), label)
+    }
+
+    fn quality_at(&self, [a, b, c]: [Vec3; 3], label: u32) -> f64 {
         let slope = (self.field)(label, (a + b + c) / 3.0).1.normalized().unwrap_or_default();
         let sides = a.distance(b).powi(2) + b.distance(c).powi(2) + c.distance(a).powi(2);
-        let area = (b - a).cross(c - a).dot(slope) * tangle.signs[label as usize];
+        let area = (b - a).cross(c - a).dot(slope) * self.signs[label as usize];
         if sides > 0.0 { 2.0 * 3f64.sqrt() * area / sides } else { 0.0 }
     }
 
@@ -198,7 +223,7 @@ impl PatchedBody<'_> {
                         let t = tangle.triangles[n as usize];
                         let corners =
                             t.map(|v| if v == a { at } else { self.net.positions[v as usize] });
-                        self.quality_at(tangle, corners, tangle.labels[n as usize])
+                        self.quality_at(corners, tangle.labels[n as usize])
                     });
                     own.fold(1.0, f64::min)
                 });
@@ -217,7 +242,7 @@ impl PatchedBody<'_> {
         {
             return None;
         }
-        let q = |t: [u32; 3]| self.quality(tangle, t, label);
+        let q = |t: [u32; 3]| self.quality(t, label);
         let before = q(tangle.triangles[k]).min(q(tangle.triangles[l]));
         Some((before, q([c, a, d]).min(q([d, b, c]))))
     }
@@ -230,10 +255,10 @@ impl PatchedBody<'_> {
         let (mut before, mut after) = (1f64, 1f64);
         for &n in &tangle.around[from as usize] {
             let (t, label) = (tangle.triangles[n as usize], tangle.labels[n as usize]);
-            before = before.min(self.quality(tangle, t, label));
+            before = before.min(self.quality(t, label));
             if !t.contains(&to) {
                 let t = t.map(|v| if v == from { to } else { v });
-                after = after.min(self.quality(tangle, t, label));
+                after = after.min(self.quality(t, label));
             }
         }
         Some((before, after))
@@ -245,6 +270,9 @@ impl PatchedBody<'_> {
         let labels = tangle.labels_of(v);
         let at = |v: u32| self.net.positions[v as usize];
         let &[one, other] = &labels[..] else { return None };
+        if !self.is_shown_surface(one) && !self.is_shown_surface(other) {
+            return None;
+        }
         let slope = |label: u32| (self.field)(label, at(v)).1.normalized().unwrap_or_default();
         if slope(one).cross(slope(other)).norm() > TOUCHING {
             return None;
@@ -263,7 +291,7 @@ impl PatchedBody<'_> {
             let round = tangle.around[v as usize].iter().map(|&n| {
                 let t = tangle.triangles[n as usize];
                 let corners = t.map(|w| if w == v { at_v } else { at(w) });
-                self.quality_at(tangle, corners, tangle.labels[n as usize])
+                self.quality_at(corners, tangle.labels[n as usize])
             });
             round.fold(1.0, f64::min)
         };

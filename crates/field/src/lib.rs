@@ -34,7 +34,9 @@ pub use expr::oracle::{Affine, Constant, Oracle};
 pub use expr::primitive::{Binary, Primitive};
 pub use expr::remap::twist;
 pub use facet::memo::FacetMemo;
-pub use facet::sheets::{FacetWire, Mixed, Sheet, TriplePoint, facet_mixed, solid_part};
+pub use facet::sheets::{
+    BehindSheet, FacetWire, Mixed, Sheet, TriplePoint, behind_sheets, facet_mixed, solid_part,
+};
 pub use facet::shells::FacetShell;
 pub use facet::types::LeafIncidence;
 pub use facet::{FacetOptions, Facets, Resolution, Unresolved, crossing_faces, facet, refacet};

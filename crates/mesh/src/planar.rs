@@ -224,7 +224,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rims_with_vertices_in_one_line_leave_no_slit() {
+    fn a_plate_with_a_slot_and_points_inside() {
         // A plate with a slot whose mouth is between two stretches of one line, each of several vertices.
         let line = |a: [f64; 2], b: [f64; 2]| {
             (0..12).map(move |k| {
@@ -282,6 +282,39 @@ mod tests {
             let once = sides.values().filter(|n| **n == 1).count();
             assert_eq!(once, rim, "{round}");
             assert_eq!(triangles.len(), 2 * points.len() - rim - 2, "{round}");
+        }
+    }
+
+    /// Where an ear is cut off, what is left may be vertices of one line, of which rounding says anything.
+    #[test]
+    fn rims_with_vertices_in_one_line_leave_no_slit() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for round in 0..400 {
+            let corners = [[random(), random()], [4.0 + random(), random()], [1.0 + random(), 3.0]];
+            let points: Vec<[f64; 2]> = (0..3)
+                .flat_map(|k| {
+                    let ([a, b], [c, d]) = (corners[k], corners[(k + 1) % 3]);
+                    let n = [11, 1, 1][k];
+                    (0..n).map(move |i| {
+                        let s = f64::from(i) / f64::from(n);
+                        [a + (c - a) * s, b + (d - b) * s]
+                    })
+                })
+                .collect();
+            let rim: Vec<usize> = (0..points.len()).collect();
+            let triangles = planar_triangles(&points, &[rim], &[]);
+            assert_eq!(triangles.len(), points.len() - 2, "{round}");
+            let mut sides: HashMap<(usize, usize), u32> = HashMap::new();
+            for t in &triangles {
+                for k in 0..3 {
+                    *sides.entry(key(t[k], t[(k + 1) % 3])).or_default() += 1;
+                }
+            }
+            assert_eq!(sides.values().filter(|n| **n == 1).count(), points.len(), "{round}");
         }
     }
 

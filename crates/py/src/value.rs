@@ -47,9 +47,10 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
             dict.set_item("vertices", arrays::filled(py, [mesh.points.len(), 3], fill).0)?;
             let corners = PyArray::from_slice(py, mesh.triangles.as_flattened());
             dict.set_item("triangles", corners.reshape([mesh.triangles.len(), 3])?)?;
-            dict.set_item("volume", mesh.volume)?;
-            dict.set_item("area", mesh.area)?;
-            dict.set_item("centroid", vector(py, mesh.centroid))?;
+            let measures = mesh.measures();
+            dict.set_item("volume", measures.map(|m| m.volume))?;
+            dict.set_item("area", measures.map(|m| m.area))?;
+            dict.set_item("centroid", measures.map(|m| vector(py, m.centroid)))?;
             let groups: PyResult<Vec<_>> = mesh.groups.iter().map(|g| group(py, g)).collect();
             dict.set_item("groups", groups?)?;
             dict.into_any()

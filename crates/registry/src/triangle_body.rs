@@ -2,6 +2,7 @@
 
 use crate::{CurveRef, SurfaceRef};
 use moldloft_num::{Real, Vec3};
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -67,14 +68,14 @@ pub trait TriangulatedBorder<T: Real>: Send + Sync {
     fn measures(&self) -> Option<SheetMeasures<T>>;
 }
 
-/// Measures of a part of a surface.
+/// Measures of a body, or of a part of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SheetMeasures<T: Real> {
     /// Its area.
     pub area: T,
-    /// The middle of its area.
+    /// The centre of the volume, or of the area of what encloses none.
     pub centroid: Vec3<T>,
-    /// The volume of the cone from the origin to it.
+    /// The enclosed volume; of a part of a surface, the volume of the cone from the origin to it.
     pub volume: T,
 }
 
@@ -109,12 +110,8 @@ pub struct TriangleBody<T: Real> {
     pub wires: Vec<Vec<Vec3<T>>>,
     /// Points that belong to the body without being surface or line.
     pub dots: Vec<Vec3<T>>,
-    /// Enclosed volume; of no meaning for an open sheet.
-    pub volume: T,
-    /// Area of all triangles.
-    pub area: T,
-    /// Centre of the volume, or of the area where there is none.
-    pub centroid: Vec3<T>,
+    /// Measures of the triangles, or nearer ones that the maker of the body knows; what is asked for is [`Self::measures`].
+    pub of_triangles: SheetMeasures<T>,
     /// For a sheet that joins its neighbours.
     pub border: Option<Border<T>>,
     /// Where it is not quite what was asked for.
@@ -153,7 +150,28 @@ impl<T: Real> TriangleBody<T> {
         };
         let (groups, wires, dots) = Default::default();
         let (border, flaws) = (None, Vec::new());
-        Self { points, triangles, groups, wires, dots, volume, area, centroid, border, flaws }
+        let of_triangles = SheetMeasures { area, centroid, volume };
+        Self { points, triangles, groups, wires, dots, of_triangles, border, flaws }
+    }
+
+    /// Area, centroid and volume: of the part of a surface that a sheet with a border stands for, else of
+    /// the body. `None` when the surface has places that are not finite.
+    pub fn measures(&self) -> Option<SheetMeasures<T>> {
+        match &self.border {
+            Some(border) => border.0.measures(),
+            None => Some(self.of_triangles),
+        }
+    }
+
+    /// True when every edge is one of as many triangles in one sense as in the other, so that a volume is enclosed.
+    pub fn is_closed(&self) -> bool {
+        let mut edges: HashMap<(u32, u32), i32> = HashMap::new();
+        for t in &self.triangles {
+            for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+                *edges.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
+            }
+        }
+        !edges.is_empty() && edges.values().all(|n| *n == 0)
     }
 
     /// True when vertices and measures are the same bits and the triangles the same.
@@ -169,15 +187,15 @@ impl<T: Real> TriangleBody<T> {
             && self.wires.iter().zip(&o.wires).all(|(a, b)| all(a, b))
             && self.points.len() == o.points.len()
             && self.points.iter().zip(&o.points).all(|(a, b)| a.bits_eq(*b))
-            && self.volume.bits_eq(o.volume)
-            && self.area.bits_eq(o.area)
-            && self.centroid.bits_eq(o.centroid)
+            && self.of_triangles.volume.bits_eq(o.of_triangles.volume)
+            && self.of_triangles.area.bits_eq(o.of_triangles.area)
+            && self.of_triangles.centroid.bits_eq(o.of_triangles.centroid)
             && self.border == o.border
     }
 
     /// True when every number in it is finite.
     pub fn is_finite(&self) -> bool {
-        self.points.iter().all(|p| p.is_finite()) && self.volume.is_finite()
+        self.points.iter().all(|p| p.is_finite()) && self.of_triangles.volume.is_finite()
     }
 }
 
@@ -191,10 +209,16 @@ mod tests {
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let points: Vec<Vec3> = points.iter().map(|&p| Vec3::from(p) + far).collect();
         let body = TriangleBody::new(points, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
-        assert!((body.volume - 1.0 / 6.0).abs() < 1e-9);
-        assert!((body.area - (1.5 + 0.75f64.sqrt())).abs() < 1e-9);
-        assert!((body.centroid - far).distance(Vec3::of(0.25, 0.25, 0.25)) < 1e-6);
+        assert!(body.is_closed());
+        let m = body.measures().unwrap();
+        assert!((m.volume - 1.0 / 6.0).abs() < 1e-9);
+        assert!((m.area - (1.5 + 0.75f64.sqrt())).abs() < 1e-9);
+        assert!((m.centroid - far).distance(Vec3::of(0.25, 0.25, 0.25)) < 1e-6);
         let sheet = TriangleBody::new(body.points[..3].to_vec(), vec![[0, 1, 2]]);
-        assert!((sheet.centroid - far).distance(Vec3::of(1.0 / 3.0, 1.0 / 3.0, 0.0)) < 1e-6);
+        assert!(!sheet.is_closed());
+        assert!(
+            (sheet.of_triangles.centroid - far).distance(Vec3::of(1.0 / 3.0, 1.0 / 3.0, 0.0))
+                < 1e-6
+        );
     }
 }

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.cad.aligning import align
 from moldloft.cad.apart import read
 from moldloft.cad.joining import joins
 from moldloft.cad.occt import Imported, ImportedFace
@@ -52,6 +53,7 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     if path.suffix.lower() not in ENDINGS:
         raise Error(f"`{path}` is no CAD file by its ending; expected one of: {', '.join(ENDINGS)}")
     found = read(path, UNITS[units])
+    align(found.faces)
     # Joins may add remarks.
     text = _text(found, path.name, units)
     return text, found.remarks

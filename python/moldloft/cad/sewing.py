@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -35,8 +35,8 @@ class Sewn:
 
     shape: Any
     """As it was read."""
-    sewing: Any = None
-    """What sewed it; None where nothing had to be sewn."""
+    passes: list[Any] = field(default_factory=list)
+    """What sewed it, one after the other; none where nothing had to be sewn."""
     body: Any = None
     """Its faces with the edges that they share."""
     tolerance: float = 0.0
@@ -65,11 +65,19 @@ class Sewn:
         BRepBndLib.Add_s(shape, box)
         size = box.SquareExtent() ** 0.5
         tolerance = min(max(resolution, _LEAST * size), _MOST * size)
-        sewing = BRepBuilderAPI_Sewing(tolerance)
-        for face in faces:
-            sewing.Add(face)
-        sewing.Perform()
-        return cls(shape, sewing, _outward(sewing.SewedShape()), tolerance)
+        passes: list[Any] = []
+        # One pass of OCCT may leave edges that the next one finds, whatever the tolerance.
+        while not passes or (
+            passes[-1].NbFreeEdges()
+            and (len(passes) == 1 or passes[-1].NbFreeEdges() < passes[-2].NbFreeEdges())
+        ):
+            sewing = BRepBuilderAPI_Sewing(tolerance)
+            for face in faces:
+                sewing.Add(face)
+            sewing.Perform()
+            passes.append(sewing)
+            faces = faces_of(sewing.SewedShape(), TopAbs_FACE)
+        return cls(shape, passes, _outward(passes[-1].SewedShape()), tolerance)
 
     @property
     def whole(self) -> Any:
@@ -84,9 +92,11 @@ class Sewn:
 
     def face(self, original: Any) -> Any:
         """A face of the shape as it is in the whole."""
-        if self.sewing is None:
+        if not self.passes:
             return original
-        made = self.sewing.Modified(original) if self.sewing.IsModified(original) else original
+        made = original
+        for sewing in self.passes:
+            made = sewing.Modified(made) if sewing.IsModified(made) else made
         number = self._faces.FindIndex(made)
         return self._faces.FindKey(number) if number else made
 
@@ -100,7 +110,7 @@ class Sewn:
         """
         from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 
-        if self.sewing is None:
+        if not self.passes:
             return
         edges = map_of(self.body, TopAbs_EDGE)
         uses = [0] * (edges.Extent() + 1)
@@ -112,6 +122,12 @@ class Sewn:
             remarks.append(
                 f"IGES does not say which faces hang together: {shared} edges of two faces are "
                 f"within {self.tolerance:.2g} of one another and are taken as one"
+            )
+        alone = self.passes[-1].NbFreeEdges()
+        if alone:
+            remarks.append(
+                f"{alone} edges are of one face alone, with no other within {self.tolerance:.2g}: "
+                "what the faces bound is open there"
             )
 
 

@@ -31,7 +31,8 @@ class Deviation:
     points: Floats
     """The points, ``(n, 3)``."""
     distances: Floats
-    """Distances, positive on the side of the surface's normal (S_u x S_v), ``(n,)``."""
+    """Distances, ``(n,)``, positive on the side to which the surface's panels face: that of
+    S_u x S_v, or the other one by its ``orientation``; of an imported solid that is outside."""
     feet: Floats
     """The nearest points; of a mirrored model on the side of the point, ``(n, 3)``."""
     surfaces: NDArray[np.str_]
@@ -147,6 +148,7 @@ def deviation(model: Model, points: ArrayLike, *, objects: Sequence[str] | str =
         np.empty((len(at), 2)),
         np.zeros(len(at), dtype=bool),
     )
+    facing = {name: _facing(model, name) for name in names}
     signs = [(1.0, -1.0) if axis in model.symmetry else (1.0,) for axis in "xyz"]
     for image in product(*signs):
         mirrored = at * image
@@ -158,7 +160,7 @@ def deviation(model: Model, points: ArrayLike, *, objects: Sequence[str] | str =
             best[nearer] = near.distances[nearer]
             parameters = near.parameters[nearer]
             off = mirrored[nearer] - near.points[nearer]
-            cosine = _against(_normals(model[name], parameters), off)
+            cosine = facing[name] * _against(_normals(model[name], parameters), off)
             found.distances[nearer] = np.where(cosine < 0, -1, 1) * near.distances[nearer]
             found.feet[nearer] = near.points[nearer] * image
             found.surfaces[nearer] = name
@@ -192,6 +194,20 @@ def _surfaces(model: Model, objects: Sequence[str] | str) -> list[str]:
     if not names:
         raise Error("the model shows no surface to measure against")
     return names
+
+
+def _facing(model: Model, name: str) -> float:
+    """1 where the panels of a surface face along S_u x S_v, -1 where they face against it."""
+    mesh = model.mesh()
+    own = [p for p in mesh.patches if p.name == name]
+    if not own:
+        return 1.0
+    corners = mesh.vertices[mesh.faces[own[0].start : own[0].stop]]
+    crossed = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    largest = int(np.argmax(np.linalg.norm(crossed, axis=1)))
+    foot = model[name].nearest(corners[largest].mean(axis=0)[None])
+    normal = _normals(model[name], foot.parameters)[0]
+    return -1.0 if normal @ crossed[largest] < 0 else 1.0
 
 
 def _normals(surface: Any, parameters: Floats) -> Floats:

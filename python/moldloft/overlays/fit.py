@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from moldloft.errors import Error
-from moldloft.overlays.deviation import Deviation, _normals, deviation
+from moldloft.overlays.deviation import Deviation, _facing, _normals, deviation
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -160,7 +160,8 @@ def _slopes(model: Model, now: Deviation, names: list[str]) -> Floats:
         # Back from the image in a plane of symmetry to the surface itself.
         at = model[name](*now.parameters[own].T)
         off[own] *= np.where(at * now.feet[own] < 0, -1.0, 1.0)
-        directions[own] = _unit(_normals(model[name], now.parameters[own]))
+        normals = _normals(model[name], now.parameters[own])
+        directions[own] = _facing(model, name) * _unit(normals)
     # Beside an edge the distance is along the offset itself.
     beside = now.beside
     directions[beside] = (np.sign(now.distances)[:, None] * _unit(off))[beside]

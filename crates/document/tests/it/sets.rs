@@ -344,7 +344,7 @@ fn sheets_wires_and_points_reach_the_body() {
         m.clone()
     };
     let (sheet, wire, dot) = (body("sheet"), body("wire"), body("dot"));
-    assert!((sheet.area - 4.0 * PI).abs() < 0.1 && sheet.wires.is_empty());
+    assert!((sheet.of_triangles.area - 4.0 * PI).abs() < 0.1 && sheet.wires.is_empty());
     assert_eq!(sheet.groups[0].name, "shell");
     assert!(wire.triangles.is_empty() && wire.wires.len() == 1);
     let length: f64 = wire.wires[0].windows(2).map(|p| p[0].distance(p[1])).sum();

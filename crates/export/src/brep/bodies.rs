@@ -13,8 +13,8 @@ use moldloft_brep::{Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxe
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 use moldloft_field::{
-    Effort, FacetOptions, Facets, Form, Membership, Resolution, Set, around, certified, facet,
-    set_of,
+    BehindSheet, Effort, FacetOptions, Facets, FieldError, Form, Membership, Resolution, Set,
+    around, behind_sheets, certified, facet, set_of, solid_part,
 };
 use moldloft_mesh::{Mesh, measure};
 use moldloft_model::Object;
@@ -24,7 +24,7 @@ use moldloft_registry::{FromValue, Point, Value};
 use std::collections::HashMap;
 
 /// Levels of cells that are tried for exact faces, and for patches.
-const LEVELS: std::ops::RangeInclusive<u32> = 6..=8;
+const LEVELS: std::ops::RangeInclusive<u32> = 5..=8;
 const PATCH_LEVELS: std::ops::RangeInclusive<u32> = 4..=6;
 
 /// Places along an edge that are compared with the set, for the length of a cell.
@@ -33,9 +33,11 @@ const PLACES: f64 = 6.0;
 /// A part that cells pass over.
 const THIN: &str = "thin-part";
 
-/// The volume of a body is proved to this part of it, with at most so many cells.
+/// The volume of a body is proved to this part of it, with at most so many cells: fewer where the facets prove that
+/// they miss nothing.
 const SHARE: f64 = 1e-9;
 const PROOF: usize = 20_000;
+const CHECK: usize = 4_000;
 
 /// What helps with a body that is refused.
 const HELP: &str = "write it as stl, 3mf or obj, or hide it";
@@ -54,21 +56,24 @@ pub fn add(
     let graph = document.graph();
     let Some(object) = graph.find(name).and_then(|key| graph.get(key)) else { return Ok(false) };
     let Some((set, over)) = set_and_box(document, object) else { return Ok(false) };
-    if set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
+    if set.leaves().iter().all(|leaf| !leaf.primitive.is_sheet()) {
+        SetOfBody { set: &set, over: &over, name, mesh }.add(brep, accuracy, size)?;
+        return Ok(true);
+    }
+    // Lines and points of a set have no faces.
+    let shown = object.value();
+    if matches!(shown, Some(Value::Body(b)) if !b.wires.is_empty() || !b.dots.is_empty()) {
         return Ok(false);
     }
-    let body = SetOfBody { set: &set, over: &over, name, mesh };
-    let exact = body.exact(brep, accuracy, size)?;
-    let Some(refused) = exact else { return Ok(true) };
-    // Coarser facets miss such parts, too.
-    if let Some(thin) = refused.as_ref().filter(|d| d.id == THIN) {
-        return Err(thin.clone().into());
+    // All or nothing: what is refused later is triangles as a whole.
+    let mut made = Brep::default();
+    let solid = solid_part(&set);
+    if !solid.is_nothing() {
+        SetOfBody { set: &solid, over: &over, name, mesh }.add(&mut made, accuracy, size)?;
     }
-    match body.patches(brep, accuracy, size)? {
-        None => Ok(true),
-        // A body of such faces alone is recognised by them.
-        Some(patches) => Err(refused.unwrap_or(patches).into()),
-    }
+    SetOfBody { set: &set, over: &over, name, mesh }.sheets(&mut made, accuracy, size)?;
+    brep.append(made);
+    Ok(true)
 }
 
 /// What is written.
@@ -82,9 +87,73 @@ struct SetOfBody<'a> {
 impl SetOfBody<'_> {
     fn facets(&self, level: u32) -> Result<Facets, ExportFailure> {
         let options = FacetOptions::new(Resolution::Level(level));
-        facet(self.set, self.over, &options).map_err(|e| {
-            Diagnostic::error("cannot-write", format!("`{}` has no facets: {e}", self.name)).into()
-        })
+        facet(self.set, self.over, &options).map_err(|e| no_facets(self.name, &e).into())
+    }
+
+    /// Adds the body as exact faces, or with patches.
+    fn add(&self, brep: &mut Brep, accuracy: f64, size: f64) -> Result<(), ExportFailure> {
+        let exact = if self.is_plain() { self.exact(brep, accuracy, size)? } else { Some(None) };
+        let Some(refused) = exact else { return Ok(()) };
+        // Coarser facets miss such parts, too.
+        if let Some(thin) = refused.as_ref().filter(|d| d.id == THIN) {
+            return Err(thin.clone().into());
+        }
+        match self.patches(brep, accuracy, size)? {
+            None => Ok(()),
+            // A body of such faces alone is recognised by them.
+            Some(patches) => Err(refused.unwrap_or(patches).into()),
+        }
+    }
+
+    /// Whether all surfaces that are shown may be exact ones; more is known of facets.
+    fn is_plain(&self) -> bool {
+        const KINDS: [&str; 5] = ["plane", "sphere", "cylinder", "cone", "torus"];
+        let prefix = format!("{}.", self.name);
+        let shown = self.mesh.patches().iter().map(|p| &p.info);
+        let own = |name: &str| name == self.name || name.starts_with(&prefix);
+        shown.filter(|i| own(&i.name)).all(|i| KINDS.contains(&i.kind.as_str()))
+    }
+
+    /// Adds the sheets of the set, as open faces.
+    fn sheets(&self, brep: &mut Brep, accuracy: f64, size: f64) -> Result<(), ExportFailure> {
+        let mut last = None;
+        for level in PATCH_LEVELS {
+            let options = FacetOptions::new(Resolution::Level(level));
+            let sheets = behind_sheets(self.set, self.over, &options)
+                .map_err(|e| no_facets(self.name, &e))?;
+            let mut made = Brep::default();
+            last = sheets.iter().find_map(|s| self.sheet(&mut made, s, [accuracy, size]));
+            if last.is_none() {
+                brep.append(made);
+                return Ok(());
+            }
+        }
+        Err(last.map_or_else(|| ExportFailure::from(Vec::new()), Into::into))
+    }
+
+    /// Adds a sheet; else why not.
+    fn sheet(&self, brep: &mut Brep, sheet: &BehindSheet, scale: [f64; 2]) -> Option<Diagnostic> {
+        let facets = &sheet.facets;
+        if let Some(open) = facets.unresolved.first() {
+            return Some(missed(self.name, open.place.centre(), facets.step));
+        }
+        let field = field_of(facets);
+        let mut labelled = labelled(facets, self.mesh, self.name);
+        let own = format!("{}.{}", self.name, sheet.info.name);
+        let known = self.mesh.patches().iter().map(|p| &p.info).find(|i| i.name == own);
+        let info = known.unwrap_or(&sheet.info);
+        for k in (0..sheet.shown.len()).filter(|k| sheet.shown[*k]) {
+            labelled.names[k] = own.clone();
+            labelled.colours[k] = info.colour.map(|c| PALETTE[usize::from(c & 15)]);
+            labelled.layers[k] = info.tags.clone();
+        }
+        let mut made = Brep::default();
+        let places = made.add_sheet(labelled, sheet.shown.clone(), &field, scale[0], scale[1]);
+        let fault = self.judged(&made, places, facets.step, scale);
+        if fault.is_none() {
+            brep.append(made);
+        }
+        fault
     }
 
     /// Adds the body as exact faces; else why it has none, without a reason where a surface is of another form.
@@ -95,8 +164,13 @@ impl SetOfBody<'_> {
         size: f64,
     ) -> Result<Option<Option<Diagnostic>>, ExportFailure> {
         let mut last = None;
+        let mut before = f64::INFINITY;
         for level in LEVELS {
             let facets = self.facets(level)?;
+            // The thinnest side of a box asks for finer cells than coarse levels.
+            if std::mem::replace(&mut before, facets.step) == facets.step {
+                continue;
+            }
             let (labelled, step) = (labelled(&facets, self.mesh, self.name), facets.step);
             if labelled.surfaces.iter().any(Option::is_none) {
                 return Ok(Some(None));
@@ -126,16 +200,22 @@ impl SetOfBody<'_> {
         size: f64,
     ) -> Result<Option<Diagnostic>, ExportFailure> {
         let mut last = None;
+        let mut before = f64::INFINITY;
         for level in PATCH_LEVELS {
             let facets = self.facets(level)?;
-            let leaf = |k: u32| &facets.leaves[facets.patch_leaves[k as usize]].primitive;
-            let field = |k: u32, p: Vec3| {
-                let g = leaf(k).gradient(p);
-                (g.value, g.slope)
-            };
+            if std::mem::replace(&mut before, facets.step) == facets.step {
+                continue;
+            }
+            let field = field_of(&facets);
             let mut made = Brep::default();
             let labelled = labelled(&facets, self.mesh, self.name);
             let places = made.add_patches(labelled, &field, accuracy, size);
+            // Finer cells only make more.
+            if let Err(fault) = &places
+                && fault.kind == FacetFaultKind::Many
+            {
+                return Ok(Some(reported(self.name, fault)));
+            }
             let fault = match self.judged(&made, places, facets.step, [accuracy, size]) {
                 None => self.wrong_volume(&made, &facets)?,
                 fault => fault,
@@ -180,7 +260,8 @@ impl SetOfBody<'_> {
             // Triangles are as far from their surfaces as their centres.
             None => (shown.volume, facets.worst_centre() * shown.area),
         };
-        let effort = Effort { cells: PROOF, ..Effort::to(SHARE * volume.abs()) };
+        let cells = if facets.unresolved.is_empty() { CHECK } else { PROOF };
+        let effort = Effort { cells, ..Effort::to(SHARE * volume.abs()) };
         let proved = certified(self.set, self.over, &effort, &Default::default()).map_err(|e| {
             Diagnostic::error(
                 "cannot-write",
@@ -219,6 +300,18 @@ pub fn set_and_box(document: &Document, object: &Object<f64>) -> Option<(Set, Bo
         _ => around(&set).ok()??,
     };
     Some((set, over))
+}
+
+fn no_facets(name: &str, why: &FieldError) -> Diagnostic {
+    Diagnostic::error("cannot-write", format!("`{name}` has no facets: {why}"))
+}
+
+/// The function of each patch of facets, and its gradient.
+fn field_of(facets: &Facets) -> impl Fn(u32, Vec3) -> (f64, Vec3) + Sync {
+    |k: u32, p: Vec3| {
+        let g = facets.leaves[facets.patch_leaves[k as usize]].primitive.gradient(p);
+        (g.value, g.slope)
+    }
 }
 
 fn labelled(facets: &Facets, shown: &Mesh, name: &str) -> LabelledFacets {
@@ -340,8 +433,13 @@ fn reported(name: &str, fault: &FacetFault) -> Diagnostic {
         FacetFaultKind::Edge => "meet, or touch, in an edge that is not found",
         FacetFaultKind::Vertex => "meet in a corner that is not found",
         FacetFaultKind::Surface => "is none of the surfaces that formats have",
+        FacetFaultKind::Many => "takes tens of thousands of patches for this tolerance, some",
         FacetFaultKind::Patch => "has a kink, or turns too fast for patches,",
     };
+    let help = match fault.kind {
+        FacetFaultKind::Many => "ask for a larger `tolerance`, or write it as stl, 3mf or obj",
+        _ => HELP,
+    };
     Diagnostic::error("curved-body", format!("{of} {what} near {}", place_of(fault.place)))
-        .help(HELP)
+        .help(help)
 }

@@ -136,8 +136,7 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &FacetOptions) -> Result<Mix
     let solid_set = with_sheets(set, &[]);
     let solid = facet(&solid_set, over, options)?;
     let leaves = set.leaves();
-    let plain = |p: &Primitive| p.is_sheet() && !p.of_sheet().abs().same(&-p);
-    let thin: Vec<usize> = (0..leaves.len()).filter(|&k| plain(&leaves[k].primitive)).collect();
+    let thin = thin_leaves(&leaves);
     let leaf = |k: usize| &leaves[k].primitive;
     let half = |k: usize| Set::new(leaf(k).of_sheet());
 
@@ -145,17 +144,8 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &FacetOptions) -> Result<Mix
     let mut covered: HashMap<usize, Set> = HashMap::new();
     for &k in &thin {
         let here = &with_sheets(set, &[leaf(k)]) - &solid_set;
-        if here.is_nothing() {
-            continue;
-        }
-        covered.insert(k, here.clone());
-        let wide = padded_bounds(over, &here, &[leaf(k).of_sheet()]);
-        let facets = facet_within(&(half(k) & here), &wide, over, options, None)?;
-        let sheet = Leaf {
-            primitive: leaf(k).of_sheet().clone(),
-            attributes: leaves[k].attributes.clone(),
-        };
-        let info = crate::facet::info(&sheet);
+        let Some((facets, info)) = behind(&here, &leaves[k], over, options)? else { continue };
+        covered.insert(k, here);
         if let Some((mesh, on, own)) = patch_of(&facets, leaf(k).of_sheet(), info)? {
             sheets.push(Sheet { mesh, leaf: k, on, own });
         }
@@ -201,6 +191,65 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &FacetOptions) -> Result<Mix
         }
     }
     Ok(Mixed { solid, sheets, wires, points, leaves })
+}
+
+/// The numbers of the leaves that are sheets.
+fn thin_leaves(leaves: &[Leaf]) -> Vec<usize> {
+    let plain = |p: &Primitive| p.is_sheet() && !p.of_sheet().abs().same(&-p);
+    (0..leaves.len()).filter(|&k| plain(&leaves[k].primitive)).collect()
+}
+
+/// The facets of the solid {f <= 0} & `here`, and what the sheet of f is called.
+fn behind(
+    here: &Set,
+    leaf: &Leaf,
+    over: &Box3,
+    options: &FacetOptions,
+) -> Result<Option<(Facets, PatchInfo)>, FieldError> {
+    if here.is_nothing() {
+        return Ok(None);
+    }
+    let f = leaf.primitive.of_sheet();
+    let wide = padded_bounds(over, here, &[f]);
+    let facets = facet_within(&(Set::new(f) & here.clone()), &wide, over, options, None)?;
+    let sheet = Leaf { primitive: f.clone(), attributes: leaf.attributes.clone() };
+    Ok(Some((facets, crate::facet::info(&sheet))))
+}
+
+/// A solid of which some faces are a sheet.
+#[derive(Clone, Debug)]
+pub struct BehindSheet {
+    /// The closed facets of the solid.
+    pub facets: Facets,
+    /// For each of its patches, whether that is the sheet.
+    pub shown: Vec<bool>,
+    /// What the sheet is called.
+    pub info: PatchInfo,
+}
+
+/// For each sheet of a set, a solid of which it is the faces on one surface: by the others its border is known.
+///
+/// # Errors
+/// As [`facet`].
+pub fn behind_sheets(
+    set: &Set,
+    over: &Box3,
+    options: &FacetOptions,
+) -> Result<Vec<BehindSheet>, FieldError> {
+    let solid_set = with_sheets(set, &[]);
+    let leaves = set.leaves();
+    let mut found = Vec::new();
+    for k in thin_leaves(&leaves) {
+        let f = leaves[k].primitive.of_sheet();
+        let here = &with_sheets(set, &[&leaves[k].primitive]) - &solid_set;
+        let Some((facets, info)) = behind(&here, &leaves[k], over, options)? else { continue };
+        let own = number(&facets, f);
+        let shown: Vec<bool> = facets.patch_leaves.iter().map(|&l| own == Some(l as u32)).collect();
+        if shown.contains(&true) {
+            found.push(BehindSheet { facets, shown, info });
+        }
+    }
+    Ok(found)
 }
 
 /// What some vertices of facets lie on.

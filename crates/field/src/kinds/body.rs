@@ -197,9 +197,9 @@ impl Pieces {
         }
         let mut body = TriangleBody::new(points, triangles);
         let m = lifted.moments;
-        body.volume = m.volume();
+        body.of_triangles.volume = m.volume();
         if m.volume().re() > 0.0 {
-            body.centroid = m.centroid();
+            body.of_triangles.centroid = m.centroid();
         }
         Ok(TriangleBody { groups, wires, dots, flaws: super::flaws::flaws(solid), ..body })
     }

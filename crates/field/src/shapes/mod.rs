@@ -8,7 +8,7 @@ use crate::expr::interval::Interval;
 use crate::expr::oracle::Oracle;
 use moldloft_locate::{NearestCurve, NearestSurface, PlainCurve, PlainSurface};
 use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Real, SurfJet, Surface, Vec3};
-use moldloft_registry::{CurveRef, SurfaceRef, TriangleBody};
+use moldloft_registry::{CurveRef, SheetMeasures, SurfaceRef, TriangleBody};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -388,9 +388,11 @@ impl<T: Real> Oracle<T> for Inside<T> {
             groups: Vec::new(),
             wires: Vec::new(),
             dots: Vec::new(),
-            volume: self.body.volume.re(),
-            area: self.body.area.re(),
-            centroid: self.body.centroid.re(),
+            of_triangles: SheetMeasures {
+                area: self.body.of_triangles.area.re(),
+                centroid: self.body.of_triangles.centroid.re(),
+                volume: self.body.of_triangles.volume.re(),
+            },
             border: None,
             flaws: Vec::new(),
         };

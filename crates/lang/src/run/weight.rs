@@ -103,7 +103,10 @@ impl<T: Real> Build<T> for Weight<T> {
                 }
                 (Some(volume), centre)
             }
-            Value::Body(body) => (Some(body.volume), body.centroid),
+            Value::Body(body) => {
+                let m = body.measures().ok_or_else(unsound)?;
+                (Some(if body.is_closed() { m.volume } else { m.area }), m.centroid)
+            }
             other => {
                 return Err(CallError::new("wrong-class", "a weight has a place")
                     .expected("a point, {x, y, z}, a curve, a surface, a solid or a body")

@@ -31,21 +31,10 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
             ("v", _, Some(place)) => number(place.1[1]),
             _ => None,
         },
-        (Value::Body(mesh), None)
-            if matches!(name, "volume" | "area" | "centroid") && mesh.border.is_some() =>
-        {
-            // Of the part of the surface, not of its triangles.
-            let measures = mesh.border.as_ref()?.0.measures()?;
-            Some(Ok(match name {
-                "volume" => Value::Number(measures.volume),
-                "area" => Value::Number(measures.area),
-                _ => Value::Vector(measures.centroid),
-            }))
-        }
         (Value::Body(mesh), None) => match name {
-            "volume" => number(mesh.volume),
-            "area" => number(mesh.area),
-            "centroid" => Some(Ok(Value::Vector(mesh.centroid))),
+            "volume" => number(mesh.measures()?.volume),
+            "area" => number(mesh.measures()?.area),
+            "centroid" => Some(Ok(Value::Vector(mesh.measures()?.centroid))),
             _ => FLAWS.contains(&name).then(|| {
                 let flaw = mesh.flaws.iter().find(|f| f.name == name);
                 let places = flaw.map_or(&[][..], |f| &f.places);

@@ -221,7 +221,18 @@ impl<T: Real> Build<T> for CentroidPoint<T> {
                 Value::Curve(curve) => ("curves", of_curve(curve)),
                 Value::Surface(surface) => ("surfaces", of_surface(surface)),
                 Value::Solid(solid) => ("solids", of_solid(solid)),
-                Value::Body(mesh) => ("solids", (mesh.volume, mesh.centroid * mesh.volume)),
+                Value::Body(body) => {
+                    let m = body.measures().ok_or_else(|| {
+                        CallError::new("no-body", "the shape has places that are not finite")
+                            .in_item(k)
+                            .in_field(Self::OBJECTS)
+                    })?;
+                    if body.is_closed() {
+                        ("solids", (m.volume, m.centroid * m.volume))
+                    } else {
+                        ("surfaces", (m.area, m.centroid * m.area))
+                    }
+                }
                 other => {
                     return Err(CallError::new("wrong-class", "a centroid is of shapes")
                         .expected("points, curves, surfaces or solids")

@@ -445,9 +445,9 @@ impl<T: Real> TrimRegion<T> {
             size += share;
             volume += a.cross(b).dot(c) / 6.0;
         }
-        facets.volume = volume;
+        facets.of_triangles.volume = volume;
         if size.re() > 0.0 {
-            facets.centroid = moment / size;
+            facets.of_triangles.centroid = moment / size;
         }
         facets
     }

@@ -55,9 +55,10 @@ impl<T: Real> Build<T> for MeshBody<T> {
         let triangles: Vec<[u32; 3]> =
             self.triangles.chunks(3).map(|t| [t[0] - 1, t[1] - 1, t[2] - 1]).collect();
         let mut body = TriangleBody::new(self.points, triangles);
-        body.volume = self.volume.unwrap_or(body.volume);
-        body.area = self.area.unwrap_or(body.area);
-        body.centroid = self.centroid.unwrap_or(body.centroid);
+        let own = &mut body.of_triangles;
+        own.volume = self.volume.unwrap_or(own.volume);
+        own.area = self.area.unwrap_or(own.area);
+        own.centroid = self.centroid.unwrap_or(own.centroid);
         Ok(Value::Body(Arc::new(body)))
     }
 }

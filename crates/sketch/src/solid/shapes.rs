@@ -31,6 +31,7 @@ impl std::fmt::Display for ShapeFault {
                     FacetFaultKind::Vertex => "faces meet in a corner that is not found",
                     FacetFaultKind::Surface => "a face is on no surface that such files hold",
                     FacetFaultKind::Patch => "no patch comes near enough to a face",
+                    FacetFaultKind::Many => "a face takes too many patches",
                 };
                 (format!("{what} ({})", fault.surfaces.join(", ")), &fault.place)
             }

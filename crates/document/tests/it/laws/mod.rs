@@ -104,8 +104,7 @@ fn sample(document: &mut Document, numbers: &[String], base: Option<&Sample>) ->
             }
             Some(Value::Body(m)) => {
                 // Of the part of the surface where it is one, as the expression has it.
-                let part = m.border.as_ref().and_then(|border| border.0.measures());
-                close(&mut sample, xyz(vec![part.map_or(m.centroid, |part| part.centroid)]));
+                close(&mut sample, xyz(m.measures().iter().map(|part| part.centroid).collect()));
             }
             Some(Value::Surface(s)) => {
                 let at = |(&u, &v): (&f64, &f64)| s.jet(u, v, Order::Zero).p;

@@ -1,0 +1,185 @@
+"""Sides that two faces share but run along differently, made to run alike.
+
+A program may write the circle between two faces once as a spline of one parametrisation, once of
+another. A join compares its sides at equal parameters: the path of one side in its surface's
+parameters is fitted anew, to run as the other does. It stays on the old path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from moldloft.cad.occt import ImportedFace, border, is_whole
+from moldloft.nurbs import Nurbs
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["align"]
+
+_NEAR = 1e-7
+"""Sides that are as near at equal parameters, as a share of their length, run alike."""
+
+_PARTED = 1e-4
+"""Sides farther apart as curves, as a share of their length, are not one."""
+
+_PLACES = 1025
+_BISECTIONS = 50
+_PARTS = (1, 2, 4, 8, 16, 32)
+
+_NODES = np.array([0, 1, 2, 3]) / 3
+_BEZIER = np.linalg.inv(
+    np.stack(
+        [
+            (1 - _NODES) ** 3,
+            3 * _NODES * (1 - _NODES) ** 2,
+            3 * _NODES**2 * (1 - _NODES),
+            _NODES**3,
+        ],
+        axis=1,
+    )
+)
+"""Control points of the cubic through places at thirds."""
+
+
+def align(faces: list[ImportedFace]) -> None:
+    """Makes the two sides along each shared edge run alike, where they are the same curve.
+
+    Parameters
+    ----------
+    faces
+        The faces; paths of their sides are replaced.
+    """
+    shared: dict[int, list[tuple[ImportedFace, int, int]]] = {}
+    for face in faces:
+        for c, cycle in enumerate(face.loops):
+            for k, (number, _, _) in enumerate(cycle):
+                shared.setdefault(number, []).append((face, c, k))
+    for sides in shared.values():
+        if len(sides) == 2 and sides[0][0] is not sides[1][0]:
+            _pair(*sides)
+
+
+def _pair(one: tuple[ImportedFace, int, int], other: tuple[ImportedFace, int, int]) -> None:
+    first, second = _curve(*one), _curve(*other)
+    if first is None or second is None:
+        return
+    t = np.linspace(0, 1, 65)
+    places, theirs = first(t), second(t)
+    length = float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+
+    def gap(p: Floats, q: Floats) -> float:
+        return float(np.linalg.norm(p - q, axis=1).max())
+
+    turned = gap(places, theirs[::-1]) < gap(places, theirs)
+    if length == 0 or min(gap(places, theirs), gap(places, theirs[::-1])) <= _NEAR * length:
+        return
+    # A whole surface keeps its edges where it can.
+    if other[0].natural and not one[0].natural:
+        one, other, first, second = other, one, second, first
+    face, c, k = other
+    if face.natural:
+        numbers = [n for cycle in face.loops for n, _, _ in cycle]
+        if len({*numbers}) < len(numbers) or len(numbers) != 4:
+            return
+        face.natural = False
+        again = _curve(*other)
+        if again is None:
+            return
+        second, turned = again, gap(first(t), again(t)[::-1]) < gap(first(t), again(t))
+
+    def wanted(s: Floats) -> Floats:
+        return first(1 - s) if turned else first(s)
+
+    number, backwards, trace = face.loops[c][k]
+    own = _reversed(trace) if backwards else trace
+    made = _rerun(own, face.surface, wanted, length)
+    if made is not None:
+        face.loops[c][k] = (number, backwards, _reversed(made) if backwards else made)
+
+
+def _curve(face: ImportedFace, c: int, k: int) -> Callable[[Floats], Floats] | None:
+    """The side in space, by the parameter that the program gives it."""
+    _, backwards, trace = face.loops[c][k]
+    if face.natural:
+        if not is_whole(trace):
+            return None
+        edge = border(trace)
+        held = float(edge[1])
+
+        def along(t: Floats) -> Floats:
+            still = np.full(len(t), held)
+            return face.surface(still, t) if edge[0] == "u" else face.surface(t, still)
+
+        return along
+    own = _reversed(trace) if backwards else trace
+    return lambda t: _on(face.surface, own(t))
+
+
+def _on(surface: Nurbs, uv: Floats) -> Floats:
+    u, v, _ = np.clip(uv, 0, 1).T
+    return surface(u, v)
+
+
+def _reversed(trace: Nurbs) -> Nurbs:
+    weights = None if trace.weights is None else trace.weights[::-1]
+    return Nurbs(trace.degrees, (1 - trace.knots[0][::-1],), trace.points[::-1], weights)
+
+
+def _rerun(
+    own: Nurbs, surface: Nurbs, wanted: Callable[[Floats], Floats], length: float
+) -> Nurbs | None:
+    """The path with the parameters of another curve; none where that is another curve."""
+    fine = np.linspace(0, 1, _PLACES)
+    known = _on(surface, own(fine))
+
+    def parameters(t: Floats) -> Floats:
+        """Where the path is nearest to places of the other curve."""
+        goals = wanted(t)
+        nearest = np.array([int(np.argmin(((known - p) ** 2).sum(axis=1))) for p in goals])
+        low, high = fine[np.maximum(nearest - 1, 0)], fine[np.minimum(nearest + 1, _PLACES - 1)]
+        step = 1e-6
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            a, b = np.clip(middle - step, 0, 1), np.clip(middle + step, 0, 1)
+            p, q = _on(surface, own(a)), _on(surface, own(b))
+            ahead = ((goals - (p + q) / 2) * (q - p)).sum(axis=1) > 0
+            low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
+        found: Floats = (low + high) / 2
+        return found
+
+    # Both may change their pace at their knots.
+    inner = np.unique(own.knots[0])[1:-1]
+    breaks = np.array([0.0, 1.0])
+    if len(inner):
+        t = np.linspace(0, 1, 257)
+        s = np.maximum.accumulate(parameters(t))
+        breaks = np.unique(np.concatenate([[0, 1], np.interp(inner, s, t)]))
+        breaks = breaks[np.concatenate([[True], np.diff(breaks) > 1e-6])]
+        breaks[-1] = 1
+    probe = np.linspace(0, 1, 129)
+    for parts in _PARTS:
+        ends = np.concatenate(
+            [np.linspace(a, b, parts, endpoint=False) for a, b in pairwise(breaks)] + [[1.0]]
+        )
+        t = np.append((ends[:-1, None] + np.diff(ends)[:, None] * _NODES[:3]).ravel(), 1.0)
+        s = parameters(t)
+        s[0], s[-1] = 0, 1
+        if np.any(np.diff(s) <= 0):
+            return None
+        through = own(s)
+        spans = [through[3 * i : 3 * i + 4] for i in range(len(ends) - 1)]
+        points = np.concatenate([(_BEZIER @ span)[:3] for span in spans] + [through[-1:]])
+        points[::3] = through[::3]
+        knots = np.concatenate([[0.0], np.repeat(ends, 3), [1.0]])
+        made = Nurbs((3,), (knots,), points, None)
+        apart = float(np.linalg.norm(_on(surface, made(probe)) - wanted(probe), axis=1).max())
+        if apart <= _NEAR * length:
+            return made
+    return made if apart <= _PARTED * length else None
