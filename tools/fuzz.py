@@ -99,7 +99,7 @@ def run(name: str, folder: Path, seconds: int) -> tuple[str, int, str]:
         f"-artifact_prefix={out}/",
         "-rss_limit_mb=2048",
         "-malloc_limit_mb=1024",
-        "-timeout=20",
+        "-timeout=10",
         "-max_len=16384",
         "-print_final_stats=1",
     ]

@@ -12,7 +12,9 @@ import inspect
 import linecache
 import operator
 import re
+import sys
 from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any, get_args
 
@@ -108,7 +110,7 @@ def _explained(function: Callable[..., Any]) -> Callable[..., Any]:
                 raise ArgumentError(found[1], found[0]) from error
             raise
         except _RAW as error:
-            found = _fault(function, arguments, options) or _said(error)
+            found = _fault(function, arguments, options) or _said(function, error)
             if found is None:
                 raise
             name, text = found
@@ -129,6 +131,8 @@ def _fault(
     except (TypeError, ValueError):
         # Too few or too many arguments: Python says so.
         return _misspelt(where, signature, options)
+    own = bound.arguments.get("self")
+    names = {**function.__globals__, "Self": type(own)} if own is not None else function.__globals__
     for name, value in bound.arguments.items():
         parameter = bound.signature.parameters[name]
         written = parameter.annotation
@@ -137,7 +141,7 @@ def _fault(
         many = parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
         values = value.values() if parameter.kind is parameter.VAR_KEYWORD else value
         for one in values if many else [value]:
-            if not _fits(one, written, function.__globals__):
+            if not _fits(one, written, names):
                 kinds = [_WORDS.get(kind, kind) for kind in _alternatives(written)]
                 expected = " or ".join(dict.fromkeys(kinds))
                 return name, f"`{name}` of `{where}`: expected {expected}, found {_shown(one)}"
@@ -162,8 +166,11 @@ def _misspelt(
     return None
 
 
-def _said(error: Exception) -> tuple[str, str] | None:
+def _said(function: Callable[..., Any], error: Exception) -> tuple[str, str] | None:
     """What a function of ours says of its argument by itself, in a ``raise`` of its own."""
+    if isinstance(error, (OverflowError, UnicodeError)):
+        # Some number or text within an argument, which no argument is as a whole.
+        return "", f"`{function.__qualname__}`: {error}"
     trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
@@ -214,24 +221,39 @@ def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
         plain = not isinstance(value, (bytes, Mapping)) and _passes(iter, value)
         return plain and _items_fit(value, inner.removesuffix("]"), names)
     if head in ("Mapping", "dict"):
-        return isinstance(value, Mapping)
+        keys = isinstance(value, Mapping) and inner.startswith("str,")
+        return isinstance(value, Mapping) and (not keys or _items_fit(list(value), "str", names))
     if head == "Callable":
         return callable(value)
     if head in ("os.PathLike", "Path"):
         return hasattr(value, "__fspath__")
-    thing = names.get(head) if re.fullmatch(r"\w+", head) else None
+    thing = _thing(head, names) if re.fullmatch(r"(_core\.)?\w+", head) else None
     parts = get_args(thing)
     if parts and all(inspect.isclass(part) for part in parts):
         return any(_is_of(value, p.__name__, {p.__name__: p}) for p in parts)
     return not inspect.isclass(thing) or isinstance(value, thing)
 
 
+def _thing(head: str, names: Mapping[str, Any]) -> Any:
+    """What an annotation names; modules import some of these for the checker alone."""
+    if head in names:
+        return names[head]
+    if head.startswith("_core."):
+        return getattr(import_module("moldloft._core"), head.removeprefix("_core."), None)
+    package = import_module("moldloft")
+    if head in package.__all__:
+        return getattr(package, head)
+    # A type has one name in the whole package.
+    ours = (vars(m).get(head) for n, m in list(sys.modules.items()) if n.startswith("moldloft."))
+    return next((thing for thing in ours if inspect.isclass(thing)), None)
+
+
 def _items_fit(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
     # An iterator is used up already.
-    if kind not in ("str", "int", "float", "ArrayLike") or iter(value) is value:
+    if kind not in ("str", "int", "float", "ArrayLike", "Triple") or iter(value) is value:
         return True
     if isinstance(value, str):
-        return kind == "str"
+        return kind == "str" and _passes(str.encode, value)
     return all(_fits(item, kind, names) for item in value)
 
 

@@ -14,6 +14,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.units import header
 
@@ -349,3 +350,6 @@ def _plot(plot: _Plot) -> str:
         f'<svg viewBox="0 0 {wide:g} {tall:g}" font-size="11" font-family="sans-serif">'
         f"{''.join(drawn)}</svg>"
     )
+
+
+explain(globals())

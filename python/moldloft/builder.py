@@ -17,7 +17,8 @@ from functools import update_wrapper
 from typing import Any, Generic, ParamSpec
 
 from moldloft import _core
-from moldloft.arguments import ArgumentError
+from moldloft.arguments import ArgumentError, explain
+from moldloft.errors import Error
 from moldloft.expressions import (
     Expr,
     FieldShape,
@@ -141,12 +142,12 @@ class Builder:
 
         Raises
         ------
-        RuntimeError
+        Error
             When none is running.
         """
         builder = cls._current.get()
         if builder is None:
-            raise RuntimeError(
+            raise Error(
                 "objects are declared inside a function decorated with @moldloft.model, or in a "
                 "`with Builder() as b:` block"
             )
@@ -574,3 +575,6 @@ class _PythonModel(Model):
             if changed:
                 self._document.set_text(old)
             raise
+
+
+explain(globals())

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 
 if TYPE_CHECKING:
@@ -466,3 +467,6 @@ def _boundaries(
         kind = "BCSymmetryPlane" if flat else "UserDefined"
         one = node(group, EDGES[side], "BC_t", kind)
         _range(one, "PointRange", zone, side, 0, len(points) - 1)
+
+
+explain(globals())

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import keyword
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from moldloft.arguments import explain
 from moldloft.spelling import nearest
 
 __all__ = [
@@ -249,7 +250,12 @@ def _expr(x: object) -> Expr | None:
         return x
     if isinstance(x, bool) or not (isinstance(x, (int, float)) or hasattr(x, "__float__")):
         return None
-    value = float(x)
+    if getattr(x, "ndim", 0):
+        return None
+    try:
+        value = float(x)
+    except OverflowError:
+        raise ValueError("a number of a model must be below 1.8e308") from None
     return Expr(literal(value), value, _ATOM if value >= 0 else _SIGN)
 
 
@@ -272,6 +278,9 @@ def spelled(x: object) -> str:
     expr = _expr(x)
     if expr is not None:
         return expr.text
+    # Neither has an order that the language could keep, or would lose its values.
+    if isinstance(x, (bytes, Mapping, Set)):
+        raise TypeError(f"{type(x).__name__} cannot be an argument of an object")
     if isinstance(x, Sequence) or hasattr(x, "__iter__"):
         return "{" + ", ".join(spelled(item) for item in x) + "}"
     raise TypeError(f"{type(x).__name__} cannot be an argument of an object")
@@ -642,3 +651,6 @@ def object_named(class_: str, name: str) -> Handle:
     """An object of a class of the registry, under its name."""
     made = _RESULTS.get(class_, AnyHandle)
     return made(name) if issubclass(made, Handle) else AnyHandle(name)
+
+
+explain(globals())

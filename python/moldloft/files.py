@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.formats import format_named as _row
 from moldloft.formats import formats
@@ -148,3 +149,6 @@ def produce(
             raise Error(f"`{option}` is not for {row.name}, which takes whole surfaces")
     source = model.blocks() if row.volume else model
     return [Output(path.name, row.encode(source, path.stem, tolerance=tolerance))]
+
+
+explain(globals())

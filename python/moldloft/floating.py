@@ -532,9 +532,10 @@ class Floating:
         """
         import numpy as np
 
-        areas = self._document.section_areas(
-            [float(x) for x in stations], [float(z) for z in levels], accuracy
-        )
+        planes, heights = [float(x) for x in stations], [float(z) for z in levels]
+        if not planes or not heights:
+            return np.zeros((len(planes), len(heights)))
+        areas = self._document.section_areas(planes, heights, accuracy)
         return np.array(areas, dtype=np.float64)[..., 0]
 
     def panel_figures(self, level: float = 0.0) -> dict[str, float]:

@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.spelling import nearest
 
@@ -247,3 +248,6 @@ def markdown() -> str:
 
 if __name__ == "__main__":
     print(markdown(), end="")
+
+
+explain(globals())

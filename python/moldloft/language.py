@@ -10,7 +10,9 @@ from typing import Any
 
 from moldloft import _core
 from moldloft._core import Shape
-from moldloft.errors import ModelError
+from moldloft.arguments import explain
+from moldloft.errors import ModelError, UnknownNameError
+from moldloft.spelling import nearest
 
 __all__ = [
     "Shape",
@@ -99,14 +101,19 @@ def _rows() -> dict[str, dict[str, Any]]:
 
 
 def entry(name: str) -> dict[str, Any]:
-    """The row of a kind or function; a ``KeyError`` where there is none.
+    """The row of a kind or function; an ``UnknownNameError`` where there is none.
 
     Parameters
     ----------
     name
         The name of a kind or function.
     """
-    return _rows()[name]
+    rows = _rows()
+    if name not in rows:
+        near = nearest(name, rows) if isinstance(name, str) else None
+        hint = f"; did you mean `{near}`?" if near else ""
+        raise UnknownNameError(f"the language has no kind or function `{name}`{hint}")
+    return rows[name]
 
 
 def meaning(field: dict[str, Any]) -> str:
@@ -431,3 +438,6 @@ def check_language(text: str, name: str) -> None:
     newer = [d for d in found if d.id == "newer-language"]
     if newer:
         raise ModelError(str(newer[0]).rstrip(), newer)
+
+
+explain(globals())

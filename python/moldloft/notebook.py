@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.workbench.export import page_of, with_values
 from moldloft.workbench.page import NO_ENGINE, engine_packed
@@ -175,3 +176,6 @@ def shown(model: Model, height: int, follow: bool) -> Any:
     if widget is None:
         return ModelPage(page, name, height)
     return widget(model, text, page, name, height)
+
+
+explain(globals())

@@ -289,8 +289,8 @@ class Sketch:
         tuple
             The labels of the new points ``(n,)`` and of the new lines ``(m,)``.
         """
-        places = np.asarray(points, dtype=np.float64).reshape(-1, 2)
-        ends = np.asarray(lines, dtype=np.int64).reshape(-1, 2)
+        places = _pairs("points", points, np.float64)
+        ends = _pairs("lines", lines, np.int64)
         if ends.size and (ends.min() < 0 or ends.max() >= len(places)):
             raise SketchError(f"an end of a line is not a row of the {len(places)} points")
         kinds = [None] * len(ends) if types is None else list(types)
@@ -817,6 +817,17 @@ class Drag:
             self._sketch.session.rollback()
             return
         self.changes = [ObjectChange._of(row) for row in self._sketch.session.commit()]
+
+
+def _pairs(name: str, values: ArrayLike, kind: type[np.generic]) -> NDArray[Any]:
+    """Rows of two numbers of a kind; an empty array has no rows."""
+    found = np.asarray(values)
+    if found.size and (found.ndim != 2 or found.shape[1] != 2):
+        raise SketchError(f"`{name}`: expected an array of shape (n, 2), found {found.shape}")
+    try:
+        return found.astype(kind).reshape(-1, 2)
+    except (TypeError, ValueError, OverflowError):
+        raise SketchError(f"`{name}`: expected numbers, found {found.dtype}") from None
 
 
 explain(globals())

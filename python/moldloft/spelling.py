@@ -53,7 +53,11 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
         # Letters in the wrong case are half a mistake.
         return (distance(word, name) + distance(word.lower(), name.lower())) / 2
 
-    found = min(known, key=away, default=None)
+    # Lengths alone differ by more in others: a word of a million letters is not compared.
+    near = (
+        name for name in known if 3 * abs(len(name) - len(word)) <= max(3, len(name), len(word))
+    )
+    found = min(near, key=away, default=None)
     if found is None or away(found) > max(1, max(len(word), len(found)) / 3):
         return None
     return found

@@ -196,7 +196,6 @@ def test_bad_drawings_are_named(name: str, tmp_path: Path) -> None:
 def test_bad_files_are_named(tmp_path: Path) -> None:
     pytest.importorskip("ezdxf")
     pytest.importorskip("meshio")
-    pytest.importorskip("capytaine")
     for name, data in {
         "a.dxf": b"",
         "b.dxf": b"nonsense\n",
@@ -253,7 +252,6 @@ def test_meshes_come_back_as_they_were_written(ending: str, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("ending", ["gdf", "dat", "pnl", "hst"])
 def test_panel_files_come_back_whole(ending: str, tmp_path: Path) -> None:
-    pytest.importorskip("capytaine")
     model = moldloft.loads(HALF)
     form = {"dat": "nemoh", "pnl": "hams", "hst": "hydrostar"}.get(ending, ending)
     (path, *_) = model.write(tmp_path / f"half.{ending}", format=form)
@@ -261,6 +259,81 @@ def test_panel_files_come_back_whole(ending: str, tmp_path: Path) -> None:
     assert len(found.faces) == 2 * len(model.mesh().faces)
     assert found.points[:, 1].min() == pytest.approx(-2)
     assert found.deviation(model).largest < 1e-6
+
+
+@pytest.mark.parametrize("ending", ["gdf", "mar", "pnl", "hst"])
+@pytest.mark.parametrize("mirrors", [(), (1,), (0,), (0, 1)])
+def test_panel_files_are_what_capytaine_reads(
+    ending: str, mirrors: tuple[int, ...], tmp_path: Path
+) -> None:
+    capytaine = pytest.importorskip("capytaine")
+    x, y = int(0 in mirrors), int(1 in mirrors)
+    if (ending == "mar" and x) or (ending == "hst" and (x, y) == (1, 0)):
+        pytest.skip("the format has no such symmetry")
+    rng = np.random.default_rng(1 + x + 2 * y)
+    i, j = np.meshgrid(np.arange(5.0), np.arange(4.0), indexing="ij")
+    points = np.stack([i + 1, j + 1, -1 - 0.1 * rng.random(i.shape)], axis=-1).reshape(-1, 3)
+    k = np.arange(20).reshape(5, 4)
+    faces = np.stack([k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]], axis=-1).reshape(-1, 4)
+    faces[::5, 3] = faces[::5, 2]
+    rows = [" ".join(f"{c:.17g}" for c in p) for p in points]
+    corners = [" ".join(str(c + 1) for c in face) for face in faces]
+    if ending == "gdf":
+        lines = [
+            "title",
+            "1 9.81",
+            f"{x} {y}",
+            str(len(faces)),
+            *(rows[c] for f in faces for c in f),
+        ]
+    elif ending == "mar":
+        lines = [f"2 {y}", *(f"{n + 1} {row}" for n, row in enumerate(rows)), "0 0 0 0", *corners,
+                 "0 0 0 0"]  # fmt: skip
+    elif ending == "pnl":
+        own = [" ".join(str(c + 1) for c in dict.fromkeys(face.tolist())) for face in faces]
+        lines = ["a", "b", "c", f"{len(faces)} {len(points)} {x} {y}", "", "nodes",
+                 *(f"{n + 1} {row}" for n, row in enumerate(rows)), "", "", "panels",
+                 *(f"{n + 1} {len(o.split())} {o}" for n, o in enumerate(own))]  # fmt: skip
+    else:
+        lines = ["PROJECT : a", f"SYMMETRY : {x + y}", "COORDINATES", *rows, "ENDCOORDINATES",
+                 "PANEL TYPE 0", *corners, "ENDPANEL", "ENDFILE"]  # fmt: skip
+    path = tmp_path / f"a.{ending}"
+    path.write_text("\n".join(lines) + "\n")
+    theirs = capytaine.load_mesh(str(path)).merged()
+    ours = overlays.read(path)
+    flat = ours.points[ours.faces.astype(int)]
+
+    def known(corners: np.ndarray) -> list[tuple[float, ...]]:
+        # Twice the vector area does not depend on where a panel begins.
+        area = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        return sorted(tuple(row) for row in np.round(area, 9))
+
+    assert len(flat) == theirs.nb_faces == len(faces) * 2 ** len(mirrors)
+    assert known(flat) == known(np.asarray(theirs.vertices)[np.asarray(theirs.faces)])
+
+
+@pytest.mark.parametrize(
+    ("ending", "text", "line"),
+    [
+        ("mar", "2 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n0 0 0 0\n1 2", "line 7"),
+        ("mar", "2 0\n1 2 3 4\n2 1 0 0\n3 1 1 0\n4 0 1 0\n0 0 0 0\n 0 0 0\n1 2 3 4\n", "no panels"),
+        ("mar", "2 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n", "zeros"),
+        ("mar", "2 0\n1 0 0 0\n3 1 1 0\n0 0 0 0\n1 2 2 2\n", "vertex 2"),
+        ("mar", "2 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n0 0 0 0\n1 2 9\n", "none of the 3"),
+        ("gdf", "a\n1 9.8\n0 0\n1\n0 0 0 1 0 0 1 1\n", "expected 12 numbers, found 8"),
+        ("gdf", "a\n1 9.8\n0 2\n1\n", "line 3"),
+        ("pnl", "a\nb\nc\n1 3 0 0\n\n\n1 0 0 0\n2 1 0 0\n3 1 1 0\n\n\n\n1 5 1 2 3\n", "line 13"),
+        ("hst", "COORDINATES\n0 0 0\n1 0 0\n", "end of the vertices"),
+        ("hst", "COORDINATES\n0 0 x\n", "line 2"),
+    ],
+)
+def test_wrong_panel_files_are_refused_at_the_line(
+    ending: str, text: str, line: str, tmp_path: Path
+) -> None:
+    path = tmp_path / f"a.{ending}"
+    path.write_text(text)
+    with pytest.raises(moldloft.FileError, match=line):
+        overlays.read(path)
 
 
 BALL = """

@@ -9,10 +9,12 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod confine;
+mod frames;
 mod machine;
 mod memory;
 
 pub use confine::confine;
+pub use frames::{LONGEST_FRAME, read_frame, write_frame};
 pub use machine::usual_memory;
 pub use memory::{Counting, FLUSH, RESERVE, held, settle};
 

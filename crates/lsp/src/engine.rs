@@ -2,6 +2,7 @@
 
 use crate::answers::capabilities;
 use crate::server::{Event, Server, folders_of};
+use crate::wire::to_front;
 use lsp_server::{Connection, ErrorCode, Message, Response};
 use serde_json::json;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,10 +17,9 @@ const MEMORY: u64 = 2 << 30;
 pub fn run() -> ExitCode {
     let memory = moldloft::budget::usual_memory().min(MEMORY);
     moldloft::budget::confine(memory);
-    let (connection, threads) = Connection::stdio();
-    let orderly = serve(&connection);
-    drop(connection);
-    let flushed = threads.join().is_ok();
+    let wire = to_front();
+    let orderly = serve(&wire.connection);
+    let flushed = wire.finish();
     if orderly && flushed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 

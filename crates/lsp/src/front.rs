@@ -5,13 +5,14 @@
 
 use crate::lines::apply;
 use crate::server::{HELD, RUNNING};
+use crate::wire::{read_message, to_editor, write_message};
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
 use lsp_types::notification::{self as note, Notification as _};
 use lsp_types::{DidChangeTextDocumentParams, DidOpenTextDocumentParams, TextDocumentItem};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ffi::OsString;
-use std::io::{BufReader, BufWriter, Write};
+use std::io::{BufReader, BufWriter};
 use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
 use std::sync::mpsc::{self, Sender};
@@ -70,7 +71,7 @@ impl EngineProcess {
         std::thread::spawn(move || std::io::copy(&mut errors, &mut std::io::stderr()));
         let events = events.clone();
         std::thread::spawn(move || {
-            while let Ok(Some(message)) = Message::read(&mut output) {
+            while let Ok(Some(message)) = read_message(&mut output) {
                 if events.send(FrontEvent::Engine(number, message)).is_err() {
                     return;
                 }
@@ -82,7 +83,7 @@ impl EngineProcess {
 
     /// That the pipe is closed shows when its output ends.
     fn send(&mut self, message: &Message) {
-        let _ = message.write(&mut self.input).and_then(|()| self.input.flush());
+        let _ = write_message(&mut self.input, message);
     }
 
     /// Ends it, and says how it ended.
@@ -118,9 +119,9 @@ struct EditorFront<'c> {
 
 /// Serves until the editor has gone; a success when it said goodbye as the protocol asks.
 pub fn run(command: EngineCommand) -> ExitCode {
-    let (connection, threads) = Connection::stdio();
+    let wire = to_editor();
     let (events, received) = mpsc::channel();
-    let (messages, incoming) = (events.clone(), connection.receiver.clone());
+    let (messages, incoming) = (events.clone(), wire.connection.receiver.clone());
     std::thread::spawn(move || {
         for message in incoming {
             if messages.send(FrontEvent::Editor(message)).is_err() {
@@ -137,7 +138,7 @@ pub fn run(command: EngineCommand) -> ExitCode {
         }
     };
     let mut front = EditorFront {
-        editor: &connection,
+        editor: &wire.connection,
         engine,
         command,
         events,
@@ -151,8 +152,6 @@ pub fn run(command: EngineCommand) -> ExitCode {
         leaving: false,
     };
     let mut orderly = false;
-    // The reader of the editor's messages ends with their end or with `exit`.
-    let mut read_out = true;
     for event in &received {
         match event {
             FrontEvent::Editor(message) => {
@@ -169,7 +168,6 @@ pub fn run(command: EngineCommand) -> ExitCode {
             }
             FrontEvent::EngineGone(number) if number == front.engine.number && !front.leaving => {
                 if !front.begin_again() {
-                    read_out = false;
                     break;
                 }
             }
@@ -191,8 +189,7 @@ pub fn run(command: EngineCommand) -> ExitCode {
         }
     }
     front.engine.ended();
-    drop(connection);
-    let written = !read_out || threads.join().is_ok();
+    let written = wire.finish();
     if orderly && written { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 

@@ -19,6 +19,7 @@ mod index;
 mod lines;
 mod places;
 mod server;
+mod wire;
 
 pub use engine::run as engine;
 pub use front::{EngineCommand, run as serve};

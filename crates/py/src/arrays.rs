@@ -1,5 +1,7 @@
 //! Vectors and NumPy arrays.
 
+use crate::error::plain_error;
+use moldloft::budget::{Budget, Spent};
 use moldloft::num::Vec3;
 use numpy::ndarray::Dimension;
 use numpy::{PyArray, PyArrayMethods};
@@ -13,6 +15,26 @@ fn vectors(numbers: &mut [f64]) -> &mut [Vec3] {
     unsafe {
         std::slice::from_raw_parts_mut(numbers.as_mut_ptr().cast(), numbers.len() / 3)
     }
+}
+
+/// The most points of one array.
+const MOST_POINTS: usize = 1 << 27;
+
+/// Refuses more points, each of so many bytes, than may be held, before anything is made: neither Rust nor NumPy
+/// could refuse them by name later.
+pub fn room(shape: [usize; 2], bytes: usize) -> PyResult<usize> {
+    let [m, n] = shape;
+    let count = m.checked_mul(n).filter(|count| *count <= MOST_POINTS);
+    let count = count
+        .ok_or_else(|| plain_error(format!("{m} x {n} are more than {MOST_POINTS} points")))?;
+    // At most 2^27 times some hundred.
+    let bytes = count * bytes;
+    let spent =
+        |spent: Spent| plain_error(format!("{m} x {n} points: {spent}\nhelp: {}", spent.help()));
+    Budget::default().grow(bytes as u64).map_err(spent)?;
+    let tried = Vec::<u8>::new().try_reserve_exact(bytes);
+    tried.map_err(|_| spent(Spent::Refused))?;
+    Ok(count)
 }
 
 /// A new array of vectors, its last extent 3, filled by `fill` without a copy.

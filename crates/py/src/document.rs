@@ -29,9 +29,6 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The most points of one grid.
-const MOST_POINTS: usize = 1 << 27;
-
 /// How many scattered points a thread evaluates at a time.
 const CHUNK: usize = 1 << 14;
 
@@ -129,6 +126,26 @@ impl PyDocument {
     /// The name of the unit of length, and its millimetres.
     pub(crate) fn unit(&self, py: Python<'_>) -> (String, f64) {
         moldloft::export::length_unit(&self.lock(py))
+    }
+
+    /// Many points in another thread, so that Ctrl-C is heard.
+    fn many<const K: usize>(
+        &self,
+        py: Python<'_>,
+        shape: [usize; 2],
+        fill: impl FnOnce([&mut [Vec3]; K], &Budget) + Send + 'static,
+    ) -> PyResult<[Vec<Vec3>; K]> {
+        // NumPy's arrays are copies.
+        let count = arrays::room(shape, 2 * K * size_of::<Vec3>())?;
+        let budget = self.budget.clone();
+        let work = move || {
+            let mut made = [(); K].map(|()| vec![Vec3::zero(); count]);
+            fill(made.each_mut().map(|all| all.as_mut_slice()), &budget);
+            // Points that are left out are not answered: the time is over, or Ctrl-C has come.
+            budget.poll().map(|()| made)
+        };
+        let made = interruptible_shared(py, &self.budget, work)?;
+        made.map_err(|spent| plain_error(format!("{spent}\nhelp: {}", spent.help())))
     }
 
     fn surface_of(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceRef<f64>> {
@@ -402,7 +419,19 @@ impl PyDocument {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let curve = self.curve_of(py, name)?;
         let ts = t.as_slice()?;
-        Ok(arrays::filled(py, [ts.len(), 3], |out| py.detach(|| curve.grid(ts, out))).0)
+        if ts.len() <= LARGE {
+            return Ok(arrays::filled(py, [ts.len(), 3], |out| py.detach(|| curve.grid(ts, out))).0);
+        }
+        let ts = ts.to_vec();
+        let [points] = self.many(py, [ts.len(), 1], move |[out], budget| {
+            for (ts, out) in ts.chunks(CHUNK).zip(out.chunks_mut(CHUNK)) {
+                if budget.is_spent() {
+                    return;
+                }
+                curve.grid(ts, out);
+            }
+        })?;
+        Ok(arrays::filled(py, [points.len(), 3], |out| out.copy_from_slice(&points)).0)
     }
 
     fn surface<'py>(
@@ -414,19 +443,25 @@ impl PyDocument {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let surface = self.surface_of(py, name)?;
         let (us, vs) = (u.as_slice()?, v.as_slice()?);
-        let some = |out: &mut [Vec3], us: &[f64], vs: &[f64]| {
+        let some = |surface: &SurfaceRef<f64>, out: &mut [Vec3], us: &[f64], vs: &[f64]| {
             let uv: Vec<[f64; 2]> = us.iter().zip(vs).map(|(&u, &v)| [u, v]).collect();
             surface.scattered(&uv, out);
         };
-        let fill = |out: &mut [Vec3]| {
-            if out.len() <= CHUNK {
-                return some(out, us, vs);
-            }
+        if us.len() <= CHUNK {
+            let fill = |out: &mut [Vec3]| py.detach(|| some(&surface, out, us, vs));
+            return Ok(arrays::filled(py, [us.len(), 3], fill).0);
+        }
+        let (us, vs) = (us.to_vec(), vs.to_vec());
+        let [points] = self.many(py, [us.len(), 1], move |[out], budget| {
             let chunks = out.par_chunks_mut(CHUNK);
             let parameters = us.par_chunks(CHUNK).zip(vs.par_chunks(CHUNK));
-            chunks.zip(parameters).for_each(|(out, (us, vs))| some(out, us, vs));
-        };
-        Ok(arrays::filled(py, [us.len(), 3], |out| py.detach(|| fill(out))).0)
+            // What is left after a Ctrl-C is not looked at.
+            let _ = chunks.zip(parameters).try_for_each(|(out, (us, vs))| {
+                some(&surface, out, us, vs);
+                budget.poll()
+            });
+        })?;
+        Ok(arrays::filled(py, [points.len(), 3], |out| out.copy_from_slice(&points)).0)
     }
 
     fn grid<'py>(
@@ -438,8 +473,19 @@ impl PyDocument {
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let [us, vs] = parameters(nu, nv)?;
         let surface = self.surface_of(py, name)?;
-        let fill = |out: &mut [Vec3]| py.detach(|| surface.grid(&us, &vs, out, None));
-        Ok(arrays::filled(py, [nu, nv, 3], fill).0)
+        if nu * nv <= LARGE {
+            let fill = |out: &mut [Vec3]| py.detach(|| surface.grid(&us, &vs, out, None));
+            return Ok(arrays::filled(py, [nu, nv, 3], fill).0);
+        }
+        let [points] = self.many(py, [nu, nv], move |[out], budget| {
+            for (us, out) in rows(&us, nv).zip(out.chunks_mut(nv * rows_at_once(nv))) {
+                if budget.is_spent() {
+                    return;
+                }
+                surface.grid(us, &vs, out, None);
+            }
+        })?;
+        Ok(arrays::filled(py, [nu, nv, 3], |out| out.copy_from_slice(&points)).0)
     }
 
     fn grid_with_normals<'py>(
@@ -451,6 +497,21 @@ impl PyDocument {
     ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>)> {
         let [us, vs] = parameters(nu, nv)?;
         let surface = self.surface_of(py, name)?;
+        if nu * nv > LARGE {
+            let [points, normals] = self.many(py, [nu, nv], move |[points, normals], budget| {
+                let step = nv * rows_at_once(nv);
+                let parts = points.chunks_mut(step).zip(normals.chunks_mut(step));
+                for (us, (points, normals)) in rows(&us, nv).zip(parts) {
+                    if budget.is_spent() {
+                        return;
+                    }
+                    surface.grid(us, &vs, points, Some(normals));
+                }
+            })?;
+            let copied =
+                |all: &[Vec3]| arrays::filled(py, [nu, nv, 3], |out| out.copy_from_slice(all)).0;
+            return Ok((copied(&points), copied(&normals)));
+        }
         let (points, normals) = arrays::filled(py, [nu, nv, 3], |points| {
             let fill = |normals: &mut [Vec3]| {
                 py.detach(|| surface.grid(&us, &vs, points, Some(normals)));
@@ -469,8 +530,7 @@ impl PyDocument {
         v: PyReadonlyArray1<'_, f64>,
     ) -> PyResult<Look> {
         let surface = self.surface_of(py, name)?;
-        let (us, vs) = (u.as_slice()?, v.as_slice()?);
-        Ok(py.detach(|| Look::of(&*surface, us, vs)))
+        Look::of(py, surface, u.as_slice()?.to_vec(), v.as_slice()?.to_vec())
     }
 
     /// First and second derivatives of a curve, and the parameters at which these may jump.
@@ -785,14 +845,22 @@ pub(crate) fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr 
 }
 
 /// Even parameters along both sides of a grid.
+/// How many rows of a grid are made between two looks at the budget.
+fn rows_at_once(nv: usize) -> usize {
+    (CHUNK / nv).max(1)
+}
+
+/// The parameters of so many rows at a time.
+fn rows(us: &[f64], nv: usize) -> impl Iterator<Item = &[f64]> {
+    us.chunks(rows_at_once(nv))
+}
+
 fn parameters(nu: usize, nv: usize) -> PyResult<[Vec<f64>; 2]> {
     if nu < 2 || nv < 2 {
         let message = format!("a grid has at least 2 points along each side, not {nu} x {nv}");
         return Err(plain_error(message));
     }
-    if nu.checked_mul(nv).is_none_or(|points| points > MOST_POINTS) {
-        return Err(plain_error(format!("{nu} x {nv} are more than {MOST_POINTS} points")));
-    }
+    arrays::room([nu, nv], size_of::<Vec3>())?;
     Ok([nu, nv].map(|n| (0..n).map(|i| i as f64 / (n - 1) as f64).collect()))
 }
 

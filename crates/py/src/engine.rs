@@ -1,20 +1,16 @@
 //! The engine process: a session on standard input and output.
 //!
-//! `u32 length, request -> Session -> u32 length, frame`
+//! `request -> Session -> reply`, each in a frame of [`read_frame`].
 //!
 //! The parent has the text and may end this process at any time. A request `cancel` stops the one that is
 //! under way; everything else is answered in order.
 
-use moldloft::budget::Budget;
+use moldloft::budget::{Budget, read_frame, write_frame};
 use moldloft::host::{FileWorld, Noted, ReadAs};
 use moldloft::session::Session;
 use pyo3::prelude::*;
-use std::io::{Read, Write};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
-
-/// The longest request.
-const LONGEST: u32 = 64 << 20;
 
 /// What stops the work under way.
 const CANCEL: &[u8] = br#"{"kind":"cancel"}"#;
@@ -48,7 +44,7 @@ fn serve(name: &str, folder: Option<&str>, library: &[String]) {
     let shared = budget.clone();
     std::thread::spawn(move || {
         let mut input = std::io::stdin().lock();
-        while let Some(message) = read(&mut input) {
+        while let Ok(Some(message)) = read_frame(&mut input) {
             if message == CANCEL {
                 shared.cancel();
             } else if sender.send(String::from_utf8_lossy(&message).into_owned()).is_err() {
@@ -66,24 +62,10 @@ fn serve(name: &str, folder: Option<&str>, library: &[String]) {
         let timed = budget.timed();
         let frame = session.answer(&request);
         drop(timed);
-        let length = (frame.len() as u32).to_le_bytes();
-        let sent = output.write_all(&length).and_then(|()| output.write_all(&frame));
-        if sent.and_then(|()| output.flush()).is_err() {
+        if write_frame(&mut output, &frame).is_err() {
             return;
         }
     }
-}
-
-fn read(input: &mut impl Read) -> Option<Vec<u8>> {
-    let mut length = [0; 4];
-    input.read_exact(&mut length).ok()?;
-    let length = u32::from_le_bytes(length);
-    if length > LONGEST {
-        return None;
-    }
-    let mut message = vec![0; length as usize];
-    input.read_exact(&mut message).ok()?;
-    Some(message)
 }
 
 /// A session in this process, for pages that are made once.

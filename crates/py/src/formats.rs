@@ -72,6 +72,7 @@ pub fn spline_patch_grid<'py>(
     let points = places.map(|(i, j)| Vec3::of(a[[i, j, 0]], a[[i, j, 1]], a[[i, j, 2]])).collect();
     let patch = SplinePatch { name: String::new(), degree, spans, points, deviation: 0.0 };
     let (us, vs) = (u.as_array().to_vec(), v.as_array().to_vec());
+    arrays::room([us.len(), vs.len()], 2 * size_of::<Vec3>())?;
     let found = patch.grid(&us, &vs);
     Ok(arrays::filled(py, [us.len(), vs.len(), 3], |out| out.copy_from_slice(&found)).0)
 }

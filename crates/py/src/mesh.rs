@@ -1,6 +1,7 @@
 //! Meshes: arrays and their report.
 
 use crate::arrays;
+use crate::work::unlocked_if;
 use moldloft::document::Panelled;
 use moldloft::mesh::{
     Block, Closes, Mesh, PatchInfo, PatchQuality, Statistics, TopologyBuilder, WorstPanel, closure,
@@ -10,6 +11,9 @@ use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
+
+/// So many panels are worth another thread.
+const LARGE: usize = 50_000;
 
 /// Patch, name, tag, turned, vertices.
 type BlockFacts<'py> = (usize, String, String, bool, Bound<'py, PyArray2<u32>>);
@@ -25,6 +29,16 @@ pub struct PyMesh {
 impl PyMesh {
     pub fn new(panelled: Arc<Panelled>, part: Option<Mesh>) -> Self {
         Self { panelled, part }
+    }
+
+    /// What takes long for many panels, in another thread then, so that Ctrl-C is heard.
+    fn of_mesh<R: Send + 'static>(
+        slf: &Bound<'_, Self>,
+        work: impl FnOnce(&Mesh) -> R + Send + 'static,
+    ) -> PyResult<R> {
+        let large = slf.get().mesh().faces().len() > LARGE;
+        let own = slf.clone().unbind();
+        unlocked_if(slf.py(), large, move || work(own.get().mesh()))
     }
 
     fn mesh(&self) -> &Mesh {
@@ -47,9 +61,9 @@ impl PyMesh {
     }
 
     /// Counts, measures, closure and orientation of the whole.
-    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let mesh = self.mesh();
-        let (report, measures) = py.detach(|| (mesh.report(), measure(mesh)));
+    fn summary<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let (py, mesh) = (slf.py(), slf.get().mesh());
+        let (report, measures) = Self::of_mesh(slf, |mesh| (mesh.report(), measure(mesh)))?;
         let dict = PyDict::new(py);
         dict.set_item("panels", report.faces)?;
         dict.set_item("vertices", report.vertices)?;
@@ -87,22 +101,21 @@ impl PyMesh {
     }
 
     /// The patches with their measures and quality.
-    fn patches<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let all = py.detach(|| qualities(self.mesh()));
-        all.iter().enumerate().map(|(k, q)| self.patch(py, k, q.as_ref())).collect()
+    fn patches<'py>(slf: &Bound<'py, Self>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let all = Self::of_mesh(slf, qualities)?;
+        all.iter().enumerate().map(|(k, q)| slf.get().patch(slf.py(), k, q.as_ref())).collect()
     }
 
     /// What is open, by patch and edge; what closes each; and whether that is all.
     fn closure<'py>(
-        &self,
-        py: Python<'py>,
+        slf: &Bound<'py, Self>,
         mirrors: &str,
         level: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let axes: Vec<u8> =
             (0..3).filter(|&k| mirrors.contains(['x', 'y', 'z'][k as usize])).collect();
-        let mesh = self.mesh();
-        let found = py.detach(|| closure(mesh, &axes, level));
+        let (py, mesh) = (slf.py(), slf.get().mesh());
+        let found = Self::of_mesh(slf, move |mesh| closure(mesh, &axes, level))?;
         let dict = PyDict::new(py);
         dict.set_item("closed", found.closed())?;
         dict.set_item("closed_with_lids_and_mirror", found.closed_with_lids_and_mirror())?;

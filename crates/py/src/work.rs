@@ -83,6 +83,15 @@ pub fn unlocked<R: Send + 'static>(
     interruptible(py, &Budget::default(), work)
 }
 
+/// [`unlocked`], but in this thread where the work is small: another thread costs more than that.
+pub fn unlocked_if<R: Send + 'static>(
+    py: Python<'_>,
+    large: bool,
+    work: impl FnOnce() -> R + Send + 'static,
+) -> PyResult<R> {
+    if large { unlocked(py, work) } else { Ok(py.detach(work)) }
+}
+
 /// [`interruptible`] for a budget that later work shares: it is resumed after an interrupt.
 pub fn interruptible_shared<R: Send + 'static>(
     py: Python<'_>,

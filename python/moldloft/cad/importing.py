@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.cad.aligning import align
 from moldloft.cad.apart import read
 from moldloft.cad.joining import joins
@@ -150,3 +151,6 @@ def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
 def _turned(trace: Nurbs) -> Nurbs:
     weights = None if trace.weights is None else trace.weights[::-1]
     return Nurbs(trace.degrees, (1 - trace.knots[0][::-1],), trace.points[::-1], weights)
+
+
+explain(globals())

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction
 
@@ -96,3 +97,6 @@ def index_of(given: Any, count: int) -> int:
     if not 0 <= k < count:
         raise FairingError(f"expected points from 0 to {count - 1}, found {k}", index=max(k, 0))
     return k
+
+
+explain(globals())

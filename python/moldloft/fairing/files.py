@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import FairingError, FileError, FormatError
 from moldloft.fairing.matrix import matrix
 from moldloft.fairing.tables import Cells, plain, spans
@@ -441,3 +442,6 @@ def write_vts(path: str | os.PathLike[str], points: Floats, fields: dict[str, An
     named = [(name, shaped(values)) for name, values in fields.items()]
     data = _core.grid_with_fields(shaped(points), named)
     commit(path.parent, [Output(path.name, data)], make=False)
+
+
+explain(globals())

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.fairing.drawing import (
     AFTER,
@@ -509,3 +510,6 @@ def write_page(
     if path.suffix.lower() not in (".html", ".htm"):
         raise Error(f"a page is .html, not `{path}`")
     return commit(path.parent, [Output(path.name, page(fairing, title).encode())], make=False)[0]
+
+
+explain(globals())

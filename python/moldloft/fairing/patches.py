@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, points_of, radii
 from moldloft.fairing.findings import lines_exact
@@ -268,3 +269,6 @@ def patches(
         gap=reported["certificate"]["gap"],
         seconds=seconds,
     )
+
+
+explain(globals())

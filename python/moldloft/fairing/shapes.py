@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from moldloft import _core
+from moldloft.arguments import explain
 
 
 def read_shape(text: str, count: int) -> tuple[Any, ...]:
@@ -35,3 +36,6 @@ def read_shape(text: str, count: int) -> tuple[Any, ...]:
         "straight": (first, last, way),
     }
     return (word, *rest.get(word, (first, last)))
+
+
+explain(globals())

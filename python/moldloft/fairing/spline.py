@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import points_of, refuse_repeats
 
@@ -606,3 +607,6 @@ def grid_metric(grid: ArrayLike) -> Floats:
     points, _ = points_of(grid, 3)
     m, n = points.shape[:2]
     return _core.eta_y(points.reshape(-1, 3), m, n).reshape(m, n)
+
+
+explain(globals())

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import FairingError
 
 if TYPE_CHECKING:
@@ -148,3 +149,6 @@ def _dxf(curves: Sequence[Spline]) -> bytes:
             pairs += list(zip((10, 20, 30), map(_number, p), strict=True))
     pairs += [(0, "ENDSEC"), (0, "EOF")]
     return ("".join(f"{code:3d}\n{value}\n" for code, value in pairs)).encode("ascii")
+
+
+explain(globals())

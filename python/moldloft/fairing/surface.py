@@ -317,11 +317,17 @@ class _Axis:
         return np.moveaxis(np.stack(columns, axis=1), 0, axis)
 
 
+#: More along one direction are more points than a grid may have.
+_MOST_PARAMETERS = 10_000_000
+
+
 def _parameters(given: ArrayLike) -> Floats:
     if np.ndim(given) == 0:
         count = int(np.asarray(given))
         if count < 2:
             raise FairingError(f"expected 2 parameters or more, found {count}")
+        if count > _MOST_PARAMETERS:
+            raise FairingError(f"expected {_MOST_PARAMETERS} parameters or fewer, found {count}")
         return np.linspace(0, 1, count)
     return np.ascontiguousarray(given, np.float64)
 

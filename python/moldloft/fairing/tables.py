@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from moldloft.arguments import explain
 from moldloft.errors import FairingError
 
 __all__ = ["MISSING", "Cells", "Plain", "eighths", "length", "names_axes", "plain", "spans"]
@@ -373,3 +374,6 @@ def _prose(lines: list[str], out: Plain) -> list[str]:
 
 def _column_names(words: list[str]) -> bool:
     return bool(words) and all(_axis(w) for w in words)
+
+
+explain(globals())

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error, UnknownNameError
 
 if TYPE_CHECKING:
@@ -226,3 +227,6 @@ def _against(normals: Floats, off: Floats) -> Floats:
     dot = np.einsum("ij,ij->i", normals, off)
     cosine: Floats = np.divide(dot, size, out=np.ones(len(off)), where=size > 0)
     return cosine
+
+
+explain(globals())

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 from moldloft.overlays.deviation import Deviation, _facing, _normals, deviation
 
@@ -174,3 +175,6 @@ def _unit(vectors: Floats) -> Floats:
     size = np.linalg.norm(vectors, axis=1, keepdims=True)
     unit: Floats = np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0)
     return unit
+
+
+explain(globals())

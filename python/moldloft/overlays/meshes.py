@@ -1,4 +1,4 @@
-"""Meshes by meshio (MIT) and panel files by Capytaine (LGPL), each imported when it is needed."""
+"""Meshes by meshio (MIT), imported when it is needed, and panel files of flow solvers."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from moldloft.errors import Error, FileError
 from moldloft.overlays.overlay import Overlay
+from moldloft.overlays.panel_files import read_panels
 from moldloft.storage import read_bytes
 
 if TYPE_CHECKING:
@@ -24,9 +25,6 @@ _CORNERS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
 
 _MARKS = {"ply": (b"end_header",), "msh": (b"$EndNodes", b"$EndElements")}
 """What a whole file has: meshio waits for some of it without end."""
-
-_SOLVERS = {"gdf": "gdf", "mar": "mar", "dat": "mar", "pnl": "pnl", "hst": "hst"}
-"""Capytaine's names of panel files."""
 
 
 def mesh(path: Path, ending: str) -> Overlay:
@@ -94,19 +92,7 @@ def panels(path: Path, ending: str) -> Overlay:
     ending
         Its ending.
     """
-    capytaine = _module("capytaine", "'moldloft[hydro]'")
-    try:
-        found = capytaine.load_mesh(str(path), file_format=_SOLVERS[ending])
-        whole = found.merged()
-    except Exception as error:
-        raise FileError(f"not a file that Capytaine takes, or cut short: {error}") from error
-    faces = np.asarray(whole.faces, dtype=np.int64)
-    # Capytaine repeats another corner of a triangle than the last.
-    for face in faces:
-        corners = list(dict.fromkeys(face.tolist()))
-        if len(corners) == 3:
-            face[:] = [*corners, corners[-1]]
-    points = np.asarray(whole.vertices, dtype=np.float64)
+    points, faces = read_panels(read_bytes(path), ending)
     return _checked(path.name, points, faces, (("panels", 0, len(faces)),), ())
 
 

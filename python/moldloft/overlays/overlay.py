@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.arguments import explain
 from moldloft.errors import Error
 
 if TYPE_CHECKING:
@@ -135,3 +136,6 @@ class Overlay:
         what = [(len(self.points), "point"), (len(self.faces), "face"), (len(self.curves), "curve")]
         said = [f"{n} {word}{'s' * (n != 1)}" for n, word in what if n]
         return f"<Overlay {self.name}: {', '.join(said)}>"
+
+
+explain(globals())

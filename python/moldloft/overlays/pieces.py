@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moldloft.errors import FileError
 from moldloft.nurbs import Nurbs
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ def arc(centre: ArrayLike, a: ArrayLike, b: ArrayLike, start: float, end: float)
     They are rational quadratics: points multiplied by weights, and weights, ``(3, 4)``.
     """
     c, a, b = (np.asarray(v, dtype=np.float64) for v in (centre, a, b))
+    if not (np.isfinite([c, a, b]).all() and math.isfinite(end - start)):
+        raise FileError("an arc whose centre, radii or angles are no finite numbers")
     count = max(1, math.ceil(abs(end - start) / (math.pi / 2) - 1e-9))
     half = (end - start) / count / 2
     pieces = []

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from moldloft import _core
+from moldloft.arguments import explain
 from moldloft.errors import Error, FileError, FormatError
 from moldloft.overlays.overlay import Overlay
 from moldloft.storage import read_bytes
@@ -38,7 +39,7 @@ _PANELS = {
     "pnl": "panels of HAMS",
     "hst": "panels of HydroStar",
 }
-"""By Capytaine; bodies with planes of symmetry are read whole."""
+"""Panels of flow solvers; bodies with planes of symmetry are read whole."""
 
 _POINTS = {
     "xyz": "points, three coordinates to a line",
@@ -168,3 +169,6 @@ def _points(name: str, ending: str, data: bytes) -> Overlay:
             return Overlay(name, np.array(all_rows, dtype=np.float64))
     rows, _ = _core.read_points(data)
     return replace(Overlay(name), points=rows)
+
+
+explain(globals())

@@ -35,6 +35,17 @@ _UNDRAWN = {
 """Elements that show nothing by themselves."""
 
 
+#: As of coordinates in models.
+_LARGEST = 1e50
+
+
+def _number(text: str) -> float:
+    value = float(text)
+    if not abs(value) <= _LARGEST:
+        raise FileError(f"expected numbers of at most {_LARGEST:g}, found {text}")
+    return value
+
+
 def parse(name: str, data: bytes) -> tuple[Overlay, float | None]:
     """The shapes of an SVG file, and its unit in metres where its size states one.
 
@@ -94,8 +105,8 @@ def _unit(root: ElementTree.Element) -> float | None:
     size = re.fullmatch(rf"\s*({_NUMBER})\s*(mm|cm|in|pt|pc|px|Q)\s*", root.get("width", ""))
     if size is None:
         return None
-    metres = float(size[1]) * _METRES[size[2]]
-    box = [float(x) for x in re.findall(_NUMBER, root.get("viewBox", ""))]
+    metres = _number(size[1]) * _METRES[size[2]]
+    box = [_number(x) for x in re.findall(_NUMBER, root.get("viewBox", ""))]
     if len(box) == 4 and box[2] > 0:
         return metres / box[2]
     return _METRES["px"]
@@ -105,7 +116,7 @@ def _transform(text: str) -> Floats:
     """The matrix of a list of transforms."""
     place: Floats = np.eye(3)
     for word, inner in re.findall(r"(\w+)\s*\(([^)]*)\)", text):
-        n = [float(x) for x in re.findall(_NUMBER, inner)]
+        n = [_number(x) for x in re.findall(_NUMBER, inner)]
         own = np.eye(3)
         if word == "matrix" and len(n) == 6:
             own[:2] = np.array([[n[0], n[2], n[4]], [n[1], n[3], n[5]]])
@@ -144,7 +155,7 @@ def _length(element: ElementTree.Element, key: str, default: float = 0.0) -> flo
     match = re.fullmatch(rf"\s*({_NUMBER})\s*(mm|cm|in|pt|pc|px|Q|)\s*", text)
     if match is None:
         raise FileError(f'{_tag(element)}: {key} = "{text}" is not a length')
-    return float(match[1]) * _METRES[match[2]] / _METRES["px"]
+    return _number(match[1]) * _METRES[match[2]] / _METRES["px"]
 
 
 def _shape(tag: str, element: ElementTree.Element) -> list[list[Floats]] | None:
@@ -155,7 +166,7 @@ def _shape(tag: str, element: ElementTree.Element) -> list[list[Floats]] | None:
         a, b = (_xyz(_length(element, f"x{k}"), _length(element, f"y{k}")) for k in (1, 2))
         return [_lines([a, b])]
     if tag in ("polyline", "polygon"):
-        n = [float(x) for x in re.findall(_NUMBER, element.get("points", ""))]
+        n = [_number(x) for x in re.findall(_NUMBER, element.get("points", ""))]
         at = [_xyz(x, y) for x, y in zip(n[::2], n[1::2], strict=False)]
         return [_lines(at + at[:1] if tag == "polygon" else at)]
     if tag in ("circle", "ellipse"):
@@ -271,7 +282,7 @@ def _tokens(text: str, label: str) -> list[str | float]:
         match = _TOKEN.match(text, k)
         assert match is not None
         if flag:
-            found.append(float(text[k]))
+            found.append(_number(text[k]))
             count += 1
             k += 1
             continue
@@ -280,7 +291,7 @@ def _tokens(text: str, label: str) -> list[str | float]:
             command, count = match[1], 0
             found.append(command)
         elif match[2]:
-            found.append(float(match[2]))
+            found.append(_number(match[2]))
             count += 1
         elif match[4]:
             raise FileError(f"path `{label}`: `{match[4]}` is not of a path")

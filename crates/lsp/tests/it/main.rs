@@ -3,5 +3,6 @@
 mod client;
 mod editing;
 mod engine;
+mod frames;
 mod protocol;
 mod workspace;

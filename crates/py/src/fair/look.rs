@@ -2,6 +2,7 @@
 
 use super::arguments::refused;
 use crate::arrays;
+use crate::work::unlocked_if;
 use moldloft::fair::surface::{self, SurfaceAnalysis as One};
 use moldloft::num::{Surface, Vec3};
 use numpy::ndarray::Array2;
@@ -18,21 +19,32 @@ pub struct Look {
     looks: Vec<Option<One>>,
 }
 
+/// So many are worth another thread.
+const LARGE: usize = 4_000;
+
 impl Look {
-    pub fn of(surface: &dyn Surface<f64>, us: &[f64], vs: &[f64]) -> Self {
-        let shape = [us.len(), vs.len()];
-        let at = |k: usize| (us[k / vs.len()], vs[k % vs.len()]);
-        let count = us.len() * vs.len();
-        let looks = (0..count)
-            .into_par_iter()
-            .map(|k| {
-                let (u, v) = at(k);
-                surface::look(surface, u, v)
-            })
-            .collect();
-        let mut points = vec![Vec3::zero(); count];
-        surface.grid(us, vs, &mut points, None);
-        Self { shape, points, looks }
+    /// Refuses more than can be held; Ctrl-C ends it.
+    pub fn of(
+        py: Python<'_>,
+        surface: impl Surface<f64> + Send + Sync + 'static,
+        us: Vec<f64>,
+        vs: Vec<f64>,
+    ) -> PyResult<Self> {
+        let each = size_of::<Option<One>>() + size_of::<Vec3>();
+        let count = arrays::room([us.len(), vs.len()], each)?;
+        unlocked_if(py, count > LARGE, move || {
+            let at = |k: usize| (us[k / vs.len()], vs[k % vs.len()]);
+            let looks = (0..count)
+                .into_par_iter()
+                .map(|k| {
+                    let (u, v) = at(k);
+                    surface::look(&surface, u, v)
+                })
+                .collect();
+            let mut points = vec![Vec3::zero(); count];
+            surface.grid(&us, &vs, &mut points, None);
+            Self { shape: [us.len(), vs.len()], points, looks }
+        })
     }
 
     fn numbers<'py>(&self, py: Python<'py>, f: impl Fn(&One) -> f64) -> Bound<'py, PyArray2<f64>> {

@@ -99,8 +99,7 @@ impl Net {
     ) -> PyResult<Look> {
         let network = self.network(vec![0.0; self.points.len()])?;
         let surface = network.surface(&self.points).map_err(fair_error)?;
-        let (us, vs) = (us.as_array().to_vec(), vs.as_array().to_vec());
-        Ok(py.detach(|| Look::of(&surface, &us, &vs)))
+        Look::of(py, surface, us.as_array().to_vec(), vs.as_array().to_vec())
     }
 
     /// The sum of a measure over the curves along u and over those along v.

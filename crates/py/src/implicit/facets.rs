@@ -2,6 +2,7 @@
 
 use super::arguments::{array, attributes};
 use crate::error::plain_error;
+use crate::work::{unlocked, unlocked_if};
 use moldloft::field::{Facets, Pieces, crossing_faces};
 use moldloft::io::{LinesAndPoints, obj, ply, stl, threemf, vtk};
 use moldloft::mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
@@ -22,7 +23,20 @@ pub struct PyFacets {
     loose: LinesAndPoints,
 }
 
+/// So many triangles are worth another thread.
+const LARGE: usize = 20_000;
+
 impl PyFacets {
+    /// What takes long for many triangles, in another thread then, so that Ctrl-C is heard.
+    fn of_facets<R: Send + 'static>(
+        slf: &Bound<'_, Self>,
+        work: impl FnOnce(&Self) -> R + Send + 'static,
+    ) -> PyResult<R> {
+        let large = slf.get().mesh.faces().len() > LARGE;
+        let own = slf.clone().unbind();
+        unlocked_if(slf.py(), large, move || work(own.get()))
+    }
+
     pub fn new(pieces: Pieces, over: Box3) -> Self {
         let solid = solid_of(&pieces);
         let mut loose = LinesAndPoints::default();
@@ -115,10 +129,13 @@ impl PyFacets {
         array(py, &points)
     }
 
-    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let solid = solid_of(&self.pieces);
-        let (report, area, moments) =
-            py.detach(|| (solid.mesh.report(), measure(&self.mesh).area, solid.moments()));
+    fn summary<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let (py, this) = (slf.py(), slf.get());
+        let solid = solid_of(&this.pieces);
+        let (report, area, moments) = Self::of_facets(slf, |facets| {
+            let solid = solid_of(&facets.pieces);
+            (solid.mesh.report(), measure(&facets.mesh).area, solid.moments())
+        })?;
         let dict = PyDict::new(py);
         dict.set_item("closed", report.closed)?;
         dict.set_item("manifold", report.manifold)?;
@@ -132,25 +149,31 @@ impl PyFacets {
         dict.set_item("step", solid.step)?;
         dict.set_item("blocks", solid.blocks)?;
         dict.set_item("computed", solid.computed)?;
-        dict.set_item("low", self.over.low.to_array())?;
-        dict.set_item("high", self.over.high.to_array())?;
+        dict.set_item("low", this.over.low.to_array())?;
+        dict.set_item("high", this.over.high.to_array())?;
         Ok(dict)
     }
 
     /// The same with fewer triangles.
     fn simplified(&self, py: Python<'_>, accuracy: f64) -> PyResult<Self> {
         let pieces = self.pieces.clone();
-        let simple = py.detach(|| pieces.simplified(accuracy)).map_err(plain_error)?;
+        let simple = unlocked(py, move || pieces.simplified(accuracy))?.map_err(plain_error)?;
         Ok(Self::new(simple, self.over))
     }
 
     /// The volumes of the connected parts of the solids' surface, how many bodies these are, and where bodies
     /// only touch.
-    fn shells<'py>(&self, py: Python<'py>) -> (Vec<f64>, usize, Bound<'py, PyArray2<f64>>) {
-        let solid = solid_of(&self.pieces);
-        let (shells, touching) = py.detach(|| (solid.shells(), solid.touching()));
-        let bodies = shells.iter().filter(|s| s.volume > 0.0).count();
-        (shells.iter().map(|s| s.volume).collect(), bodies, array(py, &touching))
+    #[allow(clippy::type_complexity)]
+    fn shells<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Vec<f64>, usize, Bound<'py, PyArray2<f64>>)> {
+        let (shells, touching) = Self::of_facets(slf, |facets| {
+            let solid = solid_of(&facets.pieces);
+            let volumes: Vec<f64> = solid.shells().iter().map(|s| s.volume).collect();
+            (volumes, solid.touching())
+        })?;
+        let bodies = shells.iter().filter(|volume| **volume > 0.0).count();
+        Ok((shells, bodies, array(slf.py(), &touching)))
     }
 
     /// The boxes whose triangles cut others.
@@ -177,25 +200,29 @@ impl PyFacets {
     }
 
     /// Distances of triangle centres and vertices from their surfaces, the solids' only.
-    fn distances<'py>(&self, py: Python<'py>) -> (Bound<'py, PyArray1<f64>>, f64) {
-        let solid = solid_of(&self.pieces);
-        let (centres, worst) = py.detach(|| (solid.centre_distances(), solid.worst_vertex()));
-        (PyArray1::from_vec(py, centres), worst)
+    fn distances<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyArray1<f64>>, f64)> {
+        let (centres, worst) = Self::of_facets(slf, |facets| {
+            let solid = solid_of(&facets.pieces);
+            (solid.centre_distances(), solid.worst_vertex())
+        })?;
+        Ok((PyArray1::from_vec(slf.py(), centres), worst))
     }
 
     /// How many pairs of triangles cut each other.
-    fn crossings(&self, py: Python<'_>) -> usize {
-        py.detach(|| crossing_faces(&self.mesh, None).len())
+    fn crossings(slf: &Bound<'_, Self>) -> PyResult<usize> {
+        Self::of_facets(slf, |facets| crossing_faces(&facets.mesh, None).len())
     }
 
+    #[allow(clippy::type_complexity)]
     fn section<'py>(
-        &self,
-        py: Python<'py>,
+        slf: &Bound<'py, Self>,
         normal: [f64; 3],
         point: [f64; 3],
     ) -> PyResult<Vec<(Bound<'py, PyArray2<f64>>, bool)>> {
         let plane = Plane { point: Vec3::from(point), normal: Vec3::from(normal) };
-        let contours = py.detach(|| solid_of(&self.pieces).section(&plane)).map_err(plain_error)?;
+        let contours =
+            Self::of_facets(slf, move |facets| solid_of(&facets.pieces).section(&plane))?;
+        let (contours, py) = (contours.map_err(plain_error)?, slf.py());
         Ok(contours.into_iter().map(|c| (array(py, &c.points), c.closed)).collect())
     }
 

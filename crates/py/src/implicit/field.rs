@@ -5,6 +5,7 @@ use super::oracle::{PythonOracle, Slots};
 
 use crate::arrays;
 use crate::error::plain_error;
+use crate::work::unlocked_if;
 use moldloft::field::{Affine, FieldError, Form, Primitive, check_rail, check_rails};
 use moldloft::num::{Axis, Vec3};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
@@ -12,6 +13,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// So many points are worth another thread.
+pub const LARGE: usize = 20_000;
 
 /// An implicit function.
 #[pyclass(frozen, name = "Field", module = "moldloft._core")]
@@ -236,9 +240,12 @@ impl PyField {
         at: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let points = points(&at)?;
-        let mut out = vec![0.0; points.len()];
-        let serial = !self.slots.is_empty();
-        py.detach(|| values(&points, &mut out, serial, |p, o| self.inner.values(p, o)));
+        let (inner, serial) = (self.inner.clone(), !self.slots.is_empty());
+        let out = unlocked_if(py, !serial && points.len() > LARGE, move || {
+            let mut out = vec![0.0; points.len()];
+            values(&points, &mut out, serial, |p, o| inner.values(p, o));
+            out
+        })?;
         finished(py, &self.slots, Ok(()))?;
         Ok(PyArray1::from_vec(py, out))
     }
@@ -249,10 +256,11 @@ impl PyField {
         at: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)> {
         let points = points(&at)?;
-        let all: Vec<_> = py.detach(|| match self.slots.is_empty() {
-            true => points.par_iter().map(|p| self.inner.gradient(*p)).collect(),
-            false => points.iter().map(|p| self.inner.gradient(*p)).collect(),
-        });
+        let (inner, many) = (self.inner.clone(), self.slots.is_empty());
+        let all = unlocked_if(py, many && points.len() > LARGE, move || match many {
+            true => points.par_iter().map(|p| inner.gradient(*p)).collect::<Vec<_>>(),
+            false => points.iter().map(|p| inner.gradient(*p)).collect(),
+        })?;
         finished(py, &self.slots, Ok(()))?;
         let fill = |out: &mut [Vec3]| out.iter_mut().zip(&all).for_each(|(o, g)| *o = g.slope);
         let slopes = arrays::filled(py, [all.len(), 3], fill).0;
@@ -266,10 +274,11 @@ impl PyField {
         at: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let points = points(&at)?;
-        let all: Vec<[Vec3; 3]> = py.detach(|| match self.slots.is_empty() {
-            true => points.par_iter().map(|p| self.inner.hessian(*p).second).collect(),
-            false => points.iter().map(|p| self.inner.hessian(*p).second).collect(),
-        });
+        let (inner, many) = (self.inner.clone(), self.slots.is_empty());
+        let all = unlocked_if(py, many && points.len() > LARGE, move || match many {
+            true => points.par_iter().map(|p| inner.hessian(*p).second).collect::<Vec<_>>(),
+            false => points.iter().map(|p| inner.hessian(*p).second).collect(),
+        })?;
         finished(py, &self.slots, Ok(()))?;
         let fill = |out: &mut [Vec3]| out.copy_from_slice(all.as_flattened());
         Ok(arrays::filled(py, [3 * all.len(), 3], fill).0)

@@ -2,10 +2,10 @@
 
 use super::arguments::{attributes, box_of, finished, points};
 use super::facets::PyFacets;
-use super::field::{PyField, values};
+use super::field::{LARGE, PyField, values};
 use super::oracle::Slots;
 use crate::error::plain_error;
-use crate::work::interruptible;
+use crate::work::{interruptible, unlocked_if};
 use moldloft::budget::Budget;
 use moldloft::field::{
     Affine, BracketedMass, Caster, FacetOptions, FieldError, IntegralOptions, Light, Membership,
@@ -315,9 +315,12 @@ impl PySet {
         at: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let points = points(&at)?;
-        let mut out = vec![0.0; points.len()];
-        let serial = !self.slots.is_empty();
-        py.detach(|| values(&points, &mut out, serial, |p, o| self.inner.values(p, o)));
+        let (inner, serial) = (self.inner.clone(), !self.slots.is_empty());
+        let out = unlocked_if(py, !serial && points.len() > LARGE, move || {
+            let mut out = vec![0.0; points.len()];
+            values(&points, &mut out, serial, |p, o| inner.values(p, o));
+            out
+        })?;
         finished(py, &self.slots, Ok(()))?;
         Ok(PyArray1::from_vec(py, out))
     }
@@ -332,15 +335,16 @@ impl PySet {
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let points = points(&at)?;
         let known: Vec<_> = known.iter().map(|f| f.inner.clone()).collect();
-        let one = |p: &Vec3| match self.inner.member_knowing(*p, tolerance, &known) {
+        let (inner, many) = (self.inner.clone(), self.slots.is_empty());
+        let one = move |p: &Vec3| match inner.member_knowing(*p, tolerance, &known) {
             Membership::Solid => -1i8,
             Membership::Surface => 0,
             Membership::Air => 1,
         };
-        let out: Vec<i8> = py.detach(|| match self.slots.is_empty() {
-            true => points.par_iter().map(one).collect(),
+        let out = unlocked_if(py, many && points.len() > LARGE, move || match many {
+            true => points.par_iter().map(one).collect::<Vec<_>>(),
             false => points.iter().map(one).collect(),
-        });
+        })?;
         finished(py, &self.slots, Ok(()))?;
         Ok(PyArray1::from_vec(py, out))
     }
@@ -352,8 +356,10 @@ impl PySet {
         at: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let points = points(&at)?;
-        let one = |p: &Vec3| self.inner.winner(*p).1.map_or(-1, |leaf| leaf as i64);
-        let out: Vec<i64> = py.detach(|| points.iter().map(one).collect());
+        let (inner, many) = (self.inner.clone(), self.slots.is_empty());
+        let one = move |p: &Vec3| inner.winner(*p).1.map_or(-1, |leaf| leaf as i64);
+        let large = many && points.len() > LARGE;
+        let out = unlocked_if(py, large, move || points.iter().map(one).collect::<Vec<_>>())?;
         finished(py, &self.slots, Ok(()))?;
         Ok(PyArray1::from_vec(py, out))
     }
