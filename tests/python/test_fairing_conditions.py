@@ -275,3 +275,28 @@ def test_the_language_joins_and_asks():
     with pytest.raises(moldloft.ModelError) as caught:
         moldloft.loads(MODEL.replace("joins = {run}", "joins = {run}, closed = 1"))
     assert "has ends" in str(caught.value)
+
+
+@pytest.mark.parametrize("end", ["first", "last", "both"])
+def test_fixed_ends_stay(end):
+    """Whatever the spacing, motion and goal; the rest moves as it does without."""
+    rng = np.random.default_rng(11)
+    for n in (9, 30):
+        for spacing in ("even", "random"):
+            x = np.linspace(0, 6, n)
+            if spacing == "random":
+                x[1:-1] += rng.uniform(-0.4, 0.4, n - 2) * 6 / n
+            points = np.column_stack([x, np.sin(x) + rng.uniform(-0.01, 0.01, n)])
+            fixed = {"first": [0], "last": [n - 1], "both": [0, n - 1]}[end]
+            for motion in ("ball", (0, 1), "box"):
+                for goal in ("near", "fairest", ("budget", 0.6), ("nearest", 0.2)):
+                    made = moldloft.fair(points, 0.015, fixed=fixed, motion=motion, goal=goal)
+                    case = (n, spacing, motion, goal)
+                    # Those of the curve, and those that are written.
+                    at = made.spline(np.array([float(k > 0) for k in fixed]))[:, :2]
+                    assert np.abs(at - points[fixed]).max() < 1e-14, case
+                    assert np.abs(made.points[fixed, :2] - points[fixed]).max() < 1e-14, case
+                    assert 1e-3 < made.deviation_data <= 0.015 * (1 + 1e-9), case
+    tolerances = np.full(len(points), 0.015)
+    tolerances[fixed] = 0
+    assert moldloft.fair(points, tolerances).deviation_data > 1e-3

@@ -101,6 +101,33 @@ def test_points_are_passed_and_limits_are_each_points_own():
     assert np.abs(here - wanted.surface.grid(t, t)).max() < 2e-6
 
 
+NETS = {
+    "bound": ('goal = "fairest", bound = "points"', {"bound": "points"}),
+    "curve": ('goal = "fairest", bound = "curve"', {"bound": "curve"}),
+    "sweeps": ('goal = "fairest", mode = "sweeps"', {"mode": "sweeps"}),
+    "some": ('goal = "fairest", mode = "sweeps", steps = 7', {"mode": "sweeps", "steps": 7}),
+    "faithful": ('mode = "faithful"', {"mode": "faithful"}),
+    "steps": ('mode = "faithful", steps = 1', {"mode": "faithful", "steps": 1}),
+    "order": ('mode = "faithful", order = "uv"', {"mode": "faithful", "order": "uv"}),
+    "passes": ('mode = "faithful", passes = 2', {"mode": "faithful", "passes": 2}),
+}
+
+
+def test_methods_of_nets():
+    """Each has the result of Python, and none that of another."""
+    grid = hull()
+    t = np.linspace(0, 1, 6)
+    seen = []
+    for name, (text, options) in NETS.items():
+        m = moldloft.loads(model(grid, f'0.02, spacing = "index", {text}'))
+        chosen = {"goal": "fairest", "measure": "second", **options}
+        wanted = moldloft.fair(grid, 0.02, as_="fit", **chosen).surface.grid(t, t)
+        here = places(lambda u, v, m=m: m.eval(f"s({u}, {v})"))
+        assert np.abs(here - wanted).max() < 2e-7, name
+        assert all(np.abs(here - other).max() > 1e-5 for other in seen), name
+        seen.append(here)
+
+
 def test_closed_surfaces():
     grid = tube()
     text = '0.02, measure = "variation", goal = "budget", spacing = "centripetal"'
@@ -135,6 +162,14 @@ def test_closed_surfaces():
         ('as = "control", fixed = {3}', "near their points"),
         ('spacing = "index", keep = {"volume"}', "near their points"),
         ("tolerances = w", "grid like the points"),
+        ("steps = 4", "`steps` is for another mode"),
+        ('mode = "sweeps", order = "uv"', "`order` is for another mode"),
+        ('mode = "faithful", bound = "curve"', "`bound` is for another mode"),
+        ('mode = "faithful", order = "u"', "vu"),
+        ('bound = "surface"', "points"),
+        ('as = "control", bound = "data"', "near their points"),
+        ('as = "control", goal = "budget"', "near their points"),
+        ('mode = "levels"', "sweeps"),
         (
             "normals = {{0, 1, 0}, {1, 0, 0}}, normals_u = {0.5, 0.5}, normals_v = {0.5, 0.5}",
             "cannot hold within the tolerance",

@@ -514,6 +514,11 @@ class _Points(_Source):
         self.title = str(file.path)
 
     def fair(self, options: argparse.Namespace) -> Result:
+        if self.file.offsets and self.file.inches:
+            self.said.append(
+                "stations and waterlines that are plain numbers are inches, too: "
+                "write their places, if they are numbers of stations"
+            )
         if self.file.offsets and options.along is None and not options.box:
             if self.file.moves == 2:
                 self.said.append("heights move; stations and buttocks stay")
@@ -591,7 +596,7 @@ class _Points(_Source):
         if options.fixed:
             fixed = [self.of_row[i] for i in _places(options.fixed, len(self.file.points))]
         try:
-            return network(
+            result = network(
                 self.file.points[rows],
                 curves,
                 options.tol,
@@ -610,6 +615,21 @@ class _Points(_Source):
             if error.index is not None and error.index < len(rows):
                 error = FairingError(str(error), index=rows[error.index])
             raise self._placed(error) from error
+        if self.file.offsets and self.file.moves == 1:
+            self._across(result, rows)
+        return result
+
+    def _across(self, result: NetworkFairing, rows: list[int]) -> None:
+        """Half-breadths that were not below zero and are now."""
+        new, old = result.points[:, 1], self.file.points[rows][:, 1]
+        over = (new < 0) & (old >= 0)
+        if over.any():
+            count, most = int(over.sum()), float(-new[over].min())
+            word = "half-breadth is" if count == 1 else "half-breadths are"
+            self.said.append(
+                f"{count} {word} beyond the centreline now, by {most:.2e} at most; "
+                "`--fixed` keeps points"
+            )
 
     def notes(self) -> list[str]:
         return self.said

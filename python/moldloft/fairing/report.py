@@ -86,6 +86,9 @@ def certificate_of(value: float, gap: float, relative: float, *, moved: bool) ->
     said = f"relative optimality gap <= {relative:.1e}"
     if not math.isfinite(gap):
         said = "without a tolerance there is no optimality bound"
-    elif not moved and not claims_optimum(gap, relative):
-        said = "no optimum is claimed: the points stay as they are"
+    elif not claims_optimum(gap, relative):
+        why = "what is proved of the gap exceeds the measure"
+        said = f"no optimum is claimed: {why if moved else 'the points stay as they are'}"
+    elif not moved and gap > 0:
+        said += ": the points stay as they are"
     return f"{value:.9e}, {said}"

@@ -20,8 +20,21 @@ _SLIP = re.compile(r"[-+.\dOoIl]+")
 _COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _EIGHTHS = re.compile(r"([-\u2212]?)(\d+)-(\d+)-(\d+)([+\u00bd-]?)")
 _FEET = re.compile(
-    r"([-\u2212]?)(\d+)['\u2032]\s*-?\s*(?:(\d+)(?:\s+(\d+)/(\d+))?|(\d+)/(\d+))?\s*[\"\u2033]?"
+    r"([-\u2212]?)(\d+)['\u2032]\s*-?\s*"
+    r"(?:(\d+\.\d+|\d+)(?:\s+(\d+)/(\d+))?|(\d+)/(\d+))?\s*[\"\u2033]?"
 )
+_PARTS = {
+    "\u00bd": (1, 2),
+    "\u2153": (1, 3),
+    "\u2154": (2, 3),
+    "\u00bc": (1, 4),
+    "\u00be": (3, 4),
+    "\u215b": (1, 8),
+    "\u215c": (3, 8),
+    "\u215d": (5, 8),
+    "\u215e": (7, 8),
+}
+_FRACTION = re.compile(rf"([-\u2212]?)(\d*)(?:\s*([{''.join(_PARTS)}])|\s+([1-9]\d*)/([1-9]\d*))")
 MISSING = frozenset(("", "x", "X", "-", "\u2013", "\u2014", "null", "nan", "NaN", "n/a"))
 
 _AXES = {
@@ -65,6 +78,8 @@ def eighths(text: str) -> Fraction | None:
 def length(text: str) -> float | None:
     r"""A length as people write it: a number, feet-inches-eighths or feet and inches in inches.
 
+    Numbers may have fractions, as stations do: ``8½``, ``8 1/2``.
+
     Parameters
     ----------
     text
@@ -74,6 +89,8 @@ def length(text: str) -> float | None:
     --------
     >>> length("1.5"), length("4-5-1"), length("4' 5 1/8"), length("six")
     (1.5, 53.125, 53.125, None)
+    >>> length("4' 5.25"), length("8\u00bd"), length("\u00be"), length("1 3/8")
+    (53.25, 8.5, 0.75, 1.375)
     """
     text = text.strip()
     if _NUMBER.fullmatch(text):
@@ -81,6 +98,11 @@ def length(text: str) -> float | None:
     inches = eighths(text)
     if inches is not None:
         return float(inches)
+    part = _FRACTION.fullmatch(text)
+    if part is not None and (part[2] or part[3]):
+        top, under = _PARTS[part[3]] if part[3] else (int(part[4]), int(part[5]))
+        own_value = int(part[2] or 0) + Fraction(top, under)
+        return float(-own_value if part[1] else own_value)
     feet = _FEET.fullmatch(text)
     if feet is None:
         return None
@@ -88,7 +110,7 @@ def length(text: str) -> float | None:
     top, under = top or alone or "0", under or below or "1"
     if int(under) == 0:
         return None
-    value = Fraction(12 * int(whole) + int(own or 0)) + Fraction(int(top), int(under))
+    value = 12 * int(whole) + Fraction(own or 0) + Fraction(int(top), int(under))
     return float(-value if sign else value)
 
 
@@ -229,19 +251,23 @@ def _decimal_commas(lines: list[str], out: Plain) -> list[str]:
 
 
 def _lengths(lines: list[str], out: Plain) -> list[str]:
-    """Lengths in feet, inches and eighths become inches."""
+    """Lengths in feet, inches and eighths become inches, and fractions numbers."""
     made = []
     large = 0
     for line in lines:
         places = spans(line)
         cells = [line[a:b].strip('"').strip() for a, b in places]
-        own = [_EIGHTHS.fullmatch(c) or _FEET.fullmatch(c) for c in cells]
+        in_feet = [_EIGHTHS.fullmatch(c) or _FEET.fullmatch(c) for c in cells]
+        own = [
+            f or (_FRACTION.fullmatch(c) and length(c) is not None)
+            for f, c in zip(in_feet, cells, strict=True)
+        ]
         # Between blanks alone a line of words is prose; a named column may hold words, too.
         words = not any(sign in line for sign in ";\t,")
         if not any(own) or (words and any(length(c) is None for c in cells)):
             made.append(line)
             continue
-        out.inches = True
+        out.inches |= any(in_feet)
         large += sum(1 for c in cells if (e := _EIGHTHS.fullmatch(c)) and int(e[3]) >= 12)
         large += sum(1 for c in cells if (e := _EIGHTHS.fullmatch(c)) and int(e[4]) >= 8)
         for (a, b), cell, found in reversed(list(zip(places, cells, own, strict=True))):

@@ -187,13 +187,14 @@ impl Data {
             if columns.iter().all(|&c| frozen[c as usize]) {
                 continue;
             }
-            if let (&[c], &[_]) = (columns, factors) {
-                frozen[c as usize] = true;
+            // At an end all but one of the factors are zero: that control point is the datum.
+            let parts = || columns.iter().zip(factors).filter(|(_, f)| **f != 0.0);
+            if parts().count() == 1 {
+                parts().for_each(|(&c, _)| frozen[c as usize] = true);
                 continue;
             }
             for axis in crate::curve::condition::AXES {
-                let entries: Vec<_> =
-                    columns.iter().zip(factors).map(|(&c, &f)| (c as usize, axis * f)).collect();
+                let entries: Vec<_> = parts().map(|(&c, &f)| (c as usize, axis * f)).collect();
                 let mut condition = Condition { entries, value: 0.0 };
                 condition.value = condition.at(&job.points);
                 conditions.push(condition);

@@ -301,6 +301,8 @@ impl fmt::Display for FairingReport {
         let gap = self.certificate.relative();
         if d.certified == 0.0 && gap >= 1.0 {
             writeln!(f, "no optimum is claimed: the points stay as they are")?;
+        } else if gap >= 1.0 {
+            writeln!(f, "no optimum is claimed: what is proved of the gap exceeds the measure")?;
         } else {
             writeln!(f, "relative optimality gap <= {gap:.2e}")?;
         }

@@ -155,8 +155,9 @@ pub fn curvatures(samples: &[Sample]) -> Vec<f64> {
 }
 
 /// The monotone pieces of a curve's curvature, one at least: reversals below `share` of its range are
-/// not counted, nor those of a straight line's or a circle's curvature, nor where the points at the
-/// knots are on one circle those that a spline has between such points.
+/// not counted, nor those of a straight line's or a circle's curvature, nor those that a cubic has between
+/// its knots because its second derivative is linear there, nor where the points at the knots are on one
+/// circle those that a spline has between such points.
 ///
 /// Samples are those of [`samples`], so many on each span.
 pub fn monotone_pieces(samples: &[Sample], share: f64) -> usize {
@@ -170,8 +171,116 @@ pub fn monotone_pieces(samples: &[Sample], share: f64) -> usize {
         return 1;
     }
     let least = share * (high - low);
-    let floors: Vec<f64> = ripples(samples).into_iter().map(|r| r.max(least)).collect();
+    let spans = spans_of(samples);
+    let circles = circles(samples, &spans);
+    let own = own_errors(samples, &spans, &circles);
+    let ripples = ripples(samples, &spans, &circles);
+    let floors: Vec<f64> = ripples.into_iter().zip(own).map(|(r, e)| r.max(e).max(least)).collect();
     runs_above(&values, &floors).max(1)
+}
+
+/// The samples of each span: both sides of a knot are samples at its parameter.
+fn spans_of(samples: &[Sample]) -> Vec<std::ops::Range<usize>> {
+    let mut starts: Vec<usize> =
+        (1..samples.len()).filter(|&i| samples[i].t <= samples[i - 1].t).collect();
+    starts.insert(0, 0);
+    starts.push(samples.len());
+    starts.windows(2).map(|w| w[0]..w[1]).collect()
+}
+
+/// The curvatures of the circles through each three neighbouring knots, 4 area / (a b c).
+fn circles(samples: &[Sample], spans: &[std::ops::Range<usize>]) -> Vec<f64> {
+    let knots: Vec<Vec3<f64>> = spans
+        .iter()
+        .map(|s| samples[s.start].point)
+        .chain(samples.last().map(|s| s.point))
+        .collect();
+    let curvature = |w: &[Vec3<f64>]| {
+        let (a, b) = (w[1] - w[0], w[2] - w[1]);
+        let sides = a.norm() * b.norm() * (w[2] - w[0]).norm();
+        if sides > 0.0 { 2.0 * a.cross(b).norm() / sides } else { 0.0 }
+    };
+    knots.windows(3).map(curvature).collect()
+}
+
+/// The circles that touch span `k`, those of its own knots and of the next, three at least, with the
+/// least and the largest; none on fewer.
+fn circles_near(circles: &[f64], k: usize) -> Option<(&[f64], f64, f64)> {
+    let last = circles.len().checked_sub(3)?;
+    let near = &circles[k.saturating_sub(2).min(last)..(k + 2).clamp(3, circles.len())];
+    let low = near.iter().copied().fold(f64::INFINITY, f64::min);
+    Some((near, low, near.iter().copied().fold(0.0, f64::max)))
+}
+
+/// The curvature beside span `k`, where the points know how it goes there: the circles through them turn
+/// once at most, and differ by no more than half.
+fn known_beside(circles: &[f64], k: usize) -> Option<f64> {
+    let (near, low, high) = circles_near(circles, k)?;
+    let steps = near.windows(2).map(|w| w[1] - w[0]).filter(|d| d.abs() > UNCOUNTED * high);
+    let steps: Vec<f64> = steps.collect();
+    let turns = steps.windows(2).filter(|d| d[0] * d[1] < 0.0).count();
+    (high - low <= 0.5 * high && turns <= 1).then_some(high)
+}
+
+/// The error of a cubic's second derivative in the square of the longest span beside a place times the
+/// fourth derivative there: an eighth is that of the straight line between its values at the knots (de Boor
+/// 2001, ch. II), the values themselves are off by as much and more where spans are uneven.
+const OWN_ERROR: f64 = 0.25;
+
+/// The fourth derivative is that of so many spans on either side: noise of the points, whose third
+/// derivatives alternate, makes none.
+const SMOOTH: usize = 3;
+
+/// At each sample how far a cubic's curvature may be off that of the curve that it stands for, from its
+/// pieces alone; zero for splines of other degrees and rational ones, and where the points at its knots are
+/// none of such a curve.
+fn own_errors(samples: &[Sample], spans: &[std::ops::Range<usize>], circles: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; samples.len()];
+    let second = |i: usize| samples[i].derivatives[1];
+    let width = |s: &std::ops::Range<usize>| samples[s.end - 1].t - samples[s.start].t;
+    let most = samples.iter().map(|s| s.derivatives[1].norm()).fold(0.0, f64::max);
+    let linear = |s: &std::ops::Range<usize>| {
+        let (a, b, middle) = (s.start, s.end - 1, s.start + s.len() / 2);
+        let share = (samples[middle].t - samples[a].t) / width(s);
+        let between = second(a) + (second(b) - second(a)) * share;
+        width(s) > 0.0 && (second(middle) - between).norm() <= 1e-6 * most
+    };
+    if !spans.iter().all(linear) {
+        return out;
+    }
+    let third =
+        |s: &std::ops::Range<usize>| (second(s.end - 1) - second(s.start)) * (1.0 / width(s));
+    // Where the second derivative jumps the curve is another one.
+    let smooth = |a: &std::ops::Range<usize>, b: &std::ops::Range<usize>| {
+        (second(b.start) - second(a.end - 1)).norm() <= 1e-6 * most
+    };
+    let mut at = 0;
+    for run in spans.chunk_by(smooth) {
+        let begin = at;
+        at += run.len();
+        let thirds: Vec<Vec3<f64>> = run.iter().map(third).collect();
+        let widths: Vec<f64> = run.iter().map(width).collect();
+        let window = (2 * SMOOTH + 1).min(run.len());
+        for (k, span) in run.iter().enumerate() {
+            let Some(bend) = known_beside(circles, begin + k) else { continue };
+            let first = k.saturating_sub(SMOOTH).min(run.len() - window);
+            let last = first + window - 1;
+            let apart =
+                widths[first..=last].iter().sum::<f64>() - 0.5 * (widths[first] + widths[last]);
+            let fourth = (thirds[last] - thirds[first]).norm() / apart;
+            let beside = &widths[k.saturating_sub(1)..(k + 2).min(run.len())];
+            let longest = beside.iter().copied().fold(0.0, f64::max);
+            for i in span.clone() {
+                let square = samples[i].derivatives[0].norm_sq();
+                if square > 0.0 {
+                    // That of a circle, or less.
+                    let fourth = (fourth / square).min(bend * bend * bend * square);
+                    out[i] = OWN_ERROR * longest * longest * fourth;
+                }
+            }
+        }
+    }
+    out
 }
 
 /// A range of curvatures, as a share of the largest, that is a circle's: the ripple of a cubic with
@@ -188,34 +297,10 @@ const LARGEST_RIPPLE: f64 = 0.25;
 
 /// At each sample the reversal of the curvature that says nothing: where the circles through each
 /// three neighbouring knots are the same, points at the knots know no more than these.
-fn ripples(samples: &[Sample]) -> Vec<f64> {
+fn ripples(samples: &[Sample], spans: &[std::ops::Range<usize>], circles: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; samples.len()];
-    // Both sides of a knot are samples at its parameter.
-    let mut starts: Vec<usize> =
-        (1..samples.len()).filter(|&i| samples[i].t <= samples[i - 1].t).collect();
-    starts.insert(0, 0);
-    starts.push(samples.len());
-    let spans: Vec<std::ops::Range<usize>> = starts.windows(2).map(|w| w[0]..w[1]).collect();
-    let knots: Vec<Vec3<f64>> = spans
-        .iter()
-        .map(|s| samples[s.start].point)
-        .chain(samples.last().map(|s| s.point))
-        .collect();
-    // 4 area / (a b c) of each three neighbours, at the one in the middle.
-    let circles: Vec<f64> = knots
-        .windows(3)
-        .map(|w| {
-            let (a, b) = (w[1] - w[0], w[2] - w[1]);
-            let sides = a.norm() * b.norm() * (w[2] - w[0]).norm();
-            if sides > 0.0 { 2.0 * a.cross(b).norm() / sides } else { 0.0 }
-        })
-        .collect();
-    // The circles that touch a span: those of its own knots and of the next, three at least.
     let round = |k: usize| {
-        let last = circles.len().checked_sub(3)?;
-        let near = &circles[k.saturating_sub(2).min(last)..(k + 2).clamp(3, circles.len())];
-        let low = near.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = near.iter().copied().fold(0.0, f64::max);
+        let (_, low, high) = circles_near(circles, k)?;
         (high - low <= SAME * high).then_some(high)
     };
     let length = |s: &std::ops::Range<usize>| -> f64 {

@@ -11,6 +11,7 @@ mod shapes;
 mod snake;
 mod surface;
 mod surface_demands;
+mod surface_method;
 
 use crate::curve::condition::{end_jet, joined};
 use crate::kinds::figures::FairFigures;

@@ -3,12 +3,11 @@
 use super::figures::FairFigures;
 use super::moving_surface::MovingSurface;
 use super::surface_demands::{NumberGrid, PlacedValues, SurfaceDemands, places as points_of};
-use super::{
-    ACCURACY, ArgumentFields, GivenKnots, PointRole, faithful, fault, indices, measure, role,
-};
+use super::surface_method::{MethodOptions, SurfaceMethod};
+use super::{ACCURACY, ArgumentFields, GivenKnots, PointRole, fault, indices, measure, role};
 use crate::{
-    Bound, EndContinuity, FairError, GridData, InterpolationSpace, Limit, Motion, MovingGrid,
-    Network, ParameterSpacing, Space, are_exact, fair_grid, fair_grid_with, grid_parameters,
+    EndContinuity, FairError, GridData, InterpolationSpace, Limit, Motion, MovingGrid, Network,
+    Optimum, ParameterSpacing, Space, are_exact, fair_grid, fair_grid_with, grid_parameters,
     interpolate_with_corners, line_findings,
 };
 use moldloft_num::{Real, Vec3};
@@ -70,7 +69,8 @@ pub struct FairSurf<T: Real> {
     /// The same along v.
     #[field(default)]
     breaks_v: Option<Vec<usize>>,
-    /// "optimum" or "faithful".
+    /// "optimum", "faithful", or "sweeps": all points in order, each to its own minimum, for nets too
+    /// large for the optimum. Sweeps have no derivatives.
     #[field(default = "optimum")]
     mode: Arc<str>,
     /// Passes of the faithful mode.
@@ -143,6 +143,18 @@ pub struct FairSurf<T: Real> {
     /// hull) or "area". No derivatives.
     #[field(default)]
     keep: Option<Vec<Arc<str>>>,
+    /// What the tolerance bounds in the optimum: "data", the distance of each point from the surface (the
+    /// default of points on it); "points", the move of each control point; "curve", that of the surface from
+    /// the one through the points, which leaves control points more room.
+    #[field(default)]
+    bound: Option<Arc<str>>,
+    /// Local steps per point of each curve in the faithful mode (3), or sweeps (50).
+    #[field(default, min = 1, max = 100_000)]
+    steps: Option<usize>,
+    /// Which curves come first in a pass of the faithful mode: "vu", those of constant v (the default), or
+    /// "uv".
+    #[field(default)]
+    order: Option<Arc<str>>,
 }
 
 /// The fields of what only surfaces near their points have.
@@ -243,6 +255,19 @@ impl<T: Real> FairSurf<T> {
         SurfaceDemands::of(through, normals, (keep, KEEP))
     }
 
+    /// How it is faired; `data` says whether points are data at parameters that follow them.
+    fn method(&self, data: bool) -> Result<SurfaceMethod, CallError> {
+        MethodOptions {
+            mode: (&self.mode, Self::MODE),
+            bound: (&self.bound, Self::BOUND),
+            order: (&self.order, Self::ORDER),
+            steps: (self.steps, Self::STEPS),
+            passes: self.passes,
+            data,
+        }
+        .method()
+    }
+
     /// The first of what only surfaces near their points have that is given.
     fn near_only(&self) -> Option<(&'static str, FieldId)> {
         let given = [
@@ -253,6 +278,7 @@ impl<T: Real> FairSurf<T> {
             (self.keep.is_some(), "keep", KEEP),
             (self.closed_u == 1, "closed_u", Self::CLOSED_U),
             (self.closed_v == 1, "closed_v", Self::CLOSED_V),
+            (!["near", "fairest"].contains(&&*self.goal), "goal", GOAL),
         ];
         given.into_iter().find(|g| g.0).map(|g| (g.1, g.2))
     }
@@ -357,7 +383,6 @@ impl<T: Real> Build<T> for FairSurf<T> {
             breaks: Self::BREAKS_U,
         };
         let along_v = ArgumentFields { breaks: Self::BREAKS_V, ..places };
-        let passes = faithful(&self.mode, Self::MODE)?.then_some(self.passes);
         let [marks_u, marks_v] = [(&self.breaks_u, m, &places), (&self.breaks_v, n, &along_v)].map(
             |(breaks, count, places)| {
                 let numbers = breaks.as_deref().unwrap_or_default();
@@ -381,14 +406,16 @@ impl<T: Real> Build<T> for FairSurf<T> {
         let closed = [self.closed_u == 1, self.closed_v == 1];
         let tolerances = self.tolerances_of(grid.shape, m * n)?;
         let demands = self.demands()?;
-        let by_data =
-            fitted_first && passes.is_none() && !matches!(spacing, ParameterSpacing::Uniform);
+        let method = self.method(fitted_first && !matches!(spacing, ParameterSpacing::Uniform))?;
+        let by_data = method == SurfaceMethod::NearPoints;
         let weights: Option<Vec<f64>> =
             self.weights.as_ref().map(|w| w.items.iter().map(|x| x.re()).collect());
         if let Some((what, field)) = self.near_only().filter(|_| !by_data) {
             let message = format!("`{what}` is for surfaces near their points");
             return Err(CallError::new("not-near", message)
-                .expected("as = \"fit\", mode = \"optimum\", without spacing \"index\"")
+                .expected(
+                    "as = \"fit\", mode = \"optimum\", bound \"data\", without spacing \"index\"",
+                )
                 .in_field(field));
         }
         let Rims([south, east, north, west]) = self.rims;
@@ -419,18 +446,34 @@ impl<T: Real> Build<T> for FairSurf<T> {
             }
             let limit = Limit::new(motion, vec![self.tolerance.re(); net.len()])?;
             let plain = net.iter().map(|p| p.re()).collect();
-            let network = Network::net(spaces.clone(), plain, weights.clone(), limit)?
+            let mut network = Network::net(spaces.clone(), plain, weights.clone(), limit)?
                 .with_breaks(&marks[0], &marks[1])?
                 .with_rims(rims)?;
             let tolerances = vec![self.tolerance; net.len()];
-            let (points, best) = match passes {
-                Some(passes) => (network.passes_with(passes, 3, &net, &tolerances)?, None),
-                None => {
-                    let bound = Bound::ControlPoints;
+            let (points, best) = match method {
+                SurfaceMethod::Passes { passes, steps, along_v_first } => {
+                    if along_v_first {
+                        network.strands.rotate_left(spaces[1].count());
+                    }
+                    (network.passes_with(passes, steps, &net, &tolerances)?, None)
+                }
+                SurfaceMethod::Sweeps(count) => {
+                    let mut numbers = net.iter().flat_map(|p| p.to_array()).chain([self.tolerance]);
+                    if !numbers.all(|x| x.is_constant()) {
+                        return Err(FairError::Goal(
+                            "derivatives of sweeps are not known: take the optimum",
+                        ));
+                    }
+                    let (points, certificate) = network.sweeps(measure, count)?;
+                    let best = Optimum { points, certificate, iterations: count, active: 0 };
+                    (best.points.iter().map(|&p| Vec3::lifted(p)).collect(), Some(best))
+                }
+                SurfaceMethod::Joint(bound) => {
                     let (points, best) =
                         network.optimum_with(measure, bound, ACCURACY, &net, &tolerances)?;
                     (points, Some(best))
                 }
+                SurfaceMethod::NearPoints => unreachable!("made from its points"),
             };
             let figures = FairFigures::of_moves(super::moves(&points, &net), best.as_ref());
             Ok((spaces, points, figures))

@@ -12,8 +12,8 @@
 use crate::curve::exact::{all_exact, between_breaks};
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
-    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
-    moved, rounding,
+    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_decided, check_single,
+    check_unique, moved, rounding, tightened,
 };
 use crate::optimum::{Bounded, DataLimits, Parts, Solved};
 use crate::{
@@ -680,7 +680,7 @@ pub fn fair_grid_with<T: Real>(
     let of = |k: &usize| data.owner(k / columns, k % columns).map_or(largest, |i| tolerances[i]);
     let own: Vec<T> = limited.iter().map(of).collect();
     // What moves with a solution, where data pull with a weight.
-    let moving = |solved: &Solved, weight: f64| -> Result<_, FairError> {
+    let moving = |solved: &Solved, weight: f64, budget: T| -> Result<_, FairError> {
         let control = &solved.optimum.points;
         let mut forces: Vec<Vec3<T>> =
             rows.slope(control).into_iter().map(|f| f - Vec3::lifted(f.re())).collect();
@@ -703,20 +703,39 @@ pub fn fair_grid_with<T: Real>(
             targets: &[],
             forces,
             rows: &rows,
-            budget: T::zero(),
+            budget,
             start: &start,
         })
     };
-    if found.between {
-        // What the fairest takes moves by limits that are not always decided.
-        return Err(FairError::Goal(
-            "the budget of this surface hangs on what the fairest takes of it, whose derivatives are not \
-             known: take the goal \"budget\"",
-        ));
-    }
+    let budget = match goal {
+        Goal::Near(own) if found.between => {
+            // What the fairest takes of the squares moves, too.
+            if found.share < 1.0 {
+                return Err(FairError::Goal(
+                    "the budget of this surface and how far it is worth a move both hang on the fairest, so \
+                     that derivatives are not known: take the goal \"budget\"",
+                ));
+            }
+            parts.pull = None;
+            let fairest = parts.whole()?;
+            let optimum = fairest.optimum.clone();
+            let whole = GoalOptimum { share: 1.0, weight: 0.0, optimum, ..found.clone() };
+            check_decided(&whole, &fairest)?;
+            check_unique(&mut parts, &whole, &pull)?;
+            let still = moving(&fairest, 0.0, T::zero())?;
+            let at = moved(&parts, &fairest, Goal::Fairest, &whole, &pull, still)?;
+            let mean = pulling.len() as f64 / 3.0;
+            let used = pulling.iter().fold(T::zero(), |sum, &(k, i)| {
+                let off = values.apply(k, &at) - wanted[k];
+                sum + off.dot(off) / (tolerances[i] * tolerances[i])
+            });
+            tightened(own, used / mean, pulling.len()) * mean
+        }
+        _ => T::zero(),
+    };
     parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
     let solved = parts.whole()?;
-    let moving = moving(&solved, weight)?;
+    let moving = moving(&solved, weight, budget)?;
     let points = moved(&parts, &solved, goal, &found, &pull, moving)?;
     drop(solved);
     drop(parts);

@@ -100,7 +100,7 @@ fn beyond<T: Real>(used: T, count: usize) -> T {
 
 /// The budget of the goal `near` of a grid of `count` pulling data whose fairest surface takes `used`: the
 /// goal's own, or where the data speak against the measure as small as [`FOREIGN_BUDGET`].
-fn tightened<T: Real>(share: f64, used: T, count: usize) -> T {
+pub(crate) fn tightened<T: Real>(share: f64, used: T, count: usize) -> T {
     let foreign = foreign_to(used, count);
     if share <= FOREIGN_BUDGET || foreign.re() <= 0.0 {
         return T::from(share);

@@ -25,6 +25,9 @@ const MOST_TRIALS: usize = 12;
 /// Once the complementarity is this share of the certified gap, the rest of the gap is rounding.
 const ROUNDING: f64 = 1e-3;
 
+/// The share of the value from which on a gap is worth a better dual point.
+const REFINED: f64 = 1e-6;
+
 /// The most unknowns of which a solution that rounding ended is polished all the same: of more, squares
 /// of fourth differences have too few digits left.
 const POLISHED: usize = 1000;
@@ -74,7 +77,7 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
     pub measure: SparseRows,
     pub limit_rows: SparseRows,
     offsets: Vec<V<D>>,
-    reach: Vec<f64>,
+    pub reach: Vec<f64>,
     pub conditions: Vec<LinearConstraint<D>>,
     halves: Vec<Half<D>>,
     squares: Option<SquaresBound<D>>,
@@ -86,6 +89,8 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
     pub active: Option<Active>,
     /// The measure's share of the matrix.
     base: Option<Band>,
+    /// A bound on the gap by a better dual point than that of the displacements.
+    refined: Option<f64>,
 }
 
 /// What a Newton step changes.
@@ -225,6 +230,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             nu: vec![0.0; p.conditions.len()],
             active: None,
             base: None,
+            refined: None,
             order,
         }
     }
@@ -489,17 +495,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             };
             spread(&self.measure, k, z, &mut slope);
         }
-        for (condition, nu) in self.conditions.iter().zip(&self.nu) {
-            for (i, factor) in &condition.entries {
-                axpy(&mut slope[*i], *nu, *factor);
-            }
-        }
-        for half in &self.halves {
-            gap += half.force * (half.room - half.at(&self.x)).max(0.0);
-            for (i, factor) in &half.entries {
-                axpy(&mut slope[*i], half.force, *factor);
-            }
-        }
+        gap += self.add_linear(&mut slope);
         if let Some(squares) = &self.squares {
             gap += squares.certify(&self.x, &mut slope);
         }
@@ -531,6 +527,23 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             gap += if rest == 0.0 { 0.0 } else { rest * (dot(*x, *x).sqrt() + reach) };
         }
         (value, gap.max(0.0))
+    }
+
+    /// Adds the forces of conditions and half-spaces to a slope; returns the half-spaces' share of the gap.
+    pub fn add_linear(&self, slope: &mut [V<D>]) -> f64 {
+        let mut gap = 0.0;
+        for (condition, nu) in self.conditions.iter().zip(&self.nu) {
+            for (i, factor) in &condition.entries {
+                axpy(&mut slope[*i], *nu, *factor);
+            }
+        }
+        for half in &self.halves {
+            gap += half.force * (half.room - half.at(&self.x)).max(0.0);
+            for (i, factor) in &half.entries {
+                axpy(&mut slope[*i], half.force, *factor);
+            }
+        }
+        gap
     }
 
     /// By how much each condition is missed, relative to what the limits let it vary.
@@ -591,9 +604,20 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         }
     }
 
+    /// Whether a sum of squares is all that is weighed.
+    fn of_squares(&self) -> bool {
+        self.p.norm == RowNorm::Square && self.squares.is_none()
+    }
+
     /// Whether the last digits are worth a try: half-spaces keep those of the interior point.
     fn polished(&self) -> bool {
-        self.p.norm == RowNorm::Square && self.halves.is_empty() && self.squares.is_none()
+        self.of_squares() && self.halves.is_empty()
+    }
+
+    /// Whether limits have forces of their own: of control points they are those of the slope.
+    fn bounds_data(&self) -> bool {
+        let bounds = &self.p.bounds;
+        !(bounds.direct && bounds.offsets.is_empty())
     }
 
     /// Whether a polished solution is one.
@@ -620,6 +644,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
     /// By points.
     fn solution(self, iterations: usize) -> CertifiedSolution {
         let (value, gap) = self.certificate();
+        let gap = self.refined.map_or(gap, |refined| refined.min(gap));
         let misses = self.misses();
         let outside = self.halves.iter().map(|h| (h.outside(&self.x) - INSIDE).max(0.0)).collect();
         let point = |&at: &u32| match at {
@@ -918,6 +943,11 @@ pub(crate) fn solve<const D: usize>(
                 state.active = None;
             }
         }
+    }
+    let (value, gap) = state.certificate();
+    let enough = (accuracy.max(REFINED) * value).max(floor);
+    if state.of_squares() && state.bounds_data() && gap > enough {
+        state.refined = Some(state.refined_gap(&mut band, gap, enough));
     }
     Ok(state.solution(iterations))
 }

@@ -2,6 +2,7 @@
 
 mod band;
 pub(crate) mod certificate;
+mod dual;
 pub(crate) mod goal;
 mod interior_point;
 mod polish;

@@ -88,17 +88,28 @@ fn circles_have_one_piece_at_any_places() {
         assert_eq!(count(&|a| Vec3::of(2.0 * a.cos(), 2.0 * a.sin(), 0.0)), 1, "circle {round}");
         assert_eq!(count(&|a| Vec3::of(a.cos(), a.sin(), 0.3 * a)), 1, "helix {round}");
     }
-    // What is no circle has its own pieces, four once round.
-    for (wide, pieces) in [(1.0, 1), (1.02, 4), (1.2, 4), (3.0, 4)] {
-        // From a place where the curvature is neither least nor greatest.
-        let at = |k: usize| 0.4 + std::f64::consts::TAU * k as f64 / 80.0;
-        let points: Vec<_> =
-            (0..=80).map(at).map(|a| Vec3::of(wide * a.cos(), a.sin(), 0.0)).collect();
+    // What is no circle has its own pieces: five once round from a place where the curvature is neither
+    // least nor greatest, whatever a cubic of few points does between these.
+    let oval = |wide: f64, n: usize, off: &mut dyn FnMut(usize) -> f64| {
+        let points: Vec<_> = (0..=n)
+            .map(|k| 0.4 + std::f64::consts::TAU * (k as f64 + off(k)) / n as f64)
+            .map(|a| Vec3::of(wide * a.cos(), a.sin(), 0.0))
+            .collect();
         let at = parameters(&points, ParameterSpacing::Chord, false).unwrap();
         let layout = InterpolationSpace::new(3, &at, &[], false).unwrap();
         let control = layout.through(&layout.data(&points)).unwrap();
-        let found = shape::pieces(&layout.space, &control);
-        assert!(found == 1 && pieces == 1 || found >= pieces && pieces > 1, "{wide}: {found}");
+        shape::pieces(&layout.space, &control)
+    };
+    // The first may be lost below the floor, and a spline of few points swings at sharp ends.
+    for (n, most) in [(24, 1.1), (40, 1.5), (80, 3.0)] {
+        assert_eq!(oval(1.0, n, &mut |_| 0.0), 1, "{n}");
+        for wide in [1.02, 1.1, 1.5, 3.0].into_iter().filter(|w| *w <= most) {
+            let found = oval(wide, n, &mut |_| 0.0);
+            assert!((4..=5).contains(&found), "{wide} {n}: {found}");
+            let jitter = &mut |k| if k == 0 || k == n { 0.0 } else { 0.7 * random.centred() };
+            let found = oval(wide, n, jitter);
+            assert!((3..=6).contains(&found), "{wide} {n}, jitter: {found}");
+        }
     }
 }
 
