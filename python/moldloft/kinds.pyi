@@ -7816,6 +7816,9 @@ def FairSurf(
     normals_u: _Numbers | None = ...,
     normals_v: _Numbers | None = ...,
     keep: Sequence[_Text] | _Any | None = ...,
+    bound: _Text | None = ...,
+    steps: _Integer | None = ...,
+    order: _Text | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -7857,7 +7860,8 @@ def FairSurf(
     breaks_v : list of integer, optional
         The same along v.
     mode : text, optional
-        "optimum" or "faithful". Default optimum.
+        "optimum", "faithful", or "sweeps": all points in order, each to its own minimum, for
+        nets too large for the optimum. Sweeps have no derivatives. Default optimum.
     passes : integer, optional
         Passes of the faithful mode. 1 to 100, default 1.
     rims : value, optional
@@ -7911,6 +7915,17 @@ def FairSurf(
     keep : list of text, optional
         What it keeps of the surface through the points, to first order: "volume" (the
         displacement of a hull) or "area". No derivatives.
+    bound : text, optional
+        What the tolerance bounds in the optimum: "data", the distance of each point from the
+        surface (the default of points on it); "points", the move of each control point;
+        "curve", that of the surface from the one through the points, which leaves control
+        points more room.
+    steps : integer, optional
+        Local steps per point of each curve in the faithful mode (3), or sweeps (50). 1 to
+        100000.
+    order : text, optional
+        Which curves come first in a pass of the faithful mode: "vu", those of constant v (the
+        default), or "uv".
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
