@@ -56,7 +56,7 @@ fn half_space<T: Real>(normal: Vec3<T>, point: Vec3<T>) -> Result<Set<T>, FieldE
 }
 
 /// A plane that all balls are behind, and those that touch it.
-struct Facet {
+struct TangentPlane {
     normal: Vec3,
     members: Vec<usize>,
 }
@@ -84,10 +84,10 @@ fn touching<T: Real>([a, b, c]: [HullBall<T>; 3]) -> [Option<Vec3<T>>; 2] {
 }
 
 /// The planes that touch three balls or more and have all of them behind.
-fn facets(balls: &[HullBall<f64>]) -> Vec<Facet> {
+fn facets(balls: &[HullBall<f64>]) -> Vec<TangentPlane> {
     let slack = SAME * size(balls);
     let n = balls.len();
-    let mut found: Vec<Facet> = Vec::new();
+    let mut found: Vec<TangentPlane> = Vec::new();
     for i in 0..n {
         for j in i + 1..n {
             for k in j + 1..n {
@@ -99,13 +99,14 @@ fn facets(balls: &[HullBall<f64>]) -> Vec<Facet> {
                     if balls.iter().any(|b| over(b) > slack) {
                         continue;
                     }
-                    let known =
-                        |f: &Facet| f.normal.distance(normal) < 1e-7 && f.members.contains(&i);
+                    let known = |f: &TangentPlane| {
+                        f.normal.distance(normal) < 1e-7 && f.members.contains(&i)
+                    };
                     if found.iter().any(known) {
                         continue;
                     }
                     let members = (0..n).filter(|&m| over(&balls[m]) >= -slack).collect();
-                    found.push(Facet { normal, members });
+                    found.push(TangentPlane { normal, members });
                 }
             }
         }
@@ -113,7 +114,7 @@ fn facets(balls: &[HullBall<f64>]) -> Vec<Facet> {
     found
 }
 
-impl Facet {
+impl TangentPlane {
     /// The normal with derivatives, by the three members that span the largest triangle.
     fn exact<T: Real>(&self, balls: &[HullBall<T>]) -> Option<(Vec3<T>, Vec3<T>)> {
         let m = &self.members;
@@ -220,7 +221,7 @@ fn polyhedron<T: Real>(
     let balls = outermost(&balls);
     let slack = 1e3 * SAME * size(&balls);
     let found = facets(&balls);
-    let deep = |f: &Facet| {
+    let deep = |f: &TangentPlane| {
         let at = balls[f.members[0]].centre;
         balls.iter().any(|b| (b.centre - at).dot(f.normal) < -slack)
     };
@@ -301,14 +302,14 @@ pub(super) struct Prism<T> {
 }
 
 /// A side of an outline: from one disc to the next.
-struct OutlineSide<T> {
+struct PrismSide<T> {
     discs: [usize; 2],
     normal: Vec3<T>,
 }
 
 impl<T: Real> Prism<T> {
     /// The sides of the outline, counterclockwise about the axis.
-    fn sides(&self) -> Vec<OutlineSide<T>> {
+    fn sides(&self) -> Vec<PrismSide<T>> {
         let axis = self.axis.re();
         let flat = |v: Vec3| v - axis * axis.dot(v);
         let plain: Vec<HullBall<f64>> = (self.discs.iter())
@@ -330,7 +331,7 @@ impl<T: Real> Prism<T> {
                     over < -slack || over <= slack && (-slack..=length + slack).contains(&t)
                 };
                 if (0..plain.len()).all(behind) {
-                    sides.push(OutlineSide { discs: [i, j], normal });
+                    sides.push(PrismSide { discs: [i, j], normal });
                 }
             }
         }

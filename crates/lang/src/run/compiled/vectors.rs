@@ -214,7 +214,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(self.vector(stmt, base)? + c)
     }
 
-    /// True when a name may mean vectors: then a dot before it may be a product, which the interpreter tells.
+    /// True when a name may mean vectors: then a dot before it may be a product, which the interpreter decides.
     fn may_be_vector(&mut self, name: Symbol) -> bool {
         match self.meaning(name) {
             Ok(Meaning::Constant(_)) => false,
