@@ -133,4 +133,8 @@ def test_texts_that_are_none_are_named() -> None:
             ask()
     with pytest.raises(moldloft.Error, match="degrees"):
         moldloft.Nurbs((2,), (t, t), np.zeros((4, 3)))
+    with pytest.raises(moldloft.Error, match="`points`"):
+        moldloft.Nurbs((2,), (t,), "aaa")
+    with pytest.raises(moldloft.FileError, match="not a folder"):
+        moldloft.Sketch("a" * 10**5)
     assert m.section_areas([1.0, 2.0], []).shape == (2, 0)
