@@ -63,6 +63,7 @@ _WORDS = {
     "None": "None",
     "ArrayLike": "an array of numbers",
     "NDArray[np.float64]": "an array of numbers",
+    "Floats": "an array of numbers",
     "Triple": "three numbers",
 }
 
@@ -212,8 +213,8 @@ def _is_of(value: Any, kind: str, names: Mapping[str, Any]) -> bool:
         return _passes(bool, value)
     if kind == "str":
         return isinstance(value, str) and _passes(str.encode, value)
-    if head in ("ArrayLike", "NDArray"):
-        return _passes(_as_array, value) and not (head == "NDArray" and _is_scalar(value))
+    if head in ("ArrayLike", "NDArray", "Floats"):
+        return _passes(_as_array, value) and not (head != "ArrayLike" and _is_scalar(value))
     if head == "Triple":
         # How many there are the function says itself.
         return _passes(_as_array, value) and not (isinstance(value, Mapping) or _is_scalar(value))

@@ -59,6 +59,8 @@ class Nurbs:
     the NURBS is the same set of points at other parameters (see :meth:`parameters`). Else 0."""
 
     def __post_init__(self) -> None:
+        if len(self.knots) != len(self.degrees):
+            raise Error(f"{len(self.degrees)} degrees do not fit {len(self.knots)} rows of knots")
         shape = tuple(len(k) - p - 1 for k, p in zip(self.knots, self.degrees, strict=True))
         if self.points.shape != (*shape, 3):
             raise Error(f"{self.points.shape} control points do not fit knots for {shape}")

@@ -120,7 +120,7 @@ def test_objects_outside_of_a_builder_are_refused() -> None:
 
 
 def test_texts_that_are_none_are_named() -> None:
-    m = moldloft.loads(HULL)
+    m, t = moldloft.loads(HULL), np.linspace(0, 1, 7)
     for ask in (
         lambda: m.derivatives("1/0", "\ud800"),
         lambda: m.set({"\ud800": 1}),
@@ -131,4 +131,10 @@ def test_texts_that_are_none_are_named() -> None:
     ):
         with pytest.raises(moldloft.Error):
             ask()
+    with pytest.raises(moldloft.Error, match="degrees"):
+        moldloft.Nurbs((2,), (t, t), np.zeros((4, 3)))
+    with pytest.raises(moldloft.Error, match="`points`"):
+        moldloft.Nurbs((2,), (t,), "aaa")
+    with pytest.raises(moldloft.FileError, match="not a folder"):
+        moldloft.Sketch("a" * 10**5)
     assert m.section_areas([1.0, 2.0], []).shape == (2, 0)

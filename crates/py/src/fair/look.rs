@@ -26,7 +26,7 @@ impl Look {
     /// Refuses more than can be held; Ctrl-C ends it.
     pub fn of(
         py: Python<'_>,
-        surface: impl Surface<f64> + Send + Sync + 'static,
+        surface: impl Surface<f64> + 'static,
         us: Vec<f64>,
         vs: Vec<f64>,
     ) -> PyResult<Self> {
