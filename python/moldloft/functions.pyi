@@ -4963,7 +4963,7 @@ def plot(
 def write_stl(
     *args: object,
 ) -> AnyShape:
-    """Writes surfaces as binary STL, triangles without area at poles left out; "flip" reverses the normals.
+    """Writes surfaces as binary STL, facets out of the body, triangles without area at poles left out; "flip" reverses the normals.
 
     Called as `write_stl(name, words, s1, s2, ...)`.
 
