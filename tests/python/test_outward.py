@@ -173,3 +173,27 @@ def test_the_list_has_all_formats_of_facets() -> None:
     rest |= {"step", "iges", "3dm", "sdl", "ms2", "offsets"}  # of exact surfaces, or of the model
     rest |= {"svg", "png", "dxf", "lines-svg", "lines-pdf", "lines-dxf"}  # pictures
     assert set(FACETS) | rest == set(formats.formats())
+
+
+PAPER = Path(__file__).parents[2] / "crates/document/tests/it/fixtures/figure1.sdl"
+
+
+@pytest.mark.parametrize("turn", ["", "body = body[::-1,];", "body = body[,::-1];"])
+def test_the_half_body_of_the_paper_faces_outwards(turn: str, tmp_path: Path) -> None:
+    # Its symmetry plane and its open base close it.
+    m = moldloft.loads(PAPER.read_text() + turn + 'write_stl("a.stl", body);')
+    file = tmp_path / "a.stl"
+    file.write_bytes(m.written["a.stl"])
+    mesh = trimesh.load_mesh(file, process=False)
+    # Away from the axis, which is y = z = 0.
+    radial = mesh.triangles_center * (0, 1, 1)
+    assert (np.einsum("ij,ij->i", radial, mesh.face_normals) > 0).all()
+
+
+def test_sheets_that_no_plane_closes_keep_their_side(tmp_path: Path) -> None:
+    sheet = "surface s[6,7]; for (i = 1:6) for (j = 1:7) s[i,j] = {i, j, 5 - .1*i*i - .1*j*j + .05*i*j};"
+    for turn, sign in (("", 1), ("s = s[::-1,];", -1)):
+        m = moldloft.loads(sheet + turn + 'write_stl("a.stl", s);')
+        file = tmp_path / "a.stl"
+        file.write_bytes(m.written["a.stl"])
+        assert (sign * trimesh.load_mesh(file, process=False).face_normals[:, 2] > 0).all()

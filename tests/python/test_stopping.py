@@ -23,7 +23,7 @@ CASES = {
     "tfi": f"surface s[1200,1200]; {ROWS.format(1200)} while (1) s = tfi(s);",
     "tfi of a block": "block b[70,70,70]; while (1) b = tfi({b[1,,], b[70,,], b[,1,], b[,70,], b[,,1], b[,,70]});",
     "folds": f"surface s[900,900]; {ROWS.format(900)} while (1) float n = folds(s);",
-    "curvature": f"surface s[500,500]; {ROWS.format(500)} while (1) farray k = gauss(s);",
+    "curvature": f"surface s[200,200]; {ROWS.format(200)} while (1) farray k = gauss(s);",
     "elliptic": "surface s[120,120]; for (i = 1:120) for (j = 1:120) s[i,j] = {i, j + 3*sin(i/20), 0}; surface t = elliptic(s, 1000000, 1e-300);",
     "elliptic block": BLOCK + " block c = elliptic_block(b, 1000000, 1e-300);",
     "march": 'load "naca.sdl" curve c[641]; naca4s(c, 0, 0, 12); c = c[::-1]; surface g = hyperbolic(c, geometric(0, 20, 1e-6, 300), "i1 periodic");',

@@ -214,7 +214,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         Ok(self.vector(stmt, base)? + c)
     }
 
-    /// True when a name may mean vectors: then a dot before it may be a product, which the interpreter decides.
+    /// True when a name may mean vectors: then a dot before it may be a product, which is left to the interpreter.
     fn may_be_vector(&mut self, name: Symbol) -> bool {
         match self.meaning(name) {
             Ok(Meaning::Constant(_)) => false,
@@ -410,7 +410,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
     }
 
     /// Puts a vector into a variable.
-    fn into_variable(&mut self, what: Meaning, a: u16) -> Result<(), Unfit> {
+    fn set_vector(&mut self, what: Meaning, a: u16) -> Result<(), Unfit> {
         match what {
             Meaning::Own(Poisonable::Variable(k)) => {
                 let to = self.units[self.unit].variables[k as usize].register;
@@ -447,7 +447,7 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 let from = self.new_value(id, target, op, value, spans)?;
                 let CodeValue::Vector(from) = from else { return Err(Unfit::Statement) };
                 self.live(what, CodeNote::Name(symbol, spans[0]))?;
-                self.into_variable(what, from)?;
+                self.set_vector(what, from)?;
             }
             ExprKind::Index { base, subs } => {
                 if !matches!(self.array_type(base), Some(Type::Curve | Type::Surface)) {
