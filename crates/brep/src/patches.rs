@@ -707,8 +707,7 @@ impl<'a> PatchedBody<'a> {
         let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (&(a, b), &k) in &self.net.across {
             let other = self.net.across[&(b, a)];
-            let shown = self.is_shown(k as usize) || self.is_shown(other as usize);
-            if shown && self.net.groups[k as usize] != self.net.groups[other as usize] {
+            if self.net.groups[k as usize] != self.net.groups[other as usize] {
                 next.entry(a).or_default().push(b);
             }
         }
@@ -723,6 +722,11 @@ impl<'a> PatchedBody<'a> {
                 continue;
             }
             for &to in around {
+                // Sides between others say where chains end, too.
+                let beside = [(start, to), (to, start)].map(|s| self.net.across[&s] as usize);
+                if !beside.into_iter().any(|k| self.is_shown(k)) {
+                    continue;
+                }
                 let mut chain = vec![start, to];
                 while let Some(&here) = chain.last()
                     && through(here)
@@ -815,4 +819,50 @@ fn long(brep: &Brep, cycle: &[Coedge]) -> f64 {
     let points = cycle.iter().flat_map(|side| &brep.edges[side.edge].curve.points);
     let [low, high] = extent(points.copied());
     Vec3::from(high).distance(low.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plane_sheet_ends_at_the_planes_beside_it() {
+        // A block of which the top is wanted; each side of a face is of two triangles' edges.
+        let corner = |k: u32| Vec3::from([0, 1, 2].map(|axis| f64::from(k >> axis & 1)));
+        let quads =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let mut facets = LabelledFacets {
+            positions: (0..8).map(corner).collect(),
+            triangles: Vec::new(),
+            labels: Vec::new(),
+            surfaces: Vec::new(),
+            names: (0..6).map(|k| format!("face {k}")).collect(),
+            colours: vec![None; 6],
+            layers: vec![Vec::new(); 6],
+            step: 0.5,
+        };
+        for (k, q) in quads.into_iter().enumerate() {
+            facets.triangles.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+            facets.labels.extend([k as u32; 2]);
+            let [a, b, c] = [q[0], q[1], q[2]].map(corner);
+            let normal = (b - a).cross(c - a);
+            facets.surfaces.push(Some(SurfaceShape::Plane { origin: a, normal, axis: b - a }));
+        }
+        let planes: Vec<(Vec3, Vec3)> = quads
+            .iter()
+            .map(|q| {
+                let [a, b, c] = [q[0], q[1], q[2]].map(corner);
+                (a, (b - a).cross(c - a))
+            })
+            .collect();
+        let field = move |k: u32, p: Vec3| {
+            let (origin, normal) = planes[k as usize];
+            ((p - origin).dot(normal), normal)
+        };
+        let shown = (0..6).map(|k| k == 1).collect();
+        let mut brep = Brep::default();
+        brep.add_sheet(facets, shown, &field, 1e-6, 2.0).unwrap();
+        assert_eq!((brep.faces.len(), brep.edges.len(), brep.vertices.len()), (1, 4, 4));
+        assert_eq!(brep.faces[0].loops.iter().map(Vec::len).collect::<Vec<_>>(), [4]);
+    }
 }

@@ -455,10 +455,10 @@ fn a_trimmed_plane_has_the_area_of_its_loops() {
             assert!((b - a).cross(c - a).z > 0.0, "{name}");
         }
     }
-    near(mesh("part").centroid, Vec3::of(1.8, 1.0, 0.0), 1e-13);
+    near(mesh("part").of_triangles.centroid, Vec3::of(1.8, 1.0, 0.0), 1e-13);
     // The hole is an ellipse of half axes 0.4 and 0.2, as a polygon of 40 corners.
     let polygon = 40.0 * 0.5 * 0.4 * 0.2 * (std::f64::consts::TAU / 40.0).sin();
-    assert!((mesh("frame").area - 2.4 + polygon).abs() < 1e-12);
+    assert!((mesh("frame").of_triangles.area - 2.4 + polygon).abs() < 1e-12);
     for (loops, id) in [
         ("{pq, rs, ps}", "gap"),
         ("{pq, rq}", "gap"),
