@@ -25,8 +25,9 @@ CHANGES = 20 if SOAK else 5
 #: The relative bound.
 BOUND = 1e-9
 
-#: Volumes that OCCT misses by more than the bound at every scale, by the seed and the change, from a quadrature of their
-#: slices: a cone cut by the planes of a prism (34, 10) is off by 1.86e-9 there, and right to 1e-15 here.
+#: Volumes that OCCT misses by more than the bound at every scale, by the seed and the change, from
+#: a quadrature of their slices: a cone cut by the planes of a prism is off by 1.86e-9 there, and
+#: right to 1e-15 here.
 QUADRATURE = {(34, 10): 3.3509768333404213}
 
 #: Edges of two round surfaces are splines within 1e-7 in OCCT, whatever the size of the body: the
