@@ -7,7 +7,7 @@
 use crate::{CoordinateAxis, Drawing, LineId, PointId};
 use moldloft_num::Real;
 use moldloft_num::union_find::UnionFind;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How much of all lines run along an axis, before they are looked at.
 const PRINCIPAL: f64 = 0.85;
@@ -28,6 +28,10 @@ const MOST: f64 = 0.02;
 
 /// Strokes that differ by more of their noise than this are not parallel, whatever hangs at their ends.
 const APART: f64 = 3.5;
+
+/// What it takes from the odds of a line along an axis, as a logarithm, that the opposite side of its face is inclined:
+/// most bodies that taper do so on all sides.
+const TAPER: f64 = 2.5;
 
 /// Directions at which an inclined line is tried.
 const DIRECTIONS: usize = 720;
@@ -112,6 +116,8 @@ impl Drawing {
                 .collect()
         };
         let mut group = UnionFind::new(strokes.len());
+        // Sides between two lines of one axis that are not parallel.
+        let mut mates: Vec<(usize, usize)> = Vec::new();
         for (k, s) in strokes.iter().enumerate() {
             for (axis, sense, far, own) in leads(s.ends[0]) {
                 if own == k {
@@ -124,8 +130,10 @@ impl Drawing {
                     let parallel = at.get(&far).into_iter().flatten().copied().find(|&m| {
                         m != k && strokes[m].ends.contains(&far) && strokes[m].ends.contains(&end)
                     });
-                    if let Some(m) = parallel.filter(|&m| agree(s, &strokes[m], sigma)) {
-                        group.join(k, m);
+                    match parallel {
+                        Some(m) if agree(s, &strokes[m], sigma) => group.join(k, m),
+                        Some(m) => mates.push((k, m)),
+                        None => {}
                     }
                 }
             }
@@ -138,7 +146,23 @@ impl Drawing {
             strokes.iter().enumerate().map(|(k, s)| (s.id, k)).collect();
         let mut out = BTreeMap::new();
         for (&group, own) in &members {
-            let verdict = Verdict { group, ..judge(own, &axes, sigma, usual) };
+            let mut verdict = Verdict { group, ..judge(own, &axes, sigma, usual) };
+            if let [s] = own[..]
+                && verdict.axis.is_some()
+            {
+                let k = index[&s.id];
+                let inclined = |m: usize| alone[m].axis.is_none() && alone[m].share >= SURE;
+                let all: BTreeSet<usize> = (mates.iter())
+                    .filter_map(|&(a, b)| if a == k { Some(b) } else { (b == k).then_some(a) })
+                    .filter(|&m| inclined(m))
+                    .collect();
+                let odds = verdict.share / (1.0 - verdict.share).max(1e-12);
+                let left = odds * Real::exp(-TAPER * all.len() as f64);
+                verdict.share = left / (1.0 + left);
+                if left < 1.0 {
+                    (verdict.axis, verdict.share) = (None, 1.0 - verdict.share);
+                }
+            }
             for s in own {
                 let single = alone[index[&s.id]];
                 let share =

@@ -8,7 +8,7 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::curve::SmoothPiece;
-use super::near_misses::FacetedBodies;
+use super::near_misses::NearMissSearch;
 use super::nearness::Nearness;
 use super::surface::{Carrier, FaceSurface, Jet, Met, meet};
 use super::{IntersectionEdge, SketchSolid, SolidEdge, SolidFace, Trim, Vertex};
@@ -178,7 +178,7 @@ impl<T: Real> Facetted<T> {
     fn unclear(&self, points: &[Vec3], within: bool) -> Option<Vec3> {
         let scale = extent(points);
         let (vertex, facets, sources) = (&self.vertex[..], &self.facets[..], &self.sources[..]);
-        FacetedBodies { points, vertex, facets, sources, scale }.unclear(within)
+        NearMissSearch { points, vertex, facets, sources, scale }.unclear(within)
     }
 }
 

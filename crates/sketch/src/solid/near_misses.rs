@@ -1,7 +1,7 @@
 //! Places where round faces or edges come so near to others that facets do not tell whether they meet.
 //!
 //! How two shapes meet changes only where one of them moves past a critical value of their distance: where points
-//! of two faces, edges or vertices have a common normal. FacetedBodies are off their surfaces by the height of a chord,
+//! of two faces, edges or vertices have a common normal. NearMissSearch are off their surfaces by the height of a chord,
 //! so they are right unless there is such a pair, apart by more than nothing and less than those heights: a bar
 //! that pokes through a wall by less than a chord, two tubes that pass each other at a hair's breadth, the corner of a
 //! block just below a round face. Every pair of facets, of sides and of vertices that are near enough is the start of
@@ -25,8 +25,8 @@ const SAFE: f64 = 2.0;
 
 const STEPS: usize = 24;
 
-/// FacetedBodies of bodies, with what they stand for.
-pub(super) struct FacetedBodies<'a, T> {
+/// NearMissSearch of bodies, with what they stand for.
+pub(super) struct NearMissSearch<'a, T> {
     pub points: &'a [Vec3],
     /// By point: whether it is a vertex of its body.
     pub vertex: &'a [bool],
@@ -134,7 +134,7 @@ struct Element<'a, T> {
     loops: &'a [Vec<u32>],
 }
 
-impl<T: Real> FacetedBodies<'_, T> {
+impl<T: Real> NearMissSearch<'_, T> {
     /// A place where facets do not tell whether surfaces meet; `within` operands too, or between them alone.
     pub fn unclear(&self, within: bool) -> Option<Vec3> {
         if self.sources.iter().all(|s| s.edges.iter().all(|e| straight(e.0.as_ref()))) {

