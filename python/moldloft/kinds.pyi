@@ -512,7 +512,7 @@ def BlendPoint(
 ) -> PointHandle:
     """The weighted sum of points: X = sum w_i P_i.
 
-    There is a warning when the weights do not add up to 1. Weights that do make it a blend that moves with its points; the weights 1, -1, 1 give
+    Weights that do not add up to 1 raise a warning: only with a sum of 1 the blend moves with its points. The weights 1, -1, 1 give
     the fourth corner of a parallelogram. Equal weights when none are given.
 
     Parameters
@@ -1405,7 +1405,7 @@ def ProjMagnet(
     """The projection of a point onto a surface: along the surface's normal (the foot of the
     perpendicular), along a direction, or away from a point.
 
-    From a magnet it is what Newton's method leads to; without one the nearest of all. A foot that
+    From a magnet it is what Newton's method leads to; without one the nearest of all. A foot
     beyond an edge is clamped to the edge and reported.
 
     Parameters
@@ -4252,7 +4252,7 @@ def CLoftSurf(
     -----
     In the language::
 
-        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8}); AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0.5); Line shaft(O, X); CLoftSurf blade({a, b, c}, about = shaft);
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); CLoftSurf hull({a, b, c}, divisions = {6, 8}); AbsPoint O(0, -5, 0); AbsPoint X(2, -5, 0); Line shaft(O, X); Line p({0, -5, 1}, {0, -5, 3}); Line q({1, -4.6, 0.9}, {1.2, -4, 2.8}); Line r({2, -4.3, 0.7}, {2.4, -3.2, 2.4}); CLoftSurf blade({p, q, r}, about = shaft);
     """
     ...
 def XLoftSurf(
@@ -4309,7 +4309,7 @@ def XLoftSurf(
     -----
     In the language::
 
-        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); XLoftSurf hull(1, {a, b, c, d}); XLoftSurf N(1, {d, c, a}, ends = "natural"); AbsPoint O(0, -5, 0); AbsPoint X(1, -5, 0); Line shaft(O, X); XLoftSurf R(3, {a, b, c, d}, about = shaft);
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); XLoftSurf hull(1, {a, b, c, d}, ends = "natural"); AbsPoint O(0, -5, 0); AbsPoint X(2, -5, 0); Line shaft(O, X); Line p({0, -5, 1}, {0, -5, 3}); Line q({1, -4.6, 0.9}, {1.2, -4, 2.8}); Line r({2, -4.3, 0.7}, {2.4, -3.2, 2.4}); XLoftSurf blade(3, {r, q, p}, about = shaft);
     """
     ...
 def ArcLoftSurf(
@@ -7816,6 +7816,9 @@ def FairSurf(
     normals_u: _Numbers | None = ...,
     normals_v: _Numbers | None = ...,
     keep: Sequence[_Text] | _Any | None = ...,
+    bound: _Text | None = ...,
+    steps: _Integer | None = ...,
+    order: _Text | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -7857,7 +7860,8 @@ def FairSurf(
     breaks_v : list of integer, optional
         The same along v.
     mode : text, optional
-        "optimum" or "faithful". Default optimum.
+        "optimum", "faithful", or "sweeps": all points in order, each to its own minimum, for
+        nets too large for the optimum. Sweeps have no derivatives. Default optimum.
     passes : integer, optional
         Passes of the faithful mode. 1 to 100, default 1.
     rims : value, optional
@@ -7911,6 +7915,17 @@ def FairSurf(
     keep : list of text, optional
         What it keeps of the surface through the points, to first order: "volume" (the
         displacement of a hull) or "area". No derivatives.
+    bound : text, optional
+        What the tolerance bounds in the optimum: "data", the distance of each point from the
+        surface (the default of points on it); "points", the move of each control point;
+        "curve", that of the surface from the one through the points, which leaves control
+        points more room.
+    steps : integer, optional
+        Local steps per point of each curve in the faithful mode (3), or sweeps (50). 1 to
+        100000.
+    order : text, optional
+        Which curves come first in a pass of the faithful mode: "vu", those of constant v (the
+        default), or "uv".
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
