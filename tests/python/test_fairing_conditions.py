@@ -296,7 +296,11 @@ def test_fixed_ends_stay(end):
                     at = made.spline(np.array([float(k > 0) for k in fixed]))[:, :2]
                     assert np.abs(at - points[fixed]).max() < 1e-14, case
                     assert np.abs(made.points[fixed, :2] - points[fixed]).max() < 1e-14, case
-                    assert 1e-3 < made.deviation_data <= 0.015 * (1 + 1e-9), case
+                    # In a box each coordinate has the tolerance.
+                    most = 0.015 * (np.sqrt(2) if motion == "box" else 1)
+                    assert made.deviation_data <= most * (1 + 1e-9), case
+                    if goal in ("fairest", ("budget", 0.6)):
+                        assert made.deviation_data > 1e-3, case
     tolerances = np.full(len(points), 0.015)
     tolerances[fixed] = 0
-    assert moldloft.fair(points, tolerances).deviation_data > 1e-3
+    assert moldloft.fair(points, tolerances, goal="fairest").deviation_data > 1e-3

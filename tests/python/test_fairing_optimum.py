@@ -1,4 +1,4 @@
-"""Curves near their data, beside a conic solver: an own statement of the problem with SciPy's splines."""
+"""Curves near their data beside a conic solver: an own statement with SciPy's splines."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def test_known_shapes(name, kind):
     if not (random and name == "naca"):
         assert np.median(rms) <= 0.5
     elif SOAK:
-        # Of 40 draws 0.476, SciPy 0.555. Draws that leave so wide a gap near the nose that the curve
+        # Of 40 draws 0.476, SciPy 0.555. Draws that leave so wide a gap near the nose that a curve
         # through exact points is 0.3 to 0.9 off are worse, and the median of few draws says little.
         assert np.median(rms) <= 0.5
         assert sum(s.inflections > 0 for s in scores) <= 4
