@@ -100,8 +100,8 @@ def length(text: str) -> float | None:
         return float(inches)
     part = _FRACTION.fullmatch(text)
     if part is not None and (part[2] or part[3]):
-        top, under = _PARTS[part[3]] if part[3] else (int(part[4]), int(part[5]))
-        own_value = int(part[2] or 0) + Fraction(top, under)
+        share = Fraction(*_PARTS[part[3]]) if part[3] else Fraction(int(part[4]), int(part[5]))
+        own_value = int(part[2] or 0) + share
         return float(-own_value if part[1] else own_value)
     feet = _FEET.fullmatch(text)
     if feet is None:
