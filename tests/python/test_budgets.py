@@ -155,3 +155,15 @@ def test_held_memory_comes_back() -> None:
     for _ in range(5):
         once()
     assert _core.held_memory() < held + (8 << 20)
+
+
+def test_a_table_of_many_drafts_ends_with_its_time() -> None:
+    hull = moldloft.load(Path(__file__).parents[2] / "examples" / "sailboat" / "hull.sdl")
+    old = moldloft.limits().seconds
+    moldloft.limits(seconds=0.2)
+    try:
+        with pytest.raises(moldloft.ModelError, match="longer than the 0.2 s"):
+            hull.hydrostatic_table([0.5 + 1e-6 * k for k in range(100_000)])
+    finally:
+        moldloft.limits(seconds=old)
+    assert len(hull.hydrostatic_table([0.5, 0.6])) == 2

@@ -97,7 +97,9 @@ def test_numbers_of_drawings_have_a_largest(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "value", [{"x": 1}, {1, 2}, b"ab", 1j, float("nan"), 10**400, object()], ids=repr
+    "value",
+    [{"x": 1}, {1, 2}, b"ab", 1j, float("nan"), 10**400, object()],
+    ids=lambda value: type(value).__name__,
 )
 def test_what_the_language_cannot_write_is_no_argument(value: object) -> None:
     with moldloft.Builder(), pytest.raises((moldloft.Error, TypeError)):

@@ -1,6 +1,7 @@
 //! Hydrostatics of a model: figures at given drafts, trims and heels, equilibria, and their derivatives.
 
 use crate::Document;
+use moldloft_budget::{Budget, Spent};
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::{
     Attitude, Body, Equilibrium, FloatError, Flotation, Loading, Status, Water, bottom, bounds,
@@ -8,10 +9,11 @@ use moldloft_hydro::{
 };
 use moldloft_lang::run::weight::mass_and_centre;
 use moldloft_lang::run::whole::not_finite;
+use moldloft_lang::source::fault_location::unplaced;
 use moldloft_mesh::{FloatOptions, Symmetry};
 use moldloft_model::Graph;
 use moldloft_num::{Dual4, Real, Vec3};
-use moldloft_registry::{Role, Scalar};
+use moldloft_registry::{CallError, Role, Scalar};
 use rayon::prelude::*;
 
 /// A hydrostatics request; heel and trim in radians.
@@ -109,7 +111,8 @@ impl Document {
         let symmetry = self.symmetry();
         let bodied = self.bodied(options.accuracy).map_err(|d| vec![d])?;
         let carried = self.carried(&self.plain.graph, options)?;
-        let mut answers = answers(&bodied.body, &symmetry, requests, options, carried)
+        let budget = self.budget();
+        let mut answers = answers(&bodied.body, &symmetry, requests, options, carried, &budget)?
             .into_iter()
             .map(|solved| Ok(answer(&solved?)))
             .collect::<Result<Vec<FloatAnswer>, FloatError>>()
@@ -123,7 +126,7 @@ impl Document {
             let body = bodied.skin.body(&panelled.panelling, graph, options.accuracy);
             let body: Body<Dual4> = body.ok_or_else(|| vec![not_finite()])?;
             let carried = document.carried(graph, options)?;
-            let all = self::answers(&body, &symmetry, requests, options, carried);
+            let all = self::answers(&body, &symmetry, requests, options, carried, &budget)?;
             for (answer, solved) in answers.iter_mut().zip(all) {
                 let figures = solved.map_err(cannot_float)?.0.flotation.figures();
                 for (column, (_, x)) in answer.derivatives.iter_mut().zip(figures) {
@@ -231,7 +234,8 @@ fn answers<T: Real>(
     requests: &[FloatRequest],
     options: FlotationOptions,
     carried: Option<(T, Vec3<T>)>,
-) -> Vec<Answered<T>> {
+    budget: &Budget,
+) -> Result<Vec<Answered<T>>, Vec<Diagnostic>> {
     let lengthwise = symmetry.contains('x').then(|| body.with_mirror_image(0));
     let body = lengthwise.as_ref().unwrap_or(body);
     let half = symmetry.contains('y');
@@ -282,7 +286,9 @@ fn answers<T: Real>(
             }
         })
     };
-    requests.par_iter().map(one).collect()
+    let within = |request| budget.poll().map(|()| one(request));
+    let all: Result<Vec<_>, Spent> = requests.par_iter().map(within).collect();
+    all.map_err(|spent| vec![unplaced(&CallError::from(spent))])
 }
 
 fn answer((solved, sought, sides): &(Equilibrium<f64>, bool, &'static str)) -> FloatAnswer {
