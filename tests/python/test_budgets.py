@@ -162,7 +162,7 @@ def test_a_table_of_many_drafts_ends_with_its_time() -> None:
     old = moldloft.limits().seconds
     moldloft.limits(seconds=0.2)
     try:
-        with pytest.raises(moldloft.ModelError, match="longer than the 0.2 s"):
+        with pytest.raises(moldloft.ModelError, match=r"longer than the 0\.2 s"):
             hull.hydrostatic_table([0.5 + 1e-6 * k for k in range(100_000)])
     finally:
         moldloft.limits(seconds=old)

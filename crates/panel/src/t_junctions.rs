@@ -245,6 +245,8 @@ impl Panelling {
         skipped: impl Fn([usize; 2]) -> bool,
     ) -> Vec<PanelNote> {
         let size = open.size;
+        let pole = self.poles(size);
+        let place = |vertex: u32| pole.get(&vertex).copied().unwrap_or(vertex);
         let mut vertices: HashSet<u32> = HashSet::new();
         open.sides.iter().for_each(|s| vertices.extend(s.vertices));
         let mut reported = HashSet::new();
@@ -258,7 +260,8 @@ impl Panelling {
                     continue;
                 }
                 for side in open.near(p) {
-                    let itself = side.patch == patch || side.vertices.contains(&vertex);
+                    let shared = side.vertices.iter().any(|&v| place(v) == place(vertex));
+                    let itself = side.patch == patch || shared;
                     let known_loose =
                         || self.at_loose_place(patch, corner, (side.patch, side.edge));
                     let beside = self.of_symmetry(patch) != self.of_symmetry(side.patch);
@@ -295,6 +298,27 @@ impl Panelling {
             }
         }
         remarks
+    }
+
+    /// For each vertex along an edge without length, the first of all those in its place.
+    fn poles(&self, size: f64) -> HashMap<u32, u32> {
+        let mut first: HashMap<u32, u32> = HashMap::new();
+        for (patch, frame) in self.structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {
+            for k in 0..4u8 {
+                let places: Vec<usize> = indices(frame.divisions, k).collect();
+                let at = |m: usize| self.points[patch][m];
+                if places.iter().any(|&m| at(m).distance(at(places[0])) > SAME_PLACE * size) {
+                    continue;
+                }
+                let own = places.iter().map(|&m| self.joined.vertices[patch][m]);
+                let known: HashSet<u32> =
+                    own.map(|v| first.get(&v).copied().unwrap_or(v)).collect();
+                let Some(&one) = known.iter().min() else { continue };
+                first.values_mut().filter(|v| known.contains(v)).for_each(|v| *v = one);
+                first.extend(known.iter().map(|&v| (v, one)));
+            }
+        }
+        first
     }
 
     /// The open panel edges.
