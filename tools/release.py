@@ -7,6 +7,7 @@
 ``papers`` the notices and the bill of materials alone, as packages for conda need them
 ``smoke``  installs the wheel into an empty environment (no Rust, Node.js or make on the path) and
            uses it: command, workbench, language server, display in notebooks, each extra
+``tutorials`` walks each tutorial in an environment of its own with the wheel
 
 ``MOLDLOFT_PROFILE=dev`` tries the steps with development builds, which take minutes less.
 """
@@ -454,7 +455,19 @@ def _server_answers(words: list[str | Path], home: Path, clean: dict[str, str]) 
     print("language server: answers")
 
 
-STEPS = {"engine": engine, "wheel": wheel, "editor": editor, "sdist": sdist, "smoke": smoke}
+def tutorials() -> None:
+    """Each tutorial by its own words, in an environment of its own with the wheel."""
+    run(sys.executable, str(ROOT / "tools" / "walk_tutorials.py"))
+
+
+STEPS = {
+    "engine": engine,
+    "wheel": wheel,
+    "editor": editor,
+    "sdist": sdist,
+    "smoke": smoke,
+    "tutorials": tutorials,
+}
 
 #: Steps that are parts of others, for those who build by other means.
 PARTS = {"papers": write_papers}

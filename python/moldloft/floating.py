@@ -324,7 +324,7 @@ class Floating:
         if centre is not None and len(centre) != 3:
             raise Error(f"a centre of gravity is x, y, z, not {len(centre)} numbers")
         for given, number, trim, heel, _, _ in rows:
-            if given == "draft" and not number >= 0:
+            if given == "draft" and number < 0:
                 raise Error(
                     f"a draft is the depth of the lowest point: expected >= 0, found {number:g}\n"
                     "help: the height of the water in the model's axes is `level`"

@@ -102,7 +102,7 @@ class Sketch:
 
     def __init__(self, folder: str | os.PathLike[str] | None = None) -> None:
         # `os.path` answers for names that no system takes, too.
-        if folder is not None and not os.path.isdir(folder):  # noqa: PTH112
+        if folder is not None and not os.path.isdir(os.fspath(folder)):  # noqa: PTH112
             raise FileError(f"`{folder}` is not a folder; `Sketch.load(path)` reads a file")
         self._session = _core.SketchSession(None if folder is None else os.fspath(folder))
 

@@ -100,7 +100,8 @@ def test_an_example_is_the_same_in_other_programs(name: str, tmp_path: Path) -> 
         pytest.skip("has bodies without patches, which is said")
     deviation = max([0.0, *map(float, re.findall(r"'deviation',LENGTH_MEASURE\(([^)]*)\)", text))])
     unit = METRES[moldloft._core.length_unit(model._document)[0]]
-    found = read(step, accuracy=1e-6)
+    # Less makes OCCT stop 1e-5 early on the runner.
+    found = read(step, accuracy=1e-8)
     faces = text.count("=ADVANCED_FACE(")
     assert found.valid and found.faces == faces and found.colours
     assert found.closed == text.count("=CLOSED_SHELL(")
@@ -129,6 +130,6 @@ def test_an_example_is_the_same_in_other_programs(name: str, tmp_path: Path) -> 
     print(name, faces, deviation, found.tolerance)
     # The same in IGES, but for what it does not hold.
     (iges,) = model.write(tmp_path / "model.igs")
-    flat = read(iges, accuracy=1e-6)
+    flat = read(iges, accuracy=1e-8)
     assert flat.valid and flat.faces == faces and flat.colours
     assert flat.area == pytest.approx(found.area, rel=5e-6)

@@ -244,8 +244,8 @@ def test_a_sheet_beside_a_solid_ends_on_it(tmp_path: Path) -> None:
 WITHOUT = {
     "kink": "field k = abs(x)*1.0 + 0.3*x + y^2 + z^2 - 1; SetBody b(set(k), depth = 5);",
     "line": (
-        "set a = set(abs(z)); set c = set(abs(x)); set box = cuboid({-1, -0.5, -1}, {1, 0.5, 1});"
-        "SetBody b(((a | c) - box) | (a & c), {-1, -1, -1}, {1, 1, 1}, depth = 5);"
+        "set a = set(abs(z - 0.2*x*y)); set c = set(abs(x)) & set(abs(y));"
+        "SetBody b(a | c, {-1, -1, -1}, {1, 1, 1}, depth = 4);"
     ),
 }
 

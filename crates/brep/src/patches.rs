@@ -23,10 +23,10 @@ const MOST: usize = 48_000;
 /// So many times as many are expected where there is no use in dividing.
 const MUCH: f64 = 4.0;
 
-/// How often sides are halved, and triangles corrected between.
-const ROUNDS: usize = 48;
+/// How often sides are halved, and triangles corrected between, at first and with patience.
+const ROUNDS: [usize; 2] = [16, 48];
 
-/// How often triangles are corrected: after that, what is corrected is slivers that halving made.
+/// How often triangles are corrected with patience: after that, what is corrected is slivers that halving made.
 const CORRECTIONS: usize = 6;
 
 /// More patches than that, and than four times the fewest so far, that are off after some rounds are a kink.
@@ -42,7 +42,7 @@ const FINE: f64 = 3e-8;
 
 impl Brep {
     /// Adds the faces of a body whose surfaces need not be planes, cylinders, cones, spheres or tori; gives places on
-    /// them.
+    /// them. With `patient` more rounds of halving are tried.
     ///
     /// # Errors
     /// Vertices and sides that are not on their surfaces; surfaces that no patches come near enough to.
@@ -52,9 +52,12 @@ impl Brep {
         field: &SurfaceField<'_>,
         accuracy: f64,
         size: f64,
+        patient: bool,
     ) -> Result<Vec<Vec3>, FacetFault> {
         let shown = vec![true; facets.surfaces.len()];
-        self.add_sheet(facets, shown, field, accuracy, size)
+        let mut body = PatchedBody::new(facets, shown, field, accuracy, size)?;
+        let patches = body.fit(patient)?;
+        body.into_brep(self, patches)
     }
 
     /// Adds those faces of a body that are on some of its surfaces, for each of which `shown` says whether it is one; gives
@@ -71,7 +74,7 @@ impl Brep {
         size: f64,
     ) -> Result<Vec<Vec3>, FacetFault> {
         let mut body = PatchedBody::new(facets, shown, field, accuracy, size)?;
-        let patches = body.fit()?;
+        let patches = body.fit(true)?;
         body.into_brep(self, patches)
     }
 }
@@ -455,14 +458,15 @@ impl<'a> PatchedBody<'a> {
         FittedPatch { net, error, folded }
     }
 
-    /// Patches that are near enough, with sides halved until they are.
-    fn fit(&mut self) -> Result<Vec<(Corners, u32, FittedPatch)>, FacetFault> {
+    /// Patches that are near enough, with sides halved until they are. With patience more rounds are tried, and
+    /// triangles corrected in some of them only, as halving and correcting may undo each other.
+    fn fit(&mut self, patient: bool) -> Result<Vec<(Corners, u32, FittedPatch)>, FacetFault> {
         let mut known: FxHashMap<Corners, FittedPatch> = FxHashMap::default();
         let mut apart: FxHashSet<Corners> = FxHashSet::default();
         let mut last = None;
         let mut fewest = usize::MAX;
         let (mut corrected, mut corrections) = (false, 0);
-        for round in 0..ROUNDS {
+        for round in 0..ROUNDS[usize::from(patient)] {
             let all = self.pairs(&apart);
             let mut halved: Vec<(f64, (u32, u32))> = Vec::new();
             let mut before = apart.len();
@@ -517,11 +521,12 @@ impl<'a> PatchedBody<'a> {
                 let patch = &known[corners];
                 patch.error > self.accuracy || patch.folded
             };
-            corrected = !corrected && round >= SMOOTH_AFTER && corrections < CORRECTIONS;
+            let turn = !patient || !corrected && corrections < CORRECTIONS;
+            corrected = turn && round >= SMOOTH_AFTER;
             corrections += usize::from(corrected);
-            let round_bad: FxHashSet<u32> =
-                all.iter().filter(bad).flat_map(|(corners, _)| *corners).collect();
-            if corrected && let Some(moved) = self.untangle(Some(&round_bad)) {
+            let round_bad: Option<FxHashSet<u32>> =
+                patient.then(|| all.iter().filter(bad).flat_map(|(corners, _)| *corners).collect());
+            if corrected && let Some(moved) = self.untangle(round_bad.as_ref()) {
                 self.sides.retain(|(a, b), _| !moved.contains(a) && !moved.contains(b));
                 known.retain(|corners, _| corners.iter().all(|v| !moved.contains(v)));
                 apart.retain(|corners| corners.iter().all(|v| !moved.contains(v)));
@@ -531,7 +536,10 @@ impl<'a> PatchedBody<'a> {
             before = self.net.triangles.len();
             self.halve(halved)?;
             if self.net.triangles.len() > MOST {
-                return Err(self.too_many());
+                if patient {
+                    return Err(self.too_many());
+                }
+                break;
             }
             if self.net.triangles.len() > before {
                 last = None;

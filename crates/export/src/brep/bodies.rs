@@ -201,7 +201,10 @@ impl SetOfBody<'_> {
     ) -> Result<Option<Diagnostic>, ExportFailure> {
         let mut last = None;
         let mut before = f64::INFINITY;
-        for level in PATCH_LEVELS {
+        // Finer cells make better patches than patience does.
+        let tries =
+            [false, true].into_iter().flat_map(|p| PATCH_LEVELS.map(move |level| (p, level)));
+        for (patient, level) in tries {
             let facets = self.facets(level)?;
             if std::mem::replace(&mut before, facets.step) == facets.step {
                 continue;
@@ -209,7 +212,7 @@ impl SetOfBody<'_> {
             let field = field_of(&facets);
             let mut made = Brep::default();
             let labelled = labelled(&facets, self.mesh, self.name);
-            let places = made.add_patches(labelled, &field, accuracy, size);
+            let places = made.add_patches(labelled, &field, accuracy, size, patient);
             // Finer cells only make more.
             if let Err(fault) = &places
                 && fault.kind == FacetFaultKind::Many
