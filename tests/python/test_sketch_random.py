@@ -122,7 +122,10 @@ def test_changed_parts_are_those_of_occt(curved, seeds, most):
 @pytest.mark.parametrize("curved", [False, True], ids=["plane", "round"])
 def test_derivatives_of_parts_are_their_differences(curved):
     compared = 0
-    for seed in range(200 if SOAK else 5):
+    # Volumes of round parts are right to some 1e-9: smaller steps would show that instead.
+    step = 1e-3 if curved else 1e-4
+    # Where round faces nearly meet a change takes up to half a minute without optimisation.
+    for seed in range(200) if SOAK else range(1, 3) if curved else range(5):
         made = start(1000 + seed, curved=curved)
         if made is None:
             continue
@@ -137,16 +140,17 @@ def test_derivatives_of_parts_are_their_differences(curved):
         gradient = sketch.gradient([names[k] for k in chosen])
         for place, k in enumerate(chosen):
             x = new[keys[k]]
-            steps = np.array([-2e-4, -1e-4, 1e-4, 2e-4])
+            steps = step * np.array([-2.0, -1.0, 1.0, 2.0])
             rows = sketch.sweep(names[k], x + steps)
             if np.isnan(rows).any():
                 continue
-            wide, narrow = (rows[3] - rows[0]) / 4e-4, (rows[2] - rows[1]) / 2e-4
+            wide, narrow = (rows[3] - rows[0]) / (4 * step), (rows[2] - rows[1]) / (2 * step)
             middle = np.array([sketch.volume, sketch.area, *sketch.centroid])
             # Where a face begins to touch another one there are two derivatives: the second
             # difference is then that of a kink, the same at both steps.
             near, far = (
-                (r[0] + r[1] - 2 * middle) / h for r, h in ((rows[1:3], 1e-4), (rows[[0, 3]], 2e-4))
+                (r[0] + r[1] - 2 * middle) / h
+                for r, h in ((rows[1:3], step), (rows[[0, 3]], 2 * step))
             )
             size = max(1.0, float(np.abs(narrow).max()))
             if (
