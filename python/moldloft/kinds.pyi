@@ -4309,7 +4309,7 @@ def XLoftSurf(
     -----
     In the language::
 
-        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); XLoftSurf hull(1, {a, b, c, d}, ends = "natural"); AbsPoint O(0, -5, 0); AbsPoint X(2, -5, 0); Line shaft(O, X); Line p({0, -5, 1}, {0, -5, 3}); Line q({1, -4.6, 0.9}, {1.2, -4, 2.8}); Line r({2, -4.3, 0.7}, {2.4, -3.2, 2.4}); XLoftSurf blade(3, {r, q, p}, about = shaft);
+        AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); XLoftSurf hull(1, {a, b, c, d}); AbsPoint O(0, -5, 0); AbsPoint X(2, -5, 0); Line shaft(O, X); Line p({0, -5, 1}, {0, -5, 3}); Line q({1, -4.6, 0.9}, {1.2, -4, 2.8}); Line r({2, -4.3, 0.7}, {2.4, -3.2, 2.4}); XLoftSurf blade(3, {r, q, p}, about = shaft);
     """
     ...
 def ArcLoftSurf(
