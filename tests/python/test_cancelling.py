@@ -61,7 +61,7 @@ COUNTS = (60_000, 9 * 10**6, 3 * 10**7)
 WORK: dict[str, Callable[[], Any]] = {
     "a loop": loads("float x = 0; for (i = 1:1e9) for (j = 1:1e9) x = x + sin(j);"),
     "objects": loads("for (i = 1:900000) AbsPoint p(i, 0, 0);"),
-    "arrays": loads("for (i = 1:1e9) { surface s[2000, 2000]; s = sin(s + i); }"),
+    "arrays": loads("farray s[2000, 2000]; for (i = 1:1e9) s = sin(s + i);"),
     "a body": loads(BALL),
     "panels": loads(HULL + "\nRuledSurf zz(MC1, MC3, divisions = {1900, 1900});"),
     "a search": lambda: hull()["hull"].nearest(many(9 * 10**6).reshape(-1, 3)),

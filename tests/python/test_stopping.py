@@ -28,10 +28,10 @@ CASES = {
     "curvature": f"surface s[200,200]; {ROWS.format(200)} while (1) farray k = gauss(s);",
     "elliptic": "surface s[120,120]; for (i = 1:120) for (j = 1:120) s[i,j] = {i, j + 3*sin(i/20), 0}; surface t = elliptic(s, 1000000, 1e-300);",
     "elliptic block": BLOCK + " block c = elliptic_block(b, 1000000, 1e-300);",
-    "march": 'load "naca.sdl" curve c[641]; naca4s(c, 0, 0, 12); c = c[::-1]; surface g = hyperbolic(c, geometric(0, 20, 1e-6, 300), "i1 periodic");',
-    "march of a surface": "surface s[100,100]; for (i = 1:100) for (j = 1:100) s[i,j] = {i, j, 3*sin(i/9)*cos(j/7)}; block b = hyperbolic(s, geometric(0, 50, .001, 150));",
+    "march": 'load "naca.sdl" curve c[641]; naca4s(c, 0, 0, 12); c = c[::-1]; while (1) surface g = hyperbolic(c, geometric(0, 20, 1e-6, 300), "i1 periodic");',
+    "march of a surface": "surface s[100,100]; for (i = 1:100) for (j = 1:100) s[i,j] = {i, j, 3*sin(i/9)*cos(j/7)}; while (1) block b = hyperbolic(s, geometric(0, 50, .001, 150));",
     "report": BLOCK + " while (1) string t = report(b);",
-    "section grid": 'load "naca.sdl" curve c[321]; naca4s(c, 0, 0, 12); while (1) block g = c_grid(c, geometric(0, 20, 1e-5, 100), 10, 60);',
+    "section grid": 'load "naca.sdl" curve c[321]; naca4s(c, 0, 0, 12); while (1) surface g = c_grid(c, geometric(0, 20, 1e-5, 100), 10, 60);',
 }
 CHILD = """
 import os, signal, sys, threading, time
