@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from moldloft.hydrostatics import Hydrostatics, _Rows
-    from moldloft.mesh import Mesh
+    from moldloft.mesh import Mesh, Patch
     from moldloft.models import Model
     from moldloft.objects import Curve, Object, Surface
     from moldloft.weights import WeightTable
@@ -33,6 +33,7 @@ __all__ = [
     "rows_html",
     "state_html",
     "weights_html",
+    "worst_panel",
 ]
 
 _MOST_ROWS = 40
@@ -190,11 +191,17 @@ def lines_svg(lines: Sequence[Floats]) -> str:
     )
 
 
+def worst_panel(patch: Patch, metric: str) -> str:
+    """The largest value of a metric of quality; a dash for a patch without panels, as lines are."""
+    figures = patch.quality.get(metric)
+    return "-" if figures is None else f"{figures['max']:.3g}"
+
+
 def mesh_html(mesh: Mesh) -> str:
     """The patches of a mesh with their areas and worst panels, and whether it is closed."""
     rows = []
     for patch in mesh.patches[:_MOST_ROWS]:
-        worst = [f"{patch.quality[name]['max']:.3g}" for name in ("aspect", "skew", "warp")]
+        worst = [worst_panel(patch, name) for name in ("aspect", "skew", "warp")]
         closed = "yes" if patch.closed else "no"
         rows.append([patch.name, patch.kind, patch.panels, _number(patch.area), closed, *worst])
     header = ["patch", "kind", "panels", "area", "closed", "aspect", "skew", "warp"]

@@ -525,15 +525,8 @@ def thin(
         set tank = thin(cuboid({0, 0, 0}, {2, 1, 1}));
     """
     ...
-def everything(
-    unused: _Number | None = ...,
-) -> SetShape:
+def everything() -> SetShape:
     """All of space.
-
-    Parameters
-    ----------
-    unused : number, optional
-        Of no meaning; a call has none.
 
     Returns
     -------
@@ -546,15 +539,8 @@ def everything(
         set all = everything();
     """
     ...
-def nothing(
-    unused: _Number | None = ...,
-) -> SetShape:
+def nothing() -> SetShape:
     """The empty set: where a union of many begins.
-
-    Parameters
-    ----------
-    unused : number, optional
-        Of no meaning; a call has none.
 
     Returns
     -------
@@ -1704,7 +1690,7 @@ def hit(
     start : point
         Start of the ray.
     direction : point
-        Its image.
+        Its direction, of any length.
     length : number, optional
         Its length; by default through the box of the set. At least 0.
 
@@ -3220,14 +3206,14 @@ def translate(
     o: object,
     v: _Vector,
 ) -> AnyShape:
-    """A vector, curve or surface shifted by a vector.
+    """A vector, curve, surface or block shifted by a vector.
 
     Parameters
     ----------
     o : value
-        The field or set to move.
+        The points to shift.
     v : vector
-        By how much.
+        The shift.
 
     Returns
     -------
@@ -3244,7 +3230,7 @@ def scale(
     o: object,
     by: object,
 ) -> AnyShape:
-    """A vector, curve or surface with its coordinates multiplied by those of a vector, or all by a
+    """A vector, curve, surface or block with its coordinates multiplied by those of a vector, or all by a
     number.
 
     Parameters
@@ -3270,12 +3256,12 @@ def mirror(
     p: _Vector,
     n: _Vector,
 ) -> AnyShape:
-    """A vector, curve or surface mirrored in the plane through a point with a normal.
+    """A vector, curve, surface or block mirrored in the plane through a point with a normal.
 
     Parameters
     ----------
     o : value
-        The field or set to mirror.
+        The points to mirror.
     p : vector
         A point of the plane.
     n : vector
@@ -3298,19 +3284,19 @@ def rotate(
     axis: object,
     angle: _Number | None = ...,
 ) -> AnyShape:
-    """A vector, curve or surface turned about an axis, right-handed: rotate(o, axis, angle) about the
+    """A vector, curve, surface or block turned about an axis, right-handed: rotate(o, axis, angle) about the
     axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840).
 
     Parameters
     ----------
     o : value
-        The field or set to turn.
+        The points to turn.
     p : vector
         A point of the axis, if an angle is the fourth argument; else the direction of the axis.
     axis : value
-        Direction of the axis; or the angle.
+        Direction of the axis; or the angle, in radians.
     angle : number, optional
-        The angle.
+        The angle, in radians.
 
     Returns
     -------
@@ -3490,6 +3476,8 @@ def mean(
 ) -> AnyShape:
     """The mean curvatures at the points of a surface, positive where it bends towards its natural
     normal s_i x s_j: H = (E N - 2 F M + G L) / (2 (E G - F^2)), of the bicubic spline through them.
+
+    Of numbers and vectors `mean` is their average: see `average`.
 
     Parameters
     ----------
@@ -4045,7 +4033,7 @@ def sqrt(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert sqrt(9) == 3;
     """
     ...
 def sin(
@@ -4066,7 +4054,7 @@ def sin(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert abs(sin(PI/6) - 0.5) < 1e-15;
     """
     ...
 def cos(
@@ -4087,7 +4075,7 @@ def cos(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert cos(0) == 1;
     """
     ...
 def tan(
@@ -4108,7 +4096,7 @@ def tan(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert abs(tan(PI/4) - 1) < 1e-15;
     """
     ...
 def asin(
@@ -4129,7 +4117,7 @@ def asin(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert abs(asin(1) - PI/2) < 1e-15;
     """
     ...
 def acos(
@@ -4150,7 +4138,7 @@ def acos(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert acos(1) == 0;
     """
     ...
 def atan(
@@ -4171,7 +4159,7 @@ def atan(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert abs(atan(1) - PI/4) < 1e-15;
     """
     ...
 def exp(
@@ -4192,7 +4180,7 @@ def exp(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert abs(exp(1) - 2.718281828459045) < 1e-15;
     """
     ...
 def log(
@@ -4213,7 +4201,7 @@ def log(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert log(1) == 0;
     """
     ...
 def log10(
@@ -4234,7 +4222,7 @@ def log10(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert abs(log10(1000) - 3) < 1e-14;
     """
     ...
 def sinh(
@@ -4255,7 +4243,7 @@ def sinh(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert sinh(0) == 0;
     """
     ...
 def cosh(
@@ -4276,7 +4264,7 @@ def cosh(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert cosh(0) == 1;
     """
     ...
 def tanh(
@@ -4297,7 +4285,7 @@ def tanh(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert tanh(0) == 0;
     """
     ...
 def abs(
@@ -4318,7 +4306,7 @@ def abs(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert abs(-2) == 2;
     """
     ...
 def s_sqrt(
@@ -4339,7 +4327,7 @@ def s_sqrt(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert s_sqrt(-4) == -2;
     """
     ...
 def floor(
@@ -4360,7 +4348,7 @@ def floor(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert floor(-1.5) == -2;
     """
     ...
 def ceil(
@@ -4381,7 +4369,7 @@ def ceil(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert ceil(-1.5) == -1;
     """
     ...
 def round(
@@ -4402,7 +4390,7 @@ def round(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert round(2.5) == 3;
     """
     ...
 def sign(
@@ -4423,7 +4411,7 @@ def sign(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert sign(-7) == -1;
     """
     ...
 def radians(
@@ -4444,7 +4432,7 @@ def radians(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert abs(radians(180) - PI) < 1e-15;
     """
     ...
 def degrees(
@@ -4465,7 +4453,7 @@ def degrees(
     -----
     In the language::
 
-        assert sin(0) == 0;
+        assert abs(degrees(PI) - 180) < 1e-13;
     """
     ...
 def atan2(
@@ -4489,7 +4477,7 @@ def atan2(
     -----
     In the language::
 
-        assert hypot(3, 4) == 5;
+        assert abs(atan2(1, -1) - 3*PI/4) < 1e-15;
     """
     ...
 def hypot(
@@ -4537,7 +4525,7 @@ def mod(
     -----
     In the language::
 
-        assert hypot(3, 4) == 5;
+        assert mod(-1, 3) == 2;
     """
     ...
 def div(
@@ -4561,7 +4549,7 @@ def div(
     -----
     In the language::
 
-        assert hypot(3, 4) == 5;
+        assert div(-1, 3) == -1;
     """
     ...
 def min(
@@ -4694,9 +4682,16 @@ def format(
 
     Called as `format(pattern, ...)`.
 
+    Parameters
+    ----------
+    pattern : text
+        Text with directives as in C: %d %i %f %e %g %s, with flags and widths.
+    values : list of value
+        Numbers, texts and points for the directives.
+
     Returns
     -------
-    value
+    text
 
     Notes
     -----
@@ -4712,9 +4707,16 @@ def open(
 
     Called as `open(name, mode)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    mode : text, optional
+        "r", "w" or "a"; "r" by default.
+
     Returns
     -------
-    value
+    file
 
     Notes
     -----
@@ -4730,9 +4732,14 @@ def close(
 
     Called as `close(f)`.
 
+    Parameters
+    ----------
+    f : file
+        The file, or its unit.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -4748,9 +4755,16 @@ def write(
 
     Called as `write(f, ...)`.
 
+    Parameters
+    ----------
+    f : file
+        The file, its unit, or `stdout`.
+    values : list of value
+        Texts, numbers, points and arrays, each from a new line.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -4766,9 +4780,16 @@ def read(
 
     Called as `read(f, ...)`.
 
+    Parameters
+    ----------
+    f : file
+        The file, or its unit.
+    variables : list of variable
+        What is filled, in order: variables, elements and sections.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -4779,14 +4800,19 @@ def read(
     ...
 def more(
     *args: object,
-) -> AnyShape:
+) -> Expr:
     """Reports whether a multiple argument, or a file, has unread items.
 
     Called as `more(c)`.
 
+    Parameters
+    ----------
+    c : argument or file
+        The multiple argument, or the file.
+
     Returns
     -------
-    value
+    number
 
     Notes
     -----
@@ -4801,6 +4827,11 @@ def next(
     """The next item of a multiple argument.
 
     Called as `next(c)`.
+
+    Parameters
+    ----------
+    c : argument
+        The multiple argument.
 
     Returns
     -------
@@ -4820,9 +4851,14 @@ def rewind(
 
     Called as `rewind(c)`.
 
+    Parameters
+    ----------
+    c : argument or file
+        The multiple argument, or the file.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -4833,14 +4869,19 @@ def rewind(
     ...
 def count(
     *args: object,
-) -> AnyShape:
+) -> Expr:
     """The number of items of a multiple argument or a list; of a mask, the number of elements where it holds.
 
     Called as `count(c)`.
 
+    Parameters
+    ----------
+    c : argument, list or mask
+        What is counted.
+
     Returns
     -------
-    value
+    number
 
     Notes
     -----
@@ -4851,14 +4892,19 @@ def count(
     ...
 def isset(
     *args: object,
-) -> AnyShape:
+) -> Expr:
     """Reports whether a variable, or every element of a section, has a value.
 
     Called as `isset(a[i])`.
 
+    Parameters
+    ----------
+    a : variable
+        The variable, element or section.
+
     Returns
     -------
-    value
+    number
 
     Notes
     -----
@@ -4874,9 +4920,14 @@ def ieee(
 
     Called as `ieee(on)`.
 
+    Parameters
+    ----------
+    on : number, optional
+        0 makes them errors again; 1 by default.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -4892,9 +4943,14 @@ def check_edges(
 
     Called as `check_edges(s)`.
 
+    Parameters
+    ----------
+    s : surface
+        The surface.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -4905,14 +4961,19 @@ def check_edges(
     ...
 def refined(
     *args: object,
-) -> AnyShape:
-    """n points, or more when the run is refined: intervals are halved, so that coarse points recur.
+) -> Expr:
+    """`n` points, or more when the run is refined: intervals are halved, so that coarse points recur.
 
     Called as `refined(n)`.
 
+    Parameters
+    ----------
+    n : integer
+        The number of points of the coarse run, 2 or more.
+
     Returns
     -------
-    value
+    number
 
     Notes
     -----
@@ -4923,14 +4984,19 @@ def refined(
     ...
 def refined_step(
     *args: object,
-) -> AnyShape:
+) -> Expr:
     """A step per index consistent with refined(n): halved at each refinement.
 
     Called as `refined_step(ds)`.
 
+    Parameters
+    ----------
+    ds : number
+        The step of the coarse run.
+
     Returns
     -------
-    value
+    number
 
     Notes
     -----
@@ -4941,14 +5007,14 @@ def refined_step(
     ...
 def refinement(
     *args: object,
-) -> AnyShape:
+) -> Expr:
     """The number of parts of each interval of refined(n): 1, 2, 4, ...
 
     Called as `refinement()`.
 
     Returns
     -------
-    value
+    number
 
     Notes
     -----
@@ -4960,13 +5026,24 @@ def refinement(
 def write_p3d(
     *args: object,
 ) -> AnyShape:
-    """Writes surfaces as a Plot3D file: stream, records or text; single; single-block; 2d; planes; big; iblank; mark8.
+    """Writes curves, surfaces or blocks as a Plot3D file.
 
     Called as `write_p3d(name, words, s1, s2, ...)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    words : text, optional
+        Variant: "stream", "records" or "text"; "double" or "single"; "multi" or "single-block";
+        "3d" or "2d"; "whole" or "planes"; "little" or "big"; "iblank"; "mark8". The first of
+        each by default.
+    s : list of curve, surface or block
+        What is written; an farray of whole numbers behind one is its blanking.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -4982,9 +5059,16 @@ def write_vts(
 
     Called as `write_vts(name, s1, s2, ...)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    s : list of curve, surface or block
+        What is written; lists of them count as their members.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -5000,9 +5084,18 @@ def plot(
 
     Called as `plot(name, s1, s2, ...)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, ending in .png or .svg.
+    view : text, optional
+        "x", "y", "z", "-x", "-y", "-z" or "iso"; by default the one that shows most.
+    s : list of curve, surface or block
+        What is drawn.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -5018,9 +5111,18 @@ def write_stl(
 
     Called as `write_stl(name, words, s1, s2, ...)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    words : text, optional
+        "flip" reverses the normals.
+    s : list of curve, surface or block
+        What is written; lists of them count as their members.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -5036,9 +5138,19 @@ def write_cgns(
 
     Called as `write_cgns(name, s1, s2, ...), write_cgns(name, b1, "k1 = hull wall", b2, ...)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    s : list of curve, surface or block
+        What is written; lists of them count as their members.
+    faces : text, optional
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
+        faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -5054,9 +5166,19 @@ def write_su2(
 
     Called as `write_su2(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    b : list of block
+        What is written.
+    faces : text, optional
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
+        faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -5072,9 +5194,19 @@ def write_gmsh(
 
     Called as `write_gmsh(name, b1, "k1 = hull wall, kn = far farfield", b2, ...)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    b : list of block
+        What is written.
+    faces : text, optional
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
+        faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -5090,9 +5222,19 @@ def write_blockmesh(
 
     Called as `write_blockmesh(name, b1, "k1 = hull wall, j1 = plane symmetry", b2, ...)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    b : list of block
+        What is written.
+    faces : text, optional
+        Boundaries of the block before it, such as "k1 = hull wall, i1 in = plane symmetry":
+        faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -5108,9 +5250,16 @@ def write_csv(
 
     Called as `write_csv(name, c1, c2, ...)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    c : list of curve or surface
+        What is written.
+
     Returns
     -------
-    value
+    nothing
 
     Notes
     -----
@@ -5122,13 +5271,20 @@ def write_csv(
 def read_p3d(
     *args: object,
 ) -> AnyShape:
-    """A surface or block of a Plot3D file of any variant, by its number (1).
+    """A surface or block of a Plot3D file of any variant.
 
     Called as `read_p3d(name, block)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    block : integer, optional
+        Number of the block in the file; 1 by default.
+
     Returns
     -------
-    value
+    surface or block
 
     Notes
     -----
@@ -5139,14 +5295,19 @@ def read_p3d(
     ...
 def count_p3d(
     *args: object,
-) -> AnyShape:
+) -> Expr:
     """The number of surfaces and blocks of a Plot3D file.
 
     Called as `count_p3d(name)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+
     Returns
     -------
-    value
+    number
 
     Notes
     -----
@@ -5158,13 +5319,20 @@ def count_p3d(
 def read_cgns(
     *args: object,
 ) -> AnyShape:
-    """A structured zone of a CGNS file (HDF5) as surface or block, by its number (1) or its name.
+    """A structured zone of a CGNS file (HDF5) as a surface or block.
 
     Called as `read_cgns(name, zone)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+    zone : integer or text, optional
+        Number or name of the zone; 1 by default.
+
     Returns
     -------
-    value
+    surface or block
 
     Notes
     -----
@@ -5175,14 +5343,19 @@ def read_cgns(
     ...
 def count_cgns(
     *args: object,
-) -> AnyShape:
+) -> Expr:
     """The number of zones of a CGNS file.
 
     Called as `count_cgns(name)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+
     Returns
     -------
-    value
+    number
 
     Notes
     -----
@@ -5198,9 +5371,14 @@ def names_cgns(
 
     Called as `names_cgns(name)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+
     Returns
     -------
-    value
+    text list
 
     Notes
     -----
@@ -5211,14 +5389,19 @@ def names_cgns(
     ...
 def read_points(
     *args: object,
-) -> AnyShape:
+) -> CurveHandle:
     """The points of a text with two or three numbers to a line, as a curve.
 
     Called as `read_points(name)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+
     Returns
     -------
-    value
+    curve
 
     Notes
     -----
@@ -5229,14 +5412,19 @@ def read_points(
     ...
 def read_aerofoil(
     *args: object,
-) -> AnyShape:
+) -> CurveHandle:
     """A section of a coordinate file in Selig's or Lednicer's listing: tail, upper side, nose, lower side, tail.
 
     Called as `read_aerofoil(name)`.
 
+    Parameters
+    ----------
+    name : text
+        Name of the file, beside the program.
+
     Returns
     -------
-    value
+    curve
 
     Notes
     -----

@@ -11,6 +11,7 @@ __all__ = ["picture", "routines"]
 
 _ROUTINE = re.compile(r"(?:subroutine|function (\w+)) (\w+)\((.*)\) \{$")
 _ARGUMENT = re.compile(r"(returned )?(\w+) (\w+)(\.\.\.)?$")
+_MEANING = re.compile(r"^- (\w+): (.*)$", re.MULTILINE)
 _ARRAY = re.compile(r"\b(?:curve|surface) (\w+)\[")
 
 
@@ -19,7 +20,7 @@ def routines() -> list[dict[str, Any]]:
 
     Rows have the keys of :func:`moldloft.language.reference`, the file that is loaded for them as
     ``library``, and ``signature``, how they are called. Routines without an example serve others of
-    their file.
+    their file. A line ``- name: meaning`` of the comment describes an argument.
 
     >>> row = next(row for row in routines() if row["name"] == "naca4")
     >>> row["library"], row["signature"]
@@ -36,7 +37,9 @@ def routines() -> list[dict[str, Any]]:
             example = [part.strip() for part in comment if part.startswith("  ")]
             if found and example:
                 result, name, arguments = found.groups()
-                doc = " ".join(part for part in comment if not part.startswith("  ")).strip()
+                said = dict(_MEANING.findall("\n".join(comment)))
+                prose = [part for part in comment if not part.startswith(("  ", "- "))]
+                doc = " ".join(prose).strip()
                 rows.append(
                     {
                         "name": name,
@@ -44,7 +47,7 @@ def routines() -> list[dict[str, Any]]:
                         "is_kind": False,
                         "summary": doc,
                         "doc": doc,
-                        "fields": [_field(text) for text in arguments.split(", ") if text],
+                        "fields": [_field(text, said) for text in arguments.split(", ") if text],
                         "columns": None,
                         "example": f'load "{library}"; ' + " ".join(example),
                         "signature": f"{name}({arguments})",
@@ -55,7 +58,7 @@ def routines() -> list[dict[str, Any]]:
     return rows
 
 
-def _field(text: str) -> dict[str, Any]:
+def _field(text: str, said: dict[str, str]) -> dict[str, Any]:
     found = _ARGUMENT.match(text)
     assert found is not None, text
     returned, kind, name, many = found.groups()
@@ -65,7 +68,7 @@ def _field(text: str) -> dict[str, Any]:
         "many": bool(many),
         "required": not many,
         "default": None,
-        "help": "Filled by the routine." if returned else "",
+        "help": ("Filled by the routine. " if returned else "") + said[name],
     }
 
 

@@ -159,7 +159,8 @@ def _type(field: dict[str, Any]) -> str:
 def _parameters(row: dict[str, Any]) -> list[str]:
     """The arguments as a signature has them; those that Python cannot name are by place only."""
     fields = row["fields"]
-    if not fields and not row["is_kind"]:
+    if row.get("signature"):
+        # Part of the language itself: some take any number of arguments, or words before them.
         return ["*args: object"]
     lines: list[str] = []
     by_name: list[str] = []
@@ -198,9 +199,10 @@ def _function(row: dict[str, Any]) -> str:
         made = made if made.endswith("Handle") else "AnyHandle"
     else:
         made = _RESULTS.get(row["class"], "AnyShape")
+    parameters = _parameters(row)
     lines = [f"def {row['name']}("]
-    lines += [f"    {parameter}," for parameter in _parameters(row)]
-    lines.append(f") -> {made}:")
+    lines += [f"    {parameter}," for parameter in parameters]
+    lines = [*lines, f") -> {made}:"] if parameters else [f"{lines[0]}) -> {made}:"]
     doc = page(row).rstrip().replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
     if doc.endswith('"'):
         doc += " "

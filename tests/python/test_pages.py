@@ -177,6 +177,40 @@ def test_the_reference_has_each_entry_once_in_a_group() -> None:
     assert max(len(line) for line in text.splitlines() if line.startswith("AbsPoint ")) <= 110
 
 
+def test_every_argument_in_the_reference_has_a_meaning() -> None:
+    from moldloft.language import reference
+    from moldloft.library import routines
+
+    bare = [
+        (row["name"], field["name"])
+        for row in [*reference(), *routines()]
+        for field in row["fields"]
+        if len(field["help"].removeprefix("Filled by the routine.").strip()) < 3
+    ]
+    assert not bare
+    # What a signature names in its parentheses is explained.
+    unsaid = [
+        (row["name"], word)
+        for row in reference()
+        if row.get("signature") and row["class"] != "value"
+        for word in re.findall(r"[(,] *([a-z]+)\d*(?=[,)\[])", row["signature"].split("), ")[0])
+        if word not in {field["name"] for field in row["fields"]}
+    ]
+    assert not unsaid
+
+
+def test_an_example_calls_what_it_is_the_example_of() -> None:
+    from moldloft.language import reference
+    from moldloft.library import routines
+
+    other = [
+        row["name"]
+        for row in [*reference(), *routines()]
+        if row["example"] and not re.search(rf"\b{row['name']}\b", row["example"])
+    ]
+    assert not other
+
+
 def test_examples_in_help_are_commands() -> None:
     from moldloft.cli import COMMANDS, EXAMPLES
 

@@ -194,6 +194,8 @@ impl<T: Scalar> Build<T> for Gauss<T> {
 
 /// The mean curvatures at the points of a surface, positive where it bends towards its natural
 /// normal s_i x s_j: H = (E N - 2 F M + G L) / (2 (E G - F^2)), of the bicubic spline through them.
+///
+/// Of numbers and vectors `mean` is their average: see `average`.
 #[derive(Kind)]
 #[kind(
     class = Numbers,

@@ -12,7 +12,7 @@ fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, CallError> 
     })
 }
 
-/// A vector, curve or surface shifted by a vector.
+/// A vector, curve, surface or block shifted by a vector.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -22,9 +22,9 @@ fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, CallError> 
     example = "vector p = translate({1, 0, 0}, {0, 2, 0}); assert p.y == 2;"
 )]
 pub struct Translate<T: Scalar> {
-    /// The field or set to move.
+    /// The points to shift.
     o: Shaped<T>,
-    /// By how much.
+    /// The shift.
     v: Vec3<T>,
 }
 
@@ -34,7 +34,7 @@ impl<T: Scalar> Build<T> for Translate<T> {
     }
 }
 
-/// A vector, curve or surface with its coordinates multiplied by those of a vector, or all by a
+/// A vector, curve, surface or block with its coordinates multiplied by those of a vector, or all by a
 /// number.
 #[derive(Kind)]
 #[kind(
@@ -62,7 +62,7 @@ impl<T: Scalar> Build<T> for Scale<T> {
     }
 }
 
-/// A vector, curve or surface mirrored in the plane through a point with a normal.
+/// A vector, curve, surface or block mirrored in the plane through a point with a normal.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -72,7 +72,7 @@ impl<T: Scalar> Build<T> for Scale<T> {
     example = "vector p = mirror({1, 2, 3}, {0, 0, 0}, {0, 1, 0}); assert p.y == -2;"
 )]
 pub struct Mirror<T: Scalar> {
-    /// The field or set to mirror.
+    /// The points to mirror.
     o: Shaped<T>,
     /// A point of the plane.
     p: Vec3<T>,
@@ -89,7 +89,7 @@ impl<T: Scalar> Build<T> for Mirror<T> {
     }
 }
 
-/// A vector, curve or surface turned about an axis, right-handed: rotate(o, axis, angle) about the
+/// A vector, curve, surface or block turned about an axis, right-handed: rotate(o, axis, angle) about the
 /// axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840).
 #[derive(Kind)]
 #[kind(
@@ -103,13 +103,13 @@ impl<T: Scalar> Build<T> for Mirror<T> {
                assert |q - {1, 1, 0}| < 1e-15;"
 )]
 pub struct Rotate<T: Scalar> {
-    /// The field or set to turn.
+    /// The points to turn.
     o: Shaped<T>,
     /// A point of the axis, if an angle is the fourth argument; else the direction of the axis.
     p: Vec3<T>,
-    /// Direction of the axis; or the angle.
+    /// Direction of the axis; or the angle, in radians.
     axis: Value<T>,
-    /// The angle.
+    /// The angle, in radians.
     #[field(angle)]
     angle: Option<T>,
 }

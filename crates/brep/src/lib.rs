@@ -170,6 +170,19 @@ pub struct Part {
     pub shells: Vec<Shell>,
     /// Curves that bound no face.
     pub wires: Vec<Wire>,
+    /// Points by themselves.
+    pub points: Vec<PartPoint>,
+}
+
+/// A point by itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartPoint {
+    /// Its name.
+    pub name: String,
+    /// Its colour, sRGB.
+    pub colour: Option<[u8; 3]>,
+    /// Where it is.
+    pub place: Vec3,
 }
 
 /// Faces that hang together.
@@ -222,9 +235,10 @@ impl BrepEdge {
 }
 
 impl Brep {
-    /// The largest error of its faces.
+    /// The largest error of its faces and wires.
     pub fn error(&self) -> f64 {
-        self.faces.iter().map(|f| f.error).fold(0.0, f64::max)
+        let lines = self.parts.iter().flat_map(|part| &part.wires).map(|w| w.curve.error);
+        self.faces.iter().map(|f| f.error).chain(lines).fold(0.0, f64::max)
     }
 
     /// The surface of a face as a NURBS; none for a plane.

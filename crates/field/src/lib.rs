@@ -35,10 +35,11 @@ pub use expr::primitive::{Binary, Primitive};
 pub use expr::remap::twist;
 pub use facet::memo::FacetMemo;
 pub use facet::sheets::{
-    BehindSheet, FacetWire, Mixed, Sheet, TriplePoint, behind_sheets, facet_mixed, solid_part,
+    BehindSheet, Mixed, Sheet, TriplePoint, behind_sheets, facet_mixed, solid_part,
 };
 pub use facet::shells::FacetShell;
 pub use facet::types::LeafIncidence;
+pub use facet::wires::FacetWire;
 pub use facet::{FacetOptions, Facets, Resolution, Unresolved, crossing_faces, facet, refacet};
 pub use measure::certified::{Certified, Effort, certified};
 pub use measure::implicit_derivatives::{Lifted, Lifter};

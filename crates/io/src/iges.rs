@@ -36,6 +36,12 @@ pub fn write(brep: &Brep, header: &IgesHeader<'_>) -> Result<Vec<u8>, WriteError
             let style = file.style(&wire.name, wire.colour, &wire.layers);
             file.curve(&wire.curve, true, "00000000", &style);
         }
+        for point in &part.points {
+            let style = file.style(&point.name, point.colour, &[]);
+            let mut fields: Vec<String> = point.place.to_array().map(real).into();
+            fields.push("0".into());
+            file.add(116, 0, "00000000", &style, &fields);
+        }
     }
     Ok(file.finished(brep, header))
 }

@@ -172,6 +172,8 @@ fn parts<'py>(py: Python<'py>, brep: &Brep) -> PyResult<Vec<Bound<'py, PyDict>>>
             wires.push((wire.name.clone(), wire.colour, data(py, &wire.curve)?));
         }
         dict.set_item("wires", wires)?;
+        let points = part.points.iter().map(|p| (p.name.clone(), p.colour, p.place.to_array()));
+        dict.set_item("points", points.collect::<Vec<_>>())?;
         Ok(dict)
     };
     brep.parts.iter().map(part).collect()

@@ -46,12 +46,28 @@ fn describe_builtin<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("name", builtin.name)?;
-    dict.set_item("class", "value")?;
+    dict.set_item("class", builtin.returns)?;
     dict.set_item("is_kind", false)?;
     dict.set_item("summary", builtin.doc)?;
     dict.set_item("doc", format!("{}\n\nCalled as `{}`.", builtin.doc, builtin.signature))?;
     dict.set_item("signature", builtin.signature)?;
-    dict.set_item("fields", Vec::<Bound<'py, PyDict>>::new())?;
+    let fields: PyResult<Vec<_>> = builtin
+        .help
+        .iter()
+        .map(|&(name, class, help)| {
+            let dict = PyDict::new(py);
+            dict.set_item("name", name.trim_end_matches('?'))?;
+            dict.set_item("class", class.trim_end_matches(" …"))?;
+            dict.set_item("many", class.ends_with('…'))?;
+            dict.set_item("required", !name.ends_with('?'))?;
+            for key in ["default", "min", "max"] {
+                dict.set_item(key, py.None())?;
+            }
+            dict.set_item("help", help)?;
+            Ok(dict)
+        })
+        .collect();
+    dict.set_item("fields", fields?)?;
     dict.set_item("columns", py.None())?;
     dict.set_item("example", builtin.example)?;
     Ok(dict)

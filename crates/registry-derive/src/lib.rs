@@ -113,7 +113,10 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
     let mut constants = Vec::new();
     // Fields whose count or range may only be known when an object was evaluated.
     let mut checks: Vec<usize> = Vec::new();
-    for (k, field) in fields.named.iter().enumerate() {
+    // A kind without arguments says by a `PhantomData` which scalar it is of.
+    let (markers, arguments): (Vec<_>, Vec<_>) =
+        fields.named.iter().partition(|field| is_marker(&field.ty));
+    for (k, field) in arguments.into_iter().enumerate() {
         let field_ident = field.ident.as_ref().expect("named fields have names");
         let ty = &field.ty;
         let help = doc_text(&field.attrs);
@@ -160,6 +163,10 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         ));
         constants.push(constant(field_ident));
     }
+    reads.extend(markers.iter().map(|field| {
+        let field_ident = &field.ident;
+        quote!(#field_ident: ::core::marker::PhantomData)
+    }));
     // The table entry is filled for one scalar; classes do not depend on it.
     let infos: Vec<Tokens> = infos
         .into_iter()
@@ -267,6 +274,12 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
 
         #wrap
     ))
+}
+
+/// True for `PhantomData`.
+fn is_marker(ty: &syn::Type) -> bool {
+    matches!(ty, syn::Type::Path(path)
+        if path.path.segments.last().is_some_and(|last| last.ident == "PhantomData"))
 }
 
 /// True for kinds whose parameter, of surfaces the second, is theirs to redistribute.

@@ -93,6 +93,8 @@ class Part:
     """Its shells: their faces, and whether they close."""
     wires: tuple[tuple[str, tuple[int, int, int] | None, Nurbs], ...]
     """Curves that bound no face: name, colour, curve."""
+    points: tuple[tuple[str, tuple[int, int, int] | None, tuple[float, float, float]], ...]
+    """Points by themselves: name, colour, place."""
 
 
 @dataclass(frozen=True)
@@ -140,6 +142,7 @@ def boundary(model: Model, *, accuracy: float | None = None, name: str = "model"
             part["name"],
             tuple((tuple(faces), closed) for faces, closed in part["shells"]),
             tuple((n, _rgb(colour), Nurbs._of(curve)) for n, colour, curve in part["wires"]),
+            tuple((n, _rgb(colour), tuple(at)) for n, colour, at in part["points"]),
         )
         for part in data["parts"]
     )

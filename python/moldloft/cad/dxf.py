@@ -52,6 +52,8 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
     for part in shape.parts:
         for name, colour, curve in part.wires:
             _spline(space, curve, _layer(document, name, colour))
+        for name, colour, at in part.points:
+            space.add_point(at, dxfattribs={"layer": _layer(document, name, colour)})
     if not len(space):
         raise Error("cannot write dxf: the model shows no surface and no curve")
     return saved(document)

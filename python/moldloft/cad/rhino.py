@@ -51,6 +51,9 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
         for name, colour, curve in part.wires:
             attributes = _attributes(rhino, file, layers, name, colour, ())
             file.Objects.AddCurve(_curve(rhino, curve), attributes)
+        for name, colour, at in part.points:
+            attributes = _attributes(rhino, file, layers, name, colour, ())
+            file.Objects.AddPoint(rhino.Point3d(*at), attributes)
     data: bytes = _bytes(file)
     return data
 

@@ -24,6 +24,7 @@ from moldloft.cli.console import (
     stem_of,
     water,
 )
+from moldloft.display import worst_panel
 from moldloft.errors import Error
 from moldloft.hydrostatics import Hydrostatics
 from moldloft.mesh import Mesh, Patch
@@ -397,7 +398,7 @@ def _panels_against_shape(model: Model, floating: Hydrostatics, options: argpars
 
 
 def _row(patch: Patch) -> list[str]:
-    worst = [f"{patch.quality[name]['max']:.3g}" for name in ("aspect", "skew", "warp")]
+    worst = [worst_panel(patch, name) for name in ("aspect", "skew", "warp")]
     volume = _number(patch.volume if patch.closed else None)
     counts = [str(patch.panels), str(patch.vertices)]
     return [

@@ -78,10 +78,8 @@ impl Document {
             return Some((signature(m, &routine), doc, arguments.collect()));
         }
         let builtin = BUILTINS.iter().find(|b| b.name == callee)?;
-        let inside = builtin.signature.split_once('(')?.1.trim_end_matches(')');
-        let names = inside.split(',').map(str::trim).filter(|n| !n.is_empty() && *n != "...");
-        let word = |n: &str| n.split([' ', '=', '?', '[']).next().unwrap_or(n).to_string();
-        let arguments = names.map(|n| (word(n), String::new())).collect();
+        let word = |n: &str| n.trim_end_matches('?').to_string();
+        let arguments = builtin.help.iter().map(|&(n, _, help)| (word(n), help.into())).collect();
         Some((builtin.signature.into(), builtin.doc.into(), arguments))
     }
 

@@ -60,11 +60,6 @@ pub fn add(
         SetOfBody { set: &set, over: &over, name, mesh }.add(brep, accuracy, size)?;
         return Ok(true);
     }
-    // Lines and points of a set have no faces.
-    let shown = object.value();
-    if matches!(shown, Some(Value::Body(b)) if !b.wires.is_empty() || !b.dots.is_empty()) {
-        return Ok(false);
-    }
     // All or nothing: what is refused later is triangles as a whole.
     let mut made = Brep::default();
     let solid = solid_part(&set);

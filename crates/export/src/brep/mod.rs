@@ -9,6 +9,7 @@ mod bodies;
 mod edges;
 mod faces;
 mod faceted;
+mod lines;
 mod parents;
 mod polyhedra;
 mod sketches;
@@ -104,6 +105,7 @@ pub fn brep_or_facets(
     if brep.faceted.is_empty() {
         wires::add(&mut brep, document, accuracy)?;
     }
+    lines::add(&mut brep, document, [accuracy, size], &symmetry);
     Ok((brep, refused))
 }
 
@@ -156,6 +158,12 @@ pub(crate) fn fitted(brep: &Brep, document: &Document) -> Option<Diagnostic> {
             names.push(name);
         }
     }
+    let lines = brep.parts.iter().flat_map(|part| &part.wires).filter(|w| !w.curve.exact);
+    for name in lines.map(|wire| wire.name.split('.').next().unwrap_or("")) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
     let shown = names.iter().take(NAMED).map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
     let more = match names.len().checked_sub(NAMED) {
         None | Some(0) if names.is_empty() => return None,
@@ -195,7 +203,7 @@ fn named(brep: &Brep, shells: Vec<Shell>, stem: &str) -> Result<Vec<Part>, Expor
         if *count > 1 {
             name = format!("{name} {count}");
         }
-        Part { name, shells: vec![shell], wires: Vec::new() }
+        Part { name, shells: vec![shell], ..Part::default() }
     };
     let mut parts: Vec<Part> = shells.into_iter().map(&mut part).collect();
     for cavity in cavities {

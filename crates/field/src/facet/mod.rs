@@ -28,6 +28,7 @@ mod split;
 pub(crate) mod types;
 mod unresolved;
 pub(crate) mod vertex;
+pub(crate) mod wires;
 
 use crate::error::solid_box;
 use crate::expr::form::Form;

@@ -8,6 +8,7 @@
 
 use crate::facet::padded_bounds::padded_bounds;
 use crate::facet::types::{LeafIncidence, TriangleView};
+use crate::facet::wires::{FacetWire, wires_of};
 use crate::facet::{FacetOptions, Facets, facet, facet_within};
 use crate::{FieldError, Leaf, Primitive, Set};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
@@ -25,19 +26,6 @@ pub struct Sheet {
     pub on: LeafIncidence,
     /// The number of its primitive among the leaves of `on`.
     pub own: usize,
-}
-
-/// A curve in which two sheets meet.
-#[derive(Clone, Debug)]
-pub struct FacetWire {
-    /// Its vertices in order; the first is not repeated when it is closed.
-    pub points: Vec<Vec3>,
-    /// True when it ends where it began.
-    pub closed: bool,
-    /// The numbers of its two leaves.
-    pub leaves: [usize; 2],
-    /// What its vertices lie on.
-    pub on: LeafIncidence,
 }
 
 /// A point where three sheets meet.
@@ -60,17 +48,6 @@ impl Sheet {
             patches: vec![(self.own as u32, 0..self.mesh.faces().len())],
             leaves: &self.on.leaves,
             surfaces: &self.on.surfaces,
-        }
-    }
-}
-
-impl FacetWire {
-    /// The length of its chords.
-    pub fn length(&self) -> f64 {
-        let steps = self.points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
-        match (self.closed, self.points.first(), self.points.last()) {
-            (true, Some(a), Some(b)) => steps + b.distance(*a),
-            _ => steps,
         }
     }
 }
@@ -164,12 +141,7 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &FacetOptions) -> Result<Mix
                 let pair = [leaf(a).of_sheet(), leaf(b).of_sheet()];
                 let wide = padded_bounds(over, &here, &pair);
                 let facets = facet_within(&(half(a) & half(b) & here), &wide, over, options, None)?;
-                for (chain, closed) in chains(&facets, pair) {
-                    let at = |v: &u32| facets.mesh.positions()[*v as usize];
-                    let points = chain.iter().map(at).collect();
-                    let on = lying_on(&facets, &chain);
-                    wires.push(FacetWire { points, closed, leaves: [a, b], on });
-                }
+                wires.extend(wires_of(&facets, pair, [a, b]));
             }
             for &c in thin.iter().skip(j + 1) {
                 let mut here = &with_sheets(set, &[leaf(a), leaf(b), leaf(c)]) - &solid_set;
@@ -259,7 +231,7 @@ fn lying_on(facets: &Facets, vertices: &[u32]) -> LeafIncidence {
 }
 
 /// The number of a primitive among the leaves of facets.
-fn number(facets: &Facets, f: &Primitive) -> Option<u32> {
+pub(super) fn number(facets: &Facets, f: &Primitive) -> Option<u32> {
     facets.leaves.iter().position(|l| l.primitive.same(f)).map(|k| k as u32)
 }
 
@@ -292,60 +264,6 @@ fn patch_of(
     builder.add_faces(info, faces).map_err(broken)?;
     let mesh = Mesh::new(builder.build().into(), positions).map_err(broken)?;
     Ok(Some((mesh, lying_on(facets, &used), leaf as usize)))
-}
-
-/// The edges between the faces of two primitives, chained, in the order of their lowest vertex.
-fn chains(facets: &Facets, pair: [&Primitive; 2]) -> Vec<(Vec<u32>, bool)> {
-    let [Some(a), Some(b)] = pair.map(|f| number(facets, f)) else { return Vec::new() };
-    let mut sides: HashMap<(u32, u32), u32> = HashMap::new();
-    let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
-    for (patch, &leaf) in facets.mesh.patches().iter().zip(&facets.patch_leaves) {
-        let leaf = leaf as u32;
-        if leaf != a && leaf != b {
-            continue;
-        }
-        for face in &facets.mesh.faces()[patch.faces.clone()] {
-            for k in 0..3 {
-                let (p, q) = (face[k], face[(k + 1) % 3]);
-                match sides.get(&(q, p)) {
-                    Some(&other) if other != leaf => {
-                        next.entry(p).or_default().push(q);
-                        next.entry(q).or_default().push(p);
-                    }
-                    _ => {
-                        sides.insert((p, q), leaf);
-                    }
-                }
-            }
-        }
-    }
-    let mut vertices: Vec<u32> = next.keys().copied().collect();
-    // Open chains first, from their ends.
-    vertices.sort_unstable_by_key(|v| (next[v].len() != 1, *v));
-    let mut used: HashMap<(u32, u32), ()> = HashMap::new();
-    let mut out = Vec::new();
-    for start in vertices {
-        loop {
-            let mut chain = vec![start];
-            let mut at = start;
-            while let Some(&to) = next[&at].iter().find(|&&to| !used.contains_key(&(at, to))) {
-                used.insert((at, to), ());
-                used.insert((to, at), ());
-                if to == start {
-                    break;
-                }
-                chain.push(to);
-                at = to;
-            }
-            if chain.len() < 2 {
-                break;
-            }
-            let last = chain[chain.len() - 1];
-            let closed = chain.len() > 2 && next[&last].contains(&start);
-            out.push((chain, closed));
-        }
-    }
-    out
 }
 
 /// The vertices that lie on three primitives.

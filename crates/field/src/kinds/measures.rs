@@ -185,8 +185,16 @@ fn refined<T: Real>(
         let before = found;
         found = measure(&sharp(depth, context)).map_err(|e| fault(&e))?;
         let step = (found - before).re().abs();
-        if depth > DEPTHS[0] && step <= asked.unwrap_or(ALIKE * found.re()) {
-            break;
+        let alike = asked.unwrap_or(ALIKE * found.re());
+        if depth > DEPTHS[0] && step <= alike {
+            return Ok(Value::Number(found));
+        }
+        if depth == DEPTHS[1] {
+            context.remark(
+                "accuracy-not-reached",
+                format!("the last two values differ by {step:.3e}, {alike:.3e} is asked"),
+                "give a smaller box, or a coarser accuracy",
+            );
         }
     }
     Ok(Value::Number(found))
@@ -477,7 +485,7 @@ pub struct FirstHit<T: Real> {
     set: SetArgument<T>,
     /// Start of the ray.
     start: Point<T>,
-    /// Its image.
+    /// Its direction, of any length.
     direction: Point<T>,
     /// Its length; by default through the box of the set.
     #[field(default, min = 0)]

@@ -4,6 +4,7 @@ use super::read::{NamedField, SetArgument, set, set_value};
 use crate::{Set, SetAttributes};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Point, Value};
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// What a set is made of: its solid side, a wire or a point.
@@ -143,14 +144,12 @@ impl<T: Real> Build<T> for Thin<T> {
 #[derive(Kind)]
 #[kind(class = Set, function, name = "everything", example = "set all = everything();")]
 pub struct Everything<T: Real> {
-    /// Of no meaning; a call has none.
-    #[field(default)]
-    unused: Option<T>,
+    scalar: PhantomData<T>,
 }
 
 impl<T: Real> Build<T> for Everything<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let _ = self.unused;
+        let Self { scalar: _ } = self;
         Ok(set_value(Set::everything()))
     }
 }
@@ -164,14 +163,12 @@ impl<T: Real> Build<T> for Everything<T> {
     example = "set balls = nothing(); for (i = 1:3) balls = balls | set(sphere({i, 0, 0}, 0.4));"
 )]
 pub struct Nothing<T: Real> {
-    /// Of no meaning; a call has none.
-    #[field(default)]
-    unused: Option<T>,
+    scalar: PhantomData<T>,
 }
 
 impl<T: Real> Build<T> for Nothing<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let _ = self.unused;
+        let Self { scalar: _ } = self;
         Ok(set_value(Set::nothing()))
     }
 }

@@ -16,8 +16,8 @@
 use super::moments::{Moments, POWERS};
 use super::moved::moved;
 use crate::expr::algebra::Algebra;
-use crate::facet::sheets::FacetWire;
 use crate::facet::types::TriangleView;
+use crate::facet::wires::FacetWire;
 use crate::set::Leaf;
 use crate::{Hessian, Primitive, ValueGradient};
 use moldloft_num::{Box3, Real, Vec3};

@@ -13,7 +13,11 @@ const HIGHEST_DEGREE: usize = 25;
 
 /// Refuses what readers would drop without a word.
 pub fn check(brep: &Brep, format: &'static str) -> Result<(), WriteError> {
-    let empty = brep.parts.iter().all(|p| p.shells.is_empty() && p.wires.is_empty());
+    let empty =
+        brep.parts.iter().all(|p| p.shells.is_empty() && p.wires.is_empty() && p.points.is_empty());
+    if brep.parts.iter().flat_map(|p| &p.points).any(|p| !p.place.is_finite()) {
+        return Err(WriteError::CannotHold { format, what: "a number that is not finite" });
+    }
     let positions = brep.faceted.iter().flat_map(|part| &part.positions);
     if positions.into_iter().any(|p| !p.is_finite()) {
         return Err(WriteError::CannotHold { format, what: "a number that is not finite" });
@@ -278,8 +282,12 @@ impl<'a> Shapes<'a> {
                 kind: "ADVANCED_BREP_SHAPE_REPRESENTATION",
             };
         }
-        let wires: Vec<usize> = part.wires.iter().map(|w| self.wire(file, w)).collect();
-        let set = file.add(format!("GEOMETRIC_CURVE_SET({name},{})", list(&wires)));
+        let mut items: Vec<usize> = part.wires.iter().map(|w| self.wire(file, w)).collect();
+        for p in &part.points {
+            let at = reals(p.place.to_array());
+            items.push(file.add(format!("CARTESIAN_POINT({},{at})", text(&p.name))));
+        }
+        let set = file.add(format!("GEOMETRIC_CURVE_SET({name},{})", list(&items)));
         RepresentationItems {
             items: vec![set],
             kind: "GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION",

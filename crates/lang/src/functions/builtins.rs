@@ -16,6 +16,10 @@ pub struct Builtin {
     pub signature: &'static str,
     /// What it does, in one line.
     pub doc: &'static str,
+    /// What it returns.
+    pub returns: &'static str,
+    /// Name, class and meaning of each argument; `?` behind the name of one that may be left out.
+    pub help: &'static [(&'static str, &'static str, &'static str)],
     /// A program that calls it and runs by itself.
     pub example: &'static str,
 }
@@ -55,6 +59,15 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Format,
         signature: "format(pattern, ...)",
         doc: "Formats numbers by C directives; the pattern repeats for the remaining values.",
+        returns: "text",
+        help: &[
+            (
+                "pattern",
+                "text",
+                "Text with directives as in C: %d %i %f %e %g %s, with flags and widths.",
+            ),
+            ("values", "value …", "Numbers, texts and points for the directives."),
+        ],
         example: "assert format(\"%6.2f|%d\", 2.5, 3) == \"  2.50|3\";",
     },
     Builtin {
@@ -63,6 +76,11 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Open,
         signature: "open(name, mode)",
         doc: "Opens a text file to read (\"r\"), write (\"w\") or append (\"a\"); open(7, name) chooses the unit.",
+        returns: "file",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            ("mode?", "text", "\"r\", \"w\" or \"a\"; \"r\" by default."),
+        ],
         example: "file f = open(\"a.txt\", \"w\"); write(f, 1, {2, 3, 4}); close(f);",
     },
     Builtin {
@@ -71,6 +89,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Close,
         signature: "close(f)",
         doc: "Closes a file.",
+        returns: "nothing",
+        help: &[("f", "file", "The file, or its unit.")],
         example: "open(7, \"a.txt\"); close(7);",
     },
     Builtin {
@@ -79,6 +99,11 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Write,
         signature: "write(f, ...)",
         doc: "Writes values to a file: a point or number on each line, the first index of a grid fastest.",
+        returns: "nothing",
+        help: &[
+            ("f", "file", "The file, its unit, or `stdout`."),
+            ("values", "value …", "Texts, numbers, points and arrays, each from a new line."),
+        ],
         example: "write(stdout, \"two points\", {{1, 2, 3}, {4, 5, 6}});",
     },
     Builtin {
@@ -87,6 +112,15 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Read,
         signature: "read(f, ...)",
         doc: "Reads numbers into variables or parts of them; a string takes the rest of the line.",
+        returns: "nothing",
+        help: &[
+            ("f", "file", "The file, or its unit."),
+            (
+                "variables",
+                "variable …",
+                "What is filled, in order: variables, elements and sections.",
+            ),
+        ],
         example: "open(7, \"a.txt\"); write(7, {1, 2, 3}); close(7); file f = open(\"a.txt\", \"r\"); vector v; read(f, v); assert v.z == 3;",
     },
     Builtin {
@@ -95,6 +129,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::More,
         signature: "more(c)",
         doc: "Reports whether a multiple argument, or a file, has unread items.",
+        returns: "number",
+        help: &[("c", "argument or file", "The multiple argument, or the file.")],
         example: "function float total(float x...) { float s = 0; while (more(x)) s += next(x); return s; } assert total(1, 2) == 3;",
     },
     Builtin {
@@ -103,6 +139,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Next,
         signature: "next(c)",
         doc: "The next item of a multiple argument.",
+        returns: "value",
+        help: &[("c", "argument", "The multiple argument.")],
         example: "function float second(float x...) { next(x); return next(x); } assert second(1, 2) == 2;",
     },
     Builtin {
@@ -111,6 +149,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Rewind,
         signature: "rewind(c)",
         doc: "Returns to the first item of a multiple argument, or to the start of a file.",
+        returns: "nothing",
+        help: &[("c", "argument or file", "The multiple argument, or the file.")],
         example: "function float first(float x...) { next(x); rewind(x); return next(x); } assert first(1, 2) == 1;",
     },
     Builtin {
@@ -119,6 +159,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Count,
         signature: "count(c)",
         doc: "The number of items of a multiple argument or a list; of a mask, the number of elements where it holds.",
+        returns: "number",
+        help: &[("c", "argument, list or mask", "What is counted.")],
         example: "function float n(float x...) { return count(x); } assert n(5, 6, 7) == 3;",
     },
     Builtin {
@@ -127,6 +169,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::IsSet,
         signature: "isset(a[i])",
         doc: "Reports whether a variable, or every element of a section, has a value.",
+        returns: "number",
+        help: &[("a", "variable", "The variable, element or section.")],
         example: "curve c[3]; c[1:2] = {0, 0, 0}; assert isset(c[2]) and not isset(c);",
     },
     Builtin {
@@ -135,6 +179,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Ieee,
         signature: "ieee(on)",
         doc: "Lets infinite results and NaN pass from here on, such as that of 1/0, or with 0 makes them errors again.",
+        returns: "nothing",
+        help: &[("on?", "number", "0 makes them errors again; 1 by default.")],
         example: "ieee(); float a = 1/0; assert a > 1e308; ieee(0);",
     },
     Builtin {
@@ -143,6 +189,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::CheckEdges,
         signature: "check_edges(s)",
         doc: "Stops with location and gap when the four edges of a surface are not set or do not meet.",
+        returns: "nothing",
+        help: &[("s", "surface", "The surface.")],
         example: "surface s[3,3] = {0, 0, 0}; check_edges(s);",
     },
     Builtin {
@@ -150,7 +198,9 @@ pub const BUILTINS: [Builtin; 31] = [
         arguments: (1, 1),
         action: Action::Refined,
         signature: "refined(n)",
-        doc: "n points, or more when the run is refined: intervals are halved, so that coarse points recur.",
+        doc: "`n` points, or more when the run is refined: intervals are halved, so that coarse points recur.",
+        returns: "number",
+        help: &[("n", "integer", "The number of points of the coarse run, 2 or more.")],
         example: "farray s = uniform(0, 1, refined(5));",
     },
     Builtin {
@@ -159,6 +209,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::RefinedStep,
         signature: "refined_step(ds)",
         doc: "A step per index consistent with refined(n): halved at each refinement.",
+        returns: "number",
+        help: &[("ds", "number", "The step of the coarse run.")],
         example: "farray s = d_tanh(0, 1, refined_step(.01), 0, refined(25));",
     },
     Builtin {
@@ -167,6 +219,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::Refinement,
         signature: "refinement()",
         doc: "The number of parts of each interval of refined(n): 1, 2, 4, ...",
+        returns: "number",
+        help: &[],
         example: "assert refinement() >= 1;",
     },
     Builtin {
@@ -174,7 +228,21 @@ pub const BUILTINS: [Builtin; 31] = [
         arguments: (2, usize::MAX),
         action: Action::WriteGrids(GridFormat::Plot3d),
         signature: "write_p3d(name, words, s1, s2, ...)",
-        doc: "Writes surfaces as a Plot3D file: stream, records or text; single; single-block; 2d; planes; big; iblank; mark8.",
+        doc: "Writes curves, surfaces or blocks as a Plot3D file.",
+        returns: "nothing",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            (
+                "words?",
+                "text",
+                "Variant: \"stream\", \"records\" or \"text\"; \"double\" or \"single\"; \"multi\" or \"single-block\"; \"3d\" or \"2d\"; \"whole\" or \"planes\"; \"little\" or \"big\"; \"iblank\"; \"mark8\". The first of each by default.",
+            ),
+            (
+                "s",
+                "curve, surface or block …",
+                "What is written; an farray of whole numbers behind one is its blanking.",
+            ),
+        ],
         example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", \"records single\", s); surface t = read_p3d(\"s.x\"); assert t.d1 == 3;",
     },
     Builtin {
@@ -183,6 +251,15 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::WriteGrids(GridFormat::Vts),
         signature: "write_vts(name, s1, s2, ...)",
         doc: "Writes surfaces as VTK structured grids: one .vts, or several with their .vtm.",
+        returns: "nothing",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            (
+                "s",
+                "curve, surface or block …",
+                "What is written; lists of them count as their members.",
+            ),
+        ],
         example: "surface s[3,2] = {1, 2, 3}; write_vts(\"s.vts\", s);",
     },
     Builtin {
@@ -191,6 +268,16 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::WriteGrids(GridFormat::Plot),
         signature: "plot(name, s1, s2, ...)",
         doc: "Draws curves, surfaces and blocks to a .png or .svg; plot(name, view, ...) looks from \"x\", \"-y\", \"z\", \"iso\" ...",
+        returns: "nothing",
+        help: &[
+            ("name", "text", "Name of the file, ending in .png or .svg."),
+            (
+                "view?",
+                "text",
+                "\"x\", \"y\", \"z\", \"-x\", \"-y\", \"-z\" or \"iso\"; by default the one that shows most.",
+            ),
+            ("s", "curve, surface or block …", "What is drawn."),
+        ],
         example: "curve c[30]; c.x = uniform(0, 1, 30); c.y = c.x^2; plot(\"parabola.svg\", c);",
     },
     Builtin {
@@ -199,6 +286,16 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::WriteGrids(GridFormat::Stl),
         signature: "write_stl(name, words, s1, s2, ...)",
         doc: "Writes surfaces as binary STL, facets out of the body, triangles without area at poles left out; \"flip\" reverses the normals.",
+        returns: "nothing",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            ("words?", "text", "\"flip\" reverses the normals."),
+            (
+                "s",
+                "curve, surface or block …",
+                "What is written; lists of them count as their members.",
+            ),
+        ],
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);",
     },
     Builtin {
@@ -207,6 +304,20 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::WriteGrids(GridFormat::Cgns),
         signature: "write_cgns(name, s1, s2, ...), write_cgns(name, b1, \"k1 = hull wall\", b2, ...)",
         doc: "Writes surfaces, or blocks, as structured CGNS zones with the interfaces where they have the same points; behind a block its boundaries.",
+        returns: "nothing",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            (
+                "s",
+                "curve, surface or block …",
+                "What is written; lists of them count as their members.",
+            ),
+            (
+                "faces?",
+                "text",
+                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
+            ),
+        ],
         example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s);",
     },
     Builtin {
@@ -215,6 +326,16 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::WriteGrids(GridFormat::Su2),
         signature: "write_su2(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
         doc: "Writes blocks as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.",
+        returns: "nothing",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            ("b", "block …", "What is written."),
+            (
+                "faces?",
+                "text",
+                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
+            ),
+        ],
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_su2(\"b.su2\", b, \"k1 = floor wall\");",
     },
     Builtin {
@@ -223,6 +344,16 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::WriteGrids(GridFormat::Gmsh),
         signature: "write_gmsh(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
         doc: "Writes blocks as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface.",
+        returns: "nothing",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            ("b", "block …", "What is written."),
+            (
+                "faces?",
+                "text",
+                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
+            ),
+        ],
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_gmsh(\"b.msh\", b, \"k1 = floor wall\");",
     },
     Builtin {
@@ -231,6 +362,16 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::WriteGrids(GridFormat::BlockMesh),
         signature: "write_blockmesh(name, b1, \"k1 = hull wall, j1 = plane symmetry\", b2, ...)",
         doc: "Writes blocks as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.",
+        returns: "nothing",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            ("b", "block …", "What is written."),
+            (
+                "faces?",
+                "text",
+                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
+            ),
+        ],
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh(\"blockMeshDict\", b, \"k1 = floor wall\");",
     },
     Builtin {
@@ -239,6 +380,11 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::WriteGrids(GridFormat::Csv),
         signature: "write_csv(name, c1, c2, ...)",
         doc: "Writes points as lines of x,y,z under a heading, with all digits.",
+        returns: "nothing",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            ("c", "curve or surface …", "What is written."),
+        ],
         example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); assert read_points(\"c.csv\")[2] . {1, 0, 0} == 1;",
     },
     Builtin {
@@ -246,7 +392,12 @@ pub const BUILTINS: [Builtin; 31] = [
         arguments: (1, 2),
         action: Action::ReadPlot3d,
         signature: "read_p3d(name, block)",
-        doc: "A surface or block of a Plot3D file of any variant, by its number (1).",
+        doc: "A surface or block of a Plot3D file of any variant.",
+        returns: "surface or block",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            ("block?", "integer", "Number of the block in the file; 1 by default."),
+        ],
         example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", s); assert read_p3d(\"s.x\", 1).d2 == 2;",
     },
     Builtin {
@@ -255,6 +406,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::CountPlot3d,
         signature: "count_p3d(name)",
         doc: "The number of surfaces and blocks of a Plot3D file.",
+        returns: "number",
+        help: &[("name", "text", "Name of the file, beside the program.")],
         example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", s, s); assert count_p3d(\"s.x\") == 2;",
     },
     Builtin {
@@ -262,7 +415,12 @@ pub const BUILTINS: [Builtin; 31] = [
         arguments: (1, 2),
         action: Action::ReadCgns,
         signature: "read_cgns(name, zone)",
-        doc: "A structured zone of a CGNS file (HDF5) as surface or block, by its number (1) or its name.",
+        doc: "A structured zone of a CGNS file (HDF5) as a surface or block.",
+        returns: "surface or block",
+        help: &[
+            ("name", "text", "Name of the file, beside the program."),
+            ("zone?", "integer or text", "Number or name of the zone; 1 by default."),
+        ],
         example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s); surface t = read_cgns(\"s.cgns\", \"s\"); assert t.d1 == 3;",
     },
     Builtin {
@@ -271,6 +429,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::CountCgns,
         signature: "count_cgns(name)",
         doc: "The number of zones of a CGNS file.",
+        returns: "number",
+        help: &[("name", "text", "Name of the file, beside the program.")],
         example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s, s); assert count_cgns(\"s.cgns\") == 2;",
     },
     Builtin {
@@ -279,6 +439,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::NamesCgns,
         signature: "names_cgns(name)",
         doc: "The names of the zones of a CGNS file, in their order.",
+        returns: "text list",
+        help: &[("name", "text", "Name of the file, beside the program.")],
         example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s); string names[1] = names_cgns(\"s.cgns\"); print names[1];",
     },
     Builtin {
@@ -287,6 +449,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::ReadRows(RowFormat::Points),
         signature: "read_points(name)",
         doc: "The points of a text with two or three numbers to a line, as a curve.",
+        returns: "curve",
+        help: &[("name", "text", "Name of the file, beside the program.")],
         example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); curve d = read_points(\"c.csv\");",
     },
     Builtin {
@@ -295,6 +459,8 @@ pub const BUILTINS: [Builtin; 31] = [
         action: Action::ReadRows(RowFormat::Aerofoil),
         signature: "read_aerofoil(name)",
         doc: "A section of a coordinate file in Selig's or Lednicer's listing: tail, upper side, nose, lower side, tail.",
+        returns: "curve",
+        help: &[("name", "text", "Name of the file, beside the program.")],
         example: "file f = open(\"a.dat\", \"w\"); write(f, \"a wedge\"); for (x = 1:0:-.25) write(f, format(\"%g %g\", x, .1*x)); for (x = .25:1:.25) write(f, format(\"%g %g\", x, -.1*x)); close(f); assert read_aerofoil(\"a.dat\").d1 == 9;",
     },
 ];

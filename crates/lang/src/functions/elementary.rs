@@ -289,8 +289,8 @@ pub(crate) fn apply<T: Real>(
 /// into element-wise passes.
 macro_rules! elementary {
     (
-        unary { $($u:literal, $u_doc:literal, $u_f:expr;)* }
-        binary { $($b:literal, $b_doc:literal, $x:literal, $y:literal, $b_f:expr;)* }
+        unary { $($u:literal, $u_doc:literal, $u_example:literal, $u_f:expr;)* }
+        binary { $($b:literal, $b_doc:literal, $b_example:literal, $x:literal, $y:literal, $b_f:expr;)* }
     ) => {
         /// The elementary function of that name.
         pub(crate) fn elementary<T: Real>(name: &str) -> Option<(&'static str, Elementary<T>)> {
@@ -309,7 +309,7 @@ macro_rules! elementary {
                         each($u, &args[0], &f)
                     }
                     row!($u, $u_doc, vec![argument("x", "A number, a row of numbers or a field.")],
-                        "assert sin(0) == 0;", body).cheap()
+                        $u_example, body).cheap()
                 },)*
                 $({
                     fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
@@ -317,7 +317,7 @@ macro_rules! elementary {
                     }
                     let fields =
                         vec![argument($x, "A number or a row."), argument($y, "A number or a row.")];
-                    row!($b, $b_doc, fields, "assert hypot(3, 4) == 5;", body).cheap()
+                    row!($b, $b_doc, fields, $b_example, body).cheap()
                 },)*
             ]
         }
@@ -359,32 +359,32 @@ fn quotient(a: f64, b: f64) -> f64 {
 
 elementary! {
     unary {
-        "sqrt", "Square root.", T::sqrt;
-        "sin", "Sine of an angle in radians.", T::sin;
-        "cos", "Cosine of an angle in radians.", T::cos;
-        "tan", "Tangent of an angle in radians.", T::tan;
-        "asin", "Arc sine, in radians.", T::asin;
-        "acos", "Arc cosine, in radians.", T::acos;
-        "atan", "Arc tangent, in radians.", T::atan;
-        "exp", "Exponential.", T::exp;
-        "log", "Natural logarithm.", T::ln;
-        "log10", "Logarithm to the base 10.", |x: T| x.ln() / T::from(10.0).ln();
-        "sinh", "Hyperbolic sine.", T::sinh;
-        "cosh", "Hyperbolic cosine.", T::cosh;
-        "tanh", "Hyperbolic tangent.", T::tanh;
-        "abs", "Absolute value; of a field its sheet, which has no solid side.", T::abs;
-        "s_sqrt", "sgn(x) sqrt|x|.", |x: T| if x.re() < 0.0 { -(-x).sqrt() } else { x.sqrt() };
-        "floor", "The greatest whole number that is not greater.", |x: T| step(x, f64::floor);
-        "ceil", "The least whole number that is not less.", |x: T| step(x, f64::ceil);
-        "round", "The nearest whole number; halves away from zero.", |x: T| step(x, f64::round);
-        "sign", "-1, 0 or 1.", |x: T| step(x, |x| if x == 0.0 { 0.0 } else { x.signum() });
-        "radians", "An angle given in degrees, in radians.", |x: T| x * (std::f64::consts::PI / 180.0);
-        "degrees", "An angle given in radians, in degrees.", |x: T| x * (180.0 / std::f64::consts::PI);
+        "sqrt", "Square root.", "assert sqrt(9) == 3;", T::sqrt;
+        "sin", "Sine of an angle in radians.", "assert abs(sin(PI/6) - 0.5) < 1e-15;", T::sin;
+        "cos", "Cosine of an angle in radians.", "assert cos(0) == 1;", T::cos;
+        "tan", "Tangent of an angle in radians.", "assert abs(tan(PI/4) - 1) < 1e-15;", T::tan;
+        "asin", "Arc sine, in radians.", "assert abs(asin(1) - PI/2) < 1e-15;", T::asin;
+        "acos", "Arc cosine, in radians.", "assert acos(1) == 0;", T::acos;
+        "atan", "Arc tangent, in radians.", "assert abs(atan(1) - PI/4) < 1e-15;", T::atan;
+        "exp", "Exponential.", "assert abs(exp(1) - 2.718281828459045) < 1e-15;", T::exp;
+        "log", "Natural logarithm.", "assert log(1) == 0;", T::ln;
+        "log10", "Logarithm to the base 10.", "assert abs(log10(1000) - 3) < 1e-14;", |x: T| x.ln() / T::from(10.0).ln();
+        "sinh", "Hyperbolic sine.", "assert sinh(0) == 0;", T::sinh;
+        "cosh", "Hyperbolic cosine.", "assert cosh(0) == 1;", T::cosh;
+        "tanh", "Hyperbolic tangent.", "assert tanh(0) == 0;", T::tanh;
+        "abs", "Absolute value; of a field its sheet, which has no solid side.", "assert abs(-2) == 2;", T::abs;
+        "s_sqrt", "sgn(x) sqrt|x|.", "assert s_sqrt(-4) == -2;", |x: T| if x.re() < 0.0 { -(-x).sqrt() } else { x.sqrt() };
+        "floor", "The greatest whole number that is not greater.", "assert floor(-1.5) == -2;", |x: T| step(x, f64::floor);
+        "ceil", "The least whole number that is not less.", "assert ceil(-1.5) == -1;", |x: T| step(x, f64::ceil);
+        "round", "The nearest whole number; halves away from zero.", "assert round(2.5) == 3;", |x: T| step(x, f64::round);
+        "sign", "-1, 0 or 1.", "assert sign(-7) == -1;", |x: T| step(x, |x| if x == 0.0 { 0.0 } else { x.signum() });
+        "radians", "An angle given in degrees, in radians.", "assert abs(radians(180) - PI) < 1e-15;", |x: T| x * (std::f64::consts::PI / 180.0);
+        "degrees", "An angle given in radians, in degrees.", "assert abs(degrees(PI) - 180) < 1e-13;", |x: T| x * (180.0 / std::f64::consts::PI);
     }
     binary {
-        "atan2", "Angle of the point (x, y), in radians: atan2(y, x).", "y", "x", T::atan2;
-        "hypot", "Length of (a, b).", "a", "b", |a: T, b: T| (a * a + b * b).sqrt();
-        "mod", "Remainder of a / b, with the sign of b; exact.", "a", "b", |a: T, b: T| {
+        "atan2", "Angle of the point (x, y), in radians: atan2(y, x).", "assert abs(atan2(1, -1) - 3*PI/4) < 1e-15;", "y", "x", T::atan2;
+        "hypot", "Length of (a, b).", "assert hypot(3, 4) == 5;", "a", "b", |a: T, b: T| (a * a + b * b).sqrt();
+        "mod", "Remainder of a / b, with the sign of b; exact.", "assert mod(-1, 3) == 2;", "a", "b", |a: T, b: T| {
             if T::PARTS == 1 && let Some(exact) = small_remainder(a.re(), b.re()) {
                 return T::from(exact);
             }
@@ -393,7 +393,7 @@ elementary! {
             // Derivatives are those of a - b q, the value is the exact remainder.
             if follows.is_finite() { follows - follows.re() + exact } else { T::from(exact) }
         };
-        "div", "Whole quotient of a / b, rounded down.", "a", "b", |a: T, b: T| {
+        "div", "Whole quotient of a / b, rounded down.", "assert div(-1, 3) == -1;", "a", "b", |a: T, b: T| {
             T::from(quotient(a.re(), b.re()))
         };
     }

@@ -408,7 +408,7 @@ impl SketchSession {
         let part = |(k, shell)| moldloft_brep::Part {
             name: name(k),
             shells: vec![shell],
-            wires: Vec::new(),
+            ..moldloft_brep::Part::default()
         };
         brep.parts = outer.into_iter().enumerate().map(part).collect();
         for shell in inner {
