@@ -1,9 +1,9 @@
-//! Curves without length and surfaces without area: nothing is wrong with them for the kernel, and hardly ever are
+//! Curves without length, surfaces and bodies without area: nothing is wrong with them for the kernel, and hardly ever are
 //! they meant.
 
 use moldloft_model::{Graph, Object};
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{CurveRef, Scalar, SurfaceRef, Value};
+use moldloft_registry::{CurveRef, Scalar, SurfaceRef, TriangleBody, Value};
 
 /// The ids of these remarks.
 pub const IDS: [&str; 2] = ["zero-length", "zero-area"];
@@ -23,9 +23,9 @@ pub fn remark<T: Scalar>(
     graph: &Graph<T>,
 ) -> Option<(&'static str, &'static str, &'static str)> {
     match object.value()? {
-        // A curve that is made of one point alone is meant to be one, and so are its parts.
+        // A curve that is made of one point object alone is meant to be one, and so are its parts.
         Value::Curve(curve)
-            if object.parents.len() > 1 && is_point(curve) && !is_part(object, graph) =>
+            if object.parents.len() != 1 && is_point(curve) && !is_part(object, graph) =>
         {
             Some((
                 "zero-length",
@@ -37,6 +37,11 @@ pub fn remark<T: Scalar>(
             "zero-area",
             "the surface has no area: all of it is one line or point",
             "the curves that it is made of lie on each other, or on its axis",
+        )),
+        Value::Body(body) if is_flat(body) => Some((
+            "zero-area",
+            "the body has no area: its triangles are lines or points",
+            "the points that it is made of lie in one place, or on a line",
         )),
         _ => None,
     }
@@ -67,6 +72,11 @@ fn is_line<T: Real>(surface: &SurfaceRef<T>) -> bool {
         a.cross(b).norm() <= ONE_LINE * long || a.norm().min(b.norm()) <= small
     };
     PLACES.iter().all(|u| PLACES.iter().all(|v| flat(*u, *v)))
+}
+
+fn is_flat<T: Real>(body: &TriangleBody<T>) -> bool {
+    let size = body.points.iter().map(|p| largest(p.re())).fold(0.0, f64::max);
+    !body.triangles.is_empty() && body.of_triangles.area.re() <= ONE_PLACE * size * size
 }
 
 fn largest(p: Vec3) -> f64 {

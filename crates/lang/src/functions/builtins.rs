@@ -200,7 +200,7 @@ pub const BUILTINS: [Builtin; 31] = [
         signature: "refined(n)",
         doc: "`n` points, or more when the run is refined: intervals are halved, so that coarse points recur.",
         returns: "number",
-        help: &[("n", "integer", "The number of points of the coarse run, 2 or more.")],
+        help: &[("n", "integer", "The number of points of the coarse run.")],
         example: "farray s = uniform(0, 1, refined(5));",
     },
     Builtin {
