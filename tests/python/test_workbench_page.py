@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 from collections.abc import Callable
@@ -12,6 +13,11 @@ import pytest
 
 from conftest import ROOT, SAILBOAT
 from page_in_browser import ENGINE, HULL, PLATE, Bench, File, children, needs_page
+
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
+EXAMPLES = sorted(
+    p.relative_to(ROOT / "examples").as_posix() for p in ROOT.glob("examples/*/*.sdl")
+)
 
 pytestmark = needs_page
 
@@ -318,6 +324,19 @@ def test_a_file_is_alive_without_a_server(browser: Any, cli: Any, tmp_path: Path
     page.keyboard.type("as it came")
     page.keyboard.press("Enter")
     file.until(lambda: file.hand("text()") == HULL)
+    file.close()
+
+
+@needs_engine
+@pytest.mark.skipif(not SOAK, reason="the long run")
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_example_is_alive_in_a_file(
+    name: str, browser: Any, cli: Any, tmp_path: Path
+) -> None:
+    cli("export", "--html", ROOT / "examples" / name, "-o", "alive.html")
+    file = File(tmp_path / "alive.html", browser)
+    file.running()
+    assert file.hand("items()")
     file.close()
 
 
