@@ -40,6 +40,8 @@ def test_a_drag_that_is_over_is_over(bench: Callable[..., Bench]) -> None:
         mouse.move(x + 45, y)
         b.page.keyboard.press("Escape")
         mouse.up()
+        # Before that the point may still be on its way there and back.
+        b.page.evaluate("() => window.moldloft.settled()")
         b.until(lambda at=(x, y): b.hand("project('P')") == pytest.approx(at, abs=1e-6))
         assert b.text() == POINTS
     # A flick that ends before the engine has heard of its beginning counts whole.

@@ -92,6 +92,12 @@ export class Hands {
     return [e.clientX - box.left, e.clientY - box.top]
   }
 
+  /** Settles when the engine has heard the end of every drag. */
+  async settled(): Promise<void> {
+    await this.ended
+    await this.requests.settled()
+  }
+
   get busy(): boolean {
     return this.drag !== null
   }

@@ -714,6 +714,7 @@ Object.assign(window, {
     positions: (object: string) => [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
     text: () => editor.text,
     settled: async () => {
+      await hands.settled()
       await editor.synced()
       await setting.settled()
       await writing
