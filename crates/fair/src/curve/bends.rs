@@ -22,6 +22,9 @@ const SOME: usize = 12;
 const LEAST_PIECES: usize = 2;
 const MORE_PIECES: usize = 2;
 
+/// The pieces that a turn less may take away: those beside its two inflections.
+const PIECES_OF_A_TURN: usize = 4;
+
 /// Steps of the logarithm of the data's weight, how many of them, and halvings of the last.
 const STEP: f64 = 1.4;
 const LIGHTER: usize = 8;
@@ -148,32 +151,45 @@ impl Data {
                     Err(other) => Err(other),
                 }
             };
-            // First under the weight of the goal's own curve.
-            let Some((mut made, mut counts)) = under(plain.weight, start)? else { continue };
-            if counts.pieces <= allowed {
-                if options.goal != Goal::Fairest && !near {
+            // First under the weight of the goal's own curve, unless signs cannot make its pieces few: a
+            // turn less takes some of them away.
+            let gone = own_counts.turns.saturating_sub(most) + own_counts.signs.saturating_sub(own);
+            let many = allowed.saturating_add(PIECES_OF_A_TURN * gone);
+            let hopeless = near && plain.weight > 0.0 && own_counts.pieces > many;
+            let mut made = None;
+            if !hopeless {
+                let Some((first, counts)) = under(plain.weight, start)? else { continue };
+                if counts.pieces > allowed {
+                    made = Some(first);
+                } else if options.goal == Goal::Fairest || near {
+                    return Ok(priced(first));
+                } else {
                     let then =
                         SignSearch { settled: f64::INFINITY, rounds: FEW, ..SignSearch::WHOLE };
-                    match self.with_signs(&signed, job, shape, &made.points, then) {
-                        Ok(more) if good(&more.points) => made = more,
-                        Ok(_) | Err(FairError::Shape { .. }) => {}
-                        Err(other) => return Err(other),
-                    }
+                    return match self.with_signs(&signed, job, shape, &first.points, then) {
+                        Ok(more) if good(&more.points) => Ok(priced(more)),
+                        Ok(_) | Err(FairError::Shape { .. }) => Ok(priced(first)),
+                        Err(other) => Err(other),
+                    };
                 }
-                return Ok(priced(made));
             }
             // Then less and less of it, and back half-way as long as the pieces are few.
             let (mut high, mut low) = (libm::log(plain.weight), None);
             let steps = if plain.weight > 0.0 { LIGHTER } else { 0 };
             for _ in 0..steps {
                 let weight = high - STEP;
-                let Some(tried) = under(libm::exp(weight), &made.points)? else { break };
-                ((high, made), counts) = ((weight, tried.0), tried.1);
+                let from = made.as_ref().map_or(start, |made| &made.points);
+                let Some((tried, counts)) = under(libm::exp(weight), from)? else { break };
+                (high, made) = (weight, Some(tried));
                 if counts.pieces <= allowed {
                     low = Some(weight);
                     break;
                 }
             }
+            if made.is_none() {
+                made = under(plain.weight, start)?.map(|first| first.0);
+            }
+            let Some(mut made) = made else { continue };
             let Some(mut weight) = low else {
                 found.get_or_insert(made);
                 continue;
