@@ -379,10 +379,51 @@ fn runs_above(values: &[f64], floors: &[f64]) -> usize {
     runs
 }
 
+/// The turn over a whole curve's extent, in radians, below which a curvature is that of a straight line.
+const STRAIGHT: f64 = 1e-8;
+
+/// The curvature, at each sample, that rounding of the points leaves of a straight line, or [`STRAIGHT`].
+fn straight_floors(samples: &[Sample]) -> Vec<f64> {
+    let most = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(f).fold(0.0, f64::max);
+    let extent = most(&|s| (s.point - samples[0].point).norm());
+    let rounding = 64.0 * f64::EPSILON * most(&|s| s.point.norm());
+    let mut out = vec![STRAIGHT / extent; samples.len()];
+    for span in spans_of(samples) {
+        let (first, last) = (samples[span.start].point, samples[span.end - 1].point);
+        let floor = rounding / (last - first).norm_sq().max(f64::MIN_POSITIVE);
+        out[span].iter_mut().for_each(|f| *f = f.max(floor));
+    }
+    out
+}
+
+/// A straight stretch of so many spans, at an end of half as many, is a straight run; shorter ones are those
+/// that rounded data have.
+const LONG_STRETCH: usize = 4;
+
+/// Which samples are in straight runs.
+fn in_straight_runs(samples: &[Sample]) -> Vec<bool> {
+    let floors = straight_floors(samples);
+    let mut out = vec![false; samples.len()];
+    let spans = spans_of(samples);
+    let straight: Vec<bool> =
+        spans.iter().map(|s| s.clone().all(|i| samples[i].curvature() <= floors[i])).collect();
+    let mut at = 0;
+    for run in straight.chunk_by(|a, b| a == b) {
+        let at_end = at == 0 || at + run.len() == spans.len();
+        let least = if at_end { LONG_STRETCH / 2 } else { LONG_STRETCH };
+        if run[0] && run.len() >= least {
+            out[spans[at].start..spans[at + run.len() - 1].end].fill(true);
+        }
+        at += run.len();
+    }
+    out
+}
+
 /// The number of sign changes of the curvature: how often x' x x'' turns against its last
 /// direction. Where it comes to zero and goes back there are two inflections in one place; a
-/// straight stretch is a change where it begins and where it ends. A curve that is straight within
-/// rounding has none.
+/// straight stretch is a change where it begins and where it ends. But a straight run of four spans or more (of
+/// two at an end) is no more than one change: where the curve turns the other way after it. A curve that is
+/// straight within rounding has none.
 ///
 /// On rounded data, whose second differences are often exactly zero, rounding decides whether such a
 /// place is a touch or none.
@@ -391,17 +432,27 @@ pub fn inflections(samples: &[Sample]) -> usize {
     if most(&Sample::curvature) * most(&|s| (s.point - samples[0].point).norm()) <= 1e-9 {
         return 0;
     }
+    let runs = in_straight_runs(samples);
     let mut last: Option<Vec3<f64>> = None;
     let mut changes = 0;
     // Where the curve is straight: from and to. Both sides of a knot are one place.
     let mut straight: Option<[f64; 2]> = None;
-    for s in samples {
+    // What touches a straight run at its ends is part of it.
+    let mut after_run = false;
+    for (s, &run) in samples.iter().zip(&runs) {
+        if run {
+            (straight, after_run) = (None, true);
+            continue;
+        }
         let [d1, d2, _] = s.derivatives;
         let axis = d1.cross(d2);
         if axis.norm() <= 1e-9 * d1.norm() * d2.norm() {
-            straight = Some([straight.map_or(s.t, |[from, _]| from), s.t]);
+            if !after_run {
+                straight = Some([straight.map_or(s.t, |[from, _]| from), s.t]);
+            }
             continue;
         }
+        after_run = false;
         if let Some(before) = last {
             let turned = before.dot(axis) < 0.0;
             changes += match straight {

@@ -78,17 +78,33 @@ const DEVIATIONS: f64 = 1.5;
 /// The budget of the goal `near` in a network of `count` moving points whose fairest takes `used`; none
 /// where the fairest itself is within what noise has.
 pub(crate) fn allowed<T: Real>(share: f64, used: T, count: usize) -> Option<T> {
-    let beyond = beyond(used, count) / FOREIGN;
+    let foreign = beyond(used, count) / FOREIGN;
     if count < FEWEST {
         return Some(T::from(share));
     }
-    if beyond.re() <= 0.0 {
+    if foreign.re() <= 0.0 {
         return None;
     }
-    if beyond.re() >= 1.0 || used.re() <= share {
-        return Some(T::from(share));
+    if foreign.re() >= 1.0 || used.re() <= share {
+        return Some(towards(T::from(share), STRANGE_BUDGET, strange_to(used, count)));
     }
-    Some(used + (T::from(share) - used) * beyond)
+    Some(used + (T::from(share) - used) * foreign)
+}
+
+/// From a budget to the least one by a share.
+fn towards<T: Real>(from: T, least: f64, by: T) -> T {
+    if from.re() <= least || by.re() <= 0.0 {
+        from
+    } else if by.re() >= 1.0 {
+        T::from(least)
+    } else {
+        from + by * (T::from(least) - from)
+    }
+}
+
+/// How far the points resolve nothing of what the measure does not have.
+fn strange_to<T: Real>(used: T, count: usize) -> T {
+    (beyond(used, count) - STRANGE_SURFACE) / STRANGE_WIDTH
 }
 
 /// How far what the fairest takes of the squares is beyond what noise has, give or take its deviations.
@@ -102,21 +118,11 @@ fn beyond<T: Real>(used: T, count: usize) -> T {
 /// goal's own, or where the data speak against the measure as small as [`FOREIGN_BUDGET`], and as
 /// [`STRANGE_BUDGET`] where they do so more and more.
 pub(crate) fn tightened<T: Real>(share: f64, used: T, count: usize) -> T {
-    let towards = |from: T, least: f64, by: T| {
-        if from.re() <= least || by.re() <= 0.0 {
-            from
-        } else if by.re() >= 1.0 {
-            T::from(least)
-        } else {
-            from + by * (T::from(least) - from)
-        }
-    };
     if count < FEWEST {
         return T::from(share);
     }
     let foreign = towards(T::from(share), FOREIGN_BUDGET, foreign_to(used, count));
-    let strange = (beyond(used, count) - STRANGE_SURFACE) / STRANGE_WIDTH;
-    towards(foreign, STRANGE_BUDGET, strange)
+    towards(foreign, STRANGE_BUDGET, strange_to(used, count))
 }
 
 /// How far the measure is none of the surface's: 0 where it may be, 1 where it is not.

@@ -262,7 +262,8 @@ fn near_is_nearer_to_the_truth_at_any_spacing() {
                 assert!(i <= inflections, "{here}: {i} inflections");
                 // Random places may leave out a nose: what was not read cannot be known.
                 let known = *shape != "naca0012" || kind != "random";
-                assert!(!known || off < 0.62, "{here}: rms {off} of the noise");
+                let most = if kind == "random" { 0.75 } else { 0.62 };
+                assert!(!known || off < most, "{here}: rms {off} of the noise");
                 more += usize::from(p > pieces + 2);
                 all.push(off);
             }
