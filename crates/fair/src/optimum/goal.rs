@@ -23,8 +23,8 @@ pub enum Goal {
     /// Exact data stay. In a network whose fairest takes no more of the squares than noise has, give
     /// or take half as much again as its standard deviation, the data do not speak against that, and
     /// it is taken, if these are 40 or more; the budget falls from there to the share as it takes a
-    /// quarter more. Of a grid of as many data the budget falls to 0.3 where the fairest surface takes much
-    /// more than that.
+    /// quarter more. Of a grid of as many data the budget falls to 0.3 where the fairest surface takes
+    /// more than that, and of both to 0.05 where it takes much more.
     Near(f64),
     /// The one nearest to the data (in the sum of the same squares) whose measure exceeds the least
     /// by at most this share. Data that are as fair as that do not move.
