@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -17,7 +18,8 @@ import fair_truth
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 SHAPES = {shape.__name__: shape for shape in fair_truth.SHAPES}
-EXACTLY = {"tol_gap_abs": 1e-9, "tol_gap_rel": 1e-9, "tol_feas": 1e-9}
+# Clarabel says itself when it has not reached what it was asked for.
+EXACTLY = [dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas"), e) for e in (1e-9, 1e-8, 1e-7)]
 
 
 class Stated:
@@ -49,7 +51,14 @@ class Stated:
         inside = [cp.norm(x, axis=1) <= 1]
         wanted = cp.Minimize(cp.sum_squares(rows))
         more = extra(cp, x, self) if extra else []
-        cp.Problem(wanted, [*inside, *more]).solve(solver="CLARABEL", **EXACTLY)
+        problem = cp.Problem(wanted, [*inside, *more])
+        for asked in EXACTLY:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                problem.solve(solver="CLARABEL", **asked)
+            if problem.status == "optimal":
+                break
+        assert problem.status == "optimal"
         return self.energy(self.start + from_residuals @ x.value)
 
 

@@ -101,6 +101,8 @@ def test_a_midship_section(count):
             inside = (t > at[a]) & (t < at[b - 1])
             assert np.abs(k[inside] * arc.radius - 1).max() < 0.01
             assert k.min() > -1e-7
+            # Rounding of the straight runs is no sign of curvature.
+            assert faired.after.inflections == 0
             assert arc.off < 0.05 * noise
 
 

@@ -215,7 +215,8 @@ def network(
         noise that fills the tolerances evenly, give or take one and a half of their standard
         deviations: the data do not speak against it. Where they are a quarter more the measure is
         not that of the hull, and the squares are at most ``share`` (0.3) of noise's; between the
-        two the budget is continuous. Fewer than 40 moving points do not tell: theirs is ``share``.
+        two the budget is continuous, and it falls to 0.05 where they are much more. Fewer than 40
+        moving points do not tell: theirs is ``share``.
     breaks
         Points that are intended breaks of all their curves.
     fixed

@@ -22,6 +22,9 @@ const SOME: usize = 12;
 const LEAST_PIECES: usize = 2;
 const MORE_PIECES: usize = 2;
 
+/// The pieces that a turn less takes away: on its two sides.
+const PIECES_OF_A_TURN: usize = 2;
+
 /// Steps of the logarithm of the data's weight, how many of them, and halvings of the last.
 const STEP: f64 = 1.4;
 const LIGHTER: usize = 8;
@@ -54,6 +57,15 @@ impl BendCounts {
             pieces: shape::monotone_pieces(samples, shape::UNCOUNTED),
         }
     }
+}
+
+/// A curve under signs at a weight of the data.
+enum UnderSigns {
+    Found(DataFit, BendCounts),
+    /// None was found that bends no more often than it may.
+    None,
+    /// None was looked for: without signs it has more pieces than these take away.
+    TooManyPieces,
 }
 
 /// What is known of a curve that was found without regard to its bends.
@@ -106,6 +118,11 @@ impl Data {
         let most = starts[0].0;
         let well = |counts: &BendCounts| counts.turns <= most && counts.signs <= own;
         let good = |points: &[Vec3<f64>]| well(&counted(points));
+        // Signs take turns away, and pieces with these.
+        let hopeless = |counts: &BendCounts| {
+            let gone = counts.turns.saturating_sub(most) + counts.signs.saturating_sub(own);
+            counts.pieces > allowed.saturating_add(PIECES_OF_A_TURN * gone)
+        };
         if well(&own_counts) && own_counts.pieces <= allowed {
             return Ok(plain);
         }
@@ -123,7 +140,10 @@ impl Data {
             let signed = DataOptions { shape: shape.clone(), ..options.clone() };
             // The last curve without signs: near its weight the next begins.
             let mut last = solution.clone();
-            let mut under = |weight: f64, from: &[Vec3<f64>]| -> Result<_, FairError> {
+            let mut under = |weight: f64,
+                             from: &[Vec3<f64>],
+                             anyway: bool|
+             -> Result<_, FairError> {
                 let mut lower = (plain.clone(), own_counts);
                 if weight != plain.weight {
                     let mut parts = self.parts(options, job)?;
@@ -133,7 +153,10 @@ impl Data {
                     lower = (made, counts);
                 }
                 if well(&lower.1) {
-                    return Ok(Some(lower));
+                    return Ok(UnderSigns::Found(lower.0, lower.1));
+                }
+                if !anyway && near && weight > 0.0 && hopeless(&lower.1) {
+                    return Ok(UnderSigns::TooManyPieces);
                 }
                 // No curve under signs is better than that without by its measure and its squares.
                 let least = self.weighed_value(&lower.0);
@@ -142,38 +165,58 @@ impl Data {
                 match self.with_signs(&signed, job, shape.clone(), from, search) {
                     Ok(made) => {
                         let counts = counted(&made.points);
-                        Ok(Some((made, counts)).filter(|(_, counts)| well(counts)))
+                        let good = well(&counts);
+                        Ok(if good { UnderSigns::Found(made, counts) } else { UnderSigns::None })
                     }
-                    Err(FairError::Shape { .. }) => Ok(None),
+                    Err(FairError::Shape { .. }) => Ok(UnderSigns::None),
                     Err(other) => Err(other),
                 }
             };
             // First under the weight of the goal's own curve.
-            let Some((mut made, mut counts)) = under(plain.weight, start)? else { continue };
-            if counts.pieces <= allowed {
-                if options.goal != Goal::Fairest && !near {
+            let mut made = None;
+            match under(plain.weight, start, false)? {
+                UnderSigns::None => continue,
+                UnderSigns::TooManyPieces => {}
+                UnderSigns::Found(first, counts) if counts.pieces > allowed => made = Some(first),
+                UnderSigns::Found(first, _) if options.goal == Goal::Fairest || near => {
+                    return Ok(priced(first));
+                }
+                UnderSigns::Found(first, _) => {
                     let then =
                         SignSearch { settled: f64::INFINITY, rounds: FEW, ..SignSearch::WHOLE };
-                    match self.with_signs(&signed, job, shape, &made.points, then) {
-                        Ok(more) if good(&more.points) => made = more,
-                        Ok(_) | Err(FairError::Shape { .. }) => {}
-                        Err(other) => return Err(other),
-                    }
+                    return match self.with_signs(&signed, job, shape, &first.points, then) {
+                        Ok(more) if good(&more.points) => Ok(priced(more)),
+                        Ok(_) | Err(FairError::Shape { .. }) => Ok(priced(first)),
+                        Err(other) => Err(other),
+                    };
                 }
-                return Ok(priced(made));
             }
             // Then less and less of it, and back half-way as long as the pieces are few.
             let (mut high, mut low) = (libm::log(plain.weight), None);
             let steps = if plain.weight > 0.0 { LIGHTER } else { 0 };
             for _ in 0..steps {
                 let weight = high - STEP;
-                let Some(tried) = under(libm::exp(weight), &made.points)? else { break };
-                ((high, made), counts) = ((weight, tried.0), tried.1);
+                let from = made.as_ref().map_or(start, |made| &made.points);
+                let (tried, counts) = match under(libm::exp(weight), from, false)? {
+                    UnderSigns::None => break,
+                    UnderSigns::TooManyPieces => {
+                        high = weight;
+                        continue;
+                    }
+                    UnderSigns::Found(tried, counts) => (tried, counts),
+                };
+                (high, made) = (weight, Some(tried));
                 if counts.pieces <= allowed {
                     low = Some(weight);
                     break;
                 }
             }
+            if made.is_none()
+                && let UnderSigns::Found(first, _) = under(plain.weight, start, true)?
+            {
+                made = Some(first);
+            }
+            let Some(mut made) = made else { continue };
             let Some(mut weight) = low else {
                 found.get_or_insert(made);
                 continue;
@@ -181,8 +224,8 @@ impl Data {
             high = weight + STEP;
             for _ in 0..HALVES {
                 let middle = 0.5 * (weight + high);
-                match under(libm::exp(middle), &made.points)? {
-                    Some((tried, counts)) if counts.pieces <= allowed => {
+                match under(libm::exp(middle), &made.points, false)? {
+                    UnderSigns::Found(tried, counts) if counts.pieces <= allowed => {
                         (weight, made) = (middle, tried);
                     }
                     _ => high = middle,

@@ -383,6 +383,9 @@ const SETTLED: f64 = 1e-8;
 /// How exactly curves are solved for where a change of the measure is settled: as a share of that.
 const ROUGHLY: f64 = 1e-3;
 
+/// How far a curve is pulled back towards one that has the signs, share by share.
+const PULLED: [f64; 3] = [1e-5, 1e-4, 1e-3];
+
 /// How a curve under signs is looked for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SignSearch {
@@ -558,6 +561,15 @@ impl Data {
                 other => other?,
             };
             missed = options.shape.miss(self, &made.points, slack);
+            if missed.0 > 0.0 && search.least.is_finite() {
+                // As near as that the first curve, which has the signs, may be a hair away.
+                if let Some(pulled) = self.pulled_back(&options, &made, start, slack) {
+                    let above = self.weighed_value(&pulled) - search.least;
+                    if above <= search.settled * search.least.abs() {
+                        return Ok(self.exact(&options.shape, pulled));
+                    }
+                }
+            }
             let settled = best.as_ref().is_some_and(|b| {
                 let (was, now) = (b.certificate.value, made.certificate.value);
                 (was - now).abs() <= search.settled * now.abs()
@@ -580,6 +592,32 @@ impl Data {
             }
         }
         best.ok_or(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
+    }
+
+    /// The curve a little towards one that has the signs, as far as it takes to have them, too.
+    fn pulled_back(
+        &self,
+        options: &DataOptions,
+        made: &DataFit,
+        start: &[Vec3<f64>],
+        slack: f64,
+    ) -> Option<DataFit> {
+        for share in PULLED {
+            let both = made.points.iter().zip(start);
+            let points: Vec<Vec3<f64>> = both.map(|(p, q)| *p + (*q - *p) * share).collect();
+            if options.shape.miss(self, &points, slack).0 > 0.0 {
+                continue;
+            }
+            let rows = options.measure.rows(&self.layout.space).ok()?;
+            let value = crate::measure::value(&rows, options.measure.norm(), &points);
+            let residuals = self.residuals(&points);
+            let mut pulled = DataFit { residuals, points, ..made.clone() };
+            pulled.used = self.used(&pulled.residuals);
+            pulled.certificate.gap += (value - made.certificate.value).max(0.0);
+            pulled.certificate.value = value;
+            return Some(pulled);
+        }
+        None
     }
 
     /// The optimum of a goal.

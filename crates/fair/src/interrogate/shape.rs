@@ -224,8 +224,9 @@ fn known_beside(circles: &[f64], k: usize) -> Option<f64> {
 
 /// The error of a cubic's second derivative in the square of the longest span beside a place times the
 /// fourth derivative there: an eighth is that of the straight line between its values at the knots (de Boor
-/// 2001, ch. II), the values themselves are off by as much and more where spans are uneven.
-const OWN_ERROR: f64 = 0.25;
+/// 2001, ch. II), a quarter that of these values: the equation of a knot between steps h and k is off by
+/// (h^2 - h k + k^2) / 4 of it, and its 2 on the diagonal outweighs the 1 beside.
+const OWN_ERROR: f64 = 0.375;
 
 /// The fourth derivative is that of so many spans on either side: noise of the points, whose third
 /// derivatives alternate, makes none.
@@ -261,6 +262,7 @@ fn own_errors(samples: &[Sample], spans: &[std::ops::Range<usize>], circles: &[f
         let thirds: Vec<Vec3<f64>> = run.iter().map(third).collect();
         let widths: Vec<f64> = run.iter().map(width).collect();
         let window = (2 * SMOOTH + 1).min(run.len());
+        let squares = felt(&widths);
         for (k, span) in run.iter().enumerate() {
             let Some(bend) = known_beside(circles, begin + k) else { continue };
             let first = k.saturating_sub(SMOOTH).min(run.len() - window);
@@ -268,17 +270,34 @@ fn own_errors(samples: &[Sample], spans: &[std::ops::Range<usize>], circles: &[f
             let apart =
                 widths[first..=last].iter().sum::<f64>() - 0.5 * (widths[first] + widths[last]);
             let fourth = (thirds[last] - thirds[first]).norm() / apart;
-            let beside = &widths[k.saturating_sub(1)..(k + 2).min(run.len())];
-            let longest = beside.iter().copied().fold(0.0, f64::max);
             for i in span.clone() {
                 let square = samples[i].derivatives[0].norm_sq();
                 if square > 0.0 {
                     // That of a circle, or less.
                     let fourth = (fourth / square).min(bend * bend * bend * square);
-                    out[i] = OWN_ERROR * longest * longest * fourth;
+                    out[i] = OWN_ERROR * squares[k] * fourth;
                 }
             }
         }
+    }
+    out
+}
+
+/// The most that is left of the error at a knot at the next one, by the same equations; of even knots it is
+/// 2 - sqrt(3).
+const LEFT: f64 = 0.5;
+
+/// The square of the longest span as each span feels it: whole beside it, less from knot to knot.
+fn felt(widths: &[f64]) -> Vec<f64> {
+    let last = widths.len();
+    let beside = |k: usize| &widths[k.saturating_sub(1)..(k + 2).min(last)];
+    let longest = |k: usize| beside(k).iter().copied().fold(0.0, f64::max);
+    let mut out: Vec<f64> = (0..last).map(|k| longest(k) * longest(k)).collect();
+    for k in 1..last {
+        out[k] = out[k].max(LEFT * out[k - 1]);
+    }
+    for k in (1..last).rev() {
+        out[k - 1] = out[k - 1].max(LEFT * out[k]);
     }
     out
 }
@@ -360,10 +379,51 @@ fn runs_above(values: &[f64], floors: &[f64]) -> usize {
     runs
 }
 
+/// The turn over a whole curve's extent, in radians, below which a curvature is that of a straight line.
+const STRAIGHT: f64 = 1e-8;
+
+/// The curvature, at each sample, that rounding of the points leaves of a straight line, or [`STRAIGHT`].
+fn straight_floors(samples: &[Sample]) -> Vec<f64> {
+    let most = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(f).fold(0.0, f64::max);
+    let extent = most(&|s| (s.point - samples[0].point).norm());
+    let rounding = 64.0 * f64::EPSILON * most(&|s| s.point.norm());
+    let mut out = vec![STRAIGHT / extent; samples.len()];
+    for span in spans_of(samples) {
+        let (first, last) = (samples[span.start].point, samples[span.end - 1].point);
+        let floor = rounding / (last - first).norm_sq().max(f64::MIN_POSITIVE);
+        out[span].iter_mut().for_each(|f| *f = f.max(floor));
+    }
+    out
+}
+
+/// A straight stretch of so many spans, at an end of half as many, is a straight run; shorter ones are those
+/// that rounded data have.
+const LONG_STRETCH: usize = 4;
+
+/// Which samples are in straight runs.
+fn in_straight_runs(samples: &[Sample]) -> Vec<bool> {
+    let floors = straight_floors(samples);
+    let mut out = vec![false; samples.len()];
+    let spans = spans_of(samples);
+    let straight: Vec<bool> =
+        spans.iter().map(|s| s.clone().all(|i| samples[i].curvature() <= floors[i])).collect();
+    let mut at = 0;
+    for run in straight.chunk_by(|a, b| a == b) {
+        let at_end = at == 0 || at + run.len() == spans.len();
+        let least = if at_end { LONG_STRETCH / 2 } else { LONG_STRETCH };
+        if run[0] && run.len() >= least {
+            out[spans[at].start..spans[at + run.len() - 1].end].fill(true);
+        }
+        at += run.len();
+    }
+    out
+}
+
 /// The number of sign changes of the curvature: how often x' x x'' turns against its last
 /// direction. Where it comes to zero and goes back there are two inflections in one place; a
-/// straight stretch is a change where it begins and where it ends. A curve that is straight within
-/// rounding has none.
+/// straight stretch is a change where it begins and where it ends. But a straight run of four spans or more (of
+/// two at an end) is no more than one change: where the curve turns the other way after it. A curve that is
+/// straight within rounding has none.
 ///
 /// On rounded data, whose second differences are often exactly zero, rounding decides whether such a
 /// place is a touch or none.
@@ -372,17 +432,27 @@ pub fn inflections(samples: &[Sample]) -> usize {
     if most(&Sample::curvature) * most(&|s| (s.point - samples[0].point).norm()) <= 1e-9 {
         return 0;
     }
+    let runs = in_straight_runs(samples);
     let mut last: Option<Vec3<f64>> = None;
     let mut changes = 0;
     // Where the curve is straight: from and to. Both sides of a knot are one place.
     let mut straight: Option<[f64; 2]> = None;
-    for s in samples {
+    // What touches a straight run at its ends is part of it.
+    let mut after_run = false;
+    for (s, &run) in samples.iter().zip(&runs) {
+        if run {
+            (straight, after_run) = (None, true);
+            continue;
+        }
         let [d1, d2, _] = s.derivatives;
         let axis = d1.cross(d2);
         if axis.norm() <= 1e-9 * d1.norm() * d2.norm() {
-            straight = Some([straight.map_or(s.t, |[from, _]| from), s.t]);
+            if !after_run {
+                straight = Some([straight.map_or(s.t, |[from, _]| from), s.t]);
+            }
             continue;
         }
+        after_run = false;
         if let Some(before) = last {
             let turned = before.dot(axis) < 0.0;
             changes += match straight {

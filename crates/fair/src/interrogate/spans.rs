@@ -65,7 +65,8 @@ pub(crate) fn each_span(
         }
         let knots = space.local_knots(k);
         let sample = |(share, row): &(f64, Vec<f64>)| {
-            let t = a + (b - a) * share;
+            // The end is the next span's beginning to the bit: by that spans are told apart.
+            let t = if *share == 1.0 { b } else { a + (b - a) * share };
             let mut sums = [Vec3::zero(); 4];
             let mut w = [0.0; 4];
             let basis = knots.basis_in(p, t, Order::Second);

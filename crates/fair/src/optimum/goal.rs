@@ -23,8 +23,8 @@ pub enum Goal {
     /// Exact data stay. In a network whose fairest takes no more of the squares than noise has, give
     /// or take half as much again as its standard deviation, the data do not speak against that, and
     /// it is taken, if these are 40 or more; the budget falls from there to the share as it takes a
-    /// quarter more. Of a grid of as many data the budget falls to 0.3 where the fairest surface takes much
-    /// more than that.
+    /// quarter more. Of a grid of as many data the budget falls to 0.3 where the fairest surface takes
+    /// more than that, and of both to 0.05 where it takes much more.
     Near(f64),
     /// The one nearest to the data (in the sum of the same squares) whose measure exceeds the least
     /// by at most this share. Data that are as fair as that do not move.
@@ -78,17 +78,33 @@ const DEVIATIONS: f64 = 1.5;
 /// The budget of the goal `near` in a network of `count` moving points whose fairest takes `used`; none
 /// where the fairest itself is within what noise has.
 pub(crate) fn allowed<T: Real>(share: f64, used: T, count: usize) -> Option<T> {
-    let beyond = beyond(used, count) / FOREIGN;
+    let foreign = beyond(used, count) / FOREIGN;
     if count < FEWEST {
         return Some(T::from(share));
     }
-    if beyond.re() <= 0.0 {
+    if foreign.re() <= 0.0 {
         return None;
     }
-    if beyond.re() >= 1.0 || used.re() <= share {
-        return Some(T::from(share));
+    if foreign.re() >= 1.0 || used.re() <= share {
+        return Some(towards(T::from(share), STRANGE_BUDGET, strange_to(used, count)));
     }
-    Some(used + (T::from(share) - used) * beyond)
+    Some(used + (T::from(share) - used) * foreign)
+}
+
+/// From a budget to the least one by a share.
+fn towards<T: Real>(from: T, least: f64, by: T) -> T {
+    if from.re() <= least || by.re() <= 0.0 {
+        from
+    } else if by.re() >= 1.0 {
+        T::from(least)
+    } else {
+        from + by * (T::from(least) - from)
+    }
+}
+
+/// How far the points resolve nothing of what the measure does not have.
+fn strange_to<T: Real>(used: T, count: usize) -> T {
+    (beyond(used, count) - STRANGE_SURFACE) / STRANGE_WIDTH
 }
 
 /// How far what the fairest takes of the squares is beyond what noise has, give or take its deviations.
@@ -99,16 +115,14 @@ fn beyond<T: Real>(used: T, count: usize) -> T {
 }
 
 /// The budget of the goal `near` of a grid of `count` pulling data whose fairest surface takes `used`: the
-/// goal's own, or where the data speak against the measure as small as [`FOREIGN_BUDGET`].
+/// goal's own, or where the data speak against the measure as small as [`FOREIGN_BUDGET`], and as
+/// [`STRANGE_BUDGET`] where they do so more and more.
 pub(crate) fn tightened<T: Real>(share: f64, used: T, count: usize) -> T {
-    let foreign = foreign_to(used, count);
-    if share <= FOREIGN_BUDGET || foreign.re() <= 0.0 {
+    if count < FEWEST {
         return T::from(share);
     }
-    if foreign.re() >= 1.0 {
-        return T::from(FOREIGN_BUDGET);
-    }
-    T::from(share) + foreign * (FOREIGN_BUDGET - share)
+    let foreign = towards(T::from(share), FOREIGN_BUDGET, foreign_to(used, count));
+    towards(foreign, STRANGE_BUDGET, strange_to(used, count))
 }
 
 /// How far the measure is none of the surface's: 0 where it may be, 1 where it is not.
@@ -123,15 +137,22 @@ fn foreign_to<T: Real>(used: T, count: usize) -> T {
     }
 }
 
-/// From where the measure is none of a surface's, beyond what noise has, and where it is none at all. Of 48
-/// grids of six hulls the smaller budget is the better one from 1.6 to 1.7 of the squares on; the parallel
-/// bodies, which the goal's own takes farther from the truth than their data, are at 1.67 to 2.11.
-const FOREIGN_SURFACE: f64 = 0.4;
-const FOREIGN_WIDTH: f64 = 0.15;
+/// From where the measure is none of a surface's, beyond what noise has, and how far it goes until it is none at
+/// all. Of 64 grids of eight hulls the best budget is 0.8 up to 0.2 beyond, 0.5 at 0.3 and 0.4, and 0.3 to 0.5 at
+/// 0.5 and 0.6; the goal's own takes parallel bodies farther from the truth than their data.
+const FOREIGN_SURFACE: f64 = 0.25;
+const FOREIGN_WIDTH: f64 = 0.3;
 
 /// The budget of a surface whose data the measure does not have: with that of others a hull with a parallel
 /// body ends farther from the truth than its data.
 const FOREIGN_BUDGET: f64 = 0.3;
+
+/// From where the points do not resolve what the measure does not have, and how far it goes until hardly
+/// anything may move, with the budget there: of the same grids the best is 0.1 to 0.3 at 0.8, 0.03 to 0.15 from
+/// 1 on.
+const STRANGE_SURFACE: f64 = 0.55;
+const STRANGE_WIDTH: f64 = 0.4;
+const STRANGE_BUDGET: f64 = 0.05;
 
 /// The weight of data beside the measure of their own curve where the nearest of a shape is wanted.
 const CLOSEST: f64 = 1e6;
@@ -321,7 +342,7 @@ where
             {
                 foreign = foreign_to(squares / mean, self.count);
                 let own = tightened(share, squares / mean, self.count);
-                between = own != share && own != FOREIGN_BUDGET;
+                between = ![share, FOREIGN_BUDGET, STRANGE_BUDGET].contains(&own);
                 Goal::Near(own)
             }
             other => other,

@@ -19,6 +19,9 @@ const SHOWS: f64 = 1e-7;
 /// Newton steps without a better certificate after which it will not get better.
 const MOST_IDLE: usize = 6;
 
+/// The step, as a share of Newton's, that moves nothing.
+const STUCK: f64 = 1e-9;
+
 /// The same as long as the conditions are not met.
 const MOST_TRIALS: usize = 12;
 
@@ -892,7 +895,12 @@ pub(crate) fn solve<const D: usize>(
             // The matrix has no digits left: what was reached before stands.
             break;
         }
-        state.step(&corrected, (longest * 0.99).min(1.0));
+        let by = (longest * 0.99).min(1.0);
+        state.step(&corrected, by);
+        if by < STUCK {
+            // What is left is rounding.
+            idle = MOST_ITERATIONS;
+        }
         let missed = state.missed();
         let (value, gap) = state.certificate();
         if !(value.is_finite() && gap.is_finite()) {

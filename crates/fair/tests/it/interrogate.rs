@@ -77,7 +77,7 @@ fn circles_have_one_piece_at_any_places() {
         turns.dedup_by(|a, b| *a - *b < 2e-3);
         let longest = turns.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
         // Spans of more than that are not resolved.
-        let whole = (1.0 + 4.5 * (0.5 + random.centred())).min(0.9 / longest);
+        let whole = (1.0 + 4.5 * (0.5 + random.centred())).min(0.7 / longest);
         let count = |shape: &dyn Fn(f64) -> Vec3<f64>| {
             let points: Vec<_> = turns.iter().map(|t| shape(whole * t)).collect();
             let at = parameters(&points, ParameterSpacing::Chord, false).unwrap();
@@ -108,8 +108,26 @@ fn circles_have_one_piece_at_any_places() {
             assert!((4..=5).contains(&found), "{wide} {n}: {found}");
             let jitter = &mut |k| if k == 0 || k == n { 0.0 } else { 0.7 * random.centred() };
             let found = oval(wide, n, jitter);
-            assert!((3..=6).contains(&found), "{wide} {n}, jitter: {found}");
+            // So few places leave spans that do not tell an oval so round from a circle.
+            let least = if wide < 1.1 && n < 40 { 1 } else { 4 };
+            assert!((least..=7).contains(&found), "{wide} {n}, jitter: {found}");
         }
+    }
+    // At places at random a long span is felt beyond the knots beside it. Spans that leave out what makes an
+    // oval one show fewer pieces, tips between far points more.
+    for wide in [1.02, 1.1, 1.5] {
+        let (n, draws) = (80, rounds / 2);
+        let mut more = 0;
+        for _ in 0..draws {
+            let mut turns: Vec<f64> = (0..n).map(|_| 0.5 + random.centred()).collect();
+            turns.sort_by(f64::total_cmp);
+            turns.dedup_by(|a, b| *a - *b < 2e-3);
+            let last = turns.len() - 1;
+            (turns[0], turns[last]) = (0.0, 1.0);
+            let found = oval(wide, last, &mut |k| turns[k] * last as f64 - k as f64);
+            more += usize::from(found > 7);
+        }
+        assert!(20 * more <= draws, "{wide} {n}, random: {more} of {draws}");
     }
 }
 
