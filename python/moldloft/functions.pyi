@@ -3299,7 +3299,8 @@ def rotate(
     angle: _Number | None = ...,
 ) -> AnyShape:
     """A vector, curve or surface turned about an axis, right-handed: rotate(o, axis, angle) about the
-    axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840).
+    axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840). Quarter turns are
+    exact: those of multiples of PI/2.
 
     Parameters
     ----------
@@ -3333,7 +3334,7 @@ def revolve(
     `a0` to `a1`.
 
     A point (x, y, z) becomes (x, y cos a - z sin a, y sin a + z cos a). Points on the axis stay there
-    exactly: the surface has a pole.
+    exactly: the surface has a pole. Lines at multiples of PI/2 lie exactly in the planes of the axes.
 
     Parameters
     ----------

@@ -7,12 +7,13 @@ use crate::functions::block_files::{CgnsBlocks, NamedBlock, face_names, joined, 
 use crate::functions::builtins::{GridFormat, RowFormat};
 use crate::functions::plots::plot;
 use crate::run::interpreter::{Interpreter, silent};
+use crate::run::usage;
 use crate::source::module::Module;
 use crate::value::variables;
 use moldloft_diag::Diagnostic;
 use moldloft_grid::FaceNames;
 use moldloft_io::plot3d::{self, Laid, Variant};
-use moldloft_io::{StructuredGrid, hexahedra, points, section, stl, vtk};
+use moldloft_io::{StructuredGrid, WriteError, hexahedra, points, section, stl, vtk};
 use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value, Vectors};
@@ -255,7 +256,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Ok(())
             }
             GridFormat::Plot => {
-                let bytes = plot(&path, &words, &blocks, &names).map_err(|d| {
+                let budget = self.inputs.budget;
+                let bytes = plot(&path, &words, &blocks, &names, budget).map_err(|d| {
                     let place = if d.id == "unknown-word" { words_at } else { at_name };
                     d.or_at(place)
                 })?;
@@ -263,8 +265,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             GridFormat::Stl => {
                 let flip = nothing_of(&words, "flip")?;
-                let bytes =
-                    stl::write_grids(&blocks, stem(&path), flip).map_err(|e| at(cannot(e)))?;
+                let budget = self.inputs.budget;
+                let go_on = || !budget.is_spent();
+                let bytes = stl::write_grids(&blocks, stem(&path), flip, &go_on);
+                let bytes = bytes.map_err(|e| match budget.poll() {
+                    Err(reason) if e == WriteError::Ended => at(usage::spent(reason)),
+                    _ => at(cannot(e)),
+                })?;
                 self.env.files.put(&path, bytes).map_err(at)
             }
             GridFormat::Cgns => {
