@@ -204,6 +204,29 @@ impl<T: Real> Numbers<T> {
     }
 }
 
+/// One array takes at most this share of the memory that is allowed: a statement on it has several more such arrays
+/// under way.
+const SHARE_OF_MEMORY: u64 = 16;
+
+/// Whether one array may have so many elements of that many numbers.
+///
+/// # Errors
+/// How many it may have, in words.
+pub fn within_share(count: f64, numbers: u64) -> Result<(), String> {
+    let allowed = moldloft_budget::limits().memory;
+    let most = allowed / SHARE_OF_MEMORY / (8 * numbers);
+    if count <= most as f64 {
+        return Ok(());
+    }
+    let gib = allowed as f64 / f64::from(1 << 30);
+    Err(format!(
+        "at most {most} elements, which take a sixteenth of the {gib:.2} GiB that are allowed"
+    ))
+}
+
+/// How to have greater arrays.
+pub const MORE_MEMORY: &str = "allow more: `--limit memory=8G`, `moldloft.limits(memory=...)`";
+
 /// Numbers as a value.
 pub fn numbers<T: Real>(shape: ArrayShape, items: Vec<T>) -> Value<T> {
     Value::Numbers(Arc::new(Array { shape, items }))
@@ -268,9 +291,13 @@ pub fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
     })
 }
 
-/// The points of coordinates that are arrays of one shape, or single numbers beside them: `{x, y, 0}`.
+/// The points of coordinates that are arrays of one shape, with single numbers beside them: `{x, y, 0}`.
 fn by_coordinates<T: Real>(items: &[Value<T>]) -> Option<Value<T>> {
     let [x, y, z] = items else { return None };
+    // Three rows in braces of their own are those of a grid.
+    if !items.iter().any(|v| matches!(v, Value::Number(_))) {
+        return None;
+    }
     let [x, y, z] = [&*gathered(x), &*gathered(y), &*gathered(z)];
     let shape = |v: &Value<T>| if let Value::Numbers(a) = v { Some(a.shape) } else { None };
     let all = [x, y, z].into_iter().find_map(shape)?;

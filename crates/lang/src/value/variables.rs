@@ -2,16 +2,13 @@
 
 use crate::value::blocks;
 use crate::value::subarray::{ArraySection, Place, picked, put, put_all};
+use moldloft_arrays::{MORE_MEMORY, within_share};
 use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
 use moldloft_syntax::sdl::Type;
 use std::sync::Arc;
-
-/// One array takes at most this share of the memory that is allowed: a statement on it has several more such arrays
-/// under way.
-const SHARE_OF_MEMORY: u64 = 16;
 
 /// Ints are smaller: from here on neighbours share their digits.
 pub const MOST_INT: f64 = 9_007_199_254_740_992.0;
@@ -221,17 +218,12 @@ pub fn has_room<T>(ty: Type, count: f64, budget: &Budget) -> Result<u64, Diagnos
         Type::String => 8,
         _ => 3,
     };
-    let allowed = moldloft_budget::limits().memory;
-    let most = allowed / SHARE_OF_MEMORY / (8 * numbers);
-    if count > most as f64 {
-        let gib = allowed as f64 / f64::from(1 << 30);
-        return Err(Diagnostic::error("too-many-elements", "the array is too large")
-            .expected(format!(
-                "at most {most} elements, which take a sixteenth of the {gib:.2} GiB that are allowed"
-            ))
+    within_share(count, numbers).map_err(|most| {
+        Diagnostic::error("too-many-elements", "the array is too large")
+            .expected(most)
             .found(format!("{count}"))
-            .help("allow more: `--limit memory=8G`, `moldloft.limits(memory=...)`"));
-    }
+            .help(MORE_MEMORY)
+    })?;
     // And a byte for whether it was given a value.
     let bytes = count as u64 * (numbers * size_of::<T>() as u64 + 1);
     match budget.grow(bytes) {
