@@ -624,7 +624,7 @@ impl<'a> Semantics<'a> {
                 Type::Curve => m.program[items].iter().all(|item| point(*item)),
                 _ => false,
             };
-            return (row && items.len() > 0).then(|| vec![items.len() as f64]);
+            return (row && !items.is_empty()).then(|| vec![items.len() as f64]);
         }
         let symbol = m.program.as_name(bare)?;
         self.declared(place, symbol)?.dims.clone()
