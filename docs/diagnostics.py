@@ -80,13 +80,16 @@ def examples() -> dict[str, tuple[str, str]]:
 
 @contextlib.contextmanager
 def _elsewhere() -> Iterator[None]:
-    here = Path.cwd()
+    here, before = Path.cwd(), moldloft.limits()
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
+        # What messages say of memory is the same on every machine.
+        moldloft.limits(memory="4G")
         try:
             yield
         finally:
             os.chdir(here)
+            moldloft.limits(**before._asdict())
 
 
 def raised(language: str, text: str) -> list[tuple[str, str]]:

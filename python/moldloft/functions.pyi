@@ -3319,7 +3319,7 @@ def revolve(
     `a0` to `a1`.
 
     A point (x, y, z) becomes (x, y cos a - z sin a, y sin a + z cos a). Points on the axis stay there
-    exactly: the surface has a pole.
+    exactly: the surface has a pole. Lines at multiples of PI/2 lie exactly in the planes of the axes.
 
     Parameters
     ----------

@@ -1,11 +1,11 @@
-"""Damaged inputs for every reader and odd arguments for every public callable, by the thousand.
+"""Damaged inputs for every reader, odd arguments for every public callable, damaged programs, by the thousand.
 
-    python tests/python/campaign.py [--cases 1000000] [--calls 100000] [--seconds 10] [--memory 2]
+    python tests/python/campaign.py [--cases 1000000] [--calls 100000] [--programs 100000] [--seconds 10] [--memory 2]
 
 A child process, which may use so many GiB in all, reads one case after the other; a case is named by
 its number, and made from it. What is neither done nor refused by a right error within so many seconds
 of the processor, or ends the process, is printed, and the exit status is 1. `--show NUMBER` (with
-`--calls 0` or `--cases 0`) prints one case.
+the counts of the two other kinds 0) prints one case.
 """
 
 # Seeds are a line each.
@@ -21,6 +21,7 @@ import math
 import mmap
 import os
 import random
+import re
 import struct
 import subprocess
 import sys
@@ -440,6 +441,91 @@ def call(world: World, rng: random.Random, note: Callable[[str], None]) -> None:
         function(*arguments, **named)
 
 
+def program_texts() -> list[str]:
+    """Programs: those of the corpus, sound ones more often, the libraries, the examples in the array language."""
+    texts = []
+    for path in sorted((ROOT / "tests" / "corpus" / "run").glob("*.sdl")):
+        for case in path.read_text(encoding="utf-8").split("#### ")[1:]:
+            lines = case.splitlines()[1:]
+            text = "\n".join(line for line in lines if not line.startswith("#"))
+            texts += [text] * (1 if "#> error" in case else 4)
+    for folder in ("crates/lang/sdl", "examples/missile", "examples/wing"):
+        texts += [p.read_text(encoding="utf-8") for p in sorted((ROOT / folder).glob("*.sdl"))]
+    return texts
+
+
+#: What is put into programs besides their own words.
+INSERTED = (
+    "1e9", "-1", "0", "1/0", '""', "{", "}", "(", ")", ";", "[", "]", ".x", ".d1", "for (i = 1:3)", "A", "|", "while (1)",
+    "returned", "{1, 2, 3}", "foreach (q in a)", "1e308", "function f", "...", ":", "sqrt(-1)", "sort(a)", "tfi(s)",
+    "farray a[1e6]", "surface s[300, 300]", "block b[9, 9, 9]", "ieee();", "return", "break;", "where(a > 0, a, 1)",
+)  # fmt: skip
+
+
+def _sort(word: str) -> str:
+    """What may stand for a word without a change of grammar."""
+    if word.isdigit():
+        return "number"
+    if word.isidentifier():
+        return "name"
+    return "operator" if word in "+-*/^<>" else word
+
+
+def damaged_program(world: World, rng: random.Random, note: Callable[[str], None]) -> None:
+    """One program with words changed, run, read off and differentiated."""
+    import moldloft
+
+    texts = world.once("programs", program_texts)
+    text = rng.choice(texts)
+    if rng.random() < 0.3:
+        text += "\n" + rng.choice(texts)
+    words = re.findall(r"\w+|\s+|.", text, re.DOTALL) or [" "]
+    # Half of them keep their grammar: numbers, names and operators become others.
+    mild = rng.random() < 0.5
+    for _ in range(rng.choice((1, 1, 2, 3, 6))):
+        at, other = rng.randrange(len(words)), rng.randrange(len(words))
+        if mild:
+            like = [k for k, word in enumerate(words) if _sort(word) == _sort(words[at])]
+            numbers = rng.random() < 0.5 and words[at].isdigit()
+            words[at] = (
+                rng.choice(("0", "1", "2", "3", "7", "60", "1000"))
+                if numbers
+                else words[rng.choice(like)]
+            )
+            continue
+        what = rng.randrange(6)
+        if what == 0:
+            del words[at]
+        elif what == 1:
+            words[at], words[other] = words[other], words[at]
+        elif what == 2:
+            words.insert(at, rng.choice(INSERTED))
+        elif what == 3:
+            words[at] = rng.choice(INSERTED)
+        elif what == 4:
+            words[at] = words[other]
+        else:
+            words[at:at] = words[other : other + rng.randrange(30)]
+        words = words or [" "]
+    text = "".join(words)
+    note(text[:20_000])
+    model = moldloft.loads(text, strict=False)
+    wrong = [d for d in model.diagnostics if d.id == "internal-error"]
+    if wrong:
+        raise AssertionError(str(wrong[0]))
+    named = list(model.params)[:1]
+    for name in ("x", "a", "c", "s"):
+        try:
+            model.eval(name)
+            for parameter in named:
+                model.derivative(f"max(|{name}|)", parameter)
+        except moldloft.Error as error:
+            if "internal-error" in str(error):
+                raise
+    if model.has_errors:
+        raise moldloft.Error("refused")
+
+
 def cases(kind: str, world: World) -> Callable[[int, Callable[[str], None]], str]:
     """What runs a case by its number and names whose it is."""
     if kind == "calls":
@@ -449,6 +535,13 @@ def cases(kind: str, world: World) -> Callable[[int, Callable[[str], None]], str
             return "call"
 
         return one_call
+    if kind == "programs":
+
+        def one_program(number: int, note: Callable[[str], None]) -> str:
+            damaged_program(world, random.Random(f"program {number}"), note)
+            return "program"
+
+        return one_program
     every = readers(world)
     names = [name for name, reader in every.items() for _ in range(reader.share)]
 
@@ -473,6 +566,8 @@ def work(kind: str, first: int, count: int, memory: int, seconds: float, board: 
     import moldloft
 
     moldloft.limits(memory=memory << 29, seconds=seconds / 2)
+    if kind == "programs":
+        moldloft.limits(steps=1_000_000)
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     with tempfile.TemporaryDirectory(dir="/dev/shm" if Path("/dev/shm").is_dir() else None) as name:
         os.chdir(name)
@@ -546,7 +641,7 @@ def _batches(first: int, count: int, size: int) -> Iterator[tuple[int, int]]:
 def campaign(
     kind: str, first: int, count: int, *, memory: int = 2, seconds: float = 10, size: int = 20_000
 ) -> Outcome:
-    """Runs cases (``readers`` or ``calls``) in children and gathers what became of them."""
+    """Runs cases (``readers``, ``calls`` or ``programs``) in children and gathers what became of them."""
     found = Outcome()
     waiting = list(_batches(first, count, size))
     environment = {**os.environ, "RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
@@ -596,7 +691,7 @@ def campaign(
 
 
 def main() -> int:
-    """Runs both campaigns."""
+    """Runs the campaigns."""
     if sys.argv[1:2] == ["--work"]:
         kind, first, count, memory, seconds, board = sys.argv[2:]
         work(kind, int(first), int(count), int(memory), float(seconds), board)
@@ -604,6 +699,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--cases", type=int, default=1_000_000)
     parser.add_argument("--calls", type=int, default=100_000)
+    parser.add_argument("--programs", type=int, default=100_000)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--memory", type=int, default=2, help="GiB in all")
     parser.add_argument("--seconds", type=float, default=10, help="of the processor, for each case")
@@ -613,10 +709,15 @@ def main() -> int:
         with tempfile.TemporaryDirectory() as name:
             world = World(Path(name))
             os.chdir(name)
-            cases("readers" if options.cases else "calls", world)(options.show, print)
+            shown = "readers" if options.cases else "calls" if options.calls else "programs"
+            cases(shown, world)(options.show, print)
         return 0
     faults = 0
-    for kind, count in (("readers", options.cases), ("calls", options.calls)):
+    for kind, count in (
+        ("readers", options.cases),
+        ("calls", options.calls),
+        ("programs", options.programs),
+    ):
         if count:
             found = campaign(
                 kind, options.first, count, memory=options.memory, seconds=options.seconds

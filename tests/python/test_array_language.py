@@ -437,3 +437,128 @@ def test_code_that_is_not_executed_is_judged(text: str, ids: set[str]) -> None:
     model = moldloft.loads(text)
     assert {d.id for d in model.diagnostics} == ids, model.diagnostics
     assert all(d.primary for d in model.diagnostics) if ids else True
+
+
+def braces(a: Array) -> str:
+    """An array of any depth in braces."""
+    return spelled(a) if a.ndim == 0 else "{" + ", ".join(map(braces, a)) + "}"
+
+
+def test_rows_in_braces_are_the_array_that_numpy_makes_of_them() -> None:
+    rng = random.Random(12)
+    for _ in range(1500 if SOAK else 150):
+        m, n = rng.randint(1, 4), rng.randint(1, 4)
+        a = row(rng, m * n).reshape(m, n)
+        s, t = (row(rng, m * n * 3).reshape(m, n, 3) for _ in range(2))
+        text = f"farray a = {braces(a)}, b[{m}, {n}]; b = {braces(a)}; surface s = {braces(s)}, t[{m}, {n}] = {braces(t)};\n"
+        # Rows that are variables; a row of one number is written with a comma's worth of list.
+        text += "".join(f"curve c{i}; c{i} = s[{i + 1},];\n" for i in range(m))
+        text += f"surface u = {{{', '.join(f'c{i}' for i in range(m))}}};\n"
+        text += "surface v = s; v[,] = u + t; v[1:1,] = {c0}; farray z = (s - t).z;\n"
+        text += f"farray w[{m}, {n}]; for (i = 1:{m}) w[i,] = a[i,]; surface x = s; x.y = {braces(a)};\n"
+        text += (
+            f"farray sums = sum({braces(a)}, axis = 1);\n" if n != 3 and (m, n) != (3, 1) else ""
+        )
+        model = moldloft.loads(text)
+        both = s + t
+        both[0] = s[0]
+        high = s.copy()
+        high[..., 1] = a
+        want = {
+            "a": a,
+            "b": a,
+            "s": s,
+            "t": t,
+            "u": s,
+            "v": both,
+            "w": a,
+            "z": (s - t)[..., 2],
+            "x": high,
+        }
+        if "sums" in text:
+            want["sums"] = a.sum(axis=0)
+        for name, value in want.items():
+            assert np.array_equal(model[name], value), (name, text)
+
+
+def test_coordinates_may_be_rows_and_numbers() -> None:
+    rng = random.Random(13)
+    for _ in range(100):
+        n = rng.randint(2, 6)
+        parts = [rng.choice((row(rng, n), np.array(rng.randint(-9, 9) / 4))) for _ in range(3)]
+        if all(p.ndim == 0 for p in parts):
+            continue
+        text = "".join(
+            f"farray p{k} = list({', '.join(map(spelled, p))}); "
+            for k, p in enumerate(parts)
+            if p.ndim
+        )
+        point = ", ".join(f"p{k}" if p.ndim else spelled(float(p)) for k, p in enumerate(parts))
+        model = moldloft.loads(
+            f"{text}curve c = {{{point}}}, d[{n}]; d = {{{point}}}; d += {{{point}}};"
+        )
+        want = np.stack(np.broadcast_arrays(*parts), axis=-1)
+        assert np.array_equal(model["c"], want) and np.array_equal(model["d"], 2 * want)
+
+
+def test_rows_of_texts_go_by_element() -> None:
+    rng = random.Random(14)
+    for _ in range(100):
+        n = rng.randint(1, 5)
+        a, b = (["".join(rng.choices("abc", k=rng.randint(0, 3))) for _ in range(n)] for _ in "ab")
+        one = rng.choice(a)
+        text = "".join(
+            f"string {name}[{n}]; "
+            + "".join(f'{name}[{k + 1}] = "{t}"; ' for k, t in enumerate(row))
+            for name, row in (("a", a), ("b", b))
+        )
+        for k, op in enumerate(COMPARISONS):
+            text += f'farray m{k} = a {op} b, n{k} = a {op} "{one}"; '
+        text += f'print a + b; print "{one}" + a;'
+        model = moldloft.loads(text)
+        for k, holds in enumerate(COMPARISONS.values()):
+            assert np.array_equal(model[f"m{k}"], holds(np.array(a), np.array(b)).astype(float))
+            assert np.array_equal(model[f"n{k}"], holds(np.array(a), one).astype(float))
+        assert model.printed[0] == "{" + ", ".join(x + y for x, y in zip(a, b, strict=True)) + "}"
+        assert model.printed[1] == "{" + ", ".join(one + x for x in a) + "}"
+
+
+def test_quarter_turns_are_exact_and_have_derivatives() -> None:
+    head = 'load "stdsubs.sdl"\n'
+    for k in range(-9, 10):
+        a = k * (np.pi / 2)
+        model = moldloft.loads(
+            f"{head}param float a = {a!r}; farray c = axis_cos(list(a, a + 0.3)), s = axis_sin(list(a, a + 0.3));"
+            "vector v = rotate({1, 2, 3}, {0, 0, 1}, a); surface r = revolve({{1, 2, 3}, {2, 5, 1}}, a, a + 1, 2);"
+        )
+        exact = [(1, 0), (0, 1), (-1, 0), (0, -1)][k % 4]
+        assert (model["c"][0], model["s"][0]) == exact
+        assert (model["c"][1], model["s"][1]) == pytest.approx(
+            (np.cos(a + 0.3), np.sin(a + 0.3)), abs=1e-15
+        )
+        assert np.array_equal(model["v"], [exact[0] - 2 * exact[1], exact[1] + 2 * exact[0], 3])
+        assert np.array_equal(
+            model["r"][0, 0], [1, 2 * exact[0] - 3 * exact[1], 2 * exact[1] + 3 * exact[0]]
+        )
+        assert (
+            model.derivative("c[1]", "a") == -exact[1] and model.derivative("s[1]", "a") == exact[0]
+        )
+        assert model.derivative("s[2]", "a") == pytest.approx(np.cos(a + 0.3), abs=1e-14)
+        assert model.derivative("v.x", "a") == -exact[1] - 2 * exact[0]
+
+
+def test_what_is_printed_can_be_read_again() -> None:
+    rng = random.Random(15)
+    for _ in range(60):
+        m, n = rng.randint(1, 4), rng.randint(1, 5)
+        s = np.array([rng.uniform(-9, 9) * 10 ** rng.randint(-30, 30) for _ in range(3 * m * n)])
+        s = s.reshape(m, n, 3)
+        text = "".join(
+            f"s[{i + 1}, {j + 1}] = {braces(s[i, j])}; " for i in range(m) for j in range(n)
+        )
+        model = moldloft.loads(f"surface s[{m}, {n}]; {text} print s; print s.x; print s[1,];")
+        whole, x, line = model.printed
+        assert len(whole.splitlines()) == len(x.splitlines()) == m
+        again = moldloft.loads(f"surface s = {whole}; farray x = {x}; curve c = {line};")
+        assert np.array_equal(again["s"], s)
+        assert np.array_equal(again["x"], s[..., 0]) and np.array_equal(again["c"], s[0])

@@ -76,9 +76,28 @@ def run(tmp_path: Path, text: str, **limits: float) -> tuple[list[str], int]:
         (PATCH + "RuledSurf s(l, n, divisions = {30000, 30000});", ["too-many-panels"]),
         (PATCH + "RuledSurf s(l, n, divisions = {4000, 4000});", ["out-of-memory"]),
         ("surface s[100000, 100000];", ["too-many-elements"]),
+        ("".join(f"curve c{k}[1e6]; " for k in range(2000)), ["out-of-memory"]),
+        (
+            "subroutine f(int n) { farray a[1e6]; a[1] = n; if (n > 0) { f(n - 1); } } f(2000);",
+            ["out-of-memory"],
+        ),
+        ("string s[1e7];", ["too-many-elements"]),
         ("#" + "a" * (65 << 20), ["file-too-large"]),
     ],
-    ids=["objects", "steps", "prints", "calls", "cells", "panels", "mesh", "elements", "text"],
+    ids=[
+        "objects",
+        "steps",
+        "prints",
+        "calls",
+        "cells",
+        "panels",
+        "mesh",
+        "elements",
+        "arrays",
+        "calls",
+        "texts",
+        "text",
+    ],
 )
 def test_what_grows_without_end_is_refused(tmp_path: Path, text: str, ids: list[str]) -> None:
     # The usual limit of steps is seconds of compiled loops, on an unoptimised build more.

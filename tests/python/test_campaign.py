@@ -27,7 +27,8 @@ HULL = (Path(__file__).parents[2] / "examples" / "sailboat" / "hull.sdl").read_t
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of address space")
 @pytest.mark.parametrize(
-    ("kind", "quick", "long"), [("readers", 700, 10**6), ("calls", 1000, 10**5)]
+    ("kind", "quick", "long"),
+    [("readers", 700, 10**6), ("calls", 1000, 10**5), ("programs", 300, 10**5)],
 )
 def test_nothing_ends_the_process_or_raises_another_error(kind: str, quick: int, long: int) -> None:
     found = campaign(kind, 0, long if SOAK else quick)

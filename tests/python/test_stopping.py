@@ -30,6 +30,15 @@ CASES = {
     "elliptic block": BLOCK + " block c = elliptic_block(b, 1000000, 1e-300);",
     "march": 'load "naca.sdl" curve c[641]; naca4s(c, 0, 0, 12); c = c[::-1]; while (1) surface g = hyperbolic(c, geometric(0, 20, 1e-6, 300), "i1 periodic");',
     "march of a surface": "surface s[100,100]; for (i = 1:100) for (j = 1:100) s[i,j] = {i, j, 3*sin(i/9)*cos(j/7)}; while (1) block b = hyperbolic(s, geometric(0, 50, .001, 150));",
+    "curvature of a large surface": f"surface s[1400,1400]; {ROWS.format(1400)} while (1) farray k = gauss(s);",
+    "solid": f'surface s[1500,1500]; {ROWS.format(1500)} while (1) write_stl("a.stl", s);',
+    "picture": f'surface s[900,900]; {ROWS.format(900)} while (1) plot("a.png", s);',
+    "drawing": f'surface s[900,900]; {ROWS.format(900)} while (1) plot("a.svg", s);',
+    "grid file": f'surface s[1000,1000]; {ROWS.format(1000)} while (1) write_p3d("a.x", "text", s);',
+    "block file": BLOCK
+    + ' block c = b; while (1) write_gmsh("a.msh", b, c + {0, 0, 99}, c + {99, 0, 0});',
+    "table": 'curve c[1000000]; c.x = uniform(0, 1, 1000000); while (1) write_csv("a.csv", c);',
+    "grid file read": f'surface s[1500,1500]; {ROWS.format(1500)} write_p3d("a.x", s); while (1) surface t = read_p3d("a.x");',
     "report": BLOCK + " while (1) string t = report(b);",
     "section grid": 'load "naca.sdl" curve c[321]; naca4s(c, 0, 0, 12); while (1) surface g = c_grid(c, geometric(0, 20, 1e-5, 100), 10, 60);',
 }

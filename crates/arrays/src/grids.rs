@@ -1,6 +1,6 @@
 //! Structured grids: interpolated from edges and faces, smoothed, measured.
 
-use crate::value::{GridArg, Points, surface};
+use crate::value::{GridArg, Points, gathered, surface};
 use moldloft_budget::Budget;
 use moldloft_grid::{
     Blend, Elliptic, Faces, FailureCause, GridError, GridSide, Hyperbolic, MarchBoundary, Method,
@@ -278,7 +278,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             Some(surface) => Some((&**surface, on_surface(&grid, surface)?)),
             None if plane(&grid) => None,
             None => {
-                own = through(&grid, Self::S)?;
+                own = through(&grid, Self::S, &context.budget)?;
                 let (m, n) = (grid.m, grid.n);
                 let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
                 let u = (0..m * n).map(|k| even(k / n, m)).collect();
@@ -394,11 +394,21 @@ fn plane<T: Real>(grid: &SurfaceGrid<T>) -> bool {
 }
 
 /// The spline surface through the points, even in the indices.
-fn through<T: Real>(grid: &SurfaceGrid<T>, field: FieldId) -> Result<GridSpline<T>, CallError> {
+fn through<T: Real>(
+    grid: &SurfaceGrid<T>,
+    field: FieldId,
+    budget: &Budget,
+) -> Result<GridSpline<T>, CallError> {
     let knots = |n: usize| (0..n).map(|k| T::from(k as f64 / (n - 1) as f64)).collect();
     let ends = Ends::Open(End::NotAKnot, End::NotAKnot);
-    GridSpline::bicubic(knots(grid.m), knots(grid.n), grid.points().collect(), ends)
-        .map_err(|error| crate::spline::fault(error, "point", [field, field]))
+    let points = grid.points().collect();
+    let go_on = || !budget.is_spent();
+    GridSpline::bicubic_while(knots(grid.m), knots(grid.n), points, [ends, ends], &go_on)
+        .map_err(|error| crate::spline::fault(error, "point", [field, field]))?
+        .ok_or_else(|| match budget.poll() {
+            Err(spent) => fault(spent.into(), field),
+            Ok(()) => unreachable!("what is spent stays so until the run has ended"),
+        })
 }
 
 /// The parameters of the points of a surface nearest to those of a grid, which must lie on it.
@@ -467,8 +477,12 @@ pub struct HyperbolicGrid<T: Scalar> {
 impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let heights = self.heights.row().map_err(|fault| fault.in_field(Self::HEIGHTS))?;
+        let start = gathered(&self.s);
         let is_curve =
-            matches!(&self.s, Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)));
+            matches!(&*start, Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)));
+        if let Value::Vectors(a) = &*start {
+            extended(&a.planes, Self::S)?;
+        }
         let options = Hyperbolic {
             heights,
             sides: sides(&self.sides, is_curve, Self::SIDES)?,
@@ -477,7 +491,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
         };
         let marched = if is_curve {
             let Points(curve) =
-                Points::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+                Points::from_value(&start).map_err(|fault| fault.in_field(Self::S))?;
             let support: Box<dyn Support<T>> = match &self.on {
                 Some(surface) => {
                     let side = self.normal.map(|normal| normal.re());
@@ -501,7 +515,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
                     .in_field(Self::ON));
             }
             let GridArg(grid) =
-                GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+                GridArg::from_value(&start).map_err(|fault| fault.in_field(Self::S))?;
             hyperbolic_until(&grid, &options, &context.budget)
         };
         let marched = marched.map_err(|error| match error {
@@ -646,7 +660,8 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         if let Value::List(layers) = &self.s {
             let block = crate::volumes::volume(layers, Self::S)?;
-            return crate::volumes::quality(&block, &self.metric, Self::METRIC);
+            let budget = &context.budget;
+            return crate::volumes::quality(&block, &self.metric, Self::METRIC, budget);
         }
         let metric = metric(&self.metric, Self::METRIC)?;
         let GridArg(grid) =
@@ -680,7 +695,9 @@ pub struct Folds<T: Scalar> {
 impl<T: Scalar> Build<T> for Folds<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         if let Value::List(layers) = &self.s {
-            let count = crate::volumes::folded(&crate::volumes::volume(layers, Self::S)?);
+            let block = crate::volumes::volume(layers, Self::S)?;
+            let count = crate::volumes::folded(&block, &context.budget)
+                .map_err(|spent| fault(spent.into(), Self::S))?;
             return Ok(Value::Number(T::from(count as f64)));
         }
         let GridArg(grid) =
@@ -712,7 +729,9 @@ impl<T: Scalar> Build<T> for Report<T> {
         use std::fmt::Write;
         if let Value::List(layers) = &self.s {
             let block = crate::volumes::volume(layers, Self::S)?;
-            return Ok(Value::text(&crate::volumes::report(&block)));
+            let text = crate::volumes::report(&block, &context.budget)
+                .map_err(|spent| fault(spent.into(), Self::S))?;
+            return Ok(Value::text(&text));
         }
         let GridArg(grid) =
             GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
@@ -758,7 +777,7 @@ pub fn jets<T: Real>(
     if grid.m.min(grid.n) < 3 {
         return Err(fault(GridError::TooFew { expected: 3, actual: [grid.m, grid.n] }, field));
     }
-    let spline = through(grid, field)?;
+    let spline = through(grid, field, budget)?;
     let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
     let (m, n) = (grid.m, grid.n);
     let mut all = Vec::with_capacity(m * n);

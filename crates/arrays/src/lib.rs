@@ -30,7 +30,7 @@ mod spline;
 mod value;
 mod volumes;
 
-pub use value::{gathered, type_name};
+pub use value::{MORE_MEMORY, gathered, type_name, within_share};
 
 use moldloft_registry::Row;
 use moldloft_registry::export::StaticRow;

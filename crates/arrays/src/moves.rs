@@ -3,6 +3,23 @@
 use crate::value::{Points, Shaped, vectors};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Scalar, Value};
+use std::f64::consts::FRAC_PI_2;
+
+/// Cosine and sine, exact on the axes: of whole quarter turns, as doubles spell them, 0, 1 or -1.
+fn cos_sin<T: Real>(angle: T) -> [T; 2] {
+    let quarters = (angle.re() / FRAC_PI_2).round();
+    let rest = angle - quarters * FRAC_PI_2;
+    if rest.re() != 0.0 {
+        return [angle.cos(), angle.sin()];
+    }
+    let (c, s) = (rest.cos(), rest.sin());
+    match quarters.rem_euclid(4.0) as u8 {
+        0 => [c, s],
+        1 => [-s, c],
+        2 => [-c, -s],
+        _ => [s, -c],
+    }
+}
 
 fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, CallError> {
     v.normalized().ok_or_else(|| {
@@ -90,7 +107,8 @@ impl<T: Scalar> Build<T> for Mirror<T> {
 }
 
 /// A vector, curve, surface or block turned about an axis, right-handed: rotate(o, axis, angle) about the
-/// axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840).
+/// axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840). Quarter turns are
+/// exact: those of multiples of PI/2.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -129,7 +147,7 @@ impl<T: Scalar> Build<T> for Rotate<T> {
             }
         };
         let k = direction(axis, field)?;
-        let (sin, cos) = (angle.sin(), angle.cos());
+        let [cos, sin] = cos_sin(angle);
         Ok(self.o.mapped(|r| {
             let d = r - p;
             p + d * cos + k.cross(d) * sin + k * (k.dot(d) * (-cos + 1.0))
@@ -141,7 +159,7 @@ impl<T: Scalar> Build<T> for Rotate<T> {
 /// `a0` to `a1`.
 ///
 /// A point (x, y, z) becomes (x, y cos a - z sin a, y sin a + z cos a). Points on the axis stay there
-/// exactly: the surface has a pole.
+/// exactly: the surface has a pole. Lines at multiples of PI/2 lie exactly in the planes of the axes.
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -168,10 +186,7 @@ impl<T: Scalar> Build<T> for Revolve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (points, n) = (self.curve.0, self.n);
         let angles: Vec<[T; 2]> = (0..n)
-            .map(|j| {
-                let a = self.a0 + (self.a1 - self.a0) * (j as f64 / (n - 1) as f64);
-                [a.cos(), a.sin()]
-            })
+            .map(|j| cos_sin(self.a0 + (self.a1 - self.a0) * (j as f64 / (n - 1) as f64)))
             .collect();
         let mut all = Vec::with_capacity(points.len() * n);
         for p in &points {

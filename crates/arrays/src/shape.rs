@@ -1,6 +1,6 @@
 //! Arrays made of arrays: turned round, joined, spread, stacked.
 
-use crate::value::{Items, Points, farray, gathered, vectors};
+use crate::value::{Items, MORE_MEMORY, Points, farray, gathered, vectors, within_share};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value,
@@ -160,7 +160,7 @@ pub struct SpreadI<T: Scalar> {
 impl<T: Scalar> Build<T> for SpreadI<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (m, n) = (row_of(&self.a, Self::A)?, self.n);
-        grid(m, n, Self::N)?;
+        grid(&self.a, [m, n], Self::N)?;
         Ok(self.a.picked(ArrayShape::Grid(m, n), |k| k / n))
     }
 }
@@ -185,21 +185,22 @@ pub struct SpreadJ<T: Scalar> {
 impl<T: Scalar> Build<T> for SpreadJ<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (n, m) = (row_of(&self.a, Self::A)?, self.m);
-        grid(m, n, Self::M)?;
+        grid(&self.a, [m, n], Self::M)?;
         Ok(self.a.picked(ArrayShape::Grid(m, n), |k| k % n))
     }
 }
 
 /// Refuses grids too large to hold.
-fn grid(m: usize, n: usize, field: FieldId) -> Result<(), CallError> {
-    const MOST: usize = 50_000_000;
-    if m.saturating_mul(n) <= MOST {
-        return Ok(());
-    }
-    Err(CallError::new("too-large", format!("a grid [{m},{n}] is too large"))
-        .expected(format!("at most {MOST} elements"))
-        .found(format!("{}", m as f64 * n as f64))
-        .in_field(field))
+fn grid<T>(of: &Items<T>, [m, n]: [usize; 2], field: FieldId) -> Result<(), CallError> {
+    let numbers = if matches!(of, Items::Vectors(_)) { 3 } else { 1 };
+    let count = m as f64 * n as f64;
+    within_share(count, numbers).map_err(|most| {
+        CallError::new("too-large", format!("a grid [{m},{n}] is too large"))
+            .expected(most)
+            .found(format!("{count}"))
+            .help(MORE_MEMORY)
+            .in_field(field)
+    })
 }
 
 /// The farray of these numbers.

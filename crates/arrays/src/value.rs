@@ -73,10 +73,10 @@ impl<T: Scalar> FromValue<T> for Farray<T> {
     const CLASS: Class = Class::Number;
     const MANY: bool = true;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
-        let (shape, items) = match value {
+        let (shape, items) = match &*gathered(value) {
             Value::Numbers(a) => (a.shape, a.items.clone()),
-            other => {
-                let items: Vec<T> = FromValue::from_value(other)?;
+            _ => {
+                let items: Vec<T> = FromValue::from_value(value)?;
                 (ArrayShape::Row(items.len()), items)
             }
         };
@@ -105,7 +105,7 @@ impl<T> Farray<T> {
 impl<T: Scalar> FromValue<T> for VectorArray<T> {
     const CLASS: Class = Class::Vectors;
     fn from_value(value: &Value<T>) -> Result<Self, CallError> {
-        let (shape, items) = match value {
+        let (shape, items) = match &*gathered(value) {
             Value::Vectors(a) => (a.shape, a.points()),
             Value::List(items) => {
                 let each = |(k, v): (usize, &Value<T>)| {
@@ -114,7 +114,7 @@ impl<T: Scalar> FromValue<T> for VectorArray<T> {
                 let points = items.iter().enumerate().map(each).collect::<Result<Vec<_>, _>>()?;
                 (ArrayShape::Row(points.len()), points)
             }
-            other => return wrong("a curve or a surface", other),
+            _ => return wrong("a curve or a surface", value),
         };
         match items.iter().position(|p| !p.is_finite()) {
             Some(index) => Err(not_finite(index)),
@@ -204,6 +204,29 @@ impl<T: Real> Numbers<T> {
     }
 }
 
+/// One array takes at most this share of the memory that is allowed: a statement on it has several more such arrays
+/// under way.
+const SHARE_OF_MEMORY: u64 = 16;
+
+/// Whether one array may have so many elements of that many numbers.
+///
+/// # Errors
+/// How many it may have, in words.
+pub fn within_share(count: f64, numbers: u64) -> Result<(), String> {
+    let allowed = moldloft_budget::limits().memory;
+    let most = allowed / SHARE_OF_MEMORY / (8 * numbers);
+    if count <= most as f64 {
+        return Ok(());
+    }
+    let gib = allowed as f64 / f64::from(1 << 30);
+    Err(format!(
+        "at most {most} elements, which take a sixteenth of the {gib:.2} GiB that are allowed"
+    ))
+}
+
+/// How to have greater arrays.
+pub const MORE_MEMORY: &str = "allow more: `--limit memory=8G`, `moldloft.limits(memory=...)`";
+
 /// Numbers as a value.
 pub fn numbers<T: Real>(shape: ArrayShape, items: Vec<T>) -> Value<T> {
     Value::Numbers(Arc::new(Array { shape, items }))
@@ -219,7 +242,8 @@ pub fn farray<T: Real>(items: Vec<T>) -> Value<T> {
     numbers(ArrayShape::Row(items.len()), items)
 }
 
-/// A list of numbers, of vectors, or of rows of equal length, as the array that it spells; anything else as it is.
+/// A list of numbers, of vectors, of rows of equal length, or of three coordinates of which one at least is an array,
+/// as the array that it spells; anything else as it is.
 pub fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
     let Value::List(items) = value else { return Cow::Borrowed(value) };
     let all_numbers: Option<Vec<T>> = items
@@ -240,6 +264,9 @@ pub fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
     if let Some(items) = all_vectors.filter(|items| !items.is_empty()) {
         return Cow::Owned(vectors(ArrayShape::Row(items.len()), items));
     }
+    if let Some(points) = by_coordinates(items) {
+        return Cow::Owned(points);
+    }
     let mut width = None;
     let mut row = |shape: ArrayShape| match shape {
         ArrayShape::Row(n) if width.is_none_or(|width| width == n) => {
@@ -250,7 +277,7 @@ pub fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
     };
     let (mut flat, mut points) = (Vec::new(), Vec::new());
     for item in items.iter() {
-        match item {
+        match &*gathered(item) {
             Value::Numbers(a) if points.is_empty() && row(a.shape) => flat.extend(&a.items),
             Value::Vectors(a) if flat.is_empty() && row(a.shape) => points.extend(a.points()),
             _ => return Cow::Borrowed(value),
@@ -262,6 +289,24 @@ pub fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
         true => numbers(shape, flat),
         false => vectors(shape, points),
     })
+}
+
+/// The points of coordinates that are arrays of one shape, with single numbers beside them: `{x, y, 0}`.
+fn by_coordinates<T: Real>(items: &[Value<T>]) -> Option<Value<T>> {
+    let [x, y, z] = items else { return None };
+    // Three rows in braces of their own are those of a grid.
+    if !items.iter().any(|v| matches!(v, Value::Number(_))) {
+        return None;
+    }
+    let [x, y, z] = [&*gathered(x), &*gathered(y), &*gathered(z)];
+    let shape = |v: &Value<T>| if let Value::Numbers(a) = v { Some(a.shape) } else { None };
+    let all = [x, y, z].into_iter().find_map(shape)?;
+    let plane = |v: &Value<T>| match v {
+        Value::Number(x) => Some(vec![*x; all.count()]),
+        Value::Numbers(a) if a.shape == all => Some(a.items.clone()),
+        _ => None,
+    };
+    Some(Value::Vectors(Arc::new(Planes { shape: all, planes: [plane(x)?, plane(y)?, plane(z)?] })))
 }
 
 /// A vector, a curve or a surface: what is moved keeps its shape.

@@ -2,9 +2,10 @@
 
 use crate::grids::fault;
 use crate::value::{GridArg, surface};
+use moldloft_budget::{Budget, Spent};
 use moldloft_grid::{
     BlockMetric, EllipticVolume, FaceWall, GridFace, HexMesh, SurfaceGrid, VolumeGrid,
-    block_quality, elliptic_volume_until,
+    block_quality_until, elliptic_volume_until,
 };
 use moldloft_registry::{
     ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value,
@@ -33,17 +34,21 @@ pub fn volume<T: Scalar>(layers: &[Value<T>], field: FieldId) -> Result<VolumeGr
 }
 
 /// The number of cells of a block that are turned over at a corner.
-pub fn folded<T: Scalar>(grid: &VolumeGrid<T>) -> usize {
-    let quality = grid.cell_quality();
+///
+/// # Errors
+/// What the budget is spent on.
+pub fn folded<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<usize, Spent> {
+    let quality = grid.cell_quality_until(budget)?;
     // A left-handed block has all its corners the other way.
     let hand = if grid.re().volume() < 0.0 { -1.0 } else { 1.0 };
     let turned = |[jacobian, _]: &&[f64; 2]| !(jacobian * hand > 0.0);
     if hand > 0.0 {
-        return quality.iter().filter(turned).count();
+        return Ok(quality.iter().filter(turned).count());
     }
     let [ni, nj, nk] = grid.size;
     let mirrored = VolumeGrid::from_fn([ni, nj, nk], |i, j, k| grid.at(ni - 1 - i, j, k));
-    mirrored.cell_quality().iter().filter(|[jacobian, _]| !(*jacobian > 0.0)).count()
+    let quality = mirrored.cell_quality_until(budget)?;
+    Ok(quality.iter().filter(|[jacobian, _]| !(*jacobian > 0.0)).count())
 }
 
 /// A metric of the cells of a block, layer by layer.
@@ -51,6 +56,7 @@ pub fn quality<T: Scalar>(
     grid: &VolumeGrid<T>,
     word: &str,
     field: FieldId,
+    budget: &Budget,
 ) -> Result<Value<T>, CallError> {
     let Some(metric) = BlockMetric::ALL.into_iter().find(|metric| metric.word() == word) else {
         let words: Vec<String> =
@@ -61,7 +67,7 @@ pub fn quality<T: Scalar>(
             .found(format!("\"{word}\""))
             .in_field(field));
     };
-    let values = block_quality(grid, metric);
+    let values = block_quality_until(grid, metric, budget).map_err(|s| fault(s.into(), field))?;
     let [ci, cj, ck] = grid.size.map(|n| n - 1);
     let layer = |k: usize| {
         let values = (0..ci * cj).map(|cell| values[cell * ck + k]).collect();
@@ -71,10 +77,14 @@ pub fn quality<T: Scalar>(
 }
 
 /// The figures of a block, by the rules of OpenFOAM's checkMesh and beyond them.
-pub fn report<T: Scalar>(grid: &VolumeGrid<T>) -> String {
+///
+/// # Errors
+/// What the budget is spent on.
+pub fn report<T: Scalar>(grid: &VolumeGrid<T>, budget: &Budget) -> Result<String, Spent> {
     let [ni, nj, nk] = grid.size;
-    let check = HexMesh::of_blocks(std::slice::from_ref(grid), &[]).check();
-    let turned = folded(grid);
+    let mesh = HexMesh::of_blocks_until(std::slice::from_ref(grid), &[], budget)?;
+    let check = mesh.check_until(budget)?;
+    let turned = folded(grid, budget)?;
     let mut text = format!("block [{ni},{nj},{nk}], {turned} folded cells\n");
     let (_, nc, kc) = (ni - 1, nj - 1, nk - 1);
     let cell = check.jacobian.1;
@@ -95,7 +105,7 @@ pub fn report<T: Scalar>(grid: &VolumeGrid<T>) -> String {
         "volumes {:e} to {:e}, least Jacobian in cell {place:?}",
         check.volume[0], check.volume[1]
     );
-    text
+    Ok(text)
 }
 
 /// A block, given as the list of its layers, smoothed by the elliptic equations; its faces stay. The value is the
@@ -193,7 +203,8 @@ impl<T: Scalar> Build<T> for EllipticBlock<T> {
             }
             context.remark("not-converged", text, "allow more sweeps, or a wider tolerance");
         }
-        let turned = folded(&done.grid);
+        let turned = folded(&done.grid, &context.budget)
+            .map_err(|spent| fault(spent.into(), Self::LAYERS))?;
         if turned > 0 {
             return Err(CallError::new("folded-grid", format!("{turned} cells are folded"))
                 .expected("cells that are not turned over")

@@ -1,6 +1,7 @@
 //! Measures of the cells of a block.
 
 use crate::VolumeGrid;
+use moldloft_budget::{Budget, Spent};
 use moldloft_num::{Real, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -58,9 +59,29 @@ type Cell<T> = [[[Vec3<T>; 2]; 2]; 2];
 /// Corners at edges without length, which poles have, do not count. A left-handed block is measured as its mirror
 /// image.
 pub fn block_quality<T: Real>(grid: &VolumeGrid<T>, metric: BlockMetric) -> Vec<T> {
+    measured(grid, metric, &|| Ok(())).expect("nothing ends it")
+}
+
+/// As [`block_quality`]; ends early when `budget` is spent.
+///
+/// # Errors
+/// What it is spent on.
+pub fn block_quality_until<T: Real>(
+    grid: &VolumeGrid<T>,
+    metric: BlockMetric,
+    budget: &Budget,
+) -> Result<Vec<T>, Spent> {
+    measured(grid, metric, &|| budget.poll())
+}
+
+fn measured<T: Real>(
+    grid: &VolumeGrid<T>,
+    metric: BlockMetric,
+    go_on: &dyn Fn() -> Result<(), Spent>,
+) -> Result<Vec<T>, Spent> {
     let size = grid.size.map(|n| n.saturating_sub(1));
     let [ci, cj, ck] = size;
-    let hand = if grid.re().volume() < 0.0 { -1.0 } else { 1.0 };
+    let hand = if grid.re().volume_while(go_on)? < 0.0 { -1.0 } else { 1.0 };
     let cell = |[i, j, k]: [usize; 3]| -> Cell<T> {
         std::array::from_fn(|a| {
             std::array::from_fn(|b| std::array::from_fn(|c| grid.at(i + a, j + b, k + c)))
@@ -69,6 +90,7 @@ pub fn block_quality<T: Real>(grid: &VolumeGrid<T>, metric: BlockMetric) -> Vec<
     let mut all = Vec::with_capacity(ci * cj * ck);
     for i in 0..ci {
         for j in 0..cj {
+            go_on()?;
             for k in 0..ck {
                 let at = [i, j, k];
                 let here = cell(at);
@@ -98,7 +120,7 @@ pub fn block_quality<T: Real>(grid: &VolumeGrid<T>, metric: BlockMetric) -> Vec<
             }
         }
     }
-    all
+    Ok(all)
 }
 
 /// The edges at a corner, away from it, along i, j and k.

@@ -2,6 +2,7 @@
 
 use crate::surface_grid::SAME;
 use crate::{GridFace, VolumeGrid};
+use moldloft_budget::{Budget, Spent};
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
 
@@ -48,17 +49,38 @@ impl HexMesh {
     /// The mesh of blocks, whose nodes are one where they coincide to 1e-10 of the size; left-handed blocks are
     /// turned over. What is not a face of two cells is boundary.
     pub fn of_blocks<T: Real>(blocks: &[VolumeGrid<T>], names: &[FaceNames]) -> Self {
-        let (points, numbers) = shared_nodes(blocks);
+        Self::joined(blocks, names, &|| Ok(())).expect("nothing ends it")
+    }
+
+    /// As [`Self::of_blocks`]; ends early when `budget` is spent.
+    ///
+    /// # Errors
+    /// What it is spent on.
+    pub fn of_blocks_until<T: Real>(
+        blocks: &[VolumeGrid<T>],
+        names: &[FaceNames],
+        budget: &Budget,
+    ) -> Result<Self, Spent> {
+        Self::joined(blocks, names, &|| budget.poll())
+    }
+
+    fn joined<T: Real>(
+        blocks: &[VolumeGrid<T>],
+        names: &[FaceNames],
+        go_on: &dyn Fn() -> Result<(), Spent>,
+    ) -> Result<Self, Spent> {
+        let (points, numbers) = nodes_while(blocks, go_on)?;
         let mut cells = Vec::new();
         let mut sides: Vec<(Vec<usize>, [usize; 4], Option<(String, String)>)> = Vec::new();
         for (b, block) in blocks.iter().enumerate() {
             let plain = block.re();
             let [ni, nj, nk] = plain.size;
             let ids = &numbers[b];
-            let left_handed = plain.volume() < 0.0;
+            let left_handed = plain.volume_while(go_on)? < 0.0;
             let last = [ni, nj, nk].map(|n| n.saturating_sub(1));
             for i in 0..last[0] {
                 for j in 0..last[1] {
+                    go_on()?;
                     for k in 0..last[2] {
                         let corner = |c: [usize; 3]| {
                             let [a, b, c] = c;
@@ -110,30 +132,45 @@ impl HexMesh {
                 None => patches.push(BoundaryPatch { name, kind, faces: vec![*quad] }),
             }
         }
-        Self { points, cells, patches }
+        Ok(Self { points, cells, patches })
     }
 }
+
+/// So many cells are measured between two looks at what is left of the budget.
+const CELLS_AT_ONCE: usize = 1 << 12;
 
 impl VolumeGrid<f64> {
     /// The volume inside, by the divergence theorem over cells; negative of a left-handed grid.
     pub fn volume(&self) -> f64 {
+        self.volume_while(&|| Ok(())).expect("nothing ends it")
+    }
+
+    pub(crate) fn volume_while(&self, go_on: &dyn Fn() -> Result<(), Spent>) -> Result<f64, Spent> {
         let [ci, cj, ck] = self.size.map(|n| n.saturating_sub(1));
         let mut sum = 0.0;
         for i in 0..ci {
             for j in 0..cj {
+                go_on()?;
                 for k in 0..ck {
                     let p = CORNERS.map(|[a, b, c]| self.at(i + a, j + b, k + c));
                     sum += hex_measure(&p).1;
                 }
             }
         }
-        sum
+        Ok(sum)
     }
 }
 
 /// The nodes of blocks, one where points of faces coincide to 1e-10 of the size, and the node of each point of each
 /// block, in the order of its planes.
 pub fn shared_nodes<T: Real>(blocks: &[VolumeGrid<T>]) -> (Vec<Vec3>, Vec<Vec<usize>>) {
+    nodes_while(blocks, &|| Ok(())).expect("nothing ends it")
+}
+
+fn nodes_while<T: Real>(
+    blocks: &[VolumeGrid<T>],
+    go_on: &dyn Fn() -> Result<(), Spent>,
+) -> Result<(Vec<Vec3>, Vec<Vec<usize>>), Spent> {
     let size = blocks.iter().map(VolumeGrid::extent).fold(0.0, f64::max);
     let mut nodes = Nodes { tolerance: SAME * size, points: Vec::new(), buckets: HashMap::new() };
     let mut numbers = Vec::with_capacity(blocks.len());
@@ -146,6 +183,7 @@ pub fn shared_nodes<T: Real>(blocks: &[VolumeGrid<T>]) -> (Vec<Vec3>, Vec<Vec<us
         let mut ids = Vec::with_capacity(ni * nj * nk);
         for i in 0..ni {
             for j in 0..nj {
+                go_on()?;
                 for k in 0..nk {
                     ids.push(nodes.id(plain.at(i, j, k), on_face(i, j, k)));
                 }
@@ -153,7 +191,7 @@ pub fn shared_nodes<T: Real>(blocks: &[VolumeGrid<T>]) -> (Vec<Vec3>, Vec<Vec<us
         }
         numbers.push(ids);
     }
-    (nodes.points, numbers)
+    Ok((nodes.points, numbers))
 }
 
 /// Nodes found again by their place.
@@ -246,9 +284,25 @@ pub struct MeshCheck {
 impl HexMesh {
     /// The figures of the mesh.
     pub fn check(&self) -> MeshCheck {
+        self.checked(&|| Ok(())).expect("nothing ends it")
+    }
+
+    /// As [`Self::check`]; ends early when `budget` is spent.
+    ///
+    /// # Errors
+    /// What it is spent on.
+    pub fn check_until(&self, budget: &Budget) -> Result<MeshCheck, Spent> {
+        self.checked(&|| budget.poll())
+    }
+
+    fn checked(&self, go_on: &dyn Fn() -> Result<(), Spent>) -> Result<MeshCheck, Spent> {
         let corners: Vec<[Vec3; 8]> =
             self.cells.iter().map(|cell| cell.map(|id| self.points[id])).collect();
-        let cells: Vec<(Vec3, f64)> = corners.iter().map(hex_measure).collect();
+        let mut cells: Vec<(Vec3, f64)> = Vec::with_capacity(corners.len());
+        for some in corners.chunks(CELLS_AT_ONCE) {
+            go_on()?;
+            cells.extend(some.iter().map(hex_measure));
+        }
         let mut owners: HashMap<Vec<usize>, (usize, [usize; 4])> = HashMap::new();
         let mut check = MeshCheck {
             counts: [self.cells.len(), 0, 0],
@@ -263,6 +317,9 @@ impl HexMesh {
             jacobian: (f64::INFINITY, 0),
         };
         for (c, cell) in self.cells.iter().enumerate() {
+            if c % CELLS_AT_ONCE == 0 {
+                go_on()?;
+            }
             let (centre, volume) = cells[c];
             check.volume = [check.volume[0].min(volume), check.volume[1].max(volume)];
             let (mut spread, mut total) = ([0.0f64; 3], 0.0);
@@ -318,7 +375,10 @@ impl HexMesh {
             }
         }
         check.counts[2] = owners.len();
-        for (owner, quad) in owners.into_values() {
+        for (number, (owner, quad)) in owners.into_values().enumerate() {
+            if number % CELLS_AT_ONCE == 0 {
+                go_on()?;
+            }
             let (middle, area) = face_measure(&quad.map(|id| self.points[id]));
             let unit = area / area.norm().max(f64::MIN_POSITIVE);
             let q = middle - cells[owner].0;
@@ -329,7 +389,7 @@ impl HexMesh {
         if inner > 0.0 {
             check.non_orthogonality[1] /= inner;
         }
-        check
+        Ok(check)
     }
 
     fn check_face(

@@ -30,7 +30,7 @@ mod zebra;
 
 pub use blend::{Blend, transfinite, transfinite_until};
 pub use block::{Faces, transfinite_block, transfinite_block_until};
-pub use block_quality::{BlockMetric, block_quality};
+pub use block_quality::{BlockMetric, block_quality, block_quality_until};
 pub use control::{WallReport, wall_cells};
 pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};

@@ -2,6 +2,7 @@
 
 use crate::marching::hexahedron;
 use crate::{GridError, SurfaceGrid};
+use moldloft_budget::{Budget, Spent};
 use moldloft_num::{Real, Vec3};
 use std::fmt;
 
@@ -163,11 +164,27 @@ impl<T: Real> VolumeGrid<T> {
     /// the least triple product of the unit edges at a corner, and how far the worst angle of a face is from a
     /// right one, 0 to 1. Corners at edges without length do not count.
     pub fn cell_quality(&self) -> Vec<[f64; 2]> {
+        self.cells_measured(&|| Ok(())).expect("nothing ends it")
+    }
+
+    /// As [`Self::cell_quality`]; ends early when `budget` is spent.
+    ///
+    /// # Errors
+    /// What it is spent on.
+    pub fn cell_quality_until(&self, budget: &Budget) -> Result<Vec<[f64; 2]>, Spent> {
+        self.cells_measured(&|| budget.poll())
+    }
+
+    fn cells_measured(
+        &self,
+        go_on: &dyn Fn() -> Result<(), Spent>,
+    ) -> Result<Vec<[f64; 2]>, Spent> {
         let plain = self.re();
         let [ci, cj, ck] = self.size.map(|n| n.saturating_sub(1));
         let mut all = Vec::with_capacity(ci * cj * ck);
         for i in 0..ci {
             for j in 0..cj {
+                go_on()?;
                 for k in 0..ck {
                     let corner = |a: usize| {
                         [[(0, 0), (0, 1)], [(1, 0), (1, 1)]]
@@ -177,6 +194,6 @@ impl<T: Real> VolumeGrid<T> {
                 }
             }
         }
-        all
+        Ok(all)
     }
 }

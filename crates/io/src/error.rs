@@ -65,6 +65,8 @@ pub enum WriteError {
         /// Distance between neighbouring numbers there.
         step: Bits,
     },
+    /// The work was ended by who asked for it.
+    Ended,
     /// A number does not fit its column.
     TooWide {
         /// The format.
@@ -120,6 +122,7 @@ impl fmt::Display for WriteError {
                  its shape; move the model to the origin, or write stl-text, obj or ply",
                 step.value()
             ),
+            Self::Ended => write!(f, "the work was ended"),
             Self::TooWide { format, value } => {
                 write!(f, "the coordinate {} does not fit a column of {format}", value.value())
             }

@@ -42,8 +42,8 @@ impl RimStep {
     }
 }
 
-/// For each surface, whether its facets are to be turned against r_i x r_j.
-pub fn turned(surfaces: &[StructuredGrid]) -> Vec<bool> {
+/// For each surface, whether its facets are to be turned against r_i x r_j; `None` once `go_on` says that the work ends.
+pub fn turned(surfaces: &[StructuredGrid], go_on: &dyn Fn() -> bool) -> Option<Vec<bool>> {
     let points: Vec<Vec<Vec3>> = surfaces.iter().map(|surface| surface.layer(0)).collect();
     let mut steps = rim_steps(surfaces, &points);
     steps.sort_by_key(|step| (step.pair(), step.grid, step.nodes));
@@ -66,7 +66,7 @@ pub fn turned(surfaces: &[StructuredGrid]) -> Vec<bool> {
         let Some(caps) = Caps::of(&rims) else { continue };
         let (mut volume, mut size) = (0.0, 0.0);
         for (k, surface) in surfaces.iter().enumerate().filter(|(k, _)| sides[*k].0 == body) {
-            let (mut own, all) = cone(surface.size, &points[k], caps.centre);
+            let (mut own, all) = cone(surface.size, &points[k], caps.centre, go_on)?;
             size += all;
             for (step, middle) in caps.steps.iter().filter(|(step, _)| step.grid == k) {
                 let [a, b] = step.points.map(|p| p - caps.centre);
@@ -78,7 +78,7 @@ pub fn turned(surfaces: &[StructuredGrid]) -> Vec<bool> {
         }
         inward[body] = volume < -NO_VOLUME * size;
     }
-    sides.into_iter().map(|(body, against)| against != inward[body]).collect()
+    Some(sides.into_iter().map(|(body, against)| against != inward[body]).collect())
 }
 
 /// The steps round each surface, those at poles left out.
@@ -191,14 +191,24 @@ fn flat_middle(opening: &[RimStep]) -> Option<Vec3> {
 }
 
 /// Six times the signed volume of the cones from `centre` to the cells of a surface, and the same without signs.
-fn cone([m, n, _]: [usize; 3], points: &[Vec3], centre: Vec3) -> (f64, f64) {
+fn cone(
+    [m, n, _]: [usize; 3],
+    points: &[Vec3],
+    centre: Vec3,
+    go_on: &dyn Fn() -> bool,
+) -> Option<(f64, f64)> {
     let at = |i: usize, j: usize| points[i * n + j] - centre;
     let (mut volume, mut size) = (0.0, 0.0);
-    for (i, j) in (0..m - 1).flat_map(|i| (0..n - 1).map(move |j| (i, j))) {
-        let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-        let cone = (a + c).dot((c - a).cross(d - b));
-        volume += cone;
-        size += cone.abs();
+    for i in 0..m - 1 {
+        if !go_on() {
+            return None;
+        }
+        for j in 0..n - 1 {
+            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            let cone = (a + c).dot((c - a).cross(d - b));
+            volume += cone;
+            size += cone.abs();
+        }
     }
-    (volume, size)
+    Some((volume, size))
 }

@@ -15,6 +15,9 @@ const FORMAT: &str = "STL";
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
+/// So many triangles are written between two looks at whether the work goes on.
+const TRIANGLES_AT_ONCE: usize = 1 << 14;
+
 /// The binary file. Quads are split along their shorter diagonal. Triangles two of whose corners
 /// coincide in single precision are left out, which closes no and opens no gap; thin ones stay,
 /// because their neighbours need them.
@@ -22,15 +25,24 @@ const TRIANGLE: usize = 50;
 /// # Errors
 /// Positions that are not finite in single precision, or so far from the origin that shapes are lost in it; more than 2^32 - 1 triangles.
 pub fn write(mesh: &Mesh, name: &str) -> Result<Vec<u8>, WriteError> {
+    write_while(mesh, name, &|| true)
+}
+
+fn write_while(mesh: &Mesh, name: &str, go_on: &dyn Fn() -> bool) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::from(f32::MAX))?;
+    ended_unless(go_on())?;
     check_single(mesh, Vec3::zero(), FORMAT)?;
+    ended_unless(go_on())?;
     let triangles = mesh.triangulated();
     // The header must not begin with `solid`, the mark of the text form.
     let mut out = format!("binary STL: {name}").into_bytes();
     out.resize(HEADER, b' ');
     out.truncate(HEADER);
     let mut count = 0usize;
-    for &[a, b, c, _] in triangles.faces() {
+    for (number, &[a, b, c, _]) in triangles.faces().iter().enumerate() {
+        if number % TRIANGLES_AT_ONCE == 0 {
+            ended_unless(go_on())?;
+        }
         // Adding zero turns -0 into 0, so that readers that compare bytes find equal corners.
         let corners =
             [a, b, c].map(|v| mesh.positions()[v as usize].to_array().map(|x| x as f32 + 0.0));
@@ -174,11 +186,13 @@ fn built(corners: Vec<Vec3>, name: &str, place: FilePosition) -> Result<Mesh, Re
 /// as far as their rims say where that is; else along r_i x r_j. With `flip` they face the other way.
 ///
 /// # Errors
-/// No grids; blocks that are no surfaces; coordinates that are not finite in single precision.
+/// No grids; blocks that are no surfaces; coordinates that are not finite in single precision; [`WriteError::Ended`]
+/// once `go_on`, which is asked in between, says so.
 pub fn write_grids(
     blocks: &[StructuredGrid],
     name: &str,
     flip: bool,
+    go_on: &dyn Fn() -> bool,
 ) -> Result<Vec<u8>, WriteError> {
     StructuredGrid::check(blocks, f64::from(f32::MAX))?;
     let cannot = |what| WriteError::CannotHold { format: "STL", what };
@@ -187,13 +201,14 @@ pub fn write_grids(
     if blocks.iter().any(|block| block.size[2] != 1 || block.size[0].min(block.size[1]) < 2) {
         return Err(cannot("grids with fewer than two points along an index"));
     }
-    let turned = facing::turned(blocks);
+    let turned = facing::turned(blocks, go_on).ok_or(WriteError::Ended)?;
     for (number, block) in blocks.iter().enumerate() {
         let [m, n, _] = block.size;
         let first = u32::try_from(positions.len())
             .ok()
             .filter(|first| first.checked_add((m * n) as u32).is_some())
             .ok_or(WriteError::TooLarge { what: "points", count: positions.len() })?;
+        ended_unless(go_on())?;
         positions.extend(block.layer(0));
         let large = |_| WriteError::TooLarge { what: "points", count: m * n };
         builder.add_vertices(m * n).map_err(large)?;
@@ -203,7 +218,12 @@ pub fn write_grids(
     }
     let mesh = Mesh::new(builder.build().into(), positions);
     let mesh = mesh.map_err(|_| WriteError::TooLarge { what: "points", count: 0 })?;
-    write(&mesh, name)
+    ended_unless(go_on())?;
+    write_while(&mesh, name, go_on)
+}
+
+fn ended_unless(goes_on: bool) -> Result<(), WriteError> {
+    if goes_on { Ok(()) } else { Err(WriteError::Ended) }
 }
 
 #[cfg(test)]

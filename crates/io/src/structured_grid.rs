@@ -87,11 +87,12 @@ mod tests {
 
     #[test]
     fn a_body_as_stl_without_the_triangles_of_its_nose() {
-        let bytes = stl::write_grids(&[body()], "body", false).unwrap();
+        let bytes = stl::write_grids(&[body()], "body", false, &|| true).unwrap();
         assert_eq!(bytes.len(), 84 + 50 * 2223);
         let back = stl::read(&bytes).unwrap();
         assert_eq!(back.faces().len(), 2223);
-        let flipped = stl::read(&stl::write_grids(&[body()], "body", true).unwrap()).unwrap();
+        let flipped =
+            stl::read(&stl::write_grids(&[body()], "body", true, &|| true).unwrap()).unwrap();
         let sum = |mesh: &Mesh| -> Vec3 {
             mesh.faces().iter().fold(Vec3::zero(), |sum, face| {
                 let [a, b, c, _] = face.map(|v| mesh.positions()[v as usize]);
@@ -101,7 +102,10 @@ mod tests {
         assert!((sum(&back) + sum(&flipped)).norm() < 1e-9 * sum(&back).norm());
         let mut deep = body();
         deep.size = [30, 20, 2];
-        assert!(matches!(stl::write_grids(&[deep], "", false), Err(WriteError::CannotHold { .. })));
+        assert!(matches!(
+            stl::write_grids(&[deep], "", false, &|| true),
+            Err(WriteError::CannotHold { .. })
+        ));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The engine: the process that runs the texts. It ends when the editor's side closes, or when a text ends it.
 
 use crate::answers::capabilities;
+use crate::places::lay_out_libraries;
 use crate::server::{Event, Server, folders_of};
 use crate::wire::to_front;
 use lsp_server::{Connection, ErrorCode, Message, Response};
@@ -15,6 +16,7 @@ const MEMORY: u64 = 2 << 30;
 
 /// Confines this process and serves until the connection ends.
 pub fn run() -> ExitCode {
+    lay_out_libraries();
     let memory = moldloft::budget::usual_memory().min(MEMORY);
     moldloft::budget::confine(memory);
     let wire = to_front();

@@ -53,20 +53,32 @@ pub fn path_of(uri: &str) -> Option<PathBuf> {
     Some(PathBuf::from(if drive { &path[1..] } else { &path }))
 }
 
-/// The address of a file; a built-in library is laid beside other temporary files to be shown.
+/// Where the built-in libraries are laid to be shown: beside other temporary files.
+fn folder_of_libraries() -> PathBuf {
+    std::env::temp_dir().join("moldloft-libraries")
+}
+
+/// Lays out the built-in libraries, which an editor shows as files; before the engine is confined, which may write none.
+pub fn lay_out_libraries() {
+    let folder = folder_of_libraries();
+    for (file, text) in LIBRARIES {
+        let path = folder.join(file);
+        let same = std::fs::read_to_string(&path).is_ok_and(|there| there == *text);
+        if !same {
+            // Whole at once, as another engine may read it. Without the file the editor says itself that there is none.
+            let new = folder.join(format!("{file}.{}", std::process::id()));
+            let _ = std::fs::create_dir_all(&folder)
+                .and_then(|()| std::fs::write(&new, text))
+                .and_then(|()| std::fs::rename(&new, &path));
+        }
+    }
+}
+
+/// The address of a file; of a built-in library where it was laid out.
 pub fn uri_of(name: &str) -> String {
     let library = LIBRARIES.iter().find(|(file, _)| name.strip_prefix("moldloft:") == Some(file));
     let path = match library {
-        Some((file, text)) => {
-            let folder = std::env::temp_dir().join("moldloft-libraries");
-            let path = folder.join(file);
-            let same = std::fs::read_to_string(&path).is_ok_and(|there| there == *text);
-            if !same {
-                // Without the file the editor says itself that there is none.
-                let _ = std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, text));
-            }
-            path
-        }
+        Some((file, _)) => folder_of_libraries().join(file),
         None => PathBuf::from(name),
     };
     let spelled = path.display().to_string().replace('\\', "/");

@@ -34,4 +34,6 @@ mod render;
 pub use camera::Camera;
 pub use lettering::PointName;
 pub use palette::{PALETTE, patch_colour};
-pub use render::{Options, PatchStyle, PictureError, StyledPolyline, encoded, render};
+pub use render::{
+    Options, PatchStyle, PictureError, StyledPolyline, encoded, render, render_while,
+};

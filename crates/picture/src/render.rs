@@ -93,6 +93,8 @@ pub enum PictureError {
         /// The vertex.
         vertex: u32,
     },
+    /// The work was ended by who asked for it.
+    Ended,
     /// The encoder failed.
     Encoding(String),
 }
@@ -113,12 +115,16 @@ impl fmt::Display for PictureError {
             Self::NotFinite { patch, vertex } => {
                 write!(f, "vertex {vertex} of patch `{patch}` is not at a finite position")
             }
+            Self::Ended => write!(f, "the work was ended"),
             Self::Encoding(text) => write!(f, "the picture cannot be encoded: {text}"),
         }
     }
 }
 
 impl std::error::Error for PictureError {}
+
+/// So many panels or sides are drawn between two looks at whether the work goes on; each covers the picture at most.
+const AT_ONCE: usize = 16;
 
 /// Colour of the rims of patches.
 const RIM: [u8; 3] = [0x2b, 0x33, 0x3f];
@@ -132,6 +138,20 @@ pub fn render(
     lines: &[StyledPolyline],
     options: &Options,
 ) -> Result<Vec<u8>, PictureError> {
+    render_while(mesh, lines, options, &|| true)
+}
+
+/// As [`render`], as long as `go_on` says so, which is asked every few panels and lines.
+///
+/// # Errors
+/// As [`render`], and [`PictureError::Ended`].
+pub fn render_while(
+    mesh: &Mesh,
+    lines: &[StyledPolyline],
+    options: &Options,
+    go_on: &dyn Fn() -> bool,
+) -> Result<Vec<u8>, PictureError> {
+    let goes_on = || if go_on() { Ok(()) } else { Err(PictureError::Ended) };
     let (width, height) = (options.width, options.height);
     let possible = 1..=PictureError::LARGEST;
     if !possible.contains(&width) || !possible.contains(&height) {
@@ -154,12 +174,15 @@ pub fn render(
     let gamma = Gamma::new();
     let mut raster = Raster::new(2 * width, 2 * height, top, bottom, Gamma::new());
     let diagonal = Box3::around(all.iter().copied()).diagonal();
+    goes_on()?;
     let lift = f64::max(1e-3 * diagonal, 2.0 * sagitta(mesh));
+    goes_on()?;
     let painter = Painter { mesh, aimed: &aimed, gamma: &gamma, options, lift };
     for &side in &sides {
-        painter.panels(&mut raster, side);
+        painter.panels(&mut raster, side, &goes_on)?;
     }
     let rims = if options.borders { mesh.topology().borders() } else { Vec::new() };
+    goes_on()?;
     for &side in &sides {
         // The depths, in diagonals: by how much panels may hide a line, and how far before them it may be.
         let mut stroke = |p: Vec3, q: Vec3, half_width: f32, depths: [f64; 2], colour: [u8; 3]| {
@@ -174,7 +197,10 @@ pub fn render(
             });
             raster.line(aimed.see(p), aimed.see(q), half_width, depths, colour);
         };
-        for ends in &rims {
+        for (number, ends) in rims.iter().enumerate() {
+            if number % AT_ONCE == 0 {
+                goes_on()?;
+            }
             let [p, q] = ends.map(|v| mesh.positions()[v as usize]);
             // Where a half meets its image the surface goes on.
             let within = |k: usize| options.mirrors[k] && p[k] == 0.0 && q[k] == 0.0;
@@ -185,6 +211,7 @@ pub fn render(
         for line in lines {
             // A line on the surface lies within its panels' sagitta of them; near the outline the panels turn away from it.
             let before = if line.on_surface { 2e-2 } else { f64::INFINITY };
+            goes_on()?;
             for ends in line.points.windows(2).filter(|w| w.iter().all(|p| p.is_finite())) {
                 // A dot is a disc across the line of sight: a surface through its middle would hide half of it.
                 let breadth = f64::from(line.width) / width.min(height) as f64;
@@ -264,7 +291,12 @@ struct Painter<'a> {
 
 impl Painter<'_> {
     /// Draws all panels of an image.
-    fn panels(&self, raster: &mut Raster, signs: [f64; 3]) {
+    fn panels(
+        &self,
+        raster: &mut Raster,
+        signs: [f64; 3],
+        goes_on: &dyn Fn() -> Result<(), PictureError>,
+    ) -> Result<(), PictureError> {
         let side: f64 = signs.iter().product();
         let positions: Vec<Vec3> = self.mesh.positions().iter().map(|&p| image(p, signs)).collect();
         let seen: Vec<ScreenPoint> = positions.iter().map(|&p| self.aimed.see(p)).collect();
@@ -290,7 +322,10 @@ impl Painter<'_> {
             let base = self.gamma.linear(colour);
             let raised = look.is_some_and(|look| look.raised);
             let outlines = self.outlines(faces, &seen);
-            for &face in faces {
+            for (number, &face) in faces.iter().enumerate() {
+                if number % AT_ONCE == 0 {
+                    goes_on()?;
+                }
                 let Some(normal) = turned(face).normalized() else { continue };
                 let corners = face.map(|v| {
                     let v = v as usize;
@@ -303,6 +338,7 @@ impl Painter<'_> {
                 self.panel(raster, corners, is_triangle(face), outlines);
             }
         }
+        Ok(())
     }
 
     /// Where a raised point is seen: in its place, but nearer.

@@ -166,7 +166,7 @@ pub fn grids_as_stl<'py>(
     flip: bool,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let (blocks, name) = (grids(&blocks)?, name.to_string());
-    let bytes = unlocked(py, move || stl::write_grids(&blocks, &name, flip))?;
+    let bytes = unlocked(py, move || stl::write_grids(&blocks, &name, flip, &|| true))?;
     let bytes = bytes.map_err(plain_error)?;
     Ok(PyBytes::new(py, &bytes))
 }

@@ -64,11 +64,28 @@ impl<T: Real> GridSpline<T> {
         points: Vec<Vec3<T>>,
         ends: [Ends<T>; 2],
     ) -> Result<Self, InterpolationError> {
+        let surface = Self::bicubic_while(u, v, points, ends, &|| true)?;
+        Ok(surface.expect("nothing ends it"))
+    }
+
+    /// As [`Self::bicubic_with`], as long as `go_on` says so, which is asked for each line; `None` when it does not.
+    ///
+    /// # Errors
+    /// As [`Self::bicubic`].
+    pub fn bicubic_while(
+        u: Vec<T>,
+        v: Vec<T>,
+        points: Vec<Vec3<T>>,
+        ends: [Ends<T>; 2],
+        go_on: &dyn Fn() -> bool,
+    ) -> Result<Option<Self>, InterpolationError> {
         check(&u, &v, &points)?;
-        let by_u = slopes(&u, &v, &points, 0, ends[0])?;
-        let by_v = slopes(&u, &v, &points, 1, ends[1])?;
-        let by_uv = slopes(&u, &v, &by_u, 1, ends[1])?;
-        Ok(Self { u, v, points, slopes: Some([by_u, by_v, by_uv]) })
+        let slopes =
+            |points: &[Vec3<T>], axis: usize| slopes([&u, &v], points, axis, ends[axis], go_on);
+        let Some(by_u) = slopes(&points, 0)? else { return Ok(None) };
+        let Some(by_v) = slopes(&points, 1)? else { return Ok(None) };
+        let Some(by_uv) = slopes(&by_u, 1)? else { return Ok(None) };
+        Ok(Some(Self { u, v, points, slopes: Some([by_u, by_v, by_uv]) }))
     }
 
     /// The bilinear surface through `points`.
@@ -157,17 +174,20 @@ fn check<T: Real>(u: &[T], v: &[T], points: &[Vec3<T>]) -> Result<(), Interpolat
 
 /// The slopes at all points of the splines along u (`axis` 0) or v (1).
 fn slopes<T: Real>(
-    u: &[T],
-    v: &[T],
+    [u, v]: [&[T]; 2],
     points: &[Vec3<T>],
     axis: usize,
     ends: Ends<T>,
-) -> Result<Vec<Vec3<T>>, InterpolationError> {
+    go_on: &dyn Fn() -> bool,
+) -> Result<Option<Vec<Vec3<T>>>, InterpolationError> {
     let n = v.len();
     let (knots, lines, step, start) = if axis == 0 { (u, n, n, 1) } else { (v, u.len(), 1, n) };
     let mut slopes = vec![Vec3::zero(); points.len()];
     let mut line = vec![Vec3::zero(); knots.len()];
     for l in 0..lines {
+        if !go_on() {
+            return Ok(None);
+        }
         let at = |k: usize| l * start + k * step;
         for (k, p) in line.iter_mut().enumerate() {
             *p = points[at(k)];
@@ -177,7 +197,7 @@ fn slopes<T: Real>(
             slopes[at(k)] = *slope;
         }
     }
-    Ok(slopes)
+    Ok(Some(slopes))
 }
 
 /// The cell of `t`, how far it is in it as a share, and the inverse of its width.

@@ -18,12 +18,20 @@
 #![cfg(target_arch = "wasm32")]
 #![allow(unsafe_code)]
 
+use moldloft_budget::{Counting, Limits, limits, set_limits};
 use moldloft_lang::{ReadText, TextReadError, World};
 use moldloft_session::Session;
 use serde::Deserialize;
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Memory is counted, as everywhere: what a page cannot hold is an error with its place.
+#[global_allocator]
+static ALLOCATOR: Counting = Counting::new();
+
+/// What a model may hold of the 4 GiB that an instance can have.
+const MEMORY: u64 = 3 << 30;
 
 #[link(wasm_import_module = "env")]
 unsafe extern "C" {
@@ -111,6 +119,7 @@ pub extern "C" fn start() -> bool {
         // SAFETY: the host copies the words before it returns.
         unsafe { panicked(words.as_ptr(), words.len()) }
     }));
+    set_limits(Limits { memory: MEMORY, ..limits() });
     ENGINE.with_borrow_mut(|engine| {
         let input = std::mem::take(&mut engine.input);
         engine.session = begun(&input, engine.missing.clone());

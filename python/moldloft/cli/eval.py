@@ -68,16 +68,19 @@ def as_data(value: Any) -> Any:
 def as_text(value: Any) -> str:
     """The value as a person reads it.
 
-    >>> as_text(2.0), as_text([1.0, 2.5])
-    ('2', '{1, 2.5}')
+    Numbers have all their digits; each row of a surface is on a line of its own.
+
+    >>> as_text(2.0), as_text([1.0, 2.5]), as_text(1 / 3)
+    ('2', '{1, 2.5}', '0.3333333333333333')
     """
     data = as_data(value)
     if isinstance(data, float):
-        return f"{data:.10g}"
+        return repr(data + 0.0).removesuffix(".0")
     if isinstance(data, list):
-        return "{" + ", ".join(as_text(item) for item in data) + "}"
+        rows = data and isinstance(data[0], list) and data[0] and isinstance(data[0][0], list)
+        return "{" + (",\n " if rows else ", ").join(as_text(item) for item in data) + "}"
     if isinstance(data, dict) and "triangles" in data:
-        return f"a mesh of {data['triangles']} triangles, volume {data['volume']:.10g}"
+        return f"a mesh of {data['triangles']} triangles, volume {as_text(data['volume'])}"
     if isinstance(data, dict):
         return str(data.get("text") or f"a {data['class']}")
     return str(data)

@@ -59,7 +59,8 @@ fn read(path: &Path) -> (String, Vec<Case>) {
 
 /// What is printed and said of a document, a line each.
 fn found(document: &Document) -> Vec<String> {
-    let mut lines: Vec<String> = document.printed().iter().map(|p| format!("#< {p}")).collect();
+    let printed = document.printed().iter().flat_map(|text| text.split('\n'));
+    let mut lines: Vec<String> = printed.map(|line| format!("#< {line}")).collect();
     for d in document.diagnostics() {
         lines.push(format!("#> {}", line(document, &d)));
         for place in &d.secondary {

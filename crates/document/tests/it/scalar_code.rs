@@ -284,6 +284,16 @@ pub(crate) fn compare(text: &str, most: u64, what: &str) -> (Document, usize) {
     (coded, count)
 }
 
+/// A condition that is left to the interpreter, after a function of it was put in place: its fault leaves the whole
+/// statement, not the function.
+#[test]
+fn a_faulty_condition_does_not_hold() {
+    let text = "float y = .5; function float f(float t) { return t + 1; } function int h(float t) { y += 0.5; return 1; } \
+                for (j = 1:3) { if ((f(y) != unknown) > y) { print 1; if ((h(2) and not y) < 3) print 2; } print 3; }";
+    let (document, _) = compare(text, 60_000, "a faulty condition");
+    assert_eq!(document.printed(), ["3", "3", "3"]);
+}
+
 #[test]
 fn code_does_what_the_interpreter_does() {
     let (mut faulty, mut sound) = (0, 0);

@@ -24,5 +24,5 @@ fn encode_grids(
     grids: &[StructuredGrid],
     name: &FileName<'_>,
 ) -> Result<Vec<NamedFile>, WriteError> {
-    Ok(name.main_file(stl::write_grids(grids, name.stem(), false)?))
+    Ok(name.main_file(stl::write_grids(grids, name.stem(), false, &|| true)?))
 }

@@ -221,8 +221,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         lanes: &TapeArray,
         fill: impl FnOnce(&mut [Vec<T>]) -> bool,
     ) -> Option<Value<T>> {
-        let (of, target) = self.arrays.assigning?;
-        let symbol = m.program.as_name(target).filter(|_| of == key)?;
+        // The target is of another module where a function is called on the way.
+        let (_, target) = self.arrays.assigning.filter(|(of, _)| *of == key)?;
+        let symbol = m.program.as_name(target)?;
         let place = self.env.scope.place_of(m.names[symbol.0 as usize])?;
         let whole = place.section.is_none() && place.component.is_none();
         let outside = place.frame.is_none() && self.run.extent() == Extent::Edit;

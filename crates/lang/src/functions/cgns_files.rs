@@ -29,7 +29,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 };
                 blocks.into_iter().zip(&own.names).map(named).collect()
             }
-            None => cgns::read(&bytes).map_err(|e| unreadable(&e))?,
+            None => {
+                let span = m.program[file].span;
+                let zones = self.apart(bytes.len(), span, move || cgns::read(&bytes))?;
+                zones.map_err(|e| unreadable(&e))?
+            }
         };
         Ok((path.to_string(), zones))
     }

@@ -265,6 +265,34 @@ pub(crate) enum Elementary<T> {
     Binary(fn(T, T) -> T),
 }
 
+/// The lesser of two numbers; NaN when one of them is, whichever it is.
+fn lesser<T: Real>(a: T, b: T) -> T {
+    if b.re().is_nan() { b } else { a.min(b) }
+}
+
+/// The greater of two numbers; NaN when one of them is, whichever it is.
+fn greater<T: Real>(a: T, b: T) -> T {
+    if b.re().is_nan() { b } else { a.max(b) }
+}
+
+/// What combines two numbers, for `min`, `max` and `sum` of several arguments.
+pub(crate) fn combining<T: Real>(name: &str) -> Option<(&'static str, Elementary<T>)> {
+    Some(match name {
+        "min" => ("min", Elementary::Binary(lesser)),
+        "max" => ("max", Elementary::Binary(greater)),
+        "sum" => ("sum", Elementary::Binary(|a, b| a + b)),
+        _ => return None,
+    })
+}
+
+/// `min`, `max` or `sum` of several numbers, of which some need not be finite.
+pub(crate) fn combined<T: Real>(name: &str, args: &[Value<T>]) -> Option<Value<T>> {
+    let (_, Elementary::Binary(f)) = combining(name)? else { return None };
+    let number = |v: &Value<T>| if let Value::Number(x) = v { Some(*x) } else { None };
+    let numbers: Vec<T> = args.iter().map(number).collect::<Option<_>>()?;
+    (2..=4).contains(&numbers.len()).then(|| numbers.into_iter().reduce(f).map(Value::Number))?
+}
+
 /// True for functions that take no longer than finding their remembered values.
 pub(crate) fn is_quick(row: &Row) -> bool {
     row.cheap && matches!(row.body, Implementation::Native { .. })
@@ -419,10 +447,10 @@ fn several() -> Vec<FieldSpec> {
 /// The rows of this file.
 pub fn rows() -> Vec<Row> {
     fn least<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
-        reduced("min", args, T::min)
+        reduced("min", args, lesser)
     }
     fn greatest<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
-        reduced("max", args, T::max)
+        reduced("max", args, greater)
     }
     fn total<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         reduced("sum", args, |a, b| a + b)

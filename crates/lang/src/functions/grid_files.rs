@@ -7,12 +7,13 @@ use crate::functions::block_files::{CgnsBlocks, NamedBlock, face_names, joined, 
 use crate::functions::builtins::{GridFormat, RowFormat};
 use crate::functions::plots::plot;
 use crate::run::interpreter::{Interpreter, silent};
+use crate::run::usage;
 use crate::source::module::Module;
 use crate::value::variables;
 use moldloft_diag::Diagnostic;
 use moldloft_grid::FaceNames;
 use moldloft_io::plot3d::{self, Laid, Variant};
-use moldloft_io::{StructuredGrid, hexahedra, points, section, stl, vtk};
+use moldloft_io::{StructuredGrid, WriteError, hexahedra, points, section, stl, vtk};
 use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value, Vectors};
@@ -231,6 +232,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         };
         let at = |d: Diagnostic| d.or_at(at_name);
+        let count: usize = blocks.iter().map(StructuredGrid::count).sum();
         match format {
             GridFormat::Plot3d => {
                 let mut v = variant(&words).map_err(|d| d.or_at(words_at))?;
@@ -241,21 +243,23 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         block.iblank = Some(block.iblank.take().unwrap_or_else(all));
                     }
                 }
-                let bytes = plot3d::write(&blocks, v).map_err(|e| at(cannot(e)))?;
-                self.env.files.put(&path, bytes).map_err(at)
+                let bytes = self.apart(count, at_name, move || plot3d::write(&blocks, v))?;
+                self.env.files.put(&path, bytes.map_err(|e| at(cannot(e)))?).map_err(at)
             }
             GridFormat::Vts => {
                 nothing_of(&words, "")?;
                 let folder = path.rfind('/').map_or("", |k| &path[..=k]);
-                let files = vtk::grid_files(&blocks, stem(&path)).map_err(|e| at(cannot(e)))?;
-                for file in files {
+                let stem = stem(&path).to_string();
+                let files = self.apart(count, at_name, move || vtk::grid_files(&blocks, &stem))?;
+                for file in files.map_err(|e| at(cannot(e)))? {
                     let name = format!("{folder}{}", file.name);
                     self.env.files.put(&name, file.bytes).map_err(at)?;
                 }
                 Ok(())
             }
             GridFormat::Plot => {
-                let bytes = plot(&path, &words, &blocks, &names).map_err(|d| {
+                let budget = self.inputs.budget;
+                let bytes = plot(&path, &words, &blocks, &names, budget).map_err(|d| {
                     let place = if d.id == "unknown-word" { words_at } else { at_name };
                     d.or_at(place)
                 })?;
@@ -263,8 +267,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             GridFormat::Stl => {
                 let flip = nothing_of(&words, "flip")?;
-                let bytes =
-                    stl::write_grids(&blocks, stem(&path), flip).map_err(|e| at(cannot(e)))?;
+                let budget = self.inputs.budget;
+                let go_on = || !budget.is_spent();
+                let bytes = stl::write_grids(&blocks, stem(&path), flip, &go_on);
+                let bytes = bytes.map_err(|e| match budget.poll() {
+                    Err(reason) if e == WriteError::Ended => at(usage::spent(reason)),
+                    _ => at(cannot(e)),
+                })?;
                 self.env.files.put(&path, bytes).map_err(at)
             }
             GridFormat::Cgns => {
@@ -279,14 +288,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     return Err(at(Diagnostic::error("cannot-write", message)
                         .expected("surfaces with at least two points along each index")));
                 }
-                let bytes = plot3d::write(&blocks, Variant::default());
-                let bytes = bytes.map_err(|e| at(cannot(e)))?;
-                self.env.files.put(&path, bytes).map_err(at)?;
-                let content = match flat {
-                    0 => joined(&named(blocks, names, faces)).map_err(at)?,
-                    _ => CgnsBlocks { names, ..CgnsBlocks::default() },
-                };
-                self.env.files.for_cgns(&path, content).map_err(at)
+                let (bytes, content) = self.apart(count, at_name, move || {
+                    let bytes = plot3d::write(&blocks, Variant::default());
+                    let content = match flat {
+                        0 => joined(&named(blocks, names, faces)),
+                        _ => Ok(CgnsBlocks { names, ..CgnsBlocks::default() }),
+                    };
+                    (bytes, content)
+                })?;
+                self.env.files.put(&path, bytes.map_err(|e| at(cannot(e)))?).map_err(at)?;
+                self.env.files.for_cgns(&path, content.map_err(at)?).map_err(at)
             }
             GridFormat::Su2 | GridFormat::Gmsh | GridFormat::BlockMesh => {
                 nothing_of(&words, "")?;
@@ -295,13 +306,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     return Err(at(Diagnostic::error("cannot-write", message)
                         .expected("blocks with at least two points along each index")));
                 }
-                let mesh = one_mesh(&named(blocks, names, faces));
-                let bytes = match format {
-                    GridFormat::Su2 => whole(hexahedra::su2(&mesh), &mesh, "SU2").map_err(at)?,
-                    GridFormat::Gmsh => whole(hexahedra::gmsh(&mesh), &mesh, "Gmsh").map_err(at)?,
-                    _ => hexahedra::block_mesh(&mesh),
-                };
-                self.env.files.put(&path, bytes).map_err(at)
+                let bytes = self.apart(count, at_name, move || {
+                    let mesh = one_mesh(&named(blocks, names, faces));
+                    match format {
+                        GridFormat::Su2 => whole(hexahedra::su2(&mesh), &mesh, "SU2"),
+                        GridFormat::Gmsh => whole(hexahedra::gmsh(&mesh), &mesh, "Gmsh"),
+                        _ => Ok(hexahedra::block_mesh(&mesh)),
+                    }
+                })?;
+                self.env.files.put(&path, bytes.map_err(at)?).map_err(at)
             }
             GridFormat::Csv => {
                 nothing_of(&words, "")?;
@@ -309,7 +322,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 if !rows.iter().all(|p| p.is_finite()) {
                     return Err(at(cannot("a point is not finite")));
                 }
-                self.env.files.put(&path, points::write_csv(&rows, 3).into_bytes()).map_err(at)
+                let text = self.apart(count, at_name, move || points::write_csv(&rows, 3))?;
+                self.env.files.put(&path, text.into_bytes()).map_err(at)
             }
         }
     }
@@ -331,7 +345,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let unreadable = |e: &dyn std::fmt::Display| {
             Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
         };
-        let (blocks, _) = plot3d::read(&bytes).map_err(|e| unreadable(&e))?;
+        let blocks =
+            self.apart(bytes.len(), m.program[given[0]].span, move || plot3d::read(&bytes))?;
+        let (blocks, _) = blocks.map_err(|e| unreadable(&e))?;
         let number = match given.get(1) {
             Some(&arg) => self.whole(m, arg)? as usize,
             None => 1,
@@ -358,7 +374,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// `count_p3d("body.x")`.
     pub(crate) fn count_p3d(&mut self, m: &Module, file: ExprId) -> Evaluated<T> {
         let (path, bytes) = self.bytes_of(m, file)?;
-        let (blocks, _) = plot3d::read(&bytes)
+        let blocks = self.apart(bytes.len(), m.program[file].span, move || plot3d::read(&bytes))?;
+        let (blocks, _) = blocks
             .map_err(|e| Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}")))?;
         Ok(Value::Number(T::from(blocks.len() as f64)))
     }
@@ -374,12 +391,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let unreadable = |e: &dyn std::fmt::Display| {
             Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
         };
-        let points = match format {
-            RowFormat::Points => points::read(&bytes).map_err(|e| unreadable(&e))?.rows,
-            RowFormat::Aerofoil => {
-                section::read_aerofoil(&bytes).map_err(|e| unreadable(&e))?.points
-            }
-        };
+        let points = self.apart(bytes.len(), m.program[given[0]].span, move || match format {
+            RowFormat::Points => points::read(&bytes).map(|table| table.rows),
+            RowFormat::Aerofoil => section::read_aerofoil(&bytes).map(|section| section.points),
+        })?;
+        let points = points.map_err(|e| unreadable(&e))?;
         let points: Vec<Vec3<T>> = points.into_iter().map(Vec3::lifted).collect();
         if points.is_empty() {
             return Err(silent());

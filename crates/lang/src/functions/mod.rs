@@ -1,6 +1,7 @@
 //! Functions of the language that are no kinds: those that need the interpreter, element-wise ones, and
 //! those of sets; the files that a run opens.
 
+mod apart;
 pub mod block_files;
 pub mod builtins;
 mod cgns_files;

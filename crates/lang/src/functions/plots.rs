@@ -1,10 +1,12 @@
 //! `plot`: curves, surfaces and blocks of a program as a picture, PNG or SVG by the ending of the file's name.
 
+use crate::run::usage::spent;
+use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
 use moldloft_io::StructuredGrid;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
-use moldloft_picture::{Camera, Options, PALETTE, StyledPolyline, render};
+use moldloft_picture::{Camera, Options, PALETTE, PictureError, StyledPolyline, render_while};
 use std::fmt::Write as _;
 
 /// Picture points across and down.
@@ -120,6 +122,7 @@ pub(crate) fn plot(
     words: &str,
     grids: &[StructuredGrid],
     names: &[String],
+    budget: &Budget,
 ) -> Result<Vec<u8>, Diagnostic> {
     let points = || {
         let planes = grids.iter().map(|g| &g.planes);
@@ -145,10 +148,10 @@ pub(crate) fn plot(
             .expected(VIEWS));
     };
     match path.rsplit('.').next().unwrap_or("").to_ascii_lowercase().as_str() {
-        "png" => png(grids, names, [azimuth, elevation]),
+        "png" => png(grids, names, [azimuth, elevation], budget),
         "svg" => {
-            let text = svg(grids, names, [azimuth, elevation], word).ok_or_else(nothing)?;
-            Ok(text.into_bytes())
+            let text = svg(grids, names, [azimuth, elevation], word, budget)?;
+            Ok(text.ok_or_else(nothing)?.into_bytes())
         }
         _ => Err(Diagnostic::error("unknown-format", format!("plot cannot write `{path}`"))
             .expected("a name that ends in .png or .svg")),
@@ -159,12 +162,14 @@ fn png(
     grids: &[StructuredGrid],
     names: &[String],
     [azimuth_deg, elevation_deg]: [f64; 2],
+    budget: &Budget,
 ) -> Result<Vec<u8>, Diagnostic> {
     let failed = |why: String| Diagnostic::error("no-picture", why);
     let mut builder = TopologyBuilder::new();
     let mut positions = Vec::new();
     let mut curves = Vec::new();
     for (grid, name) in grids.iter().zip(names) {
+        budget.poll().map_err(spent)?;
         if grid.size.iter().filter(|n| **n > 1).count() < 2 {
             curves.extend(lines(grid).into_iter().map(|points| StyledPolyline {
                 points,
@@ -184,7 +189,12 @@ fn png(
     let mesh = Mesh::new(builder.build().into(), positions).map_err(|e| failed(e.to_string()))?;
     let camera = Camera { azimuth_deg, elevation_deg, view_angle_deg: None };
     let options = Options { width: WIDTH, height: HEIGHT, camera, ..Options::default() };
-    render(&mesh, &curves, &options).map_err(|e| failed(e.to_string()))
+    render_while(&mesh, &curves, &options, &|| !budget.is_spent()).map_err(|e| {
+        match budget.poll() {
+            Err(reason) if e == PictureError::Ended => spent(reason),
+            _ => failed(e.to_string()),
+        }
+    })
 }
 
 /// Lines at true proportions, the names of what is drawn below, the extents beside the axes; nothing where the
@@ -194,7 +204,8 @@ fn svg(
     names: &[String],
     [azimuth, elevation]: [f64; 2],
     word: &str,
-) -> Option<String> {
+    budget: &Budget,
+) -> Result<Option<String>, Diagnostic> {
     const MARGIN: f64 = 60.0;
     let (sa, ca) = sin_cos(azimuth);
     let (se, ce) = sin_cos(elevation);
@@ -217,7 +228,7 @@ fn svg(
     let (width, height) = (WIDTH as f64, HEIGHT as f64);
     let scale = ((width - 2.0 * MARGIN) / (x1 - x0)).min((height - 2.0 * MARGIN) / (y1 - y0));
     if !scale.is_finite() {
-        return None;
+        return Ok(None);
     }
     let tall = ((y1 - y0) * scale + 2.0 * MARGIN).max(2.0 * MARGIN + 20.0 * names.len() as f64);
     let middle = [0.5 * width - 0.5 * scale * (x0 + x1), 0.5 * tall + 0.5 * scale * (y0 + y1)];
@@ -234,6 +245,7 @@ fn svg(
             escaped(name)
         );
         for line in lines {
+            budget.poll().map_err(spent)?;
             text.push_str("<polyline points=\"");
             for [x, y] in line {
                 let _ = write!(text, "{:.2},{:.2} ", middle[0] + scale * x, middle[1] - scale * y);
@@ -266,7 +278,7 @@ fn svg(
         );
     }
     text.push_str("</svg>\n");
-    Some(text)
+    Ok(Some(text))
 }
 
 /// Sine and cosine in degrees, exact along the axes.

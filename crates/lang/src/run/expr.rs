@@ -596,6 +596,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if let Some(measure) = self.shape_measure(&row.name, &given) {
             return measure.map_err(|d| d.or_at(span));
         }
+        // Arguments of functions are finite but after `ieee();`.
+        if self.arrays.ieee
+            && given.named.is_empty()
+            && let Some(value) =
+                crate::functions::elementary::combined(&row.name, &given.positional)
+        {
+            return Ok(value);
+        }
         let positional = given.positional.len();
         let (filled, _) = bind_arguments(row, given, |_| Class::Any)
             .map_err(|fault| fault_location::diagnostic(m, args, row, positional, &fault, span))?;

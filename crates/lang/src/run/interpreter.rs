@@ -31,9 +31,6 @@ use std::collections::{HashMap, HashSet};
 const MOST_ERRORS: usize = 1_000;
 const MOST_HINTS: usize = 100;
 
-/// The most elements of all arrays that are declared at a time.
-pub(super) const MOST_HELD: usize = 50_000_000;
-
 /// The most bytes of all printed lines.
 const MOST_PRINTED: usize = 16 << 20;
 
@@ -537,7 +534,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 for &expr in &m.program[list] {
                     let value = self.expr(m, expr)?;
                     let value = self.read(value, m.program[expr].span)?;
-                    words.push(crate::value::display::plain(&value));
+                    words.push(crate::value::display::by_rows(&value));
                 }
                 self.print(words.join(" "), span)?;
             }
@@ -663,12 +660,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             return self.implicit_object(m, id, ty, item, value.clone());
         }
         if !dims.is_empty() {
-            let count = dims.iter().fold(1usize, |count, &n| count.saturating_mul(n));
-            let held = self.usage.held.saturating_add(count);
-            if held > MOST_HELD {
-                return Err(variables::too_many(held as f64, MOST_HELD as f64));
-            }
-            self.usage.held = held;
+            let count = dims.iter().map(|&n| n as f64).product();
+            self.usage.steps += variables::has_room::<T>(ty, count, self.inputs.budget)?;
         }
         let known = match (&value, &dims[..]) {
             (Some(_), _) | (_, [] | [_, _, _]) => Known::default(),

@@ -85,7 +85,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         // A call takes about as long as five statements on numbers.
         self.usage.steps += 4;
-        let held = self.usage.held;
         self.env.scope.frames.push(frame);
         let outer = std::mem::replace(&mut self.current, at.module);
         let flow = self.deeper_call(span, |this| match this.body_by_code(&callee, at.routine) {
@@ -95,7 +94,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.current = outer;
         self.env.scope.frames.pop();
         let flow = flow.ok_or_else(silent)?;
-        self.usage.held = held;
         if callee.library && std::mem::take(&mut self.abandoned) {
             // Reported already; a caller in the library is left as well.
             self.abandoned = m.library;

@@ -286,7 +286,7 @@ impl<'a> Semantics<'a> {
             match expr.kind {
                 ExprKind::Name(symbol) => self.name(place, symbol, expr.span),
                 ExprKind::Binary { op, left, right } => {
-                    let named = [left, right].map(|side| self.dims(place, side));
+                    let named = [left, right].map(|side| self.dims(place, side, None));
                     if let ([Some(a), Some(b)], true) = (named, op != BinaryOp::Dot)
                         && a != b
                     {
@@ -502,7 +502,8 @@ impl<'a> Semantics<'a> {
         let Some(value) = item.value else { return };
         let dims = numbers(m, item.dims);
         self.fits(place, ty.0, !item.dims.is_empty(), value, Some(ty.1));
-        if let (Some(to), Some(from)) = (dims.filter(|d| !d.is_empty()), self.dims(place, value))
+        if let (Some(to), Some(from)) =
+            (dims.filter(|d| !d.is_empty()), self.dims(place, value, Some(ty.0)))
             && to != from
         {
             let name = item.name.span;
@@ -527,7 +528,7 @@ impl<'a> Semantics<'a> {
             // A number fills an array that has its dimensions.
             self.fits(place, ty, true, value, Some(declared.span));
         }
-        if let (Some(to), Some(from)) = (declared.dims, self.dims(place, value))
+        if let (Some(to), Some(from)) = (declared.dims, self.dims(place, value, declared.ty))
             && to != from
         {
             self.differ(place, [target, value], [&to, &from], m.program[target].span);
@@ -606,9 +607,26 @@ impl<'a> Semantics<'a> {
         })
     }
 
-    /// The dimensions of an array that an expression names, where numbers declare them.
-    fn dims(&self, place: &JudgedScope<'_>, id: ExprId) -> Option<Vec<f64>> {
-        let symbol = place.m.program.as_name(place.m.program.bare(id))?;
+    /// The dimensions of an array that an expression names, where numbers declare them, or spells in braces where a
+    /// row of `ty` is asked.
+    fn dims(&self, place: &JudgedScope<'_>, id: ExprId, ty: Option<Type>) -> Option<Vec<f64>> {
+        let m = place.m;
+        let bare = m.program.bare(id);
+        if let ExprKind::List(items) = m.program[bare].kind {
+            let number =
+                |item: ExprId| matches!(self.kind(place, item), Some(Type::Int | Type::Float));
+            let point = |item: ExprId| match m.program[m.program.bare(item)].kind {
+                ExprKind::List(of) => of.len() == 3 && m.program[of].iter().all(|x| number(*x)),
+                _ => self.kind(place, item) == Some(Type::Vector),
+            };
+            let row = match ty? {
+                Type::Farray => m.program[items].iter().all(|item| number(*item)),
+                Type::Curve => m.program[items].iter().all(|item| point(*item)),
+                _ => false,
+            };
+            return (row && !items.is_empty()).then(|| vec![items.len() as f64]);
+        }
+        let symbol = m.program.as_name(bare)?;
         self.declared(place, symbol)?.dims.clone()
     }
 

@@ -15,8 +15,6 @@ pub(crate) struct Usage {
     pub quick: u64,
     /// How deep statements, expressions and calls nest.
     pub depth: u32,
-    /// Elements of the declared arrays.
-    pub held: usize,
     /// Bytes that were printed.
     pub printed: usize,
     /// Errors that were reported.

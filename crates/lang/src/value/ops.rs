@@ -220,6 +220,9 @@ pub(crate) fn binary<T: Real>(
     if let (BinaryOp::Add, Value::Text(a), Value::Text(b)) = (op, a, b) {
         return Ok(Value::text(&format!("{a}{b}")));
     }
+    if let Some(value) = of_texts(op, a, b) {
+        return value;
+    }
     let differ = |found: String| {
         Diagnostic::error("shapes-differ", format!("shapes differ: {found}"))
             .expected("equal shapes, or a single value on one side")
@@ -310,14 +313,7 @@ fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>
         (Value::Numbers(a), Value::Number(b)) => return Ok(numbers(mapped(&**a, |a| mask(a, *b)))),
         (Value::Number(a), Value::Numbers(b)) => return Ok(numbers(mapped(&**b, |b| mask(*a, b)))),
         // By code points, as in dictionaries of plain letters.
-        (Value::Text(a), Value::Text(b)) => match op {
-            BinaryOp::Eq => a == b,
-            BinaryOp::Ne => a != b,
-            BinaryOp::Lt => a < b,
-            BinaryOp::Le => a <= b,
-            BinaryOp::Gt => a > b,
-            _ => a >= b,
-        },
+        (Value::Text(a), Value::Text(b)) => texts_compare(op, a, b),
         _ => {
             let found =
                 format!("{} and {}", crate::value::variables::a(a), crate::value::variables::a(b));
@@ -331,6 +327,49 @@ fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>
         }
     };
     Ok(Value::Number(T::from(f64::from(u8::from(holds)))))
+}
+
+fn texts_compare(op: BinaryOp, a: &str, b: &str) -> bool {
+    match op {
+        BinaryOp::Eq => a == b,
+        BinaryOp::Ne => a != b,
+        BinaryOp::Lt => a < b,
+        BinaryOp::Le => a <= b,
+        BinaryOp::Gt => a > b,
+        _ => a >= b,
+    }
+}
+
+/// Rows of texts joined or compared by element, with a row of as many or a single text; a comparison gives a mask.
+/// `None` of other operands and operators.
+fn of_texts<T: Real>(
+    op: BinaryOp,
+    a: &Value<T>,
+    b: &Value<T>,
+) -> Option<Result<Value<T>, Diagnostic>> {
+    let row = |value: &Value<T>| -> Option<Vec<Arc<str>>> {
+        let Value::List(items) = value else { return None };
+        let text = |v: &Value<T>| if let Value::Text(t) = v { Some(t.clone()) } else { None };
+        items.iter().map(text).collect::<Option<Vec<_>>>().filter(|texts| !texts.is_empty())
+    };
+    let pairs: Vec<(Arc<str>, Arc<str>)> = match (row(a), row(b), a, b) {
+        (Some(a), Some(b), ..) if a.len() == b.len() => a.into_iter().zip(b).collect(),
+        (Some(a), Some(b), ..) => {
+            return Some(Err(shapes_differ(ArrayShape::Row(a.len()), ArrayShape::Row(b.len()))));
+        }
+        (Some(a), None, _, Value::Text(b)) => a.into_iter().map(|a| (a, b.clone())).collect(),
+        (None, Some(b), Value::Text(a), _) => b.into_iter().map(|b| (a.clone(), b)).collect(),
+        _ => return None,
+    };
+    Some(Ok(match op {
+        BinaryOp::Add => Value::list(pairs.iter().map(|(a, b)| Value::text(&format!("{a}{b}")))),
+        BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne => {
+            let holds = |(a, b): &(Arc<str>, Arc<str>)| u8::from(texts_compare(op, a, b));
+            let mask = pairs.iter().map(|pair| T::from(f64::from(holds(pair))));
+            numbers(Array::row(mask.collect()))
+        }
+        _ => return None,
+    }))
 }
 
 fn a_of<T: Real>(value: &Value<T>) -> &'static str {

@@ -2,14 +2,13 @@
 
 use crate::value::blocks;
 use crate::value::subarray::{ArraySection, Place, picked, put, put_all};
+use moldloft_arrays::{MORE_MEMORY, within_share};
+use moldloft_budget::Budget;
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
 use moldloft_syntax::sdl::Type;
 use std::sync::Arc;
-
-/// The most elements of an array.
-pub const MOST_ELEMENTS: f64 = 1e7;
 
 /// Ints are smaller: from here on neighbours share their digits.
 pub const MOST_INT: f64 = 9_007_199_254_740_992.0;
@@ -146,28 +145,22 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
         (Type::Farray, Value::Vector(v)) => {
             Value::Numbers(Arc::new(Array::row(v.to_array().to_vec())))
         }
-        (Type::Farray, Value::List(items)) => {
-            let numbers: Option<Vec<T>> = items
-                .iter()
-                .map(|item| match item {
-                    Value::Number(x) => Some(*x),
-                    _ => None,
-                })
-                .collect();
-            let Some(numbers) = numbers else { return Err(wrong(&Value::List(items))) };
-            Value::Numbers(Arc::new(Array::row(numbers)))
+        (Type::Farray, Value::List(items)) => match rows_of_numbers(&items) {
+            Some(array) => Value::Numbers(Arc::new(array)),
+            None => return Err(wrong(&Value::List(items))),
+        },
+        (Type::Curve, Value::List(items)) if items.is_empty() => {
+            Value::Vectors(Arc::new(Vectors::row(Vec::new())))
         }
-        (Type::Curve, Value::List(items)) => {
-            let vectors: Option<Vec<Vec3<T>>> = items
-                .iter()
-                .map(|item| match item {
-                    Value::Vector(v) => Some(*v),
-                    Value::Point(p) => Some(p.xyz),
-                    _ => None,
-                })
-                .collect();
-            let Some(vectors) = vectors else { return Err(wrong(&Value::List(items))) };
-            Value::Vectors(Arc::new(Vectors::row(vectors)))
+        (Type::Curve | Type::Surface, value @ Value::List(_)) => {
+            match &*moldloft_arrays::gathered(&value) {
+                Value::Vectors(a)
+                    if matches!(a.shape, ArrayShape::Grid(..)) == (ty == Type::Surface) =>
+                {
+                    Value::Vectors(a.clone())
+                }
+                _ => return Err(wrong(&value)),
+            }
         }
         (Type::Curve, Value::Vectors(a)) if matches!(a.shape, ArrayShape::Row(_)) => {
             Value::Vectors(a)
@@ -179,39 +172,75 @@ pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnos
     })
 }
 
+/// Numbers in braces as a row; rows of equal length in braces as a grid, of which three numbers are one as well.
+fn rows_of_numbers<T: Real>(items: &[Value<T>]) -> Option<Array<T>> {
+    if let Some(row) =
+        items.iter().map(|v| if let Value::Number(x) = v { Some(*x) } else { None }).collect()
+    {
+        return Some(Array::row(row));
+    }
+    let (mut all, mut width) = (Vec::new(), None);
+    for item in items {
+        let before = all.len();
+        match &*moldloft_arrays::gathered(item) {
+            Value::Numbers(a) if matches!(a.shape, ArrayShape::Row(_)) => all.extend(&a.items),
+            Value::Vector(v) => all.extend(v.to_array()),
+            _ => return None,
+        }
+        let n = all.len() - before;
+        if *width.get_or_insert(n) != n {
+            return None;
+        }
+    }
+    Some(Array { shape: ArrayShape::Grid(items.len(), width?), items: all })
+}
+
 /// A declared dimension.
 ///
 /// # Errors
 /// When it is not a whole number in range.
 pub fn extent(n: f64) -> Result<usize, Diagnostic> {
-    if n.fract() == 0.0 && (1.0..=MOST_ELEMENTS).contains(&n) {
+    if n.fract() == 0.0 && (1.0..MOST_INT).contains(&n) {
         return Ok(n as usize);
     }
     Err(Diagnostic::error("wrong-dimension", "a dimension is a positive whole number")
-        .expected(format!("a whole number from 1 to {MOST_ELEMENTS}"))
+        .expected("a whole number from 1 on")
         .found(n.to_string()))
 }
 
-/// More elements than there may be.
-pub fn too_many(found: f64, most: f64) -> Diagnostic {
-    Diagnostic::error("too-many-elements", "the array is too large")
-        .expected(format!("at most {most} elements"))
-        .found(format!("{found}"))
+/// Whether an array of so many elements may be declared; gives the steps that it counts as.
+///
+/// # Errors
+/// More elements than a single array may have, or memory for no more of them.
+pub fn has_room<T>(ty: Type, count: f64, budget: &Budget) -> Result<u64, Diagnostic> {
+    let numbers = match ty {
+        Type::Farray => 1,
+        Type::String => 8,
+        _ => 3,
+    };
+    within_share(count, numbers).map_err(|most| {
+        Diagnostic::error("too-many-elements", "the array is too large")
+            .expected(most)
+            .found(format!("{count}"))
+            .help(MORE_MEMORY)
+    })?;
+    // And a byte for whether it was given a value.
+    let bytes = count as u64 * (numbers * size_of::<T>() as u64 + 1);
+    match budget.grow(bytes) {
+        Ok(()) => Ok(count as u64 / 64),
+        Err(spent) => Err(Diagnostic::error(spent.id(), spent.to_string()).help(spent.help())),
+    }
 }
 
 /// The first value of a variable with declared dimensions `dims`.
 ///
 /// # Errors
-/// When dimensions, type and value do not go together.
+/// When dimensions, type and value do not go together; that there is room for it is known.
 pub fn initial<T: Real>(
     ty: Type,
     dims: &[usize],
     value: Option<Value<T>>,
 ) -> Result<Value<T>, Diagnostic> {
-    let count = dims.iter().map(|&n| n as f64).product::<f64>();
-    if count > MOST_ELEMENTS {
-        return Err(too_many(count, MOST_ELEMENTS));
-    }
     let empty = match (ty, dims) {
         (Type::Farray, [n]) => Value::Numbers(Arc::new(Array::row(vec![T::zero(); *n]))),
         (Type::Farray, [m, n]) => {
@@ -346,7 +375,10 @@ pub(crate) fn fill<T: Real>(
             converted(Type::Farray, value)?
         }
         Value::List(_) | Value::Vector(_) if component.is_some() => converted(Type::Farray, value)?,
-        Value::List(_) => converted(Type::Curve, value)?,
+        Value::List(_) => match &*moldloft_arrays::gathered(&value) {
+            grid @ Value::Vectors(_) => grid.clone(),
+            _ => converted(Type::Curve, value)?,
+        },
         other => other,
     };
     let alike = |section: ArraySection, from: ArrayShape| match section.shape() == Some(from) {

@@ -22,7 +22,12 @@ impl Client {
 
     /// Begins with these parameters.
     pub fn start_in(begin: Value) -> Self {
+        // Where nothing was ever laid out.
+        let temporary = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"))
+            .join(format!("lsp-{}", std::process::id()));
+        std::fs::create_dir_all(&temporary).expect("a folder for temporary files");
         let mut child = Command::new(env!("CARGO_BIN_EXE_moldloft-lsp"))
+            .env("TMPDIR", temporary)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()

@@ -305,7 +305,11 @@ impl Lexer<'_> {
             self.at += c.len_utf8();
         }
         let run = &self.text[start..self.at];
-        let shown: String = run.chars().take(12).flat_map(char::escape_debug).collect();
+        let spelled = |c: char| match c {
+            '\'' => c.to_string(),
+            _ => c.escape_debug().to_string(),
+        };
+        let shown: String = run.chars().take(12).map(spelled).collect();
         let first = run.chars().next().unwrap_or(' ');
         let help = match first {
             '“' | '”' | '„' => Some("a string is enclosed in straight quotes `\"`"),

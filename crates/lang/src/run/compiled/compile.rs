@@ -835,6 +835,9 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let start = self.here()?;
         let (notes, inner) = (self.units[unit].notes.len(), self.units[unit].inner.len());
         let sites = self.units[unit].sites.len();
+        // Functions that were put in place have ranges and statements of their own.
+        let (ranges, statements) =
+            (self.units[unit].ranges.len(), self.units[unit].statements.len());
         let mut unless = Vec::new();
         match self.unless(stmt, condition, &mut unless) {
             Ok(()) => Ok(unless),
@@ -844,6 +847,8 @@ impl<T: Scalar> RegionCompiler<'_, T> {
                 self.units[unit].notes.truncate(notes);
                 self.units[unit].inner.truncate(inner);
                 self.units[unit].sites.truncate(sites);
+                self.units[unit].ranges.truncate(ranges);
+                self.units[unit].statements.truncate(statements);
                 self.progress[unit].left += 1;
                 let span = m.program[condition].span;
                 let site = self.site(stmt, Some(condition), span)?;

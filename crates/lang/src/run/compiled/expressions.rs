@@ -10,21 +10,10 @@ use crate::run::parts;
 use crate::source::module::Name;
 use crate::value::ops;
 use moldloft_diag::Span;
-use moldloft_num::Real;
 use moldloft_registry::{Implementation, Scalar};
 use moldloft_syntax::sdl::{
     Arg, BinaryOp, ChainItem, ExprId, ExprKind, NodeList, StmtId, Subscript, Symbol, Type, UnaryOp,
 };
-
-/// A function of numbers that combines two, for `min`, `max` and `sum` of several arguments.
-fn combining<T: Real>(name: &str) -> Option<(&'static str, Elementary<T>)> {
-    Some(match name {
-        "min" => ("min", Elementary::Binary(T::min)),
-        "max" => ("max", Elementary::Binary(T::max)),
-        "sum" => ("sum", Elementary::Binary(|a, b| a + b)),
-        _ => return None,
-    })
-}
 
 impl<T: Scalar> RegionCompiler<'_, T> {
     /// The register of the value; `want`, if that is given. What was in `want` stays there until the last moment.
@@ -368,7 +357,8 @@ impl<T: Scalar> RegionCompiler<'_, T> {
         let span = m.program[id].span;
         let mut values = Vec::with_capacity(given.len());
         let known = elementary::elementary::<T>(&row.name);
-        let several = combining::<T>(&row.name).filter(|_| (2..=4).contains(&given.len()));
+        let several =
+            elementary::combining::<T>(&row.name).filter(|_| (2..=4).contains(&given.len()));
         if known.is_none() && several.is_none() {
             return Err(Unfit::Statement);
         }

@@ -9,7 +9,7 @@ use super::registers::{
 };
 use crate::array::lanes::not_finite;
 use crate::functions::elementary::{Elementary, small_remainder};
-use crate::run::interpreter::{Flow, Interpreter, MOST_CALLS, MOST_HELD, silent};
+use crate::run::interpreter::{Flow, Interpreter, MOST_CALLS, silent};
 use crate::run::usage;
 use crate::value::initialised::Known;
 use crate::value::ops;
@@ -86,18 +86,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     false => CodeOutcome::Stop,
                 },
                 Departure::Return(x) => match machine.returns_plainly(region, &[x]) {
-                    Some(held) => {
-                        self.usage.held = held;
-                        continue;
-                    }
-                    None => self.returned_from(region, machine, Some(Value::Number(x))),
+                    true => continue,
+                    false => self.returned_from(region, machine, Some(Value::Number(x))),
                 },
                 Departure::ReturnVector(v) => match machine.returns_plainly(region, &v) {
-                    Some(held) => {
-                        self.usage.held = held;
-                        continue;
-                    }
-                    None => {
+                    true => continue,
+                    false => {
                         let v = Value::Vector(Vec3::from(v));
                         self.returned_from(region, machine, Some(v))
                     }
@@ -450,13 +444,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         _ => fault!(),
                     };
                     let count = m * n.unwrap_or(1.0);
-                    let held = machine.held.saturating_add(count as usize);
-                    if count > variables::MOST_ELEMENTS || held > MOST_HELD {
-                        fault!();
+                    let ty = code.arrays[array as usize].ty;
+                    match variables::has_room::<T>(ty, count, self.inputs.budget) {
+                        Ok(of_elements) => now += of_elements,
+                        Err(_) => fault!(),
                     }
-                    machine.held = held;
                     let zeros = || vec![T::zero(); count as usize];
-                    let items = match code.arrays[array as usize].ty {
+                    let items = match ty {
                         Type::Farray => ArrayItems::Owned(zeros()),
                         _ => ArrayItems::OwnedVectors([zeros(), zeros(), zeros()]),
                     };
@@ -593,7 +587,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             arrays: machine.first_array,
             to,
             site,
-            held: machine.held,
             errors: self.usage.errors,
         };
         machine.waiting.push(caller);
@@ -743,7 +736,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         machine.framed = self.env.scope.frames.len() > machine.frames;
         let callee = machine.unit;
         machine.back_to(call);
-        self.usage.held = call.held;
         let caller = &region.units[call.unit];
         let site = &caller.sites[call.site as usize];
         let callee = &region.units[callee];

@@ -101,7 +101,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         let frames = self.env.scope.frames.len();
         let mut machine = RegisterMachine::new(&region, frames);
-        machine.held = self.usage.held;
         self.take_back(&region, &mut machine);
         let flow = self.execute(&region, &mut machine);
         machine.unwind();
@@ -109,7 +108,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             machine.poison(&region);
         }
         self.env.scope.frames.truncate(frames);
-        self.usage.held = machine.held;
         self.hand_over(&region, &mut machine);
         for (unit, executed) in region.units.iter().zip(&machine.executed) {
             for (&(module, stmt), _) in

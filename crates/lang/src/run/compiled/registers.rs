@@ -199,7 +199,6 @@ pub(super) struct WaitingCall {
     /// Where the value of the call that it made goes, and its place.
     pub to: u16,
     pub site: u16,
-    pub held: usize,
     pub errors: usize,
 }
 
@@ -218,8 +217,6 @@ pub(super) struct RegisterMachine<T> {
     pub first_array: usize,
     /// The interpreter's frames when the region began.
     pub frames: usize,
-    /// Elements of the declared arrays.
-    pub held: usize,
     /// True once the interpreter has a frame for a call.
     pub framed: bool,
     /// The statements that were executed, by unit.
@@ -239,7 +236,6 @@ impl<T: Scalar> RegisterMachine<T> {
             first_mark: 0,
             first_array: 0,
             frames,
-            held: 0,
             framed: false,
             executed: region.units.iter().map(|u| vec![false; u.statements.len()]).collect(),
         };
@@ -269,29 +265,28 @@ impl<T: Scalar> RegisterMachine<T> {
         self.first = call.registers;
         self.first_mark = call.marks;
         self.first_array = call.arrays;
-        self.held = call.held;
     }
 
     /// Goes back to the call that waits with a number for a float, or a vector for a vector, when no frame of the
-    /// interpreter was made: the usual case. Gives the elements that are held then.
+    /// interpreter was made: the usual case. False when it is another.
     #[inline]
-    pub fn returns_plainly(&mut self, region: &CodeRegion<T>, x: &[T]) -> Option<usize> {
+    pub fn returns_plainly(&mut self, region: &CodeRegion<T>, x: &[T]) -> bool {
         let fits = match self.result_of(region) {
             Some(Type::Float) => x.len() == 1,
             Some(Type::Vector) => x.len() == 3,
             _ => false,
         };
         if !fits || self.framed {
-            return None;
+            return false;
         }
-        let call = self.waiting.pop()?;
+        let Some(call) = self.waiting.pop() else { return false };
         self.back_to(call);
         self.pc += 1;
         if call.to != NO_LABEL {
             let to = self.first + call.to as usize;
             self.registers[to..to + x.len()].copy_from_slice(x);
         }
-        Some(call.held)
+        true
     }
 
     fn result_of(&self, region: &CodeRegion<T>) -> Option<Type> {
@@ -552,7 +547,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         work: impl FnOnce(&mut Self) -> R,
     ) -> R {
         self.hand_over(region, machine);
-        self.usage.held = machine.held;
         let inner = self.loops_at(machine, machine.first, loops);
         let known = self.env.scope.frame().loops.len();
         self.env.scope.frame_mut().loops.extend(inner);
@@ -561,7 +555,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.current = current;
         self.env.scope.frame_mut().loops.truncate(known);
         self.take_back(region, machine);
-        machine.held = self.usage.held;
         done
     }
 
