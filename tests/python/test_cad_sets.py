@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from pathlib import Path
 
 import pytest
@@ -148,12 +149,18 @@ def test_random_bodies_are_valid_solids_of_their_certified_volume(
     from cad_reading import read
 
     model = moldloft.loads(random_sets.program(seed))
+    said = []
     try:
-        files = model.write(tmp_path / "b.step")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            files = model.write(tmp_path / "b.step")
+        said = [d for d in model.export_remarks if d.id == "as-triangles"]
     except moldloft.Error as error:
-        assert SOAK and any(d.id in REFUSED for d in error.diagnostics), error
+        said = [d for d in error.diagnostics if d.id in REFUSED]
+        assert said, error
+    if said:
         # Not more than one in twelve of these kinds.
-        assert seed % len(random_sets.KINDS) in (3, 4, 5, 6), error
+        assert SOAK and seed % len(random_sets.KINDS) in (3, 4, 5, 6), said
         return
     low, high = model.eval("volume_bracket(s)")
     found = read(files[0], accuracy=1e-6)

@@ -239,6 +239,9 @@ impl SetOfBody<'_> {
     ) -> Option<Diagnostic> {
         match places {
             Err(fault) => Some(reported(self.name, &fault)),
+            Ok(_) if let Some(place) = between_one_line(made) => {
+                Some(missed(self.name, place, step))
+            }
             Ok(places) => elsewhere(made, self.set, self.over, places, step, scale)
                 .map(|place| missed(self.name, place, step)),
         }
@@ -370,6 +373,15 @@ fn surface(form: &Form<f64>) -> Option<SurfaceShape> {
         }
         _ => return None,
     })
+}
+
+/// A place of a face whose border is one straight edge there and back: what facets show of it is none.
+fn between_one_line(made: &Brep) -> Option<Vec3> {
+    let straight = |edge: usize| made.edges[edge].curve.points.len() == 2;
+    let borders = made.faces.iter().flat_map(|face| &face.loops);
+    let mut lines = borders.filter(|sides| sides.len() <= 2);
+    let found = lines.find(|sides| sides.iter().all(|side| straight(side.edge)))?;
+    Some(made.edges[found.first()?.edge].curve.points[0])
 }
 
 /// A place of the faces' edges, or of triangles moved onto their surfaces, that is not on the border of the set.
