@@ -27,8 +27,8 @@ pub enum CombineError {
     Open(Vec3),
     /// Round surfaces touch without crossing, or nearly so, at this place.
     Touching(Vec3),
-    /// Facets do not tell which of several surfaces that nearly meet come first, at this place.
-    Coarse(Vec3),
+    /// Facets do not tell which of several surfaces that nearly meet come first, at these places: one or more.
+    Coarse(Vec<Vec3>),
     /// There are too many pieces.
     TooLarge,
     /// Nothing is left.
@@ -125,8 +125,9 @@ fn build<T: Real>(
 ) -> Result<(SketchSolid<T>, bool), CombineError> {
     let mut all = facetted(bodies, operand_of);
     let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
-    if let Some(place) = all.unclear(&plain, crossing) {
-        return Err(CombineError::Coarse(place));
+    let unclear = all.unclear(&plain, crossing);
+    if !unclear.is_empty() {
+        return Err(CombineError::Coarse(unclear));
     }
     let arranged = arrangement::arrange(&plain, std::mem::take(&mut all.facets), crossing, rule)?;
     if arranged.faces.is_empty() {
@@ -136,11 +137,11 @@ fn build<T: Real>(
     Ok((body, arranged.changed))
 }
 
-/// A place where a body's own faces or edges, its neighbours aside, are nearer to each other than facets tell: it may
+/// Places where a body's own faces or edges, its neighbours aside, are nearer to each other than facets tell: it may
 /// cross itself there by less than a chord, or not quite.
-pub(super) fn unclear<T: Real>(body: &SketchSolid<T>) -> Option<Vec3> {
+pub(super) fn unclear<T: Real>(body: &SketchSolid<T>) -> Vec<Vec3> {
     if body.edges.iter().all(|e| e.piece.is_none() && e.trace.is_none()) {
-        return None;
+        return Vec::new();
     }
     let all = facetted(&[body], &[0]);
     let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
@@ -175,7 +176,7 @@ fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize]) -> Facett
 }
 
 impl<T: Real> Facetted<T> {
-    fn unclear(&self, points: &[Vec3], within: bool) -> Option<Vec3> {
+    fn unclear(&self, points: &[Vec3], within: bool) -> Vec<Vec3> {
         let scale = extent(points);
         let (vertex, facets, sources) = (&self.vertex[..], &self.facets[..], &self.sources[..]);
         NearMissSearch { points, vertex, facets, sources, scale }.unclear(within)
@@ -347,6 +348,9 @@ pub(super) fn triangles_of(
 const RESOLVED: f64 = 1e-12;
 const MOST_HALVINGS: u32 = 16;
 
+/// How exactly points are known, as a share of the bodies: what chords miss by less is not resolved by halving.
+const ROUNDED: f64 = 1e-14;
+
 /// Two faces beside a side, and the edge of a body that it is part of.
 type Kind = (usize, usize, Option<(usize, u32)>);
 
@@ -448,14 +452,19 @@ impl<'a, T: Real> Placing<'a, T> {
             }
         }
         let near = Nearness { sources: &self.all.sources, scale: self.scale };
+        let mut unclear = Vec::new();
         for (v, (own, _)) in &around {
             let Some(at) = self.placed.get(v) else { continue };
             for &f in own {
                 let all = &faces[f].sources;
                 if all.iter().all(|&source| near.outside(at.re(), source)) {
-                    return Err(CombineError::Coarse(at.re()));
+                    unclear.push(at.re());
+                    break;
                 }
             }
+        }
+        if !unclear.is_empty() {
+            return Err(CombineError::Coarse(unclear));
         }
         let mut number: HashMap<u32, usize> = HashMap::new();
         let mut vertices: Vec<Vertex<T>> = Vec::new();
@@ -767,7 +776,8 @@ impl<'a, T: Real> Placing<'a, T> {
             }
             // The ways of the nodes add up to the chord as far as the rule resolves the edge.
             let way = own.iter().fold(-step.re(), |sum, n| sum + n.1.re());
-            if depth < MOST_HALVINGS && way.norm() > RESOLVED * step.re().norm() {
+            let most = (RESOLVED * step.re().norm()).max(ROUNDED * self.scale);
+            if depth < MOST_HALVINGS && way.norm() > most {
                 start = before;
                 let middle = across(0.5, &mut start.clone())?.at;
                 chords.push(([middle, to], depth + 1));

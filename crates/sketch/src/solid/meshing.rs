@@ -43,9 +43,9 @@ impl<T: Real> SketchSolid<T> {
         self.mesh_of(self.chords(&by_angle, true))
     }
 
-    /// Chords per edge, one for each 5° of a round curve, and three for each of them by the body's fineness.
-    pub(super) fn angular_chords(&self) -> Vec<usize> {
-        let more = 3usize.pow(self.fineness);
+    /// Chords per edge, one for each 5° of a round curve, cut in three so often.
+    pub(super) fn angular_chords(&self, times: u32) -> Vec<usize> {
+        let more = 3usize.pow(times);
         self.chords(
             &|piece| match piece {
                 SmoothPiece::Cubic(_) if by_angle(piece) == 1 => 1,
@@ -100,7 +100,11 @@ impl<T: Real> SketchSolid<T> {
         places: &mut Vec<Vec3<T>>,
     ) -> Vec<[u32; 4]> {
         if let Some(trim) = face.trim {
-            return outline::patch(&self.trims[trim].surface, &face.loops[0], run, places);
+            let even = |h: (usize, bool)| {
+                let n = run(h).len() - 1;
+                (0..=n).map(|k| k as f64 / n as f64).collect()
+            };
+            return outline::patch(&self.trims[trim].surface, &face.loops[0], run, &even, places);
         }
         if face.ruled {
             let cycle = &face.loops[0];

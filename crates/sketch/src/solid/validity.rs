@@ -78,10 +78,11 @@ pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidD
 
 /// A body that does not cross itself, if its facets tell that.
 fn clear<T: Real>(body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
-    match unclear(&body) {
-        Some(place) => Err(SolidDefect::Unresolved(CombineError::Coarse(place))),
-        None => Ok(body),
+    let places = unclear(&body);
+    if places.is_empty() {
+        return Ok(body);
     }
+    Err(SolidDefect::Unresolved(CombineError::Coarse(places)))
 }
 
 impl<T: Real> SketchSolid<T> {
