@@ -351,6 +351,9 @@ const MOST_HALVINGS: u32 = 16;
 /// How exactly points are known, as a share of the bodies: what chords miss by less is not resolved by halving.
 const ROUNDED: f64 = 1e-14;
 
+/// Faces part in a corner where it leaves one of them by more than this share of the speeds there.
+const PARTING: f64 = 1e-6;
+
 /// Two faces beside a side, and the edge of a body that it is part of.
 type Kind = (usize, usize, Option<(usize, u32)>);
 
@@ -448,7 +451,7 @@ impl<'a, T: Real> Placing<'a, T> {
         for (&v, (own, edges)) in &around {
             let at = self.corner(v, own, edges)?;
             if let Some(at) = at {
-                self.placed.insert(v, at);
+                self.placed.insert(v, self.moved_with_all(at, own));
             }
         }
         let near = Nearness { sources: &self.all.sources, scale: self.scale };
@@ -671,6 +674,38 @@ impl<'a, T: Real> Placing<'a, T> {
             _ if faces.len() == 2 => Ok(None),
             _ => Err(CombineError::Touching(guess)),
         }
+    }
+
+    /// A corner whose derivatives are none where its faces part: more of them than fix a point meet there by chance, and
+    /// it becomes several corners with the slightest change.
+    fn moved_with_all(&self, at: Vec3<T>, faces: &BTreeSet<usize>) -> Vec3<T> {
+        if T::PARTS == 1 {
+            return at;
+        }
+        let scale = T::from(self.scale);
+        let mut parts: Vec<(T, [Vec3<T>; 2])> = Vec::new();
+        for &f in faces {
+            match self.surface(f) {
+                FaceSurface::Plane { at: base, normal } => {
+                    parts.push((normal.dot(at - *base), [*base, *normal * scale]));
+                }
+                surface => {
+                    let Some([u, v, _]) = located(surface, at, Vec3::zero(), None) else {
+                        continue;
+                    };
+                    let [p, du, dv] = surface.jet(u, v);
+                    let Some(normal) = du.cross(dv).normalized() else { continue };
+                    parts.push((normal.dot(at - p), [p, normal * scale]));
+                }
+            }
+        }
+        let size = |v: Vec3<T>, k: usize| v.x.part(k).abs() + v.y.part(k).abs() + v.z.part(k).abs();
+        let parted = |k: usize| {
+            let most = parts.iter().map(|(_, own)| size(own[0], k) + size(own[1], k));
+            let most = most.fold(size(at, k), f64::max);
+            parts.iter().any(|(off, _)| off.part(k).abs() > PARTING * most)
+        };
+        at.map(|x| T::from_parts(|k| if k > 0 && parted(k) { f64::NAN } else { x.part(k) }))
     }
 
     /// The points of an edge that is not straight, with their places on the round faces beside it.

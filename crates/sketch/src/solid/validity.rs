@@ -45,7 +45,8 @@ pub enum SolidDefect {
 /// # Errors
 /// [`SolidDefect`], with the place.
 pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
-    if body.vertices.iter().any(|v| !v.at.is_finite()) {
+    // Where there is no derivative there may be a body.
+    if body.vertices.iter().any(|v| !v.at.re().is_finite()) {
         return Err(SolidDefect::NotFinite);
     }
     if body.flat {
