@@ -351,6 +351,9 @@ const MOST_HALVINGS: u32 = 16;
 /// How exactly points are known, as a share of the bodies: what chords miss by less is not resolved by halving.
 const ROUNDED: f64 = 1e-14;
 
+/// A point is on a surface where it is off it by no more than this share of the surface's size.
+const ON_SURFACE: f64 = 1e-8;
+
 /// Faces part in a corner where it leaves one of them by more than this share of the speeds there.
 const PARTING: f64 = 1e-6;
 
@@ -907,17 +910,18 @@ pub(super) fn along<T: Real>(piece: &SmoothPiece<T>, p: Vec3) -> f64 {
     s
 }
 
-/// The place of a point on a surface: u, v, and the change of u as the point moves by `by`.
-pub(super) fn located<T: Real>(
+/// The parameters of a point of a surface by Gauss-Newton steps, or of the foot of one that is off it by no more than a
+/// share of its size; `None` where the steps end at another point.
+pub(super) fn settled<T: Real>(
     surface: &FaceSurface<T>,
-    p: Vec3<T>,
-    by: Vec3<T>,
-    from: Option<[f64; 2]>,
-) -> Option<[T; 3]> {
-    let mut at = from.unwrap_or_else(|| surface.parameters(p.re()));
+    p: Vec3,
+    start: [f64; 2],
+    share: f64,
+) -> Option<[f64; 2]> {
+    let mut at = start;
     for _ in 0..8 {
         let [s, du, dv] = surface.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
-        let r = p.re() - s;
+        let r = p - s;
         let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
         let det = a * c - b * b;
         if det <= 1e-20 * a * c {
@@ -930,6 +934,28 @@ pub(super) fn located<T: Real>(
             break;
         }
     }
+    let [s, du, dv] = surface.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
+    let near = |x: f64| (-0.5..=1.5).contains(&x);
+    let size = du.norm() + dv.norm();
+    // What is left is square to the surface.
+    let left = p - s;
+    let along = |d: Vec3| left.dot(d).abs() / d.norm().max(f64::MIN_POSITIVE);
+    let foot = left.norm() <= share * size && along(du) + along(dv) <= ON_SURFACE * size;
+    (near(at[0]) && near(at[1]) && foot).then_some(at)
+}
+
+/// The place of a point on a surface: u, v, and the change of u as the point moves by `by`.
+pub(super) fn located<T: Real>(
+    surface: &FaceSurface<T>,
+    p: Vec3<T>,
+    by: Vec3<T>,
+    from: Option<[f64; 2]>,
+) -> Option<[T; 3]> {
+    let start = from.unwrap_or_else(|| surface.parameters(p.re()));
+    // Beside a pole a search may pass it and stay on its other side.
+    let grid = (0..81).map(|k| [f64::from(k % 9) / 8.0, f64::from(k / 9) / 8.0]);
+    let mut starts = std::iter::once(start).chain(grid);
+    let at = starts.find_map(|start| settled(surface, p.re(), start, ON_SURFACE))?;
     let lifted = at.map(T::from);
     let step = |[_, du, dv]: Jet<T>, r: Vec3<T>| {
         let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());

@@ -1,7 +1,7 @@
 //! A body as a mesh: chords of its round edges, facets of its faces.
 
 use super::curve::SmoothPiece;
-use super::{Quick, SketchSolid, SolidFace, outline};
+use super::{CombinedMesh, Quick, SketchSolid, SolidFace, outline};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, triangulate};
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
@@ -32,8 +32,12 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// A mesh of triangles and quads within `tolerance` of curves; faces are its patches.
+    /// A mesh of triangles and quads within `tolerance` of curves and round faces; faces are its patches. Curves for which
+    /// a number of steps is asked have that.
     pub fn mesh(&self, tolerance: f64) -> Mesh<T> {
+        if let Some(facets) = &self.facets {
+            return self.mesh_from_facets(&self.finer(facets, tolerance));
+        }
         self.mesh_of(self.chords(&|piece| piece.chords(tolerance), true))
     }
 
@@ -57,11 +61,7 @@ impl<T: Real> SketchSolid<T> {
 
     fn mesh_of(&self, chords: Vec<usize>) -> Mesh<T> {
         if let Some(facets) = &self.facets {
-            let named = facets.faces.iter().enumerate().map(|(k, triangles)| {
-                let corners = triangles.iter().map(|&[a, b, c]| [a, b, c, c]).collect();
-                (self.face_name(k), corners)
-            });
-            return mesh_from(facets.points.clone(), named.collect());
+            return self.mesh_from_facets(facets);
         }
         let mut places: Vec<Vec3<T>> = self.vertices.iter().map(|v| v.at).collect();
         let mut inner: Vec<Vec<u32>> = Vec::new();
@@ -87,6 +87,14 @@ impl<T: Real> SketchSolid<T> {
             parts.push((self.face_name(k), self.facets(face, &run, &mut places)));
         }
         mesh_from(places, parts)
+    }
+
+    fn mesh_from_facets(&self, facets: &CombinedMesh<T>) -> Mesh<T> {
+        let named = facets.faces.iter().enumerate().map(|(k, triangles)| {
+            let corners = triangles.iter().map(|&[a, b, c]| [a, b, c, c]).collect();
+            (self.face_name(k), corners)
+        });
+        mesh_from(facets.points.clone(), named.collect())
     }
 
     fn face_name(&self, k: usize) -> String {

@@ -14,6 +14,7 @@ pub mod curve;
 pub(crate) mod edges;
 pub mod faces;
 pub mod feature;
+mod finer_mesh;
 pub(crate) mod gradient;
 pub(crate) mod mass;
 pub mod merge;
