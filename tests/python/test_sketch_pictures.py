@@ -1,8 +1,8 @@
 """Pictures that show what the text says, or something else: the text decides.
 
-Blocks with holes, pockets, bosses and cavities, against sums of boxes. The boxes stand anywhere on the
-page, the
-proportions are wrong, dimensions run up or down, from any point whose place is known, in any order.
+Blocks with holes, pockets, bosses and cavities, against sums of boxes. The boxes stand anywhere on
+the page, the proportions are wrong, dimensions run up or down, from any point whose place is known,
+in any order.
 A few here; with MOLDLOFT_SOAK=1 a thousand drawings and cavities at five hundred places.
 """
 
