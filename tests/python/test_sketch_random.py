@@ -176,7 +176,8 @@ def test_derivatives_of_parts_are_their_differences(curved):
             assert off < 1e-5 * size, (seed, names[k], exact, narrow, part.words)
             compared += 1
     assert compared >= (300 if SOAK else 5)
-    assert refused <= max(3, 0.1 * compared)
+    # Drawn with round numbers, parts meet by chance more often than others.
+    assert refused <= max(3, 0.25 * compared)
 
 
 @pytest.mark.parametrize("tolerance", [3e-3, 1e-4, 1e-6])

@@ -194,7 +194,6 @@ def test_corners_of_edges_that_stand_out_and_in():
     for seed in range(300 if SOAK else 24):
         rng = np.random.default_rng([seed, 3])
         kind = str(rng.choice(["bracket", "pocket", "boss"]))
-        fillet = bool(rng.integers(2))
         size = round(float(rng.uniform(0.1, 0.45)), 3)
         w, h = (float(x) for x in rng.uniform([8, 4.5], [12, 6]))
         u, v, low = (float(x) for x in rng.uniform([2, 3, 2], [4, 4, 2.5]))
@@ -214,34 +213,18 @@ def test_corners_of_edges_that_stand_out_and_in():
         for name, value in new.items():
             sketch[name] = value
         try:
-            word = "FILLET" if fillet else "CHAMFER"
-            sketch.run(f"{word} A {size} EDGES ALL INTO Q")
+            sketch.run(f"FILLET A {size} EDGES ALL INTO Q")
         except SketchError:
             counts["refused"] += 1
             continue
         found = sketch.objects["Q"]
         got = np.array([found["volume"], found["area"], *found["centroid"]])
-        truth = treated(shape, lambda *_: True, size, fillet=fillet)
+        truth = treated(shape, lambda *_: True, size, fillet=True)
         if truth is None:
             counts["occt"] += 1
             continue
         off = np.abs(got - truth) / np.maximum(1, np.abs(truth))
-        if not fillet:
-            # Where chamfers of both kinds meet OCCT ends them in other planes, in pockets and
-            # brackets around the same volume. Round a boss they are a skirt with mitred corners.
-            if kind == "boss":
-                high = low + v - h
-                boss = parts.box((0, 0, 0), (u, 3, high))
-                top = treated(boss, lambda run, _: run[:, 2].max() > 0.1, size, fillet=False)
-                block = treated(
-                    parts.box((0, 0, 0), (w, 8, h)), lambda *_: True, size, fillet=False
-                )
-                assert top is not None and block is not None
-                around = 2 * (u + 3) - 8 * size + 4 * size * np.sqrt(2)
-                skirt = around * size**2 / 2 + 8 * np.tan(np.pi / 8) * size**3 / 3
-                off = np.abs(got - (block[0] + top[0] + skirt)) / got[0]
-            off = off[:1]
-        assert off.max() < BOUND, (seed, kind, word, size, new, got, truth)
+        assert off.max() < BOUND, (seed, kind, size, new, got, truth)
         counts["same"] += 1
     print(counts)
     assert counts["same"] > sum(counts.values()) / 2, counts
@@ -255,6 +238,8 @@ def test_only_a_part_of_such_a_corner_is_refused_with_the_place():
     ) as said:
         sketch.run("FILLET A 0.25 EDGES ALONG X ALONG Y INTO Q")
     assert "all three edges" in str(said.value)
+    with pytest.raises(SketchError, match="stand out and edges that stand in meet"):
+        sketch.run("CHAMFER A 0.25 EDGES ALL INTO Q")
 
 
 def _drilled(

@@ -1,8 +1,8 @@
 //! Corners where edges that stand out and edges that stand in meet: which of the chosen edges are blended first.
 //!
 //! Of three such edges one is alone of its kind. When it is blended first, the other two are joined by an edge of the
-//! blend: an arc that they go on into where it is a fillet, a line across the corner where it is a chamfer. Then
-//! these are blended with it, as edges of one kind. All edges of one kind that meet in corners are blended together.
+//! blend, an arc that they go on into. Then these are filleted with it, as edges of one kind. All edges of one kind that
+//! meet in corners are filleted together. Chamfers of such corners are refused.
 
 use super::SketchSolid;
 use super::blend::BlendSize;
@@ -14,15 +14,14 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Chosen edges, each with the face that a first distance is measured in.
 pub(super) type ChosenEdges = BTreeMap<usize, Option<usize>>;
 
-const WHOLE: &str = "choose all three edges of the corner, or only edges that do not meet there";
+const WHOLE: &str =
+    "FILLET all three edges of the corner, or choose only edges that do not meet there";
 
 /// Edges of a body that are blended together, after others.
 pub(super) struct BlendStep<T> {
     edges: Vec<EdgeFrame<T>>,
     /// Where they run, by edge.
     ways: Vec<Vec<Vec3>>,
-    /// Of corners where an edge of the other kind is blended before: the two edges of this step.
-    joints: Vec<[usize; 2]>,
 }
 
 /// The edges to begin with, and those to be found in the body that results, in their order.
@@ -66,13 +65,14 @@ pub(super) fn ordered<T: Real>(
             continue;
         }
         let place = body.vertices[v].at.re();
-        let uneven = matches!(size, BlendSize::Chamfer([a, b]) if (a - b).re() != 0.0);
         let (alone, others) = match (&out[..], &inward[..]) {
             (&[m], &[a, b]) | (&[a, b], &[m]) => (m, [a, b]),
             _ => return Err(refused(place)),
         };
         let straight = own.iter().all(|&k| frames[k].axis.is_none());
-        if degree[v] != 3 || !straight || uneven {
+        // Chamfers end there in planes that no other rule gives: fillets alone.
+        let bevel = matches!(size, BlendSize::Chamfer(_));
+        if degree[v] != 3 || !straight || bevel {
             return Err(refused(place));
         }
         mixed.push((alone, others, place));
@@ -108,12 +108,8 @@ pub(super) fn ordered<T: Real>(
     let mut later = Vec::new();
     for s in 1..count {
         let own: Vec<usize> = (0..frames.len()).filter(|k| step[*k] == s).collect();
-        let place = |k: usize| own.iter().position(|o| *o == k);
         later.push(BlendStep {
             ways: own.iter().map(|&k| way(body, numbers[k])).collect(),
-            joints: (mixed.iter())
-                .filter_map(|(_, [a, b], _)| Some([place(*a)?, place(*b)?]))
-                .collect(),
             edges: own.iter().map(|&k| frames[k].clone()).collect(),
         });
     }
@@ -131,7 +127,7 @@ fn way<T: Real>(body: &SketchSolid<T>, edge: usize) -> Vec<Vec3> {
 }
 
 impl<T: Real> BlendStep<T> {
-    /// The edges of a later body that are parts of these, or go on from them across a corner.
+    /// The edges of a later body that are parts of these.
     ///
     /// # Errors
     /// An edge that is no longer there.
@@ -155,17 +151,6 @@ impl<T: Real> BlendStep<T> {
                     Some(old[old.len() / 2]),
                     "make it smaller, or choose other edges",
                 ));
-            }
-        }
-        for joint in &self.joints {
-            let on = |k: usize, p: Vec3| on_edge(&self.edges[k], &self.ways[k], p, size);
-            for (e, edge) in body.edges.iter().enumerate() {
-                let [p, q] = edge.ends.map(|v| body.vertices[v].at.re());
-                let [a, b] = *joint;
-                let across = (on(a, p) && on(b, q)) || (on(a, q) && on(b, p));
-                if across && body.is_straight(e) && !body.is_smooth(&sides[e]) {
-                    found.insert(e, None);
-                }
             }
         }
         Ok(found)

@@ -682,7 +682,8 @@ impl<'a, T: Real> Placing<'a, T> {
     /// A corner whose derivatives are none where its faces part: more of them than fix a point meet there by chance, and
     /// it becomes several corners with the slightest change.
     fn moved_with_all(&self, at: Vec3<T>, faces: &BTreeSet<usize>) -> Vec3<T> {
-        if T::PARTS == 1 {
+        // Between planes alone a body's measures are those of its corners.
+        if T::PARTS == 1 || faces.iter().all(|&f| self.arranged.faces[f].plane) {
             return at;
         }
         let scale = T::from(self.scale);
