@@ -1,6 +1,7 @@
 //! A body as a mesh: chords of its round edges, facets of its faces.
 
 use super::curve::SmoothPiece;
+use super::surface::FaceSurface;
 use super::{CombinedMesh, Quick, SketchSolid, SolidFace, outline};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, triangulate};
 use moldloft_num::{Real, Vec3};
@@ -38,7 +39,13 @@ impl<T: Real> SketchSolid<T> {
         if let Some(facets) = &self.facets {
             return self.mesh_from_facets(&self.finer(facets, tolerance));
         }
-        self.mesh_of(self.chords(&|piece| piece.chords(tolerance), true))
+        // Facets of faces that are curved both ways miss them by what the chords of both ways miss.
+        let bent = self.trims.iter().any(|t| match &t.surface {
+            FaceSurface::Turned { profile, .. } => profile.chords(tolerance) > 1,
+            FaceSurface::Ruled { .. } | FaceSurface::Plane { .. } => false,
+        });
+        let share = if bent { 0.5 * tolerance } else { tolerance };
+        self.mesh_of(self.chords(&|piece| piece.chords(share), true))
     }
 
     /// The same with a chord for each 5° of a round curve and 20 for each cubic, as in 1983, so that

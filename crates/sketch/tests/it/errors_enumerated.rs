@@ -358,7 +358,7 @@ const CASES: &[(&str, &str)] = &[
     ("PYRAMID", "SHELL P 0.2"),
     ("PYRAMID", "DRAFT P Z 5"),
     ("PYRAMID", "DRAFT P X 5"),
-    ("ELL", "FILLET ELL 1 EDGES ALL INTO Q"),
+    ("ELL", "CHAMFER ELL 1 EDGES ALL INTO Q"),
 ];
 
 /// A session after some text; its first word may be the name of one of the texts above.
