@@ -92,11 +92,7 @@ pub(super) fn ordered<T: Real>(
         match late {
             None => break,
             Some(place) if round == frames.len() => {
-                return Err(TreatmentFault::new(
-                    "corners of edges that stand out and edges that stand in ask for different orders",
-                    Some(place),
-                    "choose fewer of the edges, and the others in another step",
-                ));
+                return Err(refused(place));
             }
             Some(_) => {}
         }

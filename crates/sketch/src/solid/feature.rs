@@ -426,8 +426,8 @@ impl Feature {
                     let name = side_name(object, &section, e);
                     if name.is_some_and(|n| still.contains(&*n)) { T::zero() } else { by }
                 };
-                let section = moved_section(&section, [p, q], &shift);
-                Some(section.and_then(|s| self.turned(&s, [p, q], angle, plan.density())))
+                let section = moved_section(&section, [p, q], &shift)?;
+                Some(self.turned(&section, [p, q], angle, plan.density()))
             }
             _ => None,
         }

@@ -1,14 +1,10 @@
 //! Sections with their sides moved, for bodies of revolution whose faces are moved.
 
 use super::curve::SmoothPiece;
-use super::edges::TreatmentFault;
-use super::feature::NoBody;
 use super::validity::valid;
 use super::{SketchSolid, SolidEdge, Vertex};
 use moldloft_num::{Axis as Line, Real, Vec3};
 use std::collections::BTreeMap;
-
-const NEXT: &str = "make it smaller, or shell the body before it is cut";
 
 /// What a point of a moved side fulfils: a distance from a line along the normal, or from a centre.
 enum MovedSide<T> {
@@ -30,25 +26,20 @@ impl<T: Real> MovedSide<T> {
 }
 
 /// A section, in a plane with the line through two points, with its sides moved outwards by `shift`; sides on the line
-/// are not moved.
-///
-/// # Errors
-/// Sides that are neither straight nor arcs of circles; sides that vanish or part.
+/// are not moved. `None` where sides are neither straight nor arcs of circles, vanish or part.
 pub(super) fn moved_section<T: Real>(
     section: &SketchSolid<T>,
     line: [Vec3<T>; 2],
     shift: &dyn Fn(usize) -> T,
-) -> Result<SketchSolid<T>, NoBody> {
-    let fault = |text: &str, at: Option<Vec3>| NoBody::from(TreatmentFault::new(text, at, NEXT));
-    let axis = Line::through(line[0], line[1]).ok_or(NoBody::Axis)?;
+) -> Option<SketchSolid<T>> {
+    let axis = Line::through(line[0], line[1])?;
     let size = section.vertices.iter().map(|v| axis.foot(v.at).re().distance(v.at.re()));
     let size = size.fold(0.0, f64::max);
     let [face] = &section.faces[..] else {
-        return Err(fault("a section of several faces is not moved", None));
+        return None;
     };
     let way: Vec<Vec3<T>> = face.loops[0].iter().flat_map(|&h| section.run(h)).collect();
-    let plane = super::combine::newell(&way).normalized();
-    let plane = plane.ok_or_else(|| fault("a section has no area", None))?;
+    let plane = super::combine::newell(&way).normalized()?;
     let mut sides: BTreeMap<usize, MovedSide<T>> = BTreeMap::new();
     let mut at_vertex: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for &h in face.loops.iter().flatten() {
@@ -56,10 +47,7 @@ pub(super) fn moved_section<T: Real>(
         let ends = section.edges[e].ends;
         let [p, q] = ends.map(|v| section.vertices[v].at);
         if ends[0] == ends[1] || sides.contains_key(&e) {
-            return Err(fault(
-                "a side of a section is a loop, or has it on both sides",
-                Some(p.re()),
-            ));
+            return None;
         }
         let on_axis = |x: Vec3<T>| axis.foot(x).re().distance(x.re()) <= 1e-9 * size;
         let straight = section.is_straight(e);
@@ -67,9 +55,7 @@ pub(super) fn moved_section<T: Real>(
         let along = if forward { q - p } else { p - q };
         let side = match section.piece((e, forward)) {
             _ if straight => {
-                let normal = along.cross(plane).normalized();
-                let normal = normal
-                    .ok_or_else(|| fault("a side of a section has no length", Some(p.re())))?;
+                let normal = along.cross(plane).normalized()?;
                 MovedSide::Straight { at: p + normal * by, normal }
             }
             SmoothPiece::Conic { centre, a, b, sweep } => {
@@ -80,15 +66,12 @@ pub(super) fn moved_section<T: Real>(
                 let turn = a.cross(b).dot(plane).re() * sweep.re();
                 let moved = if turn > 0.0 { radius + by } else { radius - by };
                 if !round || moved.re() <= 0.0 {
-                    return Err(fault("a round side of a section cannot be moved", Some(p.re())));
+                    return None;
                 }
                 MovedSide::Round { centre, radius: moved }
             }
             SmoothPiece::Cubic(_) => {
-                return Err(fault(
-                    "a side of a section is neither straight nor an arc",
-                    Some(p.re()),
-                ));
+                return None;
             }
         };
         sides.insert(e, side);
@@ -98,12 +81,9 @@ pub(super) fn moved_section<T: Real>(
     for (&v, own) in &at_vertex {
         let old = section.vertices[v].at;
         let &[e, f] = &own[..] else {
-            return Err(fault("sides of a section meet in one point twice", Some(old.re())));
+            return None;
         };
-        let place = common([&sides[&e], &sides[&f]], old, plane, size);
-        let place = place
-            .ok_or_else(|| fault("sides of a section part when they are moved", Some(old.re())))?;
-        places.insert(v, place);
+        places.insert(v, common([&sides[&e], &sides[&f]], old, plane, size)?);
     }
     let mut edges = Vec::new();
     for (e, edge) in section.edges.iter().enumerate() {
@@ -113,27 +93,26 @@ pub(super) fn moved_section<T: Real>(
         };
         let [p, q] = edge.ends.map(|v| places[&v]);
         let old = edge.ends.map(|v| section.vertices[v].at);
-        let vanishes = || fault("a side of a section vanishes when it is moved", Some(old[0].re()));
         let piece = match *side {
             MovedSide::Straight { .. } => {
                 if (q - p).re().dot((old[1] - old[0]).re()) <= 0.0 {
-                    return Err(vanishes());
+                    return None;
                 }
                 None
             }
             MovedSide::Round { centre, .. } => {
                 let SmoothPiece::Conic { a, b, sweep, .. } = section.piece((e, true)) else {
-                    return Err(vanishes());
+                    return None;
                 };
                 let turn = a.cross(b) * sweep;
-                let direction = turn.normalized().ok_or_else(vanishes)?;
+                let direction = turn.normalized()?;
                 let (from, to) = (p - centre, q - centre);
                 let angle = direction.dot(from.cross(to)).atan2(from.dot(to));
                 let full = 2.0 * std::f64::consts::PI;
                 let angle = if angle.re() <= 0.0 { angle + full } else { angle };
                 // A side that has turned inside out goes nearly the whole way round.
                 if (angle.re() - sweep.re().abs()).abs() > std::f64::consts::PI {
-                    return Err(vanishes());
+                    return None;
                 }
                 Some(SmoothPiece::Conic { centre, a: from, b: direction.cross(from), sweep: angle })
             }
@@ -145,7 +124,7 @@ pub(super) fn moved_section<T: Real>(
         at: places.get(&k).copied().unwrap_or(v.at),
     };
     let vertices = section.vertices.iter().enumerate().map(vertex).collect();
-    valid(SketchSolid { vertices, edges, ..section.clone() }).map_err(NoBody::Flaw)
+    valid(SketchSolid { vertices, edges, ..section.clone() }).ok()
 }
 
 /// The point of two moved sides near an old one, in the plane of the section.
