@@ -668,7 +668,9 @@ class Sketch:
         Returns
         -------
         Gradient
-            For each dimension the change of each figure for a change of 1.
+            For each dimension the change of each figure for a change of 1. It is NaN where there
+            is none: where faces of a body that was combined meet in a corner by chance, and part
+            as the number changes.
 
         Raises
         ------

@@ -14,6 +14,14 @@ import pytest
 
 pytest.importorskip("OCP")
 
+from OCP.BRep import BRep_Builder
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.gp import gp_Pnt
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
+
 from moldloft import Sketch, SketchError
 from sketch_parts import Drawn, Numbers, block, changed, drawn, measures
 
@@ -43,7 +51,8 @@ def start(seed: int, *, curved: bool) -> tuple[Drawn, Sketch, dict, np.random.Ge
     try:
         sketch.run(part.text)
     except SketchError as error:
-        assert "leaves nothing" in str(error) or "touch" in str(error), (seed, str(error))
+        said = ("leaves nothing", "touch", "nearly meet")
+        assert any(words in str(error) for words in said), (seed, str(error))
         return None
     sketch.run(f"USING {part.name}")
     return part, sketch, part.named(sketch.dimensions), rng
@@ -121,11 +130,9 @@ def test_changed_parts_are_those_of_occt(curved, seeds, most):
 
 @pytest.mark.parametrize("curved", [False, True], ids=["plane", "round"])
 def test_derivatives_of_parts_are_their_differences(curved):
-    compared = 0
-    # Volumes of round parts are right to some 1e-9: smaller steps would show that instead.
-    step = 1e-3 if curved else 1e-4
-    # Where round faces nearly meet a change takes up to half a minute without optimisation.
-    for seed in range(200) if SOAK else range(1, 3) if curved else range(5):
+    compared = refused = 0
+    step = 1e-4
+    for seed in range(200) if SOAK else range(14) if curved else range(5):
         made = start(1000 + seed, curved=curved)
         if made is None:
             continue
@@ -161,10 +168,56 @@ def test_derivatives_of_parts_are_their_differences(curved):
             exact = np.array(
                 [gradient.volume[place], gradient.area[place], *gradient.centroid[place]]
             )
+            # None where faces meet in a corner by chance, and part.
+            if np.isnan(exact).all():
+                refused += 1
+                continue
             off = np.abs(exact - (4 * narrow - wide) / 3).max()
             assert off < 1e-5 * size, (seed, names[k], exact, narrow, part.words)
             compared += 1
     assert compared >= (300 if SOAK else 5)
+    # Drawn with round numbers, parts meet by chance more often than others.
+    assert refused <= max(3, 0.25 * compared)
+
+
+@pytest.mark.parametrize("tolerance", [3e-3, 1e-4])
+def test_meshes_are_within_their_tolerance(tolerance):
+    # Middles of facets and of their sides, from OCCT's faces.
+    measured = 0
+    for seed in range(60 if SOAK else 6):
+        made = start(seed, curved=True)
+        if made is None or made[1].volume is None:
+            continue
+        part, sketch, _, rng = made
+        shape = part.solid(dict(part.values), 1.0)
+        assert shape is not None
+        places, corners = sketch.mesh(name=part.name, tolerance=tolerance)
+        sides: dict[tuple[int, int], int] = {}
+        for ring in corners:
+            ring = [a for k, a in enumerate(ring) if a != ring[k - 1]]
+            for a, b in zip(ring, ring[1:] + ring[:1], strict=True):
+                sides[a, b] = sides.get((a, b), 0) + 1
+        assert all(sides[b, a] == n for (a, b), n in sides.items()), (seed, part.words)
+        facets = places[corners].mean(axis=1)
+        middles = np.array([places[a] + places[b] for a, b in sides]) / 2
+        some = np.concatenate([rng.permutation(facets)[:60], rng.permutation(middles)[:60]])
+        for p in some:
+            vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*p)).Vertex()
+            boundary = BRepExtrema_DistShapeShape(vertex, faces_of(shape)).Value()
+            assert boundary <= tolerance + 3e-7, (seed, p, boundary, part.words)
+        measured += 1
+    assert measured >= 4
+
+
+def faces_of(shape: TopoDS_Shape) -> TopoDS_Shape:
+    """Its faces alone, so that places inside of it have a distance."""
+    compound, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(compound)
+    explorer = TopExp_Explorer(shape, TopAbs_FACE)
+    while explorer.More():
+        builder.Add(compound, explorer.Current())
+        explorer.Next()
+    return compound
 
 
 def test_a_corner_within_a_chord_of_another_face():

@@ -240,10 +240,8 @@ class Host:
         unsaved = self.session.journal_length() > self.saved
         self.journal.close(keep=unsaved)
         if unsaved and not self.options.json:
-            print(
-                "not saved: `moldloft sketch --recover` resumes it; SAVE writes a file",
-                file=sys.stderr,
-            )
+            again = _again(self.options.file if self.journal.path.exists() else None)
+            print(f"not saved: `{again}` resumes it; SAVE writes a file", file=sys.stderr)
 
     def _read(self, ask: Callable[[str], str] | None) -> str:
         if ask is not None:
@@ -260,9 +258,9 @@ class Host:
         from moldloft.storage import BusyError, Lock, recover
         from moldloft.storage.journal import (
             ENDING,
-            LAST,
             Journal,
             beside,
+            ended,
             left_behind,
             lock,
             state_folder,
@@ -289,9 +287,9 @@ class Host:
         if own and held:
             left = left_behind([own], self.present, held)
         else:
-            left = left_behind([path for path in others if path.name != LAST]) if alone else []
+            left = left_behind([path for path in others if not ended(path)]) if alone else []
         if self.options.recover and not left and alone:
-            left = left_behind([folder / LAST])
+            left = left_behind([path for path in others if ended(path)])
         taken: Left | None = None
         if self.options.discard:
             for one in left:
@@ -340,8 +338,12 @@ class Host:
         return False
 
 
+def _again(file: str | None) -> str:
+    return f"moldloft sketch {file} --recover" if file else "moldloft sketch --recover"
+
+
 def _offer(left: Left, file: str | None) -> str:
-    again = f"moldloft sketch {file} --recover" if file else "moldloft sketch --recover"
+    again = _again(file)
     forget = again.replace("--recover", "--discard")
     return (
         f"an unsaved session of {left.when} with {len(left.commands)} commands was found: "

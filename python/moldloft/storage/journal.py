@@ -25,11 +25,14 @@ from moldloft.storage.locks import BusyError, Lock
 from moldloft.storage.reading import read_bytes
 from moldloft.storage.replacing import put
 
-__all__ = ["ENDING", "LAST", "Journal", "Left", "beside", "left_behind", "lock", "state_folder"]
+__all__ = ["ENDING", "Journal", "Left", "beside", "ended", "left_behind", "lock", "state_folder"]
 
 HEAD = "! moldloft sketch journal"
 ENDING = ".skj"
-LAST = "last" + ENDING
+
+#: How names of journals begin whose sessions were ended without a save; and how many are kept.
+_ENDED = "ended-"
+_KEPT = 20
 
 _IN_FILE = "! file "
 
@@ -38,6 +41,11 @@ def state_folder() -> Path:
     """Where journals of prompts without a file are: ``$XDG_STATE_HOME/moldloft/sketch``."""
     given = os.environ.get("XDG_STATE_HOME") or os.environ.get("LOCALAPPDATA")
     return Path(given or Path.home() / ".local" / "state") / "moldloft" / "sketch"
+
+
+def ended(journal: Path) -> bool:
+    """Whether its session was ended without a save, by its name."""
+    return journal.name.startswith(_ENDED)
 
 
 def beside(path: Path) -> Path:
@@ -147,6 +155,12 @@ def left_behind(
     return [left for _, left in sorted(found, key=lambda pair: pair[0], reverse=True)]
 
 
+def _age(path: Path) -> float:
+    with contextlib.suppress(OSError):
+        return path.stat().st_mtime
+    return 0.0
+
+
 class Journal:
     """A journal under way.
 
@@ -176,6 +190,7 @@ class Journal:
         held: Lock | None = None,
     ) -> None:
         self.path = path
+        self._base = base
         make_folders(path.parent)
         self._lock = held or lock(path)
         self._file = -1
@@ -241,15 +256,21 @@ class Journal:
         self._begin([_IN_FILE + digest])
 
     def close(self, *, keep: bool) -> None:
-        """Ends it: kept as the last session in the state folder, or removed."""
+        """Ends it: kept, or removed.
+
+        That of a file stays beside it, where its commands begin with what is in the file; others
+        stay in the state folder, the last twenty of them.
+        """
         if self._file >= 0:
             with contextlib.suppress(OSError):
                 system.close(self._file)
         with contextlib.suppress(OSError):
-            if keep:
-                last = state_folder() / LAST
-                last.parent.mkdir(parents=True, exist_ok=True)
-                system.replace(self.path, last)
-            else:
+            if not keep:
                 system.remove(self.path)
+            elif self._base is None:
+                # Under a name of its own: another prompt may end at the same moment.
+                system.replace(self.path, self.path.with_name(_ENDED + self.path.name))
+                kept = sorted(self.path.parent.glob(f"{_ENDED}*{ENDING}"), key=_age)
+                for old in kept[:-_KEPT]:
+                    system.remove(old)
         self._lock.release()

@@ -362,7 +362,7 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             "CHECK the dimensions",
         )
         .about(ReplySubject::of("not-finite").names([name])),
-        NoBody::Operand { name: inner, why } => {
+        NoBody::Operand { name: inner, why, .. } => {
             let inner = no_body(&SketchObject::new(inner, None), why);
             let text = format!("{name}: {}", inner.text);
             CommandError { text, ..inner }
@@ -402,15 +402,18 @@ fn combine_error(name: &str, e: &CombineError) -> CommandError {
             "let them cross clearly or stay apart",
         )
         .about(ReplySubject::of("touching-surfaces").place(*p)),
-        CombineError::Coarse(p) => CommandError::new(
-            701,
-            format!(
-                "{name}: surfaces nearly meet at {}, too closely to tell which comes first",
-                place_text(*p)
-            ),
-            "let them meet exactly, cross clearly or stay apart",
-        )
-        .about(ReplySubject::of("nearly-meeting-surfaces").place(*p)),
+        CombineError::Coarse(places) => {
+            let p = places.first().copied().unwrap_or_default();
+            CommandError::new(
+                701,
+                format!(
+                    "{name}: surfaces nearly meet at {}, too closely to tell which comes first",
+                    place_text(p)
+                ),
+                "let them meet exactly, cross clearly or stay apart",
+            )
+            .about(ReplySubject::of("nearly-meeting-surfaces").place(p))
+        }
         CombineError::TooLarge => CommandError::new(
             200,
             format!("{name}: there are too many pieces"),

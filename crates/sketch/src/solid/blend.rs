@@ -6,6 +6,7 @@
 //! number carries derivatives.
 
 use super::SketchSolid;
+use super::blend_order::{ChosenEdges, ordered};
 use super::blend_tool::{BallCorner, BlendSection, SectionPlacing, joined, swept};
 use super::combine::combined_with;
 use super::curve::SmoothPiece;
@@ -68,7 +69,25 @@ pub(crate) fn blended<T: Real>(
     let mut chosen = body.chosen_edges(choices, object)?;
     let sides = body.edge_sides();
     follow_tangents(body, &sides, &mut chosen);
-    let uneven = (lengths[0] - lengths[1]).re() != 0.0;
+    let (first, later) = ordered(body, &sides, &chosen, size)?;
+    let mut out = blended_at_once(body, &first, sides, size)?;
+    for step in &later {
+        let mut next = step.found_in(&out)?;
+        let sides = out.edge_sides();
+        follow_tangents(&out, &sides, &mut next);
+        out = blended_at_once(&out, &next, sides, size)?;
+    }
+    Ok(out)
+}
+
+/// The body with edges blended that meet in no corner of both kinds.
+fn blended_at_once<T: Real>(
+    body: &SketchSolid<T>,
+    chosen: &ChosenEdges,
+    sides: Vec<Vec<EdgeSide>>,
+    size: BlendSize<T>,
+) -> Result<SketchSolid<T>, NoBody> {
+    let uneven = matches!(size, BlendSize::Chamfer([a, b]) if (a - b).re() != 0.0);
     let mut around: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
     for (e, own) in sides.iter().enumerate() {
         for v in body.edges[e].ends {
@@ -87,7 +106,7 @@ pub(crate) fn blended<T: Real>(
         size: extent.fold(0.0, f64::max),
         sides,
     };
-    for (&e, &first) in &chosen {
+    for (&e, &first) in chosen {
         let frame = body.edge_frame(e, &work.sides[e], first)?;
         if uneven && first.is_none() {
             let next =
@@ -124,7 +143,7 @@ pub(crate) fn blended<T: Real>(
 fn follow_tangents<T: Real>(
     body: &SketchSolid<T>,
     sides: &[Vec<EdgeSide>],
-    chosen: &mut BTreeMap<usize, Option<usize>>,
+    chosen: &mut ChosenEdges,
 ) {
     let mut queue: Vec<usize> = chosen.keys().copied().collect();
     while let Some(e) = queue.pop() {

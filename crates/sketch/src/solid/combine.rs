@@ -27,8 +27,8 @@ pub enum CombineError {
     Open(Vec3),
     /// Round surfaces touch without crossing, or nearly so, at this place.
     Touching(Vec3),
-    /// Facets do not tell which of several surfaces that nearly meet come first, at this place.
-    Coarse(Vec3),
+    /// Facets do not tell which of several surfaces that nearly meet come first, at these places: one or more.
+    Coarse(Vec<Vec3>),
     /// There are too many pieces.
     TooLarge,
     /// Nothing is left.
@@ -125,8 +125,9 @@ fn build<T: Real>(
 ) -> Result<(SketchSolid<T>, bool), CombineError> {
     let mut all = facetted(bodies, operand_of);
     let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
-    if let Some(place) = all.unclear(&plain, crossing) {
-        return Err(CombineError::Coarse(place));
+    let unclear = all.unclear(&plain, crossing);
+    if !unclear.is_empty() {
+        return Err(CombineError::Coarse(unclear));
     }
     let arranged = arrangement::arrange(&plain, std::mem::take(&mut all.facets), crossing, rule)?;
     if arranged.faces.is_empty() {
@@ -136,11 +137,11 @@ fn build<T: Real>(
     Ok((body, arranged.changed))
 }
 
-/// A place where a body's own faces or edges, its neighbours aside, are nearer to each other than facets tell: it may
+/// Places where a body's own faces or edges, its neighbours aside, are nearer to each other than facets tell: it may
 /// cross itself there by less than a chord, or not quite.
-pub(super) fn unclear<T: Real>(body: &SketchSolid<T>) -> Option<Vec3> {
+pub(super) fn unclear<T: Real>(body: &SketchSolid<T>) -> Vec<Vec3> {
     if body.edges.iter().all(|e| e.piece.is_none() && e.trace.is_none()) {
-        return None;
+        return Vec::new();
     }
     let all = facetted(&[body], &[0]);
     let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
@@ -175,7 +176,7 @@ fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize]) -> Facett
 }
 
 impl<T: Real> Facetted<T> {
-    fn unclear(&self, points: &[Vec3], within: bool) -> Option<Vec3> {
+    fn unclear(&self, points: &[Vec3], within: bool) -> Vec<Vec3> {
         let scale = extent(points);
         let (vertex, facets, sources) = (&self.vertex[..], &self.facets[..], &self.sources[..]);
         NearMissSearch { points, vertex, facets, sources, scale }.unclear(within)
@@ -347,6 +348,15 @@ pub(super) fn triangles_of(
 const RESOLVED: f64 = 1e-12;
 const MOST_HALVINGS: u32 = 16;
 
+/// How exactly points are known, as a share of the bodies: what chords miss by less is not resolved by halving.
+const ROUNDED: f64 = 1e-14;
+
+/// A point is on a surface where it is off it by no more than this share of the surface's size.
+const ON_SURFACE: f64 = 1e-8;
+
+/// Faces part in a corner where it leaves one of them by more than this share of the speeds there.
+const PARTING: f64 = 1e-6;
+
 /// Two faces beside a side, and the edge of a body that it is part of.
 type Kind = (usize, usize, Option<(usize, u32)>);
 
@@ -444,18 +454,23 @@ impl<'a, T: Real> Placing<'a, T> {
         for (&v, (own, edges)) in &around {
             let at = self.corner(v, own, edges)?;
             if let Some(at) = at {
-                self.placed.insert(v, at);
+                self.placed.insert(v, self.moved_with_all(at, own));
             }
         }
         let near = Nearness { sources: &self.all.sources, scale: self.scale };
+        let mut unclear = Vec::new();
         for (v, (own, _)) in &around {
             let Some(at) = self.placed.get(v) else { continue };
             for &f in own {
                 let all = &faces[f].sources;
                 if all.iter().all(|&source| near.outside(at.re(), source)) {
-                    return Err(CombineError::Coarse(at.re()));
+                    unclear.push(at.re());
+                    break;
                 }
             }
+        }
+        if !unclear.is_empty() {
+            return Err(CombineError::Coarse(unclear));
         }
         let mut number: HashMap<u32, usize> = HashMap::new();
         let mut vertices: Vec<Vertex<T>> = Vec::new();
@@ -664,6 +679,39 @@ impl<'a, T: Real> Placing<'a, T> {
         }
     }
 
+    /// A corner whose derivatives are none where its faces part: more of them than fix a point meet there by chance, and
+    /// it becomes several corners with the slightest change.
+    fn moved_with_all(&self, at: Vec3<T>, faces: &BTreeSet<usize>) -> Vec3<T> {
+        // Between planes alone a body's measures are those of its corners.
+        if T::PARTS == 1 || faces.iter().all(|&f| self.arranged.faces[f].plane) {
+            return at;
+        }
+        let scale = T::from(self.scale);
+        let mut parts: Vec<(T, [Vec3<T>; 2])> = Vec::new();
+        for &f in faces {
+            match self.surface(f) {
+                FaceSurface::Plane { at: base, normal } => {
+                    parts.push((normal.dot(at - *base), [*base, *normal * scale]));
+                }
+                surface => {
+                    let Some([u, v, _]) = located(surface, at, Vec3::zero(), None) else {
+                        continue;
+                    };
+                    let [p, du, dv] = surface.jet(u, v);
+                    let Some(normal) = du.cross(dv).normalized() else { continue };
+                    parts.push((normal.dot(at - p), [p, normal * scale]));
+                }
+            }
+        }
+        let size = |v: Vec3<T>, k: usize| v.x.part(k).abs() + v.y.part(k).abs() + v.z.part(k).abs();
+        let parted = |k: usize| {
+            let most = parts.iter().map(|(_, own)| size(own[0], k) + size(own[1], k));
+            let most = most.fold(size(at, k), f64::max);
+            parts.iter().any(|(off, _)| off.part(k).abs() > PARTING * most)
+        };
+        at.map(|x| T::from_parts(|k| if k > 0 && parted(k) { f64::NAN } else { x.part(k) }))
+    }
+
     /// The points of an edge that is not straight, with their places on the round faces beside it.
     fn trace(&self, chain: &[u32], kind: Kind) -> Result<IntersectionEdge<T>, CombineError> {
         let Some((operand, tag)) = kind.2 else { return self.trace_on(chain, kind) };
@@ -767,7 +815,8 @@ impl<'a, T: Real> Placing<'a, T> {
             }
             // The ways of the nodes add up to the chord as far as the rule resolves the edge.
             let way = own.iter().fold(-step.re(), |sum, n| sum + n.1.re());
-            if depth < MOST_HALVINGS && way.norm() > RESOLVED * step.re().norm() {
+            let most = (RESOLVED * step.re().norm()).max(ROUNDED * self.scale);
+            if depth < MOST_HALVINGS && way.norm() > most {
                 start = before;
                 let middle = across(0.5, &mut start.clone())?.at;
                 chords.push(([middle, to], depth + 1));
@@ -862,17 +911,18 @@ pub(super) fn along<T: Real>(piece: &SmoothPiece<T>, p: Vec3) -> f64 {
     s
 }
 
-/// The place of a point on a surface: u, v, and the change of u as the point moves by `by`.
-pub(super) fn located<T: Real>(
+/// The parameters of a point of a surface by Gauss-Newton steps, or of the foot of one that is off it by no more than a
+/// share of its size; `None` where the steps end at another point.
+pub(super) fn settled<T: Real>(
     surface: &FaceSurface<T>,
-    p: Vec3<T>,
-    by: Vec3<T>,
-    from: Option<[f64; 2]>,
-) -> Option<[T; 3]> {
-    let mut at = from.unwrap_or_else(|| surface.parameters(p.re()));
+    p: Vec3,
+    start: [f64; 2],
+    share: f64,
+) -> Option<[f64; 2]> {
+    let mut at = start;
     for _ in 0..8 {
         let [s, du, dv] = surface.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
-        let r = p.re() - s;
+        let r = p - s;
         let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
         let det = a * c - b * b;
         if det <= 1e-20 * a * c {
@@ -885,6 +935,28 @@ pub(super) fn located<T: Real>(
             break;
         }
     }
+    let [s, du, dv] = surface.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
+    let near = |x: f64| (-0.5..=1.5).contains(&x);
+    let size = du.norm() + dv.norm();
+    // What is left is square to the surface.
+    let left = p - s;
+    let along = |d: Vec3| left.dot(d).abs() / d.norm().max(f64::MIN_POSITIVE);
+    let foot = left.norm() <= share * size && along(du) + along(dv) <= ON_SURFACE * size;
+    (near(at[0]) && near(at[1]) && foot).then_some(at)
+}
+
+/// The place of a point on a surface: u, v, and the change of u as the point moves by `by`.
+pub(super) fn located<T: Real>(
+    surface: &FaceSurface<T>,
+    p: Vec3<T>,
+    by: Vec3<T>,
+    from: Option<[f64; 2]>,
+) -> Option<[T; 3]> {
+    let start = from.unwrap_or_else(|| surface.parameters(p.re()));
+    // Beside a pole a search may pass it and stay on its other side.
+    let grid = (0..81).map(|k| [f64::from(k % 9) / 8.0, f64::from(k / 9) / 8.0]);
+    let mut starts = std::iter::once(start).chain(grid);
+    let at = starts.find_map(|start| settled(surface, p.re(), start, ON_SURFACE))?;
     let lifted = at.map(T::from);
     let step = |[_, du, dv]: Jet<T>, r: Vec3<T>| {
         let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());

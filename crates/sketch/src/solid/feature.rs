@@ -3,7 +3,10 @@
 use super::blend::{BlendSize, blended};
 use super::combine::{CombineError, combined, united};
 pub use super::edges::TreatmentFault;
-use super::offset::{drafted, shelled};
+use super::offset::{drafted, moved, shelled};
+use super::offset_section::moved_section;
+use super::operation::Operation;
+use super::outline::FacetDensity;
 use super::place::Similarity;
 use super::turn::turned;
 use super::validity::{SolidDefect, valid};
@@ -11,7 +14,7 @@ use super::{SketchSolid, unchecked};
 use crate::feature::{EdgeBlend, Feature, FeatureKind, FeatureOperand, Placement};
 use crate::{DimensionExpr, DimensionLayout, Estimate, Planes, SketchObject, Variable, solve};
 use moldloft_num::{Real, Vec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Why an object has no body.
@@ -27,6 +30,8 @@ pub enum NoBody {
     Operand {
         /// Its name.
         name: String,
+        /// Which one it is, from 0.
+        number: usize,
         /// Why.
         why: Box<NoBody>,
     },
@@ -38,11 +43,15 @@ pub enum NoBody {
     Axis,
 }
 
-/// How often chords are cut in three until facets tell where round surfaces meet.
-const FINEST: u32 = 2;
+/// How often chords are cut in three near places where facets do not tell which surfaces meet, and then everywhere.
+const FINEST: u32 = 4;
+const FINEST_EVERYWHERE: u32 = 2;
+
+/// How often places are looked for: finer facets may find others.
+const ROUNDS: u32 = 12;
 
 /// The valid body of an object. Where its facets are too coarse to say which surfaces meet, it is made again with finer
-/// ones.
+/// ones there.
 ///
 /// # Errors
 /// [`NoBody`], with the place.
@@ -51,15 +60,29 @@ pub fn body<T: Real>(
     planes: &Planes,
     layout: &DimensionLayout<T>,
 ) -> Result<SketchSolid<T>, NoBody> {
-    let first = body_at(object, planes, layout, 0);
+    let first = body_at(object, planes, layout, &FacetPlan::default());
     let Err(why) = &first else { return first };
-    if !why.coarse() {
+    let mut plan = FacetPlan::default();
+    let mut unclear = why.unclear();
+    for _ in 0..ROUNDS {
+        let Some((path, places)) = unclear.take() else { break };
+        if !plan.refine(path, places) {
+            break;
+        }
+        match body_at(object, planes, layout, &plan) {
+            // More pieces than can be handled: what the first look says is nearer to the point.
+            Err(NoBody::Combine(CombineError::TooLarge)) => return first,
+            Err(why) if why.unclear().is_some() => unclear = why.unclear(),
+            found => return found,
+        }
+    }
+    if matches!(why.facet_error(), Some(CombineError::Coarse(_))) {
         return first;
     }
-    for fineness in 1..=FINEST {
-        match body_at(object, planes, layout, fineness) {
-            Err(why) if why.coarse() => {}
-            // More pieces than can be handled: what the first look says is nearer to the point.
+    // The places of surfaces that touch are not all known.
+    for everywhere in 1..=FINEST_EVERYWHERE {
+        match body_at(object, planes, layout, &FacetPlan { everywhere, ..FacetPlan::default() }) {
+            Err(why) if why.unclear().is_some() => {}
             Err(NoBody::Combine(CombineError::TooLarge)) => break,
             found => return found,
         }
@@ -67,17 +90,79 @@ pub fn body<T: Real>(
     first
 }
 
+/// Which facets are made finer: of features, by the way to them from operand to operand.
+#[derive(Clone, Default)]
+struct FacetPlan {
+    everywhere: u32,
+    near: BTreeMap<Vec<usize>, FinerPlaces>,
+    /// Those of the features that this one is an operand of, in its own coordinates.
+    inherited: Vec<(Vec3, u32)>,
+    way: Vec<usize>,
+}
+
+/// Places near which facets are finer, each with how often chords are cut in three, and how often it was asked.
+#[derive(Clone, Default)]
+struct FinerPlaces {
+    places: Vec<(Vec3, u32)>,
+    asked: u32,
+}
+
+impl FacetPlan {
+    /// Makes facets finer near places; whether that is still possible.
+    fn refine(&mut self, way: Vec<usize>, places: Vec<Vec3>) -> bool {
+        let own = self.near.entry(way).or_default();
+        own.asked += 1;
+        let times = own.asked;
+        own.places.extend(places.into_iter().map(|p| (p, times)));
+        times <= FINEST
+    }
+
+    fn density(&self) -> FacetDensity {
+        let own = self.near.get(&self.way).into_iter().flat_map(|n| &n.places);
+        let near = self.inherited.iter().chain(own).copied().collect();
+        FacetDensity { everywhere: self.everywhere, near }
+    }
+
+    /// The plan of an operand that is put into several places.
+    fn of_operand<T: Real>(&self, k: usize, images: &[Similarity<T>]) -> FacetPlan {
+        let near = self.density().near;
+        let back =
+            |image: &Similarity<T>| near.iter().map(|(p, n)| (image.source_of(*p), *n)).collect();
+        let inherited: Vec<Vec<(Vec3, u32)>> = images.iter().map(back).collect();
+        let mut way = self.way.clone();
+        way.push(k);
+        FacetPlan { inherited: inherited.concat(), way, ..self.clone() }
+    }
+}
+
 impl NoBody {
-    /// Whether finer facets may help.
-    fn coarse(&self) -> bool {
-        let nearly = |e: &CombineError| {
-            matches!(e, CombineError::Coarse(_) | CombineError::Touching(_) | CombineError::Open(_))
-        };
+    /// What may change with finer facets.
+    fn facet_error(&self) -> Option<&CombineError> {
         match self {
-            NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => nearly(e),
-            NoBody::Operand { why, .. } => why.coarse(),
-            _ => false,
+            NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => match e {
+                CombineError::Coarse(_) | CombineError::Touching(_) | CombineError::Open(_) => {
+                    Some(e)
+                }
+                CombineError::TooLarge | CombineError::Empty => None,
+            },
+            NoBody::Operand { why, .. } => why.facet_error(),
+            _ => None,
         }
+    }
+
+    /// The feature whose facets are too coarse, by the way to it, and where.
+    fn unclear(&self) -> Option<(Vec<usize>, Vec<Vec3>)> {
+        let places = match self.facet_error()? {
+            CombineError::Coarse(all) => all.clone(),
+            CombineError::Touching(p) | CombineError::Open(p) => vec![*p],
+            CombineError::TooLarge | CombineError::Empty => return None,
+        };
+        let (mut way, mut at) = (Vec::new(), self);
+        while let NoBody::Operand { number, why, .. } = at {
+            way.push(*number);
+            at = why;
+        }
+        Some((way, places))
     }
 }
 
@@ -85,14 +170,14 @@ fn body_at<T: Real>(
     object: &SketchObject,
     planes: &Planes,
     layout: &DimensionLayout<T>,
-    fineness: u32,
+    plan: &FacetPlan,
 ) -> Result<SketchSolid<T>, NoBody> {
     match &object.feature {
-        Some(feature) => feature.body(layout, fineness),
+        Some(feature) => feature.body(layout, plan),
         None => {
             let mut body = unchecked(object, planes, layout).ok_or(NoBody::Unfinished)?;
             body.name_faces(object);
-            body.fineness = fineness;
+            body.density = plan.density();
             valid(body).map_err(NoBody::Flaw)
         }
     }
@@ -149,19 +234,9 @@ impl Feature {
             .collect()
     }
 
-    fn body<T: Real>(
-        &self,
-        layout: &DimensionLayout<T>,
-        fineness: u32,
-    ) -> Result<SketchSolid<T>, NoBody> {
-        let value = |e: &DimensionExpr| {
-            let x = e.eval(&|n| layout.values.get(n).copied());
-            x.map_err(|no| NoBody::NoValue(no.name))
-        };
-        let mut bodies = Vec::new();
-        let mut laid = Vec::new();
-        let mut empty = Vec::new();
-        for operand in &self.operands {
+    /// The planes and positions of each operand.
+    fn laid<T: Real>(&self, layout: &DimensionLayout<T>) -> Vec<(Planes, DimensionLayout<T>)> {
+        let of = |operand: &FeatureOperand| {
             let inner = &operand.object;
             let prefix = operand.prefix.to_ascii_lowercase();
             let own: BTreeMap<String, T> = (layout.values.iter())
@@ -171,8 +246,41 @@ impl Feature {
             let estimate =
                 || Estimate::of(&inner.drawing, &planes, inner.reference().map(|r| r.point)?);
             let own = solve(inner, &planes, &own, &estimate);
+            (planes, own)
+        };
+        self.operands.iter().map(of).collect()
+    }
+
+    /// Where the operand is put: once, or as often as a pattern repeats it.
+    fn images<T: Real>(&self, layout: &DimensionLayout<T>) -> Result<Vec<Similarity<T>>, NoBody> {
+        match &self.kind {
+            FeatureKind::Place(place) => Ok(vec![place.similarity(&|e| number(layout, e))?]),
+            FeatureKind::Pattern { step, count } => {
+                let step = step.similarity(&|e| number(layout, e))?;
+                let mut images = vec![Similarity::identity()];
+                for k in 1..*count as usize {
+                    images.push(images[k - 1].then(&step));
+                }
+                Ok(images)
+            }
+            _ => Ok(vec![Similarity::identity()]),
+        }
+    }
+
+    fn body<T: Real>(
+        &self,
+        layout: &DimensionLayout<T>,
+        plan: &FacetPlan,
+    ) -> Result<SketchSolid<T>, NoBody> {
+        let value = |e: &DimensionExpr| number(layout, e);
+        let images = self.images(layout)?;
+        let laid = self.laid(layout);
+        let mut bodies = Vec::new();
+        let mut empty = Vec::new();
+        for (k, (operand, (planes, own))) in self.operands.iter().zip(&laid).enumerate() {
+            let inner = &operand.object;
             let name = inner.name.clone();
-            let body = body_at(inner, &planes, &own, fineness).map(|mut body| {
+            let body = body_at(inner, planes, own, &plan.of_operand(k, &images)).map(|mut body| {
                 body.prefix_names(&operand.prefix);
                 body
             });
@@ -182,9 +290,8 @@ impl Feature {
             bodies.push(match body {
                 Ok(body) => body,
                 Err(_) if nothing => SketchSolid::default(),
-                Err(why) => return Err(NoBody::Operand { name, why: Box::new(why) }),
+                Err(why) => return Err(NoBody::Operand { name, number: k, why: Box::new(why) }),
             });
-            laid.push((planes, own));
         }
         let nothing = || NoBody::Combine(CombineError::Empty);
         match (&self.kind, &bodies[..]) {
@@ -204,27 +311,10 @@ impl Feature {
                 let (planes, own) = &laid[0];
                 let ends = line.map(|p| own.point(planes, p));
                 let [Some(p), Some(q)] = ends else { return Err(NoBody::Unfinished) };
-                let angle = value(angle)? * (std::f64::consts::PI / 180.0);
-                one_side(section, [p.re(), q.re()]).then_some(()).ok_or(NoBody::Axis)?;
-                let name = |e: usize| side_name(&self.operands[0].object, section, e);
-                let mut body = turned(section, [p, q], angle, &name).ok_or(NoBody::Axis)?;
-                body.fineness = fineness;
-                valid(body).map_err(NoBody::Flaw)
+                self.turned(section, [p, q], value(angle)?, plan.density())
             }
-            (FeatureKind::Place(place), [body]) => Ok(body.placed(&place.similarity(&value)?)),
-            (FeatureKind::Pattern { step, count }, [body]) => {
-                let step = step.similarity(&value)?;
-                let mut place = Similarity::identity();
-                let mut copies = vec![body.clone()];
-                for k in 1..*count {
-                    place = place.then(&step);
-                    let mut copy = body.placed(&place);
-                    copy.prefix_names(&format!("COPY{}.", k + 1));
-                    copies.push(copy);
-                }
-                let all: Vec<&SketchSolid<T>> = copies.iter().collect();
-                united(&all).map_err(NoBody::Combine)
-            }
+            (FeatureKind::Place(_), [body]) => Ok(body.placed(&images[0])),
+            (FeatureKind::Pattern { .. }, [body]) => repeated(body, &images),
             (FeatureKind::Blend { blend, edges }, [body]) => {
                 let size = match blend {
                     EdgeBlend::Chamfer([a, b]) => BlendSize::Chamfer([value(a)?, value(b)?]),
@@ -233,7 +323,11 @@ impl Feature {
                 blended(body, &self.operands[0].object, size, edges)
             }
             (FeatureKind::Shell { thickness, open }, [body]) => {
-                shelled(body, value(thickness)?, open)
+                let parts = |by: T, still: &BTreeSet<String>| {
+                    let (planes, own) = &laid[0];
+                    self.operand_moved(0, (planes, own), &plan.of_operand(0, &images), by, still)
+                };
+                shelled(body, value(thickness)?, open, &parts)
             }
             (FeatureKind::Draft { angle, axis, at, faces }, [body]) => {
                 let angle = value(angle)? * (std::f64::consts::PI / 180.0);
@@ -242,6 +336,142 @@ impl Feature {
             _ => Err(NoBody::Unfinished),
         }
     }
+
+    /// A section turned about the line through two points, by an angle in degrees.
+    fn turned<T: Real>(
+        &self,
+        section: &SketchSolid<T>,
+        [p, q]: [Vec3<T>; 2],
+        angle: T,
+        density: FacetDensity,
+    ) -> Result<SketchSolid<T>, NoBody> {
+        let angle = angle * (std::f64::consts::PI / 180.0);
+        one_side(section, [p.re(), q.re()]).then_some(()).ok_or(NoBody::Axis)?;
+        let name = |e: usize| side_name(&self.operands[0].object, section, e);
+        let mut body = turned(section, [p, q], angle, &name).ok_or(NoBody::Axis)?;
+        body.density = density;
+        valid(body).map_err(NoBody::Flaw)
+    }
+
+    /// An operand with its faces moved outwards by a distance, but for those of some names.
+    fn operand_moved<T: Real>(
+        &self,
+        k: usize,
+        (planes, layout): (&Planes, &DimensionLayout<T>),
+        plan: &FacetPlan,
+        by: T,
+        still: &BTreeSet<String>,
+    ) -> Result<SketchSolid<T>, NoBody> {
+        let FeatureOperand { object, prefix } = &self.operands[k];
+        let own = still.iter().filter_map(|n| n.strip_prefix(&**prefix)).map(str::to_owned);
+        let mut body = moved_object(object, planes, layout, plan, by, &own.collect())?;
+        body.prefix_names(prefix);
+        Ok(body)
+    }
+
+    /// The body of this feature with its faces moved outwards by a distance, but for those of some names, as the same
+    /// feature of operands with moved faces: what is cut away moves the other way. `None` where that is another body: faces
+    /// of bodies that are united may end within the other one, and moving them inwards would part them there.
+    fn moved<T: Real>(
+        &self,
+        layout: &DimensionLayout<T>,
+        plan: &FacetPlan,
+        by: T,
+        still: &BTreeSet<String>,
+    ) -> Option<Result<SketchSolid<T>, NoBody>> {
+        let images = match self.images(layout) {
+            Ok(images) => images,
+            Err(why) => return Some(Err(why)),
+        };
+        let laid = self.laid(layout);
+        let part = |k: usize, by: T| {
+            let (planes, own) = &laid[k];
+            self.operand_moved(k, (planes, own), &plan.of_operand(k, &images), by, still)
+        };
+        let grows = by.re() > 0.0;
+        match &self.kind {
+            FeatureKind::Boolean(operation) => {
+                let ways = match operation {
+                    Operation::Cut if !grows => [by, -by],
+                    Operation::Common if !grows => [by, by],
+                    Operation::Union if grows => [by, by],
+                    _ => return None,
+                };
+                let both = part(0, ways[0]).and_then(|a| Ok((a, part(1, ways[1]))));
+                Some(both.and_then(|(a, b)| match b {
+                    // Nothing was cut away.
+                    Err(NoBody::Combine(CombineError::Empty)) if *operation == Operation::Cut => {
+                        Ok(a)
+                    }
+                    b => combined([&a, &b?], *operation).map_err(NoBody::Combine),
+                }))
+            }
+            FeatureKind::Place(_) => {
+                let scale = images[0].columns[0].norm();
+                Some(part(0, by / scale).map(|body| body.placed(&images[0])))
+            }
+            FeatureKind::Pattern { .. } if grows => {
+                Some(part(0, by).and_then(|body| repeated(&body, &images)))
+            }
+            FeatureKind::Revolve { line, angle } => {
+                let (planes, own) = &laid[0];
+                let [Some(p), Some(q)] = line.map(|p| own.point(planes, p)) else { return None };
+                let angle = number(layout, angle).ok()?;
+                if angle.re().abs() < 360.0 * (1.0 - 1e-12) {
+                    return None;
+                }
+                let object = &self.operands[0].object;
+                let section = body_at(object, planes, own, &plan.of_operand(0, &images)).ok()?;
+                let shift = |e: usize| {
+                    let name = side_name(object, &section, e);
+                    if name.is_some_and(|n| still.contains(&*n)) { T::zero() } else { by }
+                };
+                let section = moved_section(&section, [p, q], &shift)?;
+                Some(self.turned(&section, [p, q], angle, plan.density()))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The body of an object with its faces moved outwards by a distance, but for those of some names.
+fn moved_object<T: Real>(
+    object: &SketchObject,
+    planes: &Planes,
+    layout: &DimensionLayout<T>,
+    plan: &FacetPlan,
+    by: T,
+    still: &BTreeSet<String>,
+) -> Result<SketchSolid<T>, NoBody> {
+    let body = body_at(object, planes, layout, plan)?;
+    let stays = |f: usize| body.faces[f].names.iter().any(|n| still.contains(&**n));
+    let first = match moved(&body, &|f| if stays(f) { T::zero() } else { by }) {
+        Ok(body) => return Ok(body),
+        Err(why) => why,
+    };
+    let parts = object.feature.as_ref().and_then(|f| f.moved(layout, plan, by, still));
+    parts.unwrap_or(Err(first))
+}
+
+/// Copies of a body, united.
+fn repeated<T: Real>(
+    body: &SketchSolid<T>,
+    images: &[Similarity<T>],
+) -> Result<SketchSolid<T>, NoBody> {
+    let mut copies = vec![body.clone()];
+    for (k, image) in images.iter().enumerate().skip(1) {
+        let mut copy = body.placed(image);
+        copy.prefix_names(&format!("COPY{}.", k + 1));
+        copies.push(copy);
+    }
+    let all: Vec<&SketchSolid<T>> = copies.iter().collect();
+    united(&all).map_err(NoBody::Combine)
+}
+
+/// The value of a number of a feature.
+fn number<T: Real>(layout: &DimensionLayout<T>, e: &DimensionExpr) -> Result<T, NoBody> {
+    let x = e.eval(&|n| layout.values.get(n).copied());
+    x.map_err(|no| NoBody::NoValue(no.name))
 }
 
 /// The name of the face that an edge of a section becomes when it is turned: its curve's, or `L` and the number

@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 /// Directions of one pass.
 const WIDTH: usize = 4;
 
-/// The exact derivatives by one number each, in the order they were asked for.
+/// The exact derivatives by one number each, in the order they were asked for; not a number where there is none:
+/// where faces of a body that was combined meet in a corner by chance, and part as the number changes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolidGradient {
     /// Of the volume; zero for a flat figure.

@@ -1,7 +1,8 @@
 //! A body as a mesh: chords of its round edges, facets of its faces.
 
 use super::curve::SmoothPiece;
-use super::{Quick, SketchSolid, SolidFace, outline};
+use super::surface::FaceSurface;
+use super::{CombinedMesh, Quick, SketchSolid, SolidFace, outline};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, triangulate};
 use moldloft_num::{Real, Vec3};
 use std::collections::HashMap;
@@ -32,9 +33,19 @@ impl<T: Real> SketchSolid<T> {
         }
     }
 
-    /// A mesh of triangles and quads within `tolerance` of curves; faces are its patches.
+    /// A mesh of triangles and quads within `tolerance` of curves and round faces; faces are its patches. Curves for which
+    /// a number of steps is asked have that.
     pub fn mesh(&self, tolerance: f64) -> Mesh<T> {
-        self.mesh_of(self.chords(&|piece| piece.chords(tolerance), true))
+        if let Some(facets) = &self.facets {
+            return self.mesh_from_facets(&self.finer(facets, tolerance));
+        }
+        // Facets of faces that are curved both ways miss them by what the chords of both ways miss.
+        let bent = self.trims.iter().any(|t| match &t.surface {
+            FaceSurface::Turned { profile, .. } => profile.chords(tolerance) > 1,
+            FaceSurface::Ruled { .. } | FaceSurface::Plane { .. } => false,
+        });
+        let share = if bent { 0.5 * tolerance } else { tolerance };
+        self.mesh_of(self.chords(&|piece| piece.chords(share), true))
     }
 
     /// The same with a chord for each 5° of a round curve and 20 for each cubic, as in 1983, so that
@@ -43,9 +54,9 @@ impl<T: Real> SketchSolid<T> {
         self.mesh_of(self.chords(&by_angle, true))
     }
 
-    /// Chords per edge, one for each 5° of a round curve, and three for each of them by the body's fineness.
-    pub(super) fn angular_chords(&self) -> Vec<usize> {
-        let more = 3usize.pow(self.fineness);
+    /// Chords per edge, one for each 5° of a round curve, cut in three so often.
+    pub(super) fn angular_chords(&self, times: u32) -> Vec<usize> {
+        let more = 3usize.pow(times);
         self.chords(
             &|piece| match piece {
                 SmoothPiece::Cubic(_) if by_angle(piece) == 1 => 1,
@@ -57,11 +68,7 @@ impl<T: Real> SketchSolid<T> {
 
     fn mesh_of(&self, chords: Vec<usize>) -> Mesh<T> {
         if let Some(facets) = &self.facets {
-            let named = facets.faces.iter().enumerate().map(|(k, triangles)| {
-                let corners = triangles.iter().map(|&[a, b, c]| [a, b, c, c]).collect();
-                (self.face_name(k), corners)
-            });
-            return mesh_from(facets.points.clone(), named.collect());
+            return self.mesh_from_facets(facets);
         }
         let mut places: Vec<Vec3<T>> = self.vertices.iter().map(|v| v.at).collect();
         let mut inner: Vec<Vec<u32>> = Vec::new();
@@ -89,6 +96,14 @@ impl<T: Real> SketchSolid<T> {
         mesh_from(places, parts)
     }
 
+    fn mesh_from_facets(&self, facets: &CombinedMesh<T>) -> Mesh<T> {
+        let named = facets.faces.iter().enumerate().map(|(k, triangles)| {
+            let corners = triangles.iter().map(|&[a, b, c]| [a, b, c, c]).collect();
+            (self.face_name(k), corners)
+        });
+        mesh_from(facets.points.clone(), named.collect())
+    }
+
     fn face_name(&self, k: usize) -> String {
         self.faces[k].id.map_or_else(|| format!("patch {}", k + 1), |f| format!("face {f}"))
     }
@@ -100,7 +115,11 @@ impl<T: Real> SketchSolid<T> {
         places: &mut Vec<Vec3<T>>,
     ) -> Vec<[u32; 4]> {
         if let Some(trim) = face.trim {
-            return outline::patch(&self.trims[trim].surface, &face.loops[0], run, places);
+            let even = |h: (usize, bool)| {
+                let n = run(h).len() - 1;
+                (0..=n).map(|k| k as f64 / n as f64).collect()
+            };
+            return outline::patch(&self.trims[trim].surface, &face.loops[0], run, &even, places);
         }
         if face.ruled {
             let cycle = &face.loops[0];

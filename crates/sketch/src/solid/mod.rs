@@ -7,12 +7,14 @@
 
 pub mod arrangement;
 mod blend;
+mod blend_order;
 mod blend_tool;
 pub mod combine;
 pub mod curve;
 pub(crate) mod edges;
 pub mod faces;
 pub mod feature;
+mod finer_mesh;
 pub(crate) mod gradient;
 pub(crate) mod mass;
 pub mod merge;
@@ -20,6 +22,7 @@ mod meshing;
 mod near_misses;
 mod nearness;
 mod offset;
+mod offset_section;
 pub mod operation;
 mod outline;
 pub mod place;
@@ -152,8 +155,8 @@ pub struct SketchSolid<T> {
     /// Round faces with borders of any kind.
     pub trims: Vec<Trim<T>>,
     pub(crate) facets: Option<CombinedMesh<T>>,
-    /// How often the chords of round edges are cut in three where the body is combined with others.
-    pub(crate) fineness: u32,
+    /// Where chords of round edges are cut in three, where the body is combined with others.
+    pub(crate) density: outline::FacetDensity,
     steps: BTreeMap<usize, u32>,
 }
 
@@ -519,7 +522,7 @@ impl<T: Real> SolidBuilder<'_, T> {
             steps,
             trims: Vec::new(),
             facets: None,
-            fineness: 0,
+            density: outline::FacetDensity::default(),
         }
     }
 

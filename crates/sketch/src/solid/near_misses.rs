@@ -23,6 +23,9 @@ const BEYOND: f64 = 0.02;
 /// How much farther than facets are off a pair may be for them to be right, in parts of that.
 const SAFE: f64 = 2.0;
 
+/// Places nearer to each other than this share of the bodies are one.
+const SAME: f64 = 1e-5;
+
 const STEPS: usize = 24;
 
 /// NearMissSearch of bodies, with what they stand for.
@@ -135,10 +138,10 @@ struct Element<'a, T> {
 }
 
 impl<T: Real> NearMissSearch<'_, T> {
-    /// A place where facets do not tell whether surfaces meet; `within` operands too, or between them alone.
-    pub fn unclear(&self, within: bool) -> Option<Vec3> {
+    /// Places where facets do not tell whether surfaces meet; `within` operands too, or between them alone.
+    pub fn unclear(&self, within: bool) -> Vec<Vec3> {
         if self.sources.iter().all(|s| s.edges.iter().all(|e| straight(e.0.as_ref()))) {
-            return None;
+            return Vec::new();
         }
         let mut rims: Vec<BTreeSet<u32>> = Vec::new();
         let elements = self.elements(&mut rims);
@@ -154,7 +157,8 @@ impl<T: Real> NearMissSearch<'_, T> {
         let apart = if within { usize::MAX } else { first };
         overlapping(&grown, 0.0, apart, |i, j| near.push((i, j)));
         near.sort_unstable();
-        near.into_iter().find_map(|(i, j)| {
+        let mut places: Vec<Vec3> = Vec::new();
+        for place in near.into_iter().filter_map(|(i, j)| {
             let (a, b) = (&elements[i], &elements[j]);
             if a.stratum.straight() && b.stratum.straight() {
                 return None;
@@ -167,7 +171,13 @@ impl<T: Real> NearMissSearch<'_, T> {
                 return None;
             }
             self.pair(a, b)
-        })
+        }) {
+            // Neighbouring facets find the same place.
+            if places.iter().all(|p| p.distance(place) > SAME * self.scale) {
+                places.push(place);
+            }
+        }
+        places
     }
 
     fn elements(&self, rims: &mut Vec<BTreeSet<u32>>) -> Vec<Element<'_, T>> {
@@ -201,7 +211,7 @@ impl<T: Real> NearMissSearch<'_, T> {
             }
         }
         let mut out: Vec<Element<'_, T>> = Vec::new();
-        let mut known: HashMap<(usize, u32, u32), Vec3> = HashMap::new();
+        let mut known: HashMap<(usize, u32, u32), Option<Vec3>> = HashMap::new();
         let mut last: HashMap<(usize, u32), [f64; 2]> = HashMap::new();
         for f in self.facets {
             let source = &self.sources[f.operand];
@@ -214,14 +224,14 @@ impl<T: Real> NearMissSearch<'_, T> {
                 surface => {
                     let normals: Vec<Vec3> = (own.iter().zip(&at))
                         .map(|(&v, &p)| {
-                            *known.entry((f.operand, f.tag, v)).or_insert_with(|| {
+                            let normal = *known.entry((f.operand, f.tag, v)).or_insert_with(|| {
                                 let from = last.get(&(f.operand, f.tag)).copied();
                                 let place = follow(surface, p, from);
                                 last.insert((f.operand, f.tag), place);
-                                let [_, du, dv] =
-                                    surface.jet(T::from(place[0]), T::from(place[1])).map(Vec3::re);
-                                du.cross(dv).normalized().unwrap_or_default()
-                            })
+                                normal_at(surface, place)
+                            });
+                            // The apex of a cone has the normals of the lines that end there.
+                            normal.or_else(|| beside_pole(surface, p, &at)).unwrap_or(f.normal)
                         })
                         .collect();
                     // Over a chord e between normals m and n a surface rises e·(n - m) / 8.
@@ -375,7 +385,12 @@ impl<T: Real> NearMissSearch<'_, T> {
             }
         }
         let left = r.iter().fold(0.0f64, |l, s| l.max(s.abs()));
-        if !settled && left > 1e-7 {
+        // Where corners coincide and both are tangent a search creeps towards them.
+        let shared = || {
+            let same = TOUCHING[0] * self.scale;
+            a.corners.iter().any(|p| b.corners.iter().any(|q| p.distance(*q) <= same))
+        };
+        if !settled && (left > 1e-7 || shared()) {
             return None;
         }
         let ((p, _), (q, _)) = places(&x);
@@ -471,6 +486,20 @@ fn straight<T: Real>(piece: Option<&SmoothPiece<T>>) -> bool {
         }
         _ => false,
     }
+}
+
+/// The unit normal of a surface; `None` at a pole.
+fn normal_at<T: Real>(surface: &FaceSurface<T>, [u, v]: [f64; 2]) -> Option<Vec3> {
+    let [_, du, dv] = surface.jet(T::from(u), T::from(v)).map(Vec3::re);
+    // Rounding leaves a direction of no length a little.
+    let some = du.norm().min(dv.norm()) > 1e-9 * du.norm().max(dv.norm());
+    some.then(|| du.cross(dv).normalized()).flatten()
+}
+
+/// The normal at a pole, as a facet there comes to it.
+fn beside_pole<T: Real>(surface: &FaceSurface<T>, pole: Vec3, corners: &[Vec3]) -> Option<Vec3> {
+    let middle = corners.iter().fold(Vec3::zero(), |s, p| s + *p) / corners.len() as f64;
+    normal_at(surface, surface.parameters(pole.lerp(middle, 1e-3)))
 }
 
 /// The parameters of a point of a surface, from those of a neighbour.

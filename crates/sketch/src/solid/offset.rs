@@ -13,20 +13,27 @@ use crate::feature::FaceChoice;
 use moldloft_num::{Axis as Line, Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
-const PLAIN: &str = "shell or draft it before it is drilled, or choose other faces";
+const PLAIN: &str =
+    "shell or draft it before it is united with others or rounded, or choose other faces";
 
 /// A plane that a face is moved into: a point and the outward unit normal.
 type FacePlane<T> = (Vec3<T>, Vec3<T>);
 
+/// A body with its faces moved outwards by a distance, but for those of some names, made of the parts that the body is
+/// made of.
+pub(crate) type MovedParts<'a, T> =
+    dyn Fn(T, &BTreeSet<String>) -> Result<SketchSolid<T>, NoBody> + 'a;
+
 /// The body hollowed to a wall of a thickness; the faces of `open` have none. A negative thickness leaves the
-/// body out of its wall.
+/// body out of its wall. Where faces cannot be moved as they are, those of its parts are.
 ///
 /// # Errors
-/// A thickness that does not fit; faces that are neither planes nor plain cylinders.
+/// A thickness that does not fit; faces that are neither planes nor plain cylinders, nor of parts that are moved.
 pub(crate) fn shelled<T: Real>(
     body: &SketchSolid<T>,
     thickness: T,
     open: &[FaceChoice],
+    parts: &MovedParts<'_, T>,
 ) -> Result<SketchSolid<T>, NoBody> {
     if thickness.re() == 0.0 || !thickness.is_finite() {
         let text = format!("a wall of {} is none", thickness.re());
@@ -42,8 +49,20 @@ pub(crate) fn shelled<T: Real>(
         );
     }
     let shift = |f: usize| if left_out.contains(&f) { T::zero() } else { -thickness };
-    let other = moved(body, &|f| Ok(shift(f)))?;
-    let other = whole(other)?;
+    let other = match moved(body, &shift) {
+        Ok(other) => other,
+        Err(first) => {
+            let of = |f: &usize| body.faces[*f].names.iter().map(|n| n.to_string());
+            let still: BTreeSet<String> = left_out.iter().flat_map(of).collect();
+            let others = |f: &usize| !left_out.contains(f) && of(f).any(|n| still.contains(&n));
+            if left_out.iter().any(|f| body.faces[*f].names.is_empty())
+                || (0..body.faces.len()).any(|f| others(&f))
+            {
+                return Err(first);
+            }
+            parts(-thickness, &still).map_err(|_| first)?
+        }
+    };
     let pair = if thickness.re() > 0.0 { [body, &other] } else { [&other, body] };
     combined(pair, Operation::Cut).map_err(NoBody::Combine)
 }
@@ -186,9 +205,9 @@ fn common_point<T: Real>(
 }
 
 /// The body with each face moved outwards by a distance.
-fn moved<T: Real>(
+pub(super) fn moved<T: Real>(
     body: &SketchSolid<T>,
-    shift: &dyn Fn(usize) -> Result<T, NoBody>,
+    shift: &dyn Fn(usize) -> T,
 ) -> Result<SketchSolid<T>, NoBody> {
     let around = faces_around(body);
     let mut at = Vec::new();
@@ -206,7 +225,7 @@ fn moved<T: Real>(
         for &f in &around[v] {
             let normal = outward_normal(body, f, p)
                 .ok_or_else(|| fault("a face has no normal in a corner"))?;
-            let by = shift(f)?;
+            let by = shift(f);
             let same = normals.iter().find(|(n, _)| n.re().distance(normal.re()) < 1e-7);
             match same {
                 Some((_, other)) if (*other - by).re().abs() > 0.0 => {
@@ -252,7 +271,7 @@ fn moved<T: Real>(
         };
         at.push(p + way);
     }
-    rebuilt(body, at)
+    whole(rebuilt(body, at)?)
 }
 
 /// The outward unit normal of a plane or cylinder at a point of it.

@@ -1,11 +1,14 @@
 //! Bodies as plane facets, for arrangements and meshes.
+//!
+//! A round edge has a chord for each 5°. Where these do not tell how surfaces meet, chords near the place are cut in
+//! three, as often as it takes: facets between them and the opposite edges are finer there alone.
 
 use super::combine::LoopsAndTags;
 use super::surface::FaceSurface;
 use super::{SketchSolid, SolidFace};
 use crate::solid::arrangement::INNER;
 use moldloft_num::{Real, Vec3};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// The points of a body's facets, with those along each edge and the strips of each round face.
 pub(super) struct Outline<T> {
@@ -14,8 +17,169 @@ pub(super) struct Outline<T> {
     strips: Vec<Vec<LoopsAndTags>>,
 }
 
+/// How fine facets are: how often all chords are cut in three, and those near places.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct FacetDensity {
+    pub everywhere: u32,
+    pub near: Vec<(Vec3, u32)>,
+}
+
+/// Where the chords of an edge end, in equal parts of it.
+struct EdgeDivision {
+    parts: u64,
+    at: BTreeSet<u64>,
+}
+
+impl EdgeDivision {
+    fn even(chords: usize, times: u32) -> EdgeDivision {
+        let each = 3u64.pow(times);
+        let at = (0..=chords as u64).map(|k| k * each).collect();
+        EdgeDivision { parts: chords as u64 * each, at }
+    }
+
+    /// The parameters, as the edge is run.
+    fn shares(&self, forward: bool) -> Vec<f64> {
+        let share = |k: u64| k as f64 / self.parts as f64;
+        match forward {
+            true => self.at.iter().map(|k| share(*k)).collect(),
+            false => self.at.iter().rev().map(|k| share(self.parts - *k)).collect(),
+        }
+    }
+}
+
 impl<T: Real> SketchSolid<T> {
-    /// The facets of the body, with a chord for each 5° of round edges or, by the body's fineness, a part of it.
+    /// Where the chords of each edge end.
+    fn divisions(&self) -> Vec<EdgeDivision> {
+        let FacetDensity { everywhere, near } = &self.density;
+        let most = near.iter().map(|p| p.1).max().unwrap_or(0);
+        let chords = self.angular_chords(*everywhere);
+        let mut all: Vec<EdgeDivision> =
+            chords.iter().map(|&n| EdgeDivision::even(n, most)).collect();
+        for time in 1..=most {
+            let wanted: Vec<Vec3> = near.iter().filter(|p| p.1 >= time).map(|p| p.0).collect();
+            // Chords of this length, in parts, are cut.
+            let long = 3u64.pow(most + 1 - time);
+            let mut cut: Vec<BTreeSet<u64>> = vec![BTreeSet::new(); all.len()];
+            for f in 0..self.faces.len() {
+                self.mark_face(f, &all, &wanted, &mut cut);
+            }
+            for (e, division) in all.iter().enumerate().filter(|d| self.edges[d.0].piece.is_some())
+            {
+                let piece = self.piece((e, true));
+                let at = |k: u64| piece.at(T::from(k as f64 / division.parts as f64)).re();
+                let ends: Vec<u64> = division.at.iter().copied().collect();
+                for w in ends.windows(2) {
+                    let [p, q] = [at(w[0]), at(w[1])];
+                    if wanted.iter().any(|x| near_segment(*x, [p, q]) <= p.distance(q)) {
+                        cut[e].insert(w[0]);
+                    }
+                }
+            }
+            self.share_cuts(&all, &mut cut);
+            for (division, cut) in all.iter_mut().zip(&cut) {
+                let ends: Vec<u64> = division.at.iter().copied().collect();
+                for w in ends.windows(2).filter(|w| cut.contains(&w[0]) && w[1] - w[0] == long) {
+                    division.at.extend([w[0] + long / 3, w[0] + 2 * (long / 3)]);
+                }
+            }
+        }
+        all
+    }
+
+    /// Marks the chords beside the facets of a round face that are near places.
+    fn mark_face(
+        &self,
+        f: usize,
+        all: &[EdgeDivision],
+        wanted: &[Vec3],
+        cut: &mut [BTreeSet<u64>],
+    ) {
+        let Some(surface) = self.surface(f) else { return };
+        let cycle = &self.faces[f].loops[0];
+        let (far, left) = match cycle[..] {
+            [_, _, far, left] => (Some(far), left),
+            [_, _, left] => (None, left),
+            _ => return,
+        };
+        let end = |h: (usize, bool), first: bool| {
+            self.vertices[self.edges[h.0].ends[usize::from(h.1 != first)]].at.re()
+        };
+        let near = cycle[0];
+        let corners = [end(near, true), end(near, false), end(left, true)];
+        let grid = PatchOrientation::of(&surface, corners);
+        let (along, across) = (all[near.0].shares(near.1), all[left.0].shares(!left.1));
+        let at = |s: f64, t: f64| {
+            let [u, v] = grid.at(s, t);
+            surface.jet(T::from(u), T::from(v))[0].re()
+        };
+        let rows: Vec<Vec<Vec3>> =
+            across.iter().map(|&t| along.iter().map(|&s| at(s, t)).collect()).collect();
+        let mut mark = |h: (usize, bool), k: usize| {
+            let ends = &all[h.0].at;
+            // The chord that is the k-th as the edge is run.
+            let k = if h.1 { k } else { ends.len() - 2 - k };
+            cut[h.0].extend(ends.iter().nth(k));
+        };
+        for (j, w) in rows.windows(2).enumerate() {
+            for i in 0..along.len() - 1 {
+                let [a, b, c, d] = [w[0][i], w[0][i + 1], w[1][i + 1], w[1][i]];
+                let middle = [(a + b) * 0.5, (c + d) * 0.5];
+                let wide = a.distance(b).max(c.distance(d));
+                if wanted.iter().all(|x| near_segment(*x, middle) > 1.5 * wide) {
+                    continue;
+                }
+                // Facets that are curved both ways are cut both ways.
+                if self.edges[near.0].piece.is_some() {
+                    mark(near, i);
+                    if let Some((e, forward)) = far {
+                        mark((e, !forward), i);
+                    }
+                }
+                let tall = a.distance(d).max(b.distance(c));
+                let beside = [(a + d) * 0.5, (b + c) * 0.5];
+                if self.edges[left.0].piece.is_some()
+                    && wanted.iter().any(|x| near_segment(*x, beside) <= 1.5 * tall)
+                {
+                    mark((left.0, !left.1), j);
+                    mark(cycle[1], j);
+                }
+            }
+        }
+    }
+
+    /// Opposite edges of round faces are divided alike.
+    fn share_cuts(&self, all: &[EdgeDivision], cut: &mut [BTreeSet<u64>]) {
+        // Where a chord of one edge begins on the other, which may run the other way.
+        let carried = |from: &BTreeSet<u64>, division: &EdgeDivision, turned: bool| -> Vec<u64> {
+            let next = |k: &u64| division.at.range(k + 1..).next().copied();
+            let of = |k: &u64| match turned {
+                true => Some(division.parts - next(k)?),
+                false => Some(*k),
+            };
+            from.iter().filter_map(of).collect()
+        };
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for (f, face) in self.faces.iter().enumerate() {
+                if face.loops[0].len() != 4 || self.surface(f).is_none() {
+                    continue;
+                }
+                for [a, b] in [[0, 2], [1, 3]].map(|p| p.map(|k: usize| face.loops[0][k])) {
+                    // They are run in opposite directions.
+                    let turned = a.1 == b.1;
+                    for (a, b) in [(a.0, b.0), (b.0, a.0)] {
+                        let new = carried(&cut[a], &all[a], turned);
+                        let before = cut[b].len();
+                        cut[b].extend(new);
+                        changed |= cut[b].len() != before;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The facets of the body, with a chord for each 5° of round edges or, by the body's density, a part of it.
     pub(super) fn outline(&self) -> Outline<T> {
         if let Some(facets) = &self.facets {
             let mut side: HashMap<(u32, u32), u32> = HashMap::new();
@@ -37,16 +201,17 @@ impl<T: Real> SketchSolid<T> {
                 strips,
             };
         }
-        let chords = self.angular_chords();
+        let divisions = self.divisions();
         let mut points: Vec<Vec3<T>> = self.vertices.iter().map(|v| v.at).collect();
         let mut chains: Vec<Vec<u32>> = Vec::new();
-        for (e, &n) in chords.iter().enumerate() {
+        for (e, division) in divisions.iter().enumerate() {
             let piece = self.piece((e, true));
             let [a, b] = self.edges[e].ends.map(|v| v as u32);
             let mut chain = vec![a];
-            for k in 1..n {
+            let shares = division.shares(true);
+            for &share in &shares[1..shares.len() - 1] {
                 chain.push(points.len() as u32);
-                points.push(piece.at(T::from(k as f64 / n as f64)));
+                points.push(piece.at(T::from(share)));
             }
             chain.push(b);
             chains.push(chain);
@@ -58,7 +223,8 @@ impl<T: Real> SketchSolid<T> {
                 continue;
             };
             let run = |h: (usize, bool)| directed(&chains, h);
-            let quads = patch(&surface, &face.loops[0], &run, &mut points);
+            let shares = |(e, forward): (usize, bool)| divisions[e].shares(forward);
+            let quads = patch(&surface, &face.loops[0], &run, &shares, &mut points);
             let mut side: HashMap<(u32, u32), u32> = HashMap::new();
             for &(e, _) in &face.loops[0] {
                 for w in chains[e].windows(2) {
@@ -123,6 +289,13 @@ impl<T: Real> Outline<T> {
     }
 }
 
+/// How far a place is from a segment.
+fn near_segment(x: Vec3, [p, q]: [Vec3; 2]) -> f64 {
+    let d = q - p;
+    let s = (d.dot(x - p) / d.norm_sq().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    (p + d * s).distance(x)
+}
+
 fn directed(chains: &[Vec<u32>], (e, forward): (usize, bool)) -> Vec<u32> {
     let mut way = chains[e].clone();
     if !forward {
@@ -132,11 +305,13 @@ fn directed(chains: &[Vec<u32>], (e, forward): (usize, bool)) -> Vec<u32> {
 }
 
 /// The facets of a patch bounded by its parameter lines: quads between the first edge of its cycle and
-/// the third, or triangles to the point that a cycle of three edges ends in.
+/// the third, or triangles to the point that a cycle of three edges ends in. `run` gives the points along an edge,
+/// `shares` their parameters.
 pub(super) fn patch<T: Real>(
     surface: &FaceSurface<T>,
     cycle: &[(usize, bool)],
     run: &dyn Fn((usize, bool)) -> Vec<u32>,
+    shares: &dyn Fn((usize, bool)) -> Vec<f64>,
     places: &mut Vec<Vec3<T>>,
 ) -> Vec<[u32; 4]> {
     let near = run(cycle[0]);
@@ -160,13 +335,16 @@ pub(super) fn patch<T: Real>(
         return vec![];
     }
     // Which way the parameters run along the first edge and the sides.
-    let grid = PatchOrientation::of(surface, places, &near, &left);
+    let corner = |v: u32| places[v as usize].re();
+    let corners = [corner(near[0]), corner(near[n - 1]), corner(left[m - 1])];
+    let grid = PatchOrientation::of(surface, corners);
+    let last = cycle[cycle.len() - 1];
+    let (along, across) = (shares(cycle[0]), shares((last.0, !last.1)));
     let mut rows = vec![near.clone()];
     for j in 1..m - 1 {
         let mut row = vec![left[j]];
         for i in 1..n - 1 {
-            let (s, t) = (i as f64 / (n - 1) as f64, j as f64 / (m - 1) as f64);
-            let [u, v] = grid.at(s, t);
+            let [u, v] = grid.at(along[i], across[j]);
             row.push(places.len() as u32);
             places.push(surface.jet(T::from(u), T::from(v))[0]);
         }
@@ -192,16 +370,10 @@ struct PatchOrientation {
 }
 
 impl PatchOrientation {
-    fn of<T: Real>(
-        surface: &FaceSurface<T>,
-        places: &[Vec3<T>],
-        near: &[u32],
-        left: &[u32],
-    ) -> PatchOrientation {
-        let place = |v: u32| places[v as usize].re();
+    /// By the corners where the first edge begins and ends, and where the sides end.
+    fn of<T: Real>(surface: &FaceSurface<T>, [a, b, d]: [Vec3; 3]) -> PatchOrientation {
         let corner = |u: f64, v: f64| surface.jet(T::from(u), T::from(v))[0].re();
         // The corners of the square that the patch's own corners are nearest to.
-        let (a, b, d) = (place(near[0]), place(near[near.len() - 1]), place(left[left.len() - 1]));
         let mut best = (
             f64::INFINITY,
             PatchOrientation { corner: [0.0; 2], along: [1.0, 0.0], across: [0.0, 1.0] },

@@ -72,6 +72,13 @@ impl<T: Real> Similarity<T> {
         self.vector(p) + self.shift
     }
 
+    /// The point whose image a point is.
+    pub(super) fn source_of(&self, p: Vec3) -> Vec3 {
+        let off = p - self.shift.re();
+        let along = self.columns.map(|c| c.re().dot(off) / c.re().norm_sq());
+        Vec3::new(along[0], along[1], along[2])
+    }
+
     /// Whether it makes a left hand of a right one.
     pub fn mirrors(&self) -> bool {
         let [a, b, c] = self.columns;
@@ -116,6 +123,8 @@ impl<T: Real> SketchSolid<T> {
     pub fn placed(&self, place: &Similarity<T>) -> SketchSolid<T> {
         let mut out = self.clone();
         out.curves.clear();
+        let forward = |p: Vec3| place.point(Vec3::lifted(p)).re();
+        out.density.near.iter_mut().for_each(|p| p.0 = forward(p.0));
         out.vertices.iter_mut().for_each(|v| v.at = place.point(v.at));
         for edge in &mut out.edges {
             edge.piece = edge.piece.as_ref().map(|p| place.piece(p));

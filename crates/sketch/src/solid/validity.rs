@@ -45,7 +45,8 @@ pub enum SolidDefect {
 /// # Errors
 /// [`SolidDefect`], with the place.
 pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
-    if body.vertices.iter().any(|v| !v.at.is_finite()) {
+    // Where there is no derivative there may be a body.
+    if body.vertices.iter().any(|v| !v.at.re().is_finite()) {
         return Err(SolidDefect::NotFinite);
     }
     if body.flat {
@@ -78,10 +79,11 @@ pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidD
 
 /// A body that does not cross itself, if its facets tell that.
 fn clear<T: Real>(body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
-    match unclear(&body) {
-        Some(place) => Err(SolidDefect::Unresolved(CombineError::Coarse(place))),
-        None => Ok(body),
+    let places = unclear(&body);
+    if places.is_empty() {
+        return Ok(body);
     }
+    Err(SolidDefect::Unresolved(CombineError::Coarse(places)))
 }
 
 impl<T: Real> SketchSolid<T> {

@@ -15,6 +15,7 @@ struct Template {
 
 /// Said where no short command leads: guards against a fault of our own, or against sizes that take minutes to reach.
 const GUARDS: &[&str] = &[
+    "an edge vanishes when the other edges of its corner are blended",
     // The reference of an open question is dropped with its object.
     "there is no object {key}",
     // A curve waits for its points without a word; bodies of objects without positions are not begun.
@@ -358,7 +359,7 @@ const CASES: &[(&str, &str)] = &[
     ("PYRAMID", "SHELL P 0.2"),
     ("PYRAMID", "DRAFT P Z 5"),
     ("PYRAMID", "DRAFT P X 5"),
-    ("ELL", "FILLET ELL 1 EDGES ALL INTO Q"),
+    ("ELL", "CHAMFER ELL 1 EDGES ALL INTO Q"),
 ];
 
 /// A session after some text; its first word may be the name of one of the texts above.
