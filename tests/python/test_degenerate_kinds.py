@@ -65,8 +65,9 @@ def variants(text: str) -> Iterator[tuple[str, str]]:
         yield "far away", moved(text, lambda k, p: p + 1e9)
         for j in range(1, len(points)):
             other = [float(x) for x in (points[j - 1][2] or points[j - 1][5]).split(",")]
-            yield f"point {j} on the one before", moved(
-                text, lambda k, p, j=j, other=other: other if k == j else p
+            yield (
+                f"point {j} on the one before",
+                moved(text, lambda k, p, j=j, other=other: other if k == j else p),
             )
     inside = [range(m.start(), m.end()) for m in points]
     numbers = [m for m in _NUMBER.finditer(text) if not any(m.start() in r for r in inside)]
