@@ -3285,7 +3285,8 @@ def rotate(
     angle: _Number | None = ...,
 ) -> AnyShape:
     """A vector, curve, surface or block turned about an axis, right-handed: rotate(o, axis, angle) about the
-    axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840).
+    axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840). Quarter turns are
+    exact: those of multiples of PI/2.
 
     Parameters
     ----------
@@ -4969,7 +4970,7 @@ def refined(
     Parameters
     ----------
     n : integer
-        The number of points of the coarse run, 2 or more.
+        The number of points of the coarse run.
 
     Returns
     -------

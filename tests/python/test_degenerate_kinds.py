@@ -1,7 +1,8 @@
-"""Every kind and function on degenerate input: an error or a remark that names it, or a finite shape; never silence.
+"""Every kind and function on degenerate input: an error or remark that names it, or a finite shape.
 
-The example of each entry is varied: its points coincide, pairwise or all, lie on a line or in a plane, are tiny, huge or
-far away; each of its numbers becomes 0, negative, tiny or huge. `MOLDLOFT_SOAK=1` takes all variants of all entries.
+The example of each entry is varied: its points coincide, pairwise or all, lie on a line or in a
+plane, are tiny, huge or far away; each of its numbers becomes 0, negative, tiny or huge.
+`MOLDLOFT_SOAK=1` takes all variants of all entries.
 """
 
 from __future__ import annotations
@@ -113,7 +114,7 @@ def judged(program: str) -> str | None:
         return "positions that are not finite"
     if model is None or words:
         return None
-    for name in model.keys():
+    for name in model:
         made = model[name]
         for measure in ("length", "area", "volume"):
             try:
