@@ -6,7 +6,7 @@
 //! number carries derivatives.
 
 use super::SketchSolid;
-use super::blend_order::{ChosenEdges, ordered};
+use super::blend_order::{BlendSize, ChosenEdges, ordered};
 use super::blend_tool::{BallCorner, BlendSection, SectionPlacing, joined, swept};
 use super::combine::combined_with;
 use super::curve::SmoothPiece;
@@ -19,15 +19,6 @@ use crate::feature::EdgeChoice;
 use moldloft_num::{Axis as Line, Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-
-/// The sizes of a blend.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum BlendSize<T> {
-    /// The distances from the edge in its first face and its second.
-    Chamfer([T; 2]),
-    /// The radius.
-    Fillet(T),
-}
 
 const SMALLER: &str = "make it smaller, or choose other edges";
 

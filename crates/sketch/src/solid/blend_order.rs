@@ -5,11 +5,19 @@
 //! meet in corners are filleted together. Chamfers of such corners are refused.
 
 use super::SketchSolid;
-use super::blend::BlendSize;
 use super::edges::{EdgeFrame, EdgeSide, TreatmentFault};
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// The sizes of a blend.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum BlendSize<T> {
+    /// The distances from the edge in its first face and its second.
+    Chamfer([T; 2]),
+    /// The radius.
+    Fillet(T),
+}
 
 /// Chosen edges, each with the face that a first distance is measured in.
 pub(super) type ChosenEdges = BTreeMap<usize, Option<usize>>;

@@ -1,6 +1,7 @@
 //! Features: objects that are made of others and computed again with every change.
 
-use super::blend::{BlendSize, blended};
+use super::blend::blended;
+use super::blend_order::BlendSize;
 use super::combine::{CombineError, combined, united};
 pub use super::edges::TreatmentFault;
 use super::offset::{drafted, moved, shelled};

@@ -54,7 +54,7 @@ impl<T: Real> SketchSolid<T> {
         self.mesh_of(self.chords(&by_angle, true))
     }
 
-    /// Chords per edge, one for each 5° of a round curve, cut in three so often.
+    /// Chords per edge, one for each 5° of a round curve, each cut in three that many times.
     pub(super) fn angular_chords(&self, times: u32) -> Vec<usize> {
         let more = 3usize.pow(times);
         self.chords(
