@@ -95,8 +95,9 @@ impl LinePiece {
         let straight = chord.normalized().unwrap_or_default();
         let tangents =
             ends.map(|p| pair.and_then(|pair| along(p, pair, chord)).unwrap_or(straight));
-        let half = 0.5 * tangents[0].cross(tangents[1]).norm().atan2(tangents[0].dot(tangents[1]));
-        let stretch = if half < 1e-4 { 1.0 + half * half / 6.0 } else { half / half.sin() };
+        let half =
+            0.5 * libm::atan2(tangents[0].cross(tangents[1]).norm(), tangents[0].dot(tangents[1]));
+        let stretch = if half < 1e-4 { 1.0 + half * half / 6.0 } else { half / libm::sin(half) };
         Self { ends, tangents, length: chord.norm() * stretch }
     }
 
@@ -187,7 +188,7 @@ fn on_both(mut p: Vec3, [a, b]: [&Primitive; 2]) -> Vec3 {
         let x = (f.value * bb - g.value * ab) / determinant;
         let y = (g.value * aa - f.value * ab) / determinant;
         let step = f.slope * x + g.slope * y;
-        p = p - step;
+        p -= step;
         if step.norm() <= 1e-15 * (1.0 + p.norm()) {
             break;
         }

@@ -398,7 +398,7 @@ impl Feature {
                     Operation::Union if grows => [by, by],
                     _ => return None,
                 };
-                let both = part(0, ways[0]).and_then(|a| Ok((a, part(1, ways[1]))));
+                let both = part(0, ways[0]).map(|a| (a, part(1, ways[1])));
                 Some(both.and_then(|(a, b)| match b {
                     // Nothing was cut away.
                     Err(NoBody::Combine(CombineError::Empty)) if *operation == Operation::Cut => {
