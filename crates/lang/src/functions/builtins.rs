@@ -51,6 +51,17 @@ pub(crate) enum Action {
     ReadRows(RowFormat),
 }
 
+/// What writers of meshes of blocks take.
+const BLOCKS_AND_FACES: &[(&str, &str, &str)] = &[
+    ("name", "text", "Name of the file, beside the program."),
+    ("b", "block …", "What is written."),
+    (
+        "faces?",
+        "text",
+        "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
+    ),
+];
+
 /// All built-in functions, in the order of the reference.
 pub const BUILTINS: [Builtin; 31] = [
     Builtin {
@@ -327,15 +338,7 @@ pub const BUILTINS: [Builtin; 31] = [
         signature: "write_su2(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
         doc: "Writes blocks as one SU2 mesh, joined where they have the same points; faces of equal name are one marker.",
         returns: "nothing",
-        help: &[
-            ("name", "text", "Name of the file, beside the program."),
-            ("b", "block …", "What is written."),
-            (
-                "faces?",
-                "text",
-                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
-            ),
-        ],
+        help: BLOCKS_AND_FACES,
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_su2(\"b.su2\", b, \"k1 = floor wall\");",
     },
     Builtin {
@@ -345,15 +348,7 @@ pub const BUILTINS: [Builtin; 31] = [
         signature: "write_gmsh(name, b1, \"k1 = hull wall, kn = far farfield\", b2, ...)",
         doc: "Writes blocks as one Gmsh mesh 4.1, joined where they have the same points; faces of equal name are one physical surface.",
         returns: "nothing",
-        help: &[
-            ("name", "text", "Name of the file, beside the program."),
-            ("b", "block …", "What is written."),
-            (
-                "faces?",
-                "text",
-                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
-            ),
-        ],
+        help: BLOCKS_AND_FACES,
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_gmsh(\"b.msh\", b, \"k1 = floor wall\");",
     },
     Builtin {
@@ -363,15 +358,7 @@ pub const BUILTINS: [Builtin; 31] = [
         signature: "write_blockmesh(name, b1, \"k1 = hull wall, j1 = plane symmetry\", b2, ...)",
         doc: "Writes blocks as a blockMeshDict of OpenFOAM with a block for each cell, so that its points are kept; faces of equal name are one patch.",
         returns: "nothing",
-        help: &[
-            ("name", "text", "Name of the file, beside the program."),
-            ("b", "block …", "What is written."),
-            (
-                "faces?",
-                "text",
-                "Boundaries of the block before it, such as \"k1 = hull wall, i1 in = plane symmetry\": faces, a name and one of the types wall, patch, symmetry, inflow, outflow, farfield.",
-            ),
-        ],
+        help: BLOCKS_AND_FACES,
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; block b = {s, s + {0, 0, 1}}; write_blockmesh(\"blockMeshDict\", b, \"k1 = floor wall\");",
     },
     Builtin {
