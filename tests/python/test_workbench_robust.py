@@ -162,3 +162,16 @@ def test_nothing_is_lost_when_servers_are_killed(tmp_path: Path, browser: Any) -
             accepted = found
         finally:
             b.close()
+
+
+def test_a_server_that_is_stopped_says_nothing(bench: Callable[..., Bench]) -> None:
+    b = bench()
+    # Questions are under way when it ends.
+    b.page.evaluate(
+        """() => { const s = document.querySelector('input[type=range]')
+        for (let k = 0; k < 20; k++) { s.value = Number(s.min) + k * 0.01
+          s.dispatchEvent(new Event('input', { bubbles: true })) } }"""
+    )
+    b.process.terminate()
+    _, said = b.process.communicate(timeout=60)
+    assert "Traceback" not in said and "never retrieved" not in said, said

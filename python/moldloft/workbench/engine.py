@@ -96,7 +96,10 @@ class Engine:
             raise EngineLostError(f"no answer within {self._budget:g} s") from None
 
     def _reading(self) -> asyncio.Task[bytes]:
-        return asyncio.ensure_future(self._receive())
+        reading = asyncio.ensure_future(self._receive())
+        # Who asked may be gone when the engine ends, as with a server that is stopped.
+        reading.add_done_callback(lambda done: done.cancelled() or done.exception())
+        return reading
 
     async def _send(self, message: bytes) -> None:
         process = self._process
