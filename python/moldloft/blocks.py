@@ -141,10 +141,12 @@ class Blocks:
     (6.0, True)
     """
 
-    def __init__(self, core: _core.Blocks, symmetry: str = "") -> None:
+    def __init__(self, core: _core.Blocks, symmetry: str = "", unit_of_length: str = "") -> None:
         self._core = core
         self.symmetry = symmetry
         """The planes that the model is mirrored in, of ``"xyz"``."""
+        self.unit_of_length = unit_of_length
+        """The unit of the positions, as ``"m"``; empty where the model has none."""
         summary = core.summary()
         self.cells: int = summary["cells"]
         """How many cells there are."""

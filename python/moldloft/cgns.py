@@ -200,9 +200,10 @@ def _runs(
 def write(model: Model, title: str) -> bytes:
     """The file: surface zones with families, interfaces, and the free edges as boundaries.
 
-    Each zone belongs to the family of its surface's name. Edges that meet no other are boundaries
-    named ``u0``, ``u1``, ``v0``, ``v1``: symmetry planes where they lie in one of the model's, else
-    without a type. Interfaces are written from both sides.
+    Each zone belongs to the family of its surface's name. Edges, or the runs of them, that meet no
+    other are boundaries named ``u0``, ``u1``, ``v0``, ``v1`` (``u0_1``, ``u0_2`` where they are
+    several): symmetry planes where they lie in one of the model's, else without a type. Interfaces
+    are written from both sides. The base has the model's unit of length.
 
     Parameters
     ----------
@@ -223,7 +224,7 @@ def write(model: Model, title: str) -> bytes:
     joints = interfaces(patches)
     memory = io.BytesIO()
     with h5py.File(memory, "w", track_order=True) as file:
-        base = begin(file, title, 2)
+        base = begin(file, title, 2, model.units.length)
         _families(base, patches)
         for z, zone in enumerate(patches):
             _zone(base, patches, z, zone, positions, joints, model.symmetry)
@@ -335,11 +336,30 @@ def write_grids(
     return memory.getvalue()
 
 
-def begin(file: Any, title: str, dimensions: int) -> Any:
-    """The base of a new file, of cells of so many dimensions in space."""
+_LENGTHS = {"m": "Meter", "cm": "Centimeter", "mm": "Millimeter", "ft": "Foot", "in": "Inch"}
+"""Units of length that SIDS 4.3 has a name for."""
+
+
+def begin(file: Any, title: str, dimensions: int, length: str = "") -> Any:
+    """The base of a new file, of cells of so many dimensions in space.
+
+    Coordinates are dimensional where the unit of length is one of SIDS, of another unit where it is
+    not, and of an unknown one where the model has none.
+    """
     _root(file)
     node(file, "CGNSLibraryVersion", "CGNSLibraryVersion_t", np.array([3.3], dtype=np.float32))
-    return node(file, unique(title, set()), "CGNSBase_t", np.array([dimensions, 3], dtype=np.int32))
+    sizes = np.array([dimensions, 3], dtype=np.int32)
+    base = node(file, unique(title, set()), "CGNSBase_t", sizes)
+    if length:
+        node(base, "DataClass", "DataClass_t", "Dimensional")
+        words = ["Null", _LENGTHS.get(length, "UserDefined"), "Null", "Null", "Null"]
+        rows = np.stack([np.frombuffer(w.ljust(32).encode("ascii"), dtype=np.int8) for w in words])
+        node(base, "DimensionalUnits", "DimensionalUnits_t", rows)
+        if length not in _LENGTHS:
+            node(base, "UnitOfLength", "Descriptor_t", length)
+    else:
+        node(base, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
+    return base
 
 
 def _root(file: Any) -> None:
@@ -374,6 +394,13 @@ def node(parent: Any, name: str, label: str, data: NDArray[Any] | str | None = N
     return group
 
 
+def coordinate(grid: Any, letter: str, values: NDArray[np.float64]) -> None:
+    """An array of coordinates, which are lengths."""
+    array = node(grid, f"Coordinate{letter}", "DataArray_t", values)
+    lengths = np.array([0, 1, 0, 0, 0], dtype=np.float32)
+    node(array, "DimensionalExponents", "DimensionalExponents_t", lengths)
+
+
 def _families(base: Any, patches: Sequence[Zone]) -> None:
     names: set[str] = set()
     for zone in patches:
@@ -406,7 +433,7 @@ def _zone(
     for axis, letter in enumerate("XYZ"):
         # Fortran's order: i fastest, so the transpose of ours.
         values = np.ascontiguousarray(positions[zone.vertices][..., axis].T) + 0.0
-        node(grid, f"Coordinate{letter}", "DataArray_t", values)
+        coordinate(grid, letter, values)
     own = [joint for joint in joints if joint.zone == z]
     if own:
         _connectivity(place, patches, zone, own)
@@ -452,21 +479,30 @@ def _boundaries(
     free = []
     for side in range(4):
         edge = zone.edge(side)
-        if len(set(edge.tolist())) > 1 and not any(joint.side == side for joint in own):
-            free.append((side, positions[edge]))
+        if len(set(edge.tolist())) < 2:
+            continue
+        # What lies between the interfaces of an edge, and before and behind them.
+        at = 0
+        ends = sorted((joint.first, joint.last) for joint in own if joint.side == side)
+        for first, last in [*ends, (len(edge) - 1, len(edge) - 1)]:
+            if first > at:
+                free.append((side, at, first, positions[edge[at : first + 1]]))
+            at = max(at, last)
     if not free:
         return
     group = node(place, "ZoneBC", "ZoneBC_t")
     size = float(np.abs(positions).max(initial=1.0))
-    for side, points in free:
+    runs = [side for side, *_ in free]
+    for k, (side, first, last, points) in enumerate(free):
         flat = [
             letter
             for axis, letter in enumerate("xy")
             if letter in symmetry and np.abs(points[:, axis]).max() <= 1e-9 * size
         ]
         kind = "BCSymmetryPlane" if flat else "UserDefined"
-        one = node(group, EDGES[side], "BC_t", kind)
-        _range(one, "PointRange", zone, side, 0, len(points) - 1)
+        name = EDGES[side] if runs.count(side) == 1 else f"{EDGES[side]}_{runs[:k].count(side) + 1}"
+        one = node(group, name, "BC_t", kind)
+        _range(one, "PointRange", zone, side, first, last)
 
 
 explain(globals())

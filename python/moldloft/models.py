@@ -548,7 +548,7 @@ class Model(Floating, Adapted):
         """
         from moldloft.blocks import Blocks
 
-        return Blocks(self._document.blocks(), self.symmetry)
+        return Blocks(self._document.blocks(), self.symmetry, self.units.length)
 
     def block_jacobian(self, by: Sequence[str]) -> NDArray[np.float64]:
         """Exact derivatives of every vertex of :meth:`blocks`, ``(n, 3, len(by))``.

@@ -51,6 +51,7 @@ class _GridBlocks:
     blocks: Sequence[_GridBlock]
     interfaces: Sequence[Interface]
     boundaries: Sequence[Boundary]
+    unit_of_length: str = ""
 
     @property
     def vertices(self) -> NDArray[np.float64]:
@@ -124,7 +125,7 @@ def write(blocks: Blocks | _GridBlocks, title: str) -> bytes:
             families[free.name] = cgns.unique(free.name, taken)
     memory = io.BytesIO()
     with h5py.File(memory, "w", track_order=True) as file:
-        base = cgns.begin(file, title, 3)
+        base = cgns.begin(file, title, 3, blocks.unit_of_length)
         for free in blocks.boundaries:
             if families[free.name] in base:
                 continue
@@ -139,7 +140,7 @@ def write(blocks: Blocks | _GridBlocks, title: str) -> bytes:
             for axis, letter in enumerate("XYZ"):
                 # Fortran's order: i fastest, so the transpose of ours.
                 values = np.ascontiguousarray(block.points[..., axis].T) + 0.0
-                cgns.node(grid, f"Coordinate{letter}", "DataArray_t", values)
+                cgns.coordinate(grid, letter, values)
             _joints(zone, blocks, zones, number)
             _boundaries(zone, blocks, families, number)
     return memory.getvalue()
@@ -150,6 +151,18 @@ def _range(parent: Any, name: str, begin: Sequence[int], end: Sequence[int]) -> 
     cgns.node(parent, name, "IndexRange_t", ends)
 
 
+def _rising(joint: Interface) -> tuple[list[int], list[int], list[int], list[int]]:
+    """Both ranges of an interface, turned so that the block's own rises; the donor's follows it."""
+    begin, end = list(joint.begin), list(joint.end)
+    donor_begin, donor_end = list(joint.donor_begin), list(joint.donor_end)
+    for axis, number in enumerate(joint.transform):
+        if begin[axis] > end[axis]:
+            other = abs(number) - 1
+            begin[axis], end[axis] = end[axis], begin[axis]
+            donor_begin[other], donor_end[other] = donor_end[other], donor_begin[other]
+    return begin, end, donor_begin, donor_end
+
+
 def _joints(zone: Any, blocks: Blocks | _GridBlocks, zones: Sequence[str], number: int) -> None:
     seen = [joint for joint in blocks.interfaces if joint.block == number]
     seen += [joint.reversed() for joint in blocks.interfaces if joint.donor == number]
@@ -158,8 +171,9 @@ def _joints(zone: Any, blocks: Blocks | _GridBlocks, zones: Sequence[str], numbe
     group = cgns.node(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
     for k, joint in enumerate(seen, 1):
         one = cgns.node(group, f"join{k}", "GridConnectivity1to1_t", zones[joint.donor])
-        _range(one, "PointRange", joint.begin, joint.end)
-        _range(one, "PointRangeDonor", joint.donor_begin, joint.donor_end)
+        begin, end, donor_begin, donor_end = _rising(joint)
+        _range(one, "PointRange", begin, end)
+        _range(one, "PointRangeDonor", donor_begin, donor_end)
         transform = np.array(joint.transform, dtype=np.int32)
         cgns.node(one, "Transform", '"int[IndexDimension]"', transform)
 

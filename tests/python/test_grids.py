@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -137,6 +138,24 @@ def check_cgns(path: Path, given: dict[str, np.ndarray]) -> list[tuple[str, str]
             assert sizes == [[ni, nj], [ni - 1, nj - 1], [0, 0]]
             assert np.array_equal(points(f"Z_{name}"), grid + 0.0)
         for name, zone in zones.items():
+            grid = points(name)
+            ni, nj = grid.shape[:2]
+            covered: dict[tuple[tuple[int, ...], ...], int] = {}
+            for group, label in (
+                ("ZoneGridConnectivity", "GridConnectivity1to1_t"),
+                ("ZoneBC", "BC_t"),
+            ):
+                for one in nodes(zone.get(group, {}), label).values():
+                    (a, b), (c, d) = one["PointRange"][" data"][:] - 1
+                    assert a <= c and b <= d
+                    line = [(i, j) for i in range(a, c + 1) for j in range(b, d + 1)]
+                    for pair in pairwise(line):
+                        covered[pair] = covered.get(pair, 0) + 1
+            rim = [((i, j), (i + 1, j)) for j in (0, nj - 1) for i in range(ni - 1)]
+            rim += [((i, j), (i, j + 1)) for i in (0, ni - 1) for j in range(nj - 1)]
+            # Every edge of a cell at the rim is covered once; poles are not.
+            wanted = {e: 1 for e in rim if np.abs(grid[e[0]] - grid[e[1]]).max() > 1e-9}
+            assert covered == wanted
             for one in nodes(
                 zone.get("ZoneGridConnectivity", {}), "GridConnectivity1to1_t"
             ).values():
@@ -158,6 +177,11 @@ def test_cgns_of_arrays(tmp_path: Path) -> None:
     path = grids.write_cgns(tmp_path / "b.cgns", [upper, lower], ["upper", "lower"])
     joined = check_cgns(path, {"upper": upper, "lower": lower})
     assert joined == [("Z_upper", "Z_lower"), ("Z_lower", "Z_upper")]
+    # An edge that meets a shorter one is free beside it.
+    strip = np.stack(np.meshgrid(np.arange(7.0), np.arange(3.0), [0.0], indexing="ij"), -1)[:, :, 0]
+    short = strip[2:5] + np.array([0, 2, 0])
+    path = grids.write_cgns(tmp_path / "part.cgns", [strip, short], ["strip", "short"])
+    check_cgns(path, {"strip": strip, "short": short})
     # A closed grid meets itself, its poles meet nothing.
     turn = np.linspace(0, 2 * np.pi, 9)
     along = np.linspace(0, np.pi, 5)[:, None]
