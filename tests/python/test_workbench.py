@@ -9,6 +9,7 @@ import random
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -165,6 +166,54 @@ def test_what_is_typed_is_on_disk_before_the_page_hears_so(model_file: Callable[
 
     workbench(path, play)
     assert [p.name for p in path.parent.iterdir()] == [path.name]
+
+
+def test_sliders_do_not_wait_for_a_slow_disk(
+    model_file: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = model_file(LINE)
+    ready, keep = threading.Event(), Draft.keep
+
+    def slow(draft: Draft, text: str, digest: str) -> None:
+        assert ready.wait(60)
+        keep(draft, text, digest)
+
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        await page.ask("open")
+        typing = asyncio.ensure_future(page.type(LINE + "AbsPoint C(0, 1, 0);\n"))
+        await page.until(lambda: any(o["name"] == "C" for o in page.objects))
+        for width in (1.5, 2.5, 3):
+            head = await page.ask("set", values={"w": width})
+            assert head["params"][0]["value"] == width
+        # The text is in the model, and not on disk: the page does not count it as kept.
+        assert page.version == 0 and not typing.done() and not hub.draft.path.exists()
+        ready.set()
+        assert (await typing)["ok"] and page.version == 1
+        assert "C(0, 1, 0)" in json.loads(hub.draft.path.read_text())["text"]
+
+    monkeypatch.setattr(Draft, "keep", slow)
+    workbench(path, play)
+
+
+def test_a_draft_that_cannot_be_written_is_reported(
+    model_file: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = model_file(LINE)
+
+    def full(draft: Draft, text: str, digest: str) -> None:
+        raise OSError(28, "No space left on device")
+
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        with monkeypatch.context() as patch:
+            patch.setattr(Draft, "keep", full)
+            reply = await page.type(LINE + "# one\n")
+            assert reply["ok"] and "draft cannot be written: [Errno 28]" in reply["error"]
+        assert "error" not in await page.type(LINE + "# one\n# two\n")
+        assert json.loads(hub.draft.path.read_text())["text"].endswith("# two\n")
+
+    workbench(path, play)
 
 
 def test_two_tabs_see_the_same(model_file: Callable[..., Path]) -> None:

@@ -108,6 +108,9 @@ class Hub:
         self._tasks: list[asyncio.Task[None]] = []
         self._sending: set[asyncio.Task[None]] = set()
         self._noted = self.stored.digest
+        self._disk = asyncio.Lock()
+        self._published = 0
+        self._unkept = ""
 
     @property
     def dirty(self) -> bool:
@@ -120,6 +123,8 @@ class Hub:
 
     async def stop(self) -> None:
         """End the engine; the draft stays when something is unsaved."""
+        with contextlib.suppress(asyncio.TimeoutError):
+            await asyncio.wait_for(self._publish(), 5)
         left = {task for task in (*self._tasks, *self._sending) if not task.done()}
         while left:
             # Once is not enough: until Python 3.12, `wait_for` forgets a cancellation that comes
@@ -202,25 +207,27 @@ class Hub:
                 text = self.text
                 for update in updates:
                     text = applied(text, update["changes"])
-                await self._accept(text, [
+                self._accept(text, [
                     {"changes": u["changes"], "clientID": str(u["clientID"])[:40]} for u in updates
                 ])  # fmt: skip
-                reply = {**reply, "ok": True, "version": self.version}
-            elif isinstance(message.get("version"), int) and message["version"] < self._first:
+                self._later(self._pushed(tab, {**reply, "ok": True, "version": self.version}))
+                return
+            if isinstance(message.get("version"), int) and message["version"] < self._first:
                 # Too long away for the changes since: it takes the whole text.
                 reply["text"] = self.text
         except (ValueError, KeyError, TypeError, IndexError) as error:
             reply = {**reply, "error": str(error), "text": self.text}
-        except (OSError, Error) as error:
-            reply = {**reply, "error": f"the draft cannot be written: {error}"}
         await self._to(tab, json.dumps(reply))
 
-    async def _accept(self, text: str, updates: list[dict[str, Any]]) -> None:
-        if text != self.stored.text:
-            self.draft.keep(text, self.stored.digest)
-        else:
-            self.draft.drop()
-        first = self.version
+    async def _pushed(self, tab: Tab, reply: dict[str, Any]) -> None:
+        """Says that changes count, once the draft is on disk: moves of sliders do not wait."""
+        await self._publish()
+        if self._unkept:
+            reply["error"] = self._unkept
+        await self._to(tab, json.dumps(reply))
+
+    def _accept(self, text: str, updates: list[dict[str, Any]]) -> None:
+        """A new text, which counts at once; :meth:`_publish` has to follow."""
         self.text = text
         self.version += len(updates)
         self._updates += updates
@@ -228,9 +235,32 @@ class Hub:
             gone = len(self._updates) - MOST_UPDATES
             self._first += gone
             del self._updates[:gone]
-        message = {"kind": "updates", "from": first, "updates": updates, "dirty": self.dirty}
-        await self.tell(message)
         self._queue(_Job("text", 0, {}))
+
+    async def _publish(self) -> None:
+        """Brings the newest text to disk, then to the pages; meanwhile the engine works on.
+
+        Changes that come meanwhile go with the next draft. When it cannot be written, the text
+        counts all the same, and the answers of pushes say so.
+        """
+        async with self._disk:
+            first, version = self._published, self.version
+            if first == version:
+                return
+            try:
+                if self.dirty:
+                    await asyncio.to_thread(self.draft.keep, self.text, self.stored.digest)
+                else:
+                    await asyncio.to_thread(self.draft.drop)
+                self._unkept = ""
+            except (OSError, Error) as error:
+                self._unkept = f"the draft cannot be written: {error}"
+            first = max(first, self._first)
+            updates = self._updates[first - self._first : version - self._first]
+            self._published = version
+            await self.tell(
+                {"kind": "updates", "from": first, "updates": updates, "dirty": self.dirty}
+            )
 
     async def _pull(self, tab: Tab, message: dict[str, Any]) -> None:
         """The updates after the version of a page, or the whole text when they are not kept."""
@@ -244,6 +274,10 @@ class Hub:
 
     async def _save(self, tab: Tab, message: dict[str, Any]) -> None:
         """Write the text to the model's file, unless that has changed meanwhile."""
+        async with self._disk:
+            await self._write(tab, message)
+
+    async def _write(self, tab: Tab, message: dict[str, Any]) -> None:
         number = message.get("id", 0)
         try:
             now = read(self.path) if self.path.exists() else None
@@ -261,7 +295,7 @@ class Hub:
             self.draft.drop()
         except ChangedError:
             # Between looking and writing; what is there now is shown.
-            await self._save(tab, message)
+            await self._write(tab, message)
             return
         except (Error, OSError) as error:
             await self._to(tab, json.dumps({"kind": "refused", "id": number, "error": str(error)}))
@@ -314,9 +348,11 @@ class Hub:
         self.stored = now
         if now.text != self.text:
             update = {"changes": change_set(self.text, now.text), "clientID": "disk"}
-            await self._accept(now.text, [update])
+            self._accept(now.text, [update])
+            await self._publish()
         else:
-            self.draft.drop()
+            async with self._disk:
+                self.draft.drop()
             await self.tell({"kind": "saved", "version": self.version, "dirty": self.dirty})
         self._noted = now.digest
 
