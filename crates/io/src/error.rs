@@ -65,6 +65,15 @@ pub enum WriteError {
         /// Distance between neighbouring numbers there.
         step: Bits,
     },
+    /// A cell of a grid is too thin for the format's single precision.
+    Thin {
+        /// The format.
+        format: &'static str,
+        /// The block, counted from 1, and the indices of both points, from 1.
+        place: [usize; 7],
+        /// Their distance, and what single precision makes of it.
+        length: [Bits; 2],
+    },
     /// The work was ended by who asked for it.
     Ended,
     /// A number does not fit its column.
@@ -122,6 +131,18 @@ impl fmt::Display for WriteError {
                  its shape; move the model to the origin, or write stl-text, obj or ply",
                 step.value()
             ),
+            Self::Thin { format, place: [block, i, j, k, to @ ..], length: [exact, rounded] } => {
+                write!(
+                    f,
+                    "in {format} with single precision points ({i}, {j}, {k}) and ({}, {}, {}) of block {block} would be {} \
+                 apart, where they are {}; write double precision",
+                    to[0],
+                    to[1],
+                    to[2],
+                    rounded.value(),
+                    exact.value()
+                )
+            }
             Self::Ended => write!(f, "the work was ended"),
             Self::TooWide { format, value } => {
                 write!(f, "the coordinate {} does not fit a column of {format}", value.value())

@@ -1,5 +1,6 @@
 //! Structured grids as files hold them: sizes and component planes, the first index fastest.
 
+use crate::Bits;
 use crate::WriteError;
 use moldloft_num::Vec3;
 
@@ -65,7 +66,46 @@ impl StructuredGrid {
         }
         Ok(())
     }
+
+    /// Refuses edges of cells that single precision changes by more than [`LOST`] of their length: layers at walls first.
+    pub(crate) fn check_single(blocks: &[Self], format: &'static str) -> Result<(), WriteError> {
+        for (number, block) in blocks.iter().enumerate() {
+            let [ni, nj, nk] = block.size;
+            for (axis, stride) in [1, ni, ni * nj].into_iter().enumerate() {
+                for at in 0..block.count() {
+                    let place = [at % ni, at / ni % nj, at / (ni * nj)];
+                    if place[axis] + 1 == [ni, nj, nk][axis] {
+                        continue;
+                    }
+                    let edge = |rounded: bool| {
+                        let side = |plane: &Vec<f64>| match rounded {
+                            false => plane[at + stride] - plane[at],
+                            true => {
+                                f64::from(plane[at + stride] as f32) - f64::from(plane[at] as f32)
+                            }
+                        };
+                        Vec3::from(block.planes.each_ref().map(side))
+                    };
+                    let (exact, rounded) = (edge(false), edge(true));
+                    if (exact - rounded).norm() > LOST * exact.norm() {
+                        let [i, j, k] = place.map(|x| x + 1);
+                        let mut to = [i, j, k];
+                        to[axis] += 1;
+                        return Err(WriteError::Thin {
+                            format,
+                            place: [number + 1, i, j, k, to[0], to[1], to[2]],
+                            length: [exact, rounded].map(|e| Bits::of(e.norm())),
+                        });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
 }
+
+/// The share of an edge of a cell that single precision may change: what first cells at walls keep, too.
+const LOST: f64 = 0.05;
 
 #[cfg(test)]
 mod tests {

@@ -195,3 +195,26 @@ fn what_a_variant_cannot_hold_is_refused() {
     let floats = Variant { double: false, ..Variant::default() };
     assert!(matches!(write(&huge, floats), Err(WriteError::NotFinite { vertex: 3, .. })));
 }
+
+#[test]
+fn layers_too_thin_for_single_precision_are_refused_by_place() {
+    // Layers at a wall at x = 1 whose first is 1e-8; numbers there are 1.2e-7 apart.
+    let grid = |first: f64| StructuredGrid {
+        size: [2, 1, 3],
+        planes: [
+            vec![1.0, 1.0, 1.0 + first, 1.0 + first, 1.1, 1.1],
+            vec![0.0, 1.0, 0.0, 1.0, 0.0, 1.0],
+            vec![0.0; 6],
+        ],
+        iblank: None,
+    };
+    let single = Variant { double: false, ..Variant::default() };
+    let error = write(&[grid(1e-3), grid(1e-8)], Variant { multi: true, ..single }).unwrap_err();
+    let text = error.to_string();
+    assert!(
+        text.contains("(1, 1, 1) and (1, 1, 2) of block 2 would be 0 apart, where they are 9.99"),
+        "{text}"
+    );
+    write(&[grid(1e-5)], single).unwrap();
+    write(&[grid(1e-8)], Variant { double: true, ..single }).unwrap();
+}

@@ -7,11 +7,14 @@ use crate::{StructuredGrid, WriteError};
 /// The file of these blocks.
 ///
 /// # Errors
-/// No blocks; coordinates that are not finite or beyond single precision; several blocks in a
+/// No blocks; coordinates that are not finite or beyond single precision, cells too thin for it; several blocks in a
 /// single-block file; blocks that are no plane surfaces in a 2-D file; sizes beyond 31 bits.
 pub fn write(blocks: &[StructuredGrid], variant: Variant) -> Result<Vec<u8>, WriteError> {
     let single = !variant.double && variant.laid != Laid::Formatted;
     StructuredGrid::check(blocks, if single { f64::from(f32::MAX) } else { f64::MAX })?;
+    if single {
+        StructuredGrid::check_single(blocks, FORMAT)?;
+    }
     let cannot = |what| WriteError::CannotHold { format: FORMAT, what };
     if !variant.multi && blocks.len() != 1 {
         return Err(cannot("several blocks in a single-block file"));
