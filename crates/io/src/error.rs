@@ -134,8 +134,8 @@ impl fmt::Display for WriteError {
             Self::Thin { format, place: [block, i, j, k, to @ ..], length: [exact, rounded] } => {
                 write!(
                     f,
-                    "in {format} with single precision points ({i}, {j}, {k}) and ({}, {}, {}) of block {block} would be {} \
-                 apart, where they are {}; write double precision",
+                    "in {format} with single precision points ({i}, {j}, {k}) and ({}, {}, {}) of block {block} would be {:.3e} \
+                 apart, where they are {:.3e}; write double precision",
                     to[0],
                     to[1],
                     to[2],

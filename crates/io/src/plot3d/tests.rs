@@ -212,7 +212,9 @@ fn layers_too_thin_for_single_precision_are_refused_by_place() {
     let error = write(&[grid(1e-3), grid(1e-8)], Variant { multi: true, ..single }).unwrap_err();
     let text = error.to_string();
     assert!(
-        text.contains("(1, 1, 1) and (1, 1, 2) of block 2 would be 0 apart, where they are 9.99"),
+        text.contains(
+            "(1, 1, 1) and (1, 1, 2) of block 2 would be 0.000e0 apart, where they are 1.000e-8"
+        ),
         "{text}"
     );
     write(&[grid(1e-5)], single).unwrap();
