@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import os
 import signal
+import tempfile
 import threading
 import time
 from collections.abc import Callable
@@ -54,6 +55,25 @@ def rough() -> implicit.Set:
     return functools.reduce(lambda a, b: a | b, [implicit.Set(part) for part in parts])
 
 
+@cache
+def plate() -> moldloft.Model:
+    """A plate of two million panels."""
+    text = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(1, 1, 0.3);"
+    text += "Line l(A, B); Line k(C, D); RuledSurf s(l, k, divisions = {1400, 1400});"
+    m = moldloft.loads(text)
+    m.mesh()
+    return m
+
+
+def files(ending: str) -> Callable[[], Any]:
+    def write() -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            while True:
+                plate().write(f"{folder}/plate.{ending}")
+
+    return write
+
+
 #: Lengths of arrays that are made before.
 COUNTS = (60_000, 9 * 10**6, 3 * 10**7)
 
@@ -67,10 +87,13 @@ WORK: dict[str, Callable[[], Any]] = {
     "a search": lambda: hull()["hull"].nearest(many(9 * 10**6).reshape(-1, 3)),
     "points": lambda: hull()["hull"](many(3 * 10**7), many(3 * 10**7)),
     "points of a curve": lambda: hull()["MC2"](many(3 * 10**7)),
-    "a grid": lambda: hull()["hull"].grid(11_000, 11_000),
+    "a grid": lambda: hull()["hull"].grid(9_000, 9_000),
     "curvatures": lambda: hull()["hull"].look(2_000, 2_000),
     "facets": lambda: ball().facets((-2, -2, -2), (2, 2, 2), depth=9),
     "values of a set": lambda: rough()(many(3 * 10**7).reshape(-1, 3)),
+    "a file of panels": files("gdf"),
+    "a file of triangles": files("glb"),
+    "a faired surface": lambda: moldloft.fair(many(60_000)[:30_000].reshape(100, 100, 3), 0.1),
     "fairing": lambda: moldloft.fair(many(60_000).reshape(-1, 3), 1e-4),
 }
 
@@ -103,6 +126,8 @@ def interrupted(work: Callable[[], Any], after: float) -> float | None:
 @pytest.mark.parametrize("name", WORK)
 def test_ctrl_c_is_heard(name: str) -> None:
     hull()
+    if name.startswith("a file"):
+        plate()
     for n in COUNTS:
         many(n)
     took = []

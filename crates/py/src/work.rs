@@ -9,10 +9,10 @@ use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 
 /// How often signals are looked at while work is under way.
-const SIGNALS_EVERY: Duration = Duration::from_millis(50);
+const SIGNALS_EVERY: Duration = Duration::from_millis(30);
 
-/// How long a cancelled run may take to notice.
-const STOP_TIMEOUT: Duration = Duration::from_secs(1);
+/// How long a cancelled run may take to notice before it is left to itself: together a tenth of a second with the above.
+const STOP_TIMEOUT: Duration = Duration::from_millis(50);
 
 /// Stack of the working thread: that of the main thread on Linux.
 const STACK: usize = 8 << 20;
