@@ -35,6 +35,7 @@ FLAGS = [
 SEEDS = {
     "document": ("*.sdl", "sdl"),
     "engine_messages": ("", "messages"),
+    "lsp_frames": ("", "messages"),
     "expressions": ("", "sdl"),
     "model_file": ("*.ms2", "sdl"),
     "readers": ("*.dat", ""),

@@ -23,3 +23,4 @@ mod wire;
 
 pub use engine::run as engine;
 pub use front::{EngineCommand, run as serve};
+pub use wire::editors_messages;

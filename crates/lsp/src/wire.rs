@@ -74,8 +74,12 @@ pub fn write_message(output: &mut impl Write, message: &Message) -> io::Result<(
     write_frame(output, &serde_json::to_vec(message)?)
 }
 
-/// What the editor sends next; faults are answered, and leave no message. `None` when it has gone.
-fn editors_messages(
+/// What an editor sends next on `input`, headers and one message or a batch; faults are answered on `output`, and leave
+/// no message. `None` when it has gone.
+///
+/// # Errors
+/// Those of `input` and `output`.
+pub fn editors_messages(
     input: &mut impl BufRead,
     output: &mut impl Write,
 ) -> io::Result<Option<Vec<Message>>> {

@@ -21,6 +21,7 @@ targets! {
     document: "../../../../fuzz/fuzz_targets/document.rs",
     engine_messages: "../../../../fuzz/fuzz_targets/engine_messages.rs",
     expressions: "../../../../fuzz/fuzz_targets/expressions.rs",
+    lsp_frames: "../../../../fuzz/fuzz_targets/lsp_frames.rs",
     model_file: "../../../../fuzz/fuzz_targets/model_file.rs",
     readers: "../../../../fuzz/fuzz_targets/readers.rs",
     sdl_format: "../../../../fuzz/fuzz_targets/sdl_format.rs",
@@ -68,6 +69,12 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
             "{\"kind\":\"splice\",\"from\":0,\"to\":3,\"insert\":\"x\"}\n{\"kind\":\"subscribe\",\"names\":[\"l\"],\"id\":1}",
             "{\"kind\":\"ask\",\"ask\":\"hover\",\"offset\":12}\n{\"kind\":\"drag\",\"name\":\"B\",\"to\":[1,2,3]}",
             "{\"kind\":\"pick\",\"x\":0.5,\"y\":0.5}\n{\"kind\":\"export\",\"format\":\"stl\"}",
+        ]),
+        "lsp_frames" => texts(&[
+            "Content-Length: 49\r\n\r\n{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"m\",\"params\":{}}",
+            "content-length:2\r\nContent-Type: x\r\n\r\n[]nonsense\r\n\r\nContent-Length: 4\r\n\r\nnull",
+            "Content-Length: 2\n\n{}Content-Length: 99999999999999999999\r\n\r\n{",
+            "Content-Length: 41\r\n\r\n[{\"jsonrpc\":\"2.0\",\"method\":\"a\"},{\"id\":7}]",
         ]),
         "readers" => readers_seeds(),
         "model_file" => {
