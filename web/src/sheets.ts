@@ -41,15 +41,11 @@ export class Sheets {
   }
 
   private async lines(): Promise<HTMLElement[]> {
-    const frame = await this.link.ask('export', { format: 'svg', stem: 'lines' })
+    const frame = await this.link.ask('lines_plan', { title: model.name })
     for (const url of this.urls) URL.revokeObjectURL(url)
-    this.urls = []
-    return (frame.head.files as any[]).map((part) => {
-      const url = URL.createObjectURL(new Blob([frame.bytes(part).slice()], { type: 'image/svg+xml' }))
-      this.urls.push(url)
-      const title = String(part.name).replace(/^lines\./, '').replace(/\.svg$/, '').replace('-', ' ')
-      return h('figure', { class: 'plan' }, h('figcaption', {}, title), h('img', { src: url, alt: `${title} of the model` }))
-    })
+    const url = URL.createObjectURL(new Blob([frame.bytes(frame.head.sheet).slice()], { type: 'image/svg+xml' }))
+    this.urls = [url]
+    return [h('figure', { class: 'plan' }, h('figcaption', {}, 'Lines plan: profile, body plan, half-breadth plan'), h('img', { src: url, alt: 'lines plan of the model: profile, body plan, half-breadth plan' }))]
   }
 
   private async hydrostatics(): Promise<HTMLElement[]> {
@@ -137,29 +133,35 @@ export class Sheets {
         row.forEach((n, k) => place.set(n, (k + 0.5) / row.length))
       }
     }
-    const width = (n: string) => Math.max(n.length, known.get(n)!.kind.length) * 6.8 + 18
-    const spans = rows.map((r) => (r ?? []).reduce((t, n) => t + width(n) + 12, 0))
-    const total = Math.max(200, ...spans) + 24
+    // From left to right: names are wide and low, so that ranks are columns.
+    const [high, gap, between] = [34, 8, 64]
+    const widths = rows.map((row) => Math.max(40, ...(row ?? []).map((n) => Math.max(n.length * 7.4, known.get(n)!.kind.length * 6.6) + 18)))
+    const tall = Math.max(...rows.map((row) => row?.length ?? 0)) * (high + gap)
     const at = new Map<string, [number, number]>()
+    const wide = new Map<string, number>()
+    let x = 12
     rows.forEach((row, k) => {
-      let x = (total - spans[k]) / 2
-      for (const n of row ?? []) {
-        at.set(n, [x + width(n) / 2, 16 + k * 78])
-        x += width(n) + 12
-      }
+      const top = 12 + (tall - (row?.length ?? 0) * (high + gap)) / 2
+      row?.forEach((n, j) => {
+        at.set(n, [x, top + j * (high + gap)])
+        wide.set(n, widths[k])
+      })
+      x += widths[k] + between
     })
-    const height = rows.length * 78 + 16
+    const [total, height] = [x - between + 12, tall + 16]
     const picture = s('svg', { width: total, height, viewBox: `0 0 ${total} ${height}`, class: 'digraph', role: 'group', 'aria-label': 'dependencies' })
-    for (const o of all) for (const p of o.parents) {
+    // Those of the selected object on top of the others.
+    for (const lit of [false, true]) for (const o of all) for (const p of o.parents) {
       const [a, b] = [at.get(p), at.get(o.name)]
-      if (!a || !b) continue
-      const lit = o.name === selected || p === selected
-      picture.append(s('path', { d: `M${a[0]} ${a[1] + 36}C${a[0]} ${(a[1] + 36 + b[1]) / 2} ${b[0]} ${(a[1] + 36 + b[1]) / 2} ${b[0]} ${b[1]}`, class: lit ? 'edge lit' : 'edge' }))
+      if (!a || !b || lit !== (o.name === selected || p === selected)) continue
+      const [from, to] = [[a[0] + wide.get(p)!, a[1] + high / 2], [b[0], b[1] + high / 2]]
+      const middle = (from[0] + to[0]) / 2
+      picture.append(s('path', { d: `M${from[0]} ${from[1]}C${middle} ${from[1]} ${middle} ${to[1]} ${to[0]} ${to[1]}`, class: lit ? 'edge lit' : 'edge' }))
     }
     for (const o of all) {
       const [x, y] = at.get(o.name)!
       const node = s('g', { class: `node ${o.class} ${o.state} ${o.name === selected ? 'selected' : ''}`, tabindex: 0, role: 'button', 'aria-label': `${o.name}, ${o.kind}` },
-        s('rect', { x: x - width(o.name) / 2, y, width: width(o.name), height: 36, rx: 6 }), s('text', { x, y: y + 15, class: 'name' }, o.name), s('text', { x, y: y + 29, class: 'kind' }, o.kind))
+        s('rect', { x, y, width: wide.get(o.name)!, height: high, rx: 6 }), s('text', { x: x + wide.get(o.name)! / 2, y: y + 14, class: 'name' }, o.name), s('text', { x: x + wide.get(o.name)! / 2, y: y + 28, class: 'kind' }, o.kind))
       node.addEventListener('click', () => this.act.select(o.name, 'graph'))
       node.addEventListener('keydown', (e) => (e as KeyboardEvent).key === 'Enter' && this.act.select(o.name, 'graph'))
       node.addEventListener('pointerenter', () => this.act.hover(o.name))

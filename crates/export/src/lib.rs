@@ -41,6 +41,7 @@ pub use export::{
 pub use format::{Encoder, Format, Holds, Lids, SymmetryPlanes};
 pub use formats::{FORMATS, format_named};
 pub use kind_picture::kind_picture;
+pub use lines_drawing::lines_sheet;
 pub use moldloft_io::vtk::NamedFile;
 pub use picture::picture;
 pub use spline_patches::{SplinePatch, spline_patches};

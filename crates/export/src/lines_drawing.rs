@@ -2,6 +2,7 @@
 //! which it names none, laid out as body plan, waterlines and buttocks.
 
 use crate::{ExportFailure, length_unit};
+use moldloft_diag::Diagnostic;
 use moldloft_document::{ContourSection, Document};
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
@@ -17,6 +18,34 @@ pub(crate) fn lines_drawing(
     document: &mut Document,
     stem: &str,
 ) -> Result<Vec<NamedFile>, ExportFailure> {
+    let (contours, options) = cut(document, stem)?;
+    let views = [
+        (View::BodyPlan, "body-plan"),
+        (View::Waterlines, "waterlines"),
+        (View::Buttocks, "buttocks"),
+    ];
+    let sheet = |(view, word): (View, &str)| {
+        let bytes = drawing::draw(view, &contours, &options);
+        NamedFile { name: format!("{stem}.{word}.svg"), bytes }
+    };
+    Ok(views.into_iter().map(sheet).collect())
+}
+
+/// The lines plan on one sheet for an A3 page on its side: profile, half-breadth plan and body plan to one scale, as SVG.
+///
+/// # Errors
+/// Panels that cannot be made.
+pub fn lines_sheet(document: &mut Document, title: &str) -> Result<Vec<u8>, Vec<Diagnostic>> {
+    let cut = cut(document, title).map_err(|failure| failure.diagnostics("a lines plan"));
+    let (contours, options) = cut?;
+    Ok(drawing::draw_plan(&contours, &drawing::DrawingOptions { width_mm: 400.0, ..options }))
+}
+
+/// The contours of a model, and how they are drawn.
+fn cut(
+    document: &mut Document,
+    title: &str,
+) -> Result<(Vec<drawing::PlaneCut>, drawing::DrawingOptions), ExportFailure> {
     let mut contours: Vec<drawing::PlaneCut> =
         document.sections().into_iter().map(contour).collect();
     let panelled = document.panelled()?;
@@ -28,20 +57,10 @@ pub(crate) fn lines_drawing(
             contours.extend(cuts(document, axis, &values));
         }
     }
-    let views = [
-        (View::BodyPlan, "body-plan"),
-        (View::Waterlines, "waterlines"),
-        (View::Buttocks, "buttocks"),
-    ];
-    let sheet = |(view, word): (View, &str)| {
-        let (unit, unit_mm) = length_unit(document);
-        let title = stem.into();
-        let options =
-            drawing::DrawingOptions { title, unit, unit_mm, ..drawing::DrawingOptions::default() };
-        let bytes = drawing::draw(view, &contours, &options);
-        NamedFile { name: format!("{stem}.{word}.svg"), bytes }
-    };
-    Ok(views.into_iter().map(sheet).collect())
+    let (unit, unit_mm) = length_unit(document);
+    let title = title.into();
+    let options = drawing::DrawingOptions { title, unit, unit_mm, ..Default::default() };
+    Ok((contours, options))
 }
 
 fn contour(section: ContourSection) -> drawing::PlaneCut {

@@ -46,6 +46,20 @@ impl View {
         }
     }
 
+    /// What it is called on a sheet.
+    fn title(self) -> &'static str {
+        match self {
+            Self::BodyPlan => "body plan",
+            Self::Waterlines => "waterlines",
+            Self::Buttocks => "buttocks",
+        }
+    }
+
+    /// The same as a word of names.
+    fn word(self) -> String {
+        self.title().replace(' ', "-")
+    }
+
     /// Names of the sheet's horizontal and vertical coordinate.
     fn labels(self) -> [&'static str; 2] {
         match self {
@@ -118,6 +132,72 @@ pub fn draw(view: View, contours: &[PlaneCut], options: &DrawingOptions) -> Vec<
     sheet.foot(&mut out, options);
     out.push_str("</svg>\n");
     out.into_bytes()
+}
+
+/// The lines plan: profile, half-breadth plan below it and body plan beside it on one sheet and to one scale, with the
+/// same grid, so that stations, waterlines and buttocks are in line from view to view.
+pub fn draw_plan(contours: &[PlaneCut], options: &DrawingOptions) -> Vec<u8> {
+    let [profile, plan, body] = [View::Buttocks, View::Waterlines, View::BodyPlan]
+        .map(|view| (view, projected(view, contours, options)));
+    let mut layouts =
+        [&profile, &plan, &body].map(|(_, lines)| SheetLayout::around(lines, options));
+    let empty = [&profile, &plan, &body].map(|(_, lines)| lines.is_empty());
+    let step = layouts.iter().zip(empty).filter(|(_, empty)| !empty).map(|(l, _)| l.step);
+    let step = step.fold(f64::NAN, f64::max);
+    let step = if step.is_nan() { layouts[0].step } else { step };
+    // Stations are in line below each other, waterlines beside each other.
+    for (pair, low) in [([0, 1], 0), ([0, 2], 2)] {
+        let of = |k: usize| if empty[k] { None } else { Some(layouts[k].edges) };
+        let [one, two] = pair.map(|k| of(k).or(of(pair[0])).or(of(pair[1])));
+        let (Some(one), Some(two)) = (one, two) else { continue };
+        let low_edge = step * libm::floor(one[low].min(two[low]) / step);
+        let high_edge = step * libm::ceil(one[low + 1].max(two[low + 1]) / step);
+        for k in pair {
+            layouts[k].edges[low] = low_edge;
+            layouts[k].edges[low + 1] = high_edge;
+        }
+    }
+    for (layout, low) in [(1, 2), (2, 0)] {
+        let edges = &mut layouts[layout].edges;
+        edges[low] = step * libm::floor(edges[low] / step);
+        edges[low + 1] = step * libm::ceil(edges[low + 1] / step);
+    }
+    let across = |layout: &SheetLayout| layout.edges[1] - layout.edges[0];
+    let full_size = (across(&layouts[0]) + across(&layouts[2])) * options.unit_mm;
+    let room = (options.width_mm - 3.0 * MARGIN).max(MARGIN);
+    let scale = options.scale.unwrap_or_else(|| round_up(full_size / room));
+    for layout in &mut layouts {
+        (layout.step, layout.scale, layout.mm) = (step, scale, options.unit_mm / scale);
+    }
+    let [[left, upper], [_, lower], [right, _]] = layouts.each_ref().map(SheetLayout::size);
+    let (width, height) = (left + right - MARGIN, upper - FOOT + lower);
+    let mut out = String::new();
+    open(&mut out, [width, height], &xml(&options.title));
+    let places = [[0.0, 0.0], [0.0, upper - FOOT], [left - MARGIN, 0.0]];
+    for (((view, lines), layout), [x, y]) in [profile, plan, body].iter().zip(&layouts).zip(places)
+    {
+        put!(out, "<g id=\"{}\" transform=\"translate({x:.2} {y:.2})\">\n", view.word());
+        layout.grid(&mut out, *view, options);
+        lines.iter().for_each(|line| layout.line(&mut out, line, options));
+        lines.iter().for_each(|line| layout.name(&mut out, line));
+        out.push_str("</g>\n");
+    }
+    put!(out, "<g transform=\"translate(0 {:.2})\">\n", upper - FOOT);
+    layouts[1].foot(&mut out, options);
+    out.push_str("</g>\n</svg>\n");
+    out.into_bytes()
+}
+
+/// The head of a sheet of `size` millimetres.
+fn open(out: &mut String, [width, height]: [f64; 2], title: &str) {
+    put!(
+        *out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.2}mm\" \
+         height=\"{height:.2}mm\" viewBox=\"0 0 {width:.2} {height:.2}\" \
+         font-family=\"Helvetica, Arial, sans-serif\" font-size=\"2.5\">\n<title>{title}</title>\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
+         <text x=\"{MARGIN}\" y=\"7\" font-size=\"4\">{title}</text>\n"
+    );
 }
 
 /// A line on the drawing plane, in model units.
@@ -236,28 +316,16 @@ impl SheetLayout {
     }
 
     fn head(&self, out: &mut String, view: View, options: &DrawingOptions) {
-        let [width, height] = self.size();
-        let view = match view {
-            View::BodyPlan => "body plan",
-            View::Waterlines => "waterlines",
-            View::Buttocks => "buttocks",
-        };
         let title = xml(&options.title);
+        let view = view.title();
         let title = if title.is_empty() { view.into() } else { format!("{title}: {view}") };
-        put!(
-            *out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.2}mm\" \
-             height=\"{height:.2}mm\" viewBox=\"0 0 {width:.2} {height:.2}\" \
-             font-family=\"Helvetica, Arial, sans-serif\" font-size=\"2.5\">\n<title>{title}</title>\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
-             <text x=\"{MARGIN}\" y=\"7\" font-size=\"4\">{title}</text>\n"
-        );
+        open(out, self.size(), &title);
     }
 
     fn grid(&self, out: &mut String, view: View, options: &DrawingOptions) {
         let [left, right, bottom, top] = self.edges;
         let (thin, heavy) = (options.grid_mm, 2.0 * options.grid_mm);
-        put!(*out, "<g id=\"grid\" stroke=\"#9ab\" stroke-width=\"{thin}\" fill=\"none\">\n");
+        put!(*out, "<g class=\"grid\" stroke=\"#9ab\" stroke-width=\"{thin}\" fill=\"none\">\n");
         let ticks = |from: f64, to: f64| {
             let first = libm::round(from / self.step) as i64;
             let last = libm::round(to / self.step) as i64;
@@ -278,7 +346,7 @@ impl SheetLayout {
             let (at, style) = (self.y(y), weight(y));
             put!(*out, "<path d=\"M{:.3} {at:.3}H{:.3}\"{style}/>\n", self.x(left), self.x(right));
         }
-        put!(*out, "</g>\n<g id=\"labels\" fill=\"#456\">\n");
+        put!(*out, "</g>\n<g class=\"labels\" fill=\"#456\">\n");
         let label = |value: f64| {
             // Both halves of a body plan count the half-breadth from the centre line.
             let text = format!("{:.6}", value + 0.0);
@@ -434,6 +502,48 @@ mod tests {
         let svg = draw(View::Waterlines, &[broken], &DrawingOptions::default());
         let svg = String::from_utf8(svg).unwrap();
         assert!(!svg.contains("NaN") && svg.contains("&lt;&amp;&gt;"));
+    }
+
+    #[test]
+    fn the_views_of_a_plan_are_in_line() {
+        let mut cuts = sections();
+        let line = |axis: usize, value: f64, ends: [[f64; 3]; 2]| PlaneCut {
+            axis,
+            value,
+            polylines: vec![ends.to_vec()],
+            ..PlaneCut::default()
+        };
+        cuts.push(line(1, 0.5, [[0.5, 0.5, -0.9], [9.5, 0.5, 0.8]]));
+        cuts.push(line(2, 0.0, [[1.0, 0.1, 0.0], [9.0, 1.7, 0.0]]));
+        let svg = String::from_utf8(draw_plan(&cuts, &DrawingOptions::default())).unwrap();
+        // 10 m and 4 m side by side in 260 mm less three margins: 1 : 100.
+        assert_eq!(svg.matches("scale 1 : 100").count(), 1, "{svg}");
+        let of = |view: &str| {
+            let from = svg.find(&format!("<g id=\"{view}\" transform=\"translate(")).unwrap();
+            let (head, rest) = svg[from..].split_once(")\">").unwrap();
+            let numbers = |text: &str| -> Vec<f64> {
+                text.split(|c: char| !c.is_ascii_digit() && c != '.' && c != '-')
+                    .filter_map(|x| x.parse().ok())
+                    .collect()
+            };
+            let shift = numbers(head.rsplit('(').next().unwrap());
+            let path = rest.split("fill=\"none\" stroke=\"#124\"").next().unwrap();
+            let first = numbers(path.rsplit("d=\"").next().unwrap());
+            first.chunks(2).map(|p| [p[0] + shift[0], p[1] + shift[1]]).collect::<Vec<_>>()
+        };
+        let (profile, plan, body) = (of("buttocks"), of("waterlines"), of("body-plan"));
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 0.01, "{a} {b} {svg}");
+        // A metre is 10 mm: stations below each other, heights beside each other.
+        near(plan[0][0] - profile[0][0], 5.0);
+        near(profile[0][1] - profile[1][1], 17.0);
+        // The section begins at z = -1, the buttock at -0.9.
+        near(body[0][1] - profile[0][1], 1.0);
+        assert!(body[0][0] > profile[1][0] && plan[0][1] > profile[0][1]);
+        // Nothing to draw, and one view alone, are sheets, too.
+        for cuts in [&[][..], &cuts[..1], &cuts[3..]] {
+            let svg = String::from_utf8(draw_plan(cuts, &DrawingOptions::default())).unwrap();
+            assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN") && !svg.contains("inf"));
+        }
     }
 
     #[test]

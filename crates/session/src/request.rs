@@ -165,6 +165,12 @@ pub enum Ask {
         /// How many sections.
         count: usize,
     },
+    /// The lines plan on one sheet, as SVG.
+    LinesPlan {
+        /// Its title.
+        #[serde(default)]
+        title: String,
+    },
     /// Closure and quality of the mesh.
     Mesh,
     /// The hydrostatics.

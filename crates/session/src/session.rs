@@ -304,6 +304,11 @@ impl Session {
             }
             Ask::Deviation => self.overlays.put(&mut self.document, frame, false),
             Ask::SectionAreas { count } => self.section_areas(count, frame)?,
+            Ask::LinesPlan { title } => {
+                let sheet = moldloft_export::lines_sheet(&mut self.document, &title)?;
+                let part = frame.bytes("file", &sheet);
+                frame.put("sheet", part);
+            }
             Ask::Mesh => self.mesh(frame)?,
             Ask::Hydrostatics => {
                 let options = self.document.hydrostatic_options();
