@@ -37,8 +37,8 @@ NEWEST = {
 #: What a page may ask of the engine.
 ASKED = NEWEST | {
     "open", "commit", "reset", "write", "drag_begin", "drag_end", "watch", "evaluate", "show",
-    "lines_plan", "mesh", "hydrostatics", "section_areas", "overlay", "remove_overlay", "export", "formats",
-    "definition", "locate", "rename", "format", "words", "ping",
+    "lines_plan", "mesh", "hydrostatics", "section_areas", "overlay", "remove_overlay", "export",
+    "formats", "definition", "locate", "rename", "format", "words", "ping",
 }  # fmt: skip
 
 #: After these other tabs have something new, too.
