@@ -137,7 +137,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
-        print(f"error: {(error.strerror or str(error)).lower()}", file=sys.stderr)
+        where = f"`{error.filename}`: " if error.filename else ""
+        print(f"error: {where}{(error.strerror or str(error)).lower()}", file=sys.stderr)
         return 1
     except MemoryError:
         print("error: there is not enough memory for this model", file=sys.stderr)
