@@ -71,6 +71,7 @@ pub fn lift_surface<T: Real, J: Jet<T>>(jet: &SurfJet<T>, u: J, v: J) -> Vec3<J>
     x
 }
 
+// In a page what is downloaded counts: there the compiler decides which operations of the larger numbers are inlined.
 macro_rules! jet_type {
     ($(#[$doc:meta])* $name:ident, $order:expr, [$($part:ident),*], chain = |$x:ident, $d1:ident, $d2:ident| [$($chain:expr),*], times = |$a:ident, $b:ident| [$($times:expr),*]) => {
         $(#[$doc])*
@@ -91,22 +92,26 @@ macro_rules! jet_type {
             fn value(self) -> T { self.f }
             #[inline(always)]
             fn value_mut(&mut self) -> &mut T { &mut self.f }
-            #[inline(always)]
+            #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+            #[cfg_attr(target_arch = "wasm32", inline)]
             fn chain(self, f: T, $d1: T, $d2: T) -> Self {
                 let $x = self;
                 let _ = $d2;
                 Self { f, $($part: $chain),* }
             }
-            #[inline(always)]
+            #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+            #[cfg_attr(target_arch = "wasm32", inline)]
             fn times(self, $b: Self) -> Self {
                 let $a = self;
                 Self { f: $a.f * $b.f, $($part: $times),* }
             }
-            #[inline(always)]
+            #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+            #[cfg_attr(target_arch = "wasm32", inline)]
             fn zip(self, o: Self, mut g: impl FnMut(T, T) -> T) -> Self {
                 Self { f: g(self.f, o.f), $($part: g(self.$part, o.$part)),* }
             }
-            #[inline(always)]
+            #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+            #[cfg_attr(target_arch = "wasm32", inline)]
             fn map(self, mut g: impl FnMut(T) -> T) -> Self {
                 Self { f: g(self.f), $($part: g(self.$part)),* }
             }
