@@ -195,14 +195,14 @@ impl SetOfBody<'_> {
         size: f64,
     ) -> Result<Option<Diagnostic>, ExportFailure> {
         let mut last = None;
-        // Patience makes fewer patches; what it does not find a body without may.
-        let mut tries: Vec<(bool, u32)> = PATCH_LEVELS.map(|level| (true, level)).collect();
+        // Finer cells make better patches than patience does.
+        let mut tries: Vec<(bool, u32)> = PATCH_LEVELS.map(|level| (false, level)).collect();
         let mut before = f64::INFINITY;
         let mut next = 0;
         while let Some(&(patient, level)) = tries.get(next) {
             next += 1;
             let facets = self.facets(level)?;
-            if patient && std::mem::replace(&mut before, facets.step) == facets.step {
+            if !patient && std::mem::replace(&mut before, facets.step) == facets.step {
                 continue;
             }
             let field = field_of(&facets);
@@ -214,11 +214,11 @@ impl SetOfBody<'_> {
                 Err(fault) if fault.kind == FacetFaultKind::Many => {
                     return Ok(Some(reported(self.name, fault)));
                 }
-                // These are not found otherwise either.
+                // Nor does patience find these.
                 Err(fault)
                     if matches!(fault.kind, FacetFaultKind::Vertex | FacetFaultKind::NotClosed) => {
                 }
-                _ if patient => tries.push((false, level)),
+                _ if !patient => tries.push((true, level)),
                 _ => {}
             }
             let fault = match self.judged(&made, places, facets.step, [accuracy, size]) {
