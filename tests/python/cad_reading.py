@@ -26,8 +26,11 @@ class Found:
     shape: Any = None
 
 
-def read(path: Path, unit: float = 1.0, accuracy: float = 1e-10) -> Found:
-    """Reads a STEP or IGES file, in units of so many metres; areas to a relative accuracy."""
+def read(path: Path, unit: float = 1.0, accuracy: float = 1e-10, *, gauss: bool = False) -> Found:
+    """Reads a STEP or IGES file, in units of so many metres; areas to a relative accuracy.
+
+    OCCT's rule of Kronrod for volumes does not end on some cut tori; that of Gauss does.
+    """
     from OCP.TCollection import TCollection_ExtendedString
     from OCP.TDocStd import TDocStd_Document
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
@@ -50,10 +53,10 @@ def read(path: Path, unit: float = 1.0, accuracy: float = 1e-10) -> Found:
     status = reader.ReadFile(str(path))
     assert str(status).endswith("RetDone"), status
     assert reader.Transfer(document)
-    return _found(document, accuracy)
+    return _found(document, accuracy, gauss)
 
 
-def _found(document: Any, accuracy: float) -> Found:
+def _found(document: Any, accuracy: float, gauss: bool) -> Found:
     from OCP.BRep import BRep_Builder, BRep_Tool
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.BRepGProp import BRepGProp
@@ -88,7 +91,10 @@ def _found(document: Any, accuracy: float) -> Found:
         area += figures.Mass()
     for solid in parts[TopAbs_SOLID]:
         figures = GProp_GProps()
-        BRepGProp.VolumePropertiesGK_s(solid, figures, 1e-8)
+        if gauss:
+            BRepGProp.VolumeProperties_s(solid, figures, 1e-9, False, False)
+        else:
+            BRepGProp.VolumePropertiesGK_s(solid, figures, 1e-8)
         volume += figures.Mass()
     tolerance = max(
         [BRep_Tool.Tolerance_s(TopoDS.Edge(e)) for e in parts[TopAbs_EDGE]], default=0.0

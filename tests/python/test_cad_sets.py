@@ -163,7 +163,7 @@ def test_random_bodies_are_valid_solids_of_their_certified_volume(
         assert SOAK and seed % len(random_sets.KINDS) in (3, 4, 5, 6), said
         return
     low, high = model.eval("volume_bracket(s)")
-    found = read(files[0], accuracy=1e-6)
+    found = read(files[0], accuracy=1e-6, gauss=True)
     assert found.valid and found.solids >= 1 and found.closed == found.shells
     size = high ** (1 / 3)
     slack = 3e-6 * size**3

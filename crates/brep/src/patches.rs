@@ -17,13 +17,13 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
-/// Most triangles that a body is divided into.
+/// Most triangles that become patches of a body.
 const MOST: usize = 48_000;
 
 /// So many times as many are expected where there is no use in dividing.
 const MUCH: f64 = 4.0;
 
-/// How often sides are halved, and triangles corrected between, at first and with patience.
+/// How often sides are halved, and triangles corrected between, without patience and with it.
 const ROUNDS: [usize; 2] = [16, 48];
 
 /// How often triangles are corrected with patience: after that, what is corrected is slivers that halving made.
@@ -42,7 +42,7 @@ const FINE: f64 = 3e-8;
 
 impl Brep {
     /// Adds the faces of a body whose surfaces need not be planes, cylinders, cones, spheres or tori; gives places on
-    /// them. With `patient` more rounds of halving are tried.
+    /// them. With `patient` more rounds of halving are tried, and less is corrected.
     ///
     /// # Errors
     /// Vertices and sides that are not on their surfaces; surfaces that no patches come near enough to.
@@ -108,6 +108,14 @@ impl<'a> PatchedBody<'a> {
         let degree = DEGREES[usize::from(accuracy < FINE * size)];
         let positions = std::mem::take(&mut facets.positions);
         let place = positions.first().copied().unwrap_or_default();
+        let is_curved = |label: u32| {
+            let plane = matches!(facets.surfaces[label as usize], Some(SurfaceShape::Plane { .. }));
+            shown[label as usize] && !plane
+        };
+        // Halving only makes more.
+        if facets.labels.iter().filter(|label| is_curved(**label)).count() > MOST {
+            return Err(FacetFault { kind: FacetFaultKind::Many, surfaces: Vec::new(), place });
+        }
         let triangles = std::mem::take(&mut facets.triangles);
         let labels = std::mem::take(&mut facets.labels);
         let Some(net) = FacetNet::new(positions, triangles, labels) else {
@@ -145,6 +153,11 @@ impl<'a> PatchedBody<'a> {
     /// Whether a triangle becomes a part of a patch.
     fn is_curved(&self, triangle: usize) -> bool {
         self.is_shown(triangle) && self.plane(triangle).is_none()
+    }
+
+    /// How many triangles become parts of patches.
+    fn curved(&self) -> usize {
+        (0..self.net.triangles.len()).filter(|k| self.is_curved(*k)).count()
     }
 
     fn plane(&self, triangle: usize) -> Option<&SurfaceShape> {
@@ -535,10 +548,7 @@ impl<'a> PatchedBody<'a> {
             }
             before = self.net.triangles.len();
             self.halve(halved)?;
-            if self.net.triangles.len() > MOST {
-                if patient {
-                    return Err(self.too_many());
-                }
+            if self.curved() > MOST {
                 break;
             }
             if self.net.triangles.len() > before {

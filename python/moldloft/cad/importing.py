@@ -74,15 +74,23 @@ def load_cad(path: str | os.PathLike[str], *, units: str = "m") -> Model:
 
 def _text(found: Imported, name: str, units: str) -> str:
     lines = [f"# {name}", f'Model info(units = "{units}");']
+    trimmed = sum(not face.natural for face in found.faces)
+    most = min(_FINEST, int(np.sqrt(_CELLS / max(trimmed, 1))))
+    goal = _NEAR * _size(found) if found.faces else 1.0
     taken = {face.name for face in found.faces} | set(found.curves)
     for face in found.faces:
         if face.natural:
             lines += _whole(face, taken)
         else:
-            lines += _trimmed(face, taken)
+            lines += _trimmed(face, taken, _finer(face, goal, most))
     lines += joins(found, taken)
     lines += [curve.to_sdl(label) for label, curve in found.curves.items()]
     return "\n".join(lines) + "\n"
+
+
+def _size(found: Imported) -> float:
+    points = np.concatenate([face.surface.points.reshape(-1, 3) for face in found.faces])
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
 
 
 _POLE = 1e-9
@@ -111,7 +119,34 @@ def _whole(face: ImportedFace, taken: set[str]) -> list[str]:
     return [*lines, text.removesuffix(");") + ", orientation = 1);" if face.reversed else text]
 
 
-def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
+_USUAL, _FINEST = 12, 40
+"""Divisions of a trimmed surface: where none are stated, and at most."""
+
+_CELLS = 50_000
+"""Divisions of all trimmed surfaces, about at most."""
+
+_NEAR = 2e-5
+"""Triangles are to be within this share of the body's size from their surface."""
+
+
+def _finer(face: ImportedFace, goal: float, most: int) -> dict[str, int]:
+    """The divisions that a trimmed face needs for triangles near its surface, beyond the usual."""
+    t = np.linspace(0, 1, 2 * _USUAL + 1)
+    sides = [np.clip(trace(t), 0, 1) for cycle in face.loops for _, _, trace in cycle]
+    low, high = np.min(np.concatenate(sides), axis=0), np.max(np.concatenate(sides), axis=0)
+    # The divisions are those of the whole surface.
+    u, v = np.meshgrid(t, t, indexing="ij")
+    net = face.surface(u.ravel(), v.ravel()).reshape(len(t), len(t), 3)
+    counts = {}
+    for name, chords, axis in (("nu", net, 1), ("nv", net.swapaxes(0, 1), 0)):
+        kept = (t >= low[axis]) & (t <= high[axis])
+        apart = chords[1::2] - (chords[:-1:2] + chords[2::2]) / 2
+        off = float(np.linalg.norm(apart[:, kept], axis=-1).max(initial=0))
+        counts[name] = min(int(np.ceil(_USUAL * np.sqrt(off / goal))), most)
+    return {name: count for name, count in counts.items() if count > _USUAL}
+
+
+def _trimmed(face: ImportedFace, taken: set[str], finer: dict[str, int]) -> list[str]:
     base = f"{face.name}_surface"
     while base in taken:
         base += "_"
@@ -143,7 +178,8 @@ def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
                 text += f", weights = {_braced(map(_plain, own.weights))}"
             lines.append(_wrapped(text + ", visible = 0);"))
             names.append(label)
-    turned = ", orientation = 1" if face.reversed else ""
+    turned = "".join(f", {name} = {count}" for name, count in finer.items())
+    turned += ", orientation = 1" if face.reversed else ""
     lines.append(_wrapped(f"TrimSurf {face.name}({base}, {_braced(names)}{turned});"))
     return lines
 

@@ -19,7 +19,7 @@ import numpy as np
 from moldloft.cad import identifier, needed
 from moldloft.cad.iges_text import IgesText
 from moldloft.cad.part21 import StepText
-from moldloft.cad.sewing import Sewn, faces_of, map_of
+from moldloft.cad.sewing import Sewn, faces_of, is_sheet, map_of
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs
 from moldloft.storage import read_bytes
@@ -67,7 +67,7 @@ def read_shape(data: bytes, metres: float) -> Any:
             raise Error("OCCT cannot read the STEP file that was written")
         document = _document(metres)
         reader.Transfer(document)
-    return _compound(document)
+    return _compound(_free(document))
 
 
 def _document(metres: float) -> Any:
@@ -90,11 +90,10 @@ def _free(document: Any) -> list[Any]:
     return [tool.GetShape_s(labels.Value(k)) for k in range(1, labels.Length() + 1)]
 
 
-def _compound(document: Any) -> Any:
+def _compound(shapes: list[Any]) -> Any:
     from OCP.BRep import BRep_Builder
     from OCP.TopoDS import TopoDS_Compound
 
-    shapes = _free(document)
     if len(shapes) == 1:
         return shapes[0]
     compound = TopoDS_Compound()
@@ -201,11 +200,18 @@ def _held(source: StepText | IgesText, metres: float) -> tuple[Imported, bool]:
         shapes = _free(document)
         if isinstance(source, IgesText) and shapes:
             # Faces of IGES do not share their edges.
-            whole = Sewn.of(_compound(document), source.resolution / metres)
+            whole = Sewn.of(_compound(shapes), source.resolution / metres)
             _collect(document, [whole], found, source.names)
-            whole.say(found.remarks)
+            whole.say(found.remarks, iges=True)
         else:
-            _collect(document, [Sewn(shape) for shape in shapes], found, source.names)
+            parts = [Sewn(shape) for shape in shapes if not is_sheet(shape)]
+            sheets = [shape for shape in shapes if is_sheet(shape)]
+            # Many programs write the faces of a hull one by one.
+            whole = Sewn.of(_compound(sheets), 0.0)
+            parts += [whole] if whole.found else [Sewn(sheet) for sheet in sheets]
+            _collect(document, parts, found, source.names)
+            if whole.found:
+                whole.say(found.remarks, iges=False)
     return found, done
 
 

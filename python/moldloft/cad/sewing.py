@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-__all__ = ["Sewn", "faces_of", "map_of"]
+__all__ = ["Sewn", "faces_of", "is_sheet", "map_of"]
 
 _LEAST = 1e-6
 _MOST = 1e-4
@@ -100,35 +100,62 @@ class Sewn:
         number = self._faces.FindIndex(made)
         return self._faces.FindKey(number) if number else made
 
-    def say(self, remarks: list[str]) -> None:
-        """Says how many edges were found to be one, and how many are open.
+    @property
+    def found(self) -> int:
+        """How many edges of two faces the file does not say to be one."""
+        return 0 if self.body is None else _shared(self.body) - _shared(self.shape)
+
+    def say(self, remarks: list[str], *, iges: bool) -> None:
+        """Says how many edges were found to be one, and of IGES how many are open.
 
         Parameters
         ----------
         remarks
             What is said of the file.
+        iges
+            Whether it is an IGES file, which never says what hangs together.
         """
-        from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
-
         if not self.passes:
             return
-        edges = map_of(self.body, TopAbs_EDGE)
-        uses = [0] * (edges.Extent() + 1)
-        for face in faces_of(self.body, TopAbs_FACE):
-            for edge in faces_of(face, TopAbs_EDGE):
-                uses[edges.FindIndex(edge)] += 1
-        shared = sum(n > 1 for n in uses)
-        if shared:
+        who = "IGES does" if iges else "the file does"
+        if shared := self.found:
             remarks.append(
-                f"IGES does not say which faces hang together: {shared} edges of two faces are "
+                f"{who} not say which faces hang together: {shared} edges of two faces are "
                 f"within {self.tolerance:.2g} of one another and are taken as one"
             )
+        if not iges:
+            return
         alone = self.passes[-1].NbFreeEdges()
         if alone:
             remarks.append(
                 f"{alone} edges are of one face alone, with no other within {self.tolerance:.2g}: "
                 "what the faces bound is open there"
             )
+
+
+def _shared(shape: Any) -> int:
+    """How many edges two or more faces share."""
+    return sum(n > 1 for n in _uses(shape).values())
+
+
+def _uses(shape: Any) -> dict[int, int]:
+    """How many faces have each edge."""
+    from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
+
+    edges = map_of(shape, TopAbs_EDGE)
+    uses: dict[int, int] = {}
+    for face in faces_of(shape, TopAbs_FACE):
+        for edge in faces_of(face, TopAbs_EDGE):
+            number = edges.FindIndex(edge)
+            uses[number] = uses.get(number, 0) + 1
+    return uses
+
+
+def is_sheet(shape: Any) -> bool:
+    """Whether a shape is of faces that bound no solid."""
+    from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
+
+    return not faces_of(shape, TopAbs_SOLID) and bool(faces_of(shape, TopAbs_FACE))
 
 
 def _outward(shape: Any) -> Any:

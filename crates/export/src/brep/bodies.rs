@@ -195,24 +195,31 @@ impl SetOfBody<'_> {
         size: f64,
     ) -> Result<Option<Diagnostic>, ExportFailure> {
         let mut last = None;
-        let mut before = f64::INFINITY;
         // Finer cells make better patches than patience does.
-        let tries =
-            [false, true].into_iter().flat_map(|p| PATCH_LEVELS.map(move |level| (p, level)));
-        for (patient, level) in tries {
+        let mut tries: Vec<(bool, u32)> = PATCH_LEVELS.map(|level| (false, level)).collect();
+        let mut before = f64::INFINITY;
+        let mut next = 0;
+        while let Some(&(patient, level)) = tries.get(next) {
+            next += 1;
             let facets = self.facets(level)?;
-            if std::mem::replace(&mut before, facets.step) == facets.step {
+            if !patient && std::mem::replace(&mut before, facets.step) == facets.step {
                 continue;
             }
             let field = field_of(&facets);
             let mut made = Brep::default();
             let labelled = labelled(&facets, self.mesh, self.name);
             let places = made.add_patches(labelled, &field, accuracy, size, patient);
-            // Finer cells only make more.
-            if let Err(fault) = &places
-                && fault.kind == FacetFaultKind::Many
-            {
-                return Ok(Some(reported(self.name, fault)));
+            match &places {
+                // Finer cells only make more.
+                Err(fault) if fault.kind == FacetFaultKind::Many => {
+                    return Ok(Some(reported(self.name, fault)));
+                }
+                // Nor does patience find these.
+                Err(fault)
+                    if matches!(fault.kind, FacetFaultKind::Vertex | FacetFaultKind::NotClosed) => {
+                }
+                _ if !patient => tries.push((true, level)),
+                _ => {}
             }
             let fault = match self.judged(&made, places, facets.step, [accuracy, size]) {
                 None => self.wrong_volume(&made, &facets)?,

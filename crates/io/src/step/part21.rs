@@ -2,15 +2,47 @@
 
 use super::StepHeader;
 use crate::text::append;
+use std::collections::HashMap;
 
 /// The data section as it grows.
 #[derive(Default)]
 pub(crate) struct Part21 {
     data: String,
     last: usize,
+    /// Points without a name, by the bits of their coordinates.
+    points: HashMap<[u64; 3], usize>,
+    /// Straight curves in parameters, by their ends.
+    traces: HashMap<[usize; 2], usize>,
 }
 
 impl Part21 {
+    /// The point at two or three coordinates, which all that passes through it shares: neighbours have the same ones along
+    /// their edges.
+    pub fn point(&mut self, coordinates: &[f64]) -> usize {
+        // No finite number has these bits.
+        let mut key = [u64::MAX; 3];
+        for (own, x) in key.iter_mut().zip(coordinates) {
+            *own = (x + 0.0).to_bits();
+        }
+        if let Some(number) = self.points.get(&key) {
+            return *number;
+        }
+        let number =
+            self.add(format!("CARTESIAN_POINT('',{})", reals(coordinates.iter().copied())));
+        self.points.insert(key, number);
+        number
+    }
+
+    /// A straight curve in parameters, which all sides along it share.
+    pub fn trace(&mut self, ends: [usize; 2], make: impl FnOnce(&mut Self) -> usize) -> usize {
+        if let Some(number) = self.traces.get(&ends) {
+            return *number;
+        }
+        let number = make(self);
+        self.traces.insert(ends, number);
+        number
+    }
+
     /// Adds an entity; its number.
     pub fn add(&mut self, entity: String) -> usize {
         self.last += 1;
@@ -62,25 +94,46 @@ impl Part21 {
 
 /// A number with a point, its exponent after a capital E; the shortest that reads back as the same double.
 pub(crate) fn real(x: f64) -> String {
-    let text = format!("{:?}", x + 0.0);
-    match text.split_once('e') {
-        Some((digits, exponent)) if digits.contains('.') => format!("{digits}E{exponent}"),
-        Some((digits, exponent)) => format!("{digits}.E{exponent}"),
-        None => match text.strip_suffix(".0") {
-            Some(whole) => format!("{whole}."),
-            None => text,
-        },
+    let mut out = String::new();
+    push_real(&mut out, x);
+    out
+}
+
+fn push_real(out: &mut String, x: f64) {
+    let start = out.len();
+    append(out, format_args!("{:?}", x + 0.0));
+    let own = &out[start..];
+    match own.find('e') {
+        Some(k) => {
+            let power = if own[..k].contains('.') { "E" } else { ".E" };
+            out.replace_range(start + k..=start + k, power);
+        }
+        None if own.ends_with(".0") => out.truncate(out.len() - 1),
+        None => {}
     }
 }
 
 /// Numbers in parentheses.
 pub(crate) fn reals(numbers: impl IntoIterator<Item = f64>) -> String {
-    joined(numbers.into_iter().map(real))
+    let mut out = String::from("(");
+    for (k, x) in numbers.into_iter().enumerate() {
+        if k > 0 {
+            out.push(',');
+        }
+        push_real(&mut out, x);
+    }
+    out.push(')');
+    out
 }
 
 /// References in parentheses.
 pub(crate) fn list(numbers: &[usize]) -> String {
-    joined(numbers.iter().map(|n| format!("#{n}")))
+    let mut out = String::from("(");
+    for (k, n) in numbers.iter().enumerate() {
+        append(&mut out, format_args!("{}#{n}", if k > 0 { "," } else { "" }));
+    }
+    out.push(')');
+    out
 }
 
 /// Items in parentheses.

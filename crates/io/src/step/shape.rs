@@ -71,7 +71,7 @@ fn check_spline(
 }
 
 fn point(file: &mut Part21, p: Vec3) -> usize {
-    file.add(format!("CARTESIAN_POINT('',{})", reals(p.to_array())))
+    file.point(&p.to_array())
 }
 
 fn direction(file: &mut Part21, d: Vec3) -> usize {
@@ -114,18 +114,21 @@ fn logical(yes: bool) -> &'static str {
 
 /// A curve of two or three coordinates.
 fn curve(file: &mut Part21, c: &Nurbs<1>, coordinates: usize) -> usize {
-    let points: Vec<usize> = c
-        .points
-        .iter()
-        .map(|p| {
-            file.add(format!(
-                "CARTESIAN_POINT('',{})",
-                reals(p.to_array().into_iter().take(coordinates))
-            ))
-        })
-        .collect();
+    let points: Vec<usize> =
+        c.points.iter().map(|p| file.point(&p.to_array()[..coordinates])).collect();
+    if let [from, to] = points[..]
+        && coordinates == 2
+        && c.weights.is_none()
+        && c.knots[0] == [0.0, 0.0, 1.0, 1.0]
+    {
+        return file.trace([from, to], |file| spline(file, c, &points));
+    }
+    spline(file, c, &points)
+}
+
+fn spline(file: &mut Part21, c: &Nurbs<1>, points: &[usize]) -> usize {
     let closed = logical(c.points.first() == c.points.last());
-    let (degree, points) = (c.degrees[0], list(&points));
+    let (degree, points) = (c.degrees[0], list(points));
     let [times, knots] = knots_of(&c.knots[0]);
     let Some(weights) = &c.weights else {
         return file.add(format!(
