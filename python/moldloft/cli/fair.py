@@ -155,9 +155,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--spacing",
         metavar="WORD|X,Y[,Z]",
         type=_spacing,
-        default="chord",
-        help="parameters of points: chord (the default), centripetal, a coordinate (x, y, z) or a "
-        "direction that they run along, or index",
+        default="auto",
+        help="parameters of points: chord, centripetal, a coordinate (x, y, z) or a direction that "
+        "they run along, index, or curvature (of single curves: lengths, longer where they turn; "
+        "the default where one is to be near the truth, else chord)",
     )
     parser.add_argument(
         "--goal",
@@ -230,7 +231,7 @@ def _tolerance(text: str) -> float | None:
 
 
 def _spacing(text: str) -> Any:
-    if text in ("chord", "centripetal", "index", "uniform", "x", "y", "z"):
+    if text in ("auto", "curvature", "chord", "centripetal", "index", "uniform", "x", "y", "z"):
         return text
     return tuple(_vector(text))
 
@@ -416,7 +417,8 @@ def _joined(options: argparse.Namespace, role: str) -> list[Spline]:
     for name in options.join:
         points = read_points(name).points
         if role == "fit":
-            out.append(Spline.interpolate(points, degree=options.degree, spacing=options.spacing))
+            spacing = "chord" if options.spacing == "auto" else options.spacing
+            out.append(Spline.interpolate(points, degree=options.degree, spacing=spacing))
         else:
             out.append(Spline(points, degree=options.degree, clamped=False))
     return out
@@ -603,7 +605,7 @@ class _Points(_Source):
                 degree=options.degree,
                 measure=options.measure or "third",
                 mode=options.mode,
-                spacing=options.spacing,
+                spacing="chord" if options.spacing == "auto" else options.spacing,
                 goal=options.goal,
                 breaks=marks,
                 fixed=fixed,
@@ -714,7 +716,7 @@ def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFair
         "measure": options.measure,
         "mode": options.mode,
         "bound": options.bound,
-        "spacing": options.spacing,
+        "spacing": "chord" if options.spacing == "auto" else options.spacing,
         "goal": options.goal,
         "breaks": _surface_breaks(options.breaks),
         "ends": 2 if options.ends is None else _ends(options),

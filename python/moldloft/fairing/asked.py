@@ -28,7 +28,7 @@ class Asked:
     motion: Any
     spacing: Any
     at: ArrayLike | None
-    goal: tuple[str, float]
+    goal: tuple[str, float | None]
     bends: bool
     shape: list[Any]
     accuracy: float
@@ -36,6 +36,13 @@ class Asked:
 
 BUDGET = 0.8
 """Of what noise has in squared residuals that fills the tolerances evenly."""
+
+
+def goal_of_curve(given: Any) -> tuple[str, float | None]:
+    """The word of a goal and its share; none where it goes by the dimension of the curve."""
+    word, share = goal_of(given)
+    own = isinstance(given, tuple) or word not in ("near", "budget")
+    return word, share if own else None
 
 
 def goal_of(given: Any) -> tuple[str, float]:
@@ -74,6 +81,14 @@ EXACT_NEAREST = (
 def stays_near(goal: Any, free: bool) -> bool:
     """Whether a goal leaves exact points where they are: nothing else is asked of them."""
     return free and goal_of(goal)[0] == "near"
+
+
+def curve_spacing(asked: Asked, conditioned: bool) -> Any:
+    """The spacing of the points of a curve: of those that are to be near the truth by the turn of the curve."""
+    if asked.spacing != "auto":
+        return asked.spacing
+    plain = not conditioned and not asked.shape and asked.motion == "ball"
+    return "curvature" if plain and asked.goal[0] in ("near", "budget") else "chord"
 
 
 def spacing_of(given: Any) -> tuple[str, tuple[float, float, float]]:

@@ -18,6 +18,7 @@ from moldloft.fairing.asked import (
     Asked,
     ends_of,
     goal_of,
+    goal_of_curve,
     index_of,
     only_data,
     stays_near,
@@ -54,7 +55,7 @@ def fair_curve(
     tangents: Iterable[tuple[float, ArrayLike]] = (),
     keep: Sequence[str] = (),
     joins: Sequence[Spline] = (),
-    spacing: Any = "chord",
+    spacing: Any = "auto",
     at: ArrayLike | None = None,
     goal: Any = "near",
     release: Sequence[int] | str = (),
@@ -136,12 +137,17 @@ def fair_curve(
         same tangent direction and curvature. They stay as they are.
     spacing
         Parameters of the points: ``"chord"``, ``"centripetal"``, a coordinate (``"x"``, ``"y"``,
-        ``"z"``) or a direction along which the points run, or ``"index"``.
+        ``"z"``) or a direction along which the points run, ``"index"``, or ``"curvature"``, lengths
+        times (1 + (k / 2 m)^2)^(1/4), where k is the curvature of a smoothing spline through the
+        points and m its mean. ``"auto"`` is ``"curvature"`` where an optimum of data is to be near
+        the truth (goals ``"near"`` and ``"budget"``) and there are no shapes, conditions, joins or
+        directions of the motion, else ``"chord"``.
     at
         The parameters themselves, rising, in [0, 1].
     goal
         Which of the curves within the tolerances. ``"near"``: the fairest whose squared residuals
-        are at most four fifths of what noise has that fills the tolerances evenly, and the data's
+        are at most half (of curves that are not plane, or whose points move in one direction, four
+        fifths) of what noise has that fills the tolerances evenly, and the data's
         own curve where there is little to gain: exact data stay. ``"fairest"``: the least of the
         measure. ``("budget", share)``: the first with a share of your own. ``("nearest", share)``:
         the nearest to the data whose measure exceeds the least by at most this share.
@@ -227,7 +233,7 @@ def fair_curve(
             motion,
             spacing,
             at,
-            (word, share),
+            goal_of_curve(goal),
             bends,
             shape,
             accuracy,
@@ -244,8 +250,8 @@ def fair_curve(
     if len(release):
         raise FairingError('release is for optima of data, `as_="fit"`')
     measure = measure or "second"
-    if spacing == "index":
-        spacing = "uniform"
+    if spacing in ("index", "auto"):
+        spacing = "uniform" if spacing == "index" else "chord"
     if not isinstance(spacing, str) or spacing not in ("chord", "centripetal", "uniform"):
         raise FairingError(
             f"spacing {spacing!r} is for optima of data; here: chord, centripetal or index"

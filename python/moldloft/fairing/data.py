@@ -12,7 +12,7 @@ import numpy as np
 from moldloft import _core
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, narrowed, points_of, radii
-from moldloft.fairing.asked import Asked, ends_of, index_of, spacing_of
+from moldloft.fairing.asked import Asked, curve_spacing, ends_of, index_of, spacing_of
 from moldloft.fairing.conditions import join_conditions, linear_conditions, shape_conditions
 from moldloft.fairing.faired import Arc, Fairing
 from moldloft.fairing.report import Finding, Numbers
@@ -65,9 +65,10 @@ def fair_data(
     if asked.closed and tol is None:
         raise FairingError("a closed curve without a tolerance shrinks to a point")
     word, way = direction(asked.motion)
-    spaced, spacing_way = spacing_of(asked.spacing)
     kept = list(ends_of(asked.ends if asked.ends is not None else "free", asked.closed))
     through, tangents, keep, joins = wanted
+    conditioned = bool(through or tangents or keep or joins)
+    spaced, spacing_way = spacing_of(curve_spacing(asked, conditioned))
     conditions, labels = linear_conditions(through, tangents, keep)
     if joins:
         rough = Spline.interpolate(data, degree=asked.degree, closed=asked.closed)

@@ -21,3 +21,4 @@ pub(crate) mod multilevel;
 pub(crate) mod shape_condition;
 pub(crate) mod shaping;
 pub(crate) mod space;
+pub(crate) mod turning;

@@ -64,7 +64,7 @@ impl<T: Real> MovingSpace<'_, T> {
 
     /// The derivative of order `r` of each basis function of span `k` at `t`; see
     /// [`Space::derivative`].
-    fn derivative(&self, k: isize, t: T, r: usize) -> Vec<T> {
+    pub fn derivative(&self, k: isize, t: T, r: usize) -> Vec<T> {
         let p = self.space.degree();
         (0..=p)
             .map(|unit| {

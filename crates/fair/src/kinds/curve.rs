@@ -76,8 +76,9 @@ pub struct FairCurve<T: Real> {
     #[field(default)]
     knots: Option<Vec<T>>,
     /// How points get their parameters: "chord", "centripetal", a coordinate ("x", "y" or "z", for
-    /// offsets at stations), or "index".
-    #[field(default = "chord")]
+    /// offsets at stations), "index", or "curvature" (lengths, longer where the curve turns). "auto" is
+    /// "curvature" for the goals "near" and "budget" where nothing but these is asked for, else "chord".
+    #[field(default = "auto")]
     spacing: Arc<str>,
     /// Which of the curves within the tolerance: "near" (no fairer than noise of the tolerance's size
     /// asks for, and unmoved where there is little to gain), "budget" (the same, moved in any case),
@@ -255,6 +256,7 @@ impl<T: Real> FairCurve<T> {
             (self.tangents.is_some(), "tangents", TANGENTS),
             (self.keep.is_some(), "keep", KEEP),
             (self.bends == 0, "bends", Self::BENDS),
+            (&*self.spacing == "curvature", "spacing \"curvature\"", SPACING),
         ];
         given.into_iter().find(|g| g.0).map(|g| (g.1, g.2))
     }
@@ -402,6 +404,21 @@ impl<T: Real> Build<T> for FairCurve<T> {
                     .in_field(ALONG));
             }
         };
+        let plain: Vec<_> = self.points.iter().map(|p| p.xyz.re()).collect();
+        let budget = crate::near_budget(&plain, motion);
+        let goal = super::goal_of(&self.goal, self.share.map(|s| s.re()), budget, [GOAL, SHARE])?;
+        let conditions = self.shape.is_some()
+            || self.through.is_some()
+            || self.tangents.is_some()
+            || self.keep.is_some();
+        let free = !conditions && motion == crate::Motion::Ball;
+        let to_the_truth = matches!(goal, crate::Goal::Near(_) | crate::Goal::Budget(_));
+        let turning = match &*self.spacing {
+            "auto" => free && to_the_truth,
+            word => word == "curvature",
+        };
+        let word =
+            if matches!(&*self.spacing, "auto" | "curvature") { "chord" } else { &self.spacing };
         let intent = Intent {
             tolerance: self.tolerance,
             degree: self.degree,
@@ -413,8 +430,9 @@ impl<T: Real> Build<T> for FairCurve<T> {
             breaks: self.breaks.clone().unwrap_or_default(),
             joins: neighbours.map(|n| n.map(|(_, derivatives)| derivatives)),
             own,
-            spacing: super::spacing(&self.spacing, SPACING)?,
-            goal: super::goal_of(&self.goal, self.share.map(|s| s.re()), [GOAL, SHARE])?,
+            spacing: super::spacing(word, SPACING)?,
+            turning,
+            goal,
             motion,
         };
         let demands = self.demands()?;

@@ -4,7 +4,8 @@ use super::figures::FairFigures;
 use super::{ACCURACY, Intent};
 use crate::{
     Condition, Data, DataFinding, DataOptions, FairError, InterpolationSpace, Limit,
-    ShapeCondition, data_findings, fair_data_with, parameters_across,
+    ShapeCondition, curvature_parameters, data_findings, fair_data_with, near_budget,
+    parameters_across,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::SplineWithKnotDerivatives;
@@ -73,14 +74,22 @@ impl<T: Real> Intent<T> {
             tolerances[k] += T::from(size);
         }
         let radii: Vec<f64> = tolerances.iter().map(|t| t.re()).collect();
-        let at = parameters_across(points, self.spacing, self.closed, (self.motion, &radii))?;
-        let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
-        let data = Data {
-            points: plain,
-            limit: Limit::new(self.motion, radii)?,
-            layout: InterpolationSpace::new(self.degree, &real, &marks, self.closed)?,
-            ends: [self.end; 2],
+        let mut at = parameters_across(points, self.spacing, self.closed, (self.motion, &radii))?;
+        let laid = |at: &[T]| {
+            let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
+            InterpolationSpace::new(self.degree, &real, &marks, self.closed)
         };
+        let mut data = Data {
+            layout: laid(&at)?,
+            limit: Limit::new(self.motion, radii)?,
+            ends: [self.end; 2],
+            points: plain,
+        };
+        if self.turning {
+            let budget = near_budget(&data.points, self.motion);
+            at = curvature_parameters(&data, points, &tolerances, &at, budget)?;
+            data.layout = laid(&at)?;
+        }
         let (data, shape) = data.shaped(&demands.shape)?;
         let mut options = DataOptions::of(self.measure, self.goal);
         // Exact derivatives need to know which limits are reached; signs are not that exact.

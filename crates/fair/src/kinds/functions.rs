@@ -51,6 +51,7 @@ impl<T: Real> Build<T> for Fair<T> {
             joins: [None; 2],
             own: super::GivenKnots::default(),
             spacing: crate::ParameterSpacing::Uniform,
+            turning: false,
             goal: crate::Goal::Near(super::BUDGET),
             motion: crate::Motion::Ball,
         };

@@ -69,6 +69,8 @@ pub(crate) struct Intent<T> {
     pub own: GivenKnots,
     /// How points get their parameters; the index for control points and knot removal.
     pub spacing: ParameterSpacing,
+    /// Whether parameters run faster where the curve turns.
+    pub turning: bool,
     /// Which of the curves within the tolerances is wanted.
     pub goal: Goal,
     /// The directions in which points may move.
@@ -113,6 +115,7 @@ pub(crate) fn goal(name: &str, field: FieldId) -> Result<Goal, CallError> {
 pub(crate) fn goal_of(
     name: &str,
     share: Option<f64>,
+    budget: f64,
     [field, of_share]: [FieldId; 2],
 ) -> Result<Goal, CallError> {
     let needed = || {
@@ -121,8 +124,8 @@ pub(crate) fn goal_of(
             .in_field(of_share)
     };
     Ok(match name {
-        "near" => Goal::Near(share.unwrap_or(BUDGET)),
-        "budget" => Goal::Budget(share.unwrap_or(BUDGET)),
+        "near" => Goal::Near(share.unwrap_or(budget)),
+        "budget" => Goal::Budget(share.unwrap_or(budget)),
         "fairest" => Goal::Fairest,
         "nearest" => Goal::Nearest(share.unwrap_or(0.1)),
         "energy" => Goal::Energy(share.ok_or_else(needed)?),

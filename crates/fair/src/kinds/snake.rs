@@ -101,6 +101,7 @@ impl<T: Real> Build<T> for FairSnake<T> {
             joins: [None; 2],
             own: super::GivenKnots::default(),
             spacing: crate::ParameterSpacing::Chord,
+            turning: false,
             goal: crate::Goal::Near(super::BUDGET),
             motion: crate::Motion::Ball,
         };

@@ -401,7 +401,8 @@ impl<T: Real> Build<T> for FairSurf<T> {
             }
         };
         let spacing = super::spacing(&self.spacing, Self::SPACING)?;
-        let goal = super::goal_of(&self.goal, self.share.map(|s| s.re()), [GOAL, SHARE])?;
+        let goal =
+            super::goal_of(&self.goal, self.share.map(|s| s.re()), super::BUDGET, [GOAL, SHARE])?;
         let degrees = [self.degree, self.degree_v.unwrap_or(self.degree)];
         let closed = [self.closed_u == 1, self.closed_v == 1];
         let tolerances = self.tolerances_of(grid.shape, m * n)?;

@@ -3,10 +3,7 @@
 use super::arguments::{certificate, fair_error, measure, refused};
 use super::spline::{Spline, reported, spacing};
 use moldloft::fair::{
-    Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, EndContinuity, FairError,
-    FairingReport, Goal, InterpolationSpace, Job, KnotRemovalOptions, Limit, Mode, Motion,
-    OptimumOptions, RemovalStep, Rule, ShapeCondition, Space, Stops, data_report, knot_removal,
-    merged, parameters_across, report, shape,
+    Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, EndContinuity, FairError, FairingReport, Goal, InterpolationSpace, Job, KnotRemovalOptions, Limit, Mode, Motion, OptimumOptions, RemovalStep, Rule, ShapeCondition, Space, Stops, data_report, knot_removal, merged, parameters_across, report, shape, curvature_parameters, near_budget,
 };
 use moldloft::num::{Order, Vec3};
 use numpy::ToPyArray;
@@ -259,6 +256,8 @@ pub fn data<'py>(
     let breaks: Vec<usize> = get(options, "breaks")?;
     let one = merged(&points, &radii, closed).map_err(fair_error)?;
     let limit = Limit::new(motion, one.radii.clone()).map_err(fair_error)?;
+    let budget = near_budget(&one.points, limit.motion);
+    let mut turning = false;
     let at = match get::<Option<Vec<f64>>>(options, "at")? {
         Some(all) if one.points.len() < points.len() => {
             let first = |k: usize| one.of.iter().position(|&o| o == k).unwrap_or(0);
@@ -267,7 +266,9 @@ pub fn data<'py>(
         Some(all) => all,
         None => {
             let word: String = get(options, "spacing")?;
-            let spaced = spacing(&word, get(options, "spacing_direction")?)?;
+            turning = word == "curvature";
+            let chosen = if turning { "chord" } else { &word };
+            let spaced = spacing(chosen, get(options, "spacing_direction")?)?;
             parameters_across(&one.points, spaced, closed, (limit.motion, &limit.radii))
                 .map_err(fair_error)?
         }
@@ -280,12 +281,17 @@ pub fn data<'py>(
     let shape_labels: Vec<String> = get(options, "shape_labels")?;
     let renumbered: Vec<ShapeCondition> =
         wanted.iter().map(|w| w.renumbered(|k| one.of.get(k).copied().unwrap_or(k))).collect();
-    let data = Data {
+    let mut data = Data {
         limit,
         layout: InterpolationSpace::new(degree, &at, &breaks, closed).map_err(fair_error)?,
         ends: [end(&ends.0)?, end(&ends.1)?],
         points: one.points.clone(),
     };
+    if turning {
+        let own = curvature_parameters(&data, &data.points, &data.limit.radii, &at, budget)
+            .map_err(fair_error)?;
+        data.layout = InterpolationSpace::new(degree, &own, &breaks, closed).map_err(fair_error)?;
+    }
     let unshaped = |e: FairError| match e {
         FairError::Shape { shapes, miss } => {
             let named: Vec<&str> =
@@ -305,7 +311,10 @@ pub fn data<'py>(
     let mut owners = Vec::new();
     let mut chosen = DataOptions {
         measure: measure(&get::<String>(options, "measure")?)?,
-        goal: goal(&get(options, "goal")?)?,
+        goal: match get::<(String, Option<f64>)>(options, "goal")? {
+            (word, Some(share)) => goal(&(word, share))?,
+            (word, None) => goal(&(word, budget))?,
+        },
         conditions: Vec::new(),
         shape,
         bends: get(options, "bends")?,

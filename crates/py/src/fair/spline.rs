@@ -30,7 +30,8 @@ pub fn spacing(name: &str, direction: [f64; 3]) -> PyResult<ParameterSpacing> {
         "centripetal" => ParameterSpacing::Centripetal,
         "along" => ParameterSpacing::Along(direction.into()),
         _ => {
-            let known = "chord, centripetal, index (or uniform), x, y, z, a direction";
+            let known = "chord, centripetal, index (or uniform), x, y, z, a direction; of one curve \
+                         near its points also curvature";
             return Err(refused(format!("unknown spacing `{name}`; expected one of: {known}")));
         }
     })
