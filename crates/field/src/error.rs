@@ -184,7 +184,8 @@ impl fmt::Display for FieldError {
             ),
             Self::TooFine { boxes, limit } => write!(
                 f,
-                "this accuracy needs about {boxes:.1e} boxes, more than the {limit:.0e} allowed"
+                "this accuracy needs about {boxes:.1e} boxes, more than the {limit:.0e} allowed: ask for less, or give a larger \
+                 `limit` where there is one"
             ),
             Self::TooRough { cells, step } => write!(
                 f,

@@ -56,8 +56,27 @@ struct VolumeMoments<T> {
 const MOST_PARTS: usize = 1000;
 const DEEPEST: u32 = 48;
 
+/// Derivatives of a shape are differences of its places, each known to so many roundings of how far away it is.
+const ROUNDINGS: f64 = 4.0;
+
 /// A part that was halved more often has a kink inside.
 const KINKED: u32 = 20;
+
+/// What the rounding of places makes of the volume of a solid: a sum over Gauss points of how far these are known
+/// times the sides of the parts about them.
+fn rounding<T: Real>(solid: &dyn Solid<T>) -> f64 {
+    let mut sum = 0.0;
+    for (u, a) in gauss(8) {
+        for (v, b) in gauss(8) {
+            for (w, c) in gauss(8) {
+                let jet = solid.jet((*u).into(), (*v).into(), (*w).into());
+                let [x, y, z] = [jet.u, jet.v, jet.w].map(|d| d.re().norm());
+                sum += a * b * c * jet.p.re().norm() * (x * y + y * z + z * x);
+            }
+        }
+    }
+    ROUNDINGS * f64::EPSILON * sum
+}
 
 /// The volume of a solid, negative when it is left-handed, its centre, and an estimate of the error of the volume. `None`
 /// when a place is not finite.
@@ -99,6 +118,7 @@ pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)
             AdaptiveBox { low, high, sums: whole, error, along, halves, depth }
         };
     let (low, high) = ([0.0; 3], [1.0; 3]);
+    let rounding = rounding(solid);
     let mut open = vec![part(low, high, sums(low, high), 0)];
     let mut settled: Vec<AdaptiveBox<T>> = Vec::new();
     let mut size = open[0].sums.volume.re().abs();
@@ -106,7 +126,10 @@ pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)
         (0..open.len()).reduce(|a, b| if open[b].error > open[a].error { b } else { a })
     {
         let left: f64 = open.iter().map(|p| p.error).sum();
-        if left <= SETTLED * size || !left.is_finite() || open.len() + settled.len() >= MOST_PARTS {
+        if left <= (SETTLED * size).max(rounding)
+            || !left.is_finite()
+            || open.len() + settled.len() >= MOST_PARTS
+        {
             break;
         }
         let worst = open.swap_remove(at);
@@ -137,6 +160,10 @@ pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)
         && !(volume.is_constant() && [moment.x, moment.y, moment.z].iter().all(|x| x.is_constant()))
     {
         error = f64::INFINITY;
+    }
+    // Parts may agree by chance better than their places are known.
+    if rounding > SETTLED * size {
+        error = error.max(rounding);
     }
     if !volume.is_finite() || !moment.is_finite() {
         return None;

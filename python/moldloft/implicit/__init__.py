@@ -29,6 +29,7 @@ from moldloft.implicit.blends import (
     transition,
     zhang,
 )
+from moldloft.implicit.divisions import Division, DivisionBox
 from moldloft.implicit.facets import Contour, FacetPatch, Facets, Sheet, Unresolved
 from moldloft.implicit.fields import (
     Field,
@@ -55,7 +56,7 @@ from moldloft.implicit.fields import (
     torus,
     twist,
 )
-from moldloft.implicit.hulls import convex_hull, minkowski_sum
+from moldloft.implicit.hulls import convex_hull, intersection, minkowski_sum, union
 from moldloft.implicit.primitives import cuboid, everything, nothing, point, segment, tetrahedron
 from moldloft.implicit.sets import Set, load, loads
 
@@ -64,6 +65,8 @@ __all__ = [
     "Blend",
     "Contour",
     "Distance",
+    "Division",
+    "DivisionBox",
     "FacetPatch",
     "Facets",
     "Field",
@@ -90,6 +93,7 @@ __all__ = [
     "exp",
     "fillet",
     "function",
+    "intersection",
     "liming",
     "ln",
     "load",
@@ -115,5 +119,6 @@ __all__ = [
     "torus",
     "transition",
     "twist",
+    "union",
     "zhang",
 ]

@@ -225,9 +225,9 @@ def fillet(
     l2
         The second body.
     width
-        Setback on the first body, in model units.
+        Setback on the second body, in model units; on both by default.
     other
-        Setback on the second body; by default the same.
+        Setback on the first body, where it differs.
     lam
         Shape of the blend, between 0 and 1.
 
@@ -256,9 +256,9 @@ def rounded(
     l2
         The second body.
     width
-        Setback on the first body, in model units.
+        Setback on the second body, in model units; on both by default.
     other
-        Setback on the second body; by default the same.
+        Setback on the first body, where it differs.
     lam
         Shape of the blend, between 0 and 1.
 

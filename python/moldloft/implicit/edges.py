@@ -159,9 +159,9 @@ class Edged:
         other
             The set that is joined.
         width
-            Setback on this set, in model units.
+            Setback on the other set, from this one's face, in model units; on both by default.
         other_width
-            Setback on the other set; by default the same.
+            Setback on this set, from the other's face, where it differs.
         lam
             Shape of the blend, between 0 and 1.
         edges

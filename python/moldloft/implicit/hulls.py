@@ -1,4 +1,4 @@
-"""Convex hulls of sets and their Minkowski sums."""
+"""Unions and intersections of many sets, convex hulls and Minkowski sums."""
 
 from __future__ import annotations
 
@@ -7,11 +7,58 @@ from moldloft.arguments import explain
 from moldloft.implicit.fields import Field
 from moldloft.implicit.sets import Set
 
-__all__ = ["convex_hull", "minkowski_sum"]
+__all__ = ["convex_hull", "intersection", "minkowski_sum", "union"]
 
 
 def _set(of: Set | Field) -> Core:
     return (of if isinstance(of, Set) else Set(of))._core
+
+
+def union(*sets: Set | Field) -> Set:
+    """The union of any number of sets, in a balanced tree: the quickest for thousands.
+
+    Parameters
+    ----------
+    sets
+        The sets; of none it is empty.
+
+    Returns
+    -------
+    Set
+        The union.
+
+    Examples
+    --------
+    >>> from moldloft import implicit as im
+    >>> row = im.union(*(im.sphere((3 * k, 0, 0), 1) for k in range(5)))
+    >>> row.facets(depth=5).bodies
+    5
+    """
+    return Set(Core.union_of([_set(part) for part in sets]))
+
+
+def intersection(*sets: Set | Field) -> Set:
+    """What any number of sets have in common, in a balanced tree.
+
+    Parameters
+    ----------
+    sets
+        The sets; of none it is everything.
+
+    Returns
+    -------
+    Set
+        The intersection.
+
+    Examples
+    --------
+    >>> from moldloft import implicit as im
+    >>> x, y, z = im.axes()
+    >>> corner = im.intersection(x, y, z, im.sphere((0, 0, 0), 1))
+    >>> round(corner.mass().volume, 6)
+    0.523599
+    """
+    return Set(Core.intersection_of([_set(part) for part in sets]))
 
 
 def convex_hull(*sets: Set | Field) -> Set:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,6 +23,15 @@ if TYPE_CHECKING:
     Triple = Sequence[float]
 
 __all__ = ["Pictured"]
+
+BACKGROUND = ((0xFC, 0xFD, 0xFE), (0xE2, 0xE8, 0xEE))
+
+
+def _colour(of: Sequence[int]) -> list[int]:
+    colour = [int(c) for c in of]
+    if len(colour) != 3 or not all(0 <= c <= 255 for c in colour):
+        raise ValueError(f"a colour is red, green and blue from 0 to 255, found {list(of)}")
+    return colour
 
 
 class Pictured:
@@ -45,6 +54,8 @@ class Pictured:
         ambient: float = 0.22,
         shadows: bool = True,
         shine: float = 0.15,
+        background: tuple[Sequence[int], Sequence[int]] = BACKGROUND,
+        mirrors: float | Mapping[str, float] = 0.0,
         samples: int = 1,
     ) -> bytes:
         """A ray-traced picture, a PNG file: exact surfaces with lights, shadows and colours.
@@ -70,6 +81,12 @@ class Pictured:
             Whether things throw shadows.
         shine
             Strength of highlights, 0 to 1.
+        background
+            Red, green and blue, 0 to 255 each, at the top and at the bottom of the picture. Mirrors
+            that look past everything show it by height.
+        mirrors
+            How much of the light faces throw back as mirrors, 0 to 1: one number for all, or
+            numbers by the names of primitives.
         samples
             Rays along each side of a picture point.
 
@@ -82,6 +99,8 @@ class Pictured:
         ------
         Error
             When the set has no end and no box is given.
+        ValueError
+            When a number is beyond its range, or a name in ``mirrors`` is no primitive's.
         FileError
             When it cannot be written to ``path``.
 
@@ -98,6 +117,10 @@ class Pictured:
             raise ValueError(f"a picture is 1 to 8192 points wide and high, found {size}")
         if samples < 1:
             raise ValueError(f"a picture point takes at least one sample, found {samples}")
+        shares = self._mirrors(mirrors)
+        sky = [_colour(c) for c in background]
+        if len(sky) != 2:
+            raise ValueError(f"a background has two colours, top and bottom; found {len(sky)}")
         corners = corners_of(low, high) or self._core.around()
         box = np.array(corners)
         target = np.array(triple(centre, "centre")) if centre is not None else box.mean(axis=0)
@@ -127,8 +150,9 @@ class Pictured:
             (list(place), list(target), triple(up, "up"), float(angle)),
             rows,
             [float(ambient)] * 3,
-            [[0xFC, 0xFD, 0xFE], [0xE2, 0xE8, 0xEE]],
+            sky,
             (shadows, [float(shine), 40.0], int(samples)),
+            shares,
         )
         if path is not None:
             from moldloft.files import Output, commit
@@ -136,6 +160,20 @@ class Pictured:
             target_path = Path(path)
             commit(target_path.parent, [Output(target_path.name, png)], make=False)
         return png
+
+    def _mirrors(self, mirrors: float | Mapping[str, float]) -> list[float]:
+        names = [str(facts["name"] or facts["kind"]) for _, facts in self._core.leaves()]
+        if isinstance(mirrors, Mapping):
+            unknown = [name for name in mirrors if name not in names]
+            if unknown:
+                raise ValueError(f"no primitive is called {unknown[0]!r}: there are {names}")
+            shares = [float(mirrors.get(name, 0.0)) for name in names]
+        else:
+            shares = [float(mirrors)] * len(names)
+        wrong = [share for share in shares if not 0 <= share <= 1]
+        if wrong:
+            raise ValueError(f"a mirror throws back a share of 0 to 1, found {wrong[0]}")
+        return shares
 
 
 def _reach(

@@ -16,6 +16,7 @@ mod contacts;
 mod crossing;
 mod divide;
 mod grid;
+mod lost;
 pub(crate) mod memo;
 mod padded_bounds;
 mod place_vertices;
@@ -24,6 +25,7 @@ mod remove_intersections;
 pub(crate) mod sheets;
 pub(crate) mod shells;
 mod simplify;
+mod slivers;
 mod split;
 pub(crate) mod types;
 mod unresolved;
@@ -211,19 +213,23 @@ pub(crate) fn facet_within(
             let mut step = step_of(least_depth(size, &over).max(4));
             check(step)?;
             // First fine enough that nothing is missed.
-            let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
             let most = MOST_CELLS.min(options.limit);
-            let found = whole(set, &over, facets, most, options)?;
+            let found = loop {
+                let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+                let found = whole(set, &over, facets, most, options)?;
+                let Some(u) = lost::lost(&found.facets, accuracy) else { break found };
+                step = found.facets.step;
+                let count = found.facets.cells + found.facets.unresolved.len();
+                if !found.all || 4.0 * count as f64 > most {
+                    let open = found.facets.unresolved.iter().filter(|u| u.missed);
+                    let thickness = open.map(thickness).fold(thickness(&u), f64::max);
+                    let depth = halvings(size, thickness.min(0.5 * step)) + 1;
+                    return Err(FieldError::Thin { place: u.place, step, depth });
+                }
+                step *= 0.5;
+            };
             let mut facets = found.facets.clone();
             step = facets.step;
-            let side = |b: &Box3| (0..3).map(|k| b.high[k] - b.low[k]).fold(0.0, f64::max);
-            let larger = facets.unresolved.iter().find(|u| side(&u.place) > accuracy);
-            if let (false, Some(u)) = (found.all, larger) {
-                let thickness = u.volume / side(&u.place).powi(2);
-                let depth = halvings(size, thickness.min(0.5 * step)) + 1;
-                let place = u.place;
-                return Err(FieldError::Thin { place, step, depth });
-            }
             // The error is of second order, so one estimate nearly hits; a few correct it. The few triangles
             // that are worse than the others then are divided edge by edge.
             for _ in 0..8 {
@@ -260,6 +266,11 @@ const MOST_CELLS: f64 = 3e6;
 
 /// What is missed matters to the eye, and is worth finer cells unasked, if it is this part of the body.
 const MATTERS: f64 = 1e-5;
+
+/// How thick that is which a place may hold, at least: it crosses the place on its longest way.
+fn thickness(u: &Unresolved) -> f64 {
+    u.volume / (3f64.sqrt() * lost::side(&u.place).powi(2))
+}
 
 /// Facets that miss nothing, with the sets that they are made of where these only touch.
 struct CompleteFacets {
@@ -366,6 +377,9 @@ fn at_step(
     let rule = RefinementRule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
     let tapes = Tapes::new(&grid, &divided.blocks, &compiled.tape);
     refine(&mut made, &leaves, &tapes, rule);
+    if !options.sharp {
+        slivers::remove(&mut made);
+    }
     let open = divided.blocks.iter().flat_map(|b| b.1.unresolved.iter().copied()).collect();
     let unresolved = unresolved::not_shown(open, &made.positions, &made.triangles, step);
 

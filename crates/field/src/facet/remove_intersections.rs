@@ -15,6 +15,7 @@ use super::vertex::{PlacedVertex, Solver, Surfaces};
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
+use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -40,6 +41,26 @@ pub(super) fn crossing(
     crossings(positions, count, corners, Some(&flagged))
 }
 
+/// As [`crossing`], of the triangles within three rings about some vertices of cells.
+fn crossing_near(made: &Assembled, about: &FxHashSet<u32>) -> Vec<[usize; 2]> {
+    let mut reached = vec![false; made.positions.len()];
+    about.iter().for_each(|&v| reached[v as usize] = true);
+    let mut near = vec![false; made.triangles.len()];
+    for _ in 0..3 {
+        for ((_, t), near) in made.triangles.iter().zip(&mut near) {
+            *near |= t.iter().any(|&v| reached[v as usize]);
+        }
+        for ((_, t), _) in made.triangles.iter().zip(&near).filter(|n| *n.1) {
+            t.iter().for_each(|&v| reached[v as usize] = true);
+        }
+    }
+    let corners = |f: usize| made.triangles[f].1;
+    let mut pairs = crossings(&made.positions, made.triangles.len(), corners, Some(&near));
+    let doubtful = |v: u32| made.doubtful.binary_search_by_key(&v, |d| d.0).is_ok();
+    pairs.retain(|pair| pair.iter().any(|&f| corners(f).into_iter().any(doubtful)));
+    pairs
+}
+
 /// The triangles of all blocks, with as few that cut others as can be unless they are to be sharp.
 pub(super) fn assembled(
     grid: &Grid,
@@ -50,12 +71,19 @@ pub(super) fn assembled(
     let mut assembly = Assembly::new(grid, leaves, blocks);
     let mut ways: BTreeMap<u32, u8> = BTreeMap::new();
     let mut made = assembly.triangles();
+    // After the first round only triangles near what moved, and pairs that were left, are looked at again.
+    let mut changed: Option<FxHashSet<u32>> = None;
     for _ in 0..if sharp { 0 } else { ROUNDS } {
         let corners = |f: usize| made.triangles[f].1;
-        let pairs = crossing(&made.positions, made.triangles.len(), corners, &made.doubtful);
+        let pairs = match &changed {
+            None => crossing(&made.positions, made.triangles.len(), corners, &made.doubtful),
+            Some(changed) => crossing_near(&made, changed),
+        };
         if pairs.is_empty() {
             break;
         }
+        let cut = pairs.iter().flatten().flat_map(|&f| corners(f));
+        let mut near: FxHashSet<u32> = cut.filter(|v| *v < assembly.count).collect();
         let doubtful =
             |v: &u32| *v < assembly.count && made.doubtful.binary_search_by_key(v, |d| d.0).is_ok();
         // Of each pair the vertex that is farthest from its crossings: the others need not move.
@@ -75,6 +103,7 @@ pub(super) fn assembled(
         chosen.dedup();
         let mut solver = Solver::default();
         for vertex in chosen {
+            near.insert(vertex);
             let way = ways.entry(vertex).or_insert(0);
             *way += 1;
             if *way == 1 {
@@ -83,9 +112,11 @@ pub(super) fn assembled(
                 if way.several {
                     assembly.changes.merged.insert(way.vertex);
                 }
+                near.insert(way.vertex);
                 assembly.changes.moved.insert(way.vertex, way.place);
             }
         }
+        changed = Some(near);
         made = assembly.triangles();
     }
     if !assembly.changes.merged.is_empty() {
@@ -163,7 +194,7 @@ impl Assembly<'_> {
 
 impl Assembled {
     /// Leaves out the vertices that no triangle has.
-    fn compact(&mut self) {
+    pub(super) fn compact(&mut self) {
         let mut number = vec![u32::MAX; self.positions.len()];
         self.triangles.iter().flat_map(|t| t.1).for_each(|v| number[v as usize] = 0);
         for (place, count) in number.iter_mut().filter(|n| **n == 0).zip(0..) {

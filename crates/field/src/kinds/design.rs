@@ -323,3 +323,41 @@ impl<T: Real> Build<T> for ChamferEdges<T> {
         set(crate::chamfer_edges(&self.set.0, self.width, chosen.as_deref()))
     }
 }
+
+/// The union of any number of sets, in a balanced tree: what many sets have in common with a place is found fastest so.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "set_union",
+    example = "set balls = set_union({sphere({0, 0, 0}, 1), sphere({3, 0, 0}, 1), sphere({6, 0, 0}, 1)}); assert components(balls) == 3;"
+)]
+pub struct UnionOf<T: Real> {
+    /// The sets.
+    sets: Vec<SetArgument<T>>,
+}
+
+impl<T: Real> Build<T> for UnionOf<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        Ok(set_value(Set::union_of(self.sets.into_iter().map(|s| s.0).collect())))
+    }
+}
+
+/// What any number of sets have in common, in a balanced tree.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "set_intersection",
+    example = "set lens = set_intersection({sphere({0, 0, 0}, 1), sphere({1, 0, 0}, 1)}); assert abs(volume(lens) - 5*PI/12) < 1e-6;"
+)]
+pub struct IntersectionOf<T: Real> {
+    /// The sets.
+    sets: Vec<SetArgument<T>>,
+}
+
+impl<T: Real> Build<T> for IntersectionOf<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        Ok(set_value(Set::intersection_of(self.sets.into_iter().map(|s| s.0).collect())))
+    }
+}

@@ -7,6 +7,7 @@ mod faced;
 mod flaws;
 mod measures;
 mod primitives;
+mod profiles;
 pub mod read;
 pub mod region;
 mod sets;
@@ -35,6 +36,9 @@ pub fn rows() -> Vec<Row> {
         shapes::PlateOf,
         shapes::SideOf,
         shapes::InsideOf,
+        profiles::ProfileOf,
+        profiles::Extruded,
+        profiles::Revolved,
         sets::SetOf,
         sets::Cuboid,
         sets::Tetrahedron,
@@ -59,6 +63,8 @@ pub fn rows() -> Vec<Row> {
         design::Twisted,
         design::Remainder,
         design::Repeated,
+        design::UnionOf,
+        design::IntersectionOf,
         design::SetOffset,
         design::SetShell,
         design::ConvexHull,

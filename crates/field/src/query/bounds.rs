@@ -8,8 +8,8 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-/// Half the side of the world: a set that reaches its end counts as unbounded.
-const WORLD: f64 = 1048576.0;
+/// How far sets are looked for along each axis: the nearer, and where it holds nothing or no end, the farther.
+const WORLDS: [f64; 2] = [(1u64 << 20) as f64, (1u64 << 60) as f64];
 /// The most boxes to look at for one side.
 const MOST: usize = 100_000;
 
@@ -47,7 +47,7 @@ impl Ord for ReachBox {
 /// for a set that is proved empty.
 ///
 /// # Errors
-/// [`FieldError::Unbounded`] when the set reaches 2^20 from the origin, or that cannot be excluded;
+/// [`FieldError::Unbounded`] when the set reaches 2^60 from the origin, or that cannot be excluded;
 /// an accuracy that is not above zero.
 ///
 /// # Example
@@ -63,10 +63,25 @@ impl Ord for ReachBox {
 pub fn bounds(set: &Set, accuracy: f64) -> Result<Option<Box3>, FieldError> {
     crate::error::positive("accuracy", accuracy)?;
     let tape = set.compiled().tape;
+    if set.is_nothing() {
+        return Ok(None);
+    }
+    match within(&tape, accuracy, WORLDS[0]) {
+        Err(FieldError::Unbounded { .. }) | Ok(None) => within(&tape, accuracy, WORLDS[1]),
+        found => found,
+    }
+}
+
+/// The box of a set within that distance of the origin along each axis.
+fn within(
+    tape: &Arc<ExprTape<f64>>,
+    accuracy: f64,
+    world: f64,
+) -> Result<Option<Box3>, FieldError> {
     let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
     for axis in 0..3 {
         for (sign, end) in [(1.0, &mut high), (-1.0, &mut low)] {
-            match farthest(&tape, axis, sign, accuracy)? {
+            match farthest(tape, axis, sign, accuracy, world)? {
                 Some(reach) => end[axis] = sign * reach,
                 None => return Ok(None),
             }
@@ -81,10 +96,11 @@ fn farthest(
     axis: usize,
     sign: f64,
     accuracy: f64,
+    world: f64,
 ) -> Result<Option<f64>, FieldError> {
-    let world = Interval::new(-WORLD, WORLD);
+    let side = Interval::new(-world, world);
     let mut heap = BinaryHeap::new();
-    heap.push(ReachBox { reach: WORLD, depth: 0, sides: [world; 3], tape: tape.clone() });
+    heap.push(ReachBox { reach: world, depth: 0, sides: [side; 3], tape: tape.clone() });
     let mut room = Vec::new();
     let mut seen = 0;
     while let Some(ReachBox { reach, depth, sides, tape }) = heap.pop() {
@@ -94,8 +110,11 @@ fn farthest(
         }
         seen += 1;
         let solid = range.high < 0.0;
-        if seen > MOST || sides[axis].width() <= accuracy || solid {
-            if reach >= WORLD {
+        if seen > MOST
+            || sides[axis].width() <= accuracy.max(4.0 * f64::EPSILON * sides[axis].magnitude())
+            || solid
+        {
+            if reach >= world {
                 return Err(FieldError::Unbounded { axis, sign });
             }
             return Ok(Some(reach));

@@ -42,9 +42,14 @@ pub struct RayTrace {
     pub shine: [f64; 2],
     /// sRGB of each of the set's leaves.
     pub colours: Vec<[u8; 3]>,
+    /// How much of the light each of the set's leaves throws back as a mirror, 0 to 1; none where the list ends.
+    pub mirrors: Vec<f64>,
     /// Rays along each side of a picture point.
     pub samples: usize,
 }
+
+/// A ray goes from mirror to mirror this often at most: what is left then is a thousandth for mirrors of one half.
+const BOUNCES: u32 = 10;
 
 fn linear(c: u8) -> f64 {
     Real::powf(f64::from(c) / 255.0, 2.2)
@@ -105,11 +110,9 @@ pub fn ray_trace(
                     let x = (2.0 * at(column, k % n) - width as f64) / height as f64;
                     let y = 1.0 - 2.0 * at(row, k / n) / height as f64;
                     let d = (ahead + right * (x * reach) + upward * (y * reach)).normalized();
-                    let colour = d.and_then(|d| scene.seen(view.eye, d)).unwrap_or_else(|| {
-                        let [top, bottom] = view.background;
-                        let down = row as f64 / height as f64;
-                        [0, 1, 2].map(|c| linear(top[c]) * (1.0 - down) + linear(bottom[c]) * down)
-                    });
+                    let colour = d
+                        .and_then(|d| scene.seen(view.eye, d, 0))
+                        .unwrap_or_else(|| view.behind(row as f64 / height as f64));
                     for c in 0..3 {
                         sum[c] += colour[c];
                     }
@@ -121,6 +124,14 @@ pub fn ray_trace(
         .collect();
     options.budget.poll()?;
     Ok(rows.concat())
+}
+
+impl RayTrace {
+    /// The background, from its top at 0 to its bottom at 1.
+    fn behind(&self, down: f64) -> [f64; 3] {
+        let [top, bottom] = self.background;
+        [0, 1, 2].map(|c| linear(top[c]) * (1.0 - down) + linear(bottom[c]) * down)
+    }
 }
 
 struct RayScene<'a> {
@@ -140,7 +151,7 @@ impl RayScene<'_> {
     }
 
     /// The light that comes from where the ray ends.
-    fn seen(&self, eye: Vec3, direction: Vec3) -> Option<[f64; 3]> {
+    fn seen(&self, eye: Vec3, direction: Vec3, bounces: u32) -> Option<[f64; 3]> {
         let hit = self.first(eye, direction)?;
         // Sheets have two sides.
         let normal = if hit.normal.dot(direction) > 0.0 { -hit.normal } else { hit.normal };
@@ -169,6 +180,19 @@ impl RayScene<'_> {
             let glint = strength * Real::powf(normal.dot(half).max(0.0), power);
             for c in 0..3 {
                 out[c] += light.colour[c] * (own[c] * facing + glint);
+            }
+        }
+        let share = self.view.mirrors.get(hit.leaf).copied().unwrap_or(0.0).clamp(0.0, 1.0);
+        if share > 0.0 && bounces < BOUNCES {
+            let back = direction - normal * (2.0 * direction.dot(normal));
+            let from = hit.point + normal * away;
+            // What a mirror sees beyond all things is the background by height.
+            let seen = self.seen(from, back, bounces + 1).unwrap_or_else(|| {
+                let up = self.view.up.normalized().unwrap_or(normal);
+                self.view.behind(0.5 - 0.5 * back.dot(up))
+            });
+            for c in 0..3 {
+                out[c] = (1.0 - share) * out[c] + share * seen[c];
             }
         }
         Some(out)

@@ -133,6 +133,22 @@ pub(crate) struct Compiled<T: Real> {
     pub(crate) places: Vec<u32>,
 }
 
+/// Neighbours joined two and two until one is left.
+fn balanced<S>(mut all: Vec<S>, join: impl Fn(S, S) -> S) -> Option<S> {
+    while all.len() > 1 {
+        let mut next = Vec::with_capacity(all.len().div_ceil(2));
+        let mut rest = all.into_iter();
+        while let Some(a) = rest.next() {
+            next.push(match rest.next() {
+                Some(b) => join(a, b),
+                None => a,
+            });
+        }
+        all = next;
+    }
+    all.pop()
+}
+
 impl<T: Real> Set<T> {
     fn of(kind: SetNodeKind<T>, operands: Vec<Set<T>>) -> Self {
         let mut h = FxHasher::default();
@@ -158,6 +174,16 @@ impl<T: Real> Set<T> {
     /// No point.
     pub fn nothing() -> Self {
         Self::of(SetNodeKind::Nothing, Vec::new())
+    }
+
+    /// The union of some sets as a balanced tree.
+    pub fn union_of(sets: Vec<Self>) -> Self {
+        balanced(sets, |a, b| a | b).unwrap_or_else(Self::nothing)
+    }
+
+    /// What some sets have in common, as a balanced tree.
+    pub fn intersection_of(sets: Vec<Self>) -> Self {
+        balanced(sets, |a, b| a & b).unwrap_or_else(Self::everything)
     }
 
     /// The points where `primitive` is not positive. Constants give everything or nothing, a minimum

@@ -50,7 +50,7 @@ fn axis(point: [f64; 3], direction: [f64; 3]) -> Axis<f64> {
 }
 
 /// The values at many points, spread over threads.
-pub fn values(
+fn values(
     points: &[Vec3],
     out: &mut [f64],
     serial: bool,
@@ -63,11 +63,31 @@ pub fn values(
     chunks.for_each(|(points, out)| evaluate(points, out));
 }
 
+/// An array of the values at the rows of another; without the interpreter's lock where no Python function takes part.
+pub fn values_at<'py>(
+    py: Python<'py>,
+    slots: &Slots,
+    at: &PyReadonlyArray2<'py, f64>,
+    evaluate: impl Fn(&[Vec3], &mut [f64]) + Sync + Send + 'static,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let (points, serial) = (points(at)?, !slots.is_empty());
+    let out = unlocked_if(py, !serial && points.len() > LARGE, move || {
+        let mut out = vec![0.0; points.len()];
+        values(&points, &mut out, serial, evaluate);
+        out
+    })?;
+    finished(py, slots, Ok(()))?;
+    Ok(PyArray1::from_vec(py, out))
+}
+
 #[pymethods]
 impl PyField {
     #[staticmethod]
-    fn real(value: f64) -> Self {
-        Self::of(Primitive::real(value))
+    fn real(value: f64) -> PyResult<Self> {
+        match value.is_finite() {
+            true => Ok(Self::of(Primitive::real(value))),
+            false => Err(plain_error(FieldError::NotFinite { what: "number" })),
+        }
     }
 
     #[staticmethod]
@@ -239,15 +259,8 @@ impl PyField {
         py: Python<'py>,
         at: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points = points(&at)?;
-        let (inner, serial) = (self.inner.clone(), !self.slots.is_empty());
-        let out = unlocked_if(py, !serial && points.len() > LARGE, move || {
-            let mut out = vec![0.0; points.len()];
-            values(&points, &mut out, serial, |p, o| inner.values(p, o));
-            out
-        })?;
-        finished(py, &self.slots, Ok(()))?;
-        Ok(PyArray1::from_vec(py, out))
+        let inner = self.inner.clone();
+        values_at(py, &self.slots, &at, move |p, o| inner.values(p, o))
     }
 
     fn gradients<'py>(

@@ -2,7 +2,7 @@
 
 use super::arguments::{attributes, box_of, finished, points};
 use super::facets::PyFacets;
-use super::field::{LARGE, PyField, values};
+use super::field::{LARGE, PyField, values_at};
 use super::oracle::Slots;
 use crate::error::plain_error;
 use crate::work::{interruptible, unlocked_if};
@@ -32,6 +32,12 @@ impl PySet {
 
     fn from(&self, inner: Set) -> Self {
         Self { inner, slots: self.slots.clone() }
+    }
+
+    /// One set of several.
+    fn of_all(sets: &[PyRef<'_, Self>], join: impl Fn(Vec<Set>) -> Set) -> Self {
+        let slots = sets.iter().fold(Slots::default(), |all, s| all.with(&s.slots));
+        Self { inner: join(sets.iter().map(|s| s.inner.clone()).collect()), slots }
     }
 
     /// Work on the set that may take long, and stops at Ctrl-C.
@@ -314,15 +320,18 @@ impl PySet {
         py: Python<'py>,
         at: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points = points(&at)?;
-        let (inner, serial) = (self.inner.clone(), !self.slots.is_empty());
-        let out = unlocked_if(py, !serial && points.len() > LARGE, move || {
-            let mut out = vec![0.0; points.len()];
-            values(&points, &mut out, serial, |p, o| inner.values(p, o));
-            out
-        })?;
-        finished(py, &self.slots, Ok(()))?;
-        Ok(PyArray1::from_vec(py, out))
+        let inner = self.inner.clone();
+        values_at(py, &self.slots, &at, move |p, o| inner.values(p, o))
+    }
+
+    #[staticmethod]
+    fn union_of(sets: Vec<PyRef<'_, Self>>) -> Self {
+        Self::of_all(&sets, Set::union_of)
+    }
+
+    #[staticmethod]
+    fn intersection_of(sets: Vec<PyRef<'_, Self>>) -> Self {
+        Self::of_all(&sets, Set::intersection_of)
     }
 
     /// -1 in the solid, 0 on the surface, 1 in air; the points lie on the surfaces of `known`.
@@ -392,7 +401,10 @@ impl PySet {
             (None, None) => Resolution::Level(6),
         };
         let (pieces, over) = self.long(py, move |set, budget| {
-            let over = region(set, given(corners))?;
+            // A set that is proved to be empty has no triangle in any box.
+            let empty = given(corners).is_none() && moldloft::field::around(set)?.is_none();
+            let unit = || Box3 { low: Vec3::zero(), high: Vec3::of(1.0, 1.0, 1.0) };
+            let over = if empty { unit() } else { region(set, given(corners))? };
             let options = FacetOptions { limit, budget, ..FacetOptions::new(resolution) };
             let plain = set.leaves().iter().all(|l| !l.primitive.is_sheet());
             // Only what is given is taken over: what a caller times or counts is what was done.
@@ -525,6 +537,7 @@ impl PySet {
         ambient: [f64; 3],
         background: [[u8; 3]; 2],
         looks: (bool, [f64; 2], usize),
+        mirrors: Vec<f64>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         if size.iter().any(|n| *n == 0 || *n > 8192) {
             return Err(plain_error("a picture is 1 to 8192 points wide and high"));
@@ -559,6 +572,7 @@ impl PySet {
             shine: looks.1,
             samples: looks.2,
             colours,
+            mirrors,
         };
         let rgb = self.long(py, move |set, budget| {
             let over = region(set, given(corners))?;

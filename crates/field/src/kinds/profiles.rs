@@ -1,0 +1,131 @@
+//! Plane curves as fields and sets: prisms and bodies of revolution, as rows of the registry.
+
+use super::read::{fault, field_value, set, set_value};
+use crate::shapes::profile::{NotAProfile, Profile};
+use crate::{Affine, Primitive, Set};
+use moldloft_num::{Axis, Real, Vec3};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
+use std::sync::Arc;
+
+fn refused(why: NotAProfile, place: FieldId) -> CallError {
+    let (expected, found) = match why {
+        NotAProfile::Open(gap) => ("a closed curve", format!("one whose ends are {gap:.3e} apart")),
+        NotAProfile::Bent(away) => {
+            ("a plane curve", format!("one that leaves its plane by {away:.3e}"))
+        }
+        NotAProfile::Flat => ("a curve round an area", "one without area".to_owned()),
+        NotAProfile::Beside(away) => (
+            "a line in the plane of the curve that it does not cross",
+            format!("a line that is off by {away:.3e}, or that much of the curve beyond it"),
+        ),
+    };
+    CallError::new("no-profile", "the curve is no profile")
+        .expected(expected)
+        .found(found)
+        .in_field(place)
+}
+
+fn user<T: Real>(profile: Profile<T>) -> Primitive<T> {
+    Primitive::user(Arc::new(profile))
+}
+
+/// The signed distance from a closed plane curve, measured in its plane: a prism without ends, negative inside.
+///
+/// The curve must not cross itself; where it does, what an odd number of turns surrounds is inside.
+#[derive(Kind)]
+#[kind(
+    class = Field,
+    function,
+    name = "profile",
+    example = "AbsPoint O(0, 0, 0); AbsPoint A(2, 0, 0); AbsPoint B(0, 2, 0); Circle c(O, A, B); field f = profile(c); assert abs(f({3, 0, 7}) - 1) < 1e-9;"
+)]
+pub struct ProfileOf<T: Real> {
+    /// The closed plane curve.
+    curve: CurveRef<T>,
+}
+
+impl<T: Real> Build<T> for ProfileOf<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let profile = Profile::new(self.curve).map_err(|why| refused(why, Self::CURVE))?;
+        Ok(field_value(user(profile)))
+    }
+}
+
+/// The prism over a closed plane curve, from its plane to the plane moved by a vector, which may be oblique.
+///
+/// Its volume is the area of the curve times the height of the vector over the plane.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "extruded",
+    example = "AbsPoint O(0, 0, 0); AbsPoint A(2, 0, 0); AbsPoint B(0, 2, 0); Circle c(O, A, B); set puck = extruded(c, {0, 0, 0.5}); assert abs(volume(puck) - 2*PI) < 1e-3;"
+)]
+pub struct Extruded<T: Real> {
+    /// The closed plane curve.
+    curve: CurveRef<T>,
+    /// From its plane to the end.
+    by: Point<T>,
+}
+
+impl<T: Real> Build<T> for Extruded<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let profile = Profile::new(self.curve).map_err(|why| refused(why, Self::CURVE))?;
+        let ([point, normal], by) = (profile.plane(), self.by.xyz);
+        let height = by.dot(normal);
+        if height.re().abs() <= 1e-9 * by.re().norm() {
+            return Err(CallError::new(
+                "out-of-range",
+                "the vector lies in the plane of the curve",
+            )
+            .expected("a vector that leaves the plane")
+            .found(format!("a height of {:.3e}", height.re()))
+            .in_field(Self::BY));
+        }
+        let mut prism = Set::new(&user(profile));
+        let aside = by - normal * height;
+        let constant = aside.to_array().iter().all(|x| x.is_constant());
+        if !constant || aside.re().norm() > 1e-12 * by.re().norm() {
+            // Each point goes aside as its height is to that of the vector.
+            let w = aside / height;
+            let row = |k: usize| Affine::identity().rows[k] + normal * w[k];
+            let rows = [row(0), row(1), row(2)];
+            let shear = Affine { rows, shift: -w * point.dot(normal) };
+            prism = prism.mapped(&shear).map_err(|e| fault(&e))?;
+        }
+        let up = if height.re() > 0.0 { normal } else { -normal };
+        let half = |n: Vec3<T>, at: Vec3<T>| {
+            Primitive::plane(n, at).map(|p| Set::new(&p)).map_err(|e| fault(&e))
+        };
+        Ok(set_value(prism & half(-up, point)? & half(up, point + by)?))
+    }
+}
+
+/// The body that a closed plane curve passes over in a full turn about a line of its plane.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "revolved",
+    example = "AbsPoint O(3, 0, 0); AbsPoint A(4, 0, 0); AbsPoint B(3, 0, 1); Circle c(O, A, B); AbsPoint P(0, 0, 0); AbsPoint Q(0, 0, 1); Line axis(P, Q); set ring = revolved(c, axis); assert abs(volume(ring) - 6*PI*PI) < 1e-2;"
+)]
+pub struct Revolved<T: Real> {
+    /// The closed plane curve.
+    curve: CurveRef<T>,
+    /// A line in its plane that it does not cross.
+    axis: Axis<T>,
+}
+
+impl<T: Real> Build<T> for Revolved<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let place = |why: &NotAProfile| match why {
+            NotAProfile::Beside(_) => Self::AXIS,
+            _ => Self::CURVE,
+        };
+        let profile = Profile::turned(self.curve, self.axis).map_err(|why| {
+            let at = place(&why);
+            refused(why, at)
+        })?;
+        set(Ok(Set::new(&user(profile))))
+    }
+}

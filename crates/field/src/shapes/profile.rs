@@ -1,0 +1,276 @@
+//! The inside of a closed plane curve: as a prism without ends, and turned about a line of its plane.
+//!
+//! The distance of a point's image in the plane of the curve, signed by whether it is inside. Moving a point moves its image
+//! by no more, so that ranges follow from one value.
+
+use super::{Shown, lipschitz};
+use crate::expr::interval::Interval;
+use crate::expr::oracle::Oracle;
+use moldloft_locate::{NearestCurve, PlainCurve};
+use moldloft_num::{Axis, Box3, Curve, Field, Order, Real, Vec3};
+use moldloft_registry::CurveRef;
+use std::sync::Arc;
+
+/// Why a curve bounds no part of a plane, with the measure of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotAProfile {
+    /// Its ends are so far apart.
+    Open(f64),
+    /// It leaves its plane by so much.
+    Bent(f64),
+    /// It has no extent in two directions.
+    Flat,
+    /// It is so far from the plane of the axis, or from it on the other side.
+    Beside(f64),
+}
+
+/// Samples of a span of the curve.
+const SAMPLES: usize = 96;
+/// What is in one place, or in one plane, as a part of the size.
+const SAME: f64 = 1e-9;
+
+/// How a point is taken into the plane of the curve.
+#[derive(Clone, Copy)]
+enum ProfileMap<T: Real> {
+    /// Along the normal.
+    Along,
+    /// About the line, to the half plane beyond it in which the second direction lies.
+    About(Axis<T>, Vec3<T>),
+}
+
+/// The signed distance, in its plane, from a closed plane curve.
+pub struct Profile<T: Real> {
+    curve: CurveRef<T>,
+    nearest: Arc<NearestCurve>,
+    outline: Arc<Outline>,
+    /// A point of the plane and its normal.
+    plane: [Vec3<T>; 2],
+    map: ProfileMap<T>,
+}
+
+/// The curve as a polygon in two coordinates of its plane.
+struct Outline {
+    origin: Vec3,
+    across: [Vec3; 2],
+    points: Vec<[f64; 2]>,
+    /// Nearer to the curve than this the polygon does not tell sides.
+    close: f64,
+    /// Where corners may be.
+    breaks: Vec<f64>,
+}
+
+impl Outline {
+    fn at(&self, p: Vec3) -> [f64; 2] {
+        self.across.map(|a| (p - self.origin).dot(a))
+    }
+
+    /// Whether a point is inside, by the crossings of a ray (even and odd).
+    fn inside(&self, p: Vec3) -> bool {
+        let [x, y] = self.at(p);
+        let n = self.points.len();
+        let crosses = |k: &usize| {
+            let ([a, b], [c, d]) = (self.points[*k], self.points[(*k + 1) % n]);
+            (b > y) != (d > y) && x < a + (y - b) / (d - b) * (c - a)
+        };
+        (0..n).filter(crosses).count() % 2 == 1
+    }
+}
+
+impl<T: Real> Profile<T> {
+    /// The prism without ends over a closed plane curve.
+    ///
+    /// # Errors
+    /// Why it is none.
+    pub fn new(curve: CurveRef<T>) -> Result<Self, NotAProfile> {
+        let spans: Vec<f64> = {
+            let mut all = PlainCurve(&*curve).breaks();
+            all.extend([0.0, 1.0]);
+            all.retain(|t| (0.0..=1.0).contains(t));
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all
+        };
+        let inner = |w: &[f64]| {
+            let [a, b] = [w[0], w[1]];
+            (0..SAMPLES).map(move |k| a + (b - a) * k as f64 / SAMPLES as f64).collect::<Vec<_>>()
+        };
+        let places: Vec<f64> = spans.windows(2).flat_map(inner).collect();
+        let at = |t: f64| curve.jet(T::from(t), Order::Zero)[0];
+        let points: Vec<Vec3> = places.iter().map(|t| at(*t).re()).collect();
+        let size = Box3::around(points.iter().copied()).diagonal();
+        let gap = at(0.0).re().distance(at(1.0).re());
+        if gap > SAME * size {
+            return Err(NotAProfile::Open(gap));
+        }
+        // The area vector of the polygon is normal to the plane.
+        let n = points.len();
+        let area = (0..n).fold(Vec3::zero(), |sum, k| {
+            sum + (points[k] - points[0]).cross(points[(k + 1) % n] - points[0])
+        });
+        let normal = area.normalized().filter(|_| area.norm() > SAME * size * size);
+        let Some(normal) = normal else { return Err(NotAProfile::Flat) };
+        let bent = points.iter().map(|p| (*p - points[0]).dot(normal).abs()).fold(0.0, f64::max);
+        if bent > SAME * size {
+            return Err(NotAProfile::Bent(bent));
+        }
+        let across = normal.perpendicular();
+        let across = across.normalized().unwrap_or(across);
+        let across = [across, normal.cross(across)];
+        let sag = |w: &[f64]| {
+            let [p, q] = [at(w[0]).re(), at(w[1]).re()];
+            at(0.5 * (w[0] + w[1])).re().distance((p + q) * 0.5)
+        };
+        let close = places.windows(2).map(sag).fold(0.0, f64::max).max(SAME * size);
+        let mut outline = Outline {
+            origin: points[0],
+            across,
+            points: Vec::new(),
+            close: 4.0 * close,
+            breaks: spans,
+        };
+        outline.points = points.iter().map(|p| outline.at(*p)).collect();
+        // The normal follows the derivatives of three points that are far apart.
+        let third = |k: usize| at(places[k * n / 3]);
+        let found = (third(1) - third(0)).cross(third(2) - third(0));
+        let plane = match found.normalized().filter(|_| found.re().norm() > 1e-3 * area.norm()) {
+            Some(m) if m.re().dot(normal) < 0.0 => [third(0), -m],
+            Some(m) => [third(0), m],
+            None => [third(0), Vec3::lifted(normal)],
+        };
+        let nearest = Arc::new(NearestCurve::new(&PlainCurve(&*curve)));
+        Ok(Self { curve, nearest, outline: Arc::new(outline), plane, map: ProfileMap::Along })
+    }
+
+    /// The body that a closed plane curve passes over in a full turn about a line of its plane.
+    ///
+    /// # Errors
+    /// Why it is none.
+    pub fn turned(curve: CurveRef<T>, axis: Axis<T>) -> Result<Self, NotAProfile> {
+        let mut own = Self::new(curve)?;
+        let along = axis.direction.normalized().ok_or(NotAProfile::Flat)?;
+        let out = own.plane[1].cross(along);
+        let out = out.normalized().ok_or(NotAProfile::Flat)?;
+        let [u, v] = own.outline.across;
+        let space = |p: &[f64; 2]| own.outline.origin + u * p[0] + v * p[1];
+        let (point, normal) = (axis.point.re(), own.plane[1].re());
+        let points: Vec<Vec3> = own.outline.points.iter().map(space).collect();
+        let size = Box3::around(points.iter().copied()).diagonal();
+        let aside = (points[0] - point).dot(normal).abs().max(size * along.re().dot(normal).abs());
+        if aside > 1e-7 * size {
+            return Err(NotAProfile::Beside(aside));
+        }
+        let radii: Vec<f64> = points.iter().map(|p| (*p - point).dot(out.re())).collect();
+        let (least, most) = radii.iter().fold((0.0f64, 0.0f64), |(a, b), r| (a.min(*r), b.max(*r)));
+        if least.min(-SAME * size).abs() > SAME * size && most > SAME * size {
+            return Err(NotAProfile::Beside((-least).min(most)));
+        }
+        let out = if most > -least { out } else { -out };
+        own.map = ProfileMap::About(Axis { point: axis.point, direction: along }, out);
+        Ok(own)
+    }
+
+    /// A point of the plane of the curve, and its normal; the curve runs counter-clockwise about it.
+    pub fn plane(&self) -> [Vec3<T>; 2] {
+        self.plane
+    }
+
+    /// The image of a point in the plane, and how a direction there is one in space.
+    fn image(&self, p: Vec3<T>) -> (Vec3<T>, Vec3<T>, Vec3<T>) {
+        match &self.map {
+            ProfileMap::Along => {
+                let [q, n] = self.plane;
+                (p - n * (p - q).dot(n), Vec3::zero(), Vec3::zero())
+            }
+            ProfileMap::About(axis, out) => {
+                let away = p - axis.point;
+                let s = away.dot(axis.direction);
+                let flat = away - axis.direction * s;
+                let r = flat.norm();
+                let radial = match r.re() > 0.0 {
+                    true => flat / r,
+                    false => *out,
+                };
+                (axis.point + axis.direction * s + *out * r, radial, *out)
+            }
+        }
+    }
+
+    /// The outward normal of the curve in its plane.
+    fn normal(&self, t: f64) -> Option<Vec3<T>> {
+        let d = self.curve.jet(T::from(t), Order::First)[1];
+        d.cross(self.plane[1]).normalized()
+    }
+}
+
+impl<T: Real> Field<T> for Profile<T> {
+    fn value_and_gradient(&self, p: Vec3<T>) -> (T, Vec3<T>) {
+        let (image, radial, out) = self.image(p);
+        let t = self.nearest.nearest(&PlainCurve(&*self.curve), image.re()).at[0];
+        let away = image - self.curve.jet(T::from(t), Order::Zero)[0];
+        let size = away.norm();
+        let far = size.re();
+        // At a corner the mean of the normals beside it tells the side.
+        let corner = self.outline.breaks.iter().find(|b| (*b - t).abs() < 1e-7);
+        let beside = |by: f64| {
+            let at = t + by;
+            let at = if at < 0.0 {
+                at + 1.0
+            } else if at > 1.0 {
+                at - 1.0
+            } else {
+                at
+            };
+            self.normal(at)
+        };
+        let facing = match corner {
+            None => self.normal(t).unwrap_or_else(Vec3::zero),
+            Some(_) => {
+                let [a, b] = [-1e-6, 1e-6].map(|by| beside(by).unwrap_or_else(Vec3::zero));
+                a + b
+            }
+        };
+        let inside = match far > self.outline.close {
+            true => self.outline.inside(image.re()),
+            false => away.re().dot(facing.re()) < 0.0,
+        };
+        let (value, slope) = if far > SAME * self.outline.close {
+            let signed = if inside { -size } else { size };
+            (signed, away / signed)
+        } else {
+            let n = facing.normalized().unwrap_or_else(Vec3::zero);
+            (away.dot(n), n)
+        };
+        match &self.map {
+            ProfileMap::Along => (value, slope),
+            ProfileMap::About(axis, _) => {
+                let along = axis.direction * slope.dot(axis.direction);
+                (value, along + radial * slope.dot(out))
+            }
+        }
+    }
+}
+
+impl<T: Real> Oracle<T> for Profile<T> {
+    fn range(&self, over: &Box3) -> Interval {
+        lipschitz(Field::value(self, Vec3::lifted(over.centre())).re(), over)
+    }
+    fn gradient_range(&self, _: &Box3) -> [Interval; 3] {
+        [Interval { low: -1.0, high: 1.0 }; 3]
+    }
+    fn re(&self) -> Arc<dyn Oracle<f64>> {
+        let map = match &self.map {
+            ProfileMap::Along => ProfileMap::Along,
+            ProfileMap::About(axis, out) => ProfileMap::About(
+                Axis { point: axis.point.re(), direction: axis.direction.re() },
+                out.re(),
+            ),
+        };
+        Arc::new(Profile {
+            curve: CurveRef::new(Shown(self.curve.clone()), 0),
+            nearest: self.nearest.clone(),
+            outline: self.outline.clone(),
+            plane: self.plane.map(|v| v.re()),
+            map,
+        })
+    }
+}

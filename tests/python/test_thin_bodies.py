@@ -1,0 +1,141 @@
+"""Thin bodies at any angle and place: right, or refused with what would do.
+
+Plates, rods, rings, shells, wedges of 2 to 10 degrees, pipes and bent wires, of thickness 1e-1 to
+1e-4 of their size, beside closed forms. MOLDLOFT_SOAK makes them 500.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+import moldloft
+from moldloft import implicit as im
+
+SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
+KINDS = ("plate", "rod", "ring", "shell", "wedge", "pipe", "wire")
+
+
+def half(normal: tuple[float, ...], point: tuple[float, ...]) -> im.Set:
+    return im.Set(im.plane(normal, point))
+
+
+def between(body: im.Set, low: float, high: float) -> im.Set:
+    return body & half((0, 0, -1), (0, 0, low)) & half((0, 0, 1), (0, 0, high))
+
+
+@dataclass
+class Body:
+    """A thin body with its closed forms."""
+
+    kind: str
+    thickness: float
+    set: im.Set
+    volume: float
+    euler: int
+
+
+def thin(seed: int) -> Body:
+    rng = np.random.default_rng([7, seed])
+    kind, t = KINDS[seed % len(KINDS)], float(10 ** rng.uniform(-4, -1))
+    o, z, r = (0, 0, 0), (0, 0, 1), 0.5 * t
+    if kind == "plate":
+        a, b = rng.uniform(0.5, 1.5, 2)
+        body, volume, euler = im.cuboid(o, (a, b, t)), a * b * t, 2
+    elif kind == "rod":
+        body, volume, euler = between(im.Set(im.cylinder(o, z, r)), 0, 1), math.pi * r * r, 2
+    elif kind == "ring":
+        body, volume, euler = im.Set(im.torus(o, z, 1, r)), 2 * (math.pi * r) ** 2, 0
+    elif kind == "shell":
+        body = im.Set(im.sphere(o, 1)) - im.sphere(o, 1 - t)
+        volume, euler = 4 * math.pi * t * (1 - t + t * t / 3), 4
+    elif kind == "wedge":
+        angle = math.radians(rng.uniform(2, 10))
+        slope = half((-math.sin(angle), 0, math.cos(angle)), o)
+        body = slope & half((0, 0, -1), o) & half((1, 0, 0), (1, 0, 0))
+        body = body & half((0, -1, 0), o) & half((0, 1, 0), (0, 1, 0))
+        volume, euler = 0.5 * math.tan(angle), 2
+    elif kind == "pipe":
+        wall = im.Set(im.cylinder(o, z, 0.3)) - im.cylinder(o, z, 0.3 - t)
+        body, volume, euler = between(wall, 0, 1), math.pi * t * (0.6 - t), 0
+    else:
+        bend = im.Set(im.torus(o, z, 0.5, r)) & half((0, -1, 0), o)
+        leg = half((0, 1, 0), o) & half((0, -1, 0), (0, -1, 0))
+        body = bend
+        for x in (0.5, -0.5):
+            body = body | (im.Set(im.cylinder((x, 0, 0), (0, 1, 0), r)) & leg)
+        volume, euler = math.pi * r * r * (0.5 * math.pi + 2), 2
+    body = body.turned((0.1, 0.2, 0.3), tuple(rng.normal(size=3)), float(rng.uniform(0, 6)))
+    body = body.translated(tuple(rng.uniform(-3, 3, 3)))
+    return Body(kind, t, body, float(volume), euler)
+
+
+@pytest.mark.parametrize("seed", range(500 if SOAK else 14))
+def test_the_volume_is_proved_or_refused_with_what_is_reached(seed: int) -> None:
+    of = thin(seed)
+    asked = float(10 ** np.random.default_rng([8, seed]).uniform(-4, -1.5)) * of.volume
+    try:
+        mass = of.set.mass(accuracy=asked)
+    except moldloft.Error as error:
+        reached = float(re.search(r"known to (\S+), not", str(error))[1])
+        assert reached > asked
+        mass = of.set.mass(accuracy=1.01 * reached)
+        asked = 1.01 * reached
+    low, high = mass.volume_bracket
+    assert low <= mass.volume <= high
+    assert low <= of.volume * (1 + 1e-9) and high >= of.volume * (1 - 1e-9), of
+    assert abs(mass.volume - of.volume) <= asked
+
+
+@pytest.mark.parametrize("seed", range(500 if SOAK else 14))
+def test_facets_to_an_accuracy_are_one_body_with_the_right_holes(seed: int) -> None:
+    of = thin(seed)
+    accuracy = float(10 ** np.random.default_rng([9, seed]).uniform(-3.5, -1.5))
+    try:
+        facets = of.set.facets(accuracy=accuracy, limit=2e5 if SOAK else 3e4)
+    except moldloft.Error as error:
+        # What would do is named: a depth for what is thin, a limit for what is fine.
+        assert re.search(r"depth = \d+ would show it|limit", str(error)), error
+        return
+    assert facets.closed and facets.bodies == 1 and facets.euler == of.euler, of
+    assert facets.best_volume == pytest.approx(of.volume, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("kind", "thickness"), [("plate", 0.03), ("ring", 0.1), ("rod", 0.08), ("shell", 0.06)]
+)
+def test_the_depth_that_is_named_shows_the_part(kind: str, thickness: float) -> None:
+    o, z, turn = (0, 0, 0), (0, 0, 1), ((0, 0, 0), (1, 2, 3), 0.7)
+    body, euler = {
+        "plate": (im.cuboid(o, (1, 1, thickness)), 2),
+        "ring": (im.Set(im.torus(o, z, 1, 0.5 * thickness)), 0),
+        "rod": (between(im.Set(im.cylinder(o, z, 0.5 * thickness)), 0, 1), 2),
+        "shell": (im.Set(im.sphere(o, 1)) - im.sphere(o, 1 - thickness), 4),
+    }[kind]
+    body = body.turned(*turn)
+    with pytest.raises(moldloft.Error, match="would show it") as refused:
+        body.facets(accuracy=0.2 * thickness, limit=1000)
+    depth = int(re.search(r"depth = (\d+)", str(refused.value))[1])
+    assert depth <= 9
+    facets = body.facets(depth=depth)
+    assert facets.closed and facets.bodies == 1 and facets.euler == euler
+
+
+@pytest.mark.parametrize("offset", [0.0, 1.0, 1e3, 1e6])
+@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1.0, 1e6])
+def test_measures_do_not_depend_on_place_and_size(offset: float, scale: float) -> None:
+    def part(s: float, at: float) -> im.Set:
+        ball = im.Set(im.sphere((at, -at, at), s))
+        return ball - im.cylinder((at + 0.3 * s, -at, at), (0, 0, 1), 0.4 * s)
+
+    first, at = part(1.0, 0.0).mass(), offset * scale
+    other = part(scale, at).mass()
+    assert other.volume == pytest.approx(first.volume * scale**3, rel=1e-9)
+    centre = (np.array(other.centroid) - [at, -at, at]) / scale
+    assert np.abs(centre - first.centroid).max() < 1e-9
+    assert np.abs(other.inertia / scale**5 - first.inertia).max() < 1e-9
