@@ -20,6 +20,9 @@ BODIES = 2000 if SOAK else 60
 
 STEP = 1e-3
 
+#: The numbers of the pieces, but those that follow from them.
+NUMBERS = {"A", "B", "C", "D", "H", "R", "W", "MX", "MY", "MZ"}
+
 
 def box(rng: np.random.Generator, name: str) -> str:
     """A box of whole sizes."""
@@ -96,7 +99,7 @@ def test_derivatives_on_a_grid(curved):
         if made is None:
             continue
         sketch, _ = made
-        names = [n for n in sketch.dimensions if n.split(".")[-1] in "A B C D H R W MX MY MZ".split()]
+        names = [n for n in sketch.dimensions if n.split(".")[-1] in NUMBERS]
         chosen = [str(n) for n in rng.permutation(names)[:3]]
         gradient = sketch.gradient(chosen)
         bodies += 1
@@ -154,7 +157,9 @@ def test_a_body_on_another_one_has_two_derivatives():
         sketch.run(f"{text}\nDIM W X 1 2 4\nDIM D Y 1 4 4\nDIM H Z 1 5 4\nGENERATE FACES")
     sketch.run("VARIABLE MZ 4; MOVE B 0 0 MZ FEATURE; UNION A B INTO U; USING U")
     gradient = sketch.gradient(["MZ", "A.W", "B.H"])
-    assert np.isnan(gradient.volume[0]) and gradient.kinks[0].startswith("faces lie in each other at")
+    assert np.isnan(gradient.volume[0]) and gradient.kinks[0].startswith(
+        "faces lie in each other at"
+    )
     # The sides are in one plane: the area alone has two derivatives, by the step that comes.
     assert gradient.volume[1:] == pytest.approx([16, 16], rel=1e-12)
     assert np.isnan(gradient.area[1]) and "an edge lies in another face" in gradient.kinks[1]

@@ -66,7 +66,7 @@ def test_names_follow(two):
 
 def test_circles_and_unknown_names_are_refused(two):
     two.run("USING A")
-    with pytest.raises(SketchError, match="reads b.w, which has no value"):
+    with pytest.raises(SketchError, match=r"reads b\.w, which has no value"):
         two.run('SET H "B.W"')
     with pytest.raises(SketchError, match=r"reads b.nothing, which has no value"):
         two.run('SET H "B.NOTHING"')

@@ -5,10 +5,10 @@
 //! other, so the volume has two one-sided derivatives; where an edge lies in a face that moves otherwise, the area has.
 //! More faces than three at a point change neither in first order.
 
-use super::combine::{FacetSource, PARTING, settled};
+use super::combine::{FacetSource, moves, settled};
 use super::mass::Mass;
 use super::surface::{Carrier, FaceSurface, meet};
-use crate::solid::arrangement::Coincidence;
+use crate::solid::arrangement::SurfaceCoincidence;
 use moldloft_num::{Real, Vec3};
 use moldloft_syntax::number::plain;
 
@@ -108,12 +108,13 @@ impl<T: Real> Tangent<T> {
     }
 }
 
-/// The kinks of an arrangement.
+/// The kinks of an arrangement. Tools that are `fitted` move with the round faces and edges that they touch.
 pub(super) fn kinks<T: Real>(
-    shared: &[Coincidence],
+    shared: &[SurfaceCoincidence],
     points: &[Vec3],
     sources: &[FacetSource<T>],
     scale: f64,
+    fitted: bool,
 ) -> Vec<Kink> {
     let mut found: Vec<Kink> = Vec::new();
     let known = |found: &[Kink], k: usize, volume: bool| {
@@ -122,7 +123,8 @@ pub(super) fn kinks<T: Real>(
     for one in shared {
         let surfaces: Vec<&FaceSurface<T>> =
             one.sources.iter().map(|&(o, t)| &sources[o].surfaces[t as usize]).collect();
-        if (1..T::PARTS).all(|k| known(&found, k, one.region)) {
+        let flat = || surfaces.iter().all(|s| matches!(s, FaceSurface::Plane { .. }));
+        if (1..T::PARTS).all(|k| known(&found, k, one.region)) || (fitted && !flat()) {
             continue;
         }
         for &v in &one.points {
@@ -162,7 +164,8 @@ fn apart<T: Real>(
             }
         }
     }
-    let at = if region || best.0 < 1e-3 {
+    let tangent_all = best.0 < 1e-3;
+    let at = if region || tangent_all {
         // On the first one.
         let first = rough[0];
         let by = rates(|k| first.normal * -first.off.part(k));
@@ -184,12 +187,14 @@ fn apart<T: Real>(
     };
     let exact: Option<Vec<Tangent<T>>> = surfaces.iter().map(|s| tangent(at, s)).collect();
     let exact = exact?;
-    if exact.iter().any(|t| t.off.re().abs() > 1e-8 * scale) {
+    // Beside a line where round faces only touch they are nearly as near, and move otherwise.
+    let near = if round && !region && tangent_all { 1e-13 } else { 1e-8 };
+    if exact.iter().any(|t| t.off.re().abs() > near * scale) {
         return None;
     }
     let off = |k: usize| {
         let most = exact.iter().map(|t| t.pace(k, scale)).fold(part(at, k).norm(), f64::max);
-        k > 0 && exact.iter().any(|t| t.off.part(k).abs() > PARTING * most)
+        k > 0 && exact.iter().any(|t| moves(t.off.part(k), most))
     };
     Some((0..T::PARTS).map(off).collect())
 }

@@ -105,6 +105,8 @@ pub(super) struct FacetSource<T> {
     pub(super) ranges: Vec<[f64; 2]>,
     /// By edge: points along it with directions, where it has no closed form.
     pub(super) traced: Vec<Vec<(Vec3, Vec3)>>,
+    /// Plane faces, by surface, that do not stay plane.
+    warped: Vec<(u32, Kink)>,
 }
 
 /// The facets of bodies, and what they stand for.
@@ -144,7 +146,13 @@ fn build<T: Real>(
     let mut body = Placing::new(&all, &arranged, scale, fitted).finish(bodies[0].flat)?;
     if T::PARTS > 1 {
         body.kinks.append(&mut all.kinks);
-        let own = coincidence::kinks(&arranged.shared, &arranged.points, &all.sources, scale);
+        for (operand, source) in all.sources.iter().enumerate() {
+            let used =
+                |tag: u32| arranged.faces.iter().any(|f| f.sources.contains(&(operand, tag)));
+            body.kinks.extend(source.warped.iter().filter(|w| used(w.0)).map(|w| w.1));
+        }
+        let own =
+            coincidence::kinks(&arranged.shared, &arranged.points, &all.sources, scale, fitted);
         body.kinks.extend(own);
     }
     Ok((body, arranged.changed))
@@ -181,6 +189,7 @@ fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize]) -> Facett
                 borders: Vec::new(),
                 ranges: Vec::new(),
                 traced: Vec::new(),
+                warped: Vec::new(),
             });
         }
         add_facets(body, operand, &mut operands[operand], &mut all);
@@ -296,7 +305,9 @@ fn add_facets<T: Real>(
                 Some(plane) => carried(plane, ring[0].re(), normal.re()),
                 None => {
                     let all = loops.iter().flatten().map(|&v| at(v));
-                    kinks.extend(warping(normal, ring[0], all, size));
+                    let tag = source.surfaces.len() as u32;
+                    let warped = warping(normal, ring[0], all, size).into_iter();
+                    source.warped.extend(warped.map(|kink| (tag, kink)));
                     FaceSurface::Plane { at: ring[0], normal }
                 }
             };
@@ -344,7 +355,7 @@ fn warping<T: Real>(
         let off = normal.dot(p - base);
         for k in 1..T::PARTS {
             let most = part(p, k).norm() + part(base, k).norm() + size * part(normal, k).norm();
-            if off.part(k).abs() > PARTING * most && out.iter().all(|kink| kink.part != k) {
+            if moves(off.part(k), most) && out.iter().all(|kink| kink.part != k) {
                 out.push(Kink { part: k, at: p.re(), volume: true });
             }
         }
@@ -417,7 +428,15 @@ pub(super) const ON_SURFACE: f64 = 1e-8;
 const MOST_FACETS: usize = 200_000;
 
 /// Faces part in a corner where it leaves one of them by more than this share of the speeds there.
-pub(super) const PARTING: f64 = 1e-6;
+const PARTING: f64 = 1e-6;
+
+/// Speeds that rounding leaves: numbers of bodies are lengths and degrees, so that what moves has a speed of about one.
+const STILL: f64 = 1e-11;
+
+/// Whether something moves, where the speeds around it are that.
+pub(super) fn moves(speed: f64, around: f64) -> bool {
+    speed.abs() > PARTING * around + STILL
+}
 
 /// Two faces beside a side, and the edge of a body that it is part of.
 pub(super) type Kind = (usize, usize, Option<(usize, u32)>);

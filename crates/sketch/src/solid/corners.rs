@@ -1,7 +1,7 @@
 //! Corners of bodies that are combined, and how they and the ends of edges there move.
 
 use super::coincidence::{Kink, StrayPart, Tangent, part, rates};
-use super::combine::{CombineError, Kind, ON_SURFACE, PARTING, Placing, along, triangles_of};
+use super::combine::{CombineError, Kind, ON_SURFACE, Placing, along, moves, triangles_of};
 use super::surface::{Carrier, FaceSurface, meet};
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeSet;
@@ -122,14 +122,18 @@ impl<T: Real> Placing<'_, T> {
             sources.filter_map(|s| Tangent::of(surface(s), at, ON_SURFACE)).collect()
         };
         let all: Vec<Vec<Tangent<T>>> = faces.iter().map(touching).collect();
+        // One that parted in a body that this one is made of.
+        let lost = |k: usize| !part(at, k).is_finite();
         let speeds = |k: usize| all.iter().flatten().map(move |t| t.pace(k, self.scale));
         let off = |t: &Tangent<T>, k: usize| {
             let most = speeds(k).fold(part(at, k).norm(), f64::max);
-            t.off.part(k).abs() > PARTING * most
+            moves(t.off.part(k), most)
         };
-        let leaves = |k: usize| all.iter().any(|own| own.first().is_some_and(|t| off(t, k)));
-        let parted =
-            |k: usize| all.iter().any(|own| !own.is_empty() && own.iter().all(|t| off(t, k)));
+        let leaves =
+            |k: usize| lost(k) || all.iter().any(|own| own.first().is_some_and(|t| off(t, k)));
+        let parted = |k: usize| {
+            lost(k) || all.iter().any(|own| !own.is_empty() && own.iter().all(|t| off(t, k)))
+        };
         let none = |x: T| T::from_parts(|k| if k > 0 && parted(k) { f64::NAN } else { x.part(k) });
         (at.map(none), (1..T::PARTS).any(leaves))
     }
@@ -160,11 +164,7 @@ impl<T: Real> Placing<'_, T> {
                     let ahead = outward(own) - outward(base);
                     let pace = |k| own.pace(k, self.scale) + base.pace(k, self.scale);
                     let rate = |k| {
-                        if k == 0 || ahead.part(k).abs() <= PARTING * pace(k) {
-                            0.0
-                        } else {
-                            ahead.part(k)
-                        }
+                        if k == 0 || !moves(ahead.part(k), pace(k)) { 0.0 } else { ahead.part(k) }
                     };
                     Some(T::from_parts(rate))
                 };

@@ -95,12 +95,12 @@ pub struct Arrangement {
     /// Whether facets are left out, or a place has windings other than 0 and 1.
     pub changed: bool,
     /// Where surfaces lie in each other; lines when they were asked for.
-    pub shared: Vec<Coincidence>,
+    pub shared: Vec<SurfaceCoincidence>,
 }
 
 /// A region that several faces cover, or a line in which more than two of them meet.
 #[derive(Clone, Debug)]
-pub struct Coincidence {
+pub struct SurfaceCoincidence {
     /// The corners of the region, or the ends of the line.
     pub points: Vec<u32>,
     /// The faces: operand and tag.
@@ -255,7 +255,7 @@ fn shared_lines(
     facets: &[Facet],
     cuts: &Cuts,
     chains: &Chains,
-) -> Vec<Coincidence> {
+) -> Vec<SurfaceCoincidence> {
     let mut through: BTreeMap<(u32, u32), BTreeSet<(usize, u32)>> = BTreeMap::new();
     for (f, facet) in facets.iter().enumerate() {
         let cut = cuts.get(&f).into_iter().flatten().map(|[p, q]| [pool.add(*p), pool.add(*q)]);
@@ -268,7 +268,7 @@ fn shared_lines(
         }
     }
     (through.into_iter().filter(|(_, sources)| sources.len() > 2))
-        .map(|((a, b), sources)| Coincidence {
+        .map(|((a, b), sources)| SurfaceCoincidence {
             points: vec![a, b],
             sources: sources.into_iter().collect(),
             region: false,
@@ -421,7 +421,7 @@ fn all_regions(
     members: &[Vec<usize>],
     segments: &[BTreeSet<(u32, u32)>],
     chains: &Chains,
-) -> Result<(Vec<ArrangedRegion>, bool, Vec<Coincidence>), ArrangeError> {
+) -> Result<(Vec<ArrangedRegion>, bool, Vec<SurfaceCoincidence>), ArrangeError> {
     let (mut found, mut shared) = (Vec::new(), Vec::new());
     let mut other = false;
     for (s, own) in members.iter().enumerate() {
@@ -453,7 +453,7 @@ fn all_regions(
             sources.sort_unstable();
             sources.dedup();
             if sources.len() > 1 {
-                shared.push(Coincidence { points: loops.concat(), sources, region: true });
+                shared.push(SurfaceCoincidence { points: loops.concat(), sources, region: true });
             }
             if turns == [0, 0] {
                 other |= !covers.is_empty();
