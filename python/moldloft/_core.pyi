@@ -474,7 +474,11 @@ class SketchSession:
     def gradient(
         self, name: str, by: list[str]
     ) -> tuple[
-        NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        list[str | None],
     ]: ...
     def sweep(self, name: str, by: str, values: list[float]) -> NDArray[np.float64]: ...
     def picture(

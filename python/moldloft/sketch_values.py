@@ -165,7 +165,11 @@ class Gradient:
     centroid
         Shape ``(n, 3)``.
     points
-        Of the vertices of :meth:`Sketch.mesh` that are corners of the body, ``(n, vertices, 3)``.
+        Of the vertices of :meth:`Sketch.mesh` that are corners of the body, ``(n, vertices, 3)``;
+        NaN where one becomes several.
+    kinks
+        For each name None, or where and why the area, or all three figures, have no derivative
+        but one on each side; those are NaN.
     """
 
     by: tuple[str, ...]
@@ -173,6 +177,7 @@ class Gradient:
     area: NDArray[np.float64]
     centroid: NDArray[np.float64]
     points: NDArray[np.float64]
+    kinks: tuple[str | None, ...] = ()
 
 
 @dataclass(frozen=True)

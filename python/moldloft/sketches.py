@@ -669,8 +669,8 @@ class Sketch:
         -------
         Gradient
             For each dimension the change of each figure for a change of 1. It is NaN where there
-            is none: where faces of a body that was combined meet in a corner by chance, and part
-            as the number changes.
+            is one on each side: where faces of combined bodies lie in each other, or an edge in a
+            face, and do not move alike. ``kinks`` says where; :meth:`sweep` gives differences.
 
         Raises
         ------
@@ -680,7 +680,8 @@ class Sketch:
         of = self._name(name)
         if by is None:
             by = [row[0] for row in self._session.numbers(of) if row[1] is not None]
-        return Gradient(tuple(by), *self._session.gradient(of, list(by)))
+        *figures, kinks = self._session.gradient(of, list(by))
+        return Gradient(tuple(by), *figures, tuple(kinks))
 
     def sweep(self, by: str, values: ArrayLike, *, name: str | None = None) -> NDArray[np.float64]:
         """Volume, area and centroid at each value of a dimension, ``(n, 5)``; the sketch stays.

@@ -142,6 +142,24 @@ def test_two_prompts_on_one_file(tmp_path, kill):
     assert path.read_text() == SLAB
 
 
+def test_a_save_past_the_journal_of_another_prompt(tmp_path):
+    # The first one is killed; the second one has the file, but not the first one's journal beside
+    # it, and its own stays whole when it saves.
+    environment = {**os.environ, "XDG_STATE_HOME": str(tmp_path / "state"), "PYTHONUNBUFFERED": "1"}
+    path = tmp_path / "slab.skt"
+    path.write_text(SLAB)
+    first = Prompt(path, environment)
+    assert first.set(3)
+    first.kill()
+    second = Prompt(path, environment)
+    assert second.set(4)
+    assert second.ask("SAVE slab.skt\nMEASURE VOLUME\n", 160)
+    assert Sketch.load(path).volume == pytest.approx(160)
+    assert second.set(7)
+    second.kill()
+    assert resumed(environment, tmp_path) == pytest.approx(280)
+
+
 def test_prompts_that_begin_at_once_and_are_killed(tmp_path):
     chance = random.Random(20)
     for turn in range(ROUNDS):

@@ -34,9 +34,9 @@ CHANGES = 20 if SOAK else 5
 BOUND = 1e-9
 
 #: Volumes that OCCT misses by more than the bound at every scale, by the seed and the change, from
-#: a quadrature of their slices: a cone cut by the planes of a prism is off by 1.86e-9 there, and
-#: right to 1e-15 here.
-QUADRATURE = {(34, 10): 3.3509768333404213}
+#: quadratures: a cone cut by the planes of a prism is off by 1.86e-9 there, a ring less a bar near
+#: its middle plane by 1.2e-8; here both are right to 1e-14.
+QUADRATURE = {(34, 10): 3.3509768333404213, (7, 8): 280.4846162370201}
 
 #: Edges of two round surfaces are splines within 1e-7 in OCCT, whatever the size of the body: the
 #: larger it is, the more exact is what it makes.
@@ -168,16 +168,17 @@ def test_derivatives_of_parts_are_their_differences(curved):
             exact = np.array(
                 [gradient.volume[place], gradient.area[place], *gradient.centroid[place]]
             )
-            # None where faces meet in a corner by chance, and part.
-            if np.isnan(exact).all():
+            # None where faces lie in each other, or an edge in a face, and do not move alike.
+            known = ~np.isnan(exact)
+            if not known.all():
+                assert gradient.kinks[place], (seed, names[k])
                 refused += 1
-                continue
-            off = np.abs(exact - (4 * narrow - wide) / 3).max()
+            off = np.abs(exact - (4 * narrow - wide) / 3)[known].max(initial=0)
             assert off < 1e-5 * size, (seed, names[k], exact, narrow, part.words)
-            compared += 1
+            compared += int(known.all())
+    print(compared, refused)
     assert compared >= (300 if SOAK else 5)
-    # Drawn with round numbers, parts meet by chance more often than others.
-    assert refused <= max(3, 0.25 * compared)
+    assert refused <= max(1, 0.02 * compared)
 
 
 @pytest.mark.parametrize("tolerance", [3e-3, 1e-4])

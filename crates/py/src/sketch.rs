@@ -425,7 +425,7 @@ impl PySketch {
     }
 
     /// Derivatives by dimensions: of the volume, of the area, of the centroid `(n, 3)`, of the body's
-    /// vertices `(n, vertices, 3)`.
+    /// vertices `(n, vertices, 3)`; and where a measure has two, one on each side.
     #[allow(clippy::type_complexity)]
     fn gradient<'py>(
         &self,
@@ -437,6 +437,7 @@ impl PySketch {
         Bound<'py, PyArray1<f64>>,
         Bound<'py, PyArray2<f64>>,
         Bound<'py, PyArray3<f64>>,
+        Vec<Option<String>>,
     )> {
         // Whether it is the object that is missing or one of the numbers.
         self.lock(py).object(name).ok_or_else(|| no_object(name))?;
@@ -454,6 +455,7 @@ impl PySketch {
             PyArray1::from_vec(py, gradient.area),
             arrays::filled(py, [n, 3], |out| out.copy_from_slice(&gradient.centroid)).0,
             arrays::filled(py, [n, vertices, 3], |out| out.copy_from_slice(&points)).0,
+            gradient.kinks.iter().map(|k| k.map(|k| k.to_string())).collect(),
         ))
     }
 

@@ -76,7 +76,7 @@ pub use command::{
 };
 pub use dimension::expr::{DimensionExpr, FUNCTIONS, NoValue};
 pub use dimension::layout::{
-    Count, DimensionFault, DimensionLayout, Loose, agree, chain, chain_text, solve,
+    Count, DimensionFault, DimensionLayout, Loose, agree, chain, chain_text, numbers, solve,
 };
 pub use dimension::solver::scale;
 pub use dimension::{Dimension, DimensionRole, MeasuredQuantity, Variable};
@@ -97,9 +97,11 @@ pub use format::script::script;
 pub use format::{dxf, export, json, json_format};
 pub use moldloft_mesh::triangulate;
 pub use object::{Reference, SketchFace, SketchObject};
+pub use solid::coincidence::Kink;
 pub use solid::feature::{NoBody, TreatmentFault, body};
 pub use solid::gradient::{SolidGradient, Swept, gradient};
 pub use solid::mass::Mass;
+pub use solid::merge::identifier;
 pub use solid::ruled_faces::RoundFace;
 pub use solid::{SketchSolid, curve, faces, merge, solid};
 

@@ -191,11 +191,13 @@ class Host:
         elif self.busy:
             raise FileError(f"cannot write `{path}`: {self.busy}")
         else:
-            if self.journal is not None and whole:
+            # One in the state folder is resumed without the file: it keeps everything.
+            holds = whole and self.journal is not None and self.journal.beside_file
+            if self.journal is not None and holds:
                 self.journal.saving(digest(data))
             put(path, data, expected=self.present)
             self.present = digest(data)
-            self.rewritten = whole
+            self.rewritten = holds
         if path.suffix.lower() in (".skt", ".json") and whole:
             self.saved = self.session.journal_length()
 

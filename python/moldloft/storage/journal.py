@@ -247,6 +247,11 @@ class Journal:
                 raise
             self._length += len(data)
 
+    @property
+    def beside_file(self) -> bool:
+        """Whether it stands beside the file that is edited, not in the state folder."""
+        return self._base is not None
+
     def saving(self, digest: str) -> None:
         """The file beside it is about to be written, with everything so far in it."""
         self.append([_IN_FILE + digest])

@@ -91,6 +91,17 @@ impl Document {
             Value::Vector(v) => v.is_finite(),
             _ => true,
         };
+        let alone = match &value {
+            Value::Number(x) => x.re().is_finite(),
+            Value::Vector(v) => v.re().is_finite(),
+            _ => true,
+        };
+        if !finite && alone {
+            let message = format!("`{}` has no derivative here", text.trim());
+            let next =
+                "it may have one on each side: change the parameter a little, or take differences";
+            return Err(vec![Diagnostic::error("no-derivative", message).help(next)]);
+        }
         if !finite {
             let message = format!("`{}` is not a finite number", text.trim());
             return Err(vec![Diagnostic::error("not-finite", message).expected("a finite number")]);

@@ -96,6 +96,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     pub fn sketch(&mut self, file: &Arc<SketchFile>, site: Site) {
         file.faults.iter().for_each(|fault| self.report(fault.clone()));
         self.note_unit(file, site.span);
+        let mut given = Vec::new();
         for drawn in &file.objects {
             let prefix = file.prefix(drawn);
             let mut values = BTreeMap::new();
@@ -108,6 +109,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     Err(diagnostic) => self.report(diagnostic),
                 }
             }
+            given.push((prefix, values));
+        }
+        share_numbers(&file.objects, &mut given);
+        for (drawn, (prefix, values)) in file.objects.iter().zip(given) {
             self.drawn(drawn, &prefix, &values, site);
             // Found under its own name as well, and in small letters: sketches do not tell them apart.
             let own = crate::model_file::names::identifier(&drawn.object.name);
@@ -404,6 +409,35 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 self.report(crate::source::fault_location::unplaced(&fault).at(names.site.span));
                 None
             }
+        }
+    }
+}
+
+/// Adds to the values of each object the numbers of the others, by the names that expressions have for them.
+fn share_numbers<T: Scalar>(objects: &[Drawn], given: &mut [(String, BTreeMap<String, T>)]) {
+    if objects.iter().all(|d| moldloft_sketch::command::foreign(&d.object).is_empty()) {
+        return;
+    }
+    // A number may read another one that reads a third: as often as there are objects.
+    let mut shared: BTreeMap<String, T> = BTreeMap::new();
+    for _ in objects {
+        let before = shared.len();
+        for (drawn, (_, own)) in objects.iter().zip(&*given) {
+            let mut known = shared.clone();
+            known.extend(own.iter().map(|(name, x)| (name.clone(), *x)));
+            let name = moldloft_sketch::identifier(&drawn.object.name).to_ascii_lowercase();
+            let values = moldloft_sketch::numbers(&drawn.object, &known);
+            let own = values.into_iter().filter(|(key, _)| drawn.object.has_name(key));
+            shared.extend(own.map(|(key, x)| (format!("{name}.{key}"), x)));
+        }
+        if shared.len() == before {
+            break;
+        }
+    }
+    for (drawn, (_, own)) in objects.iter().zip(given) {
+        let others = shared.iter().filter(|(name, _)| !drawn.object.has_name(name));
+        for (name, x) in others {
+            own.entry(name.clone()).or_insert(*x);
         }
     }
 }

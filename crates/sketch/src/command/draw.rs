@@ -302,6 +302,11 @@ impl SketchSession {
             args.end()?;
             self.known(&name)?;
             let key = name.to_lowercase();
+            for (reader, names) in self.readers(&name) {
+                let text = format!("{reader} reads {}, which has no value now", names.join(", "));
+                let about = ReplySubject::of("no-value").names(names.iter());
+                self.out.push(CommandReply { about, ..CommandReply::warning(text) });
+            }
             self.state.objects.shift_remove(&key);
             if self.state.active.as_ref() == Some(&key) {
                 self.state.active = None;

@@ -9,6 +9,7 @@ mod features;
 mod files;
 mod info;
 mod objects;
+mod others;
 mod question;
 mod sensitivity;
 mod session;
@@ -21,6 +22,7 @@ pub mod words;
 
 pub use error::CommandError;
 pub use features::no_body;
+pub use others::foreign;
 pub(crate) use session::Picture;
 pub use session::{CommandReply, Files, NullFiles, OutFile, SketchSession};
 pub use subject::{ReplySubject, Suggestion};

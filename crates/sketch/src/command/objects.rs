@@ -46,6 +46,7 @@ impl SketchSession {
         if from != to {
             self.free_name(&new)?;
         }
+        self.rename_read(&object.name, &new);
         object.name = new;
         // It keeps its place in the list.
         let place = self.state.objects.get_index_of(&from).unwrap_or(0);

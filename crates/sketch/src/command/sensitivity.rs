@@ -2,7 +2,6 @@
 
 use super::SketchSession;
 use crate::{DimensionFault, Estimate, Planes, SolidGradient, Swept, gradient, solid, solve};
-use std::collections::BTreeMap;
 
 impl SketchSession {
     /// The body at each of the values of a dimension or variable; the session stays as it is.
@@ -21,9 +20,11 @@ impl SketchSession {
             return Err(name.to_owned());
         }
         let planes = Planes::of(&object.drawing);
+        let others = self.state.others(&object);
         let estimate = || Estimate::of(&object.drawing, &planes, object.reference()?.point);
         let at = |&value: &f64| {
-            let given = BTreeMap::from([(key.clone(), value)]);
+            let mut given = others.clone();
+            given.insert(key.clone(), value);
             let layout = solve(&object, &planes, &given, &estimate);
             let refused =
                 layout.faults.iter().any(|f| !matches!(f, DimensionFault::Redundant { .. }));
@@ -40,6 +41,6 @@ impl SketchSession {
     /// As there, or the name of an object that there is none of.
     pub fn gradient(&self, object: &str, by: &[String]) -> Result<SolidGradient, String> {
         let object = self.object(object).ok_or(object)?;
-        gradient(object, &Planes::of(&object.drawing), by)
+        gradient(object, &Planes::of(&object.drawing), by, &self.state.others(object))
     }
 }

@@ -1,6 +1,7 @@
 //! A session: objects, undo, journal, and the dispatch of commands.
 
 use super::args::Args;
+use super::others::OtherNumbers;
 use super::question::Question;
 use super::subject::ReplySubject;
 use super::words::{self, Command};
@@ -162,6 +163,8 @@ pub(crate) struct Worked {
     pub object: Arc<SketchObject>,
     pub view: Arc<DrawingCache>,
     pub layout: DimensionLayout<f64>,
+    /// Numbers of other objects that it reads.
+    others: OtherNumbers,
     body: std::sync::OnceLock<Result<SketchSolid<f64>, NoBody>>,
 }
 
@@ -673,12 +676,23 @@ impl SketchSession {
 
     /// An object with its layout and body, from memory when it is the very same.
     pub(crate) fn worked(&mut self, object: &Arc<SketchObject>) -> Arc<Worked> {
-        if let Some(known) = self.worked.iter().find(|w| Arc::ptr_eq(&w.object, object)) {
+        self.worked_with(object, self.state.others(object))
+    }
+
+    /// The same, with the numbers of other objects as they were or are.
+    pub(super) fn worked_with(
+        &mut self,
+        object: &Arc<SketchObject>,
+        others: OtherNumbers,
+    ) -> Arc<Worked> {
+        let same = |w: &&Arc<Worked>| Arc::ptr_eq(&w.object, object) && w.others == others;
+        if let Some(known) = self.worked.iter().find(same) {
             return Arc::clone(known);
         }
-        let (view, layout) = self.laid_out(object);
+        let view = self.view(object);
+        let layout = lay_out(object, &view, &others);
         let body = std::sync::OnceLock::new();
-        let worked = Arc::new(Worked { object: Arc::clone(object), view, layout, body });
+        let worked = Arc::new(Worked { object: Arc::clone(object), view, layout, others, body });
         if self.worked.len() >= 4 {
             self.worked.remove(0);
         }
@@ -692,7 +706,7 @@ impl SketchSession {
         object: &SketchObject,
     ) -> (Arc<DrawingCache>, DimensionLayout<f64>) {
         let view = self.view(object);
-        let layout = lay_out(object, &view, &BTreeMap::new());
+        let layout = lay_out(object, &view, &self.state.others(object));
         (view, layout)
     }
 

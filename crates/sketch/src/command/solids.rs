@@ -617,9 +617,11 @@ impl SketchSession {
         let tolerance = tolerance.filter(|t| *t >= 0.0).unwrap_or(1e-6 * size);
         let placed: Vec<Placed> =
             parts.iter().map(|(o, at)| Placed { object: o, at: at.clone() }).collect();
+        let others: BTreeMap<String, f64> =
+            parts.iter().flat_map(|(o, _)| self.state.others(o)).collect();
         let solve = |o: &SketchObject| {
             let planes = crate::Planes::of(&o.drawing);
-            crate::solve(o, &planes, &BTreeMap::new(), &|| {
+            crate::solve(o, &planes, &others, &|| {
                 crate::Estimate::of(&o.drawing, &planes, o.reference()?.point)
             })
         };

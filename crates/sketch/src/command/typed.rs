@@ -308,8 +308,10 @@ impl SketchSession {
             self.state.objects.iter().map(|(k, o)| (k.clone(), Arc::clone(o))).collect();
         for (key, object) in now {
             match before.objects.get(&key) {
-                Some(old) if Arc::ptr_eq(old, &object) => {}
-                old => out.extend(self.change(old, &object)),
+                Some(old)
+                    if Arc::ptr_eq(old, &object)
+                        && before.others(old) == self.state.others(old) => {}
+                old => out.extend(self.change(old, &object, before)),
             }
         }
         out
@@ -319,6 +321,7 @@ impl SketchSession {
         &mut self,
         old: Option<&Arc<SketchObject>>,
         new: &Arc<SketchObject>,
+        before: &SessionState,
     ) -> Option<ObjectChange> {
         let nothing = Arc::new(SketchObject::new(&new.name, new.drawing.section));
         let mut change = ObjectChange {
@@ -328,7 +331,7 @@ impl SketchSession {
         };
         let old = old.unwrap_or(&nothing);
         let (a, b) = (&old.drawing, &new.drawing);
-        let (work_a, work_b) = (self.worked(old), self.worked(new));
+        let (work_a, work_b) = (self.worked_with(old, before.others(old)), self.worked(new));
         let place = |w: &super::session::Worked, p: PointId| {
             CoordinateAxis::ALL.map(|axis| w.layout.coordinate(&w.view.planes, axis, p))
         };

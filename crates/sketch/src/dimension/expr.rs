@@ -5,22 +5,33 @@ use moldloft_num::Real;
 use moldloft_syntax::sdl::{self, BinaryOp, ExprId, ExprKind, Grouping, Program, Step, UnaryOp};
 use std::fmt;
 
-/// The functions an expression may call. The last ones, from [`FIRST_OF_TWO`] on, take two arguments.
-pub const FUNCTIONS: [&str; 17] = [
-    "sqrt", "abs", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "ln", "floor", "ceil",
-    "round", "min", "max", "atan2", "mod",
+/// The functions an expression may call: those of the model language that make a number of numbers, and `ln`.
+pub const FUNCTIONS: [&str; 27] = [
+    "sqrt", "abs", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "ln", "log", "log10",
+    "sinh", "cosh", "tanh", "sign", "floor", "ceil", "round", "atan2", "hypot", "mod", "div",
+    "clamp", "where", "min", "max",
 ];
 
-/// The index of the first function of two arguments.
-const FIRST_OF_TWO: usize = 13;
+/// How many arguments a function takes, by its index: the least and the most.
+fn arity(function: usize) -> [usize; 2] {
+    match FUNCTIONS[function] {
+        "atan2" | "hypot" | "mod" | "div" => [2; 2],
+        "clamp" | "where" => [3; 2],
+        "min" | "max" => [1, usize::MAX],
+        _ => [1; 2],
+    }
+}
 
 #[derive(Clone, Debug, PartialEq)]
 enum ExprOp {
     Number(f64),
     Name(String),
     Negate,
+    Not,
+    /// Arithmetic, and comparisons and connections of conditions.
     Binary(BinaryOp),
-    Call(usize),
+    /// A function and how many arguments it has.
+    Call(usize, usize),
 }
 
 /// An expression in the grammar of SDL, of numbers only; angles are in degrees, as in all of this
@@ -67,6 +78,9 @@ impl DimensionExpr {
         }
         let mut ops = Vec::new();
         compile(&program, root, &mut ops)?;
+        if !is_number(&ops) {
+            return Err(format!("`{text}` is not a number, or has a condition in place of one"));
+        }
         Ok(DimensionExpr { text: text.to_owned(), ops })
     }
 
@@ -129,49 +143,113 @@ impl DimensionExpr {
                 ExprOp::Number(x) => T::from(*x),
                 ExprOp::Name(name) => value(name).ok_or_else(|| NoValue { name: name.clone() })?,
                 ExprOp::Negate => -pop(&mut stack),
+                ExprOp::Not => truth(pop(&mut stack).re() == 0.0),
                 ExprOp::Binary(op) => {
                     let (right, left) = (pop(&mut stack), pop(&mut stack));
-                    match op {
-                        BinaryOp::Add => left + right,
-                        BinaryOp::Sub => left - right,
-                        BinaryOp::Mul => left * right,
-                        BinaryOp::Div => left / right,
-                        _ => power(left, right),
-                    }
+                    binary_value(*op, left, right)
                 }
-                ExprOp::Call(k) if *k >= FIRST_OF_TWO => {
-                    let (y, x) = (pop(&mut stack), pop(&mut stack));
-                    match FUNCTIONS[*k] {
-                        "min" => x.min(y),
-                        "max" => x.max(y),
-                        "atan2" => x.atan2(y) * (180.0 / std::f64::consts::PI),
-                        _ => x - y * (x.re() / y.re()).floor(),
-                    }
-                }
-                ExprOp::Call(k) => {
-                    let x = pop(&mut stack);
-                    let degree = std::f64::consts::PI / 180.0;
-                    match FUNCTIONS[*k] {
-                        "sqrt" => x.sqrt(),
-                        "abs" => x.abs(),
-                        "sin" => (x * degree).sin(),
-                        "cos" => (x * degree).cos(),
-                        "tan" => (x * degree).tan(),
-                        "asin" => x.asin() / degree,
-                        "acos" => x.acos() / degree,
-                        "atan" => x.atan() / degree,
-                        "exp" => x.exp(),
-                        "floor" => T::from(x.re().floor()),
-                        "ceil" => T::from(x.re().ceil()),
-                        "round" => T::from(x.re().round()),
-                        _ => x.ln(),
-                    }
+                ExprOp::Call(k, count) => {
+                    let arguments = stack.split_off(stack.len().saturating_sub(*count));
+                    call(FUNCTIONS[*k], &arguments)
                 }
             };
             stack.push(next);
         }
         Ok(pop(&mut stack))
     }
+}
+
+/// A condition as a number.
+fn truth<T: Real>(holds: bool) -> T {
+    T::from(f64::from(u8::from(holds)))
+}
+
+fn binary_value<T: Real>(op: BinaryOp, left: T, right: T) -> T {
+    let (a, b) = (left.re(), right.re());
+    match op {
+        BinaryOp::Add => left + right,
+        BinaryOp::Sub => left - right,
+        BinaryOp::Mul => left * right,
+        BinaryOp::Div => left / right,
+        BinaryOp::Lt => truth(a < b),
+        BinaryOp::Gt => truth(a > b),
+        BinaryOp::Le => truth(a <= b),
+        BinaryOp::Ge => truth(a >= b),
+        BinaryOp::Eq => truth(a == b),
+        BinaryOp::Ne => truth(a != b),
+        BinaryOp::And => truth(a != 0.0 && b != 0.0),
+        BinaryOp::Or => truth(a != 0.0 || b != 0.0),
+        _ => power(left, right),
+    }
+}
+
+/// A function of as many numbers as it takes; angles are in degrees.
+fn call<T: Real>(function: &str, x: &[T]) -> T {
+    let degree = std::f64::consts::PI / 180.0;
+    match (function, x) {
+        ("min", [first, rest @ ..]) => rest.iter().fold(*first, |a, b| a.min(*b)),
+        ("max", [first, rest @ ..]) => rest.iter().fold(*first, |a, b| a.max(*b)),
+        ("atan2", &[y, x]) => y.atan2(x) / degree,
+        ("hypot", &[x, y]) => (x * x + y * y).sqrt(),
+        ("mod", &[x, y]) => x - y * (x.re() / y.re()).floor(),
+        ("div", &[x, y]) => T::from((x.re() / y.re()).floor()),
+        ("clamp", &[x, low, high]) => x.max(low).min(high),
+        ("where", &[condition, a, b]) => {
+            if condition.re() == 0.0 {
+                b
+            } else {
+                a
+            }
+        }
+        (_, &[x]) => match function {
+            "sqrt" => x.sqrt(),
+            "abs" => x.abs(),
+            "sin" => (x * degree).sin(),
+            "cos" => (x * degree).cos(),
+            "tan" => (x * degree).tan(),
+            "asin" => x.asin() / degree,
+            "acos" => x.acos() / degree,
+            "atan" => x.atan() / degree,
+            "exp" => x.exp(),
+            "log10" => x.ln() / std::f64::consts::LN_10,
+            "sinh" => x.sinh(),
+            "cosh" => x.cosh(),
+            "tanh" => x.tanh(),
+            "sign" => T::from(if x.re() == 0.0 { 0.0 } else { x.re().signum() }),
+            "floor" => T::from(x.re().floor()),
+            "ceil" => T::from(x.re().ceil()),
+            "round" => T::from(x.re().round()),
+            _ => x.ln(),
+        },
+        // The compiler has counted the arguments.
+        _ => T::zero(),
+    }
+}
+
+/// Whether operations have numbers where they take them, conditions where they take those, and make a number.
+fn is_number(ops: &[ExprOp]) -> bool {
+    use BinaryOp::{And, Eq, Ge, Gt, Le, Lt, Ne, Or};
+    // Whether each is a condition.
+    let mut stack: Vec<bool> = Vec::new();
+    for op in ops {
+        let (takes, makes): (Vec<bool>, bool) = match op {
+            ExprOp::Number(_) | ExprOp::Name(_) => (vec![], false),
+            ExprOp::Negate => (vec![false], false),
+            ExprOp::Not => (vec![true], true),
+            ExprOp::Binary(And | Or) => (vec![true; 2], true),
+            ExprOp::Binary(Lt | Gt | Le | Ge | Eq | Ne) => (vec![false; 2], true),
+            ExprOp::Binary(_) => (vec![false; 2], false),
+            ExprOp::Call(k, 3) if FUNCTIONS[*k] == "where" => (vec![true, false, false], false),
+            ExprOp::Call(_, count) => (vec![false; *count], false),
+        };
+        let from = stack.len().saturating_sub(takes.len());
+        if stack[from..] != takes[..] {
+            return false;
+        }
+        stack.truncate(from);
+        stack.push(makes);
+    }
+    stack == [false]
 }
 
 /// Whole powers by multiplication, so that a negative base is allowed.
@@ -238,15 +316,20 @@ fn compile(program: &Program, id: ExprId, ops: &mut Vec<ExprOp>) -> Result<(), S
                 ));
             };
             let args = &program[args];
-            let wanted = if k >= FIRST_OF_TWO { 2 } else { 1 };
-            if args.len() != wanted {
-                let many = if wanted == 2 { "two arguments" } else { "one argument" };
-                return Err(format!("`{name}` takes {many}"));
+            let [least, most] = arity(k);
+            if !(least..=most).contains(&args.len()) {
+                let many = match least {
+                    2 => "two arguments",
+                    3 => "three arguments",
+                    _ => "one argument",
+                };
+                let more = if most > least { " or more" } else { "" };
+                return Err(format!("`{name}` takes {many}{more}"));
             }
             for arg in args {
                 compile(program, arg.value, ops)?;
             }
-            ops.push(ExprOp::Call(k));
+            ops.push(ExprOp::Call(k, args.len()));
         }
         _ => return refused(),
     }
@@ -257,15 +340,17 @@ fn sign(op: UnaryOp, ops: &mut Vec<ExprOp>) -> Result<(), String> {
     match op {
         UnaryOp::Plus => {}
         UnaryOp::Minus => ops.push(ExprOp::Negate),
-        UnaryOp::Not => return Err("`not` does not apply to numbers".to_owned()),
+        UnaryOp::Not => ops.push(ExprOp::Not),
     }
     Ok(())
 }
 
 fn binary(op: BinaryOp) -> Result<ExprOp, String> {
-    use BinaryOp::{Add, Caret, Div, Mul, Sub};
+    use BinaryOp::{Add, And, Caret, Div, Eq, Ge, Gt, Le, Lt, Mul, Ne, Or, Sub};
     match op {
-        Add | Sub | Mul | Div | Caret => Ok(ExprOp::Binary(op)),
+        Add | Sub | Mul | Div | Caret | Lt | Gt | Le | Ge | Eq | Ne | And | Or => {
+            Ok(ExprOp::Binary(op))
+        }
         _ => Err(format!("`{}` does not combine numbers to a number", op.spelling())),
     }
 }

@@ -409,6 +409,15 @@ pub fn agree(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0)
 }
 
+/// The values of variables and dimensions, by folded name. `overrides` replaces values, and gives those of other
+/// objects that expressions read.
+pub fn numbers<T: Real>(
+    object: &SketchObject,
+    overrides: &BTreeMap<String, T>,
+) -> BTreeMap<String, T> {
+    evaluate(object, overrides).0
+}
+
 /// Evaluates all variables and dimensions, each after those it reads.
 fn evaluate<T: Real>(
     object: &SketchObject,

@@ -1,6 +1,7 @@
 //! The shapes of an SVG picture: lines, polygons, rectangles, circles, ellipses, and paths of lines and arcs.
 
 use crate::format::page_shapes::PageShapes;
+use crate::format::svg_transform::SvgTransform;
 
 /// Reads the shapes of an SVG text; v runs up, as on the page of a sketch.
 ///
@@ -10,6 +11,8 @@ pub fn svg_shapes(text: &str) -> Result<PageShapes, String> {
     let mut shapes = PageShapes::default();
     let mut known = false;
     let mut hidden: Vec<String> = Vec::new();
+    // The transforms of the elements around.
+    let mut around: Vec<SvgTransform> = Vec::new();
     let mut rest = text;
     while let Some(at) = rest.find('<') {
         rest = &rest[at + 1..];
@@ -25,7 +28,9 @@ pub fn svg_shapes(text: &str) -> Result<PageShapes, String> {
             continue;
         }
         if let Some(name) = tag.strip_prefix('/') {
-            if hidden.last().is_some_and(|h| *h == name.trim()) {
+            if hidden.is_empty() {
+                around.pop();
+            } else if hidden.last().is_some_and(|h| *h == name.trim()) {
                 hidden.pop();
             }
             continue;
@@ -45,10 +50,17 @@ pub fn svg_shapes(text: &str) -> Result<PageShapes, String> {
             continue;
         }
         let attributes = attributes(&body[name.len()..])?;
-        if attributes.iter().any(|a| a.0 == "transform") {
-            return Err(format!("`{local}` has a transform: write the picture without transforms"));
+        let outer = around.last().copied().unwrap_or(SvgTransform::NONE);
+        let place = match attributes.iter().find(|a| a.0 == "transform") {
+            Some((_, text)) => outer.with(text)?,
+            None => outer,
+        };
+        if !alone {
+            around.push(place);
         }
-        element(local, &attributes, &mut shapes)?;
+        let mut own = PageShapes::default();
+        element(local, &attributes, &mut own)?;
+        place.put(own, &mut shapes);
     }
     if known { Ok(shapes) } else { Err("it has no svg element".into()) }
 }
@@ -130,7 +142,7 @@ fn element(name: &str, attributes: &[(&str, &str)], shapes: &mut PageShapes) -> 
 }
 
 /// Numbers with blanks or commas between them, or none where the next begins with a sign or point.
-fn numbers(text: &str) -> Result<Vec<f64>, String> {
+pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     let mut out = Vec::new();
     let mut word = String::new();
     let mut flush = |word: &mut String| -> Result<(), String> {
@@ -299,12 +311,16 @@ mod tests {
         assert!(near(start, [10.0, 0.0]) && near(end, [12.0, -2.0]) && near(corner, [12.0, 0.0]));
         assert!((radius - 2.0).abs() < 1e-12);
         assert_eq!(shapes.left_out.values().sum::<usize>(), 2);
+        let text = "<svg><g transform='scale(2)'><g transform='translate(1 0)'><line x2='1'/></g>\
+            <line x2='1'/></g><line x2='1'/></svg>";
+        let ends: Vec<f64> = svg_shapes(text).unwrap().strokes.iter().map(|s| s[1][0]).collect();
+        assert_eq!(ends, [4.0, 2.0, 1.0]);
         for bad in [
             "",
             "<a/>",
             "<svg",
             "<svg><line x1=\"a\"/></svg>",
-            "<svg><g transform='scale(2)'/></svg>",
+            "<svg><g transform='scale(2'/></svg>",
             "<svg><path d='M 1'/></svg>",
             "<svg><path d='5'/></svg>",
             "<svg><line x1=5/></svg>",

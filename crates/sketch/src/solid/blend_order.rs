@@ -80,7 +80,11 @@ pub(super) fn ordered<T: Real>(
         let straight = own.iter().all(|&k| frames[k].axis.is_none());
         // Chamfers end there in planes that no other rule gives: fillets alone.
         let bevel = matches!(size, BlendSize::Chamfer(_));
-        if degree[v] != 3 || !straight || bevel {
+        if bevel {
+            let text = "edges that stand out and edges that stand in meet, where chamfers can end in several ways";
+            return Err(TreatmentFault::new(text, Some(place), WHOLE));
+        }
+        if degree[v] != 3 || !straight {
             return Err(refused(place));
         }
         mixed.push((alone, others, place));

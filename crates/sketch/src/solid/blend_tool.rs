@@ -75,7 +75,7 @@ impl<T: Real> ToolParts<T> {
 
     fn edge(&mut self, chain: Vec<u32>, piece: Option<SmoothPiece<T>>) -> usize {
         let ends = [chain[0], chain[chain.len() - 1]].map(|v| v as usize);
-        self.solid.edges.push(SolidEdge { ends, piece, curve: None, trace: None });
+        self.solid.edges.push(SolidEdge { ends, piece, ..SolidEdge::default() });
         self.mesh.chains.push(chain);
         self.solid.edges.len() - 1
     }

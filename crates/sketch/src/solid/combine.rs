@@ -7,6 +7,7 @@
 //! from one more step in the scalar (implicit function theorem).
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
+use super::coincidence::{self, Kink, part, rates};
 use super::curve::SmoothPiece;
 use super::near_misses::NearMissSearch;
 use super::nearness::Nearness;
@@ -104,17 +105,21 @@ pub(super) struct FacetSource<T> {
     pub(super) ranges: Vec<[f64; 2]>,
     /// By edge: points along it with directions, where it has no closed form.
     pub(super) traced: Vec<Vec<(Vec3, Vec3)>>,
+    /// Plane faces, by surface, that do not stay plane.
+    warped: Vec<(u32, Kink)>,
 }
 
 /// The facets of bodies, and what they stand for.
-struct Facetted<T> {
-    points: Vec<Vec3<T>>,
-    facets: Vec<Facet>,
-    sources: Vec<FacetSource<T>>,
+pub(super) struct Facetted<T> {
+    pub(super) points: Vec<Vec3<T>>,
+    pub(super) facets: Vec<Facet>,
+    pub(super) sources: Vec<FacetSource<T>>,
     /// By point: whether it is a vertex of its body.
-    vertex: Vec<bool>,
+    pub(super) vertex: Vec<bool>,
     /// By point: the surfaces of its body there, by operand and tag.
-    around: Vec<BTreeSet<(usize, u32)>>,
+    pub(super) around: Vec<BTreeSet<(usize, u32)>>,
+    /// Where the bodies themselves have no derivative.
+    pub(super) kinks: Vec<Kink>,
 }
 
 fn build<T: Real>(
@@ -124,16 +129,32 @@ fn build<T: Real>(
     rule: &dyn Fn([i32; 2]) -> bool,
 ) -> Result<(SketchSolid<T>, bool), CombineError> {
     let mut all = facetted(bodies, operand_of);
+    if all.facets.len() > MOST_FACETS {
+        return Err(CombineError::TooLarge);
+    }
     let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
     let unclear = all.unclear(&plain, crossing);
     if !unclear.is_empty() {
         return Err(CombineError::Coarse(unclear));
     }
-    let arranged = arrangement::arrange(&plain, std::mem::take(&mut all.facets), crossing, rule)?;
+    let facets = std::mem::take(&mut all.facets);
+    let arranged = arrangement::arrange(&plain, facets, [crossing, T::PARTS > 1], rule)?;
     if arranged.faces.is_empty() {
         return Err(CombineError::Empty);
     }
-    let body = Placing::new(&all, &arranged, extent(&plain), fitted).finish(bodies[0].flat)?;
+    let scale = extent(&plain);
+    let mut body = Placing::new(&all, &arranged, scale, fitted).finish(bodies[0].flat)?;
+    if T::PARTS > 1 {
+        body.kinks.append(&mut all.kinks);
+        for (operand, source) in all.sources.iter().enumerate() {
+            let used =
+                |tag: u32| arranged.faces.iter().any(|f| f.sources.contains(&(operand, tag)));
+            body.kinks.extend(source.warped.iter().filter(|w| used(w.0)).map(|w| w.1));
+        }
+        let own =
+            coincidence::kinks(&arranged.shared, &arranged.points, &all.sources, scale, fitted);
+        body.kinks.extend(own);
+    }
     Ok((body, arranged.changed))
 }
 
@@ -156,6 +177,7 @@ fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize]) -> Facett
         sources: Vec::new(),
         vertex: Vec::new(),
         around: Vec::new(),
+        kinks: Vec::new(),
     };
     let mut operands: Vec<FacetSource<T>> = Vec::new();
     for (body, &operand) in bodies.iter().zip(operand_of) {
@@ -167,6 +189,7 @@ fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize]) -> Facett
                 borders: Vec::new(),
                 ranges: Vec::new(),
                 traced: Vec::new(),
+                warped: Vec::new(),
             });
         }
         add_facets(body, operand, &mut operands[operand], &mut all);
@@ -218,6 +241,13 @@ fn add_facets<T: Real>(
     }
     let size = outline.points.iter().map(|p| p.re().distance(outline.points[0].re()));
     let size = size.fold(0.0, f64::max);
+    let mut kinks = body.kinks.clone();
+    for stray in &body.strays {
+        // A face has one plane here.
+        let strays = |k: &usize| stray.ahead.iter().any(|x| x.part(*k) != 0.0);
+        let kink = |part| Kink { part, at: stray.corners[0], volume: true };
+        kinks.extend((1..T::PARTS).filter(strays).map(kink));
+    }
     let mut put =
         |source: &mut FacetSource<T>, surface: FaceSurface<T>, facets: Vec<LoopsAndTags>| {
             let tag = source.surfaces.len() as u32;
@@ -271,7 +301,17 @@ fn add_facets<T: Real>(
         let warped = loops.iter().flatten().map(off).fold(0.0, f64::max) > 1e-10 * size;
         if !warped {
             source.borders.push((border, true));
-            put(source, FaceSurface::Plane { at: ring[0], normal }, vec![(loops, tags)]);
+            let plane = match body.planes.get(&f) {
+                Some(plane) => carried(plane, ring[0].re(), normal.re()),
+                None => {
+                    let all = loops.iter().flatten().map(|&v| at(v));
+                    let tag = source.surfaces.len() as u32;
+                    let warped = warping(normal, ring[0], all, size).into_iter();
+                    source.warped.extend(warped.map(|kink| (tag, kink)));
+                    FaceSurface::Plane { at: ring[0], normal }
+                }
+            };
+            put(source, plane, vec![(loops, tags)]);
             continue;
         }
         // A face that is not plane is its triangles, each with a plane of its own.
@@ -291,6 +331,36 @@ fn add_facets<T: Real>(
     }
     let last = body.faces.last().map(|f| f.names.clone()).unwrap_or_default();
     source.names.resize(source.surfaces.len(), last);
+    all.kinks.append(&mut kinks);
+}
+
+/// A plane through a point with the derivatives of one that it is.
+fn carried<T: Real>([base, turn]: &[Vec3<T>; 2], at: Vec3, normal: Vec3) -> FaceSurface<T> {
+    let sign = if turn.re().dot(normal) < 0.0 { -1.0 } else { 1.0 };
+    let off = turn.dot(Vec3::lifted(at) - *base);
+    let moved = rates(|k| turn.re() * -off.part(k));
+    let turned = rates(|k| part(*turn, k) * sign);
+    FaceSurface::Plane { at: Vec3::lifted(at) + moved, normal: Vec3::lifted(normal) + turned }
+}
+
+/// The parts in which a plane face does not stay one.
+fn warping<T: Real>(
+    normal: Vec3<T>,
+    base: Vec3<T>,
+    corners: impl Iterator<Item = Vec3<T>>,
+    size: f64,
+) -> Vec<Kink> {
+    let mut out: Vec<Kink> = Vec::new();
+    for p in corners {
+        let off = normal.dot(p - base);
+        for k in 1..T::PARTS {
+            let most = part(p, k).norm() + part(base, k).norm() + size * part(normal, k).norm();
+            if moves(off.part(k), most) && out.iter().all(|kink| kink.part != k) {
+                out.push(Kink { part: k, at: p.re(), volume: true });
+            }
+        }
+    }
+    out
 }
 
 /// Whether facets of a round face, counter-clockwise from outside, look to the side of the surface's normal.
@@ -352,26 +422,40 @@ const MOST_HALVINGS: u32 = 16;
 const ROUNDED: f64 = 1e-14;
 
 /// A point is on a surface where it is off it by no more than this share of the surface's size.
-const ON_SURFACE: f64 = 1e-8;
+pub(super) const ON_SURFACE: f64 = 1e-8;
+
+/// More facets than this are refused before they are looked at: they would take minutes.
+const MOST_FACETS: usize = 200_000;
 
 /// Faces part in a corner where it leaves one of them by more than this share of the speeds there.
 const PARTING: f64 = 1e-6;
 
+/// Speeds that rounding leaves: numbers of bodies are lengths and degrees, so that what moves has a speed of about one.
+const STILL: f64 = 1e-11;
+
+/// Whether something moves, where the speeds around it are that.
+pub(super) fn moves(speed: f64, around: f64) -> bool {
+    speed.abs() > PARTING * around + STILL
+}
+
 /// Two faces beside a side, and the edge of a body that it is part of.
-type Kind = (usize, usize, Option<(usize, u32)>);
+pub(super) type Kind = (usize, usize, Option<(usize, u32)>);
 
 /// Placing of the result of an arrangement.
-struct Placing<'a, T> {
-    all: &'a Facetted<T>,
-    arranged: &'a Arrangement,
-    scale: f64,
+pub(super) struct Placing<'a, T> {
+    pub(super) all: &'a Facetted<T>,
+    pub(super) arranged: &'a Arrangement,
+    pub(super) scale: f64,
     /// Whether edges of the second operand are those of the result where they run: tools that touch the
     /// first one's faces along them.
-    fitted: bool,
+    pub(super) fitted: bool,
     /// The number of the given point of a vertex of a body, by point of the arrangement.
-    original: HashMap<u32, u32>,
+    pub(super) original: HashMap<u32, u32>,
     /// By point of the arrangement, where it is when it is on an edge.
-    placed: HashMap<u32, Vec3<T>>,
+    pub(super) placed: HashMap<u32, Vec3<T>>,
+    /// Corners of more faces than fix them, in some part not moved by all of them.
+    pub(super) parted: BTreeSet<u32>,
+    pub(super) kinks: Vec<Kink>,
 }
 
 impl<'a, T: Real> Placing<'a, T> {
@@ -382,10 +466,11 @@ impl<'a, T: Real> Placing<'a, T> {
                 original.entry(v).or_insert(k as u32);
             }
         }
-        Placing { all, arranged, scale, fitted, original, placed: HashMap::new() }
+        let (placed, parted, kinks) = Default::default();
+        Placing { all, arranged, scale, fitted, original, placed, parted, kinks }
     }
 
-    fn surface(&self, face: usize) -> &'a FaceSurface<T> {
+    pub(super) fn surface(&self, face: usize) -> &'a FaceSurface<T> {
         let (operand, tag) = self.arranged.faces[face].sources[0];
         &self.all.sources[operand].surfaces[tag as usize]
     }
@@ -454,7 +539,11 @@ impl<'a, T: Real> Placing<'a, T> {
         for (&v, (own, edges)) in &around {
             let at = self.corner(v, own, edges)?;
             if let Some(at) = at {
-                self.placed.insert(v, self.moved_with_all(at, own));
+                let (at, parts) = self.moved_with_all(at, own);
+                if parts {
+                    self.parted.insert(v);
+                }
+                self.placed.insert(v, at);
             }
         }
         let near = Nearness { sources: &self.all.sources, scale: self.scale };
@@ -479,6 +568,7 @@ impl<'a, T: Real> Placing<'a, T> {
         let mut known: HashMap<(u32, u32), usize> = HashMap::new();
         let mut out: Vec<SolidFace> = Vec::new();
         let mut trims: Vec<Trim<T>> = Vec::new();
+        let mut planes = BTreeMap::new();
         for (f, face) in faces.iter().enumerate() {
             let mut loops = Vec::new();
             for c in &face.loops {
@@ -515,7 +605,17 @@ impl<'a, T: Real> Placing<'a, T> {
                         });
                     }
                     let straight = faces[kind.0].plane && faces[kind.1].plane;
-                    let trace = if straight { None } else { Some(self.trace(&chain, kind)?) };
+                    let own = self.own_ends([chain[0], chain[m - 1]], kind);
+                    let own_ends = own.map(|ends| {
+                        ends.map(|(at, kink)| {
+                            self.kinks.extend(kink);
+                            at
+                        })
+                    });
+                    let trace = match straight {
+                        true => None,
+                        false => Some(self.trace(&chain, kind, own_ends)?),
+                    };
                     if let Some(trace) = &trace {
                         for (&v, at) in chain.iter().zip(&trace.points) {
                             self.placed.entry(v).or_insert(*at);
@@ -527,7 +627,7 @@ impl<'a, T: Real> Placing<'a, T> {
                     }
                     known.insert(key, edges.len());
                     cycle.push((edges.len(), true));
-                    edges.push(SolidEdge { ends, piece: None, curve: None, trace });
+                    edges.push(SolidEdge { ends, trace, own_ends, ..SolidEdge::default() });
                     chains.push(chain);
                 }
                 loops.push(cycle);
@@ -536,6 +636,9 @@ impl<'a, T: Real> Placing<'a, T> {
                 trims.push(Trim { surface: *self.surface(f), face: f });
                 trims.len() - 1
             });
+            if let (true, FaceSurface::Plane { at, normal }) = (T::PARTS > 1, self.surface(f)) {
+                planes.insert(f, [*at, *normal]);
+            }
             let mut names: Vec<Arc<str>> = Vec::new();
             for &(operand, tag) in &face.sources {
                 for name in &self.all.sources[operand].names[tag as usize] {
@@ -549,6 +652,8 @@ impl<'a, T: Real> Placing<'a, T> {
         let facets = (!trims.is_empty()).then(|| self.facets(&chains, &number, &vertices));
         let mut solid = SketchSolid { vertices, edges, faces: out, flat, ..SketchSolid::default() };
         solid.trims = trims;
+        (solid.planes, solid.kinks) = (planes, std::mem::take(&mut self.kinks));
+        solid.strays = self.strays();
         solid.facets = facets;
         self.agrees(&solid)?;
         Ok(solid)
@@ -577,158 +682,33 @@ impl<'a, T: Real> Placing<'a, T> {
         Ok(())
     }
 
-    /// The place of a corner; `None` when the points of its closed edge say.
-    fn corner(
-        &self,
-        v: u32,
-        faces: &BTreeSet<usize>,
-        edges: &BTreeSet<(usize, u32)>,
-    ) -> Result<Option<Vec3<T>>, CombineError> {
-        // A vertex of a body stays, unless a surface of the other body happens to pass through it: the
-        // corner is then where that one meets its surfaces, or it would follow the wrong one.
-        let given = self.original.get(&v).map(|&k| k as usize);
-        let foreign = |f: usize| {
-            let own = given.map(|k| &self.all.around[k]);
-            own.is_some_and(|own| !self.arranged.faces[f].sources.iter().any(|s| own.contains(s)))
-        };
-        let known = given.map(|k| self.all.points[k]);
-        if known.is_some() && !faces.iter().any(|&f| foreign(f)) {
-            return Ok(known);
-        }
-        let guess = self.arranged.points[v as usize];
-        let parameters = |s: &FaceSurface<T>| match s {
-            FaceSurface::Plane { .. } => [0.0; 2],
-            _ => s.parameters(guess),
-        };
-        // Every surface at the corner, with its normal there; planes of one position count once.
-        let mut surfaces: Vec<(&FaceSurface<T>, Vec3, [f64; 2])> = Vec::new();
-        for &f in faces {
-            let s = self.surface(f);
-            let start = parameters(s);
-            let normal = match s {
-                FaceSurface::Plane { normal, .. } => normal.re(),
-                _ => {
-                    let [_, du, dv] = s.jet(T::from(start[0]), T::from(start[1]));
-                    du.re().cross(dv.re()).normalized().unwrap_or_default()
-                }
-            };
-            surfaces.push((s, normal, start));
-        }
-        let mut best: Option<(f64, Vec<Carrier<'_, T>>, Vec<[f64; 2]>)> = None;
-        for &(operand, tag) in edges {
-            let (Some(piece), beside) = &self.all.sources[operand].edges[tag as usize] else {
-                continue;
-            };
-            let across = |f: &usize| {
-                let mut sources = self.arranged.faces[*f].sources.iter();
-                !sources.any(|s| s.0 == operand && beside.contains(&s.1))
-            };
-            // Several surfaces across it: one of them may run through the edge and not move with it.
-            let alone = faces.iter().filter(|f| across(f)).count() < 2;
-            let s = along(piece, guess);
-            let direction = piece.velocity(T::from(s)).re().normalized().unwrap_or_default();
-            for (k, &f) in faces.iter().enumerate() {
-                let source = self.arranged.faces[f].sources[0];
-                if source.0 == operand && beside.contains(&source.1) {
-                    continue;
-                }
-                if known.is_some() && !foreign(f) {
-                    continue;
-                }
-                let (surface, normal, start) = surfaces[k];
-                // It holds where the faces beside the edge are tangent.
-                let preferred = if alone { 1.5 } else { 1e-4 };
-                let rate = preferred * direction.dot(normal).abs();
-                if best.as_ref().is_none_or(|b| rate > b.0) {
-                    let on = vec![Carrier::Curve(piece), Carrier::Surface(surface)];
-                    best = Some((rate, on, vec![[s, 0.0], start]));
-                }
-            }
-        }
-        let strange: Vec<bool> = faces.iter().map(|&f| foreign(f)).collect();
-        for i in 0..surfaces.len() {
-            for j in i + 1..surfaces.len() {
-                for k in j + 1..surfaces.len() {
-                    if known.is_some() && ![i, j, k].iter().any(|&n| strange[n]) {
-                        continue;
-                    }
-                    let (a, b, c) = (&surfaces[i], &surfaces[j], &surfaces[k]);
-                    let rate = a.1.dot(b.1.cross(c.1)).abs();
-                    if best.as_ref().is_none_or(|b| rate > b.0) {
-                        let on = [a, b, c].map(|s| Carrier::Surface(s.0)).to_vec();
-                        best = Some((rate, on, vec![a.2, b.2, c.2]));
-                    }
-                }
-            }
-        }
-        if let Some(at) = known {
-            let met = best.filter(|b| b.0 > 1e-3);
-            let met = met.and_then(|(_, on, start)| meet(&on, guess, &start, self.scale));
-            // The place is known to the last digit; only its motion is that of the surfaces.
-            let near = met.filter(|m| m.at.re().distance(at.re()) <= 1e-7 * self.scale);
-            return Ok(Some(near.map_or(at, |m| m.at + Vec3::lifted(at.re() - m.at.re()))));
-        }
-        match best {
-            Some((rate, on, start)) if rate > 1e-9 => {
-                let met = meet(&on, guess, &start, self.scale);
-                met.map(|m| Some(m.at)).ok_or(CombineError::Touching(guess))
-            }
-            // The vertex of a closed edge.
-            _ if faces.len() == 2 => Ok(None),
-            _ => Err(CombineError::Touching(guess)),
-        }
-    }
-
-    /// A corner whose derivatives are none where its faces part: more of them than fix a point meet there by chance, and
-    /// it becomes several corners with the slightest change.
-    fn moved_with_all(&self, at: Vec3<T>, faces: &BTreeSet<usize>) -> Vec3<T> {
-        // Between planes alone a body's measures are those of its corners.
-        if T::PARTS == 1 || faces.iter().all(|&f| self.arranged.faces[f].plane) {
-            return at;
-        }
-        let scale = T::from(self.scale);
-        let mut parts: Vec<(T, [Vec3<T>; 2])> = Vec::new();
-        for &f in faces {
-            match self.surface(f) {
-                FaceSurface::Plane { at: base, normal } => {
-                    parts.push((normal.dot(at - *base), [*base, *normal * scale]));
-                }
-                surface => {
-                    let Some([u, v, _]) = located(surface, at, Vec3::zero(), None) else {
-                        continue;
-                    };
-                    let [p, du, dv] = surface.jet(u, v);
-                    let Some(normal) = du.cross(dv).normalized() else { continue };
-                    parts.push((normal.dot(at - p), [p, normal * scale]));
-                }
-            }
-        }
-        let size = |v: Vec3<T>, k: usize| v.x.part(k).abs() + v.y.part(k).abs() + v.z.part(k).abs();
-        let parted = |k: usize| {
-            let most = parts.iter().map(|(_, own)| size(own[0], k) + size(own[1], k));
-            let most = most.fold(size(at, k), f64::max);
-            parts.iter().any(|(off, _)| off.part(k).abs() > PARTING * most)
-        };
-        at.map(|x| T::from_parts(|k| if k > 0 && parted(k) { f64::NAN } else { x.part(k) }))
-    }
-
     /// The points of an edge that is not straight, with their places on the round faces beside it.
-    fn trace(&self, chain: &[u32], kind: Kind) -> Result<IntersectionEdge<T>, CombineError> {
-        let Some((operand, tag)) = kind.2 else { return self.trace_on(chain, kind) };
+    fn trace(
+        &self,
+        chain: &[u32],
+        kind: Kind,
+        ends: Option<[Vec3<T>; 2]>,
+    ) -> Result<IntersectionEdge<T>, CombineError> {
+        let Some((operand, tag)) = kind.2 else { return self.trace_on(chain, kind, ends) };
         let beside = &self.all.sources[operand].edges[tag as usize].1;
         let own = |f: usize| {
             let mut sources = self.arranged.faces[f].sources.iter();
             sources.any(|s| s.0 == operand && beside.contains(&s.1))
         };
         if (self.fitted && operand == 1) || (own(kind.0) && own(kind.1)) {
-            return self.trace_on(chain, kind);
+            return self.trace_on(chain, kind, ends);
         }
         // A surface of the other body happens to run through an edge: the new edge moves with both surfaces.
-        let crossing = self.trace_on(chain, (kind.0, kind.1, None));
-        crossing.or_else(|_| self.trace_on(chain, kind))
+        let crossing = self.trace_on(chain, (kind.0, kind.1, None), ends);
+        crossing.or_else(|_| self.trace_on(chain, kind, ends))
     }
 
-    fn trace_on(&self, chain: &[u32], kind: Kind) -> Result<IntersectionEdge<T>, CombineError> {
+    fn trace_on(
+        &self,
+        chain: &[u32],
+        kind: Kind,
+        ends: Option<[Vec3<T>; 2]>,
+    ) -> Result<IntersectionEdge<T>, CombineError> {
         let rough: Vec<Vec3> = chain.iter().map(|&v| self.arranged.points[v as usize]).collect();
         let curve = kind.2.and_then(|(o, t)| self.all.sources[o].edges[t as usize].0.as_ref());
         let pair = [self.surface(kind.0), self.surface(kind.1)];
@@ -773,6 +753,10 @@ impl<'a, T: Real> Placing<'a, T> {
         for k in 0..m {
             if closed && k == m - 1 {
                 points.push(points[0]);
+                continue;
+            }
+            if let (Some([first, last]), true) = (ends, k == 0 || k == m - 1) {
+                points.push(if k == 0 { first } else { last });
                 continue;
             }
             if let Some(at) = self.placed.get(&chain[k]) {

@@ -1,6 +1,7 @@
 //! Derivatives of a finished object by its dimensions and variables.
 
 use crate::solid::Vertex;
+use crate::solid::coincidence::Kink;
 use crate::{Estimate, Planes, SketchObject, solid, solve};
 use moldloft_num::{Dual, Vec3};
 use std::collections::BTreeMap;
@@ -8,8 +9,8 @@ use std::collections::BTreeMap;
 /// Directions of one pass.
 const WIDTH: usize = 4;
 
-/// The exact derivatives by one number each, in the order they were asked for; not a number where there is none:
-/// where faces of a body that was combined meet in a corner by chance, and part as the number changes.
+/// The exact derivatives by one number each, in the order they were asked for; not a number where there is none, and
+/// where a vertex becomes several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolidGradient {
     /// Of the volume; zero for a flat figure.
@@ -20,10 +21,12 @@ pub struct SolidGradient {
     pub centroid: Vec<Vec3>,
     /// Of the vertices of [`crate::SketchSolid`], in their order.
     pub points: Vec<Vec<Vec3>>,
+    /// Where a measure has two derivatives, one on each side.
+    pub kinks: Vec<Option<Kink>>,
 }
 
 /// Derivatives by dimensions and variables (any case). A number that an expression computes is varied
-/// as if it stood there by itself.
+/// as if it stood there by itself. `others` are the numbers of other objects that expressions read.
 ///
 /// # Errors
 /// The first name that is not a dimension or variable with a value; an empty one when there is no solid.
@@ -31,9 +34,10 @@ pub fn gradient(
     object: &SketchObject,
     planes: &Planes,
     by: &[String],
+    others: &BTreeMap<String, f64>,
 ) -> Result<SolidGradient, String> {
     let estimate = || Estimate::of(&object.drawing, planes, object.reference()?.point);
-    let plain = solve(object, planes, &BTreeMap::<String, f64>::new(), &estimate);
+    let plain = solve(object, planes, others, &estimate);
     let keys: Vec<String> = by.iter().map(|n| n.to_ascii_lowercase()).collect();
     if let Some(k) = keys.iter().position(|k| !plain.values.contains_key(k)) {
         return Err(by[k].clone());
@@ -54,11 +58,13 @@ pub fn gradient(
         area: vec![0.0; n],
         centroid: vec![Vec3::zero(); n],
         points: vec![Vec::new(); n],
+        kinks: vec![None; n],
     };
     for pass in passes {
-        let seeded: BTreeMap<String, Dual<WIDTH>> = (pass.iter().enumerate())
-            .map(|(d, &k)| (keys[k].clone(), Dual::seeded(plain.values[&keys[k]], d)))
-            .collect();
+        let given = others.iter().map(|(name, x)| (name.clone(), Dual::from(*x)));
+        let own = (pass.iter().enumerate())
+            .map(|(d, &k)| (keys[k].clone(), Dual::seeded(plain.values[&keys[k]], d)));
+        let seeded: BTreeMap<String, Dual<WIDTH>> = given.chain(own).collect();
         let layout = solve(object, planes, &seeded, &estimate);
         let body = solid(object, planes, &layout).ok_or_else(String::new)?;
         let mass = body.mass();
@@ -67,6 +73,9 @@ pub fn gradient(
             out.volume[k] = mass.volume.eps[d];
             out.area[k] = mass.area.eps[d];
             out.centroid[k] = part(mass.centroid);
+            // One that the volume has is said first.
+            let own = body.kinks.iter().filter(|kink| kink.part == d + 1);
+            out.kinks[k] = own.max_by_key(|kink| kink.volume).copied();
             let at = |v: &Vertex<Dual<WIDTH>>| part(v.at);
             out.points[k] = body.vertices.iter().map(at).collect();
         }

@@ -131,11 +131,10 @@ impl<T: Real> MassIntegrals<T> {
         self.patch = (T::zero(), Vec3::zero());
     }
 
-    /// An element of it.
-    pub fn patch_element(&mut self, p: Vec3<T>, da: Vec3<T>, sign: T) {
+    /// An element of it, with its area and the sign of that.
+    pub fn patch_element(&mut self, p: Vec3<T>, da: Vec3<T>, area: T) {
         let p = p - self.origin;
         self.element(p, da);
-        let area = da.norm() * sign;
         self.patch.0 += area;
         self.patch.1 += p * area;
     }
@@ -163,6 +162,25 @@ impl<T: Real> MassIntegrals<T> {
                 let area = element.norm();
                 self.area += area;
                 self.area_moment += p * area;
+            }
+        }
+    }
+
+    /// The rates by which a triangle of a plane face is ahead of its plane, by the corner.
+    pub fn moved(&mut self, corners: [Vec3; 3], ahead: [T; 3]) {
+        let [a, b, c] = corners;
+        let twice = (b - a).cross(c - a).norm();
+        for (r, wr) in GAUSS_8_UNIT {
+            for (s, ws) in GAUSS_8_UNIT {
+                let part = [1.0 - r, r * (1.0 - s), r * s];
+                let p = Vec3::lifted(a * part[0] + b * part[1] + c * part[2]) - self.origin;
+                let by = (0..3).fold(T::zero(), |sum, k| sum + ahead[k] * part[k]);
+                let volume = by * (twice * r * wr * ws);
+                self.volume += volume;
+                self.moment += p * volume;
+                for (sum, x) in self.second.iter_mut().zip(Self::products(p)) {
+                    *sum += x * volume;
+                }
             }
         }
     }

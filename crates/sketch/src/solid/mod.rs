@@ -9,7 +9,9 @@ pub mod arrangement;
 mod blend;
 mod blend_order;
 mod blend_tool;
+pub(crate) mod coincidence;
 pub mod combine;
+mod corners;
 pub mod curve;
 pub(crate) mod edges;
 pub mod faces;
@@ -50,7 +52,7 @@ pub struct Vertex<T> {
 }
 
 /// An edge of a solid.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolidEdge<T> {
     /// Indices of its vertices.
     pub ends: [usize; 2],
@@ -60,6 +62,8 @@ pub struct SolidEdge<T> {
     pub curve: Option<usize>,
     /// Its points, where it has no closed form: the edge of a body that was combined.
     pub trace: Option<IntersectionEdge<T>>,
+    /// Its ends as its own two surfaces move them, where more surfaces meet at a vertex than fix it.
+    pub(crate) own_ends: Option<[Vec3<T>; 2]>,
 }
 
 /// An edge that two surfaces make.
@@ -155,6 +159,13 @@ pub struct SketchSolid<T> {
     /// Round faces with borders of any kind.
     pub trims: Vec<Trim<T>>,
     pub(crate) facets: Option<CombinedMesh<T>>,
+    /// By plane face of a body that was combined, a point of its plane and the normal, with their derivatives: those of
+    /// its vertices do not tell them where more planes meet than fix a vertex.
+    pub(crate) planes: BTreeMap<usize, [Vec3<T>; 2]>,
+    /// Parts of plane faces that move otherwise than the rest of them.
+    pub(crate) strays: Vec<coincidence::StrayPart<T>>,
+    /// Where measures have no derivative.
+    pub(crate) kinks: Vec<coincidence::Kink>,
     /// Where chords of round edges are cut in three, where the body is combined with others.
     pub(crate) density: outline::FacetDensity,
     steps: BTreeMap<usize, u32>,
@@ -522,6 +533,9 @@ impl<T: Real> SolidBuilder<'_, T> {
             steps,
             trims: Vec::new(),
             facets: None,
+            planes: BTreeMap::new(),
+            strays: Vec::new(),
+            kinks: Vec::new(),
             density: outline::FacetDensity::default(),
         }
     }
@@ -743,7 +757,7 @@ impl<T: Real> TopologyTable<T> {
         let key = (ends[0].min(ends[1]), ends[0].max(ends[1]), bent.is_some());
         *self.known.entry(key).or_insert_with(|| {
             let (curve, piece) = bent.unzip();
-            self.edges.push(SolidEdge { ends, piece, curve, trace: None });
+            self.edges.push(SolidEdge { ends, piece, curve, ..SolidEdge::default() });
             self.edges.len() - 1
         })
     }
@@ -794,19 +808,19 @@ impl<T: Real> SketchSolid<T> {
                 continue;
             }
             if let Some(trim) = face.trim {
-                let nodes: Vec<[T; 3]> =
-                    face.loops.iter().flatten().flat_map(|&h| self.places(f, h)).collect();
-                sums.begin_patch();
                 let surface = &self.trims[trim].surface;
-                surface.sweep(&nodes, |p, area, sign| sums.patch_element(p, area, sign));
+                let nodes: Vec<[T; 3]> =
+                    face.loops.iter().flat_map(|c| self.cycle_places(f, surface, c)).collect();
+                sums.begin_patch();
+                surface.sweep(&nodes, |p, area, size| sums.patch_element(p, area, size));
                 sums.end_patch();
                 continue;
             }
-            let edges: Vec<_> = (face.loops.iter().flatten())
-                .map(|&(e, forward)| {
+            let mut edges = Vec::new();
+            for cycle in &face.loops {
+                for (k, &(e, forward)) in cycle.iter().enumerate() {
                     let edge = &self.edges[e];
-                    let [p, q] = edge.ends.map(|v| self.vertices[v].at);
-                    let (p, q) = if forward { (p, q) } else { (q, p) };
+                    let [p, q] = self.ends((e, forward));
                     let side = match (&edge.trace, edge.piece) {
                         (Some(trace), _) => {
                             let sign = T::from(if forward { 1.0 } else { -1.0 });
@@ -816,12 +830,51 @@ impl<T: Real> SketchSolid<T> {
                         (None, Some(_)) => DirectedEdge::Piece(self.piece((e, forward))),
                         (None, None) => DirectedEdge::Straight,
                     };
-                    (p, q, side)
-                })
-                .collect();
+                    edges.push((p, q, side));
+                    let next = cycle[(k + 1) % cycle.len()];
+                    if self.parts((e, forward), next) {
+                        edges.push((q, self.ends(next)[0], DirectedEdge::Straight));
+                    }
+                }
+            }
             sums.plane(&edges);
         }
-        sums.finish(self.flat)
+        self.strays.iter().for_each(|s| sums.moved(s.corners, s.ahead));
+        coincidence::without(sums.finish(self.flat), &self.kinks)
+    }
+
+    /// Where a directed edge begins and ends.
+    fn ends(&self, (e, forward): (usize, bool)) -> [Vec3<T>; 2] {
+        let edge = &self.edges[e];
+        let [p, q] = edge.own_ends.unwrap_or_else(|| edge.ends.map(|v| self.vertices[v].at));
+        if forward { [p, q] } else { [q, p] }
+    }
+
+    /// Whether the end of an edge and the beginning of the next one move apart.
+    fn parts(&self, edge: (usize, bool), next: (usize, bool)) -> bool {
+        let own = |h: (usize, bool)| self.edges[h.0].own_ends.is_some();
+        let way = || (self.ends(next)[0] - self.ends(edge)[1]).to_array();
+        (own(edge) || own(next)) && way().iter().any(|x| !x.is_constant())
+    }
+
+    /// Gauss's nodes of a cycle of a round face, and the ways between edges whose ends move apart.
+    fn cycle_places(
+        &self,
+        face: usize,
+        surface: &FaceSurface<T>,
+        cycle: &[(usize, bool)],
+    ) -> Vec<[T; 3]> {
+        let mut nodes = Vec::new();
+        for (k, &edge) in cycle.iter().enumerate() {
+            nodes.extend(self.places(face, edge));
+            let next = cycle[(k + 1) % cycle.len()];
+            if self.parts(edge, next) {
+                let (from, to) = (self.ends(edge)[1], self.ends(next)[0]);
+                let place = combine::located(surface, from, to - from, None);
+                nodes.extend(place.filter(|p| !p[2].is_constant()));
+            }
+        }
+        nodes
     }
 
     /// Gauss's nodes of an edge on the surface of a round face: u, v and the weighted change of u.

@@ -310,7 +310,7 @@ fn rebuilt<T: Real>(body: &SketchSolid<T>, at: Vec<Vec3<T>>) -> Result<SketchSol
                     "make it smaller, or change the dimensions",
                 ));
             }
-            edges.push(SolidEdge { ends: edge.ends, piece: None, curve: None, trace: None });
+            edges.push(SolidEdge { ends: edge.ends, ..SolidEdge::default() });
             continue;
         }
         let axis = sides[e].iter().find_map(|s| match body.form(s.face) {
@@ -320,7 +320,7 @@ fn rebuilt<T: Real>(body: &SketchSolid<T>, at: Vec<Vec3<T>>) -> Result<SketchSol
         let Some(piece) = axis.and_then(|axis| arc(body, e, axis, [p, q])) else {
             return Err(fault("an edge is neither straight nor an arc about a cylinder", PLAIN));
         };
-        edges.push(SolidEdge { ends: edge.ends, piece: Some(piece), curve: None, trace: None });
+        edges.push(SolidEdge { ends: edge.ends, piece: Some(piece), ..SolidEdge::default() });
     }
     let mut faces = Vec::new();
     for (f, face) in body.faces.iter().enumerate() {
@@ -348,7 +348,8 @@ fn rebuilt<T: Real>(body: &SketchSolid<T>, at: Vec<Vec3<T>>) -> Result<SketchSol
         faces.push(SolidFace { id: face.id, ruled, loops, trim: None, names: face.names.clone() });
     }
     let vertices = body.vertices.iter().zip(&at).map(|(v, &at)| Vertex { id: v.id, at }).collect();
-    Ok(SketchSolid { vertices, edges, faces, ..SketchSolid::default() })
+    let kinks = body.kinks.clone();
+    Ok(SketchSolid { vertices, edges, faces, kinks, ..SketchSolid::default() })
 }
 
 /// The arc about an axis that an edge becomes between new ends; `None` when it is not an arc, or turns the other way.

@@ -117,7 +117,7 @@ pub(super) fn moved_section<T: Real>(
                 Some(SmoothPiece::Conic { centre, a: from, b: direction.cross(from), sweep: angle })
             }
         };
-        edges.push(SolidEdge { ends: edge.ends, piece, curve: edge.curve, trace: None });
+        edges.push(SolidEdge { ends: edge.ends, piece, curve: edge.curve, ..SolidEdge::default() });
     }
     let vertex = |(k, v): (usize, &Vertex<T>)| Vertex {
         id: v.id,

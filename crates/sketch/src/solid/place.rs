@@ -134,6 +134,19 @@ impl<T: Real> SketchSolid<T> {
                 trace.carrier = trace.carrier.as_ref().map(|p| place.piece(p));
             }
         }
+        for edge in &mut out.edges {
+            edge.own_ends = edge.own_ends.map(|ends| ends.map(|p| place.point(p)));
+        }
+        for [at, normal] in out.planes.values_mut() {
+            *at = place.point(*at);
+            *normal = place.vector(*normal).normalized().unwrap_or(*normal);
+        }
+        out.kinks.iter_mut().for_each(|k| k.at = forward(k.at));
+        let scale = place.columns[0].norm();
+        for stray in &mut out.strays {
+            stray.corners = stray.corners.map(forward);
+            stray.ahead = stray.ahead.map(|x| x * scale);
+        }
         out.trims.iter_mut().for_each(|t| t.surface = place.surface(&t.surface));
         if let Some(facets) = &mut out.facets {
             facets.points.iter_mut().for_each(|p| *p = place.point(*p));

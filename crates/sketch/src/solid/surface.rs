@@ -97,7 +97,7 @@ impl<T: Real> FaceSurface<T> {
 
     /// Calls `add` with points and vector areas so that their sums are the integrals over the part of
     /// the surface inside a closed curve: `nodes` are its (u, v, du) with weights in du; the third
-    /// argument is the sign of the element. By Green's
+    /// argument is the area of the element with its sign. By Green's
     /// theorem, with integrals along v by Gauss's rule.
     pub(crate) fn sweep(&self, nodes: &[[T; 3]], mut add: impl FnMut(Vec3<T>, Vec3<T>, T)) {
         let start = T::from(self.pole());
@@ -109,8 +109,14 @@ impl<T: Real> FaceSurface<T> {
                     let x = (f64::from(part) + x) / f64::from(parts);
                     let [p, a, b] = self.jet(u, start + length * x);
                     let weight = -(length * du) * (w / f64::from(parts));
-                    let sign = T::from(if weight.re() < 0.0 { -1.0 } else { 1.0 });
-                    add(p, a.cross(b) * weight, sign);
+                    let (density, sign) = (a.cross(b), if weight.re() < 0.0 { -1.0 } else { 1.0 });
+                    let element = density * weight;
+                    // Of no width, though that changes, the length of the element has no derivative.
+                    let size = match weight.re() == 0.0 {
+                        true => density.norm() * weight,
+                        false => element.norm() * T::from(sign),
+                    };
+                    add(p, element, size);
                 }
             }
         }

@@ -102,7 +102,7 @@ pub fn turned<T: Real>(
             }
             copy.insert((s, ring), out.edges.len());
             let piece = (!side.straight).then(|| turned_piece(&side.piece, ring));
-            out.edges.push(SolidEdge { ends, piece, curve: None, trace: None });
+            out.edges.push(SolidEdge { ends, piece, ..SolidEdge::default() });
         }
     }
     for k in 0..steps {
@@ -122,7 +122,7 @@ pub fn turned<T: Real>(
                 piece
             };
             let ends = [vertex[&(v, k)], vertex[&(v, next)]];
-            out.edges.push(SolidEdge { ends, piece: Some(piece), curve: None, trace: None });
+            out.edges.push(SolidEdge { ends, piece: Some(piece), ..SolidEdge::default() });
         }
     }
     for (s, side) in sides.iter().enumerate() {

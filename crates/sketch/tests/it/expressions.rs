@@ -24,12 +24,31 @@ fn values_and_names() {
         ("min(A, 3) + max(1, B.w)", 7.0),
         ("atan2(1, -1)", 135.0),
         ("mod(-1, 3) + floor(2.7)", 4.0),
+        ("log10(100) + log(exp(2))", 4.0),
+        ("hypot(3, 4) + sign(-B.w) + div(7, 2)", 7.0),
+        ("cosh(0) + sinh(0) + tanh(0)", 1.0),
+        ("max(1, A, B.w, 3)", 5.0),
+        ("clamp(B.w, 0, A)", 2.0),
+        ("where(A < B.w and not (A == 3), A + 1, 7)", 3.0),
+        ("where(A >= B.w || A != 2, A + 1, 7)", 7.0),
     ] {
         let got = value(text).unwrap().unwrap();
         assert!((got - expected).abs() < 1e-14, "{text}: {got}");
     }
     assert_eq!(value("c+1").unwrap(), Err(NoValue { name: "c".into() }));
-    for bad in ["", "1 +", "foo(1)", "sin(1,2)", "{1,2}", "a < b", "\"x\"", "not a"] {
+    for bad in [
+        "",
+        "1 +",
+        "foo(1)",
+        "sin(1,2)",
+        "{1,2}",
+        "where(1, 2, 3)",
+        "(a < b) + 1",
+        "where(a < b, a < b, 1)",
+        "a < b",
+        "\"x\"",
+        "not a",
+    ] {
         assert!(value(bad).is_err(), "{bad}");
     }
     let renamed = DimensionExpr::parse("W1 + w10*2").unwrap();

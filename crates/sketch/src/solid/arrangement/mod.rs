@@ -77,6 +77,8 @@ pub struct ArrangedFace {
     pub loops: Vec<Vec<u32>>,
     /// Its plane parts, oriented alike, each with its holes.
     pub parts: Vec<Vec<Vec<u32>>>,
+    /// By part, the face that it is of.
+    pub owners: Vec<(usize, u32)>,
 }
 
 /// The body of a rule.
@@ -92,6 +94,19 @@ pub struct Arrangement {
     pub edges: HashMap<(u32, u32), Vec<(usize, u32)>>,
     /// Whether facets are left out, or a place has windings other than 0 and 1.
     pub changed: bool,
+    /// Where surfaces lie in each other; lines when they were asked for.
+    pub shared: Vec<SurfaceCoincidence>,
+}
+
+/// A region that several faces cover, or a line in which more than two of them meet.
+#[derive(Clone, Debug)]
+pub struct SurfaceCoincidence {
+    /// The corners of the region, or the ends of the line.
+    pub points: Vec<u32>,
+    /// The faces: operand and tag.
+    pub sources: Vec<(usize, u32)>,
+    /// Whether it is a region.
+    pub region: bool,
 }
 
 /// Why there is no body.
@@ -118,14 +133,14 @@ struct ArrangedRegion {
 const MAX_REGIONS: usize = 400_000;
 
 /// Makes the body in which `solid` holds for the numbers of windings. Facets of one operand are taken
-/// not to cross each other unless `crossing`.
+/// not to cross each other unless `crossing`. Lines in which more than two surfaces meet are listed if `sharing`.
 ///
 /// # Errors
 /// [`ArrangeError`], with the place.
 pub fn arrange(
     points: &[Vec3],
     mut facets: Vec<Facet>,
-    crossing: bool,
+    [crossing, sharing]: [bool; 2],
     solid: &dyn Fn([i32; 2]) -> bool,
 ) -> Result<Arrangement, ArrangeError> {
     let [low, high] = bounds(points.iter().copied());
@@ -191,8 +206,10 @@ pub fn arrange(
             }
         }
     }
-    let (found, mut changed) =
+    let lines = if sharing { shared_lines(&mut pool, &facets, &cuts, &chains) } else { Vec::new() };
+    let (found, mut changed, mut shared) =
         all_regions(&pool, &facets, &frames, &sheets, &members, &segments, &chains)?;
+    shared.extend(lines);
     let turns = cells::windings(&pool, &facets, &frames, &sheets, &found)?;
     let kept: Vec<(usize, bool)> = (turns.iter().enumerate())
         .filter_map(|(r, [front, back])| {
@@ -208,7 +225,7 @@ pub fn arrange(
         })
         .collect();
     let faces = join(&pool, &facets, &frames, &sheets, &found, &kept);
-    Ok(Arrangement { points: pool.points, given, faces, edges, changed })
+    Ok(Arrangement { points: pool.points, given, faces, edges, changed, shared })
 }
 
 /// Numbers of the pool in place of those given; sides of no length are left out.
@@ -230,6 +247,33 @@ fn renumber(facet: &mut Facet, given: &[u32]) {
     facet.loops.retain(|_| *keep.next().unwrap_or(&false));
     let mut keep = fine.iter();
     facet.edges.retain(|_| *keep.next().unwrap_or(&false));
+}
+
+/// The lines in which more than two surfaces meet.
+fn shared_lines(
+    pool: &mut Pool,
+    facets: &[Facet],
+    cuts: &Cuts,
+    chains: &Chains,
+) -> Vec<SurfaceCoincidence> {
+    let mut through: BTreeMap<(u32, u32), BTreeSet<(usize, u32)>> = BTreeMap::new();
+    for (f, facet) in facets.iter().enumerate() {
+        let cut = cuts.get(&f).into_iter().flatten().map(|[p, q]| [pool.add(*p), pool.add(*q)]);
+        let cut: Vec<[u32; 2]> = cut.collect();
+        for [a, b] in edges_of(facet).chain(cut).filter(|[a, b]| a != b) {
+            for pair in chain_of(chains, a, b).windows(2) {
+                let key = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+                through.entry(key).or_default().insert((facet.operand, facet.tag));
+            }
+        }
+    }
+    (through.into_iter().filter(|(_, sources)| sources.len() > 2))
+        .map(|((a, b), sources)| SurfaceCoincidence {
+            points: vec![a, b],
+            sources: sources.into_iter().collect(),
+            region: false,
+        })
+        .collect()
 }
 
 type Cuts = BTreeMap<usize, Vec<[Vec3; 2]>>;
@@ -367,7 +411,8 @@ fn chain_of(chains: &Chains, a: u32, b: u32) -> Vec<u32> {
     }
 }
 
-/// The regions of all sheets, and whether facets cancel each other anywhere.
+/// The regions of all sheets, whether facets cancel each other anywhere, and what several faces cover.
+#[allow(clippy::type_complexity)]
 fn all_regions(
     pool: &Pool,
     facets: &[Facet],
@@ -376,8 +421,8 @@ fn all_regions(
     members: &[Vec<usize>],
     segments: &[BTreeSet<(u32, u32)>],
     chains: &Chains,
-) -> Result<(Vec<ArrangedRegion>, bool), ArrangeError> {
-    let mut found = Vec::new();
+) -> Result<(Vec<ArrangedRegion>, bool, Vec<SurfaceCoincidence>), ArrangeError> {
+    let (mut found, mut shared) = (Vec::new(), Vec::new());
     let mut other = false;
     for (s, own) in members.iter().enumerate() {
         let sheet = &sheets[s];
@@ -403,6 +448,13 @@ fn all_regions(
                     other |= count < 0;
                 }
             }
+            let mut sources: Vec<(usize, u32)> =
+                covers.iter().map(|&f| (facets[f].operand, facets[f].tag)).collect();
+            sources.sort_unstable();
+            sources.dedup();
+            if sources.len() > 1 {
+                shared.push(SurfaceCoincidence { points: loops.concat(), sources, region: true });
+            }
             if turns == [0, 0] {
                 other |= !covers.is_empty();
             } else {
@@ -413,7 +465,7 @@ fn all_regions(
             return Err(ArrangeError::TooLarge);
         }
     }
-    Ok((found, other))
+    Ok((found, other, shared))
 }
 
 /// Joins kept regions of one surface to faces. `kept` are regions with whether their outward side is
@@ -518,6 +570,11 @@ fn join(
                 cycles.sort_by(|a, b| size(b).total_cmp(&size(a)));
             }
             let parts = members.iter().map(|&p| pieces[p].clone()).collect();
+            let owner = |&p: &usize| {
+                let leader = &facets[leader(facets, &regions[kept[own[p]].0])];
+                (leader.operand, leader.tag)
+            };
+            let owners = members.iter().map(owner).collect();
             faces.push(ArrangedFace {
                 sources,
                 reversed,
@@ -525,6 +582,7 @@ fn join(
                 normal,
                 loops: cycles,
                 parts,
+                owners,
             });
         }
     }

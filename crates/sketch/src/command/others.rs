@@ -1,0 +1,106 @@
+//! Numbers of other objects in expressions: in an object that has no such name, `A.W` is the number W of the object A.
+
+use super::session::{SessionState, SketchSession};
+use crate::solid::merge::identifier;
+use crate::{DimensionExpr, SketchObject, numbers};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// Numbers of other objects by the names that an object reads.
+pub(crate) type OtherNumbers = BTreeMap<String, f64>;
+
+impl SessionState {
+    /// The numbers of other objects that the expressions of one read. One that reads this object in its turn has none.
+    pub fn others(&self, object: &SketchObject) -> OtherNumbers {
+        let mut known = BTreeMap::from([(key(object), BTreeMap::new())]);
+        self.read_by(object, &mut known)
+    }
+
+    fn read_by(
+        &self,
+        object: &SketchObject,
+        known: &mut BTreeMap<String, OtherNumbers>,
+    ) -> OtherNumbers {
+        let mut found = OtherNumbers::new();
+        for name in foreign(object) {
+            let Some((of, number)) = name.split_once('.') else { continue };
+            let Some(other) = self.called(of) else { continue };
+            if !known.contains_key(of) {
+                // Under way: what it reads may not read it.
+                known.insert(of.to_owned(), OtherNumbers::new());
+                let read = self.read_by(other, known);
+                known.insert(of.to_owned(), numbers(other, &read));
+            }
+            if let Some(value) = known[of].get(number) {
+                found.insert(name, *value);
+            }
+        }
+        found
+    }
+
+    /// The object of a name in an expression, one around the feature that is being read if there is no other.
+    fn called(&self, name: &str) -> Option<&SketchObject> {
+        let around = self.outside.iter().rev().map(|o| &o.0);
+        let mut all = std::iter::once(&self.objects).chain(around).flat_map(|o| o.values());
+        all.find(|o| key(o) == name).map(|o| &**o)
+    }
+}
+
+impl SketchSession {
+    /// Objects that read numbers of one, with the names.
+    pub(super) fn readers(&self, name: &str) -> Vec<(String, Vec<String>)> {
+        let prefix = format!("{}.", identifier(name).to_ascii_lowercase());
+        let all = self.state.objects.values();
+        all.filter(|o| !o.name.eq_ignore_ascii_case(name))
+            .map(|o| {
+                let read = foreign(o).into_iter().filter(|n| n.starts_with(&prefix));
+                (o.name.clone(), read.collect::<Vec<_>>())
+            })
+            .filter(|(_, read)| !read.is_empty())
+            .collect()
+    }
+
+    /// Gives the numbers of an object that has another name now the new names in other objects.
+    pub(super) fn rename_read(&mut self, old: &str, new: &str) {
+        let prefix = format!("{}.", identifier(old).to_ascii_lowercase());
+        let new = identifier(new);
+        for (reader, _) in self.readers(old) {
+            let Some(object) = self.state.objects.get_mut(&reader.to_lowercase()) else { continue };
+            let own = Arc::clone(object);
+            let renamed = |name: &str| {
+                let rest = name.strip_prefix(&prefix).filter(|_| !own.has_name(name))?;
+                Some(format!("{new}.{rest}"))
+            };
+            for expression in expressions_of(Arc::make_mut(object)) {
+                *expression = expression.renamed(&renamed);
+            }
+        }
+    }
+}
+
+/// The name of an object in expressions, folded.
+fn key(object: &SketchObject) -> String {
+    identifier(&object.name).to_ascii_lowercase()
+}
+
+/// The names of numbers of other objects that the expressions of one read, folded.
+pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
+    let values = object.variables.values().map(|v| &v.value);
+    let values = values.chain(object.dimensions.values().filter_map(|d| d.value.as_ref()));
+    let sizes = object.curves.values().flat_map(|c| c.radius.iter().chain(c.semi.iter().flatten()));
+    (values.chain(sizes).flat_map(DimensionExpr::names))
+        .filter(|n| n.contains('.') && !object.has_name(n))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// All expressions of an object.
+fn expressions_of(object: &mut SketchObject) -> impl Iterator<Item = &mut DimensionExpr> {
+    let values = object.variables.values_mut().map(|v| &mut v.value);
+    let values = values.chain(object.dimensions.values_mut().filter_map(|d| d.value.as_mut()));
+    let sizes = object
+        .curves
+        .values_mut()
+        .flat_map(|c| c.radius.iter_mut().chain(c.semi.iter_mut().flatten()));
+    values.chain(sizes)
+}

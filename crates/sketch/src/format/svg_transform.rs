@@ -1,0 +1,114 @@
+//! Transforms of SVG elements (SVG 1.1, chapter 7), applied to shapes of a page.
+
+use crate::format::page_shapes::PageShapes;
+
+/// The matrix (a c e; b d f) of an element's coordinates, whose y runs down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SvgTransform([f64; 6]);
+
+impl SvgTransform {
+    pub const NONE: SvgTransform = SvgTransform([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+
+    /// First `inner`, then this.
+    fn after(self, inner: SvgTransform) -> SvgTransform {
+        let ([a, b, c, d, e, f], [p, q, r, s, t, u]) = (self.0, inner.0);
+        SvgTransform([
+            a * p + c * q,
+            b * p + d * q,
+            a * r + c * s,
+            b * r + d * s,
+            a * t + c * u + e,
+            b * t + d * u + f,
+        ])
+    }
+
+    /// This one with the transforms of an attribute within it.
+    ///
+    /// # Errors
+    /// Says what is no transform.
+    pub fn with(self, text: &str) -> Result<SvgTransform, String> {
+        let wrong = || format!("the transform `{text}` is not understood");
+        let mut out = self;
+        let mut rest = text.trim_start_matches(|c: char| c.is_whitespace() || c == ',');
+        while !rest.is_empty() {
+            let (name, after) = rest.split_once('(').ok_or_else(wrong)?;
+            let (inside, after) = after.split_once(')').ok_or_else(wrong)?;
+            rest = after.trim_start_matches(|c: char| c.is_whitespace() || c == ',');
+            let n = super::svg_shapes::numbers(inside)?;
+            let turned = |degrees: f64| {
+                let (s, c) = (libm::sin(degrees.to_radians()), libm::cos(degrees.to_radians()));
+                SvgTransform([c, s, -s, c, 0.0, 0.0])
+            };
+            let moved = |x: f64, y: f64| SvgTransform([1.0, 0.0, 0.0, 1.0, x, y]);
+            let next = match (name.trim(), &n[..]) {
+                ("matrix", &[a, b, c, d, e, f]) => SvgTransform([a, b, c, d, e, f]),
+                ("translate", &[x]) => moved(x, 0.0),
+                ("translate", &[x, y]) => moved(x, y),
+                ("scale", &[x]) => SvgTransform([x, 0.0, 0.0, x, 0.0, 0.0]),
+                ("scale", &[x, y]) => SvgTransform([x, 0.0, 0.0, y, 0.0, 0.0]),
+                ("rotate", &[angle]) => turned(angle),
+                ("rotate", &[angle, x, y]) => moved(x, y).after(turned(angle)).after(moved(-x, -y)),
+                ("skewX", &[angle]) => {
+                    SvgTransform([1.0, 0.0, libm::tan(angle.to_radians()), 1.0, 0.0, 0.0])
+                }
+                ("skewY", &[angle]) => {
+                    SvgTransform([1.0, libm::tan(angle.to_radians()), 0.0, 1.0, 0.0, 0.0])
+                }
+                _ => return Err(wrong()),
+            };
+            out = out.after(next);
+        }
+        Ok(out)
+    }
+
+    /// Adds shapes, whose v runs up, where the transform puts them. Arcs that it stretches are left out: they are no
+    /// arcs of circles.
+    pub fn put(self, shapes: PageShapes, into: &mut PageShapes) {
+        let [a, b, c, d, e, f] = self.0;
+        let way = |[u, v]: [f64; 2]| [a * u - c * v, -(b * u - d * v)];
+        let at = |p: [f64; 2]| {
+            let [u, v] = way(p);
+            [u + e, v - f]
+        };
+        into.strokes.extend(shapes.strokes.iter().map(|s| s.map(at)));
+        let [x, y] = [libm::hypot(a, b), libm::hypot(c, d)];
+        let size = x.max(y);
+        let alike = (x - y).abs() <= 1e-6 * size && (a * c + b * d).abs() <= 1e-6 * size * size;
+        for (points, radius) in shapes.arcs {
+            match alike {
+                true => into.arcs.push((points.map(at), radius * x)),
+                false => into.leave_out("stretched arc"),
+            }
+        }
+        let rounds = shapes.rounds.into_iter().map(|[m, p, q]| [at(m), way(p), way(q)]);
+        into.rounds.extend(rounds);
+        for (kind, count) in shapes.left_out {
+            *into.left_out.entry(kind).or_default() += count;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn transforms_in_their_order() {
+        let both = SvgTransform::NONE.with("translate(10, 20) scale(2)").unwrap();
+        let both = both.with(" rotate(90 1 1),matrix(1 0 0 1 3 0)").unwrap();
+        let mut shapes = PageShapes::default();
+        let mut one = PageShapes::default();
+        // (4, 0) goes to (7, 0), about (1, 1) to (2, 7), then to (14, 34), whose v is -34.
+        one.strokes.push([[4.0, 0.0], [0.0, 0.0]]);
+        one.arcs.push(([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], 1.0));
+        both.put(one.clone(), &mut shapes);
+        let [u, v] = shapes.strokes[0][0];
+        assert!((u - 14.0).abs() < 1e-12 && (v + 34.0).abs() < 1e-12, "{u} {v}");
+        assert!((shapes.arcs[0].1 - 2.0).abs() < 1e-12);
+        SvgTransform::NONE.with("scale(1 2)").unwrap().put(one, &mut shapes);
+        assert_eq!(shapes.left_out["stretched arc"], 1);
+        for bad in ["scale", "scale(1", "turn(3)", "rotate(1 2)", "scale(a)"] {
+            assert!(SvgTransform::NONE.with(bad).is_err(), "{bad}");
+        }
+    }
+}

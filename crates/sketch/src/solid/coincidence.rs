@@ -1,0 +1,200 @@
+//! Where measures of a body that was combined have no derivative.
+//!
+//! A measure changes as the faces move: the volume by the integral of their normal speeds, the area by what their edges
+//! do. Where faces of two bodies lie in each other and do not move alike, they overlap on one side and part on the
+//! other, so the volume has two one-sided derivatives; where an edge lies in a face that moves otherwise, the area has.
+//! More faces than three at a point change neither in first order.
+
+use super::combine::{FacetSource, moves, settled};
+use super::mass::Mass;
+use super::surface::{Carrier, FaceSurface, meet};
+use crate::solid::arrangement::SurfaceCoincidence;
+use moldloft_num::{Real, Vec3};
+use moldloft_syntax::number::plain;
+
+/// A place where measures have two one-sided derivatives by one number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kink {
+    /// The part of the scalar.
+    pub part: usize,
+    /// Where.
+    pub at: Vec3,
+    /// Whether the volume has none either: faces part, not an edge from a face.
+    pub volume: bool,
+}
+
+impl std::fmt::Display for Kink {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let what =
+            if self.volume { "faces lie in each other" } else { "an edge lies in another face" };
+        let [x, y, z] = self.at.to_array().map(plain);
+        write!(
+            f,
+            "{what} at ({x}, {y}, {z}) and they do not move alike: there is a derivative on each side"
+        )
+    }
+}
+
+/// A triangle of a plane face whose parts of one plane do not move alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StrayPart<T> {
+    pub corners: [Vec3; 3],
+    /// By corner, the rates by which it is ahead of the plane that the face has.
+    pub ahead: [T; 3],
+}
+
+/// The measures, not a number where they have no derivative.
+pub(super) fn without<T: Real>(mut mass: Mass<T>, kinks: &[Kink]) -> Mass<T> {
+    for kink in kinks {
+        let none = |x: T| T::from_parts(|k| if k == kink.part { f64::NAN } else { x.part(k) });
+        mass.area = none(mass.area);
+        if kink.volume {
+            mass.volume = none(mass.volume);
+            mass.centroid = mass.centroid.map(none);
+            mass.inertia = mass.inertia.map(none);
+        }
+    }
+    mass
+}
+
+/// A vector whose part `k` is `part(k)`, and whose real part is nothing.
+pub(super) fn rates<T: Real>(part: impl Fn(usize) -> Vec3) -> Vec3<T> {
+    let all: Vec<Vec3> =
+        (0..T::PARTS).map(|k| if k > 0 { part(k) } else { Vec3::zero() }).collect();
+    Vec3::new(T::from_parts(|k| all[k].x), T::from_parts(|k| all[k].y), T::from_parts(|k| all[k].z))
+}
+
+/// A part of a vector.
+pub(super) fn part<T: Real>(v: Vec3<T>, k: usize) -> Vec3 {
+    Vec3::new(v.x.part(k), v.y.part(k), v.z.part(k))
+}
+
+/// A surface near a point of it.
+#[derive(Clone, Copy)]
+pub(super) struct Tangent<T> {
+    /// The unit normal.
+    pub normal: Vec3,
+    /// How far the point is in front of the surface.
+    pub off: T,
+    /// The speed of the surface there, by part.
+    speed: Vec3<T>,
+    turn: Vec3<T>,
+}
+
+impl<T: Real> Tangent<T> {
+    /// Of a point on a surface, or one that is off it by no more than a share of its size; `None` at poles, and where
+    /// the point is not over it.
+    pub fn of(surface: &FaceSurface<T>, p: Vec3<T>, share: f64) -> Option<Tangent<T>> {
+        if let FaceSurface::Plane { at, normal } = surface {
+            let off = normal.dot(p - *at);
+            return Some(Tangent { normal: normal.re(), off, speed: *at, turn: *normal });
+        }
+        let grid = (0..81).map(|k| [f64::from(k % 9) / 8.0, f64::from(k / 9) / 8.0]);
+        let mut starts = std::iter::once(surface.parameters(p.re())).chain(grid);
+        let [u, v] = starts.find_map(|start| settled(surface, p.re(), start, share))?;
+        let [s, du, dv] = surface.jet(T::from(u), T::from(v));
+        let [a, b] = [du, dv].map(Vec3::re);
+        if a.norm().min(b.norm()) <= 1e-9 * a.norm().max(b.norm()) {
+            return None;
+        }
+        let normal = a.cross(b).normalized()?;
+        let off = Vec3::lifted(normal).dot(p - s);
+        Some(Tangent { normal, off, speed: s, turn: Vec3::zero() })
+    }
+
+    /// How fast its surface moves at most, by part.
+    pub fn pace(&self, k: usize, scale: f64) -> f64 {
+        part(self.speed, k).norm() + scale * part(self.turn, k).norm()
+    }
+}
+
+/// The kinks of an arrangement. Tools that are `fitted` move with the round faces and edges that they touch.
+pub(super) fn kinks<T: Real>(
+    shared: &[SurfaceCoincidence],
+    points: &[Vec3],
+    sources: &[FacetSource<T>],
+    scale: f64,
+    fitted: bool,
+) -> Vec<Kink> {
+    let mut found: Vec<Kink> = Vec::new();
+    let known = |found: &[Kink], k: usize, volume: bool| {
+        found.iter().any(|kink| kink.part == k && (kink.volume || !volume))
+    };
+    for one in shared {
+        let surfaces: Vec<&FaceSurface<T>> =
+            one.sources.iter().map(|&(o, t)| &sources[o].surfaces[t as usize]).collect();
+        let flat = || surfaces.iter().all(|s| matches!(s, FaceSurface::Plane { .. }));
+        if (1..T::PARTS).all(|k| known(&found, k, one.region)) || (fitted && !flat()) {
+            continue;
+        }
+        for &v in &one.points {
+            let p = points[v as usize];
+            let Some(off) = apart(&surfaces, p, scale, one.region) else { continue };
+            for (k, off) in off.iter().enumerate().skip(1) {
+                if *off && !known(&found, k, one.region) {
+                    found.push(Kink { part: k, at: p, volume: one.region });
+                }
+            }
+        }
+    }
+    found
+}
+
+/// By part, whether surfaces that lie in each other, or meet in a line, at a point do not move alike there. `None` where only
+/// their facets meet.
+fn apart<T: Real>(
+    surfaces: &[&FaceSurface<T>],
+    p: Vec3,
+    scale: f64,
+    region: bool,
+) -> Option<Vec<bool>> {
+    let round = surfaces.iter().any(|s| !matches!(s, FaceSurface::Plane { .. }));
+    let share = if round { 0.1 } else { f64::INFINITY };
+    let tangent = |p: Vec3<T>, s: &FaceSurface<T>| Tangent::of(s, p, share);
+    let rough: Option<Vec<Tangent<T>>> =
+        surfaces.iter().map(|s| tangent(Vec3::lifted(p), s)).collect();
+    let rough = rough?;
+    // Where they are.
+    let mut best = (0.0, [0, 0]);
+    for i in 0..rough.len() {
+        for j in i + 1..rough.len() {
+            let across = rough[i].normal.cross(rough[j].normal).norm();
+            if across > best.0 {
+                best = (across, [i, j]);
+            }
+        }
+    }
+    let tangent_all = best.0 < 1e-3;
+    let at = if region || tangent_all {
+        // On the first one.
+        let first = rough[0];
+        let by = rates(|k| first.normal * -first.off.part(k));
+        Vec3::lifted(p - first.normal * first.off.re()) + by
+    } else {
+        let [i, j] = best.1;
+        let way = rough[i].normal.cross(rough[j].normal).normalized()?;
+        let plane = FaceSurface::Plane { at: Vec3::lifted(p), normal: Vec3::lifted(way) };
+        let on = [surfaces[i], surfaces[j], &plane].map(Carrier::Surface);
+        let start = [i, j].map(|n| match surfaces[n] {
+            FaceSurface::Plane { .. } => [0.0; 2],
+            s => s.parameters(p),
+        });
+        let met = meet(&on, p, &[start[0], start[1], [0.0; 2]], scale)?;
+        if met.at.re().distance(p) > 0.05 * scale {
+            return None;
+        }
+        met.at
+    };
+    let exact: Option<Vec<Tangent<T>>> = surfaces.iter().map(|s| tangent(at, s)).collect();
+    let exact = exact?;
+    // Beside a line where round faces only touch they are nearly as near, and move otherwise.
+    let near = if round && !region && tangent_all { 1e-13 } else { 1e-8 };
+    if exact.iter().any(|t| t.off.re().abs() > near * scale) {
+        return None;
+    }
+    let off = |k: usize| {
+        let most = exact.iter().map(|t| t.pace(k, scale)).fold(part(at, k).norm(), f64::max);
+        k > 0 && exact.iter().any(|t| moves(t.off.part(k), most))
+    };
+    Some((0..T::PARTS).map(off).collect())
+}
