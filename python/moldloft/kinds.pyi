@@ -7671,7 +7671,7 @@ def FairCurve(
         How points get their parameters: "chord", "centripetal", a coordinate ("x", "y" or "z",
         for offsets at stations), "index", or "curvature" (lengths, longer where the curve
         turns). "auto" is "curvature" for the goals "near" and "budget" where nothing but these
-        is asked for, else "chord". Default auto.
+        is asked for and ends keep no tangents, else "chord". Default auto.
     goal : text, optional
         Which of the curves within the tolerance: "near" (no fairer than noise of the
         tolerance's size asks for, and unmoved where there is little to gain), "budget" (the

@@ -295,7 +295,9 @@ def run(options: argparse.Namespace) -> int:
     if options.plot and Path(options.plot).suffix.lower() not in (".png", ".svg"):
         raise Error(f"a plot is .png or .svg, not `{options.plot}`")
     if options.report and Path(options.report).suffix.lower() not in (".html", ".htm"):
-        raise Error(f"a report is .html, not `{options.report}`")
+        raise Error(
+            f"a report is .html, not `{options.report}`: a browser prints such a page as PDF"
+        )
     if options.tol is None and not options.json:
         print(
             "warning: without a tolerance nothing keeps the result near the data: steps without "

@@ -84,15 +84,18 @@ def stays_near(goal: Any, free: bool) -> bool:
 
 
 def curve_spacing(asked: Asked, conditioned: bool) -> Any:
-    """The spacing of the points of a curve: of those that are to be near the truth by the turn of the curve."""
+    """The spacing of the points of a curve: by its turns where it is to be near the truth."""
     if asked.spacing != "auto":
         return asked.spacing
     plain = not conditioned and not asked.shape and asked.motion == "ball"
+    ends = ends_of(asked.ends or "free", asked.closed)
+    plain = plain and set(ends) <= {"free", "position"}
     return "curvature" if plain and asked.goal[0] in ("near", "budget") else "chord"
 
 
 def spacing_of(given: Any) -> tuple[str, tuple[float, float, float]]:
     """The word and the direction of a spacing."""
+    given = "chord" if isinstance(given, str) and given == "auto" else given
     axes = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
     if isinstance(given, str):
         return ("along", axes[given]) if given in axes else (given, (0.0, 0.0, 0.0))

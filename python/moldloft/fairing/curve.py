@@ -140,8 +140,8 @@ def fair_curve(
         ``"z"``) or a direction along which the points run, ``"index"``, or ``"curvature"``, lengths
         times (1 + (k / 2 m)^2)^(1/4), where k is the curvature of a smoothing spline through the
         points and m its mean. ``"auto"`` is ``"curvature"`` where an optimum of data is to be near
-        the truth (goals ``"near"`` and ``"budget"``) and there are no shapes, conditions, joins or
-        directions of the motion, else ``"chord"``.
+        the truth (goals ``"near"`` and ``"budget"``), its ends keep no tangents and there are no
+        shapes, conditions, joins or directions of the motion, else ``"chord"``.
     at
         The parameters themselves, rising, in [0, 1].
     goal

@@ -217,6 +217,9 @@ impl PointSteps {
     }
 }
 
+/// How much what points want counts where their moves are alike.
+const TIE: f64 = 1e-6;
+
 /// Makes local steps.
 ///
 /// Cost: O(log n) per step. The result is reproducible but jumps where two knots tie: a small
@@ -275,7 +278,13 @@ pub fn knot_removal_from(
         match options.rule {
             Rule::Literal => form,
             Rule::Achievable if check.is_some() && drop(j, points, to) <= 0.0 => 0.0,
-            Rule::Achievable => (to - points[j]).norm(),
+            // Points that want to go beyond their limits tie: the one comes first that wants to go farther,
+            // and not the one that rounding prefers.
+            Rule::Achievable => {
+                let length = (to - points[j]).norm();
+                let free = form / steps.own[j].abs();
+                if length == 0.0 { 0.0 } else { length * (1.0 + TIE * free / (free + length)) }
+            }
         }
     };
     let mut heap = IndexedHeap::new((0..n).map(|j| key(j, &points)).collect());

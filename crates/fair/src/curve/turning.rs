@@ -72,7 +72,7 @@ fn is_plane(points: &[Vec3<f64>]) -> bool {
 
 /// Parameters of data that run faster where their curve turns, for data with any parameters, points
 /// and `tolerances` and parameters `at` that may carry derivatives; `budget` is what the smoothing spline takes of the
-/// squared tolerances' thirds.
+/// squared tolerances' thirds. Exact points, and points without tolerances, have the parameters that they had.
 ///
 /// # Errors
 /// [`FairError`] of the spaces of splines.
@@ -102,7 +102,7 @@ pub fn curvature_parameters<T: Real>(
     budget: f64,
 ) -> Result<Vec<T>, FairError> {
     let degree = data.layout.space.degree();
-    if degree < 2 {
+    if degree < 2 || data.exact_parts() || data.limit.radii.iter().all(|&r| r == 0.0) {
         return Ok(at.to_vec());
     }
     let real = |all: &[T]| all.iter().map(|t| t.re()).collect::<Vec<f64>>();
@@ -337,32 +337,25 @@ impl<'a, T: Real> Smoothing<'a, T> {
         let m = self.sites.len();
         let last = if own.is_closed() { m } else { m - 1 };
         let (start, end) = own.domain();
-        let rule = gauss(4);
+        let rule = gauss(3);
         // Lengths and angles of parts.
         let mut parts: Vec<(usize, T, T)> = Vec::new();
         for j in 0..last {
-            let (mut a, mut b) = (self.sites[j], self.sites[(j + 1) % m]);
+            let (a, mut b) = (self.sites[j], self.sites[(j + 1) % m]);
             if j + 1 == m {
-                b = b + T::from(end - start);
+                b += T::from(end - start);
             }
-            let middle = 0.5 * (a.re() + b.re());
-            let (k, moved) = own.locate(middle);
-            a = a + T::from(moved - middle);
-            b = b + T::from(moved - middle);
-            let at = |t: T, order: usize| {
-                let factors = space.derivative(k, t, order);
-                let both = own.columns(k).zip(factors);
-                both.fold(Vec3::zero(), |s: Vec3<T>, (c, f)| s + control[c].map(|x| x * f))
-            };
-            // In one piece of a cubic the second derivative is linear.
-            let (first, second, then) = (at(a, 1), at(a, 2), at(b, 2));
             let h = b - a;
             for &(x, w) in &rule {
-                let share = 0.5 * (1.0 + x);
-                let bend = second + (then - second).map(|d| d * share);
-                let way = second.map(|d| d * h * share)
-                    + (then - second).map(|d| d * h * (0.5 * share * share));
-                let speed = first + way;
+                let t = a + h * (0.5 * (1.0 + x));
+                let (k, moved) = own.locate(t.re());
+                let t = t + T::from(moved - t.re());
+                let at = |order: usize| {
+                    let factors = space.derivative(k, t, order);
+                    let both = own.columns(k).zip(factors);
+                    both.fold(Vec3::zero(), |s: Vec3<T>, (c, f)| s + control[c].map(|x| x * f))
+                };
+                let (speed, bend) = (at(1), at(2));
                 let square = speed.norm_sq();
                 if square.re() <= 0.0 || !square.re().is_finite() {
                     return None;

@@ -77,7 +77,8 @@ pub struct FairCurve<T: Real> {
     knots: Option<Vec<T>>,
     /// How points get their parameters: "chord", "centripetal", a coordinate ("x", "y" or "z", for
     /// offsets at stations), "index", or "curvature" (lengths, longer where the curve turns). "auto" is
-    /// "curvature" for the goals "near" and "budget" where nothing but these is asked for, else "chord".
+    /// "curvature" for the goals "near" and "budget" where nothing but these is asked for and ends keep no tangents,
+    /// else "chord".
     #[field(default = "auto")]
     spacing: Arc<str>,
     /// Which of the curves within the tolerance: "near" (no fairer than noise of the tolerance's size
@@ -411,7 +412,8 @@ impl<T: Real> Build<T> for FairCurve<T> {
             || self.through.is_some()
             || self.tangents.is_some()
             || self.keep.is_some();
-        let free = !conditions && motion == crate::Motion::Ball;
+        let ends = matches!(&*self.ends, "free" | "position");
+        let free = !conditions && ends && motion == crate::Motion::Ball;
         let to_the_truth = matches!(goal, crate::Goal::Near(_) | crate::Goal::Budget(_));
         let turning = match &*self.spacing {
             "auto" => free && to_the_truth,

@@ -137,6 +137,16 @@ pub fn data_of(points: &[Vec3<f64>], tolerance: f64, spacing: ParameterSpacing) 
     }
 }
 
+/// The same as the goal `near` has them: parameters by the turn of the curve, and its budget.
+fn data_near(points: &[Vec3<f64>], tolerance: f64) -> (Data, f64) {
+    let mut data = data_of(points, tolerance, ParameterSpacing::Chord);
+    let budget = near_budget(points, Motion::Ball);
+    let tolerances = vec![tolerance; points.len()];
+    let at = curvature_parameters(&data, points, &tolerances, &data.layout.at, budget).unwrap();
+    data.layout = InterpolationSpace::new(3, &at, &[], false).unwrap();
+    (data, budget)
+}
+
 pub fn options(measure: Measure, goal: Goal) -> DataOptions {
     DataOptions::of(measure, goal)
 }
@@ -246,24 +256,23 @@ fn least_energies_are_a_conic_solvers() {
 #[test]
 fn near_is_nearer_to_the_truth_at_any_spacing() {
     let seeds = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 1..41 } else { 1..4 };
-    let (mut all, mut more, mut bent) = (Vec::new(), 0, 0);
+    let (mut all, mut more) = (Vec::new(), 0);
     for seed in seeds {
         for (shape, (pieces, inflections)) in SHAPES.iter().zip(TRUE) {
             for kind in SPACINGS {
                 let (truth, points, a) = case(shape, kind, seed);
-                let data = data_of(&points, a, ParameterSpacing::Chord);
-                let fit = fair_data(&data, &options(Measure::Variation, Goal::Near(0.8))).unwrap();
+                let (data, budget) = data_near(&points, a);
+                let near = options(Measure::Variation, Goal::Near(budget));
+                let fit = fair_data(&data, &DataOptions { bends: false, ..near }).unwrap();
                 let space = &data.layout.space;
                 let (p, i) = counted(space, &fit.points, *shape != "helix");
                 let off = rms(&fit, space, &truth) / a;
                 let here = format!("{shape} {kind} seed {seed}");
                 assert!(fit.residuals.iter().all(|&r| r <= a * (1.0 + 1e-12)), "{here}");
-                assert!(fit.used <= 0.8 * (1.0 + 1e-6), "{here}: used {}", fit.used);
-                // Random places may leave out a nose: what was not read cannot be known.
+                assert!(i <= inflections, "{here}: {i} inflections");
+                // Random places may leave out what is beside a nose: what was not read cannot be known.
                 let known = *shape != "naca0012" || kind != "random";
-                bent += usize::from(i > inflections);
-                let most = if kind == "random" { 0.75 } else { 0.62 };
-                assert!(!known || off < most, "{here}: rms {off} of the noise");
+                assert!(!known || off <= 0.5, "{here}: rms {off} of the noise");
                 more += usize::from(p > pieces + 2);
                 all.push(off);
             }
@@ -271,12 +280,65 @@ fn near_is_nearer_to_the_truth_at_any_spacing() {
     }
     all.sort_by(f64::total_cmp);
     let at = |share: f64| all[((all.len() - 1) as f64 * share) as usize];
-    // Of 960 draws 0.313 and 0.508.
-    assert!(at(0.5) < 0.36 && at(0.95) < 0.52, "median {}, 95 % {}", at(0.5), at(0.95));
-    // Inflections are as they come here, and one is rare.
-    assert!(100 * bent <= all.len(), "{bent} of {}", all.len());
+    // Of 960 draws 0.24 and 0.43.
+    assert!(at(0.5) < 0.27 && at(0.95) < 0.48, "median {}, 95 % {}", at(0.5), at(0.95));
     // More than two pieces beyond the truth are rare.
-    assert!(10 * more <= all.len(), "{more} of {}", all.len());
+    assert!(20 * more <= all.len(), "{more} of {}", all.len());
+}
+
+#[test]
+fn parameters_by_curvature_turn_scale_and_are_the_datas() {
+    let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(x, y)| (x - y).abs() < 1e-9);
+    for closed in [false, true] {
+        for seed in 1..9 {
+            let mut g = Lcg::new(seed);
+            let n = 24;
+            let points: Vec<Vec3<f64>> = (0..n)
+                .map(|k| {
+                    let t = 6.0 * (k as f64 + 0.4 * g.unit()) / f64::from(n);
+                    let noise = Vec3::of(g.unit(), g.unit(), 0.0) * 2e-3;
+                    Vec3::of(3.0 * t.cos(), t.sin(), 0.0) + noise
+                })
+                .collect();
+            let own = |points: &[Vec3<f64>], tolerance: f64| {
+                let at = parameters(points, ParameterSpacing::Chord, closed).unwrap();
+                let data = Data {
+                    limit: Limit::ball(points.len(), tolerance).unwrap(),
+                    layout: InterpolationSpace::new(3, &at, &[], closed).unwrap(),
+                    ends: [EndContinuity::Free; 2],
+                    points: points.to_vec(),
+                };
+                let all = vec![tolerance; points.len()];
+                curvature_parameters(&data, points, &all, &at, 0.5).unwrap()
+            };
+            let at = own(&points, 2e-3);
+            assert!(at[0] == 0.0 && at.windows(2).all(|w| w[0] < w[1]), "{at:?}");
+            let moved = |p: Vec3<f64>| Vec3::of(0.6 * p.x - 0.8 * p.y, 0.8 * p.x + 0.6 * p.y, p.z);
+            let place = |&p: &Vec3<f64>| moved(p) * 1e6 + Vec3::of(5e5, -7e5, 3e5);
+            let turned: Vec<_> = points.iter().map(place).collect();
+            assert!(close(&own(&turned, 2e3), &at));
+            if closed {
+                // From another point on, and the other way round.
+                let first = 7;
+                let from: Vec<_> =
+                    (0..n as usize).map(|k| points[(k + first) % n as usize]).collect();
+                let other = own(&from, 2e-3);
+                let wanted: Vec<f64> = (0..n as usize)
+                    .map(|k| (at[(k + first) % n as usize] - at[first]).rem_euclid(1.0))
+                    .collect();
+                assert!(close(&other, &wanted), "{other:?} {wanted:?}");
+            } else {
+                let back: Vec<_> = points.iter().rev().copied().collect();
+                let other: Vec<f64> = own(&back, 2e-3).iter().rev().map(|t| 1.0 - t).collect();
+                assert!(close(&other, &at), "{other:?} {at:?}");
+            }
+        }
+    }
+    // Exact points, and those that may not move, have what they had.
+    let circle: Vec<_> =
+        (0..20).map(|k| 0.2 * f64::from(k)).map(|t| Vec3::of(t.cos(), t.sin(), 0.0)).collect();
+    let (data, _) = data_near(&circle, 1e-3);
+    assert_eq!(data.layout.at, parameters(&circle, ParameterSpacing::Chord, false).unwrap());
 }
 
 /// Steps of a random spacing whose largest is 100 times the smallest.
