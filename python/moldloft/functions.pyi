@@ -426,6 +426,79 @@ def inside(
         SetBody b(set(sphere({0, 0, 0}, 1)), depth = 4); field f = inside(b); assert abs(f({3, 0, 0}) - 2) < 0.05;
     """
     ...
+def profile(
+    curve: _Curve,
+) -> FieldShape:
+    """The signed distance from a closed plane curve, measured in its plane: a prism without ends, negative inside.
+
+    The curve must not cross itself; where it does, what an odd number of turns surrounds is inside.
+
+    Parameters
+    ----------
+    curve : curve
+        The closed plane curve.
+
+    Returns
+    -------
+    field
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(1, 1, 0); BCurve c({A, B, C, A}, degree = 1); field f = profile(c); assert abs(f({3, 0, 7}) - 1) < 1e-9;
+    """
+    ...
+def extruded(
+    curve: _Curve,
+    by: _Point,
+) -> SetShape:
+    """The prism over a closed plane curve, from its plane to the plane moved by a vector, which may be oblique.
+
+    Its volume is the area of the curve times the height of the vector over the plane.
+
+    Parameters
+    ----------
+    curve : curve
+        The closed plane curve.
+    by : point
+        From its plane to the end.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(1, 1, 0); BCurve c({A, B, C, A}, degree = 1); set s = extruded(c, {0, 0, 0.5}); SetBody bar(s, {-0.1, -0.1, -0.1}, {2.2, 1.1, 0.6}, depth = 4); assert abs(bar.volume - 0.5) < 0.01;
+    """
+    ...
+def revolved(
+    curve: _Curve,
+    axis: _Curve,
+) -> SetShape:
+    """The body that a closed plane curve passes over in a full turn about a line of its plane.
+
+    Parameters
+    ----------
+    curve : curve
+        The closed plane curve.
+    axis : curve
+        A line in its plane that it does not cross.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        AbsPoint A(2, 0, 0); AbsPoint B(3, 0, 0); AbsPoint C(2, 0, 1); BCurve c({A, B, C, A}, degree = 1); AbsPoint P(0, 0, 0); AbsPoint Q(0, 0, 1); Line axis(P, Q); set s = revolved(c, axis); SetBody ring(s, {-3.1, -3.1, -0.1}, {3.1, 3.1, 1.1}, depth = 5); assert abs(ring.volume - 7*PI/3) < 0.1;
+    """
+    ...
 def set(
     field: object,
 ) -> SetShape:
@@ -1126,6 +1199,48 @@ def repeated(
     In the language::
 
         set row = repeated(set(sphere({0, 0, 0}, 0.4)), {1, 0, 0}, 5); assert components(row) == 5;
+    """
+    ...
+def set_union(
+    sets: Sequence[_Set] | _Any,
+) -> SetShape:
+    """The union of any number of sets, in a balanced tree: what many sets have in common with a place is found fastest so.
+
+    Parameters
+    ----------
+    sets : list of set
+        The sets.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        set balls = set_union({sphere({0, 0, 0}, 1), sphere({3, 0, 0}, 1), sphere({6, 0, 0}, 1)}); assert components(balls) == 3;
+    """
+    ...
+def set_intersection(
+    sets: Sequence[_Set] | _Any,
+) -> SetShape:
+    """What any number of sets have in common, in a balanced tree.
+
+    Parameters
+    ----------
+    sets : list of set
+        The sets.
+
+    Returns
+    -------
+    set
+
+    Notes
+    -----
+    In the language::
+
+        set lens = set_intersection({sphere({0, 0, 0}, 1), sphere({1, 0, 0}, 1)}); assert abs(volume(lens) - 5*PI/12) < 1e-6;
     """
     ...
 def set_offset(
