@@ -446,7 +446,7 @@ def profile(
     -----
     In the language::
 
-        AbsPoint O(0, 0, 0); AbsPoint A(2, 0, 0); AbsPoint B(0, 2, 0); Circle c(O, A, B); field f = profile(c); assert abs(f({3, 0, 7}) - 1) < 1e-9;
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(1, 1, 0); BCurve c({A, B, C, A}, degree = 1); field f = profile(c); assert abs(f({3, 0, 7}) - 1) < 1e-9;
     """
     ...
 def extruded(
@@ -472,7 +472,7 @@ def extruded(
     -----
     In the language::
 
-        AbsPoint O(0, 0, 0); AbsPoint A(2, 0, 0); AbsPoint B(0, 2, 0); Circle c(O, A, B); set puck = extruded(c, {0, 0, 0.5}); assert abs(volume(puck) - 2*PI) < 1e-3;
+        AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(1, 1, 0); BCurve c({A, B, C, A}, degree = 1); set s = extruded(c, {0, 0, 0.5}); SetBody bar(s, {-0.1, -0.1, -0.1}, {2.2, 1.1, 0.6}, depth = 4); assert abs(bar.volume - 0.5) < 0.01;
     """
     ...
 def revolved(
@@ -496,7 +496,7 @@ def revolved(
     -----
     In the language::
 
-        AbsPoint O(3, 0, 0); AbsPoint A(4, 0, 0); AbsPoint B(3, 0, 1); Circle c(O, A, B); AbsPoint P(0, 0, 0); AbsPoint Q(0, 0, 1); Line axis(P, Q); set ring = revolved(c, axis); assert abs(volume(ring) - 6*PI*PI) < 1e-2;
+        AbsPoint A(2, 0, 0); AbsPoint B(3, 0, 0); AbsPoint C(2, 0, 1); BCurve c({A, B, C, A}, degree = 1); AbsPoint P(0, 0, 0); AbsPoint Q(0, 0, 1); Line axis(P, Q); set s = revolved(c, axis); SetBody ring(s, {-3.1, -3.1, -0.1}, {3.1, 3.1, 1.1}, depth = 5); assert abs(ring.volume - 7*PI/3) < 0.1;
     """
     ...
 def set(

@@ -26,12 +26,12 @@ from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeSphere,
     BRepPrimAPI_MakeTorus,
 )
-from OCP.GProp import GProp_GProps
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from OCP.GProp import GProp_GProps
 from OCP.TopoDS import TopoDS_Shape
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
-COUNT = 1000 if SOAK else 24
+COUNT = 1000 if SOAK else 12
 
 Part = tuple[im.Set, TopoDS_Shape]
 Floats = NDArray[np.float64]
@@ -122,7 +122,7 @@ def heights(facets: im.Facets) -> Floats:
     return area / sides.max(axis=0) ** 2
 
 
-# Where both of these say the same against OCCT, OCCT's solid is not the one meant: counted as found.
+# Judges where OCCT's solid is not the one that was meant.
 def sampled(part: im.Set, low: Floats, high: Floats) -> float:
     points = np.random.default_rng(0).uniform(low, high, (400_000, 3))
     return float((part(points) < 0).mean() * np.prod(high - low))

@@ -84,7 +84,7 @@ def onto(points: Floats, a: im.Field, b: im.Field, at: tuple[float, float]) -> F
     return points[(abs(a(points) - at[0]) < 1e-11) & (abs(b(points) - at[1]) < 1e-11)]
 
 
-@pytest.mark.parametrize("seed", range(200 if SOAK else 16))
+@pytest.mark.parametrize("seed", range(200 if SOAK else 6))
 def test_a_fillet_touches_along_its_rails_and_fills_its_edges(seed: int) -> None:
     rng = np.random.default_rng([31, seed])
     a, faces_a = body(rng, "a", np.zeros(3))

@@ -18,6 +18,7 @@ import moldloft
 from moldloft import implicit as im
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
+CELLS = 400_000 if SOAK else 60_000
 KINDS = ("plate", "rod", "ring", "shell", "wedge", "pipe", "wire")
 
 
@@ -75,16 +76,16 @@ def thin(seed: int) -> Body:
     return Body(kind, t, body, float(volume), euler)
 
 
-@pytest.mark.parametrize("seed", range(500 if SOAK else 14))
+@pytest.mark.parametrize("seed", range(500 if SOAK else 7))
 def test_the_volume_is_proved_or_refused_with_what_is_reached(seed: int) -> None:
     of = thin(seed)
     asked = float(10 ** np.random.default_rng([8, seed]).uniform(-4, -1.5)) * of.volume
     try:
-        mass = of.set.mass(accuracy=asked)
+        mass = of.set.mass(accuracy=asked, cells=CELLS)
     except moldloft.Error as error:
         reached = float(re.search(r"known to (\S+), not", str(error))[1])
         assert reached > asked
-        mass = of.set.mass(accuracy=1.01 * reached)
+        mass = of.set.mass(accuracy=1.01 * reached, cells=CELLS)
         asked = 1.01 * reached
     low, high = mass.volume_bracket
     assert low <= mass.volume <= high
@@ -92,7 +93,7 @@ def test_the_volume_is_proved_or_refused_with_what_is_reached(seed: int) -> None
     assert abs(mass.volume - of.volume) <= asked
 
 
-@pytest.mark.parametrize("seed", range(500 if SOAK else 14))
+@pytest.mark.parametrize("seed", range(500 if SOAK else 7))
 def test_facets_to_an_accuracy_are_one_body_with_the_right_holes(seed: int) -> None:
     of = thin(seed)
     accuracy = float(10 ** np.random.default_rng([9, seed]).uniform(-3.5, -1.5))
@@ -106,20 +107,16 @@ def test_facets_to_an_accuracy_are_one_body_with_the_right_holes(seed: int) -> N
     assert facets.best_volume == pytest.approx(of.volume, rel=0.02)
 
 
-@pytest.mark.parametrize(
-    ("kind", "thickness"), [("plate", 0.03), ("ring", 0.1), ("rod", 0.08), ("shell", 0.06)]
-)
+@pytest.mark.parametrize(("kind", "thickness"), [("plate", 0.03), ("ring", 0.1)])
 def test_the_depth_that_is_named_shows_the_part(kind: str, thickness: float) -> None:
     o, z, turn = (0, 0, 0), (0, 0, 1), ((0, 0, 0), (1, 2, 3), 0.7)
     body, euler = {
         "plate": (im.cuboid(o, (1, 1, thickness)), 2),
         "ring": (im.Set(im.torus(o, z, 1, 0.5 * thickness)), 0),
-        "rod": (between(im.Set(im.cylinder(o, z, 0.5 * thickness)), 0, 1), 2),
-        "shell": (im.Set(im.sphere(o, 1)) - im.sphere(o, 1 - thickness), 4),
     }[kind]
     body = body.turned(*turn)
     with pytest.raises(moldloft.Error, match="would show it") as refused:
-        body.facets(accuracy=0.2 * thickness, limit=1000)
+        body.facets(accuracy=0.2 * thickness, limit=300)
     depth = int(re.search(r"depth = (\d+)", str(refused.value))[1])
     assert depth <= 9
     facets = body.facets(depth=depth)

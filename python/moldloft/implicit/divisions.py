@@ -135,7 +135,9 @@ class Division:
             box = self._half(box, (at >= 0.5 * (box.low + box.high)).tolist())
         return box
 
-    def _walk(self, box: DivisionBox, axis: int = 0, at: float | None = None) -> Iterator[DivisionBox]:
+    def _walk(
+        self, box: DivisionBox, axis: int = 0, at: float | None = None
+    ) -> Iterator[DivisionBox]:
         if at is not None and not box.low[axis] <= at <= box.high[axis]:
             return
         if not self._divided(box):

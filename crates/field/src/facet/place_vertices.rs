@@ -94,27 +94,15 @@ impl VertexPlacer<'_> {
         PieceVertices::One { placed, surfaces, blunt: false }
     }
 
-    /// The apex of a cone that a piece of surface shows, if it is in the cell and on the set's surface; other surfaces of
-    /// the piece must pass through it, as a plane does that cuts one half of a double cone off.
+    /// The apex of the cone that a piece of surface shows, if it is in the cell and on the set's surface.
     fn apex(&mut self, surfaces: &[u32]) -> Option<Vec3> {
-        let apex = |leaf: &u32| match self.leaves[*leaf as usize].primitive.form() {
-            Form::Cone { axis, .. } => Some(axis.point),
-            _ => None,
-        };
-        let p = surfaces.iter().find_map(apex)?;
-        let within = (0..3).all(|k| self.cell.low[k] <= p[k] && p[k] <= self.cell.high[k]);
-        let passes = |leaf: &u32| {
-            let g = self.solver.gradient(self.leaves[*leaf as usize].primitive.tape(), p);
-            g.value.abs() <= self.goal * g.slope.norm().max(1.0)
-        };
-        if !within || !surfaces.iter().all(passes) {
+        let [leaf] = surfaces else { return None };
+        let Form::Cone { axis, .. } = self.leaves[*leaf as usize].primitive.form() else {
             return None;
-        }
-        match surfaces.len() {
-            1 => self.blocking_leaf(p, surfaces).is_none(),
-            _ => self.tape.eval::<f64>(&p, self.registers).abs() <= self.goal,
-        }
-        .then_some(p)
+        };
+        let (p, cell) = (axis.point, self.cell);
+        let within = (0..3).all(|k| cell.low[k] <= p[k] && p[k] <= cell.high[k]);
+        (within && self.blocking_leaf(p, surfaces).is_none()).then_some(p)
     }
 
     /// True when a point is further from one of the surfaces than may go unsaid.
