@@ -80,13 +80,13 @@ def body(rng: np.random.Generator, *, curved: bool) -> tuple[Sketch, str] | None
     return None if sketch.volume is None else (sketch, name)
 
 
-def sides(sketch: Sketch, name: str) -> tuple[np.ndarray, np.ndarray] | None:
+def sides(sketch: Sketch, name: str, step: float = STEP) -> tuple[np.ndarray, np.ndarray] | None:
     """The derivatives of volume, area and centroid from below and from above."""
     x = sketch[name]
-    rows = sketch.sweep(name, x + STEP * np.array([-4, -3, -2, -1, 0, 1, 2, 3, 4]))
+    rows = sketch.sweep(name, x + step * np.array([-4, -3, -2, -1, 0, 1, 2, 3, 4]))
     if np.isnan(rows).any():
         return None
-    weights = np.array([-25, 48, -36, 16, -3]) / (12 * STEP)
+    weights = np.array([-25, 48, -36, 16, -3]) / (12 * step)
     return -(weights @ rows[4::-1]), weights @ rows[4:]
 
 
@@ -125,8 +125,13 @@ def test_derivatives_on_a_grid(curved):
                     assert np.abs(g - (a + b) / 2).max() < 1e-5 * size, what
                     compared += 1
                 else:
-                    # Beside a place where a round face is only touched differences do not settle.
-                    assert curved and apart < 1e-2, what
+                    # Where a round face begins to be cut differences come to the derivative as the
+                    # root of their step; two derivatives stay apart.
+                    nearer = sides(sketch, name, STEP / 100)
+                    assert curved and nearer is not None, what
+                    b, a = nearer[0][part], nearer[1][part]
+                    assert np.abs(a - b).max() / size < 0.2 * apart, (what, b, a)
+                    assert np.abs(g - (a + b) / 2).max() < 0.2 * apart * size, (what, b, a)
     print(bodies, compared, one_sided, refused)
     assert compared > 3 * bodies
     assert refused <= 0.05 * compared
@@ -142,7 +147,7 @@ def test_a_corner_of_four_planes_by_chance():
     text = drawing(rng, "B", points, [(1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (3, 4)])
     sketch.run(f'{text}\nVARIABLE T 4\nDIM X 1 2 "T"\nDIM Y 1 3 "T"\nDIM Z 1 4 "T"\nGENERATE FACES')
     sketch.run("CUT A B INTO U; USING U")
-    gradient = sketch.gradient(["W", "T"])
+    gradient = sketch.gradient(["A.W", "B.T"])
     assert gradient.volume == pytest.approx([16, -8], rel=1e-12)
     # Three faces lose T²/2 each, and an equilateral triangle comes.
     assert gradient.area == pytest.approx([16, 4 * np.sqrt(3) - 12], rel=1e-12)
@@ -156,7 +161,7 @@ def test_a_body_on_another_one_has_two_derivatives():
         text = drawing(rng, name, corners((0, 0, 0), (4, 4, 4)), BOX_LINES)
         sketch.run(f"{text}\nDIM W X 1 2 4\nDIM D Y 1 4 4\nDIM H Z 1 5 4\nGENERATE FACES")
     sketch.run("VARIABLE MZ 4; MOVE B 0 0 MZ FEATURE; UNION A B INTO U; USING U")
-    gradient = sketch.gradient(["MZ", "A.W", "B.H"])
+    gradient = sketch.gradient(["MZ", "A.W", "H"])
     assert np.isnan(gradient.volume[0]) and gradient.kinks[0].startswith(
         "faces lie in each other at"
     )

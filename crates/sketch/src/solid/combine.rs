@@ -492,13 +492,29 @@ impl<'a, T: Real> Placing<'a, T> {
             let tool = |e: &&(usize, u32)| self.fitted && e.0 == 1 && known(e);
             all.iter().find(tool).or_else(|| all.iter().find(known)).copied()
         };
+        // Of the edges of several bodies in one place, that of the two faces.
+        let between = |a: u32, b: u32, pair: [usize; 2]| -> Option<(usize, u32)> {
+            let first = source(a, b)?;
+            if self.fitted && first.0 == 1 {
+                return Some(first);
+            }
+            let edge = |e: &(usize, u32)| &self.all.sources[e.0].edges[e.1 as usize];
+            let beside = |e: &(usize, u32), f: usize| {
+                let mut own = faces[f].sources.iter();
+                own.any(|s| s.0 == e.0 && edge(e).1.contains(&s.1))
+            };
+            let all = self.arranged.edges.get(&(a.min(b), a.max(b)))?;
+            let both =
+                |e: &&(usize, u32)| edge(e).0.is_some() && pair.iter().all(|&f| beside(e, f));
+            all.iter().find(both).copied().or(Some(first))
+        };
         let kind = |a: u32, b: u32, own: usize| -> Kind {
             // Of several faces at an edge, those of the same place in both lists are neighbours.
             let place = left[&(a, b)].iter().position(|f| *f == own).unwrap_or(0);
             let other = left.get(&(b, a)).and_then(|l| l.get(place).or(l.last()));
             let other = other.copied().unwrap_or(own);
             let round = !faces[own].plane || !faces[other].plane;
-            let edge = if round { source(a, b) } else { None };
+            let edge = if round { between(a, b, [own, other]) } else { None };
             (own.min(other), own.max(other), edge)
         };
         let mut corners: BTreeSet<u32> = BTreeSet::new();
@@ -539,7 +555,7 @@ impl<'a, T: Real> Placing<'a, T> {
         for (&v, (own, edges)) in &around {
             let at = self.corner(v, own, edges)?;
             if let Some(at) = at {
-                let (at, parts) = self.moved_with_all(at, own);
+                let (at, parts) = self.moved_with_all(at, (own, edges));
                 if parts {
                     self.parted.insert(v);
                 }

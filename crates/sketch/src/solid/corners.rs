@@ -111,7 +111,11 @@ impl<T: Real> Placing<'_, T> {
 
     /// A corner whose derivatives are none where its faces part: more of them than fix a point meet there by chance, and
     /// it becomes several corners with the slightest change. And whether edges have to end by themselves there.
-    pub(super) fn moved_with_all(&self, at: Vec3<T>, faces: &BTreeSet<usize>) -> (Vec3<T>, bool) {
+    pub(super) fn moved_with_all(
+        &self,
+        at: Vec3<T>,
+        (faces, edges): (&BTreeSet<usize>, &BTreeSet<(usize, u32)>),
+    ) -> (Vec3<T>, bool) {
         if T::PARTS == 1 {
             return (at, false);
         }
@@ -122,8 +126,18 @@ impl<T: Real> Placing<'_, T> {
             sources.filter_map(|s| Tangent::of(surface(s), at, ON_SURFACE)).collect()
         };
         let all: Vec<Vec<Tangent<T>>> = faces.iter().map(touching).collect();
-        // One that parted in a body that this one is made of.
-        let lost = |k: usize| !part(at, k).is_finite();
+        // Edges between tangent faces, whose planes do not tell where they run.
+        let tangent: Vec<(Vec3<T>, Vec3)> =
+            edges.iter().filter_map(|&e| self.tangent_edge(e, at.re())).collect();
+        let strays = |k: usize| {
+            tangent.iter().any(|(on, way)| {
+                let [curve, own] = [part(*on, k), part(at, k)];
+                let by = curve - own;
+                moves((by - *way * way.dot(by)).norm(), curve.norm() + own.norm())
+            })
+        };
+        // Or one that parted in a body that this one is made of.
+        let lost = |k: usize| !part(at, k).is_finite() || strays(k);
         let speeds = |k: usize| all.iter().flatten().map(move |t| t.pace(k, self.scale));
         let off = |t: &Tangent<T>, k: usize| {
             let most = speeds(k).fold(part(at, k).norm(), f64::max);
@@ -136,6 +150,21 @@ impl<T: Real> Placing<'_, T> {
         };
         let none = |x: T| T::from_parts(|k| if k > 0 && parted(k) { f64::NAN } else { x.part(k) });
         (at.map(none), (1..T::PARTS).any(leaves))
+    }
+
+    /// The point of an edge of a body at a place and its direction there, where the faces beside it are tangent.
+    fn tangent_edge(&self, (operand, tag): (usize, u32), p: Vec3) -> Option<(Vec3<T>, Vec3)> {
+        let source = &self.all.sources[operand];
+        let (piece, beside) = &source.edges[tag as usize];
+        let (piece, &[a, b]) = (piece.as_ref()?, &beside[..]) else { return None };
+        let normal = |tag: u32| {
+            let surface = &source.surfaces[tag as usize];
+            Tangent::of(surface, Vec3::lifted(p), ON_SURFACE).map(|t: Tangent<T>| t.normal)
+        };
+        let touching = normal(a)?.cross(normal(b)?).norm_sq() <= 1e-8;
+        let s = T::from(along(piece, p));
+        let way = piece.velocity(s).re().normalized()?;
+        touching.then(|| (piece.at(s), way))
     }
 
     /// Parts of plane faces that are of other bodies than the rest and do not move with it.

@@ -72,7 +72,7 @@ pub fn body<T: Real>(
         }
         match body_at(object, planes, layout, &plan) {
             // More pieces than can be handled: what the first look says is nearer to the point.
-            Err(NoBody::Combine(CombineError::TooLarge)) => return first,
+            Err(why) if why.too_large() => return first,
             Err(why) if why.unclear().is_some() => unclear = why.unclear(),
             found => return found,
         }
@@ -84,7 +84,7 @@ pub fn body<T: Real>(
     for everywhere in 1..=FINEST_EVERYWHERE {
         match body_at(object, planes, layout, &FacetPlan { everywhere, ..FacetPlan::default() }) {
             Err(why) if why.unclear().is_some() => {}
-            Err(NoBody::Combine(CombineError::TooLarge)) => break,
+            Err(why) if why.too_large() => break,
             found => return found,
         }
     }
@@ -148,6 +148,17 @@ impl NoBody {
             },
             NoBody::Operand { why, .. } => why.facet_error(),
             _ => None,
+        }
+    }
+
+    /// Whether there were more pieces than can be handled, in this feature or one that it is made of.
+    fn too_large(&self) -> bool {
+        match self {
+            NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => {
+                *e == CombineError::TooLarge
+            }
+            NoBody::Operand { why, .. } => why.too_large(),
+            _ => false,
         }
     }
 
