@@ -1,9 +1,9 @@
 """Unions of many primitives beside Manifold, and models of fidget in their text form.
 
 `python benches/implicit_scale.py` compares 10 000 random balls at depth 7 and a lattice of 9 450
-struts at depth 7 with Manifold's batch union of meshes; the number of segments of these is chosen so that
-the balls end with about as many triangles. `python benches/implicit_scale.py MODEL.vm DEPTH` reads a model
-of fidget; its interpreter is timed by `cargo run --release --bin interpreter` in `benches/fidget`.
+struts at depth 7 with Manifold's batch union of meshes, of so many segments that the balls end
+with about as many triangles. `python benches/implicit_scale.py MODEL.vm DEPTH` reads a model of
+fidget; its interpreter is timed by `cargo run --release --bin interpreter` in `benches/fidget`.
 Seconds are of the processor, of all threads together.
 """
 

@@ -69,8 +69,8 @@ def test_curves_of_every_mode(kind):
         points, tol = noisy(rng, kind, 24)
         turn, scale, shift = placed(rng)
         base = moldloft.fair(points, tol, **options).points
-        if options.get("goal") in ("budget", "fairest"):
-            # The others may leave the points as they are.
+        if options.get("goal") == "fairest":
+            # The others may leave the points as they are, with a note where turns are in the way.
             assert np.abs(base - points).max() > 1e-6, options
         moved = moldloft.fair(scale * (points @ turn.T + shift), scale * tol, **options).points
         # Limits that are reached decide; where the measure is flat only so many digits are left.

@@ -100,7 +100,7 @@ class Pictured:
         Error
             When the set has no end and no box is given.
         ValueError
-            When a number is beyond its range, or a name in ``mirrors`` is no primitive's.
+            When a number is beyond its range, or a name in ``mirrors`` is not one of a primitive.
         FileError
             When it cannot be written to ``path``.
 

@@ -38,7 +38,7 @@ pub fn rows() -> Vec<Row> {
         shapes::InsideOf,
         profiles::ProfileOf,
         profiles::Extruded,
-        profiles::Revolved,
+        profiles::ProfileRevolved,
         sets::SetOf,
         sets::Cuboid,
         sets::Tetrahedron,

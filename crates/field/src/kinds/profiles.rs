@@ -1,7 +1,7 @@
 //! Plane curves as fields and sets: prisms and bodies of revolution, as rows of the registry.
 
 use super::read::{fault, field_value, set, set_value};
-use crate::shapes::profile::{NotAProfile, Profile};
+use crate::shapes::profile::{NotAProfile, ProfileField};
 use crate::{Affine, Primitive, Set};
 use moldloft_num::{Axis, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
@@ -19,13 +19,13 @@ fn refused(why: NotAProfile, place: FieldId) -> CallError {
             format!("a line that is off by {away:.3e}, or that much of the curve beyond it"),
         ),
     };
-    CallError::new("no-profile", "the curve is no profile")
+    CallError::new("no-profile", "the curve is not a profile")
         .expected(expected)
         .found(found)
         .in_field(place)
 }
 
-fn user<T: Real>(profile: Profile<T>) -> Primitive<T> {
+fn user<T: Real>(profile: ProfileField<T>) -> Primitive<T> {
     Primitive::user(Arc::new(profile))
 }
 
@@ -46,7 +46,7 @@ pub struct ProfileOf<T: Real> {
 
 impl<T: Real> Build<T> for ProfileOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let profile = Profile::new(self.curve).map_err(|why| refused(why, Self::CURVE))?;
+        let profile = ProfileField::new(self.curve).map_err(|why| refused(why, Self::CURVE))?;
         Ok(field_value(user(profile)))
     }
 }
@@ -70,7 +70,7 @@ pub struct Extruded<T: Real> {
 
 impl<T: Real> Build<T> for Extruded<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let profile = Profile::new(self.curve).map_err(|why| refused(why, Self::CURVE))?;
+        let profile = ProfileField::new(self.curve).map_err(|why| refused(why, Self::CURVE))?;
         let ([point, normal], by) = (profile.plane(), self.by.xyz);
         let height = by.dot(normal);
         if height.re().abs() <= 1e-9 * by.re().norm() {
@@ -109,20 +109,20 @@ impl<T: Real> Build<T> for Extruded<T> {
     name = "revolved",
     example = "AbsPoint A(2, 0, 0); AbsPoint B(3, 0, 0); AbsPoint C(2, 0, 1); BCurve c({A, B, C, A}, degree = 1); AbsPoint P(0, 0, 0); AbsPoint Q(0, 0, 1); Line axis(P, Q); set s = revolved(c, axis); SetBody ring(s, {-3.1, -3.1, -0.1}, {3.1, 3.1, 1.1}, depth = 5); assert abs(ring.volume - 7*PI/3) < 0.1;"
 )]
-pub struct Revolved<T: Real> {
+pub struct ProfileRevolved<T: Real> {
     /// The closed plane curve.
     curve: CurveRef<T>,
     /// A line in its plane that it does not cross.
     axis: Axis<T>,
 }
 
-impl<T: Real> Build<T> for Revolved<T> {
+impl<T: Real> Build<T> for ProfileRevolved<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let place = |why: &NotAProfile| match why {
             NotAProfile::Beside(_) => Self::AXIS,
             _ => Self::CURVE,
         };
-        let profile = Profile::turned(self.curve, self.axis).map_err(|why| {
+        let profile = ProfileField::turned(self.curve, self.axis).map_err(|why| {
             let at = place(&why);
             refused(why, at)
         })?;

@@ -39,17 +39,17 @@ enum ProfileMap<T: Real> {
 }
 
 /// The signed distance, in its plane, from a closed plane curve.
-pub struct Profile<T: Real> {
+pub struct ProfileField<T: Real> {
     curve: CurveRef<T>,
     nearest: Arc<NearestCurve>,
-    outline: Arc<Outline>,
+    outline: Arc<ProfileOutline>,
     /// A point of the plane and its normal.
     plane: [Vec3<T>; 2],
     map: ProfileMap<T>,
 }
 
 /// The curve as a polygon in two coordinates of its plane.
-struct Outline {
+struct ProfileOutline {
     origin: Vec3,
     across: [Vec3; 2],
     points: Vec<[f64; 2]>,
@@ -59,7 +59,7 @@ struct Outline {
     breaks: Vec<f64>,
 }
 
-impl Outline {
+impl ProfileOutline {
     fn at(&self, p: Vec3) -> [f64; 2] {
         self.across.map(|a| (p - self.origin).dot(a))
     }
@@ -76,7 +76,7 @@ impl Outline {
     }
 }
 
-impl<T: Real> Profile<T> {
+impl<T: Real> ProfileField<T> {
     /// The prism without ends over a closed plane curve.
     ///
     /// # Errors
@@ -121,7 +121,7 @@ impl<T: Real> Profile<T> {
             at(0.5 * (w[0] + w[1])).re().distance((p + q) * 0.5)
         };
         let close = places.windows(2).map(sag).fold(0.0, f64::max).max(SAME * size);
-        let mut outline = Outline {
+        let mut outline = ProfileOutline {
             origin: points[0],
             across,
             points: Vec::new(),
@@ -202,7 +202,7 @@ impl<T: Real> Profile<T> {
     }
 }
 
-impl<T: Real> Field<T> for Profile<T> {
+impl<T: Real> Field<T> for ProfileField<T> {
     fn value_and_gradient(&self, p: Vec3<T>) -> (T, Vec3<T>) {
         let (image, radial, out) = self.image(p);
         let t = self.nearest.nearest(&PlainCurve(&*self.curve), image.re()).at[0];
@@ -250,7 +250,7 @@ impl<T: Real> Field<T> for Profile<T> {
     }
 }
 
-impl<T: Real> Oracle<T> for Profile<T> {
+impl<T: Real> Oracle<T> for ProfileField<T> {
     fn range(&self, over: &Box3) -> Interval {
         lipschitz(Field::value(self, Vec3::lifted(over.centre())).re(), over)
     }
@@ -265,7 +265,7 @@ impl<T: Real> Oracle<T> for Profile<T> {
                 out.re(),
             ),
         };
-        Arc::new(Profile {
+        Arc::new(ProfileField {
             curve: CurveRef::new(Shown(self.curve.clone()), 0),
             nearest: self.nearest.clone(),
             outline: self.outline.clone(),

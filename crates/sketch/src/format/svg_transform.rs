@@ -25,7 +25,7 @@ impl SvgTransform {
     /// This one with the transforms of an attribute within it.
     ///
     /// # Errors
-    /// Says what is no transform.
+    /// What is not a transform.
     pub fn with(self, text: &str) -> Result<SvgTransform, String> {
         let wrong = || format!("the transform `{text}` is not understood");
         let mut out = self;

@@ -5,7 +5,7 @@
 //! other, so the volume has two one-sided derivatives; where an edge lies in a face that moves otherwise, the area has.
 //! More faces than three at a point change neither in first order.
 
-use super::combine::{FacetSource, moves, settled};
+use super::facet_source::{FacetSource, moves, settled};
 use super::mass::Mass;
 use super::surface::{Carrier, FaceSurface, meet};
 use crate::solid::arrangement::SurfaceCoincidence;

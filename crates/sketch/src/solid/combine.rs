@@ -8,7 +8,7 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::coincidence::{self, Kink, part, rates};
-use super::curve::SmoothPiece;
+use super::facet_source::{FacetSource, ON_SURFACE, along, moves, settled};
 use super::near_misses::NearMissSearch;
 use super::nearness::Nearness;
 use super::surface::{Carrier, FaceSurface, Jet, Met, meet};
@@ -89,24 +89,6 @@ pub fn resolved<T: Real>(body: &SketchSolid<T>) -> Result<(SketchSolid<T>, bool)
 /// [`CombineError`], with the place.
 pub fn united<T: Real>(bodies: &[&SketchSolid<T>]) -> Result<SketchSolid<T>, CombineError> {
     build(bodies, &vec![0; bodies.len()], [true, false], &|w| w[0] > 0).map(|b| b.0)
-}
-
-/// What facets of the bodies stand for.
-pub(super) struct FacetSource<T> {
-    pub(super) surfaces: Vec<FaceSurface<T>>,
-    /// By surface: the names of its face.
-    names: Vec<Vec<Arc<str>>>,
-    /// By edge: its curve where it has a closed form, and the surfaces beside it.
-    pub(super) edges: Vec<(Option<SmoothPiece<T>>, Vec<u32>)>,
-    /// By surface: the edges round its face as they are run, none of a face in triangles; and whether the outward side
-    /// is that of the surface's own normal.
-    pub(super) borders: Vec<(Vec<(u32, bool)>, bool)>,
-    /// By edge: where it begins and ends on its curve.
-    pub(super) ranges: Vec<[f64; 2]>,
-    /// By edge: points along it with directions, where it has no closed form.
-    pub(super) traced: Vec<Vec<(Vec3, Vec3)>>,
-    /// Plane faces, by surface, that do not stay plane.
-    warped: Vec<(u32, Kink)>,
 }
 
 /// The facets of bodies, and what they stand for.
@@ -421,22 +403,8 @@ const MOST_HALVINGS: u32 = 16;
 /// How exactly points are known, as a share of the bodies: what chords miss by less is not resolved by halving.
 const ROUNDED: f64 = 1e-14;
 
-/// A point is on a surface where it is off it by no more than this share of the surface's size.
-pub(super) const ON_SURFACE: f64 = 1e-8;
-
 /// More facets than this are refused before they are looked at: they would take minutes.
 const MOST_FACETS: usize = 200_000;
-
-/// Faces part in a corner where it leaves one of them by more than this share of the speeds there.
-const PARTING: f64 = 1e-6;
-
-/// Speeds that rounding leaves: numbers of bodies are lengths and degrees, so that what moves has a speed of about one.
-const STILL: f64 = 1e-11;
-
-/// Whether something moves, where the speeds around it are that.
-pub(super) fn moves(speed: f64, around: f64) -> bool {
-    speed.abs() > PARTING * around + STILL
-}
 
 /// Two faces beside a side, and the edge of a body that it is part of.
 pub(super) type Kind = (usize, usize, Option<(usize, u32)>);
@@ -891,58 +859,6 @@ impl<'a, T: Real> Placing<'a, T> {
         }
         super::CombinedMesh { points, faces, chains }
     }
-}
-
-/// The parameter of the point of a piece nearest to `p`.
-pub(super) fn along<T: Real>(piece: &SmoothPiece<T>, p: Vec3) -> f64 {
-    let at = |s: f64| piece.at(T::from(s)).re();
-    let mut s = (0..=16)
-        .map(|k| f64::from(k) / 16.0)
-        .min_by(|a, b| at(*a).distance(p).total_cmp(&at(*b).distance(p)))
-        .unwrap_or(0.5);
-    for _ in 0..12 {
-        let d = piece.velocity(T::from(s)).re();
-        let step = d.dot(p - at(s)) / d.norm_sq();
-        if !step.is_finite() {
-            break;
-        }
-        s = (s + step).clamp(-0.1, 1.1);
-    }
-    s
-}
-
-/// The parameters of a point of a surface by Gauss-Newton steps, or of the foot of one that is off it by no more than a
-/// share of its size; `None` where the steps end at another point.
-pub(super) fn settled<T: Real>(
-    surface: &FaceSurface<T>,
-    p: Vec3,
-    start: [f64; 2],
-    share: f64,
-) -> Option<[f64; 2]> {
-    let mut at = start;
-    for _ in 0..8 {
-        let [s, du, dv] = surface.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
-        let r = p - s;
-        let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
-        let det = a * c - b * b;
-        if det <= 1e-20 * a * c {
-            break;
-        }
-        let (x, y) = (du.dot(r), dv.dot(r));
-        let step = [(c * x - b * y) / det, (a * y - b * x) / det];
-        at = [at[0] + step[0], at[1] + step[1]];
-        if step[0].abs().max(step[1].abs()) < 1e-15 {
-            break;
-        }
-    }
-    let [s, du, dv] = surface.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
-    let near = |x: f64| (-0.5..=1.5).contains(&x);
-    let size = du.norm() + dv.norm();
-    // What is left is square to the surface.
-    let left = p - s;
-    let along = |d: Vec3| left.dot(d).abs() / d.norm().max(f64::MIN_POSITIVE);
-    let foot = left.norm() <= share * size && along(du) + along(dv) <= ON_SURFACE * size;
-    (near(at[0]) && near(at[1]) && foot).then_some(at)
 }
 
 /// The place of a point on a surface: u, v, and the change of u as the point moves by `by`.

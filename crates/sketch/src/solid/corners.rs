@@ -1,7 +1,8 @@
 //! Corners of bodies that are combined, and how they and the ends of edges there move.
 
 use super::coincidence::{Kink, StrayPart, Tangent, part, rates};
-use super::combine::{CombineError, Kind, ON_SURFACE, Placing, along, moves, triangles_of};
+use super::combine::{CombineError, Kind, Placing, triangles_of};
+use super::facet_source::{ON_SURFACE, along, moves};
 use super::surface::{Carrier, FaceSurface, meet};
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeSet;

@@ -15,6 +15,7 @@ mod corners;
 pub mod curve;
 pub(crate) mod edges;
 pub mod faces;
+mod facet_source;
 pub mod feature;
 mod finer_mesh;
 pub(crate) mod gradient;

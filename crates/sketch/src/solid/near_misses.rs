@@ -8,8 +8,8 @@
 //! a Newton search for such a pair; boxes of facets, grown by their own heights, say which are.
 
 use super::arrangement::{Facet, INNER, overlapping};
-use super::combine::{FacetSource, along};
 use super::curve::SmoothPiece;
+use super::facet_source::{FacetSource, along};
 use super::surface::FaceSurface;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};

@@ -3,7 +3,7 @@
 //! Facets are off their surfaces by up to their chords, so an edge may seem to end in one face where it ends in
 //! the next. The exact corner is then outside of the face that it was taken to be in.
 
-use super::combine::{FacetSource, along};
+use super::facet_source::{FacetSource, along};
 use super::surface::FaceSurface;
 use moldloft_num::{Real, Vec3};
 
