@@ -60,7 +60,7 @@ def test_curves_of_every_mode(kind):
     chosen = every if SOAK else [every[k] for k in rng.permutation(len(every))[:16]]
     rounds = 4 if SOAK else 1
     for one, _ in itertools.product(chosen, range(rounds)):
-        # Turns are counted, and at the edge of a count rounding decides: they are left as they come.
+        # At the edge of a count of turns rounding decides: they are left as they come.
         options = {**one, "bends": True}
         if kind == "ring":
             if options.get("mode") == "levels":

@@ -3,7 +3,10 @@
 use super::arguments::{certificate, fair_error, measure, refused};
 use super::spline::{Spline, reported, spacing};
 use moldloft::fair::{
-    Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, EndContinuity, FairError, FairingReport, Goal, InterpolationSpace, Job, KnotRemovalOptions, Limit, Mode, Motion, OptimumOptions, RemovalStep, Rule, ShapeCondition, Space, Stops, data_report, knot_removal, merged, parameters_across, report, shape, curvature_parameters, near_budget,
+    Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, EndContinuity, FairError,
+    FairingReport, Goal, InterpolationSpace, Job, KnotRemovalOptions, Limit, Mode, Motion,
+    OptimumOptions, RemovalStep, Rule, ShapeCondition, Space, Stops, curvature_parameters,
+    data_report, knot_removal, merged, near_budget, parameters_across, report, shape,
 };
 use moldloft::num::{Order, Vec3};
 use numpy::ToPyArray;
