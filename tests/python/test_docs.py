@@ -29,7 +29,13 @@ def test_the_python_of_the_page_on_implicit_solids_runs(
     (block,) = blocks("implicit.md", "python")
     block = block.replace('picture("cup.png", samples=2)', 'picture("cup.png", size=(80, 60))')
     exec(compile(block, "implicit.md", "exec"), {})
-    assert {p.name for p in tmp_path.iterdir()} == {"cup.3mf", "cup.svg", "cup.png"}
+    assert {p.name for p in tmp_path.iterdir()} == {
+        "cup.3mf",
+        "cup.svg",
+        "cup.png",
+        "boxes.svg",
+        "mirror.png",
+    }
 
 
 @pytest.fixture
