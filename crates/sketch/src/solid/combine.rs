@@ -454,6 +454,14 @@ impl<'a, T: Real> Placing<'a, T> {
                 }
             }
         }
+        // Bodies that touch in a line with round faces: whose edge it is does not tell how it moves.
+        let touching = left.iter().filter(|(_, own)| own.len() > 1);
+        let round = touching.filter(|(_, own)| own.iter().any(|&f| !faces[f].plane));
+        if let Some((a, _)) = round.map(|(side, _)| *side).min() {
+            let at = self.arranged.points[a as usize];
+            let all = (1..T::PARTS).map(|part| Kink { part, at, volume: true });
+            self.kinks.extend(all);
+        }
         let source = |a: u32, b: u32| -> Option<(usize, u32)> {
             let known = |e: &&(usize, u32)| self.all.sources[e.0].edges[e.1 as usize].0.is_some();
             let all = self.arranged.edges.get(&(a.min(b), a.max(b)))?;
