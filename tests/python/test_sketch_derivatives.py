@@ -8,10 +8,12 @@ A few here; with MOLDLOFT_SOAK=1 two thousand bodies.
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import moldloft
 from moldloft import Sketch, SketchError
 from sketch_parts import BOX_LINES, corners, drawing
 
@@ -169,3 +171,18 @@ def test_a_body_on_another_one_has_two_derivatives():
     assert gradient.volume[1:] == pytest.approx([16, 16], rel=1e-12)
     assert np.isnan(gradient.area[1]) and "an edge lies in another face" in gradient.kinks[1]
     assert gradient.kinks[2] is None
+
+
+def test_a_model_refuses_a_derivative_that_does_not_exist(tmp_path: Path) -> None:
+    sketch = Sketch()
+    rng = np.random.default_rng(0)
+    for name in "AB":
+        text = drawing(rng, name, corners((0, 0, 0), (4, 4, 4)), BOX_LINES)
+        sketch.run(f"{text}\nDIM W X 1 2 4\nDIM D Y 1 4 4\nDIM H Z 1 5 4\nGENERATE FACES")
+    sketch.run("VARIABLE MZ 4; MOVE B 0 0 MZ FEATURE; UNION A B INTO U; USING U")
+    sketch.save(tmp_path / "two.skt")
+    (tmp_path / "two.sdl").write_text('load "two.skt";')
+    model = moldloft.load(tmp_path / "two.sdl")
+    assert model.eval("U.volume") == pytest.approx(128, rel=1e-12)
+    with pytest.raises(moldloft.Error, match=r"no-derivative.*`U.volume` has no derivative here"):
+        model.derivatives(["U.volume"], ["U.MZ"])

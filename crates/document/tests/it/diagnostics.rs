@@ -149,8 +149,10 @@ fn tests_of_crates() -> String {
 }
 
 /// Ids that no program alone can raise, or that other tests raise because they take long.
-const ELSEWHERE: [&str; 25] = [
+const ELSEWHERE: [&str; 26] = [
     "silent",
+    // Bodies of sketches that lie on each other: tests/python/test_sketch_derivatives.py.
+    "no-derivative",
     // 256 MB of output, a thousand open files.
     "too-much-output",
     "too-many-files",
