@@ -5,6 +5,7 @@
 //! other, so the volume has two one-sided derivatives; where an edge lies in a face that moves otherwise, the area has.
 //! More faces than three at a point change neither in first order.
 
+use super::SketchSolid;
 use super::facet_source::{FacetSource, moves, settled};
 use super::mass::Mass;
 use super::surface::{Carrier, FaceSurface, meet};
@@ -106,6 +107,25 @@ impl<T: Real> Tangent<T> {
     pub fn pace(&self, k: usize, scale: f64) -> f64 {
         part(self.speed, k).norm() + scale * part(self.turn, k).norm()
     }
+}
+
+/// Corners and points of edges that move faster than what they are made of by this factor have no speed.
+const RUSHING: f64 = 1e6;
+
+/// Where faces touch, an edge between them has no speed: it comes out as a very large one.
+pub(super) fn rushing<T: Real>(body: &SketchSolid<T>, given: &[Vec3<T>]) -> Vec<Kink> {
+    let corners = body.vertices.iter().map(|v| v.at);
+    let traces = || body.edges.iter().filter_map(|e| e.trace.as_ref());
+    let traced = traces().flat_map(|t| &t.points).copied();
+    let nodes = traces().flat_map(|t| &t.nodes).flat_map(|n| [n.0, n.1]);
+    let ends = body.edges.iter().filter_map(|e| e.own_ends).flatten();
+    let all: Vec<Vec3<T>> = corners.chain(traced).chain(nodes).chain(ends).collect();
+    let fast = |k: usize| {
+        let most = given.iter().map(|p| part(*p, k).norm()).fold(0.0, f64::max);
+        let place = all.iter().find(|p| part(**p, k).norm() > RUSHING * (most + 1e-3))?;
+        Some(Kink { part: k, at: place.re(), volume: true })
+    };
+    (1..T::PARTS).filter_map(fast).collect()
 }
 
 /// The kinks of an arrangement. Tools that are `fitted` move with the round faces and edges that they touch.

@@ -128,6 +128,8 @@ fn build<T: Real>(
     let mut body = Placing::new(&all, &arranged, scale, fitted).finish(bodies[0].flat)?;
     if T::PARTS > 1 {
         body.kinks.append(&mut all.kinks);
+        let rushing = coincidence::rushing(&body, &all.points);
+        body.kinks.extend(rushing);
         for (operand, source) in all.sources.iter().enumerate() {
             let used =
                 |tag: u32| arranged.faces.iter().any(|f| f.sources.contains(&(operand, tag)));
