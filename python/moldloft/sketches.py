@@ -680,8 +680,8 @@ class Sketch:
         of = self._name(name)
         if by is None:
             by = [row[0] for row in self._session.numbers(of) if row[1] is not None]
-        *figures, kinks = self._session.gradient(of, list(by))
-        return Gradient(tuple(by), *figures, tuple(kinks))
+        volume, area, centroid, points, kinks = self._session.gradient(of, list(by))
+        return Gradient(tuple(by), volume, area, centroid, points, tuple(kinks))
 
     def sweep(self, by: str, values: ArrayLike, *, name: str | None = None) -> NDArray[np.float64]:
         """Volume, area and centroid at each value of a dimension, ``(n, 5)``; the sketch stays.

@@ -25,7 +25,7 @@ impl SvgTransform {
     /// This one with the transforms of an attribute within it.
     ///
     /// # Errors
-    /// What is not a transform.
+    /// A text that is not a list of transforms.
     pub fn with(self, text: &str) -> Result<SvgTransform, String> {
         let wrong = || format!("the transform `{text}` is not understood");
         let mut out = self;
@@ -61,8 +61,8 @@ impl SvgTransform {
         Ok(out)
     }
 
-    /// Adds shapes, whose v runs up, where the transform puts them. Arcs that it stretches are left out: they are no
-    /// arcs of circles.
+    /// Adds shapes, whose v runs up, where the transform puts them. Arcs that it stretches are left out: they are
+    /// parts of ellipses.
     pub fn put(self, shapes: PageShapes, into: &mut PageShapes) {
         let [a, b, c, d, e, f] = self.0;
         let way = |[u, v]: [f64; 2]| [a * u - c * v, -(b * u - d * v)];

@@ -149,7 +149,7 @@ pub(super) fn kinks<T: Real>(
         }
         for &v in &one.points {
             let p = points[v as usize];
-            let Some(off) = apart(&surfaces, p, scale, one.region) else { continue };
+            let Some(off) = apart(&surfaces, p, scale, one) else { continue };
             for (k, off) in off.iter().enumerate().skip(1) {
                 if *off && !known(&found, k, one.region) {
                     found.push(Kink { part: k, at: p, volume: one.region });
@@ -166,8 +166,9 @@ fn apart<T: Real>(
     surfaces: &[&FaceSurface<T>],
     p: Vec3,
     scale: f64,
-    region: bool,
+    one: &SurfaceCoincidence,
 ) -> Option<Vec<bool>> {
+    let region = one.region;
     let round = surfaces.iter().any(|s| !matches!(s, FaceSurface::Plane { .. }));
     let share = if round { 0.1 } else { f64::INFINITY };
     let tangent = |p: Vec3<T>, s: &FaceSurface<T>| Tangent::of(s, p, share);
@@ -211,6 +212,20 @@ fn apart<T: Real>(
     let near = if round && !region && tangent_all { 1e-13 } else { 1e-8 };
     if exact.iter().any(|t| t.off.re().abs() > near * scale) {
         return None;
+    }
+    // Where a round face of one body touches a face of another one, and a third runs through that line, normal speeds do not
+    // tell how the line moves.
+    let touch = |i: usize, j: usize| {
+        let flat = |n: usize| matches!(surfaces[n], FaceSurface::Plane { .. });
+        one.sources[i].0 != one.sources[j].0
+            && !(flat(i) && flat(j))
+            && exact[i].normal.cross(exact[j].normal).norm() < 1e-3
+    };
+    let pairs = || (0..exact.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+    let touching = !region && pairs().any(|(i, j)| touch(i, j));
+    if touching {
+        let moving = |k: usize| k > 0 && exact.iter().any(|t| moves(t.pace(k, scale), 0.0));
+        return Some((0..T::PARTS).map(moving).collect());
     }
     let off = |k: usize| {
         let most = exact.iter().map(|t| t.pace(k, scale)).fold(part(at, k).norm(), f64::max);
