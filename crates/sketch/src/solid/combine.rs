@@ -138,6 +138,12 @@ fn build<T: Real>(
         let own =
             coincidence::kinks(&arranged.shared, &arranged.points, &all.sources, scale, fitted);
         body.kinks.extend(own);
+        // Where bodies touch in an edge, or round faces are beside it, the volume is refused with the area.
+        let mut uses = vec![0; body.edges.len()];
+        body.faces.iter().flat_map(|f| f.loops.iter().flatten()).for_each(|h| uses[h.0] += 1);
+        if !body.trims.is_empty() || uses.iter().any(|n| *n > 2) {
+            body.kinks.iter_mut().for_each(|kink| kink.volume = true);
+        }
     }
     Ok((body, arranged.changed))
 }
