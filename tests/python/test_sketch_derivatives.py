@@ -138,7 +138,7 @@ def test_derivatives_on_a_grid(curved):
                     assert np.abs(g - (a + b) / 2).max() < 0.2 * apart * size, (what, b, a)
     print(bodies, compared, one_sided, refused)
     assert compared > 3 * bodies
-    # Any kink of a body with round faces refuses its volume, too: a quarter here, rather than a wrong number.
+    # A kink refuses the volume of a body with round faces, too: a quarter, not a wrong number.
     assert refused <= (0.3 if curved else 0.05) * compared
 
 
