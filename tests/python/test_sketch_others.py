@@ -102,3 +102,13 @@ def test_a_chain_of_many_objects():
     sketch.run("USING K0; SET W 3; SET H 5")
     assert sketch.objects["K23"]["volume"] == pytest.approx(80)
     assert np.isfinite(sketch.objects["K23"]["area"])
+
+
+@pytest.mark.parametrize("text", ["div(100, 0.1)", "mod(3, 0.1)", "div(-7, 3)", "mod(-7, 3)"])
+def test_division_is_that_of_the_model_language(two, text):
+    # 0.1 is a little more than a tenth: 100 holds it 999 times, as Python's // says, too.
+    two.run(f'USING B; SET W "1000 + {text}"')
+    value = moldloft.loads("AbsPoint A(0, 0, 0);").eval(text)
+    a, b = (float(x) for x in text[4:-1].split(","))
+    assert value == (a // b if text.startswith("div") else a % b)
+    assert two.objects["B"]["volume"] == pytest.approx((1000 + value) * 3 * 5, rel=1e-14)

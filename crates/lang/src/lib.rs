@@ -28,7 +28,7 @@ pub use value::display;
 /// Inner parts, for the tests of this crate: unit tests would compile all of it once more.
 #[doc(hidden)]
 pub mod parts {
-    pub use crate::functions::elementary::{remainder, small_remainder};
+    pub use crate::functions::elementary::small_remainder;
     pub use crate::functions::files::inside;
     pub use crate::functions::format::{FormatArgument, format};
     pub use crate::value::subarray::{ArraySection, Selection, picked, put};

@@ -14,6 +14,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod boxes;
+mod division;
 mod dual;
 mod frame;
 mod jet;
@@ -31,6 +32,7 @@ pub mod union_find;
 mod vec3;
 
 pub use boxes::Box3;
+pub use division::{modulo, remainder, whole_quotient};
 pub use dual::{Dual, Dual4};
 pub use frame::{Axis, Frame, Plane};
 pub use jet::{Bi1, Bi2, Jet, Tri1, Uni1, Uni2, lift_curve, lift_surface};

@@ -2,7 +2,7 @@
 
 use crate::value::blocks;
 use crate::value::variables::Called as _;
-use moldloft_num::Real;
+use moldloft_num::{Real, modulo, whole_quotient};
 use moldloft_registry::export::field_id;
 use moldloft_registry::{
     Array, ArrayShape, CallError, Class, Context, DefaultValue, FieldSpec, Implementation, Row,
@@ -372,19 +372,6 @@ pub fn small_remainder(a: f64, b: f64) -> Option<f64> {
     })
 }
 
-/// a - b floor(a / b) without rounding.
-pub fn remainder(a: f64, b: f64) -> f64 {
-    let r = a % b;
-    if r != 0.0 && (r < 0.0) != (b < 0.0) { r + b } else { r }
-}
-
-/// floor(a / b), also where a / b rounds to the next whole number.
-fn quotient(a: f64, b: f64) -> f64 {
-    let q = (a / b).floor();
-    // Rounding can reach a whole number from below, and only from there.
-    if q == a / b && remainder(a, b) / b > 0.5 { q - 1.0 } else { q }
-}
-
 elementary! {
     unary {
         "sqrt", "Square root.", "assert sqrt(9) == 3;", T::sqrt;
@@ -413,16 +400,13 @@ elementary! {
         "atan2", "Angle of the point (x, y), in radians: atan2(y, x).", "assert abs(atan2(1, -1) - 3*PI/4) < 1e-15;", "y", "x", T::atan2;
         "hypot", "Length of (a, b).", "assert hypot(3, 4) == 5;", "a", "b", |a: T, b: T| (a * a + b * b).sqrt();
         "mod", "Remainder of a / b, with the sign of b; exact.", "assert mod(-1, 3) == 2;", "a", "b", |a: T, b: T| {
-            if T::PARTS == 1 && let Some(exact) = small_remainder(a.re(), b.re()) {
-                return T::from(exact);
+            match small_remainder(a.re(), b.re()) {
+                Some(exact) if T::PARTS == 1 => T::from(exact),
+                _ => modulo(a, b),
             }
-            let exact = remainder(a.re(), b.re());
-            let follows = a - b * T::from(quotient(a.re(), b.re()));
-            // Derivatives are those of a - b q, the value is the exact remainder.
-            if follows.is_finite() { follows - follows.re() + exact } else { T::from(exact) }
         };
         "div", "Whole quotient of a / b, rounded down.", "assert div(-1, 3) == -1;", "a", "b", |a: T, b: T| {
-            T::from(quotient(a.re(), b.re()))
+            T::from(whole_quotient(a.re(), b.re()))
         };
     }
 }

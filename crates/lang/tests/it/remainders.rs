@@ -1,6 +1,7 @@
 //! The quick remainder of small whole numbers.
 
-use moldloft_lang::parts::{remainder, small_remainder};
+use moldloft_lang::parts::small_remainder;
+use moldloft_num::remainder;
 
 #[test]
 fn small_remainders_are_the_general_ones() {

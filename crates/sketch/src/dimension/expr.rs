@@ -1,7 +1,7 @@
 //! Values of dimensions and variables: expressions over names.
 
 use moldloft_diag::FileId;
-use moldloft_num::Real;
+use moldloft_num::{Real, modulo, whole_quotient};
 use moldloft_syntax::sdl::{self, BinaryOp, ExprId, ExprKind, Grouping, Program, Step, UnaryOp};
 use std::fmt;
 
@@ -191,8 +191,8 @@ fn call<T: Real>(function: &str, x: &[T]) -> T {
         ("max", [first, rest @ ..]) => rest.iter().fold(*first, |a, b| a.max(*b)),
         ("atan2", &[y, x]) => y.atan2(x) / degree,
         ("hypot", &[x, y]) => (x * x + y * y).sqrt(),
-        ("mod", &[x, y]) => x - y * (x.re() / y.re()).floor(),
-        ("div", &[x, y]) => T::from((x.re() / y.re()).floor()),
+        ("mod", &[x, y]) => modulo(x, y),
+        ("div", &[x, y]) => T::from(whole_quotient(x.re(), y.re())),
         ("clamp", &[x, low, high]) => x.max(low).min(high),
         ("where", &[condition, a, b]) => {
             if condition.re() == 0.0 {
