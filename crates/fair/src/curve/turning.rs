@@ -82,8 +82,9 @@ fn is_plane(points: &[Vec3<f64>]) -> bool {
 /// use moldloft_fair::{Data, EndContinuity, InterpolationSpace, Limit, ParameterSpacing, curvature_parameters,
 ///     parameters};
 /// use moldloft_num::Vec3;
-/// // A parabola: its vertex gets more of the range than of the length.
-/// let points: Vec<_> = (-10..11).map(|k| 0.2 * k as f64).map(|x| Vec3::of(x, 4.0 * x * x, 0.0)).collect();
+/// // A catenary: its vertex gets more of the range than of the length. (Conics and cubics would be exact.)
+/// let y = |x: f64| (2.0 * x).cosh();
+/// let points: Vec<_> = (-10..11).map(|k| 0.2 * k as f64).map(|x| Vec3::of(x, y(x), 0.0)).collect();
 /// let at = parameters(&points, ParameterSpacing::Chord, false).unwrap();
 /// let data = Data {
 ///     limit: Limit::ball(points.len(), 1e-3).unwrap(),
