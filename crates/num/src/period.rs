@@ -8,6 +8,9 @@ const NEAR: f64 = 1e-9;
 /// Ends nearer to each other than this share of the size are one.
 const GAP: f64 = 1e-9;
 
+/// Derivatives that differ by less than this share are one.
+const SMOOTH: f64 = 1e-9;
+
 /// Places along two opposite sides at which they are compared, corners included.
 const PLACES: [f64; 9] = [0.37, 0.0, 0.11, 0.25, 0.5, 0.63, 0.79, 0.93, 1.0];
 
@@ -87,6 +90,24 @@ pub fn closed_sides<T: Real>(surface: &dyn Surface<T>) -> [bool; 2] {
             long |= pair[0].distance(first[0]) > GAP * size;
         }
         long
+    })
+}
+
+/// Over which sides of a surface, those of u and of v, its first derivatives go on, to rounding, of those that are
+/// `closed`; they are compared in places.
+pub fn smooth_seams<T: Real>(surface: &dyn Surface<T>, closed: [bool; 2]) -> [bool; 2] {
+    let jet = |axis: usize, end: f64, w: f64| {
+        let [u, v] = if axis == 0 { [end, w] } else { [w, end] };
+        let jet = surface.jet(T::from(u), T::from(v), Order::First);
+        [jet.u.re(), jet.v.re()]
+    };
+    let near = |[a, b]: [Vec3; 2]| a.distance(b) <= SMOOTH * a.norm().max(b.norm());
+    [0, 1].map(|axis| {
+        closed[axis]
+            && PLACES.iter().all(|&w| {
+                let (low, high) = (jet(axis, 0.0, w), jet(axis, 1.0, w));
+                near([low[0], high[0]]) && near([low[1], high[1]])
+            })
     })
 }
 

@@ -68,6 +68,12 @@ pub trait Curve<T: Real>: Send + Sync {
         self.breaks()
     }
 
+    /// Interior parameters at which the first derivative may jump, ascending; the breaks, where nothing less
+    /// is known.
+    fn kinks(&self) -> Vec<f64> {
+        self.breaks()
+    }
+
     /// True when the curve ends where it begins: it is periodic then, and `jet` beyond 0 .. 1 gives what it
     /// gives whole turns before. Objects of a model find that out by themselves; see [`crate::period`].
     fn closed(&self) -> bool {
@@ -150,6 +156,11 @@ pub trait Surface<T: Real>: Send + Sync {
     /// Interior parameters u and v at which one formula ends and another begins; see
     /// [`Curve::joints`].
     fn joints(&self) -> [Vec<f64>; 2] {
+        self.breaks()
+    }
+
+    /// Interior parameters u and v at which a first derivative may jump; see [`Curve::kinks`].
+    fn kinks(&self) -> [Vec<f64>; 2] {
         self.breaks()
     }
 
@@ -333,6 +344,11 @@ pub trait CurveFormula: Send + Sync {
         self.breaks()
     }
 
+    /// See [`Curve::kinks`].
+    fn kinks(&self) -> Vec<f64> {
+        self.breaks()
+    }
+
     /// See [`Curve::trace`].
     fn trace(&self) -> Trace<Self::Scalar> {
         Trace::own()
@@ -358,6 +374,9 @@ impl<F: CurveFormula> Curve<F::Scalar> for F {
     }
     fn joints(&self) -> Vec<f64> {
         CurveFormula::joints(self)
+    }
+    fn kinks(&self) -> Vec<f64> {
+        CurveFormula::kinks(self)
     }
     fn trace(&self) -> Trace<F::Scalar> {
         CurveFormula::trace(self)

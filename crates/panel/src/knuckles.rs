@@ -18,7 +18,7 @@ const TRIALS: usize = 5;
 
 /// The knuckles along u and along v, ascending, between 0 and 1.
 pub(crate) fn knuckles(surface: &dyn Surface<f64>) -> [Vec<f64>; 2] {
-    let [mut us, mut vs] = surface.breaks();
+    let [mut us, mut vs] = surface.kinks();
     let along = |u| surface.line(u, &trials(), Order::First).into_iter().map(|jet| jet.u).collect();
     us.retain(|&at| turns(at, along));
     let across = |v| trials().iter().map(|&u| surface.jet(u, v, Order::First).v).collect();

@@ -1,7 +1,7 @@
 //! Curves and surfaces of a model as shapes: what is closed goes on beyond 0 and 1, turn after turn.
 
 use crate::{CurveRef, SurfaceRef};
-use moldloft_num::period::{closed_sides, closes, turned_back};
+use moldloft_num::period::{closed_sides, closes, smooth_seams, turned_back};
 use moldloft_num::trace::{Edges, Key, Trace};
 use moldloft_num::{
     Curve, CurveJet, Order, Rational, Real, Reparametrization, SurfJet, Surface, Vec3,
@@ -56,6 +56,9 @@ impl<T: Real> Curve<T> for CurveRef<T> {
     fn joints(&self) -> Vec<f64> {
         self.shape.joints()
     }
+    fn kinks(&self) -> Vec<f64> {
+        self.shape.kinks()
+    }
     fn closed(&self) -> bool {
         CurveRef::closed(self)
     }
@@ -100,6 +103,26 @@ impl<T: Real> SurfaceRef<T> {
     /// See [`Surface::closed`].
     pub fn closed(&self) -> [bool; 2] {
         *self.closed.get_or_init(|| closed_sides(&*self.shape))
+    }
+
+    /// The parameters in (0, 1), in any order, at which a path, smooth between `spans`, may meet a line on which a
+    /// first derivative jumps: a part of its [crossings](Surface::crossings), which cost more.
+    pub fn kink_crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        let mut ends = spans.iter().flat_map(|t| path(*t));
+        let closed = self.closed();
+        if closed == [false; 2] || ends.all(|w| (0.0..=1.0).contains(&w)) {
+            return self.shape.crossings(path, spans);
+        }
+        let smooth = self.smooth_seams.get_or_init(|| smooth_seams(&*self.shape, closed));
+        if *smooth != closed {
+            return self.crossings(path, spans);
+        }
+        // Where the path goes over a smooth seam it may seem to cross a line: one too many does no harm.
+        let within = |t: f64| {
+            let w = path(t);
+            [0, 1].map(|k| if closed[k] { turned_back(w[k]) } else { w[k] })
+        };
+        self.shape.crossings(&within, spans)
     }
 }
 
@@ -146,6 +169,9 @@ impl<T: Real> Surface<T> for SurfaceRef<T> {
     }
     fn closed(&self) -> [bool; 2] {
         SurfaceRef::closed(self)
+    }
+    fn kinks(&self) -> [Vec<f64>; 2] {
+        self.shape.kinks()
     }
     /// Over the seam of a closed surface, the seam itself and the lines beyond it count, too.
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {

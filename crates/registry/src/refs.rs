@@ -140,6 +140,8 @@ pub struct SurfaceRef<T: Real> {
     pub(crate) shape: Arc<dyn Surface<T>>,
     /// Whether its parameters run round, once that was asked.
     pub(crate) closed: OnceLock<[bool; 2]>,
+    /// Over which seams it is smooth, once that was asked.
+    pub(crate) smooth_seams: OnceLock<[bool; 2]>,
     /// The object, once it has a name.
     pub key: Option<Key>,
     /// How it was found, when that took a search or a fit.
@@ -325,9 +327,17 @@ impl<T: Real> CurveRef<T> {
 impl<T: Real> SurfaceRef<T> {
     /// A surface that holds on to shapes nested `nesting` deep (0 when it holds on to none).
     pub fn new(shape: impl Surface<T> + 'static, nesting: u32) -> Self {
-        let (shape, closed) = (Arc::new(shape), OnceLock::new());
         let depth = nesting + 1;
-        Self { shape, closed, key: None, found: None, figures: None, contacts: None, depth }
+        Self {
+            shape: Arc::new(shape),
+            closed: OnceLock::new(),
+            smooth_seams: OnceLock::new(),
+            key: None,
+            found: None,
+            figures: None,
+            contacts: None,
+            depth,
+        }
     }
 
     /// The same surface as a fillet between two snakes.

@@ -13,6 +13,7 @@ mod hull;
 mod identities;
 mod incremental;
 mod joins;
+mod kinks;
 mod language;
 mod laws;
 mod model_files;

@@ -41,6 +41,9 @@ impl<T: Real> Curve<T> for MirrCurve<T> {
     fn joints(&self) -> Vec<f64> {
         self.curve.joints()
     }
+    fn kinks(&self) -> Vec<f64> {
+        self.curve.kinks()
+    }
 
     fn image_of(&self) -> Option<moldloft_num::trace::Key> {
         self.curve.key

@@ -219,6 +219,20 @@ fn sped<T: Real>(jet: CurveJet<T>, rate: T) -> CurveJet<T> {
     [jet[0], jet[1] * rate, jet[2] * (rate * rate)]
 }
 
+impl<T: Real> CompositeCurve<T> {
+    /// Places of the curves, and where one goes over to the next.
+    fn with_joints(&self, of: impl Fn(&CurveRef<T>) -> Vec<f64>) -> Vec<f64> {
+        let mut all = Vec::new();
+        for (k, curve) in self.curves.iter().enumerate() {
+            let (from, to) = (self.ends[k].re(), self.ends[k + 1].re());
+            all.extend(of(curve).into_iter().map(|b| from + (to - from) * b));
+            all.push(to);
+        }
+        all.pop();
+        all
+    }
+}
+
 impl<T: Real> Curve<T> for CompositeCurve<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         let (curve, s, rate) = self.local(t);
@@ -226,14 +240,11 @@ impl<T: Real> Curve<T> for CompositeCurve<T> {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        let mut all = Vec::new();
-        for (k, curve) in self.curves.iter().enumerate() {
-            let (from, to) = (self.ends[k].re(), self.ends[k + 1].re());
-            all.extend(curve.breaks().into_iter().map(|b| from + (to - from) * b));
-            all.push(to);
-        }
-        all.pop();
-        all
+        self.with_joints(|curve| curve.breaks())
+    }
+
+    fn kinks(&self) -> Vec<f64> {
+        self.with_joints(|curve| curve.kinks())
     }
 
     fn trace(&self) -> Trace<T> {

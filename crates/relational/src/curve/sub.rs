@@ -216,18 +216,14 @@ impl<T: Real> GovernedCurve<T> {
 /// Each span of a law is searched in so many steps for the breaks of the curve.
 const STEPS: usize = 8;
 
-impl<T: Real> Curve<T> for GovernedCurve<T> {
-    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        let law = self.law.at(t, order);
-        self.chained(law, self.curve.jet(law[0], order))
-    }
-
-    fn breaks(&self) -> Vec<f64> {
-        let (own, closed) = (self.curve.breaks(), self.curve.closed());
+impl<T: Real> GovernedCurve<T> {
+    /// Where it passes these places of the curve, and the breaks of the law.
+    fn passed(&self, own: &[f64]) -> Vec<f64> {
+        let closed = self.curve.closed();
         let mut breaks = match &self.law {
             SubParameter::Straight([from, to]) => {
                 let (from, to) = (from.re(), to.re());
-                let passed = breaks_between(&own, closed, from, to);
+                let passed = breaks_between(own, closed, from, to);
                 passed.into_iter().map(|b| (b - from) / (to - from)).collect()
             }
             SubParameter::Spline(law) => {
@@ -240,7 +236,7 @@ impl<T: Real> Curve<T> for GovernedCurve<T> {
                 let reach = ends.iter().map(|t| at(*t));
                 let low = reach.clone().fold(f64::INFINITY, f64::min);
                 let high = reach.fold(f64::NEG_INFINITY, f64::max);
-                let of_curve = breaks_between(&own, closed, low - 1.0, high + 1.0);
+                let of_curve = breaks_between(own, closed, low - 1.0, high + 1.0);
                 for span in ends.windows(2) {
                     let step = (span[1] - span[0]) / STEPS as f64;
                     for k in 0..STEPS {
@@ -256,6 +252,21 @@ impl<T: Real> Curve<T> for GovernedCurve<T> {
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
         breaks
+    }
+}
+
+impl<T: Real> Curve<T> for GovernedCurve<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        let law = self.law.at(t, order);
+        self.chained(law, self.curve.jet(law[0], order))
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.passed(&self.curve.breaks())
+    }
+
+    fn kinks(&self) -> Vec<f64> {
+        self.passed(&self.curve.kinks())
     }
 
     fn trace(&self) -> Trace<T> {

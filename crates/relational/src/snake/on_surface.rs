@@ -45,6 +45,19 @@ impl<T: Real, P: Curve<T>> Curve<T> for OnSurface<T, P> {
         breaks
     }
 
+    fn kinks(&self) -> Vec<f64> {
+        let mut kinks = self.path.kinks();
+        let spans = || [&[0.0], &*self.path.breaks(), &[1.0]].concat();
+        let path = |t: f64| {
+            let [w, ..] = self.path.jet(T::from(t), Order::Zero);
+            [w.x.re(), w.y.re()]
+        };
+        kinks.extend(self.surface.kink_crossings(&path, &spans()));
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup();
+        kinks
+    }
+
     fn trace(&self) -> Trace<T> {
         self.trace.clone()
     }

@@ -429,6 +429,10 @@ impl<T: Real> Surface<T> for Loft<T> {
         [self.masters.breaks(), Vec::new()]
     }
 
+    fn kinks(&self) -> [Vec<f64>; 2] {
+        [self.masters.kinks(), Vec::new()]
+    }
+
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
         self.masters.edge_made_of(k)
     }

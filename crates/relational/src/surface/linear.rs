@@ -152,6 +152,10 @@ impl<T: Real> Surface<T> for LinearLoft<T> {
         [self.masters.joints(), self.knots.joints()]
     }
 
+    fn kinks(&self) -> [Vec<f64>; 2] {
+        [self.masters.kinks(), self.knots.breaks()]
+    }
+
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
         self.masters.edge_made_of(k)
     }

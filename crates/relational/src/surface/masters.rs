@@ -47,6 +47,11 @@ impl<T: Real> Masters<T> {
         self.merged(|curve| curve.breaks())
     }
 
+    /// The parameters u at which the first derivative of a master may jump.
+    pub fn kinks(&self) -> Vec<f64> {
+        self.merged(|curve| curve.kinks())
+    }
+
     /// The parameters u at which a master goes over to another formula.
     pub fn joints(&self) -> Vec<f64> {
         self.merged(|curve| curve.joints())

@@ -9,7 +9,7 @@ use moldloft_num::trace::{Edge, Edges, Key, Mark, Root, Trace};
 use moldloft_num::{
     Bi1, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings, surface_jet_of,
 };
-use moldloft_registry::{Build, CallError, Context, FieldId, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 
 /// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
 /// and w a patch of its parameter plane.
@@ -317,22 +317,11 @@ impl<T: Real> Surface<T> for SubPatch<T> {
     }
 
     fn breaks(&self) -> [Vec<f64>; 2] {
-        let of = |side: &Side<T>| match side {
-            Side::Snake(snake) => snake.curve.breaks(),
-            Side::Magnet(_) => Vec::new(),
-        };
-        let merged = |a: Option<&Side<T>>, b: Option<&Side<T>>| {
-            let mut all: Vec<f64> = [a, b].into_iter().flatten().flat_map(of).collect();
-            all.sort_by(f64::total_cmp);
-            all.dedup();
-            all
-        };
-        match &self.layout {
-            SideLayout::Between([a, b]) => [merged(Some(a), Some(b)), Vec::new()],
-            SideLayout::Round(s) => {
-                [merged(Some(&s[0]), Some(&s[2])), merged(Some(&s[1]), s.get(3))]
-            }
-        }
+        self.merged(|curve| curve.breaks())
+    }
+
+    fn kinks(&self) -> [Vec<f64>; 2] {
+        self.merged(|curve| curve.kinks())
     }
 
     /// Those of the patch's own lines, and of the surface, which lie across them.
@@ -393,6 +382,24 @@ impl<T: Real> Surface<T> for SubPatch<T> {
 }
 
 impl<T: Real> SubPatch<T> {
+    /// Places of the sides, those of opposite ones together.
+    fn merged(&self, of: impl Fn(&CurveRef<T>) -> Vec<f64>) -> [Vec<f64>; 2] {
+        let places = |side: &Side<T>| match side {
+            Side::Snake(snake) => of(&snake.curve),
+            Side::Magnet(_) => Vec::new(),
+        };
+        let both = |a: Option<&Side<T>>, b: Option<&Side<T>>| {
+            let mut all: Vec<f64> = [a, b].into_iter().flatten().flat_map(places).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all
+        };
+        match &self.layout {
+            SideLayout::Between([a, b]) => [both(Some(a), Some(b)), Vec::new()],
+            SideLayout::Round(s) => [both(Some(&s[0]), Some(&s[2])), both(Some(&s[1]), s.get(3))],
+        }
+    }
+
     /// The side that is not given, straight in the parameter plane between the ends `end` of two that
     /// are: where it lies on an edge of the surface, a part of that.
     fn implied(&self, sides: [&Side<T>; 2], points: [Option<Key>; 2], end: f64) -> Edge<T> {

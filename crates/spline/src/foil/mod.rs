@@ -267,4 +267,8 @@ impl<T: Real> CurveFormula for Profile<T> {
     fn breaks(&self) -> Vec<f64> {
         self.at_both_sides(self.section.breaks())
     }
+
+    fn kinks(&self) -> Vec<f64> {
+        Self::kinks(self)
+    }
 }
