@@ -115,6 +115,19 @@ def test_arcs_of_drawings_are_circles(tmp_path: Path) -> None:
     assert angle[0] == pytest.approx(30) and angle[-1] == pytest.approx(290)
 
 
+@pytest.mark.parametrize("angle", ["inf", "-1e308", "9007199254740993", "nan", "-1e9"])
+def test_arcs_without_an_angle_are_left_out(tmp_path: Path, angle: str) -> None:
+    pytest.importorskip("ezdxf")
+    arcs = [f"0\nARC\n8\n0\n10\n0\n20\n0\n40\n1\n50\n{a}\n51\n90" for a in ("-630", angle)]
+    path = tmp_path / "arc.dxf"
+    path.write_text("\n".join(["0\nSECTION\n2\nENTITIES", *arcs, "0\nENDSEC\n0\nEOF\n"]))
+    found = overlays.read(path)
+    (curve,) = found.curves.values()
+    # From 90 to 90 degrees is a full turn.
+    assert np.abs(curve([0.0, 0.25, 0.5]) - [(0, 1, 0), (-1, 0, 0), (0, -1, 0)]).max() < 1e-12
+    assert any("ARC" in remark for remark in found.remarks)
+
+
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="210mm" viewBox="0 0 420 100">{}</svg>'
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -68,10 +69,12 @@ def test_prisms_have_the_volume_of_the_shoelace_formula(seed: int) -> None:
     model = moldloft.loads(text)
     area, centre = area_and_centre(flat)
     exact = area * abs(float(by @ turn[:, 2]))
-    # The corners of the outline are not known as edges: facets cut them by parts of a cell.
-    assert model.eval("b.volume") == pytest.approx(exact, rel=3e-2)
+    # Some corners are too near to each other for cells of this depth, which is remarked.
+    blunt = any(d.id == "blunt-edges" for d in model.diagnostics)
+    assert model.eval("b.volume") == pytest.approx(exact, rel=1e-3 if blunt else 1e-9)
+    assert model.eval("volume(s)") == pytest.approx(exact, rel=1e-9)
     middle = turn @ [*centre, 0] + place + 0.5 * by
-    assert np.abs(np.array(model.eval("b.centroid")) - middle).max() < 0.1
+    assert np.abs(np.array(model.eval("b.centroid")) - middle).max() < (1e-3 if blunt else 1e-8)
 
 
 @pytest.mark.parametrize("seed", range(60 if SOAK else 2))
@@ -87,7 +90,55 @@ def test_bodies_of_revolution_have_the_volume_of_pappus(seed: int) -> None:
     model = moldloft.loads(f"{text}\nSetBody b(s, {box}, depth = 5);")
     area, centre = area_and_centre(flat)
     exact = 2 * math.pi * abs(float(centre[0])) * area
+    # At this depth cells may not tell a corner from its neighbour.
     assert model.eval("b.volume") == pytest.approx(exact, rel=3e-2)
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        volume = model.eval("volume(s)")
+    assert volume == pytest.approx(exact, rel=1e-3 if said else 1e-9)
+
+
+def test_corners_of_curved_profiles_are_remarked() -> None:
+    points = "AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(1, 1, 0);"
+    box = "{-3, -3, -0.1}, {3.3, 3.4, 1.2}, depth = 4"
+    half = moldloft.loads(
+        f"{points} Arc a(A, C, B); Line l(B, A); PolyCurve c({{a, l}});"
+        f"set s = extruded(c, {{0, 0, 1}}); SetBody b(s, {box});"
+    )
+    assert [d.id for d in half.diagnostics] == ["blunt-edges"]
+    assert half.eval("b.volume") == pytest.approx(math.pi / 2, rel=0.02)
+    whole = moldloft.loads(
+        f"{points} Arc c(A, B, C, type = 6); set s = extruded(c, {{0, 0, 1}}); SetBody b(s, {box});"
+    )
+    assert not whole.diagnostics
+
+
+def test_prisms_follow_their_corners() -> None:
+    corners = ["0, 0, 0", "2, 0, 0", "2, 1, 0", "1, 0.4, 0", "0, 1, 0"]
+    points = " ".join(f"AbsPoint P{k}({at});" for k, at in enumerate(corners))
+    model = moldloft.loads(
+        f"{points} BCurve c({{P0, P1, P2, P3, P4, P0}}, degree = 1);"
+        f"set s = extruded(c, {{0, 0, 3}});"
+        "Line l(P0, P4); set t = revolved(c, l);"
+    )
+    assert model.eval("volume(s)") == pytest.approx(3 * 1.4, rel=1e-12)
+    # The shoelace formula: a corner moves the area by half the way between its neighbours.
+    for name, slope in (("P3.y", 1.0), ("P2.x", 0.2), ("P2.y", 0.5), ("P0.y", -1.0)):
+        assert model.derivative("volume(s)", name) == pytest.approx(3 * slope, rel=1e-9)
+    # Pappus: rings of the triangles between the axis and the sides.
+    at = np.array([[float(x) for x in c.split(",")] for c in corners])[:, :2]
+    area, centre = area_and_centre(at)
+    assert model.eval("volume(t)") == pytest.approx(2 * math.pi * centre[0] * area, rel=1e-9)
+
+    def swept(k: int, axis: int, by: float) -> float:
+        moved = at.copy()
+        moved[k, axis] += by
+        area, centre = area_and_centre(moved)
+        return float(2 * math.pi * centre[0] * area)
+
+    for name, k, axis in (("P3.y", 3, 1), ("P2.x", 2, 0), ("P3.x", 3, 0)):
+        exact = (swept(k, axis, 1e-5) - swept(k, axis, -1e-5)) / 2e-5
+        assert model.derivative("volume(t)", name) == pytest.approx(exact, rel=1e-7)
 
 
 def test_the_distance_of_a_profile_is_that_of_its_polygon() -> None:

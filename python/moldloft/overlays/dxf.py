@@ -31,6 +31,9 @@ _METRES = {
 }  # fmt: skip
 """Units of $INSUNITS in metres (Autodesk, DXF Reference, HEADER section)."""
 
+_MOST_ANGLE = 1e6
+"""Radians beyond which an angle says little of where an arc ends."""
+
 
 def parse(name: str, data: bytes) -> tuple[Overlay, float | None]:
     """The model space of a DXF file, and its unit in metres where it states one.
@@ -172,8 +175,11 @@ def _lines(at: list[Any]) -> list[Floats]:
 def _ellipse(ellipse: Any) -> list[Floats]:
     tool = ellipse.construction_tool()
     start, end = float(tool.start_param), float(tool.end_param)
-    while end <= start + 1e-12:
-        end += 2 * math.pi
+    if not max(abs(start), abs(end)) < _MOST_ANGLE:
+        raise ValueError(f"its angles are {start:g} and {end:g} radians")
+    # Arcs run counter-clockwise for a turn at most.
+    span = (end - start) % (2 * math.pi)
+    end = start + (span if span > 1e-12 else 2 * math.pi)
     centre, a, b = (tuple(v) for v in (tool.center, tool.major_axis, tool.minor_axis))
     return arc(centre, a, b, start, end)
 

@@ -15,6 +15,11 @@ pub trait Oracle<T: Real>: Field<T> {
         [Interval::ENTIRE; 3]
     }
 
+    /// Whether its surface may have an edge of its own in a box, on which no vertex is put.
+    fn creased_in(&self, _over: &Box3) -> bool {
+        false
+    }
+
     /// The values at many points.
     fn values(&self, points: &[Vec3<T>], out: &mut [T]) {
         for (x, p) in out.iter_mut().zip(points) {
@@ -71,6 +76,9 @@ impl<T: Real> Field<T> for Constant {
 }
 
 impl<T: Real> Oracle<T> for Constant {
+    fn creased_in(&self, over: &Box3) -> bool {
+        self.0.creased_in(over)
+    }
     fn range(&self, over: &Box3) -> Interval {
         self.0.range(over)
     }

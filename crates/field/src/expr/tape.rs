@@ -9,7 +9,7 @@ use crate::expr::algebra::{Algebra, GradientRange, Unary};
 use crate::expr::interval::Interval;
 use crate::expr::oracle::{Affine, Oracle};
 use crate::expr::primitive::{Binary, Op, Primitive, PrimitiveNode};
-use moldloft_num::{Real, Vec3};
+use moldloft_num::{Box3, Real, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -357,6 +357,17 @@ impl<T: Real> ExprTape<T> {
                 }
                 _ => key(a).is_some() && key(a) == key(b),
             })
+    }
+
+    /// Whether a primitive from outside may have an edge of its own in a box.
+    pub fn creased_in(&self, over: &Box3) -> bool {
+        self.users.iter().any(|(oracle, map)| {
+            let corners = (0..8).map(|k| {
+                let pick = |a: usize| if k >> a & 1 == 0 { over.low[a] } else { over.high[a] };
+                map.apply(Vec3::lifted(Vec3::of(pick(0), pick(1), pick(2)))).re()
+            });
+            oracle.creased_in(&Box3::around(corners))
+        })
     }
 
     #[inline(always)]

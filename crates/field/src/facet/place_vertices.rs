@@ -91,7 +91,9 @@ impl VertexPlacer<'_> {
             }
             (placed, surfaces) = (PlacedVertex { strayed: placed.strayed, ..other }, more);
         }
-        PieceVertices::One { placed, surfaces, blunt: false }
+        let creased = |s: &u32| self.leaves[*s as usize].primitive.tape().creased_in(self.cell);
+        let blunt = surfaces.iter().any(creased);
+        PieceVertices::One { placed, surfaces, blunt }
     }
 
     /// The apex of the cone that a piece of surface shows, if it is in the cell and on the set's surface.

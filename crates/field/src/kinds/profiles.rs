@@ -82,7 +82,7 @@ impl<T: Real> Build<T> for Extruded<T> {
             .found(format!("a height of {:.3e}", height.re()))
             .in_field(Self::BY));
         }
-        let mut prism = Set::new(&user(profile));
+        let mut prism = profile.into_set().map_err(|e| fault(&e))?;
         let aside = by - normal * height;
         let constant = aside.to_array().iter().all(|x| x.is_constant());
         if !constant || aside.re().norm() > 1e-12 * by.re().norm() {
@@ -126,6 +126,6 @@ impl<T: Real> Build<T> for ProfileRevolved<T> {
             let at = place(&why);
             refused(why, at)
         })?;
-        set(Ok(Set::new(&user(profile))))
+        set(profile.into_set())
     }
 }

@@ -1,6 +1,7 @@
 //! Primitives from the rest of a model: about a curve, beside a surface, inside a closed mesh.
 
 pub mod faces;
+mod polygon;
 pub mod profile;
 mod signed_side;
 

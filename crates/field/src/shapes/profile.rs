@@ -3,10 +3,13 @@
 //! The distance of a point's image in the plane of the curve, signed by whether it is inside. Moving a point moves its image
 //! by no more, so that ranges follow from one value.
 
+use super::polygon::{SideFormula, sides_of};
 use super::{Shown, lipschitz};
 use crate::expr::interval::Interval;
 use crate::expr::oracle::Oracle;
+use crate::{FieldError, Primitive, Set};
 use moldloft_locate::{NearestCurve, PlainCurve};
+use moldloft_num::period::corner_rate;
 use moldloft_num::{Axis, Box3, Curve, Field, Order, Real, Vec3};
 use moldloft_registry::CurveRef;
 use std::sync::Arc;
@@ -28,6 +31,9 @@ pub enum NotAProfile {
 const SAMPLES: usize = 96;
 /// What is in one place, or in one plane, as a part of the size.
 const SAME: f64 = 1e-9;
+
+/// The most corners of a curve whose sides are faces of their own.
+const MOST_CORNERS: usize = 400;
 
 /// How a point is taken into the plane of the curve.
 #[derive(Clone, Copy)]
@@ -57,6 +63,8 @@ struct ProfileOutline {
     close: f64,
     /// Where corners may be.
     breaks: Vec<f64>,
+    /// The corners.
+    corners: Vec<Vec3>,
 }
 
 impl ProfileOutline {
@@ -126,6 +134,7 @@ impl<T: Real> ProfileField<T> {
             across,
             points: Vec::new(),
             close: 4.0 * close,
+            corners: corners_of(&curve, &spans),
             breaks: spans,
         };
         outline.points = points.iter().map(|p| outline.at(*p)).collect();
@@ -174,6 +183,88 @@ impl<T: Real> ProfileField<T> {
         self.plane
     }
 
+    /// The body as a set: where the curve is a polygon each side is a face of its own, a plane or a part of a
+    /// cylinder or cone, so that the corners are edges; another curve is one face, and its corners are blunt in meshes.
+    ///
+    /// # Errors
+    /// Those of the faces.
+    pub fn into_set(self) -> Result<Set<T>, FieldError> {
+        let formula = self.corners().and_then(|corners| {
+            let flat: Vec<[f64; 2]> = corners.iter().map(|p| self.outline.at(p.re())).collect();
+            Some((sides_of(&flat)?, corners))
+        });
+        match formula {
+            Some((formula, corners)) => self.behind(&formula, &corners),
+            None => Ok(Set::new(&Primitive::user(Arc::new(self)))),
+        }
+    }
+
+    /// The corners of a polygon, in order, with their derivatives.
+    fn corners(&self) -> Option<Vec<Vec3<T>>> {
+        let outline = &self.outline;
+        let spans = outline.breaks.len() - 1;
+        if !(3..=MOST_CORNERS).contains(&spans) {
+            return None;
+        }
+        let size =
+            Box3::around(outline.points.iter().map(|[x, y]| Vec3::of(*x, *y, 0.0))).diagonal();
+        let straight = outline.points.chunks(SAMPLES).enumerate().all(|(k, own)| {
+            let ([a, b], [c, d]) = (own[0], outline.points[(k + 1) % spans * SAMPLES]);
+            let [u, v] = [c - a, d - b];
+            let length = (u * u + v * v).sqrt();
+            let off = |[x, y]: &[f64; 2]| (u * (y - b) - v * (x - a)).abs();
+            length > SAME * size && own.iter().all(|p| off(p) <= SAME * size * length)
+        });
+        if !straight {
+            return None;
+        }
+        let corner = |&t: &f64| {
+            let moved = match t > 0.0 {
+                true => corner_rate(&self.curve, t, 1e-7).unwrap_or_else(T::zero),
+                false => T::zero(),
+            };
+            self.curve.jet(moved + T::from(t), Order::Zero)[0]
+        };
+        let mut corners: Vec<Vec3<T>> = outline.breaks[..spans].iter().map(corner).collect();
+        // A corner between two sides in line is none, unless it may leave the line.
+        let mut k = 0;
+        while k < corners.len() && corners.len() > 3 {
+            let n = corners.len();
+            let [a, b, c] = [corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]];
+            let turn = (b - a).cross(c - b);
+            if turn.re().norm() > 1e-12 * (b - a).re().norm() * (c - b).re().norm() {
+                k += 1;
+            } else if turn.to_array().iter().all(|x| x.is_constant()) {
+                corners.remove(k);
+            } else {
+                return None;
+            }
+        }
+        Some(corners)
+    }
+
+    /// What lies on the inner side of the sides of a formula.
+    fn behind(&self, of: &SideFormula, corners: &[Vec3<T>]) -> Result<Set<T>, FieldError> {
+        let each = |all: &[SideFormula]| {
+            all.iter().map(|f| self.behind(f, corners)).collect::<Result<Vec<_>, _>>()
+        };
+        Ok(match of {
+            SideFormula::All(all) => Set::intersection_of(each(all)?),
+            SideFormula::Any(all) => Set::union_of(each(all)?),
+            SideFormula::Side(k) => {
+                let [p, q] = [corners[*k], corners[(k + 1) % corners.len()]];
+                match &self.map {
+                    ProfileMap::Along => {
+                        Set::new(&Primitive::plane((q - p).cross(self.plane[1]), p)?)
+                    }
+                    ProfileMap::About(axis, out) => {
+                        turned_side(*axis, *out, self.plane[1], [p, q])?
+                    }
+                }
+            }
+        })
+    }
+
     /// The image of a point in the plane, and how a direction there is one in space.
     fn image(&self, p: Vec3<T>) -> (Vec3<T>, Vec3<T>, Vec3<T>) {
         match &self.map {
@@ -200,6 +291,53 @@ impl<T: Real> ProfileField<T> {
         let d = self.curve.jet(T::from(t), Order::First)[1];
         d.cross(self.plane[1]).normalized()
     }
+}
+
+/// What lies behind a side in the half plane of an axis, turned about it.
+fn turned_side<T: Real>(
+    axis: Axis<T>,
+    out: Vec3<T>,
+    normal: Vec3<T>,
+    [p, q]: [Vec3<T>; 2],
+) -> Result<Set<T>, FieldError> {
+    let outward = (q - p).cross(normal);
+    let [across, along] = [outward.dot(out), outward.dot(axis.direction)];
+    let [first, last] = [p, q].map(|p| (p - axis.point).dot(out));
+    let size = outward.re().norm();
+    if first.re().abs().max(last.re().abs()) <= SAME * size {
+        // A side on the axis bounds nothing.
+        return Ok(Set::everything());
+    }
+    let still = |x: T| x.re().abs() <= 1e-12 * size && x.is_constant();
+    if still(across) {
+        let up = if along.re() > 0.0 { axis.direction } else { -axis.direction };
+        return Ok(Set::new(&Primitive::plane(up, p)?));
+    }
+    if still(along) {
+        let inside = Set::new(&Primitive::cylinder(axis, first)?);
+        return Ok(if across.re() > 0.0 { inside } else { inside.complement() });
+    }
+    if across.re().abs().min(along.re().abs()) <= 1e-9 * size {
+        // Flat or upright now, and a cone after a change.
+        let e = axis.direction.perpendicular();
+        let e = e / e.norm();
+        let [x, y] = [e, axis.direction.cross(e)].map(|n| Primitive::linear(n, -n.dot(axis.point)));
+        let away = (x.power(2) + y.power(2)).sqrt() - first;
+        let up = Primitive::linear(axis.direction, -axis.direction.dot(p));
+        return Ok(Set::new(&(away * across + up * along)));
+    }
+    // The half of a double cone on one side of its apex.
+    let slope = across / along;
+    let apex = axis.point + axis.direction * ((p - axis.point).dot(axis.direction) + slope * first);
+    let ratio = (T::one() / slope).abs();
+    let angle = ratio.atan2(T::one()) * 2.0;
+    let cone = Set::new(&Primitive::cone(Axis { point: apex, direction: axis.direction }, angle)?);
+    let up = if along.re() > 0.0 { axis.direction } else { -axis.direction };
+    let below = Set::new(&Primitive::plane(up, apex)?);
+    Ok(match across.re() > 0.0 {
+        true => cone & below,
+        false => cone.complement() | below,
+    })
 }
 
 impl<T: Real> Field<T> for ProfileField<T> {
@@ -250,7 +388,23 @@ impl<T: Real> Field<T> for ProfileField<T> {
     }
 }
 
+/// Where the tangent of a closed curve turns, at breaks from 0 to 1.
+fn corners_of<T: Real>(curve: &CurveRef<T>, breaks: &[f64]) -> Vec<Vec3> {
+    const ASIDE: f64 = 1e-9;
+    let jet = |t: f64| curve.jet(T::from(t), Order::First);
+    let turns = |&&t: &&f64| {
+        let before = if t == 0.0 { 1.0 } else { t - ASIDE };
+        let [a, b] = [before, t + if t == 0.0 { 0.0 } else { ASIDE }].map(|t| jet(t)[1].re());
+        a.cross(b).norm() > 1e-5 * a.norm() * b.norm() || a.dot(b) <= 0.0
+    };
+    breaks[..breaks.len() - 1].iter().filter(turns).map(|t| jet(*t)[0].re()).collect()
+}
+
 impl<T: Real> Oracle<T> for ProfileField<T> {
+    fn creased_in(&self, over: &Box3) -> bool {
+        let (at, reach) = (self.image(Vec3::lifted(over.centre())).0.re(), 0.5 * over.diagonal());
+        self.outline.corners.iter().any(|c| c.distance(at) <= reach)
+    }
     fn range(&self, over: &Box3) -> Interval {
         lipschitz(Field::value(self, Vec3::lifted(over.centre())).re(), over)
     }
