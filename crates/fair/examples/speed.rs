@@ -1,10 +1,12 @@
 //! Times of fairing by size: `cargo run --release -p moldloft-fair --example speed [points]`; of
-//! data under tolerances alone with `data` before the size.
+//! data under tolerances alone with `data` before the size; of the default of points on known shapes,
+//! report and all, with `near` (and of one of them with its name after the size).
 
 use moldloft_fair::{
     Bound, Data, DataOptions, EndContinuity, Goal, InterpolationSpace, Job, KnotRemovalOptions,
-    Limit, Measure, Network, OptimumOptions, ParameterSpacing, Space, certified, fair_data,
-    knot_removal, optimum, parameters, sweeps,
+    Limit, Measure, Motion, Network, OptimumOptions, ParameterSpacing, Space, certified,
+    curvature_parameters, data_report, fair_data, knot_removal, near_budget, optimum, parameters,
+    sweeps,
 };
 use moldloft_num::Vec3;
 use std::time::{Duration, Instant};
@@ -143,7 +145,105 @@ fn data(n: usize) {
     }
 }
 
+/// Six known shapes over [0, 1].
+const SHAPES: [(&str, fn(f64) -> [f64; 3]); 6] = [
+    ("hollow", |u| [10.0 * u, 1.2 * (6.0 * u.powi(5) - 15.0 * u.powi(4) + 10.0 * u.powi(3)), 0.0]),
+    ("aerofoil", |u| {
+        let s: f64 = 2.0 * u - 1.0;
+        let (a, x) = (s.abs(), s * s);
+        let half =
+            0.2969 * a - 0.1260 * x - 0.3516 * x * x + 0.2843 * x.powi(3) - 0.1015 * x.powi(4);
+        [x, if s < 0.0 { -0.6 * half } else { 0.6 * half }, 0.0]
+    }),
+    ("helix", |u| [(4.0 * u).cos(), (4.0 * u).sin(), 0.9 * u]),
+    ("ellipse", |u| [1.5 * (0.2 + 2.9 * u).cos(), 0.6 * (0.2 + 2.9 * u).sin(), 0.0]),
+    ("sectional areas", |u| {
+        let w = 2.0 * u - 1.0;
+        [5.0 * u, (1.0 - w * w).powi(2) * (1.0 + 0.3 * w), 0.0]
+    }),
+    ("clothoid", |u| {
+        // Its integral by Simpson's rule, fine enough for any noise here.
+        let f = |t: f64| [(2.2 * t * t).cos(), (2.2 * t * t).sin()];
+        let (mut sum, h) = ([0.0; 2], u / 64.0);
+        for k in 0..64 {
+            let at = [0.0, 0.5, 1.0].map(|s| f((f64::from(k) + s) * h));
+            for c in 0..2 {
+                sum[c] += h / 6.0 * (at[0][c] + 4.0 * at[1][c] + at[2][c]);
+            }
+        }
+        [sum[0], sum[1], 0.0]
+    }),
+];
+
+/// The default of points: parameters by curvature and a budget by what noise has across the curve.
+/// Places are even or jittered, noise is a fifth of the mean step or a given one.
+fn near(n: usize) {
+    let roughness = [("noise of a fifth of a step", 0.2 / n as f64), ("noise of 2e-5", 2e-5)];
+    let only = std::env::args().nth(3).unwrap_or_default();
+    for (name, shape) in SHAPES.into_iter().filter(|s| s.0.starts_with(&only)) {
+        for (jitter, (noisy, share)) in
+            [0.0, 0.7].into_iter().flat_map(|j| roughness.map(|r| (j, r)))
+        {
+            let mut unit = random();
+            let place = |i: usize, by: f64| (i as f64 + jitter * by) / (n - 1) as f64;
+            let inner = |i: usize| i > 0 && i + 1 < n;
+            let at: Vec<f64> =
+                (0..n).map(|i| place(i, unit() * f64::from(u8::from(inner(i))))).collect();
+            let exact: Vec<[f64; 3]> = at.iter().map(|&u| shape(u)).collect();
+            let plane = exact.iter().all(|p| p[2] == 0.0);
+            let step =
+                |w: &[[f64; 3]]| (0..3).map(|c| (w[1][c] - w[0][c]).powi(2)).sum::<f64>().sqrt();
+            let noise = share * exact.windows(2).map(step).sum::<f64>();
+            let scale = 2.0 * noise / if plane { 2f64 } else { 3f64 }.sqrt();
+            let points: Vec<Vec3<f64>> = exact
+                .iter()
+                .map(|p| {
+                    let z = if plane { 0.0 } else { p[2] + scale * unit() };
+                    Vec3::of(p[0] + scale * unit(), p[1] + scale * unit(), z)
+                })
+                .collect();
+            let start = Clock::start();
+            let chords =
+                parameters(&points, ParameterSpacing::Chord, false).expect("no two in one place");
+            let space = |at: &[f64]| InterpolationSpace::new(3, at, &[], false);
+            let mut data = Data {
+                limit: Limit::ball(n, noise).expect("the tolerance is good"),
+                layout: space(&chords).expect("parameters rise"),
+                ends: [EndContinuity::Free; 2],
+                points,
+            };
+            let budget = near_budget(&data.points, Motion::Ball);
+            let own = curvature_parameters(&data, &data.points, &data.limit.radii, &chords, budget);
+            data.layout = space(&own.expect("the data are good")).expect("parameters rise");
+            let placed = start.elapsed();
+            let plain = DataOptions::of(Measure::Variation, Goal::Near(budget));
+            let options = DataOptions { bends: false, ..plain };
+            let begun = Clock::start();
+            let (made, told) = data_report(&data, &options).expect("the data are good");
+            println!(
+                "{n} {name}, {}, {noisy}: gap {:.1e}, used {:.3}, pieces {}, inflections {}; \
+                 parameters {:.1?}, in all {:.1?}",
+                if jitter > 0.0 { "jittered" } else { "even" },
+                made.certificate.relative(),
+                made.used,
+                told.after.pieces,
+                told.after.inflections,
+                placed,
+                placed + begun.elapsed()
+            );
+        }
+    }
+}
+
 fn main() {
+    let word = std::env::args().nth(1);
+    let sizes = || {
+        let one = std::env::args().nth(2).and_then(|a| a.parse().ok());
+        one.map_or(vec![1_000, 10_000, 30_000, 100_000], |n| vec![n])
+    };
+    if word.as_deref() == Some("near") {
+        return sizes().into_iter().for_each(near);
+    }
     if std::env::args().nth(1).as_deref() == Some("data") {
         let sizes = std::env::args().nth(2).and_then(|a| a.parse().ok());
         return sizes.map_or(vec![1_000, 10_000, 100_000], |n| vec![n]).into_iter().for_each(data);

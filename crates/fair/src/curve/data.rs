@@ -8,14 +8,14 @@
 //! what is kept is a proof about the data. The least energy sits at the edge of what is allowed,
 //! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
 
-use crate::curve::bends::{BendCounts, SolvedFit};
+use crate::curve::bends::{BendCounter, BendCounts, PieceBounds, SolvedFit};
 use crate::curve::exact::is_exact;
 use crate::curve::fit::released;
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
 use crate::optimum::goal::{
-    Adaptation, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single, check_unique,
-    moved, rounding,
+    Adaptation, CurveTest, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single,
+    check_unique, moved, rounding,
 };
 use crate::optimum::problem::CertifiedSolution;
 use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
@@ -163,6 +163,23 @@ impl Data {
         job: &'a Job,
         control: &[Vec3<f64>],
     ) -> Result<Parts<'a>, FairError> {
+        let mut parts = self.unshaped_parts(options, job)?;
+        self.shape_parts(&mut parts, options, control);
+        Ok(parts)
+    }
+
+    /// Adds the shape to parts that have none.
+    fn shape_parts(&self, parts: &mut Parts<'_>, options: &DataOptions, control: &[Vec3<f64>]) {
+        parts.conditions.extend(options.shape.conditions(control).into_iter().map(|(c, _)| c));
+        parts.halves = options.shape.halves(self, &parts.frozen, control);
+    }
+
+    /// The parts but for the shape.
+    pub(super) fn unshaped_parts<'a>(
+        &self,
+        options: &DataOptions,
+        job: &'a Job,
+    ) -> Result<Parts<'a>, FairError> {
         let layout = &self.layout;
         let radii = layout.radii(&self.limit.radii);
         let (mut frozen, mut conditions) = kept(job);
@@ -208,8 +225,6 @@ impl Data {
             }
         }
         conditions.extend(options.conditions.iter().cloned());
-        conditions.extend(options.shape.conditions(control).into_iter().map(|(c, _)| c));
-        let halves = options.shape.halves(self, &frozen, control);
         let mut rows = SparseRows::new();
         let mut own_radii = Vec::new();
         for k in (0..radii.len()).filter(|&k| radii[k] > 0.0) {
@@ -239,7 +254,7 @@ impl Data {
                 offsets: Vec::new(),
                 reach,
             }),
-            halves,
+            halves: Vec::new(),
             pull: None,
             accuracy: options.accuracy,
         })
@@ -351,19 +366,32 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
         return data.in_shape(options, &job);
     }
     let mut parts = data.parts(options, &job)?;
-    let mut found = data.found(options, &job, &mut parts)?;
+    let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);
+    let near = matches!(options.goal, Goal::Near(_)) && !options.bends && !jumps;
+    // A curve that has too many pieces is another's start, and need not be known to its last digit.
+    let space = &data.layout.space;
+    let bounds = std::cell::OnceCell::new();
+    let counter = BendCounter::new(space);
+    let crowded = |fairest: &[Vec3<f64>], own: &[Vec3<f64>]| {
+        let samples = counter.samples(own);
+        let of = || PieceBounds::of(counter.of(&job.points), counter.of(fairest));
+        shape::plane_normal(&samples).is_some()
+            && BendCounts::of(&samples).pieces > bounds.get_or_init(of).most()
+    };
+    let mut found = data.found(options, &job, &mut parts, near.then_some(&crowded))?;
     let (fairest, solution) = (std::mem::take(&mut found.fairest), found.solution.take());
     let plain = data.fit(found, &job);
-    let jumps = matches!(options.measure, Measure::Jumps | Measure::JumpLengths);
     if options.bends || jumps || data.stays(options, &job, &plain) {
         return Ok(plain);
     }
-    let samples = BendCounts::samples(&data.layout.space, &plain.points);
+    let samples = counter.samples(&plain.points);
     if shape::plane_normal(&samples).is_none() {
         return Ok(plain);
     }
     let counts = BendCounts::of(&samples);
-    data.without_bends(options, &job, plain, SolvedFit { fairest, counts, solution })
+    let bounds = bounds.into_inner();
+    let before = SolvedFit { fairest, counts, solution, bounds };
+    data.without_bends(options, &job, plain, before, &counter)
 }
 
 /// Times that signs and lines are made linear again at most.
@@ -526,6 +554,20 @@ impl Data {
         start: &[Vec3<f64>],
         search: SignSearch,
     ) -> Result<DataFit, FairError> {
+        let made = self.with_signs_unless(options, job, shape, start, search, &|_| false)?;
+        made.ok_or(FairError::Shape { shapes: Vec::new(), miss: 0.0 })
+    }
+
+    /// The same, or none where the first curve under signs already is one that is not wanted.
+    pub(super) fn with_signs_unless(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+        shape: ShapeConstraints,
+        start: &[Vec3<f64>],
+        search: SignSearch,
+        unwanted: &dyn Fn(&[Vec3<f64>]) -> bool,
+    ) -> Result<Option<DataFit>, FairError> {
         let mut control = shape.projected(start);
         let slack = self.slack();
         let asked = options.conditions.len();
@@ -534,8 +576,10 @@ impl Data {
         let most = INSIDE * finite().sum::<f64>() / finite().count().max(1) as f64;
         let mut best: Option<DataFit> = None;
         let mut missed = (f64::INFINITY, 0);
+        let unshaped = self.unshaped_parts(&options, job)?;
         for round in 0..search.rounds {
-            let mut parts = self.parts_at(&options, job, &control)?;
+            let mut parts = unshaped.clone();
+            self.shape_parts(&mut parts, &options, &control);
             let tried = match search.weight {
                 Some(weight) => {
                     parts.accuracy = parts.accuracy.max(search.settled * ROUGHLY);
@@ -560,13 +604,16 @@ impl Data {
                 Err(FairError::Shape { .. }) if best.is_some() => break,
                 other => other?,
             };
+            if round == 0 && unwanted(&made.points) {
+                return Ok(None);
+            }
             missed = options.shape.miss(self, &made.points, slack);
             if missed.0 > 0.0 && search.least.is_finite() {
                 // As near as that the first curve, which has the signs, may be a hair away.
                 if let Some(pulled) = self.pulled_back(&options, &made, start, slack) {
                     let above = self.weighed_value(&pulled) - search.least;
                     if above <= search.settled * search.least.abs() {
-                        return Ok(self.exact(&options.shape, pulled));
+                        return Ok(Some(self.exact(&options.shape, pulled)));
                     }
                 }
             }
@@ -591,7 +638,7 @@ impl Data {
                 }
             }
         }
-        best.ok_or(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
+        best.map(Some).ok_or(FairError::Shape { shapes: vec![missed.1], miss: missed.0 })
     }
 
     /// The curve a little towards one that has the signs, as far as it takes to have them, too.
@@ -627,7 +674,7 @@ impl Data {
         job: &Job,
         parts: &mut Parts<'_>,
     ) -> Result<DataFit, FairError> {
-        Ok(self.fit(self.found(options, job, parts)?, job))
+        Ok(self.fit(self.found(options, job, parts, None)?, job))
     }
 
     /// The optimum of the measure and the squared residuals of this weight.
@@ -679,6 +726,7 @@ impl Data {
         options: &DataOptions,
         job: &Job,
         parts: &mut Parts<'_>,
+        enough: Option<CurveTest<'_>>,
     ) -> Result<GoalOptimum, FairError> {
         let pull = self.pull(parts);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
@@ -699,6 +747,7 @@ impl Data {
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
             adapts: Adaptation::None,
+            enough,
         };
         path.follow(options.goal, norm, conditioned, parts, &pull)
     }
@@ -744,7 +793,7 @@ pub fn fair_data_with<T: Real>(
     }
     let job = data.job()?;
     let mut parts = data.parts(options, &job)?;
-    let found = data.found(options, &job, &mut parts)?;
+    let found = data.found(options, &job, &mut parts, None)?;
     let (share, weight) = (found.share, found.weight);
     let layout = &data.layout;
     let (sites, knots) = layout.moving(at);

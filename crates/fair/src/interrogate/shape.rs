@@ -1,7 +1,7 @@
 //! Curvature and its relatives along a spline, as numbers.
 
 use crate::Space;
-use crate::interrogate::spans::each_span;
+use crate::interrogate::spans::{SpanBasis, each_span};
 use moldloft_num::{Real, Vec3, gauss_points};
 
 /// A curve at one parameter.
@@ -122,9 +122,17 @@ pub fn samples(
 /// The same as counts want them: without third derivatives.
 pub(crate) fn bends(space: &Space, points: &[Vec3<f64>]) -> Vec<Sample> {
     let mut out = Vec::new();
-    let shares = (0..=COUNTING).map(|i| i as f64 / COUNTING as f64);
-    each_span(space, points, None, (shares, false), |samples| out.extend(samples));
+    each_span(space, points, None, (counting(), false), |samples| out.extend(samples));
     out
+}
+
+/// The basis for the same samples of many curves.
+pub(crate) fn counting_basis(space: &Space) -> SpanBasis {
+    SpanBasis::new(space, counting())
+}
+
+fn counting() -> impl Iterator<Item = f64> {
+    (0..=COUNTING).map(|i| i as f64 / COUNTING as f64)
 }
 
 /// The unit normal of the plane that the samples bend in, if they all do: their largest bend's

@@ -86,6 +86,72 @@ pub(crate) fn each_span(
     }
 }
 
+/// The basis functions at the same shares of every span, to sample many splines of one space without third
+/// derivatives. Their samples have the bits of [`each_span`]'s.
+pub(crate) struct SpanBasis {
+    degree: usize,
+    shares: Vec<f64>,
+    /// The parameters, and after these the values of all orders, sample by sample; none of very many.
+    values: Option<Vec<f64>>,
+}
+
+/// The most numbers of a basis that are kept.
+const MOST_KEPT: usize = 1 << 22;
+
+/// Position, first and second derivative.
+const ORDERS: usize = 3;
+
+impl SpanBasis {
+    pub fn new(space: &Space, shares: impl Iterator<Item = f64>) -> Self {
+        let (degree, shares) = (space.degree(), shares.collect::<Vec<f64>>());
+        let stride = 1 + ORDERS * (degree + 1);
+        let count = space.spans().count() * shares.len() * stride;
+        let values = (count <= MOST_KEPT).then(|| {
+            let mut values = Vec::with_capacity(count);
+            for k in space.spans() {
+                let (a, b, knots) = (space.knot(k), space.knot(k + 1), space.local_knots(k));
+                for &share in &shares {
+                    let t = if share == 1.0 { b } else { a + (b - a) * share };
+                    values.push(t);
+                    for row in &knots.basis_in(degree, t, Order::Second).rows {
+                        values.extend(row.iter().copied());
+                    }
+                }
+            }
+            values
+        });
+        Self { degree, shares, values }
+    }
+
+    /// The samples of a spline of the space.
+    pub fn samples(&self, space: &Space, points: &[Vec3<f64>]) -> Vec<Sample> {
+        let Some(values) = &self.values else {
+            let mut out = Vec::new();
+            let shares = (self.shares.iter().copied(), false);
+            each_span(space, points, None, shares, |samples| out.extend(samples));
+            return out;
+        };
+        let order = self.degree + 1;
+        let mut samples = values.chunks_exact(1 + ORDERS * order);
+        let mut out = Vec::with_capacity(samples.len());
+        let mut own: Vec<Vec3<f64>> = Vec::with_capacity(order);
+        for k in space.spans() {
+            own.clear();
+            own.extend(space.columns(k).map(|c| points[c]));
+            for values in samples.by_ref().take(self.shares.len()) {
+                let mut sums = [Vec3::zero(); 4];
+                for (sum, row) in sums.iter_mut().zip(values[1..].chunks_exact(order)) {
+                    for (point, &x) in own.iter().zip(row) {
+                        *sum += *point * x;
+                    }
+                }
+                out.push(Sample::of_sums(values[0], sums, None));
+            }
+        }
+        out
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,6 +189,11 @@ mod tests {
                     });
                     assert_eq!(spans.next(), None);
                 }
+                let basis = SpanBasis::new(&space, [0.0, 0.3, 1.0].into_iter());
+                let mut all = Vec::new();
+                let shares = ([0.0, 0.3, 1.0].into_iter(), false);
+                each_span(&space, &points, None, shares, |samples| all.extend(samples));
+                assert_eq!(basis.samples(&space, &points), all);
             }
         }
     }

@@ -456,6 +456,7 @@ impl GridData {
             noise: rounding(&rows, norm, original),
             original,
             adapts: Adaptation::Surface,
+            enough: None,
         };
         // The measure of closed lines is never small, so that it does not show what a move is worth.
         let closed = self.layouts.iter().any(|layout| layout.space.is_closed());

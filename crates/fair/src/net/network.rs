@@ -419,6 +419,7 @@ impl Network {
             noise: rounding(&rows, norm, &self.points),
             original: &self.points,
             adapts: if conditioned { Adaptation::None } else { Adaptation::Network },
+            enough: None,
         };
         let found = path.follow(goal, norm, conditioned, parts, &pull)?;
         Ok((found, pull, owners))

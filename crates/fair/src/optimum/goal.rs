@@ -205,7 +205,13 @@ pub(crate) struct RegularizationPath<'a, E, S> {
     pub original: &'a [Vec3<f64>],
     /// How the budget of `near` goes by what the fairest takes.
     pub adapts: Adaptation,
+    /// Whether it is enough to know a budget's curve nearly, by the fairest and by what is known of it, as
+    /// another will be taken.
+    pub enough: Option<CurveTest<'a>>,
 }
+
+/// Asks something of two curves.
+pub(crate) type CurveTest<'a> = &'a dyn Fn(&[Vec3<f64>], &[Vec3<f64>]) -> bool;
 
 /// Whether the budget of `near` is the goal's own, or goes by what the fairest takes of the squares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -450,15 +456,22 @@ where
         // Between two weights by regula falsi on logarithms, the stale end halved (Illinois).
         let mut low: Option<(f64, f64)> = None;
         let mut high: Option<(f64, f64)> = None;
-        let known = match goal {
+        let nearly = match goal {
             Goal::Budget(share) | Goal::Near(share) if !conditioned && !network => {
                 parts.pull = None;
                 parts.within(pull, share * mean)?
             }
             _ => None,
         };
+        if let Some(found) = &nearly
+            && self.enough.is_some_and(|enough| enough(&fairest.points, &found.optimum.points))
+        {
+            return settle(found.optimum.clone(), found.weight);
+        }
         let guess = || self.balance(&fairest.points, [begin, least, squares]);
-        let mut trial = known.as_ref().map_or_else(guess, |(weight, _)| libm::log(*weight));
+        let mut trial = nearly.as_ref().map_or_else(guess, |found| libm::log(found.weight));
+        let begun = nearly.is_some();
+        let known = nearly.filter(|found| found.good).map(|found| found.optimum);
         let mut stride = FIRST_STRIDE;
         let (mut side, mut stepped, mut idle) = (0, 0.0, 0);
         let mut best: Option<(f64, f64, Optimum)> = None;
@@ -478,9 +491,9 @@ where
             let width = low.zip(high).map_or(f64::INFINITY, |(l, h)| h.0 - l.0);
             // Between weights so near to each other what is left is rounding of the optima.
             let many = self.count > MANY;
-            let undecided = known.is_some() && many && !decided;
+            let undecided = begun && many && !decided;
             let rounded = undecided && value.abs() <= NOISY;
-            if let Some((_, bounded)) = known.as_ref().filter(|_| undecided && !rounded) {
+            if let Some(bounded) = known.as_ref().filter(|_| undecided && !rounded) {
                 // No digits are left to move the weight by: what was found under the budget is the optimum.
                 let value = measured(bounded);
                 best = Some((trial, value, bounded.clone()));
@@ -511,7 +524,7 @@ where
                 high = Some((trial, value));
                 side = -1;
             }
-            if known.is_some() && low.is_none() != high.is_none() {
+            if begun && low.is_none() != high.is_none() {
                 // The goal is near: beyond it by about as much as it is short.
                 let beyond = 4.0 * value.abs().max(GOAL_ACCURACY);
                 stride = beyond.min(LARGEST_STRIDE).max(2.0 * stepped);
@@ -529,7 +542,7 @@ where
                 (Some(l), None) => l.0 + stride,
                 (None, None) => unreachable!("one of them was set"),
             };
-            if known.is_none() {
+            if !begun {
                 stride = (2.0 * stride).min(LARGEST_STRIDE);
             }
         }

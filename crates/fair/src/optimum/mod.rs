@@ -181,6 +181,7 @@ pub(crate) struct ControlInequality {
 pub(crate) type Bend<T> = (usize, Vec<(usize, Vec3<T>)>);
 
 /// What the limits are about.
+#[derive(Clone)]
 pub(crate) enum Bounded {
     /// Control points.
     ControlPoints,
@@ -203,7 +204,17 @@ pub(crate) struct DataLimits {
     pub reach: Vec<f64>,
 }
 
+/// The least of a measure under a bound on a sum of squares.
+pub(crate) struct BudgetOptimum {
+    /// The weight of the squares beside the measure at which it is the least, too, nearly.
+    pub weight: f64,
+    pub optimum: Optimum,
+    /// Whether rounding leaves it the optimum; else it is within the limits and near it.
+    pub good: bool,
+}
+
 /// What curves, nets and networks have in common.
+#[derive(Clone)]
 pub(crate) struct Parts<'a> {
     pub points: &'a [Vec3<f64>],
     /// The points as the measure sees them.
@@ -280,27 +291,24 @@ impl<'a> Parts<'a> {
         self.solved(&frame, &problem, before)
     }
 
-    /// The least of the measure where the squares of `pull` are at most `most` in sum, and the weight of
-    /// these beside the measure at which it is the least, too, nearly; none where the search does not end there.
-    pub fn within(
-        &self,
-        pull: &SparseRows,
-        most: f64,
-    ) -> Result<Option<(f64, Optimum)>, FairError> {
+    /// The least of the measure where the squares of `pull` are at most `most` in sum; none where the search does
+    /// not end there.
+    pub fn within(&self, pull: &SparseRows, most: f64) -> Result<Option<BudgetOptimum>, FairError> {
         let frame = MotionAxes::of(self.limit.motion, self.points, &self.conditions);
         let mut problem = self.problem(&frame);
         problem.squares = Some((pull.clone(), most));
         let solution = problem::solve(&problem, WEIGHED, 0.0, 0.0, None)?;
-        let good = solution.gap <= NEARLY * solution.value && solution.weight.is_normal();
-        if !good {
+        let (weight, met) = (solution.weight, solution.misses.iter().all(|&miss| miss <= 1e-7));
+        if !(weight.is_normal() && weight > 0.0 && met) {
             return Ok(None);
         }
+        let good = solution.gap <= NEARLY * solution.value;
         // Squares are solved as halves.
         let certificate = Certificate { value: 2.0 * solution.value, gap: 2.0 * solution.gap };
         let points = self.moved(&frame, &solution.x);
         let active = active(&problem, &solution);
         let optimum = Optimum { points, certificate, iterations: solution.iterations, active };
-        Ok(Some((solution.weight, optimum)))
+        Ok(Some(BudgetOptimum { weight, optimum, good }))
     }
 
     /// The optimum with the numbers or their derivatives of `points`, `tolerances` (per control
