@@ -7601,6 +7601,7 @@ def FairCurve(
     tangents_at: _Numbers | None = ...,
     keep: Sequence[_Text] | _Any | None = ...,
     bends: _Integer | None = ...,
+    at: _Numbers | None = ...,
     relabel: _Relabel | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -7709,6 +7710,9 @@ def FairCurve(
     bends : integer, optional
         0 to have no more inflections than the curve of least bending within the tolerances; no
         derivatives then. 0 to 1, default 1.
+    at : list of number, optional
+        Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed
+        curve less than 1 apart).
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v). Default: none.
     **attributes
@@ -7735,6 +7739,15 @@ def FairSnake(
     ends: _Text | None = ...,
     mode: _Text | None = ...,
     degree: _Integer | None = ...,
+    spacing: _Text | None = ...,
+    goal: _Text | None = ...,
+    share: _Number | None = ...,
+    breaks: Sequence[_Integer] | _Array | _Any | None = ...,
+    shape: Sequence[_Text] | _Any | None = ...,
+    tolerances: _Numbers | None = ...,
+    fixed: Sequence[_Integer] | _Array | _Any | None = ...,
+    release: Sequence[_Integer] | _Array | _Any | None = ...,
+    bends: _Integer | None = ...,
     relabel: _Relabel | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -7743,7 +7756,6 @@ def FairSnake(
     divisions: _Integer | str | Sequence[_Integer | str] | _Array | None = ...,
     subdivisions: _Integer | Sequence[_Integer] | None = ...,
     size: _Number | Sequence[_Number] | None = ...,
-    spacing: str | _Number | Sequence[str | _Number] | None = ...,
     tags: str | Sequence[str] | None = ...,
     orientation: _Integer | None = ...,
     attributes: _Text | None = ...,
@@ -7769,6 +7781,27 @@ def FairSnake(
         "optimum" or "faithful". Default optimum.
     degree : integer, optional
         Polynomial degree of the path. 2 to 9, default 3.
+    spacing : text, optional
+        How magnets get their parameters along the path, as for `FairCurve`: "chord",
+        "centripetal", "x" (u) or "y" (v) where it rises, or "curvature". Default chord.
+    goal : text, optional
+        Which of the paths within the tolerance; see `FairCurve`. Default near.
+    share : number, optional
+        The share of the goals "near" and "budget" (0.8) and "nearest" (0.1), or the measure of
+        "energy".
+    breaks : list of integer, optional
+        Numbers of magnets, from 1, that are intended breaks: the path has corners there.
+    shape : list of text, optional
+        The shape that the path has in the parameter plane; see `FairCurve`. No derivatives.
+    tolerances : list of number, optional
+        Tolerances of the magnets one by one, instead of `tolerance`.
+    fixed : list of integer, optional
+        Numbers of magnets, from 1, through which the path passes.
+    release : list of integer, optional
+        Numbers of magnets, from 1, that are wrong: the path may leave them.
+    bends : integer, optional
+        0 to have no more inflections in the parameter plane than the path of least bending
+        within the tolerances; no derivatives then. 0 to 1, default 1.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v). Default: none.
     **attributes
@@ -7957,6 +7990,11 @@ def FairNet(
     passes: _Integer | None = ...,
     spacing: _Text | None = ...,
     goal: _Text | None = ...,
+    share: _Number | None = ...,
+    fixed: _Vectors | None = ...,
+    tolerances: _Numbers | None = ...,
+    tolerances_at: _Vectors | None = ...,
+    steps: _Integer | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -8001,8 +8039,8 @@ def FairNet(
         Polynomial degree. 2 to 9, default 3.
     mode : text, optional
         "optimum", or "faithful": curve after curve in the order of the list, knots removed and
-        re-inserted one by one, three steps per point. The result then depends on that order and
-        may jump where two knots tie. Default optimum.
+        re-inserted one by one, `steps` per point. The result then depends on that order and may
+        jump where two knots tie. Default optimum.
     passes : integer, optional
         Passes of the faithful mode. 1 to 100, default 1.
     spacing : text, optional
@@ -8010,7 +8048,20 @@ def FairNet(
         taken where it rises or falls along a curve, chords elsewhere. The mode "faithful" takes
         "index". Default chord.
     goal : text, optional
-        Which of the results within the tolerance; see `FairCurve`. Default near.
+        Which of the results within the tolerance; see `FairCurve`. Of "near" squared residuals
+        are those that noise has where it explains the fairest, else `share` of these. Default
+        near.
+    share : number, optional
+        The share of the goals "near" (0.3), "budget" (0.8) and "nearest" (0.1), or the measure
+        of "energy".
+    fixed : list of point, optional
+        Points that stay besides those of `keep`.
+    tolerances : list of number, optional
+        Tolerances of the points `tolerances_at`, instead of `tolerance`.
+    tolerances_at : list of point, optional
+        The points of `tolerances`.
+    steps : integer, optional
+        Steps per point of each curve in a pass of the faithful mode. 1 to 1000, default 3.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.
@@ -8082,6 +8133,9 @@ def FairPatches(
     seams: _Text | None = ...,
     rims: object | None = ...,
     goal: _Text | None = ...,
+    degree_v: _Integer | None = ...,
+    along: _Vector | None = ...,
+    bound: _Text | None = ...,
     *,
     colour: _Integer | None = ...,
     visible: _Integer | None = ...,
@@ -8118,7 +8172,7 @@ def FairPatches(
     as : text, optional
         Meaning of the points: "fit" or "control". Default fit.
     degree : integer, optional
-        Polynomial degree in both directions. 2 to 9, default 3.
+        Polynomial degree, in both directions or along u. 2 to 9, default 3.
     seams : text, optional
         Continuity across seams: "position", "tangent" or "curvature". Default curvature.
     rims : value, optional
@@ -8127,6 +8181,14 @@ def FairPatches(
         "fairest", or "near": where all lines of all grids are exact (lines, conics, plane
         cubics, helices) these move no farther than continuity across the seams asks for, give
         or take a factor of eight. Default near.
+    degree_v : integer, optional
+        Polynomial degree along v, if it is another than along u. 2 to 9.
+    along : vector, optional
+        The direction in which control points may move, such as {0, 1, 0} for offsets; any
+        direction without it.
+    bound : text, optional
+        What the tolerance bounds: "points", the move of each control point, or "curve", that of
+        the surfaces, which leaves control points more room. Default points.
     **attributes
         By name, of every kind: colour, visible, layer, divisions, subdivisions, size, spacing,
         tags, orientation, attributes.

@@ -99,7 +99,7 @@ def shape_conditions(shape: Iterable[Any], count: int) -> tuple[list[Shape], lis
         first, last = 0, count - 1
         expected = {
             "straight": "nothing, two points, or two points and a direction",
-            "pieces": "a number of pieces",
+            "pieces": "a number of pieces from 1",
             "within": "a direction and a number",
             "side": "a direction",
         }.get(word, "nothing or two points")
@@ -124,7 +124,10 @@ def shape_conditions(shape: Iterable[Any], count: int) -> tuple[list[Shape], lis
                     way = _vector(rest[2])
                 label = f"{word} {first + 1} to {last + 1}"
         except (TypeError, ValueError, IndexError):
-            raise FairingError(f"the shape `{word}` takes {expected}, found {rest!r}") from None
+            raise FairingError(
+                f"the shape `{word}` takes {expected}, "
+                f"found {', '.join(map(str, rest)) or 'nothing'}"
+            ) from None
         if word in RANGES and not 0 <= first < last < count:
             raise FairingError(
                 f"{word}: expected a first and a later point of 0 to {count - 1}, "

@@ -207,7 +207,9 @@ def _as_offsets(file: PointFile) -> PointFile:
         raise FairingError(f"{file.path}: none of the curves has 5 points")
     notes = list(file.notes)
     if short:
-        notes.append(f"{short} curves with fewer than 5 points: not faired")
+        notes.append(
+            f"{short} {'curve' if short == 1 else 'curves'} with fewer than 5 points: not faired"
+        )
     places = [k for rows in long for k in rows]
     ends = list(itertools.accumulate(map(len, long)))
     return replace(

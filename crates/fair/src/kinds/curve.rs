@@ -1,9 +1,9 @@
 //! `FairCurve`: the faired spline of points.
 
-use super::demands::{Demand, Demands};
+use super::demands::{Demand, Demands, one_each, shapes_of};
 use super::shapes::{self, AnchoredSpline};
 use super::{ArgumentFields, GivenKnots, Intent, end, faithful, fault, measure, role};
-use crate::{FairError, ShapeCondition};
+use crate::FairError;
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use std::sync::Arc;
@@ -129,6 +129,10 @@ pub struct FairCurve<T: Real> {
     /// derivatives then.
     #[field(default = 1, min = 0, max = 1)]
     bends: usize,
+    /// Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed curve less than
+    /// 1 apart).
+    #[field(default)]
+    at: Option<Vec<T>>,
 }
 
 /// Ends within this share of the curve's extent are one place.
@@ -161,23 +165,14 @@ impl<T: Real> FairCurve<T> {
         let wrong = |id: &'static str, message: String, expected: String, found: String| {
             CallError::new(id, message).expected(expected).found(found)
         };
-        let mut shape = Vec::new();
-        for (k, text) in self.shape.iter().flatten().enumerate() {
-            shape.push(ShapeCondition::read(text, n).map_err(|why| {
-                CallError::new("no-shape", why).found(text.to_string()).in_item(k).in_field(SHAPE)
-            })?);
-        }
-        if let Some(all) = &self.tolerances
-            && all.len() != n
-        {
-            let (expected, found) = (format!("{n}, one for each point"), all.len().to_string());
-            return Err(wrong(
-                "wrong-count",
-                "too many or too few tolerances".into(),
-                expected,
-                found,
-            )
-            .in_field(TOLERANCES));
+        let shape = shapes_of(self.shape.as_deref(), n, SHAPE)?;
+        one_each("tolerances", self.tolerances.as_deref(), n, TOLERANCES)?;
+        one_each("parameters", self.at.as_deref(), n, Self::AT)?;
+        let rises = |w: &[T]| w[0].re() < w[1].re();
+        if let Some(k) = self.at.as_deref().and_then(|at| at.windows(2).position(|w| !rises(w))) {
+            return Err(CallError::new("out-of-range", "parameters rise from point to point")
+                .in_item(k + 1)
+                .in_field(Self::AT));
         }
         let mut conditions = Vec::new();
         let mut place = |what: &'static str,
@@ -243,6 +238,7 @@ impl<T: Real> FairCurve<T> {
             fixed: self.fixed.clone().unwrap_or_default(),
             release: self.release.clone().unwrap_or_default(),
             bends: self.bends == 1,
+            at: self.at.clone(),
         })
     }
 
@@ -257,6 +253,7 @@ impl<T: Real> FairCurve<T> {
             (self.tangents.is_some(), "tangents", TANGENTS),
             (self.keep.is_some(), "keep", KEEP),
             (self.bends == 0, "bends", Self::BENDS),
+            (self.at.is_some(), "at", Self::AT),
             (&*self.spacing == "curvature", "spacing \"curvature\"", SPACING),
         ];
         given.into_iter().find(|g| g.0).map(|g| (g.1, g.2))

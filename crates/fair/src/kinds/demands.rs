@@ -8,7 +8,9 @@ use crate::{
     parameters_across,
 };
 use moldloft_num::{Real, Vec3};
+use moldloft_registry::{CallError, FieldId};
 use moldloft_spline::SplineWithKnotDerivatives;
+use std::sync::Arc;
 
 /// A condition at a parameter.
 #[derive(Clone, Copy, Debug)]
@@ -29,20 +31,38 @@ pub(crate) struct Demands<T> {
     pub fixed: Vec<usize>,
     pub release: Vec<usize>,
     pub bends: bool,
+    /// Parameters of the points, given one by one.
+    pub at: Option<Vec<T>>,
 }
 
-impl<T> Demands<T> {
-    /// Nothing.
-    pub fn none() -> Self {
-        Self {
-            shape: Vec::new(),
-            conditions: Vec::new(),
-            tolerances: None,
-            fixed: Vec::new(),
-            release: Vec::new(),
-            bends: true,
-        }
-    }
+/// The shapes that texts ask for, of `count` points; the field of the texts.
+pub(crate) fn shapes_of(
+    texts: Option<&[Arc<str>]>,
+    count: usize,
+    field: FieldId,
+) -> Result<Vec<ShapeCondition>, CallError> {
+    let shape = |(k, text): (usize, &Arc<str>)| {
+        ShapeCondition::read(text, count).map_err(|why| {
+            CallError::new("no-shape", why).found(text.to_string()).in_item(k).in_field(field)
+        })
+    };
+    texts.unwrap_or_default().iter().enumerate().map(shape).collect()
+}
+
+/// Refuses a list that has not one item for each of `count` points.
+pub(crate) fn one_each<T>(
+    what: &str,
+    list: Option<&[T]>,
+    count: usize,
+    field: FieldId,
+) -> Result<(), CallError> {
+    let Some(actual) = list.map(<[T]>::len).filter(|&actual| actual != count) else {
+        return Ok(());
+    };
+    Err(CallError::new("wrong-count", format!("too many or too few {what}"))
+        .expected(format!("{count}, one for each point"))
+        .found(actual.to_string())
+        .in_field(field))
 }
 
 impl<T: Real> Intent<T> {
@@ -74,7 +94,10 @@ impl<T: Real> Intent<T> {
             tolerances[k] += T::from(size);
         }
         let radii: Vec<f64> = tolerances.iter().map(|t| t.re()).collect();
-        let mut at = parameters_across(points, self.spacing, self.closed, (self.motion, &radii))?;
+        let mut at = match &demands.at {
+            Some(at) => at.clone(),
+            None => parameters_across(points, self.spacing, self.closed, (self.motion, &radii))?,
+        };
         let laid = |at: &[T]| {
             let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
             InterpolationSpace::new(self.degree, &real, &marks, self.closed)
@@ -85,7 +108,7 @@ impl<T: Real> Intent<T> {
             ends: [self.end; 2],
             points: plain,
         };
-        if self.turning {
+        if self.turning && demands.at.is_none() {
             let budget = near_budget(&data.points, self.motion);
             at = curvature_parameters(&data, points, &tolerances, &at, budget)?;
             data.layout = laid(&at)?;

@@ -101,16 +101,6 @@ pub(crate) const BUDGET: f64 = 0.8;
 /// nearer to the truth with it, and 5 of 30 do not with that of curves.
 pub const NETWORK_BUDGET: f64 = 0.3;
 
-/// The goal called `name`.
-pub(crate) fn goal(name: &str, field: FieldId) -> Result<Goal, CallError> {
-    Ok(match name {
-        "near" => Goal::Near(BUDGET),
-        "budget" => Goal::Budget(BUDGET),
-        "fairest" => Goal::Fairest,
-        _ => return Err(unknown("goal", name, &["near", "budget", "fairest"], field)),
-    })
-}
-
 /// The goal called `name` with its share; the fields of both.
 pub(crate) fn goal_of(
     name: &str,

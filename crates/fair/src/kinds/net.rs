@@ -10,7 +10,7 @@ use crate::{
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    Build, CallError, Class, Context, CurveRef, FromValue, Kind, Point, Value, many,
+    Build, CallError, Class, Context, CurveRef, FieldId, FromValue, Kind, Point, Value, many,
 };
 use moldloft_spline::SplineWithKnotDerivatives;
 use std::sync::Arc;
@@ -69,7 +69,7 @@ pub struct FairNet<T: Real> {
     #[field(default = 3, min = 2, max = 9)]
     degree: usize,
     /// "optimum", or "faithful": curve after curve in the order of the list, knots removed and
-    /// re-inserted one by one, three steps per point. The result then depends on that order and may
+    /// re-inserted one by one, `steps` per point. The result then depends on that order and may
     /// jump where two knots tie.
     #[field(default = "optimum")]
     mode: Arc<str>,
@@ -80,9 +80,25 @@ pub struct FairNet<T: Real> {
     /// it rises or falls along a curve, chords elsewhere. The mode "faithful" takes "index".
     #[field(default = "chord")]
     spacing: Arc<str>,
-    /// Which of the results within the tolerance; see `FairCurve`.
+    /// Which of the results within the tolerance; see `FairCurve`. Of "near" squared residuals are those that
+    /// noise has where it explains the fairest, else `share` of these.
     #[field(default = "near")]
     goal: Arc<str>,
+    /// The share of the goals "near" (0.3), "budget" (0.8) and "nearest" (0.1), or the measure of "energy".
+    #[field(default)]
+    share: Option<T>,
+    /// Points that stay besides those of `keep`.
+    #[field(default)]
+    fixed: Option<Vec<Point<T>>>,
+    /// Tolerances of the points `tolerances_at`, instead of `tolerance`.
+    #[field(default)]
+    tolerances: Option<Vec<T>>,
+    /// The points of `tolerances`.
+    #[field(default)]
+    tolerances_at: Option<Vec<Point<T>>>,
+    /// Steps per point of each curve in a pass of the faithful mode.
+    #[field(default = 3, min = 1, max = 1000)]
+    steps: usize,
 }
 
 /// A network with points by identity.
@@ -117,6 +133,26 @@ impl<T: Real> Joined<T> {
         Self { points, curves }
     }
 
+    /// The places of points of the network; the field that lists them.
+    fn places(
+        &self,
+        points: Option<&[Point<T>]>,
+        what: &str,
+        field: FieldId,
+    ) -> Result<Vec<usize>, CallError> {
+        let place = |(k, own): (usize, &Point<T>)| {
+            let found = self.points.iter().position(|p| p.key.is_some() && p.key == own.key);
+            found.ok_or_else(|| {
+                CallError::new("not-a-parent", format!("{what} is not a point of the network"))
+                    .expected("points in the lists of the curves")
+                    .related(own.key, "is in none of them")
+                    .in_item(k)
+                    .in_field(field)
+            })
+        };
+        points.unwrap_or_default().iter().enumerate().map(place).collect()
+    }
+
     /// The ends that stay.
     fn kept(&self, which: &str) -> Result<Vec<usize>, CallError> {
         let mut ends = vec![0usize; self.points.len()];
@@ -149,21 +185,23 @@ impl<T: Real> Joined<T> {
 impl<T: Real> Build<T> for FairNet<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let joined = Joined::of(&self.curves);
-        let breaks = self.breaks.unwrap_or_default();
-        let mut marked = Vec::new();
-        for (k, b) in breaks.iter().enumerate() {
-            let found = joined.points.iter().position(|p| p.key.is_some() && p.key == b.key);
-            let Some(at) = found else {
-                return Err(CallError::new(
-                    "not-a-parent",
-                    "a break is not a point of the network",
-                )
-                .expected("points in the lists of the curves")
-                .related(b.key, "is in none of them")
-                .in_item(k)
-                .in_field(Self::BREAKS));
-            };
-            marked.push(at);
+        let marked = joined.places(self.breaks.as_deref(), "a break", Self::BREAKS)?;
+        let fixed = joined.places(self.fixed.as_deref(), "a fixed point", Self::FIXED)?;
+        let own_at = joined.places(
+            self.tolerances_at.as_deref(),
+            "a point with a tolerance of its own",
+            Self::TOLERANCES_AT,
+        )?;
+        let own = self.tolerances.unwrap_or_default();
+        if own.len() != own_at.len() {
+            return Err(CallError::new("wrong-count", "each of `tolerances_at` has a tolerance")
+                .expected(format!("{} tolerances", own_at.len()))
+                .found(own.len().to_string())
+                .in_field(Self::TOLERANCES));
+        }
+        let mut tolerances = vec![self.tolerance; joined.points.len()];
+        for (&i, &t) in own_at.iter().zip(&own) {
+            tolerances[i] = t;
         }
         let degree = self.degree;
         let marks_of = |own: &[usize]| -> Vec<usize> {
@@ -176,10 +214,13 @@ impl<T: Real> Build<T> for FairNet<T> {
             breaks: Self::BREAKS,
         };
         let spaced = super::spacing(&self.spacing, Self::SPACING)?;
-        let goal = match super::goal(&self.goal, Self::GOAL)? {
-            crate::Goal::Near(_) => crate::Goal::Near(super::NETWORK_BUDGET),
-            other => other,
-        };
+        let budget = if &*self.goal == "near" { super::NETWORK_BUDGET } else { super::BUDGET };
+        let goal = super::goal_of(
+            &self.goal,
+            self.share.map(|s| s.re()),
+            budget,
+            [Self::GOAL, Self::SHARE],
+        )?;
         let index =
             matches!(spaced, ParameterSpacing::Uniform) || super::faithful(&self.mode, Self::MODE)?;
         let motion = match &self.along {
@@ -191,8 +232,6 @@ impl<T: Real> Build<T> for FairNet<T> {
                     .in_field(Self::ALONG));
             }
         };
-        let radii = vec![self.tolerance.re(); joined.points.len()];
-        let limits = (motion, &radii[..]);
         let (mut strands, mut ats) = (Vec::new(), Vec::new());
         for (k, (own, closed)) in joined.curves.iter().enumerate() {
             let space = match (closed, own.len()) {
@@ -212,6 +251,8 @@ impl<T: Real> Build<T> for FairNet<T> {
             }
             let (marks, ends) = (marks_of(own), [EndContinuity::Points(0); 2]);
             let list: Vec<Vec3<T>> = own.iter().map(|&i| joined.points[i].xyz).collect();
+            let radii: Vec<f64> = own.iter().map(|&i| tolerances[i].re()).collect();
+            let limits = (motion, &radii[..]);
             let at = if index {
                 None
             } else {
@@ -238,23 +279,23 @@ impl<T: Real> Build<T> for FairNet<T> {
         }
         let measure = measure(&self.measure, Self::MEASURE)?;
         let passes = super::faithful(&self.mode, Self::MODE)?.then_some(self.passes);
-        let kept = joined.kept(&self.keep)?;
-        let mut still = vec![self.tolerance.re() == 0.0; joined.points.len()];
+        let mut kept = joined.kept(&self.keep)?;
+        kept.extend(fixed.iter().filter(|i| !kept.contains(i)).copied().collect::<Vec<_>>());
+        let mut still: Vec<bool> = tolerances.iter().map(|t| t.re() == 0.0).collect();
         kept.iter().chain(&marked).for_each(|&i| still[i] = true);
         let xyz: Vec<Vec3<T>> = joined.points.iter().map(|p| p.xyz).collect();
         let mut fit = None;
         let solve = || -> Result<Vec<Vec3<T>>, FairError> {
-            let limit = Limit::new(motion, vec![self.tolerance.re(); xyz.len()])?;
+            let limit = Limit::new(motion, tolerances.iter().map(|t| t.re()).collect())?;
             let plain = xyz.iter().map(|p| p.re()).collect();
             let mut network = Network::new(plain, strands, limit)?;
             network.kept = kept;
-            let tolerances = vec![self.tolerance; xyz.len()];
             let near = matches!(goal, crate::Goal::Near(_));
             if index && near && are_exact(&network.points, &joined.curves, &marked) {
                 return Ok(xyz.clone());
             }
             if let Some(passes) = passes {
-                return network.passes_with(passes, 3, &xyz, &tolerances);
+                return network.passes_with(passes, self.steps, &xyz, &tolerances);
             }
             let (points, own) =
                 network.toward_with(measure, goal, ACCURACY, &xyz, &tolerances, &ats)?;
@@ -267,7 +308,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             let found = line_findings(&plain, &joined.curves, &marked);
             let off: Vec<f64> =
                 moved.iter().zip(&plain).map(|(p, q)| (p.re() - *q).norm()).collect();
-            let free = |i: usize| if still[i] { 0.0 } else { self.tolerance.re() };
+            let free = |i: usize| if still[i] { 0.0 } else { tolerances[i].re() };
             let of = |own: &[usize], findings: usize| {
                 let residuals: Vec<f64> = own.iter().map(|&i| off[i]).collect();
                 let radii: Vec<f64> = own.iter().map(|&i| free(i)).collect();

@@ -3,7 +3,9 @@
 use super::figures::FairFigures;
 use super::surface::{PointGrid, Rims, fitted, lines, turned};
 use super::{ACCURACY, ArgumentFields, PointRole, fault, measure, role};
-use crate::{Bound, EndContinuity, FairError, Limit, Network, PatchNet, Seam, Space, are_exact};
+use crate::{
+    Bound, EndContinuity, FairError, Limit, Motion, Network, PatchNet, Seam, Space, are_exact,
+};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Build, CallError, Class, Context, Kind, SurfaceRef, Value};
 use moldloft_spline::BSplineSurface;
@@ -45,7 +47,7 @@ pub struct FairPatches<T: Real> {
     /// Meaning of the points: "fit" or "control".
     #[field(default = "fit")]
     r#as: Arc<str>,
-    /// Polynomial degree in both directions.
+    /// Polynomial degree, in both directions or along u.
     #[field(default = 3, min = 2, max = 9)]
     degree: usize,
     /// Continuity across seams: "position", "tangent" or "curvature".
@@ -58,6 +60,16 @@ pub struct FairPatches<T: Real> {
     /// these move no farther than continuity across the seams asks for, give or take a factor of eight.
     #[field(default = "near")]
     goal: Arc<str>,
+    /// Polynomial degree along v, if it is another than along u.
+    #[field(default, min = 2, max = 9)]
+    degree_v: Option<usize>,
+    /// The direction in which control points may move, such as {0, 1, 0} for offsets; any direction without it.
+    #[field(default)]
+    along: Option<Vec3<T>>,
+    /// What the tolerance bounds: "points", the move of each control point, or "curve", that of the surfaces, which
+    /// leaves control points more room.
+    #[field(default = "points")]
+    bound: Arc<str>,
 }
 
 impl<T: Real> Build<T> for FairPatches<T> {
@@ -89,7 +101,23 @@ impl<T: Real> Build<T> for FairPatches<T> {
             degree: Self::DEGREE,
             breaks: Self::SURFACES,
         };
-        let degree = self.degree;
+        let degrees = [self.degree, self.degree_v.unwrap_or(self.degree)];
+        let motion = match &self.along {
+            None => Motion::Ball,
+            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
+            Some(_) => {
+                return Err(CallError::new("zero-direction", "the direction has no length")
+                    .expected("a direction such as {0, 1, 0}")
+                    .in_field(Self::ALONG));
+            }
+        };
+        let bound = match &*self.bound {
+            "points" => Bound::ControlPoints,
+            "curve" => Bound::Bezier,
+            word => {
+                return Err(super::unknown("bound", word, &["points", "curve"], Self::BOUND));
+            }
+        };
         let near = match &*self.goal {
             "near" => true,
             "fairest" => false,
@@ -107,19 +135,20 @@ impl<T: Real> Build<T> for FairPatches<T> {
                     .in_field(Self::SURFACES));
             };
             let made = || -> Result<(PatchNet, Vec<Vec3<T>>), FairError> {
-                if let Some(actual) = [m, n].into_iter().find(|&c| c < degree + 2) {
+                let few = [m, n].into_iter().zip(degrees).find(|&(c, degree)| c < degree + 2);
+                if let Some((actual, degree)) = few {
                     return Err(FairError::TooFew { expected: degree + 2, actual });
                 }
                 let (spaces, net) = if fit {
-                    let (u, net, _) = fitted(degree, &grid.points(), m, &[])?;
-                    let (v, net, _) = fitted(degree, &turned(&net, u.count()), n, &[])?;
+                    let (u, net, _) = fitted(degrees[0], &grid.points(), m, &[])?;
+                    let (v, net, _) = fitted(degrees[1], &turned(&net, u.count()), n, &[])?;
                     let net = turned(&net, v.count());
                     ([u, v], net)
                 } else {
-                    let spaces = [Space::clamped(degree, m)?, Space::clamped(degree, n)?];
+                    let spaces = [Space::clamped(degrees[0], m)?, Space::clamped(degrees[1], n)?];
                     (spaces, grid.points())
                 };
-                let limit = Limit::ball(net.len(), self.tolerance.re())?;
+                let limit = Limit::new(motion, vec![self.tolerance.re(); net.len()])?;
                 let plain = net.iter().map(|p| p.re()).collect();
                 let mut sheet = PatchNet::new(spaces, plain, limit);
                 sheet.rims = [[west, east], [south, north]];
@@ -151,7 +180,6 @@ impl<T: Real> Build<T> for FairPatches<T> {
             let (faired, best) = if tolerance.re() == 0.0 {
                 (points, None)
             } else {
-                let bound = Bound::ControlPoints;
                 let (points, best) =
                     network.optimum_with(measure, bound, ACCURACY, &points, &tolerances)?;
                 (points, Some(best))
