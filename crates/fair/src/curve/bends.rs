@@ -36,8 +36,9 @@ const TOUCHES: usize = 4;
 const MANY: usize = 2000;
 const ROUNDED_TURNS: usize = 32;
 
-/// A curve under signs that has so many times the pieces that it may have is not looked for to its end.
-const CROWD: usize = 2;
+/// A curve under signs that has so many pieces more than it may have, or twice as many, is not looked for to its
+/// end.
+const CROWD: usize = 6;
 
 /// Steps of the logarithm of the data's weight, how many of them, and halvings of the last; the logarithm of the
 /// ratio of pieces that a step takes away, about.
@@ -212,7 +213,7 @@ impl BendSearch<'_> {
         let least = data.weighed_value(&lower.0);
         let search = SignSearch { weight: Some(weight), settled: COARSE, rounds: SOME, least };
         // The first curve under signs has nearly the pieces of the last.
-        let crowd = self.allowed.saturating_mul(CROWD);
+        let crowd = self.allowed.saturating_add(self.allowed.min(CROWD));
         let crowded = |points: &[Vec3<f64>]| rejects && self.counted(points).pieces > crowd;
         let signed = DataOptions { shape: shape.clone(), ..self.options.clone() };
         match data.with_signs_unless(&signed, job, shape.clone(), from, search, &crowded) {
