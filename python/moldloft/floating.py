@@ -8,7 +8,12 @@ from typing import TYPE_CHECKING, cast
 
 from moldloft.arguments import explain, names_of
 from moldloft.errors import Error
-from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
+from moldloft.hydrostatics import (
+    Hydrostatics,
+    HydrostaticTable,
+    RightingCurve,
+    triangles_off,
+)
 from moldloft.units import Units
 from moldloft.weights import Weight, WeightTable
 
@@ -346,7 +351,16 @@ class Floating:
             rows, water or 1.0, gravity, centre, sides, names_of(by), accuracy, of_weights
         )
         massive = ("displacement", "weight", "tpc", "mtc", "righting_moment")
+        names, off = triangles_off(cast("Model", self))
+        images = 2 ** len(self._document.symmetry()) if sides == "both" else 1
+        scales = {"volume": 1.0, "displacement": water or 1.0, "wetted_area": 1.0}
         for answer in answers:
+            if names:
+                answer["on_triangles"] = names
+                bounds = answer["bounds"]
+                for name, scale in scales.items():
+                    more = off["area" if name == "wetted_area" else "volume"] * images * scale
+                    bounds[name] = bounds.get(name, 0.0) + more
             if water is None:
                 for name in massive:
                     answer.pop(name, None)

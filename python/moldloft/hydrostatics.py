@@ -20,12 +20,41 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from moldloft.models import Model
+
 __all__ = ["HydrostaticTable", "Hydrostatics", "RightingCurve"]
 
 
 #: Figures that must be known to the accuracy of themselves; moments are known to that of the body's
 #: size.
 _RELATIVE = ("volume", "displacement", "wetted_area", "waterplane_area")
+
+
+def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
+    """Trimmed surfaces, and twice what their triangles miss of volume and area.
+
+    The triangles' figures are compared with the integrals over the surfaces themselves. Twice, as
+    what is missed above the water may cancel what is missed below.
+    """
+    import numpy as np
+
+    mesh = model.mesh()
+    names: list[str] = []
+    volume = area = 0.0
+    for patch in mesh.patches:
+        if patch.name not in model.objects or (part := model[patch.name]).kind != "TrimSurf":
+            continue
+        names.append(patch.name)
+        corners = mesh.vertices[mesh.faces[patch.start : patch.stop, :3]]
+        cone = (
+            float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+        )
+        exact = float(np.ravel(model.eval(f"{patch.name}.volume"))[0])
+        # Panels may run against the surface.
+        miss = min(exact - cone, -exact - cone, key=abs)
+        volume += abs(miss)
+        area += abs(part.area - patch.area)
+    return names, {"volume": 2 * volume, "area": 2 * area}
 
 
 @dataclass(frozen=True)
@@ -156,6 +185,9 @@ class Hydrostatics:
     """What the figures are in."""
     accuracy: float = 0.0
     """The relative accuracy that was asked for."""
+    on_triangles: list[str] = field(default_factory=list)
+    """Trimmed surfaces that are measured on the triangles of their panels. What these miss of
+    volume and area is estimated in ``bounds``."""
     derivatives: dict[str, dict[str, float]] = field(default_factory=dict)
     """Exact derivatives ``[figure][parameter]``, where parameters were asked for."""
 
@@ -166,11 +198,19 @@ class Hydrostatics:
 
     @property
     def remarks(self) -> list[str]:
-        """Openings under water, and figures that are known less well than asked for."""
+        """Openings under water, surfaces measured on triangles, figures that are not known well."""
         lines = []
         if self.open_edges:
             count = f"{self.open_edges} open edge{'s' * (self.open_edges > 1)}"
             lines.append(f"{count} of the skin below the water: results are unreliable")
+        if self.on_triangles:
+            named = ", ".join(f"`{name}`" for name in self.on_triangles[:3])
+            more = len(self.on_triangles) - 3
+            named += f" and {more} more" if more > 0 else ""
+            lines.append(
+                f"{named}: measured on the triangles of the panels, which more divisions (nu, nv, "
+                "rim) bring nearer to the surface"
+            )
         for name in _RELATIVE:
             value = getattr(self, name)
             if value and (share := self.bounds.get(name, 0.0) / abs(value)) > self.accuracy > 0:
@@ -192,6 +232,8 @@ class Hydrostatics:
         del kept["units"]
         if not self.derivatives:
             del kept["derivatives"]
+        if not self.on_triangles:
+            del kept["on_triangles"]
         return kept
 
     def _repr_html_(self) -> str:

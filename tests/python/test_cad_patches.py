@@ -32,20 +32,20 @@ def _numbers(rng: Generator, low: float, high: float, count: int) -> list[float]
     return [float(round(v, 3)) for v in rng.uniform(low, high, count)]
 
 
-def ellipsoid(rng: Generator) -> tuple[str, float | None]:
-    """A whole ellipsoid, its volume by formula."""
+def superellipsoid(rng: Generator) -> tuple[str, float | None]:
+    """A whole superellipsoid of degree 4, its volume by formula."""
     a, b, c = _numbers(rng, 0.6, 1.6, 3)
     p, q, r = _numbers(rng, -2, 2, 3)
-    text = f"field e = ((x-{p})/{a})^2 + ((y-{q})/{b})^2 + ((z-{r})/{c})^2 - 1; set s = set(e);"
-    return text.replace("--", "+"), 4 / 3 * math.pi * a * b * c
+    text = f"field e = ((x-{p})/{a})^4 + ((y-{q})/{b})^4 + ((z-{r})/{c})^4 - 1; set s = set(e);"
+    return text.replace("--", "+"), a * b * c * math.gamma(0.25) ** 3 / (8 * math.gamma(1.75))
 
 
-def half_ellipsoid(rng: Generator) -> tuple[str, float | None]:
-    """The part of an ellipsoid below a plane, with a box cut out."""
+def half_superellipsoid(rng: Generator) -> tuple[str, float | None]:
+    """The part of a superellipsoid below a plane, with a box cut out."""
     a, b, c = _numbers(rng, 0.8, 1.6, 3)
     h, w = _numbers(rng, 0.1, 0.4, 2)
     return (
-        f"field e = (x/{a})^2 + (y/{b})^2 + (z/{c})^2 - 1; "
+        f"field e = (x/{a})^4 + (y/{b})^2 + (z/{c})^2 - 1; "
         f"set s = set(e) & set(plane({{0, 0, 1}}, {{0, 0, {h}}}))"
         f" - cuboid({{-{w}, -{w}, -3}}, {{{w}, {w}, 3}});",
         None,
@@ -62,14 +62,13 @@ def cushion(rng: Generator) -> tuple[str, float | None]:
     )
 
 
-def oval_bar(rng: Generator) -> tuple[str, float | None]:
-    """An elliptic cylinder between two planes, one of them oblique."""
-    a, b, t = _numbers(rng, 0.5, 1.2, 2) + _numbers(rng, 0, 0.4, 1)
+def paraboloid(rng: Generator) -> tuple[str, float | None]:
+    """An elliptic paraboloid below a plane."""
+    a, b, h = _numbers(rng, 0.5, 1.2, 2) + _numbers(rng, 0.6, 1.4, 1)
     return (
-        f"field e = (x/{a})^2 + (y/{b})^2 - 1; "
-        f"set s = set(e) & set(plane({{0, 0, -1}}, {{0, 0, 0}}))"
-        f" & set(plane({{{t}, 0, 1}}, {{0, 0, 2}}));",
-        math.pi * a * b * 2,
+        f"field e = (x/{a})^2 + (y/{b})^2 - z; "
+        f"set s = set(e) & set(plane({{0, 0, 1}}, {{0, 0, {h}}}));",
+        math.pi * a * b * h**2 / 2,
     )
 
 
@@ -84,12 +83,12 @@ def blend(rng: Generator) -> tuple[str, float | None]:
     )
 
 
-def two_ellipsoids(rng: Generator) -> tuple[str, float | None]:
-    """Two ellipsoids as one body."""
+def two_bodies(rng: Generator) -> tuple[str, float | None]:
+    """An ellipsoid and a superellipsoid as one body."""
     a, b, d = _numbers(rng, 0.7, 1.2, 2) + _numbers(rng, 0.5, 0.9, 1)
     return (
         f"field e = (x/{a})^2 + y^2 + (z/0.8)^2 - 1; "
-        f"field g = ((x-{d})/0.7)^2 + ((y-0.1)/{b})^2 + ((z-0.2)/0.9)^2 - 1; "
+        f"field g = ((x-{d})/0.7)^4 + ((y-0.1)/{b})^2 + ((z-0.2)/0.9)^2 - 1; "
         "set s = set(e) | set(g);",
         None,
     )
@@ -115,7 +114,7 @@ def neck(rng: Generator) -> tuple[str, float | None]:
 
 
 KINDS: tuple[Callable[[Generator], tuple[str, float | None]], ...] = (
-    ellipsoid, half_ellipsoid, cushion, oval_bar, blend, two_ellipsoids, neck,
+    superellipsoid, half_superellipsoid, cushion, paraboloid, blend, two_bodies, neck,
 )  # fmt: skip
 
 
@@ -156,13 +155,15 @@ def test_bodies_on_any_surfaces_are_valid_solids_of_the_stated_accuracy(
 def test_a_smaller_tolerance_is_kept(tmp_path: Path) -> None:
     from cad_reading import read
 
-    text = XYZ + "field e = (x/2)^2 + y^2 + (z/0.7)^2 - 1; SetBody b(set(e));"
+    text = XYZ + "field e = (x/2)^4 + y^2 + (z/0.7)^2 - 1; SetBody b(set(e));"
+    # Across x it is an ellipse, of area pi 0.7 sqrt(1 - (x/2)^4)^2.
+    volume = math.pi * 0.7 * 4 * (1 - 1 / 5)
     errors = []
     for tolerance in (1e-3, 1e-5, 1e-8) if SOAK else (1e-3, 1e-5):
         (file,) = moldloft.loads(text).write(tmp_path / "b.step", tolerance=tolerance)
         found = read(file, accuracy=1e-9)
         assert found.valid and found.closed == 1
-        errors.append(abs(found.volume - 4 / 3 * math.pi * 1.4))
+        errors.append(abs(found.volume - volume))
         assert errors[-1] <= tolerance * found.area + 1e-9
     assert errors[-1] < errors[0]
 
@@ -184,12 +185,12 @@ def test_plane_faces_of_such_bodies_are_planes_and_names_are_there(tmp_path: Pat
 def test_such_bodies_come_back(tmp_path: Path) -> None:
     from moldloft.cad.importing import program
 
-    text = XYZ + "field e = (x/2)^2 + y^2 + (z/0.7)^2 - 1; SetBody b(set(e));"
+    text = XYZ + "field e = (x/2)^4 + y^2 + (z/0.7)^2 - 1; SetBody b(set(e));"
     (file,) = moldloft.loads(text).write(tmp_path / "b.step", tolerance=1e-2)
     source, remarks = program(file)
     mesh = moldloft.loads(source).mesh()
     assert not remarks and mesh.closed
-    assert mesh.volume == pytest.approx(4 / 3 * math.pi * 1.4, rel=0.05)
+    assert mesh.volume == pytest.approx(math.pi * 0.7 * 3.2, rel=0.05)
 
 
 @pytest.mark.parametrize("seed", range(12 if SOAK else 2))

@@ -50,7 +50,7 @@ impl SurfaceAxes {
 
 impl SurfaceShape {
     /// The signed distance from the surface, positive where its normal points; from cones it is that of both their
-    /// halves. None for a NURBS.
+    /// halves, from images it is right to first order. None for a NURBS.
     pub fn distance(&self, p: Vec3) -> Option<f64> {
         Some(match self {
             SurfaceShape::Plane { origin, normal, .. } => (p - *origin).dot(*normal),
@@ -66,6 +66,7 @@ impl SurfaceShape {
                 let h = (p - axes.origin).dot(axes.z);
                 (ring * ring + h * h).sqrt() - minor
             }
+            SurfaceShape::Image(image) => return image.distance(p),
             SurfaceShape::Nurbs(_) => return None,
         })
     }
@@ -85,6 +86,7 @@ impl SurfaceShape {
                 let out = axes.away(p).1;
                 (p - axes.origin - out * *major).normalized().unwrap_or(out)
             }
+            SurfaceShape::Image(image) => image.normal(p),
             SurfaceShape::Nurbs(_) => Vec3::zero(),
         }
     }
@@ -113,12 +115,19 @@ impl SurfaceShape {
         made
     }
 
+    /// The image of a sphere with its axis along another direction; none for other surfaces.
+    pub(crate) fn image_about(&self, z: Vec3) -> Option<Self> {
+        let SurfaceShape::Image(image) = self else { return None };
+        image.linear_back(z).normalized().and_then(|v| image.about(v))
+    }
+
     /// The apex of a cone.
     pub fn apex(&self) -> Option<Vec3> {
         match self {
             SurfaceShape::Cone { axes, radius, half_angle } => {
                 Some(axes.origin - axes.z * (radius / libm::tan(*half_angle)))
             }
+            SurfaceShape::Image(image) => image.apex(),
             _ => None,
         }
     }
@@ -158,6 +167,7 @@ impl SurfaceShape {
                 let one = axes.origin.distance(other.origin) <= tolerance;
                 one && parallel(axes.z, other.z) && near(*major, *r) && near(*minor, *t)
             }
+            (SurfaceShape::Image(a), SurfaceShape::Image(b)) => a.is_same(b, tolerance),
             _ => false,
         }
     }
@@ -185,6 +195,7 @@ impl SurfaceShape {
             SurfaceShape::Torus { major, minor, .. } => {
                 arc(x * *major, x * *minor, y * *minor, 0.0, TAU)
             }
+            SurfaceShape::Image(image) => return image.nurbs(heights),
             _ => return None,
         };
         let axes = self.axes()?;

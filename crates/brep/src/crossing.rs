@@ -1,6 +1,6 @@
 //! Curves in which two surfaces cross, as splines of degree 3 with a proved bound of their distance from both.
 
-use crate::SurfaceShape;
+use crate::{SurfaceAxes, SurfaceImage, SurfaceShape};
 use moldloft_num::{Pace, Vec3};
 use moldloft_spline::nurbs::Nurbs;
 
@@ -92,8 +92,11 @@ fn tangent(surfaces: [&SurfaceShape; 2], p: Vec3, along: Vec3) -> Option<Vec3> {
     Some(if t.dot(along) < 0.0 { -t } else { t })
 }
 
+/// An end of a piece, and the tangent there.
+type PieceEnd = (Vec3, Option<Vec3>);
+
 /// A piece: its ends and their tangents.
-type Piece = [(Vec3, Option<Vec3>); 2];
+type Piece = [PieceEnd; 2];
 
 /// A piece's tangents: where surfaces touch at an end, the one that makes the piece a part of a circle.
 fn tangents([(p, s), (q, t)]: Piece) -> [Vec3; 2] {
@@ -163,7 +166,17 @@ pub fn crossing(
     while let Some((i, j)) = pending.pop() {
         let piece = [ends[i], ends[j]];
         if i + 1 >= j {
-            divided(surfaces, piece, accuracy, DEEPEST, &mut pieces)?;
+            if divided(surfaces, piece, accuracy, DEEPEST, &mut pieces).is_none() {
+                // Cells pass over what is thinner, as the end of a flat ellipse.
+                let places = [1.0, -1.0]
+                    .into_iter()
+                    .find_map(|sign| walked(surfaces, guide, &ends, closed, reach, sign))?;
+                pieces.clear();
+                for part in places.windows(2) {
+                    divided(surfaces, [part[0], part[1]], accuracy, DEEPEST, &mut pieces)?;
+                }
+                break;
+            }
         } else if piece.iter().all(|end| end.1.is_some())
             && good(surfaces, piece, accuracy)
             && near(&guide[i..=j], piece, reach)
@@ -228,6 +241,66 @@ fn divided(
     divided(surfaces, [end, piece[1]], accuracy, deep - 1, pieces)
 }
 
+/// Places along the crossing from the first place of a guide to its last, that need not be near the straight ways between
+/// others; all of these must be near one of them. With `sign` -1 it sets out against the first tangent, of which the guide may be
+/// wrong.
+fn walked(
+    surfaces: [&SurfaceShape; 2],
+    guide: &[Vec3],
+    ends: &[PieceEnd],
+    closed: bool,
+    reach: f64,
+    sign: f64,
+) -> Option<Vec<PieceEnd>> {
+    const MOST: usize = 20_000;
+    /// Most turn of the tangent from place to place, radians, and what is near enough to the tangent, in steps.
+    const BEND: f64 = 0.3;
+    const ASIDE: f64 = 0.2;
+    let last = ends.len() - 1;
+    let targets = if closed { vec![last / 2, last] } else { vec![last] };
+    let first = guide[1] - guide[0];
+    let mut along = ends[0].1.or_else(|| first.normalized())? * sign;
+    let mut step = 0.1 * first.norm().min(reach);
+    let mut places = vec![(ends[0].0, ends[0].1.map(|t| t * sign))];
+    let mut p = ends[0].0;
+    for target in targets {
+        let (to, slope) = ends[target];
+        loop {
+            let left = to - p;
+            let ahead = left.normalized().is_none_or(|d| d.dot(along) > libm::cos(BEND));
+            let turned = slope.map(|t| if t.dot(along) < 0.0 { -t } else { t });
+            let same = turned.is_none_or(|t| t.dot(along) > libm::cos(BEND));
+            if left.norm() <= 1.5 * step && ahead {
+                if same {
+                    places.push((to, turned));
+                    (p, along) = (to, turned.unwrap_or(along));
+                    break;
+                }
+                // It turns on the way.
+                step *= 0.5;
+            }
+            let guess = p + along * step;
+            let next =
+                on_both(surfaces, guess).and_then(|q| Some((q, tangent(surfaces, q, along)?)));
+            match next {
+                Some((q, t))
+                    if q.distance(guess) <= ASIDE * step && t.dot(along) > libm::cos(BEND) =>
+                {
+                    places.push((q, Some(t)));
+                    (p, along) = (q, t);
+                    step = (1.3 * step).min(reach);
+                }
+                _ => step *= 0.5,
+            }
+            if step <= 1e-9 * reach || places.len() > MOST {
+                return None;
+            }
+        }
+    }
+    let passed = |g: &Vec3| places.iter().any(|(p, _)| p.distance(*g) <= reach);
+    guide.iter().all(passed).then_some(places)
+}
+
 /// Pieces that follow one another as one spline of unit speed at its knots.
 fn joined(surfaces: [&SurfaceShape; 2], pieces: &[Piece]) -> Nurbs<1> {
     let mut knots = vec![0.0; 4];
@@ -265,6 +338,9 @@ fn joined(surfaces: [&SurfaceShape; 2], pieces: &[Piece]) -> Nurbs<1> {
 pub fn distance_bound(surface: &SurfaceShape, points: &[Vec3; 4]) -> f64 {
     let most = |f: &[f64]| f.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let least = |f: &[f64]| f.iter().fold(f64::INFINITY, |m, x| m.min(*x));
+    if let SurfaceShape::Image(image) = surface {
+        return image_bound(image, points);
+    }
     let Some(axes) = surface.axes() else {
         let far = |p: &Vec3| surface.distance(*p).unwrap_or(f64::INFINITY);
         return most(&points.map(|p| far(&p)));
@@ -299,6 +375,44 @@ pub fn distance_bound(surface: &SurfaceShape, points: &[Vec3; 4]) -> f64 {
             if below > 0.0 { most(&f) / below / minor } else { f64::INFINITY }
         }
         _ => f64::INFINITY,
+    }
+}
+
+/// A bound of the distance of a Bézier curve from an ellipsoid, an elliptic cylinder or cone of which the coordinates are
+/// those of the unit sphere or cylinder, or of a cone as wide as high: with F half of its polynomial, which is zero on it, within
+/// 2 |F| / |F'| along the normal there is a zero, if F turns little on that way.
+fn image_bound(image: &SurfaceImage, points: &[Vec3; 4]) -> f64 {
+    let of = image.of();
+    let (signs, one) = match of {
+        SurfaceShape::Sphere { .. } => ([1.0, 1.0, 1.0], 1.0),
+        SurfaceShape::Cylinder { .. } => ([1.0, 1.0, 0.0], 1.0),
+        SurfaceShape::Cone { .. } => ([1.0, 1.0, -1.0], 0.0),
+        _ => return f64::INFINITY,
+    };
+    let Some(axes) = of.axes() else { return f64::INFINITY };
+    // Of a cone the radius is that at a height; its coordinates begin at the apex.
+    let origin = of.apex().unwrap_or(axes.origin);
+    let axes = SurfaceAxes { origin, ..*axes };
+    let local = points.map(|p| axes.local(image.local(p)));
+    let coordinate = [0, 1, 2].map(|k| local.map(|p| p[k]).to_vec());
+    let squares = [0, 1, 2].map(|k| times(&coordinate[k], &coordinate[k]));
+    let f: Vec<f64> = (0..squares[0].len())
+        .map(|i| 0.5 * ((0..3).map(|k| signs[k] * squares[k][i]).sum::<f64>() - one))
+        .collect();
+    let most = f.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    // Half the gradient by the image's coordinates.
+    let unit = [axes.x, axes.y(), axes.z];
+    let gradient = [0, 1, 2].map(|k| image.gradient(unit[k]) * signs[k]);
+    let parts: [Vec<f64>; 3] = [0, 1, 2]
+        .map(|j| (0..4).map(|i| (0..3).map(|k| gradient[k][j] * coordinate[k][i]).sum()).collect());
+    let steep = (0..2 * parts[0].len() - 1)
+        .map(|i| parts.iter().map(|g| times(g, g)[i]).sum::<f64>())
+        .fold(f64::INFINITY, f64::min);
+    let curved = gradient.iter().map(|g| g.norm_sq()).sum::<f64>();
+    if steep > 0.0 && 2.0 * most * curved <= steep {
+        2.0 * most / steep.sqrt()
+    } else {
+        f64::INFINITY
     }
 }
 

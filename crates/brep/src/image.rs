@@ -118,6 +118,9 @@ impl Brep {
                     face.reversed = !face.reversed;
                     SurfaceShape::Nurbs(Box::new(image(&n, axis)))
                 }
+                SurfaceShape::Image(image) => {
+                    SurfaceShape::Image(Box::new(image.mirrored(|p| mirrored(p, axis))))
+                }
                 // Their normals follow from their places, as those of the images do.
                 round => {
                     let made = round.axes().map(|a| {

@@ -20,6 +20,9 @@ const NEAR: f64 = 1e-9;
 /// Corners may be so many cells off where faces meet at small angles.
 const REACH: f64 = 4.0;
 
+/// Vertices that are farther from a surface, in cells, are not on it.
+const STRAYED: f64 = 0.02;
+
 /// Surfaces touch, as far as triangles go, where the sine of the angle of their normals is less.
 const TOUCHING: f64 = 0.5;
 
@@ -197,7 +200,9 @@ impl LabelledBody {
             let [a, b, c] = self.net.corners(k);
             let p = (a + b + c) / 3.0;
             let surface = &self.surfaces[self.net.labels[k] as usize];
-            p - surface.normal(p) * surface.distance(p).unwrap_or(0.0)
+            // Distances from images are right to first order.
+            let steps = if matches!(surface, SurfaceShape::Image(_)) { 12 } else { 1 };
+            (0..steps).fold(p, |p, _| p - surface.normal(p) * surface.distance(p).unwrap_or(0.0))
         };
         let clear = |k: &usize| self.net.triangles[*k].iter().all(|v| !touching.contains(v));
         (0..self.net.triangles.len()).filter(clear).map(middle).collect()
@@ -294,10 +299,11 @@ impl LabelledBody {
         }
         self.corners.clear();
         for p in points {
-            self.net = self
-                .net
-                .pinned(p, self.step)
-                .ok_or_else(|| self.fault(FacetFaultKind::NotClosed, &[], p))?;
+            // What is left of the triangles round it may fold onto itself; a little more or less does not.
+            let net = [1.0, 0.7, 1.4, 0.5, 2.0]
+                .into_iter()
+                .find_map(|share| self.net.pinned(p, share * self.step));
+            self.net = net.ok_or_else(|| self.fault(FacetFaultKind::NotClosed, &[], p))?;
         }
         Ok(())
     }
@@ -351,6 +357,9 @@ impl LabelledBody {
                         let own = self.surfaces[self.net.labels[k] as usize].axes();
                         own.and_then(|c| (axes.origin - c.origin).normalized())
                     }
+                    SurfaceShape::Image(image) => {
+                        image.of().axes().and_then(|a| image.linear(a.z).normalized())
+                    }
                     other => other.axes().map(|a| a.z),
                 };
                 let known = &mut beside[self.net.groups[k] as usize];
@@ -361,14 +370,26 @@ impl LabelledBody {
             let Some(k) = self.net.groups.iter().position(|g| *g == group) else { continue };
             let label = self.net.labels[k];
             let surface = self.surfaces[label as usize].clone();
-            if surface.axes().is_none() {
+            let is_image = matches!(surface, SurfaceShape::Image(_));
+            if surface.axes().is_none() && !is_image {
                 continue;
             }
             let place = self.net.corners(k)[0];
             let scale = (self.size, self.step);
             let beside = &beside[group as usize];
-            let made =
-                self.net.prepared(group, &surface, beside, &mut self.surfaces, &corners, scale);
+            let made = match &surface {
+                SurfaceShape::Image(image) => self.net.prepared_image(
+                    group,
+                    image,
+                    beside,
+                    &mut self.surfaces,
+                    &corners,
+                    scale,
+                ),
+                _ => {
+                    self.net.prepared(group, &surface, beside, &mut self.surfaces, &corners, scale)
+                }
+            };
             match made {
                 Some(axes) => self.axes.insert(group, axes),
                 None => return Err(self.fault(FacetFaultKind::Seam, &[label], place)),
@@ -437,9 +458,18 @@ impl LabelledBody {
             let curves = known.entry([a, b]).or_insert_with(|| {
                 meet(&self.surfaces[a as usize], &self.surfaces[b as usize], near, self.size)
             });
+            // Vertices beyond corners, and those of cuts through cells that pass over a thin end, are on one surface at most.
+            let strayed = |p: &Vec3| {
+                [a, b].into_iter().any(|k| {
+                    let off = self.surfaces[k as usize].distance(*p);
+                    off.is_some_and(|d| d.abs() > STRAYED * self.step)
+                })
+            };
+            let all = chain.vertices.iter().map(|&v| self.net.positions[v as usize]);
+            let (off, on): (Vec<Vec3>, Vec<Vec3>) = all.partition(strayed);
+            let places = if on.is_empty() { off } else { on };
             let far = |curve: &ExactCurve| {
-                let places = chain.vertices.iter().map(|&v| self.net.positions[v as usize]);
-                places.map(|p| curve.near(p).distance(p)).fold(0.0, f64::max)
+                places.iter().map(|p| curve.near(*p).distance(*p)).fold(0.0, f64::max)
             };
             let best = curves.iter().map(|c| (far(c), *c)).min_by(|a, b| a.0.total_cmp(&b.0));
             let touching = chain.vertices.iter().all(|&v| {
@@ -554,15 +584,26 @@ impl LabelledBody {
                 (sweep != 0.0).then_some((curve, Some(own)))
             }
             None => {
+                let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
+                // Beside a corner of small angles vertices are on one surface only, beyond the corner: the way does not
+                // go there and back.
+                let strayed = |r: &Vec3| {
+                    let far = |s: &SurfaceShape| {
+                        s.distance(*r).is_some_and(|d| d.abs() > STRAYED * self.step)
+                    };
+                    both.into_iter().any(far)
+                };
+                let places: Vec<Vec3> = inner.collect();
+                let first = places.iter().position(|r| !strayed(r)).unwrap_or(0);
+                let last = places.iter().rposition(|r| !strayed(r)).map_or(places.len(), |k| k + 1);
                 let mut guide = vec![p];
                 let least = 0.3 * self.step;
-                for r in inner {
+                for &r in &places[first..last] {
                     if r.distance(guide[guide.len() - 1]) >= least && r.distance(q) >= least {
                         guide.push(r);
                     }
                 }
                 guide.push(q);
-                let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
                 Some((crossing(both, &guide, self.accuracy, REACH * self.step)?, None))
             }
         }
@@ -678,22 +719,17 @@ impl LabelledBody {
         let largest = *largest.unwrap_or(&members[0]);
         let [a, b, c] = self.net.corners(largest);
         let (middle, out) = ((a + b + c) / 3.0, area(largest));
-        let mut surface = self.surfaces[label].clone();
-        if let Some(axes) = self.axes.get(&group) {
-            surface = surface.with_axes(*axes);
-        }
-        if let (Some(apex), SurfaceShape::Cone { axes, radius, half_angle }) =
-            (surface.apex(), &mut surface)
-        {
-            if (middle - apex).dot(axes.z) < 0.0 {
-                axes.z = -axes.z;
+        let axes = self.axes.get(&group);
+        let places = members.iter().flat_map(|&k| self.net.corners(k));
+        let surface = match &self.surfaces[label] {
+            SurfaceShape::Image(image) => {
+                let local = image.local(middle);
+                let of = placed(image.of(), axes, local, places.map(|p| image.local(p)));
+                SurfaceShape::Image(Box::new(image.with(of)))
             }
-            // At its widest place, where its radius is not zero.
-            let all = members.iter().flat_map(|&k| self.net.corners(k));
-            let high = all.map(|p| (p - apex).dot(axes.z)).fold(0.0, f64::max);
-            axes.origin = apex + axes.z * high;
-            *radius = high * libm::tan(*half_angle);
-        }
+            other => placed(other, axes, middle, places),
+        };
+        let mut surface = surface;
         let mut reversed = surface.normal(middle).dot(out) < 0.0;
         if let (true, SurfaceShape::Plane { normal, .. }) = (reversed, &mut surface) {
             *normal = -*normal;
@@ -712,6 +748,27 @@ impl LabelledBody {
             extent: Some((extent, cavity)),
         }
     }
+}
+
+/// A surface with the axes of a face, of which a place in the middle and others are known: of a cone at its widest place.
+fn placed(
+    surface: &SurfaceShape,
+    axes: Option<&SurfaceAxes>,
+    middle: Vec3,
+    places: impl Iterator<Item = Vec3>,
+) -> SurfaceShape {
+    let mut made = axes.map_or_else(|| surface.clone(), |axes| surface.with_axes(*axes));
+    if let (Some(apex), SurfaceShape::Cone { axes, radius, half_angle }) = (made.apex(), &mut made)
+    {
+        if (middle - apex).dot(axes.z) < 0.0 {
+            axes.z = -axes.z;
+        }
+        // There its radius is not zero.
+        let high = places.map(|p| (p - apex).dot(axes.z)).fold(0.0, f64::max);
+        axes.origin = apex + axes.z * high;
+        *radius = high * libm::tan(*half_angle);
+    }
+    made
 }
 
 /// The point near another that is on all surfaces: that of the three that cross best, if it is on the others, too.

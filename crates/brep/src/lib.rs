@@ -13,20 +13,24 @@
 mod analytic;
 mod check;
 mod crossing;
+mod foot;
 mod image;
 mod labelled;
 mod meet;
 mod patch;
 mod patches;
 mod seams;
+mod surface_image;
 mod untangle;
 mod volume;
 
 pub use analytic::SurfaceAxes;
 pub use check::{Fault, ShellFacts};
+pub use foot::foot;
 pub use labelled::{FacetFault, FacetFaultKind, LabelledFacets};
 pub use meet::{ExactCurve, meet};
 pub use patch::SurfaceField;
+pub use surface_image::SurfaceImage;
 pub use volume::BrepVolume;
 
 use moldloft_num::{Pace, Vec3};
@@ -140,6 +144,8 @@ pub enum SurfaceShape {
         /// The radius of the tube.
         minor: f64,
     },
+    /// The image of one of these under an affine map: an ellipsoid, an elliptic cylinder or cone.
+    Image(Box<SurfaceImage>),
     /// A NURBS.
     Nurbs(Box<Nurbs<2>>),
 }
@@ -246,11 +252,17 @@ impl Brep {
         if let SurfaceShape::Nurbs(surface) = &face.surface {
             return Some((**surface).clone());
         }
-        let axes = face.surface.axes()?;
+        let height: Box<dyn Fn(Vec3) -> f64> = match &face.surface {
+            SurfaceShape::Image(image) => Box::new(|p| image.height(p)),
+            other => {
+                let axes = *other.axes()?;
+                Box::new(move |p| axes.local(p)[2])
+            }
+        };
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for side in face.loops.iter().flatten() {
             for p in &self.edges[side.edge].curve.points {
-                let h = axes.local(*p)[2];
+                let h = height(*p);
                 (low, high) = (low.min(h), high.max(h));
             }
         }

@@ -1,6 +1,6 @@
 //! Lines, circles and ellipses in which two surfaces meet or touch.
 
-use crate::{SurfaceAxes, SurfaceShape};
+use crate::{SurfaceAxes, SurfaceImage, SurfaceShape};
 use moldloft_num::Vec3;
 
 /// A curve of degree 1 or 2.
@@ -87,13 +87,23 @@ enum ProfilePiece {
 
 /// What two surfaces have in common where that is lines, circles or ellipses; nothing where it is another curve.
 pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Vec<ExactCurve> {
-    use SurfaceShape::{Cone, Cylinder, Plane, Sphere, Torus};
+    use SurfaceShape::{Cone, Cylinder, Image, Plane, Sphere, Torus};
     let parallel = |u: Vec3, v: Vec3| u.cross(v).norm() * size <= tolerance;
     let near = |u: f64, v: f64| (u - v).abs() <= tolerance;
     if let (Plane { origin, normal, .. }, Plane { origin: o, normal: n, .. }) = (a, b) {
         let Some(direction) = normal.cross(*n).normalized() else { return Vec::new() };
         let point = on_planes([*normal, *n, direction], [*origin, *o, *origin]);
         return point.map(|point| ExactCurve::Line { point, direction }).into_iter().collect();
+    }
+    match (a, b) {
+        (Image(image), Plane { origin, normal, .. })
+        | (Plane { origin, normal, .. }, Image(image)) => {
+            return plane_image(*origin, *normal, image, tolerance, size);
+        }
+        (Image(image), other) | (other, Image(image)) => {
+            return turned_image(image, other, tolerance, size);
+        }
+        _ => {}
     }
     if let Some((origin, z)) = common_axis(a, b, tolerance, size) {
         return coaxial([a, b], origin, z, tolerance);
@@ -185,6 +195,136 @@ pub fn meet(a: &SurfaceShape, b: &SurfaceShape, tolerance: f64, size: f64) -> Ve
         }
         _ => Vec::new(),
     }
+}
+
+/// The image of what the plane that a plane is the image of has in common with a surface.
+fn plane_image(
+    origin: Vec3,
+    normal: Vec3,
+    image: &SurfaceImage,
+    tolerance: f64,
+    size: f64,
+) -> Vec<ExactCurve> {
+    let Some(back) = image.normal_back(normal) else { return Vec::new() };
+    let origin = image.local(origin);
+    let plane = SurfaceShape::Plane { origin, normal: back, axis: back.perpendicular() };
+    let scale = image.scale();
+    let found = meet(&plane, image.of(), tolerance / scale, size / scale);
+    let mapped = |curve: ExactCurve| match curve {
+        ExactCurve::Line { point, direction } => {
+            let direction = image.linear(direction).normalized()?;
+            Some(ExactCurve::Line { point: image.world(point), direction })
+        }
+        ExactCurve::Ellipse { centre, x, y } => {
+            let [x, y] = principal(image.linear(x), image.linear(y));
+            Some(ExactCurve::Ellipse { centre: image.world(centre), x, y })
+        }
+    };
+    found.into_iter().filter_map(mapped).collect()
+}
+
+/// The semi-axes of an ellipse with these conjugate half diameters.
+fn principal(x: Vec3, y: Vec3) -> [Vec3; 2] {
+    let (d, e) = (x.norm_sq() - y.norm_sq(), 2.0 * x.dot(y));
+    if e.abs() <= 1e-15 * (x.norm_sq() + y.norm_sq()) {
+        return [x, y];
+    }
+    let (s, c) = libm::sincos(0.5 * libm::atan2(e, d));
+    [x * c + y * s, y * c - x * s]
+}
+
+/// The square of the radius of a surface of revolution as a polynomial of the height along an axis, if it is one about that
+/// axis.
+fn squared_profile(s: &SurfaceShape, origin: Vec3, z: Vec3, near: [f64; 2]) -> Option<[f64; 3]> {
+    let [tolerance, size] = near;
+    let height = |p: Vec3| (p - origin).dot(z);
+    let on_axis = |p: Vec3| (p - origin - z * height(p)).norm() <= tolerance;
+    let along = |v: Vec3| v.cross(z).norm() * size <= tolerance * v.norm();
+    // k2 (h - h0)^2 + k0.
+    let about = |k2: f64, h: f64, k0: f64| Some([k0 + k2 * h * h, -2.0 * k2 * h, k2]);
+    match s {
+        SurfaceShape::Sphere { axes, radius } if on_axis(axes.origin) => {
+            about(-1.0, height(axes.origin), radius * radius)
+        }
+        SurfaceShape::Cylinder { axes, radius } if on_axis(axes.origin) && along(axes.z) => {
+            Some([radius * radius, 0.0, 0.0])
+        }
+        SurfaceShape::Cone { half_angle, axes, .. } if along(axes.z) => {
+            let apex = s.apex().filter(|p| on_axis(*p))?;
+            let steep = libm::tan(*half_angle);
+            about(steep * steep, height(apex), 0.0)
+        }
+        SurfaceShape::Image(image) => {
+            let own = image.of().axes()?;
+            let [x, y, up] = [own.x, own.y(), own.z].map(|v| image.linear(v));
+            let (a, b) = (x.norm(), y.norm());
+            let round = (a - b).abs() <= tolerance && x.dot(y).abs() <= tolerance * a;
+            let centre = image.world(image.of().apex().unwrap_or(own.origin));
+            let square = up.dot(x).abs().max(up.dot(y).abs()) * size <= tolerance * a * up.norm();
+            if !round || !square || !along(up) || !on_axis(centre) {
+                return None;
+            }
+            let (h, steep) = (height(centre), a * a / up.norm_sq());
+            match image.of() {
+                SurfaceShape::Sphere { .. } => about(-steep, h, a * a),
+                SurfaceShape::Cylinder { .. } => Some([a * a, 0.0, 0.0]),
+                SurfaceShape::Cone { .. } => about(steep, h, 0.0),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}
+
+/// The circles that a spheroid, or another image that is a surface of revolution, has in common with a surface about the same
+/// axis: those that touch count.
+fn turned_image(
+    image: &SurfaceImage,
+    other: &SurfaceShape,
+    tolerance: f64,
+    size: f64,
+) -> Vec<ExactCurve> {
+    let own = SurfaceShape::Image(Box::new(image.clone()));
+    let Some(origin) = image.of().axes().map(|a| image.world(a.origin)) else { return Vec::new() };
+    let mut made: Vec<ExactCurve> = Vec::new();
+    for v in [Vec3::of(1.0, 0.0, 0.0), Vec3::of(0.0, 1.0, 0.0), Vec3::of(0.0, 0.0, 1.0)] {
+        // Any axis of a spheroid may be the one about which it is turned.
+        let Some(z) = image.linear(v).normalized() else { continue };
+        let turned = image.about(v);
+        let shape = turned.as_ref().map_or(&own, |t| t);
+        let near = [tolerance, size];
+        let Some(f) = squared_profile(shape, origin, z, near) else { continue };
+        let Some(g) = squared_profile(other, origin, z, near)
+            .or_else(|| other.image_about(z).and_then(|o| squared_profile(&o, origin, z, near)))
+        else {
+            continue;
+        };
+        let [c, b, a] = [0, 1, 2].map(|k| f[k] - g[k]);
+        let at = |h: f64| f[0] + h * (f[1] + h * f[2]);
+        let mut heights = Vec::new();
+        if a.abs() * size <= tolerance {
+            if b.abs() > tolerance {
+                heights.push(-c / b);
+            }
+        } else {
+            let middle = -b / (2.0 * a);
+            let (least, square) = (c - a * middle * middle, at(middle));
+            if square > 0.0 && least.abs() <= 2.0 * square.sqrt() * tolerance {
+                heights.push(middle);
+            } else if -least / a > 0.0 {
+                let half = (-least / a).sqrt();
+                heights.extend([middle - half, middle + half]);
+            }
+        }
+        for h in heights {
+            let square = at(h);
+            if square > tolerance * tolerance {
+                made.push(ExactCurve::circle(origin + z * h, z, square.sqrt()));
+            }
+        }
+        break;
+    }
+    made
 }
 
 /// The point of three planes.
@@ -306,9 +446,9 @@ fn common_axis(
     tolerance: f64,
     size: f64,
 ) -> Option<(Vec3, Vec3)> {
-    use SurfaceShape::{Nurbs, Plane, Sphere};
+    use SurfaceShape::{Image, Nurbs, Plane, Sphere};
     match (a, b) {
-        (Nurbs(_), _) | (_, Nurbs(_)) | (Plane { .. }, Plane { .. }) => None,
+        (Nurbs(_) | Image(_), _) | (_, Nurbs(_) | Image(_)) | (Plane { .. }, Plane { .. }) => None,
         (Plane { normal, .. }, Sphere { axes, .. })
         | (Sphere { axes, .. }, Plane { normal, .. }) => Some((axes.origin, *normal)),
         (Sphere { axes, .. }, Sphere { axes: o, .. }) => {
@@ -355,7 +495,7 @@ fn profile(s: &SurfaceShape, origin: Vec3, z: Vec3) -> Vec<ProfilePiece> {
         SurfaceShape::Torus { axes, major, minor } => {
             vec![ProfilePiece::Circle([*major, height(axes.origin)], *minor)]
         }
-        SurfaceShape::Nurbs(_) => Vec::new(),
+        SurfaceShape::Image(_) | SurfaceShape::Nurbs(_) => Vec::new(),
     }
 }
 

@@ -3,7 +3,7 @@
 //! A face needs no cut where an angle about its axis is free of it; else its triangles are divided along a half-plane
 //! through the axis, which becomes an edge with the face on both sides. A pole inside a face becomes a vertex.
 
-use crate::{Coedge, SurfaceAxes, SurfaceShape};
+use crate::{Coedge, SurfaceAxes, SurfaceImage, SurfaceShape};
 use moldloft_num::Vec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
@@ -433,6 +433,49 @@ impl FacetNet {
             }
         }
         Some(axes)
+    }
+
+    /// The same for a face on the image of a surface of revolution, in the coordinates of the image.
+    pub fn prepared_image(
+        &mut self,
+        group: u32,
+        image: &SurfaceImage,
+        beside: &[Vec3],
+        planes: &mut Vec<SurfaceShape>,
+        corners: &FxHashSet<u32>,
+        (size, step): (f64, f64),
+    ) -> Option<SurfaceAxes> {
+        let local: Vec<Vec3> = self.positions.iter().map(|p| image.local(*p)).collect();
+        let before = std::mem::replace(&mut self.positions, local.clone());
+        let fixed = std::mem::take(&mut self.fixed);
+        let known = planes.len();
+        let beside: Vec<Vec3> = beside.iter().filter_map(|n| image.normal_back(*n)).collect();
+        let scale = image.scale();
+        let made = self.prepared(
+            group,
+            image.of(),
+            &beside,
+            planes,
+            corners,
+            (size / scale, step / scale),
+        );
+        // Back, to the last bit where nothing moved.
+        let own = std::mem::replace(&mut self.fixed, fixed);
+        self.fixed.extend(own.into_iter().map(|(v, p)| (v, image.world(p))));
+        for (v, p) in self.positions.iter_mut().enumerate() {
+            *p = match (local.get(v), before.get(v)) {
+                (Some(l), Some(b)) if l == p => *b,
+                _ => image.world(*p),
+            };
+        }
+        for plane in &mut planes[known..] {
+            if let SurfaceShape::Plane { origin, normal, axis } = plane {
+                *origin = image.world(*origin);
+                *normal = image.gradient(*normal).normalized()?;
+                *axis = image.linear(*axis).normalized()?;
+            }
+        }
+        made
     }
 
     /// Moves vertices inside a face off a plane, by less than counts: only which side they are on matters.

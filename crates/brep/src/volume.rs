@@ -4,7 +4,7 @@
 //! of p x dp along its border, and D the integral of (p - O) . n, which is zero on planes and on cones about their apex, the
 //! radius times the area on cylinders and spheres, and an integral over both angles on tori.
 
-use crate::{Brep, BrepFace, Coedge, SurfaceAxes, SurfaceShape};
+use crate::{Brep, BrepFace, Coedge, SurfaceAxes, SurfaceImage, SurfaceShape};
 use moldloft_num::Vec3;
 use std::f64::consts::{PI, TAU};
 
@@ -135,6 +135,9 @@ impl Brep {
 
     /// Three times the flux of p/3 through a face along its surface's normal, about a point, with its error.
     fn flux(&self, face: &BrepFace, about: Vec3) -> Option<(f64, f64)> {
+        if let SurfaceShape::Image(image) = &face.surface {
+            return self.flux_of_image(face, image, about);
+        }
         let plain =
             SurfaceAxes { origin: about, z: Vec3::of(0.0, 0.0, 1.0), x: Vec3::of(1.0, 0.0, 0.0) };
         let axes = face.surface.axes().unwrap_or(&plain);
@@ -195,8 +198,44 @@ impl Brep {
                 whole(from(axes.origin) + radius * surface, radius * radius)
             }
             SurfaceShape::Torus { axes, .. } => whole(from(axes.origin) + weighted, 1.0),
-            SurfaceShape::Nurbs(_) => None,
+            SurfaceShape::Image(_) | SurfaceShape::Nurbs(_) => None,
         }
+    }
+
+    /// The flux through the image of a face: cones over parts of a surface, from the image's centre, are those over the parts
+    /// that they are images of, enlarged.
+    fn flux_of_image(
+        &self,
+        face: &BrepFace,
+        image: &SurfaceImage,
+        about: Vec3,
+    ) -> Option<(f64, f64)> {
+        let mut edges = Vec::new();
+        let mut loops = face.loops.clone();
+        for side in loops.iter_mut().flatten() {
+            let mut edge = self.edges[side.edge].clone();
+            edge.curve.points.iter_mut().for_each(|p| *p = image.local(*p));
+            side.edge = edges.len();
+            edges.push(edge);
+        }
+        let local = BrepFace { surface: image.of().clone(), loops, ..face.clone() };
+        let made = Self { edges, ..Self::default() };
+        let (own, error) = made.flux(&local, Vec3::zero())?;
+        let scale = image.volume_scale();
+        // The vector area of the face, from that of the preimage.
+        let axes = SurfaceAxes {
+            origin: Vec3::zero(),
+            z: Vec3::of(0.0, 0.0, 1.0),
+            x: Vec3::of(1.0, 0.0, 0.0),
+        };
+        let (mut area, mut off) = (Vec3::zero(), 0.0);
+        for cycle in &local.loops {
+            let part = made.loop_integrals(cycle, Vec3::zero(), &axes, 0.0, &|_, _| 0.0);
+            area += part.area * if face.reversed { -1.0 } else { 1.0 };
+            off += part.error;
+        }
+        let from = image.linear_back(image.world(Vec3::zero()) - about);
+        Some((scale * (own + from.dot(area)), scale * (error + from.norm() * off)))
     }
 
     /// The volume that all faces enclose, which are to be oriented out of the material; none where a face is a NURBS, goes

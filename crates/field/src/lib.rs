@@ -32,6 +32,7 @@ pub use expr::form::Form;
 pub use expr::interval::Interval;
 pub use expr::oracle::{Affine, Constant, Oracle};
 pub use expr::primitive::{Binary, Primitive};
+pub use expr::quadric::{QuadricAxes, QuadricClass};
 pub use expr::remap::twist;
 pub use facet::memo::FacetMemo;
 pub use facet::sheets::{

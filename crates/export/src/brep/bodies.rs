@@ -1,20 +1,22 @@
-//! Bodies of sets as exact faces where these are planes, cylinders, cones, spheres and tori, else as patches.
+//! Bodies of sets as exact faces where these are planes, quadrics with an axis and tori, else as patches.
 //!
 //! `set -> facets, each with its primitive -> faces, edges, vertices -> places on the border of the set?`
 //!
-//! A body with any other surface, as an ellipsoid or a blend, has exact plane faces, and patches of splines that are
+//! A body with any other surface, as a blend, has exact plane faces, and patches of splines that are
 //! within the accuracy elsewhere.
 //!
 //! Facets say what hangs together only; where a place of an edge or face then is not on the border of the set, the
 //! facets have missed something, and finer ones are made, or the body is refused with the place.
 
 use crate::ExportFailure;
-use moldloft_brep::{Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxes, SurfaceShape};
+use moldloft_brep::{
+    Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxes, SurfaceImage, SurfaceShape,
+};
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 use moldloft_field::{
-    BehindSheet, Effort, FacetOptions, Facets, FieldError, Form, Membership, Resolution, Set,
-    around, behind_sheets, certified, facet, set_of, solid_part,
+    BehindSheet, Effort, FacetOptions, Facets, FieldError, Form, Leaf, Membership, Primitive,
+    QuadricClass, Resolution, Set, around, behind_sheets, certified, facet, set_of, solid_part,
 };
 use moldloft_mesh::{Mesh, measure};
 use moldloft_model::Object;
@@ -90,11 +92,12 @@ impl SetOfBody<'_> {
         let exact = if self.is_plain() { self.exact(brep, accuracy, size)? } else { Some(None) };
         let Some(refused) = exact else { return Ok(()) };
         // Coarser facets miss such parts, too.
-        if let Some(thin) = refused.as_ref().filter(|d| d.id == THIN) {
+        if let Some(thin) = refused.as_ref().filter(|d| d.id == THIN && !self.has_expressions()) {
             return Err(thin.clone().into());
         }
         match self.patches(brep, accuracy, size)? {
             None => Ok(()),
+            Some(patches) if self.has_expressions() => Err(patches.into()),
             // A body of such faces alone is recognised by them.
             Some(patches) => Err(refused.unwrap_or(patches).into()),
         }
@@ -102,11 +105,26 @@ impl SetOfBody<'_> {
 
     /// Whether all surfaces that are shown may be exact ones; more is known of facets.
     fn is_plain(&self) -> bool {
-        const KINDS: [&str; 5] = ["plane", "sphere", "cylinder", "cone", "torus"];
+        const KINDS: [&str; 6] = ["plane", "sphere", "cylinder", "cone", "torus", "field"];
+        let kinds = self.shown_kinds();
+        let quadric = |leaf: &Leaf| {
+            !matches!(leaf.primitive.form(), Form::General)
+                || quadric(&leaf.primitive, self.over).is_some()
+        };
+        kinds.iter().all(|k| KINDS.contains(k))
+            && (!kinds.contains(&"field") || self.set.leaves().iter().all(quadric))
+    }
+
+    /// Whether it shows surfaces of expressions, of which patches may be made where exact faces are not found.
+    fn has_expressions(&self) -> bool {
+        self.shown_kinds().contains(&"field")
+    }
+
+    fn shown_kinds(&self) -> Vec<&str> {
         let prefix = format!("{}.", self.name);
         let shown = self.mesh.patches().iter().map(|p| &p.info);
         let own = |name: &str| name == self.name || name.starts_with(&prefix);
-        shown.filter(|i| own(&i.name)).all(|i| KINDS.contains(&i.kind.as_str()))
+        shown.filter(|i| own(&i.name)).map(|i| i.kind.as_str()).collect()
     }
 
     /// Adds the sheets of the set, as open faces.
@@ -133,7 +151,7 @@ impl SetOfBody<'_> {
             return Some(missed(self.name, open.place.centre(), facets.step));
         }
         let field = field_of(facets);
-        let mut labelled = labelled(facets, self.mesh, self.name);
+        let mut labelled = labelled(facets, self.mesh, self.name, self.over);
         let own = format!("{}.{}", self.name, sheet.info.name);
         let known = self.mesh.patches().iter().map(|p| &p.info).find(|i| i.name == own);
         let info = known.unwrap_or(&sheet.info);
@@ -166,7 +184,8 @@ impl SetOfBody<'_> {
             if std::mem::replace(&mut before, facets.step) == facets.step {
                 continue;
             }
-            let (labelled, step) = (labelled(&facets, self.mesh, self.name), facets.step);
+            let (labelled, step) =
+                (labelled(&facets, self.mesh, self.name, self.over), facets.step);
             if labelled.surfaces.iter().any(Option::is_none) {
                 return Ok(Some(None));
             }
@@ -207,7 +226,7 @@ impl SetOfBody<'_> {
             }
             let field = field_of(&facets);
             let mut made = Brep::default();
-            let labelled = labelled(&facets, self.mesh, self.name);
+            let labelled = labelled(&facets, self.mesh, self.name, self.over);
             let places = made.add_patches(labelled, &field, accuracy, size, patient);
             match &places {
                 // Finer cells only make more.
@@ -322,7 +341,7 @@ fn field_of(facets: &Facets) -> impl Fn(u32, Vec3) -> (f64, Vec3) + Sync {
     }
 }
 
-fn labelled(facets: &Facets, shown: &Mesh, name: &str) -> LabelledFacets {
+fn labelled(facets: &Facets, shown: &Mesh, name: &str, over: &Box3) -> LabelledFacets {
     let mesh = &facets.mesh;
     let (mut triangles, mut labels) = (Vec::new(), Vec::new());
     let (mut surfaces, mut names, mut colours, mut layers) =
@@ -338,7 +357,8 @@ fn labelled(facets: &Facets, shown: &Mesh, name: &str) -> LabelledFacets {
         *count += 1;
         let full =
             if *count == 1 { format!("{name}.{own}") } else { format!("{name}.{own}.{count}") };
-        surfaces.push(surface(facets.form(k)));
+        let primitive = &facets.leaves[facets.patch_leaves[k]].primitive;
+        surfaces.push(surface(primitive, over));
         // As its panels are shown; those of a face that their cells miss as the first of the body.
         let prefix = format!("{name}.");
         let patches = || shown.patches().iter().map(|p| &p.info);
@@ -356,9 +376,9 @@ fn labelled(facets: &Facets, shown: &Mesh, name: &str) -> LabelledFacets {
 }
 
 /// The surface of a primitive, where CAD formats have one.
-fn surface(form: &Form<f64>) -> Option<SurfaceShape> {
+fn surface(primitive: &Primitive<f64>, over: &Box3) -> Option<SurfaceShape> {
     let about = |axis: &moldloft_num::Axis<f64>| SurfaceAxes::about(axis.point, axis.direction);
-    Some(match form {
+    Some(match primitive.form() {
         Form::Plane(plane) => SurfaceShape::Plane {
             origin: plane.point,
             normal: plane.normal,
@@ -378,8 +398,43 @@ fn surface(form: &Form<f64>) -> Option<SurfaceShape> {
         Form::Torus { axis, major, minor } if minor < major => {
             SurfaceShape::Torus { axes: about(axis), major: *major, minor: *minor }
         }
-        _ => return None,
+        _ => return quadric(primitive, over),
     })
+}
+
+/// The ellipsoid, elliptic cylinder or cone of an expression.
+fn quadric(primitive: &Primitive<f64>, over: &Box3) -> Option<SurfaceShape> {
+    /// Radii that differ less are one.
+    const ROUND: f64 = 1e-12;
+    let size = over.diagonal();
+    let found = primitive.quadric(over.centre(), size, 1e-9 * size)?;
+    let [x, y, z] = found.half;
+    let [a, b, c] = found.half.map(|v| v.norm());
+    let one = |a: f64, b: f64| (a - b).abs() <= ROUND * a;
+    let axes = SurfaceAxes::about(found.centre, z);
+    let unit = SurfaceAxes {
+        origin: Vec3::zero(),
+        z: Vec3::of(0.0, 0.0, 1.0),
+        x: Vec3::of(1.0, 0.0, 0.0),
+    };
+    let of = match found.class {
+        QuadricClass::Ellipsoid if one(a, b) && one(b, c) => {
+            return Some(SurfaceShape::Sphere { axes, radius: a });
+        }
+        QuadricClass::Cylinder if one(a, b) => {
+            return Some(SurfaceShape::Cylinder { axes, radius: a });
+        }
+        QuadricClass::Cone if one(a, b) => {
+            return Some(SurfaceShape::Cone { axes, radius: 0.0, half_angle: libm::atan2(a, c) });
+        }
+        QuadricClass::Ellipsoid => SurfaceShape::Sphere { axes: unit, radius: 1.0 },
+        QuadricClass::Cylinder => SurfaceShape::Cylinder { axes: unit, radius: 1.0 },
+        QuadricClass::Cone => {
+            SurfaceShape::Cone { axes: unit, radius: 0.0, half_angle: std::f64::consts::FRAC_PI_4 }
+        }
+    };
+    let right = if x.cross(y).dot(z) < 0.0 { -y } else { y };
+    SurfaceImage::new(of, found.centre, [x, right, z]).map(|i| SurfaceShape::Image(Box::new(i)))
 }
 
 /// A place of a face whose border is one straight edge there and back: what facets show of it is none.

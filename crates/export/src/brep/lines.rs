@@ -4,7 +4,8 @@
 //! until they are near enough to both sheets, so that the line is within the accuracy like all else in the file.
 
 use super::bodies::set_and_box;
-use moldloft_brep::{Brep, Part, PartPoint, Wire};
+use moldloft_brep::{Brep, Part, PartPoint, Wire, foot};
+use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
 use moldloft_field::Primitive;
 use moldloft_num::{Pace, Vec3};
@@ -14,13 +15,21 @@ use moldloft_spline::nurbs::Nurbs;
 
 /// Halvings of a piece.
 const DEEPEST: u32 = 16;
-/// Newton's steps onto two sheets.
-const STEPS: usize = 20;
+/// What is nearer to a sheet is on it, as a share of the size.
+const ON: f64 = 1e-7;
 /// What counts as straight, as a share of the size.
 const STRAIGHT: f64 = 1e-12;
 
 /// Adds the lines and points of the shown bodies, and their images in planes of symmetry, a part for each body.
-pub fn add(brep: &mut Brep, document: &Document, [accuracy, size]: [f64; 2], symmetry: &str) {
+///
+/// # Errors
+/// Lines that are not where two sheets meet: nothing tells how near a curve is to them.
+pub fn add(
+    brep: &mut Brep,
+    document: &Document,
+    [accuracy, size]: [f64; 2],
+    symmetry: &str,
+) -> Result<(), Diagnostic> {
     for object in document.graph().objects().filter(|o| o.head.shown()) {
         let Some(Value::Body(body)) = object.value() else { continue };
         if body.wires.is_empty() && body.dots.is_empty() {
@@ -40,7 +49,8 @@ pub fn add(brep: &mut Brep, document: &Document, [accuracy, size]: [f64; 2], sym
         };
         let mut part = Part { name: format!("{}.lines", object.name), ..Part::default() };
         for (k, line) in body.wires.iter().enumerate() {
-            let (pieces, error) = refined(line, &sheets, accuracy);
+            let (pieces, error) = refined(line, &sheets, [accuracy, size], ON * size)
+                .map_err(|place| unknown(&object.name, place))?;
             let Some(curve) = spline(&pieces, error, size) else { continue };
             brep.gap = brep.gap.max(curve.error);
             let name = named(k, "line", body.wires.len());
@@ -55,6 +65,16 @@ pub fn add(brep: &mut Brep, document: &Document, [accuracy, size]: [f64; 2], sym
         }
         brep.parts.push(part);
     }
+    Ok(())
+}
+
+fn unknown(name: &str, p: Vec3) -> Diagnostic {
+    let place = format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z);
+    Diagnostic::error(
+        "cannot-write",
+        format!("a line of `{name}` has no two sheets that meet in it near {place}"),
+    )
+    .help("write it as obj or vtp, or hide it")
 }
 
 /// Adds the images of all lines and points in a coordinate plane, but of those that lie in it.
@@ -90,11 +110,10 @@ struct LinePiece {
 
 impl LinePiece {
     /// The cubic with these tangents whose parameter is near to the length: that of an arc of the angle between them.
-    fn new(ends: [Vec3; 2], pair: Option<[&Primitive; 2]>) -> Self {
+    fn new(ends: [Vec3; 2], pair: [&Primitive; 2]) -> Self {
         let chord = ends[1] - ends[0];
         let straight = chord.normalized().unwrap_or_default();
-        let tangents =
-            ends.map(|p| pair.and_then(|pair| along(p, pair, chord)).unwrap_or(straight));
+        let tangents = ends.map(|p| along(p, pair, chord).unwrap_or(straight));
         let half =
             0.5 * libm::atan2(tangents[0].cross(tangents[1]).norm(), tangents[0].dot(tangents[1]));
         let stretch = if half < 1e-4 { 1.0 + half * half / 6.0 } else { half / libm::sin(half) };
@@ -108,7 +127,7 @@ impl LinePiece {
     }
 
     /// How far it is from both sheets.
-    fn off(&self, pair: [&Primitive; 2]) -> f64 {
+    fn off(&self, pair: [&Primitive; 2], scale: [f64; 2]) -> f64 {
         let [b, c] = self.inner();
         let at = |t: f64| {
             let s = 1.0 - t;
@@ -117,13 +136,22 @@ impl LinePiece {
                 + c * (3.0 * s * t * t)
                 + self.ends[1] * (t * t * t)
         };
-        let off = |t: f64| at(t).distance(on_both(at(t), pair));
+        let off = |t: f64| {
+            let near = on_both(at(t), pair, self.length, scale);
+            near.map_or(f64::INFINITY, |p| at(t).distance(p))
+        };
         [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875].map(off).into_iter().fold(0.0, f64::max)
     }
 }
 
-/// Cubics along the line that are near enough to the sheets, and how near.
-fn refined(line: &[Vec3], sheets: &[Primitive], accuracy: f64) -> (Vec<LinePiece>, f64) {
+/// Cubics along the line that are near enough to the sheets, and how near; else a place that is not on two sheets within
+/// `near`.
+fn refined(
+    line: &[Vec3],
+    sheets: &[Primitive],
+    scale: [f64; 2],
+    near: f64,
+) -> Result<(Vec<LinePiece>, f64), Vec3> {
     let mut found = Vec::new();
     let mut worst = 0.0f64;
     // Cells that a line leaves by a corner have a point each there.
@@ -131,14 +159,14 @@ fn refined(line: &[Vec3], sheets: &[Primitive], accuracy: f64) -> (Vec<LinePiece
     let mut line = line.to_vec();
     line.dedup_by(|next, p| next.distance(*p) <= 1e-9 * whole);
     for ends in line.windows(2) {
-        let pair = pair_at(sheets, ends);
+        let pair = pair_at(sheets, ends, near).ok_or(ends[0])?;
         let mut todo = vec![([ends[0], ends[1]], 0)];
         while let Some((ends, depth)) = todo.pop() {
             let piece = LinePiece::new(ends, pair);
-            // Without sheets the divisions are all that is known.
-            let off = pair.map_or(0.0, |pair| piece.off(pair));
-            if off > 0.5 * accuracy && depth < DEEPEST {
-                let middle = on_both((ends[0] + ends[1]) * 0.5, pair.expect("it is off them"));
+            let off = piece.off(pair, scale);
+            if off > 0.5 * scale[0] && depth < DEEPEST {
+                let middle = (ends[0] + ends[1]) * 0.5;
+                let middle = on_both(middle, pair, piece.length, scale).ok_or(middle)?;
                 todo.push(([middle, ends[1]], depth + 1));
                 todo.push(([ends[0], middle], depth + 1));
             } else {
@@ -148,7 +176,7 @@ fn refined(line: &[Vec3], sheets: &[Primitive], accuracy: f64) -> (Vec<LinePiece
             }
         }
     }
-    (found, worst)
+    Ok((found, worst))
 }
 
 /// The unit tangent of the line in which two sheets meet, on the side of a direction.
@@ -159,8 +187,8 @@ fn along(p: Vec3, [a, b]: [&Primitive; 2], side: Vec3) -> Option<Vec3> {
     Some(if t.dot(side) < 0.0 { -t } else { t })
 }
 
-/// The two sheets on which both ends are.
-fn pair_at<'a>(sheets: &'a [Primitive], ends: &[Vec3]) -> Option<[&'a Primitive; 2]> {
+/// The two sheets on which both ends are, within `near`.
+fn pair_at<'a>(sheets: &'a [Primitive], ends: &[Vec3], near: f64) -> Option<[&'a Primitive; 2]> {
     let off = |f: &Primitive| {
         let away = |p: &Vec3| {
             let g = f.gradient(*p);
@@ -171,29 +199,18 @@ fn pair_at<'a>(sheets: &'a [Primitive], ends: &[Vec3]) -> Option<[&'a Primitive;
     let mut known: Vec<(f64, &Primitive)> = sheets.iter().map(|f| (off(f), f)).collect();
     known.sort_by(|a, b| a.0.total_cmp(&b.0));
     match known[..] {
-        [(_, a), (_, b), ..] => Some([a, b]),
+        [(_, a), (off, b), ..] if off <= near => Some([a, b]),
         _ => None,
     }
 }
 
-/// The nearest point on both sheets, by Newton's steps of least length.
-fn on_both(mut p: Vec3, [a, b]: [&Primitive; 2]) -> Vec3 {
-    for _ in 0..STEPS {
-        let (f, g) = (a.gradient(p), b.gradient(p));
-        let (aa, ab, bb) = (f.slope.dot(f.slope), f.slope.dot(g.slope), g.slope.dot(g.slope));
-        let determinant = aa * bb - ab * ab;
-        if determinant <= 1e-14 * aa * bb {
-            return p;
-        }
-        let x = (f.value * bb - g.value * ab) / determinant;
-        let y = (g.value * aa - f.value * ab) / determinant;
-        let step = f.slope * x + g.slope * y;
-        p -= step;
-        if step.norm() <= 1e-15 * (1.0 + p.norm()) {
-            break;
-        }
-    }
-    p
+/// The point near another on both sheets, if there is one.
+fn on_both(p: Vec3, pair: [&Primitive; 2], reach: f64, scale: [f64; 2]) -> Option<Vec3> {
+    let field = |k: u32, p: Vec3| {
+        let g = pair[k as usize].gradient(p);
+        (g.value, g.slope)
+    };
+    foot(&field, &[0, 1], p, reach, scale)
 }
 
 /// Pieces as one spline: a straight line where all are, else a cubic with a tangent everywhere but at corners.

@@ -105,7 +105,7 @@ pub fn brep_or_facets(
     if brep.faceted.is_empty() {
         wires::add(&mut brep, document, accuracy)?;
     }
-    lines::add(&mut brep, document, [accuracy, size], &symmetry);
+    lines::add(&mut brep, document, [accuracy, size], &symmetry)?;
     Ok((brep, refused))
 }
 

@@ -9,6 +9,7 @@ pub(crate) mod form;
 pub(crate) mod interval;
 pub(crate) mod oracle;
 pub(crate) mod primitive;
+pub(crate) mod quadric;
 pub(crate) mod remap;
 pub(crate) mod second_order;
 pub(crate) mod tape;

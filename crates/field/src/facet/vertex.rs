@@ -180,7 +180,7 @@ fn least_norm(rows: &[(Vec3, f64)]) -> Vec3 {
 
 /// Eigenvalues and unit eigenvectors of a symmetric matrix by Jacobi's rotations (Golub and Van Loan,
 /// algorithm 8.5.2).
-fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Vec3; 3]) {
+pub(crate) fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Vec3; 3]) {
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for _ in 0..12 {
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {

@@ -3,7 +3,9 @@
 use super::RepresentationItems;
 use super::part21::{Part21, joined, list, real, reals, text};
 use crate::WriteError;
-use moldloft_brep::{Brep, ExactCurve, FacetedPart, Part, Shell, SurfaceAxes, SurfaceShape, Wire};
+use moldloft_brep::{
+    Brep, BrepFace, ExactCurve, FacetedPart, Part, Shell, SurfaceAxes, SurfaceShape, Wire,
+};
 use moldloft_num::Vec3;
 use moldloft_spline::nurbs::Nurbs;
 use std::collections::BTreeMap;
@@ -39,6 +41,9 @@ pub fn check(brep: &Brep, format: &'static str) -> Result<(), WriteError> {
     for face in &brep.faces {
         if let SurfaceShape::Nurbs(s) = &face.surface {
             check_spline(format, &s.degrees, &s.knots, &s.points, s.weights.as_deref())?;
+        }
+        if matches!(face.surface, SurfaceShape::Image(_)) && brep.nurbs(face).is_none() {
+            return Err(WriteError::CannotHold { format, what: "a surface without an axis" });
         }
     }
     Ok(())
@@ -141,8 +146,9 @@ fn spline(file: &mut Part21, c: &Nurbs<1>, points: &[usize]) -> usize {
     ))
 }
 
-fn surface(file: &mut Part21, s: &SurfaceShape) -> usize {
-    let s = match s {
+fn surface(file: &mut Part21, brep: &Brep, face: &BrepFace) -> usize {
+    let image;
+    let s = match &face.surface {
         SurfaceShape::Plane { origin, normal, axis: x } => {
             let placement = axis(file, *origin, *normal, *x);
             return file.add(format!("PLANE('',#{placement})"));
@@ -166,6 +172,11 @@ fn surface(file: &mut Part21, s: &SurfaceShape) -> usize {
             return file.add(format!("TOROIDAL_SURFACE('',#{placement},{major},{minor})"));
         }
         SurfaceShape::Nurbs(s) => s,
+        SurfaceShape::Image(_) => {
+            let Some(made) = brep.nurbs(face) else { return 0 };
+            image = made;
+            &image
+        }
     };
     let [nu, nv] = s.counts();
     let points: Vec<usize> = s.points.iter().map(|&p| point(file, p)).collect();
@@ -349,7 +360,7 @@ impl<'a> Shapes<'a> {
         if let Some(number) = self.surfaces[f] {
             return number;
         }
-        let number = surface(file, &self.brep.faces[f].surface);
+        let number = surface(file, self.brep, &self.brep.faces[f]);
         self.surfaces[f] = Some(number);
         number
     }
