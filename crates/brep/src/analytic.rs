@@ -91,6 +91,14 @@ impl SurfaceShape {
         }
     }
 
+    /// A point of the surface near another: the nearest one, of an image that of the nearest one to the coordinates.
+    pub(crate) fn onto(&self, p: Vec3) -> Vec3 {
+        if let SurfaceShape::Image(image) = self {
+            return image.world(image.of().onto(image.local(p)));
+        }
+        p - self.normal(p) * self.distance(p).unwrap_or(0.0)
+    }
+
     /// The axes of a surface of revolution.
     pub fn axes(&self) -> Option<&SurfaceAxes> {
         match self {

@@ -185,10 +185,13 @@ impl LabelledBody {
     }
 
     /// The middles of the triangles, moved onto their surfaces; without those beside a border along which surfaces
-    /// touch, for there they are on either of both.
+    /// touch, for there they are on either of both, and without those beside the border of an image, onto which the way is not
+    /// the shortest: it may go beyond the border.
     fn places(&self) -> Vec<Vec3> {
         let mut touching: FxHashSet<u32> = FxHashSet::default();
+        let mut border: FxHashSet<u32> = FxHashSet::default();
         for ((a, b), surfaces) in self.borders() {
+            border.extend([a, b]);
             let [m, n] = surfaces.map(|s| &self.surfaces[s as usize]);
             let sine = |v: u32| {
                 let p = self.net.positions[v as usize];
@@ -199,12 +202,15 @@ impl LabelledBody {
         let middle = |k: usize| {
             let [a, b, c] = self.net.corners(k);
             let p = (a + b + c) / 3.0;
-            let surface = &self.surfaces[self.net.labels[k] as usize];
-            // Distances from images are right to first order.
-            let steps = if matches!(surface, SurfaceShape::Image(_)) { 12 } else { 1 };
-            (0..steps).fold(p, |p, _| p - surface.normal(p) * surface.distance(p).unwrap_or(0.0))
+            self.surfaces[self.net.labels[k] as usize].onto(p)
         };
-        let clear = |k: &usize| self.net.triangles[*k].iter().all(|v| !touching.contains(v));
+        let clear = |k: &usize| {
+            let corners = &self.net.triangles[*k];
+            let image =
+                matches!(self.surfaces[self.net.labels[*k] as usize], SurfaceShape::Image(_));
+            corners.iter().all(|v| !touching.contains(v))
+                && !(image && corners.iter().any(|v| border.contains(v)))
+        };
         (0..self.net.triangles.len()).filter(clear).map(middle).collect()
     }
 
