@@ -23,7 +23,7 @@ const STRAIGHT: f64 = 1e-12;
 /// Adds the lines and points of the shown bodies, and their images in planes of symmetry, a part for each body.
 ///
 /// # Errors
-/// Lines that are not where two sheets meet: nothing tells how near a curve is to them.
+/// Lines that are not where two sheets meet: how near a curve is to them is not known.
 pub fn add(
     brep: &mut Brep,
     document: &Document,
