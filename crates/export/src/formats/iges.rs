@@ -3,6 +3,8 @@
 use crate::brep::{brep, fitted, metres};
 use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
+use moldloft_brep::SurfaceShape;
+use moldloft_diag::Diagnostic;
 use moldloft_io::iges::{self, IgesHeader};
 use moldloft_io::vtk::NamedFile;
 
@@ -21,7 +23,15 @@ pub const FORMAT: Format = Format {
 fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let stem = export.stem().to_string();
     let brep = brep(export.document, export.options.tolerance, &stem)?;
-    let reported = fitted(&brep, export.document).into_iter().collect();
+    let images = brep.faces.iter().filter(|f| matches!(f.surface, SurfaceShape::Image(_)));
+    let in_space = images.last().map(|face| {
+        Diagnostic::remark(
+            "curves-in-space",
+            format!("edges of `{}` and its like have no curves in the parameters of their surfaces", face.name),
+        )
+        .help("programs make these anew, and may read a face that crosses its seam wrongly; STEP holds the same faces")
+    });
+    let reported = fitted(&brep, export.document).into_iter().chain(in_space).collect();
     export.document.set_export_remarks(reported);
     let metres = metres(export.document);
     let header = IgesHeader { title: &stem, metres, version: env!("CARGO_PKG_VERSION") };
