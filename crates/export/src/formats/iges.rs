@@ -23,8 +23,8 @@ pub const FORMAT: Format = Format {
 fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let stem = export.stem().to_string();
     let brep = brep(export.document, export.options.tolerance, &stem)?;
-    let images = brep.faces.iter().filter(|f| matches!(f.surface, SurfaceShape::Image(_)));
-    let in_space = images.last().map(|face| {
+    let mut images = brep.faces.iter().filter(|f| matches!(f.surface, SurfaceShape::Image(_)));
+    let in_space = images.next().map(|face| {
         Diagnostic::remark(
             "curves-in-space",
             format!("edges of `{}` and its like have no curves in the parameters of their surfaces", face.name),
