@@ -19,6 +19,7 @@ mod dual;
 mod frame;
 mod jet;
 mod linear;
+mod logarithm;
 pub mod period;
 mod quadrature;
 mod rational;
@@ -37,6 +38,7 @@ pub use dual::{Dual, Dual4};
 pub use frame::{Axis, Frame, Plane};
 pub use jet::{Bi1, Bi2, Jet, Tri1, Uni1, Uni2, lift_curve, lift_surface};
 pub use linear::{Banded, SingularMatrix, determinant, solve_dense, solve_pivoting_fully};
+pub use logarithm::log10;
 pub use quadrature::{
     GAUSS_2_UNIT, GAUSS_4, GAUSS_8_UNIT, gauss_legendre, gauss_points, integrate,
 };

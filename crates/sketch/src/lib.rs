@@ -97,16 +97,21 @@ pub use format::script::script;
 pub use format::{dxf, export, json, json_format};
 pub use moldloft_mesh::triangulate;
 pub use object::{Reference, SketchFace, SketchObject};
+pub use solid::body_tree::{BodyTree, body_tree};
 pub use solid::coincidence::Kink;
 pub use solid::feature::{NoBody, TreatmentFault, body};
 pub use solid::gradient::{SolidGradient, Swept, gradient};
 pub use solid::mass::Mass;
 pub use solid::merge::identifier;
+pub use solid::operation::Operation;
 pub use solid::ruled_faces::RoundFace;
 pub use solid::{SketchSolid, curve, faces, merge, solid};
 
 /// Inner parts, for the tests of this crate: unit tests would compile all of it once more.
 #[doc(hidden)]
 pub mod parts {
+    pub use crate::format::page_shapes::PageShapes;
     pub use crate::format::svg::apart;
+    pub use crate::format::svg_shapes::svg_shapes;
+    pub use crate::format::svg_transform::SvgTransform;
 }

@@ -347,6 +347,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     pub fn no_such_object(&self, text: &str) -> Diagnostic {
+        let sketch = text.strip_suffix(".body");
+        if let Some(solid) = sketch.map(|s| format!("{s}.solid"))
+            && self.run.find(&solid).is_some()
+        {
+            let text = format!("`{text}` has no closed form: round faces of it end in others");
+            return Diagnostic::error("unknown-name", text)
+                .help(format!("`set(inside({solid}))` is the body with chords in place of arcs"));
+        }
         let diagnostic = Diagnostic::error("unknown-name", format!("unknown object `{text}`"));
         if !self.hints() {
             return diagnostic;

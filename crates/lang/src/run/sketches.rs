@@ -8,6 +8,7 @@ use crate::source::module::Module;
 use crate::source::scope::{Binding, ScopedBinding};
 use crate::source::sketch_file::{Drawn, SketchFile};
 use moldloft_diag::{Diagnostic, Span};
+use moldloft_field::{set_of, set_value};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::Vec3;
@@ -15,7 +16,8 @@ use moldloft_num::trace::Key;
 use moldloft_registry::{Given, Scalar, Value, bind_arguments};
 use moldloft_sketch::curve::{SmoothPiece, Traced};
 use moldloft_sketch::{
-    CoordinateAxis, DimensionFault, NoBody, PointId, RoundFace, SketchSolid, solve,
+    BodyTree, CoordinateAxis, DimensionFault, DimensionLayout, NoBody, Operation, PointId,
+    RoundFace, SketchSolid, body_tree, solve,
 };
 use moldloft_syntax::sdl::{Arg, Ident, NodeList, StmtId};
 use std::collections::BTreeMap;
@@ -279,7 +281,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         }
         if let Some(body) = &body {
-            self.sketch_body(&mut names, drawn, body);
+            self.sketch_body(&mut names, drawn, &layout, body);
         }
         for (key, d) in &object.dimensions {
             let measured = || layout.measured(object, &drawn.planes, &d.measure);
@@ -307,11 +309,46 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
+    /// The set of combined bodies, of a set of faces for each; those are hidden objects.
+    fn set_of_bodies(
+        &mut self,
+        names: &mut SketchDeclarations<'_, T>,
+        tree: &BodyTree<T>,
+        leaves: &mut Vec<Key>,
+    ) -> Option<Value<T>> {
+        match tree {
+            BodyTree::Plain(body) => {
+                let mesh = body.faceted();
+                let n = leaves.len() + 1;
+                let args = mesh_arguments(body, &mesh);
+                let key = self.part(names, &format!("part{n}"), "MeshBody", args, false)?;
+                let args = face_arguments(body, &mesh, key);
+                let key = self.part(names, &format!("body{n}"), "FaceSet", args, false)?;
+                leaves.push(key);
+                self.forced(key).ok()
+            }
+            BodyTree::Combined(operation, parts) => {
+                let (first, others) = parts.split_first()?;
+                let mut all = set_of(&self.set_of_bodies(names, first, leaves)?)?;
+                for other in others {
+                    let other = set_of(&self.set_of_bodies(names, other, leaves)?)?;
+                    all = match operation {
+                        Operation::Union => all | other,
+                        Operation::Cut => all - other,
+                        Operation::Common => all & other,
+                    };
+                }
+                Some(set_value(all))
+            }
+        }
+    }
+
     /// Faces, curves, the mesh and its measures.
     fn sketch_body(
         &mut self,
         names: &mut SketchDeclarations<'_, T>,
         drawn: &Drawn,
+        layout: &DimensionLayout<T>,
         body: &SketchSolid<T>,
     ) {
         let object = &drawn.object;
@@ -341,20 +378,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let mesh = body.faceted();
         let mass = body.mass();
-        let corners = mesh.faces().iter().flat_map(|&[a, b, c, d]| {
-            let second = [a, c, d];
-            [Some([a, b, c]), (c != d).then_some(second)].into_iter().flatten()
-        });
-        let corners: Vec<T> = corners.flatten().map(|v| T::from(f64::from(v + 1))).collect();
-        let row = |n: Vec<T>| Value::Numbers(Arc::new(moldloft_registry::Array::row(n)));
-        let points = moldloft_registry::Vectors::row(mesh.positions().to_vec());
-        let args = vec![
-            Value::Vectors(Arc::new(points)),
-            row(corners),
-            if body.flat { Value::Unset } else { Value::Number(mass.volume) },
-            Value::Number(mass.area),
-            Value::Vector(mass.centroid),
-        ];
+        let args = mesh_arguments(body, &mesh);
         let key = self.part(names, "solid", "MeshBody", args, true);
         if let Some(plain) = (body as &dyn std::any::Any).downcast_ref::<SketchSolid<f64>>()
             && key.is_some()
@@ -363,12 +387,24 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let full = format!("{}.solid", names.prefix);
             self.env.sketch_bodies.insert(full, Arc::new(plain.clone()));
         }
-        // A set of faces knows cylinders and cones by their straight borders only, so a body with
-        // round faces that others have cut has none.
-        let plain = !body.flat && body.trims.is_empty() && mesh.report().closed;
-        if let Some(key) = key.filter(|_| plain) {
-            let args = face_arguments(body, &mesh, key);
-            self.part(names, "body", "FaceSet", args, false);
+        // A set of faces knows cylinders and cones by their straight borders only: a body with round faces that others
+        // have cut is the set of those that it is combined of.
+        let closed = !body.flat && mesh.report().closed;
+        match key.filter(|_| closed) {
+            Some(key) if body.trims.is_empty() => {
+                let args = face_arguments(body, &mesh, key);
+                self.part(names, "body", "FaceSet", args, false);
+            }
+            Some(_) => {
+                let mut leaves = Vec::new();
+                let set = body_tree(object, &drawn.planes, layout)
+                    .and_then(|tree| self.set_of_bodies(names, &tree, &mut leaves));
+                if let Some(set) = set {
+                    let parents = Value::list(leaves.into_iter().map(Value::Object));
+                    self.part(names, "body", "Set", vec![set, parents], false);
+                }
+            }
+            None => {}
         }
         if !body.flat {
             names.members.push(("volume".into(), Value::Number(mass.volume)));
@@ -442,6 +478,25 @@ fn share_numbers<T: Scalar>(objects: &[Drawn], given: &mut [(String, BTreeMap<St
     }
 }
 
+/// The arguments of `MeshBody`: points, triangles and the exact measures.
+fn mesh_arguments<T: Scalar>(body: &SketchSolid<T>, mesh: &Mesh<T>) -> Vec<Value<T>> {
+    let mass = body.mass();
+    let corners = mesh.faces().iter().flat_map(|&[a, b, c, d]| {
+        let second = [a, c, d];
+        [Some([a, b, c]), (c != d).then_some(second)].into_iter().flatten()
+    });
+    let corners: Vec<T> = corners.flatten().map(|v| T::from(f64::from(v + 1))).collect();
+    let row = |n: Vec<T>| Value::Numbers(Arc::new(moldloft_registry::Array::row(n)));
+    let points = moldloft_registry::Vectors::row(mesh.positions().to_vec());
+    vec![
+        Value::Vectors(Arc::new(points)),
+        row(corners),
+        if body.flat { Value::Unset } else { Value::Number(mass.volume) },
+        Value::Number(mass.area),
+        Value::Vector(mass.centroid),
+    ]
+}
+
 /// The arguments of `FaceSet`: the mesh, the face of each triangle, and the round faces.
 fn face_arguments<T: Scalar>(body: &SketchSolid<T>, mesh: &Mesh<T>, key: Key) -> Vec<Value<T>> {
     let number = |n: usize| T::from((n + 1) as f64);
@@ -475,7 +530,7 @@ struct SketchDeclarations<'a, T: Scalar> {
 
 /// Names that points, lines, faces and measures have.
 fn is_taken(name: &str) -> bool {
-    let numbered = ["p", "l", "face"].iter().any(|start| {
+    let numbered = ["p", "l", "face", "part", "body"].iter().any(|start| {
         let number = name.strip_prefix(start).unwrap_or("");
         !number.is_empty() && number.chars().all(|c| c.is_ascii_digit())
     });

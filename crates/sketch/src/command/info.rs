@@ -6,10 +6,13 @@ use super::draw::require_point;
 use super::session::{CommandReply, DrawingCache, SketchSession};
 use super::subject::{ReplySubject, Suggestion};
 use super::{CommandError, words::CommandTokenKind};
+use crate::solid::feature::NoBody;
+use crate::solid::validity::SolidDefect;
 use crate::{
     CoordinateAxis, DOUBTFUL, DimensionLayout, DimensionRole, MeasuredQuantity, Planes, Projection,
     SketchObject, TypeFault, chain, chain_text,
 };
+use moldloft_diag::Severity;
 use moldloft_syntax::number::plain;
 
 impl SketchSession {
@@ -222,9 +225,26 @@ impl SketchSession {
         self.report_counts()
     }
 
+    /// The end of an object: faces that were added one by one are all there now.
+    pub(super) fn report_open(&mut self) -> Result<(), CommandError> {
+        let object = self.active_arc()?;
+        let worked = self.worked(&object);
+        if let Err(why @ NoBody::Flaw(SolidDefect::Open(_))) = worked.body()
+            && worked.layout.complete()
+        {
+            self.out.push(no_body_warning(&object, why));
+        }
+        Ok(())
+    }
+
     /// What a change of values has done to an otherwise finished object: planes that passed each
     /// other, faces that are no longer flat, curves that no longer fit.
     pub(super) fn report_validity(&mut self) -> Result<(), CommandError> {
+        self.report_validity_of(false)
+    }
+
+    /// [`Self::report_validity`]; a body that is open while faces are `added` one by one is a note, not a warning.
+    pub(super) fn report_validity_of(&mut self, added: bool) -> Result<(), CommandError> {
         let object = self.active_arc()?;
         let worked = self.worked(&object);
         let (view, layout) = (&worked.view, &worked.layout);
@@ -253,10 +273,10 @@ impl SketchSession {
         if let Err(why) = worked.body()
             && finished
         {
-            let fault = super::features::no_body(&object, why);
-            let mut reply = CommandReply::warning(fault.text);
-            (reply.code, reply.next) = (Some(fault.code).filter(|c| *c > 0), Some(fault.next));
-            reply.about = *fault.about;
+            let mut reply = no_body_warning(&object, why);
+            if added && matches!(why, NoBody::Flaw(SolidDefect::Open(_))) {
+                reply.severity = Severity::Note;
+            }
             self.out.push(reply);
         }
         if let Some(solid) = worked.solid() {
@@ -759,4 +779,12 @@ pub(super) fn suggestions(
         Some(Suggestion { axis, p, q, value: rounded(gap(k).abs()), open })
     };
     layout.loose.iter().map(one).collect()
+}
+
+fn no_body_warning(object: &SketchObject, why: &NoBody) -> CommandReply {
+    let fault = super::features::no_body(object, why);
+    let mut reply = CommandReply::warning(fault.text);
+    (reply.code, reply.next) = (Some(fault.code).filter(|c| *c > 0), Some(fault.next));
+    reply.about = *fault.about;
+    reply
 }

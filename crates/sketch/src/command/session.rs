@@ -486,6 +486,10 @@ impl SketchSession {
                 self.over = true;
                 Ok(())
             }
+            "END" => {
+                args.end()?;
+                if self.active().is_ok() { self.report_open() } else { Ok(()) }
+            }
             _ => args.end(),
         }
     }

@@ -438,7 +438,7 @@ impl SketchSession {
         let mut cycles = cycles.into_iter();
         let outer = cycles.next().unwrap_or_default();
         self.active_mut()?.faces.insert(id, SketchFace { outer, holes: cycles.collect() });
-        self.report_validity()
+        self.report_validity_of(true)
     }
 
     pub(super) fn extrude(&mut self, args: &mut Args) -> Result<(), CommandError> {

@@ -1,7 +1,7 @@
 //! Values of dimensions and variables: expressions over names.
 
 use moldloft_diag::FileId;
-use moldloft_num::{Real, modulo, whole_quotient};
+use moldloft_num::{Real, log10, modulo, whole_quotient};
 use moldloft_syntax::sdl::{self, BinaryOp, ExprId, ExprKind, Grouping, Program, Step, UnaryOp};
 use std::fmt;
 
@@ -211,7 +211,7 @@ fn call<T: Real>(function: &str, x: &[T]) -> T {
             "acos" => x.acos() / degree,
             "atan" => x.atan() / degree,
             "exp" => x.exp(),
-            "log10" => x.ln() / std::f64::consts::LN_10,
+            "log10" => log10(x),
             "sinh" => x.sinh(),
             "cosh" => x.cosh(),
             "tanh" => x.tanh(),

@@ -11,4 +11,4 @@ pub(crate) mod painted_faces;
 pub(crate) mod script;
 pub(crate) mod svg;
 pub(crate) mod svg_shapes;
-mod svg_transform;
+pub(crate) mod svg_transform;

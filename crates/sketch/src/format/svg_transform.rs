@@ -4,9 +4,10 @@ use crate::format::page_shapes::PageShapes;
 
 /// The matrix (a c e; b d f) of an element's coordinates, whose y runs down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct SvgTransform([f64; 6]);
+pub struct SvgTransform([f64; 6]);
 
 impl SvgTransform {
+    /// The transform that changes nothing.
     pub const NONE: SvgTransform = SvgTransform([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
 
     /// First `inner`, then this.
@@ -84,31 +85,6 @@ impl SvgTransform {
         into.rounds.extend(rounds);
         for (kind, count) in shapes.left_out {
             *into.left_out.entry(kind).or_default() += count;
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn transforms_in_their_order() {
-        let both = SvgTransform::NONE.with("translate(10, 20) scale(2)").unwrap();
-        let both = both.with(" rotate(90 1 1),matrix(1 0 0 1 3 0)").unwrap();
-        let mut shapes = PageShapes::default();
-        let mut one = PageShapes::default();
-        // (4, 0) goes to (7, 0), about (1, 1) to (2, 7), then to (14, 34), whose v is -34.
-        one.strokes.push([[4.0, 0.0], [0.0, 0.0]]);
-        one.arcs.push(([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], 1.0));
-        both.put(one.clone(), &mut shapes);
-        let [u, v] = shapes.strokes[0][0];
-        assert!((u - 14.0).abs() < 1e-12 && (v + 34.0).abs() < 1e-12, "{u} {v}");
-        assert!((shapes.arcs[0].1 - 2.0).abs() < 1e-12);
-        SvgTransform::NONE.with("scale(1 2)").unwrap().put(one, &mut shapes);
-        assert_eq!(shapes.left_out["stretched arc"], 1);
-        for bad in ["scale", "scale(1", "turn(3)", "rotate(1 2)", "scale(a)"] {
-            assert!(SvgTransform::NONE.with(bad).is_err(), "{bad}");
         }
     }
 }

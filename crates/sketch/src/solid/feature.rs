@@ -6,6 +6,7 @@ use super::combine::{CombineError, combined, united};
 pub use super::edges::TreatmentFault;
 use super::offset::{drafted, moved, shelled};
 use super::offset_section::moved_section;
+use super::one_sided::confirm;
 use super::operation::Operation;
 use super::outline::FacetDensity;
 use super::place::Similarity;
@@ -52,11 +53,21 @@ const FINEST_EVERYWHERE: u32 = 2;
 const ROUNDS: u32 = 12;
 
 /// The valid body of an object. Where its facets are too coarse to say which surfaces meet, it is made again with finer
-/// ones there.
+/// ones there. Where its measures may have no derivative, that is tried on both sides.
 ///
 /// # Errors
 /// [`NoBody`], with the place.
 pub fn body<T: Real>(
+    object: &SketchObject,
+    planes: &Planes,
+    layout: &DimensionLayout<T>,
+) -> Result<SketchSolid<T>, NoBody> {
+    let mut body = body_of_facets(object, planes, layout)?;
+    confirm(&mut body, object, planes, layout);
+    Ok(body)
+}
+
+fn body_of_facets<T: Real>(
     object: &SketchObject,
     planes: &Planes,
     layout: &DimensionLayout<T>,
@@ -93,7 +104,7 @@ pub fn body<T: Real>(
 
 /// Which facets are made finer: of features, by the way to them from operand to operand.
 #[derive(Clone, Default)]
-struct FacetPlan {
+pub(super) struct FacetPlan {
     everywhere: u32,
     near: BTreeMap<Vec<usize>, FinerPlaces>,
     /// Those of the features that this one is an operand of, in its own coordinates.
@@ -178,7 +189,7 @@ impl NoBody {
     }
 }
 
-fn body_at<T: Real>(
+pub(super) fn body_at<T: Real>(
     object: &SketchObject,
     planes: &Planes,
     layout: &DimensionLayout<T>,
@@ -247,7 +258,10 @@ impl Feature {
     }
 
     /// The planes and positions of each operand.
-    fn laid<T: Real>(&self, layout: &DimensionLayout<T>) -> Vec<(Planes, DimensionLayout<T>)> {
+    pub(super) fn laid<T: Real>(
+        &self,
+        layout: &DimensionLayout<T>,
+    ) -> Vec<(Planes, DimensionLayout<T>)> {
         let of = |operand: &FeatureOperand| {
             let inner = &operand.object;
             let prefix = operand.prefix.to_ascii_lowercase();
@@ -264,7 +278,10 @@ impl Feature {
     }
 
     /// Where the operand is put: once, or as often as a pattern repeats it.
-    fn images<T: Real>(&self, layout: &DimensionLayout<T>) -> Result<Vec<Similarity<T>>, NoBody> {
+    pub(super) fn images<T: Real>(
+        &self,
+        layout: &DimensionLayout<T>,
+    ) -> Result<Vec<Similarity<T>>, NoBody> {
         match &self.kind {
             FeatureKind::Place(place) => Ok(vec![place.similarity(&|e| number(layout, e))?]),
             FeatureKind::Pattern { step, count } => {
@@ -279,7 +296,7 @@ impl Feature {
         }
     }
 
-    fn body<T: Real>(
+    pub(super) fn body<T: Real>(
         &self,
         layout: &DimensionLayout<T>,
         plan: &FacetPlan,

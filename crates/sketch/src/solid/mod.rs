@@ -9,6 +9,7 @@ pub mod arrangement;
 mod blend;
 mod blend_order;
 mod blend_tool;
+pub(crate) mod body_tree;
 pub(crate) mod coincidence;
 pub mod combine;
 mod corners;
@@ -26,6 +27,7 @@ mod near_misses;
 mod nearness;
 mod offset;
 mod offset_section;
+mod one_sided;
 pub mod operation;
 mod outline;
 pub mod place;
@@ -167,6 +169,8 @@ pub struct SketchSolid<T> {
     pub(crate) strays: Vec<coincidence::StrayPart<T>>,
     /// Where measures have no derivative.
     pub(crate) kinks: Vec<coincidence::Kink>,
+    /// Derivatives of measures that both sides of a kink have.
+    pub(crate) rates: Vec<one_sided::MassRate>,
     /// Where chords of round edges are cut in three, where the body is combined with others.
     pub(crate) density: outline::FacetDensity,
     steps: BTreeMap<usize, u32>,
@@ -537,6 +541,7 @@ impl<T: Real> SolidBuilder<'_, T> {
             planes: BTreeMap::new(),
             strays: Vec::new(),
             kinks: Vec::new(),
+            rates: Vec::new(),
             density: outline::FacetDensity::default(),
         }
     }
@@ -841,7 +846,7 @@ impl<T: Real> SketchSolid<T> {
             sums.plane(&edges);
         }
         self.strays.iter().for_each(|s| sums.moved(s.corners, s.ahead));
-        coincidence::without(sums.finish(self.flat), &self.kinks)
+        one_sided::settled(sums.finish(self.flat), self)
     }
 
     /// Where a directed edge begins and ends.

@@ -35,6 +35,9 @@ fn values_and_names() {
         let got = value(text).unwrap().unwrap();
         assert!((got - expected).abs() < 1e-14, "{text}: {got}");
     }
+    for k in -300..=300 {
+        assert_eq!(value(&format!("log10(1e{k})")).unwrap(), Ok(f64::from(k)));
+    }
     assert_eq!(value("c+1").unwrap(), Err(NoValue { name: "c".into() }));
     for bad in [
         "",

@@ -18,6 +18,7 @@ mod pictures;
 mod projection;
 mod session;
 mod solids;
+mod svg_shapes;
 mod treatments;
 mod typed;
 mod verbs;

@@ -1,0 +1,69 @@
+//! Bodies as sets of the bodies that they are combined of: those have the faces that were drawn, not parts of them.
+
+use super::SketchSolid;
+use super::feature::{FacetPlan, body_at};
+use super::operation::Operation;
+use super::place::Similarity;
+use crate::feature::{Feature, FeatureKind};
+use crate::{DimensionLayout, Planes, SketchObject};
+use moldloft_num::Real;
+
+/// A body, or bodies by an operation.
+#[derive(Clone, Debug)]
+pub enum BodyTree<T> {
+    /// One with plane faces and those between arcs and their copies, or others that are bounded by their own edges.
+    Plain(Box<SketchSolid<T>>),
+    /// The first with each of the others.
+    Combined(Operation, Vec<BodyTree<T>>),
+}
+
+/// How the body of an object is combined; `None` where a body among them has round faces that are cut, or there is none.
+pub fn body_tree<T: Real>(
+    object: &SketchObject,
+    planes: &Planes,
+    layout: &DimensionLayout<T>,
+) -> Option<BodyTree<T>> {
+    match &object.feature {
+        Some(feature) => feature.tree(layout),
+        None => plain(body_at(object, planes, layout, &FacetPlan::default()).ok()?),
+    }
+}
+
+fn plain<T>(body: SketchSolid<T>) -> Option<BodyTree<T>> {
+    body.trims.is_empty().then(|| BodyTree::Plain(Box::new(body)))
+}
+
+impl Feature {
+    fn tree<T: Real>(&self, layout: &DimensionLayout<T>) -> Option<BodyTree<T>> {
+        let operands = || -> Option<Vec<BodyTree<T>>> {
+            let laid = self.laid(layout);
+            let each = self.operands.iter().zip(&laid);
+            each.map(|(operand, (planes, own))| body_tree(&operand.object, planes, own)).collect()
+        };
+        match &self.kind {
+            FeatureKind::Boolean(operation) => Some(BodyTree::Combined(*operation, operands()?)),
+            FeatureKind::Place(_) | FeatureKind::Pattern { .. } => {
+                let images = self.images(layout).ok()?;
+                let one = operands()?.pop()?;
+                let mut copies: Vec<BodyTree<T>> =
+                    images.iter().map(|image| one.placed(image)).collect();
+                match copies.len() {
+                    1 => copies.pop(),
+                    _ => Some(BodyTree::Combined(Operation::Union, copies)),
+                }
+            }
+            _ => plain(self.body(layout, &FacetPlan::default()).ok()?),
+        }
+    }
+}
+
+impl<T: Real> BodyTree<T> {
+    fn placed(&self, image: &Similarity<T>) -> BodyTree<T> {
+        match self {
+            BodyTree::Plain(body) => BodyTree::Plain(Box::new(body.placed(image))),
+            BodyTree::Combined(operation, parts) => {
+                BodyTree::Combined(*operation, parts.iter().map(|p| p.placed(image)).collect())
+            }
+        }
+    }
+}
