@@ -238,8 +238,33 @@ def test_only_a_part_of_such_a_corner_is_refused_with_the_place():
     ) as said:
         sketch.run("FILLET A 0.25 EDGES ALONG X ALONG Y INTO Q")
     assert "all three edges" in str(said.value)
-    with pytest.raises(SketchError, match="stand out and edges that stand in meet"):
+    with pytest.raises(SketchError, match="the order of chamfers decides") as said:
         sketch.run("CHAMFER A 0.25 EDGES ALL INTO Q")
+    assert "then the others by another command" in str(said.value)
+
+
+def test_chamfers_of_such_a_corner_one_after_the_other():
+    for seed in range(300 if SOAK else 8):
+        rng = np.random.default_rng([seed, 25])
+        first, second = (round(float(x), 3) for x in rng.uniform(0.1, 0.45, 2))
+        w, h, u, v = (round(float(x), 3) for x in rng.uniform([8, 7, 2, 2], [12, 10, 4, 4]))
+        side = str(rng.choice(["TOP Y", "BOTTOM Y"]))
+        sketch = Sketch()
+        sketch.run(MIXED["bracket"])
+        for name, value in {"W": w, "H": h, "T": v, "U": u}.items():
+            sketch[name] = value
+        # Line 16 is the edge that stands in.
+        sketch.run(f"CHAMFER A {first} EDGES LINE 16 INTO Q")
+        sketch.run(f"CHAMFER Q {second} EDGES OF {side} INTO R")
+        inner = [(u + first, v), (u, v + first)]
+        outline = [(0, 0), (w, 0), (w, v), *inner, (u, h), (0, h)]
+        shape = parts.prism([(x, 0, z) for x, z in outline], (0, 8, 0))
+        truth = treated(shape, level(shape, 1, top=side == "TOP Y"), second, fillet=False)
+        found = sketch.objects["R"]
+        got = np.array([found["volume"], found["area"], *found["centroid"]])
+        assert truth is not None
+        off = np.abs(got - truth) / np.maximum(1, np.abs(truth))
+        assert off.max() < BOUND, (seed, got, truth)
 
 
 def _drilled(

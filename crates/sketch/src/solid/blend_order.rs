@@ -22,6 +22,7 @@ pub(crate) enum BlendSize<T> {
 /// Chosen edges, each with the face that a first distance is measured in.
 pub(super) type ChosenEdges = BTreeMap<usize, Option<usize>>;
 
+const IN_TURN: &str = "CHAMFER the edge that is alone of its kind there, then the others by another command";
 const WHOLE: &str =
     "FILLET all three edges of the corner, or choose only edges that do not meet there";
 
@@ -78,11 +79,11 @@ pub(super) fn ordered<T: Real>(
             _ => return Err(refused(place)),
         };
         let straight = own.iter().all(|&k| frames[k].axis.is_none());
-        // Chamfers end there in planes that no other rule gives: fillets alone.
+        // A rolling ball ends there in one way; of bevels the order of the edges decides what is between them.
         let bevel = matches!(size, BlendSize::Chamfer(_));
         if bevel {
-            let text = "edges that stand out and edges that stand in meet, where chamfers can end in several ways";
-            return Err(TreatmentFault::new(text, Some(place), WHOLE));
+            let text = "edges that stand out and edges that stand in meet, where the order of chamfers decides their shape";
+            return Err(TreatmentFault::new(text, Some(place), IN_TURN));
         }
         if degree[v] != 3 || !straight {
             return Err(refused(place));
