@@ -713,3 +713,20 @@ def test_hidden_edges_are_dashed_where_they_are_hidden():
     sketch.run("SHOW DIMENSIONS ON")
     picture = sketch.run("EXPORT SVG a.svg")[-1].file[1].decode()
     assert picture.count("<polygon") == 6 and ">W 10</text>" in picture
+
+
+def test_a_saved_body_is_loaded_without_a_warning():
+    sketch = Sketch()
+    sketch.run(
+        """SKETCH A 2D XZ
+        POINT 1 0 0; POINT 2 90 1; POINT 3 91 30; POINT 4 1 29; POLYLINE 1 2 3 4 CLOSE
+        DIM W X 1 2 10; DIM H Z 1 4 5; EXTRUDE 8"""
+    )
+    file = sketch.run('SAVE A AS "a.skt"')[-1].file
+    assert file
+    text = file[1].decode()
+    assert [r.text for r in Sketch().run(text) if r.severity != "note"] == []
+    # One that lacks a face is open at its end.
+    lines = [line for line in text.splitlines() if not line.startswith("FACE 6")]
+    found = [r for r in Sketch().run("\n".join(lines)) if r.severity == "warning"]
+    assert len(found) == 1 and "is open, so it has no volume" in found[0].text
