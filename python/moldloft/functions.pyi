@@ -4323,7 +4323,7 @@ def log(
 def log10(
     x: object,
 ) -> AnyShape:
-    """Logarithm to the base 10.
+    """Logarithm to the base 10; of a power of ten its whole exponent.
 
     Parameters
     ----------
@@ -4338,7 +4338,7 @@ def log10(
     -----
     In the language::
 
-        assert abs(log10(1000) - 3) < 1e-14;
+        assert log10(1000) == 3;
     """
     ...
 def sinh(
