@@ -22,7 +22,8 @@ pub(crate) enum BlendSize<T> {
 /// Chosen edges, each with the face that a first distance is measured in.
 pub(super) type ChosenEdges = BTreeMap<usize, Option<usize>>;
 
-const IN_TURN: &str = "CHAMFER the edge that is alone of its kind there, then the others by another command";
+const IN_TURN: &str =
+    "CHAMFER the edge that is alone of its kind there, then the others by another command";
 const WHOLE: &str =
     "FILLET all three edges of the corner, or choose only edges that do not meet there";
 
