@@ -334,9 +334,14 @@ class Model(Floating, Adapted):
             raise ModelError("\n".join(map(str, diagnostics)).rstrip(), diagnostics)
 
     def __contains__(self, name: object) -> bool:
-        return isinstance(name, str) and (
-            self._document.param(name) is not None or self._document.has(name)
-        )
+        # No name has a character that is no text, such as a lone surrogate.
+        if (
+            not isinstance(name, str)
+            or (not name.isascii()
+            and any("\ud800" <= c <= "\udfff" for c in name))
+        ):
+            return False
+        return self._document.param(name) is not None or self._document.has(name)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.objects)

@@ -11,7 +11,7 @@ import pytest
 
 import moldloft
 from campaign import campaign
-from moldloft import fairing, implicit, kinds, offsets, overlays
+from moldloft import fairing, grids, implicit, kinds, offsets, overlays
 from moldloft.spelling import nearest
 
 pytest.importorskip("resource", reason="limits of a process")
@@ -61,6 +61,40 @@ def test_grids_that_cannot_be_held_are_refused() -> None:
     finally:
         moldloft.limits(**before._asdict())
     assert hull.grid(3, 3).shape == (3, 3, 3)
+
+
+def test_files_without_a_name_and_what_is_no_field_are_refused() -> None:
+    for read in (grids.read_aerofoil, offsets.read, implicit.load):
+        with pytest.raises(moldloft.Error, match="cannot read"):
+            read("")
+    ball = implicit.Set(implicit.sphere((0, 0, 0), 1))
+    with pytest.raises(moldloft.Error, match="known: expected fields, found ndarray"):
+        ball.member((0, 0, 0), known=np.zeros((2, 3)))  # type: ignore[arg-type]
+    assert "\ud800" not in moldloft.loads(FLAT)
+
+
+def test_bodies_whose_cells_coordinates_do_not_distinguish_are_refused() -> None:
+    for box in (
+        "{-101, 9999999999999900, -101}, {101, 10000000000000100, 101}",
+        "{-3, 1e17, -3}, {3, 100000000000000064, 3}",
+    ):
+        model = moldloft.loads(
+            f"set s = set(sphere({{0, 1e16, 0}}, 100)); SetBody b(s, {box}, depth = 7);",
+            strict=False,
+        )
+        assert [d.id for d in model.diagnostics if d.severity == "error"] == ["too-fine"]
+        assert "do not distinguish cells" in str(model.diagnostics[0])
+
+
+def test_stacks_of_deep_calls_count_as_memory() -> None:
+    text = "subroutine deep(float x) { AbsPoint p(x, 0, 0); deep more(x + 1); } deep first(0);"
+    before = moldloft.limits()
+    moldloft.limits(memory="300M")
+    try:
+        with pytest.raises(moldloft.Error, match=r"memory|nest"):
+            moldloft.loads(text)
+    finally:
+        moldloft.limits(**before._asdict())
 
 
 def test_many_points_are_those_of_few() -> None:

@@ -50,6 +50,22 @@ pub fn held() -> u64 {
     u64::try_from(HELD.load(Ordering::Relaxed)).unwrap_or(0)
 }
 
+/// Bytes beside the heap, such as a stack, that count as held until this is dropped.
+#[derive(Debug)]
+pub struct Beside(i64);
+
+/// Counts bytes that are taken beside the heap.
+pub fn beside(bytes: u32) -> Beside {
+    HELD.fetch_add(i64::from(bytes), Ordering::Relaxed);
+    Beside(i64::from(bytes))
+}
+
+impl Drop for Beside {
+    fn drop(&mut self) {
+        HELD.fetch_sub(self.0, Ordering::Relaxed);
+    }
+}
+
 /// Bytes that are kept back for the work under way when the system refuses. Nothing is written there: it is address
 /// space, no memory.
 pub const RESERVE: usize = 64 << 20;

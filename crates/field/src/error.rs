@@ -77,6 +77,13 @@ pub enum FieldError {
         /// How many are allowed.
         limit: f64,
     },
+    /// The box is so far from the origin that coordinates there do not tell its cells apart.
+    FarAway {
+        /// The greatest coordinate.
+        far: f64,
+        /// The side of a cell.
+        step: f64,
+    },
     /// Nearly all cells of large parts of the box hold the surface: the set has waves smaller than they are.
     TooRough {
         /// How many such cells there are so far.
@@ -186,6 +193,10 @@ impl fmt::Display for FieldError {
                 f,
                 "this accuracy needs about {boxes:.1e} boxes, more than the {limit:.0e} allowed: ask for less, or give a larger \
                  `limit` where there is one"
+            ),
+            Self::FarAway { far, step } => write!(
+                f,
+                "coordinates of {far:.1e} do not distinguish cells of {step:.1e}: move the box towards the origin"
             ),
             Self::TooRough { cells, step } => write!(
                 f,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
-from moldloft.arguments import explain
+from moldloft.arguments import ArgumentError, explain
 from moldloft.errors import Error
 from moldloft.implicit.answers import (
     Attributes,
@@ -472,6 +472,9 @@ class Set(Moving, Edged, Pictured):
         [-1, 0, 1]
         """
         flat, shape = points_of(points)
+        others = [type(field).__name__ for field in known if not isinstance(field, Field)]
+        if others:
+            raise ArgumentError(f"known: expected fields, found {others[0]}")
         cores = [field._core for field in known]
         members = self._core.members(flat, float(tolerance), cores).reshape(shape)
         return members if shape else int(members)

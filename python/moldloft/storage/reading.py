@@ -106,6 +106,8 @@ def _similar(path: str | os.PathLike[str]) -> str:
     from moldloft.spelling import nearest
 
     place = Path(os.fsdecode(path))
+    if not place.name:
+        return ""
     try:
         names = [entry.name for entry in os.scandir(place.parent)]
     except OSError:

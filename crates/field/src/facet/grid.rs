@@ -24,6 +24,9 @@ const MARGIN: [f64; 3] = [0.381_966, 0.445_042, 0.414_214];
 /// The most cells along an axis: what the keys of edges can hold.
 const MOST: f64 = (1 << 19) as f64;
 
+/// Corners of cells are at least so many roundings of their coordinates apart.
+const APART: f64 = 64.0;
+
 impl Grid {
     /// Cells of side `step` over `over`.
     pub(crate) fn new(over: &Box3, step: f64) -> Result<Self, FieldError> {
@@ -39,6 +42,9 @@ impl Grid {
         // Vertices are on their surfaces to 1e-13 of the box (1e-12 is promised), far from the origin to
         // the rounding of their coordinates.
         let far = over.low.norm().max(over.high.norm());
+        if step < APART * f64::EPSILON * far {
+            return Err(FieldError::FarAway { far, step });
+        }
         let goal = 1e-13 * over.diagonal() + 8.0 * f64::EPSILON * far;
         Ok(Self { origin, step, cells, goal })
     }

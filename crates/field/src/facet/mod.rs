@@ -48,6 +48,10 @@ use types::FacetBlock;
 use types::Reuse;
 pub use types::{FacetOptions, Resolution, Unresolved};
 
+/// What refinement holds for each triangle while it works: a copy, the edges beside it, the normals, and the
+/// triangles that it makes.
+const REFINEMENT_BYTES: u64 = 400;
+
 /// The boundary of a set within a box.
 #[derive(Clone, Debug)]
 pub struct Facets {
@@ -376,7 +380,8 @@ fn at_step(
     let mut made = remove_intersections::assembled(&grid, &leaves, &divided.blocks, options.sharp);
     let rule = RefinementRule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
     let tapes = Tapes::new(&grid, &divided.blocks, &compiled.tape);
-    refine(&mut made, &leaves, &tapes, rule);
+    options.budget.grow(made.triangles.len() as u64 * REFINEMENT_BYTES)?;
+    refine(&mut made, &leaves, &tapes, rule, &options.budget)?;
     if !options.sharp {
         slivers::remove(&mut made);
     }

@@ -13,6 +13,7 @@ use super::types::FacetBlock;
 use super::vertex::{Solver, Surfaces};
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
+use moldloft_budget::{Budget, Spent};
 use moldloft_num::{Box3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -327,7 +328,7 @@ impl Refiner<'_> {
     }
 
     /// All passes over these triangles.
-    fn run(&mut self, near: &[u32]) {
+    fn run(&mut self, near: &[u32], budget: &Budget) -> Result<(), Spent> {
         let mut front = near.to_vec();
         for _ in 0..PASSES {
             let start = self.changed.len();
@@ -337,7 +338,13 @@ impl Refiner<'_> {
             // Whether a diagonal is turned depends on its two triangles: those that did not change need no second look.
             let mut from = start;
             for _ in 0..4 {
-                let changed = self.changed[from..].to_vec();
+                // A triangle is named as often as it was changed.
+                let mut changed = self.changed[from..].to_vec();
+                changed.sort_unstable();
+                changed.dedup();
+                // Edges, and what the triangles have grown to.
+                budget.poll()?;
+                budget.grow((24 * changed.len() + 16 * self.triangles.len()) as u64)?;
                 from = self.changed.len();
                 let mut edges: Vec<(u32, u32)> = changed
                     .iter()
@@ -359,11 +366,21 @@ impl Refiner<'_> {
                 break;
             }
         }
+        Ok(())
     }
 }
 
 /// Divides the edges that want it. Where that makes triangles cut others, all is left as it was.
-pub(super) fn refine(made: &mut Assembled, leaves: &[Leaf], tapes: &Tapes, rule: RefinementRule) {
+///
+/// # Errors
+/// [`Spent`].
+pub(super) fn refine(
+    made: &mut Assembled,
+    leaves: &[Leaf],
+    tapes: &Tapes,
+    rule: RefinementRule,
+    budget: &Budget,
+) -> Result<(), Spent> {
     let normals = normals(&made.positions, &made.surfaces, leaves);
     let mut work = Refiner {
         rule,
@@ -398,16 +415,22 @@ pub(super) fn refine(made: &mut Assembled, leaves: &[Leaf], tapes: &Tapes, rule:
             t.iter().for_each(|&v| rim[v as usize] = true);
         }
         let near: Vec<u32> = (0..chosen.len() as u32).filter(|&t| chosen[t as usize]).collect();
-        attempt(&mut work, &near, rim);
+        attempt(&mut work, &near, rim, budget)?;
     }
     made.positions = work.positions;
     made.surfaces = work.surfaces;
     made.triangles = work.triangles;
+    Ok(())
 }
 
 /// All passes, as often as it takes until no changed triangle cuts another; `kept` are vertices beside which
 /// nothing may change.
-fn attempt(work: &mut Refiner, near: &[u32], mut kept: Vec<bool>) {
+fn attempt(
+    work: &mut Refiner,
+    near: &[u32],
+    mut kept: Vec<bool>,
+    budget: &Budget,
+) -> Result<(), Spent> {
     let count = work.positions.len();
     let old: Vec<(u32, Corner)> = work.triangles.clone();
     for attempt in 0..=TRIES {
@@ -419,16 +442,17 @@ fn attempt(work: &mut Refiner, near: &[u32], mut kept: Vec<bool>) {
         work.changed.clear();
         work.locked.clone_from(&kept);
         if attempt == TRIES {
-            return;
+            return Ok(());
         }
         work.collect_edges(near);
-        work.run(near);
+        work.run(near, budget)?;
+        budget.poll()?;
         let mut flagged = vec![false; work.triangles.len()];
         work.changed.iter().for_each(|&t| flagged[t as usize] = true);
         let corner = |f: usize| work.triangles[f].1;
         let cut = crossings(&work.positions, work.triangles.len(), corner, Some(&flagged));
         if cut.is_empty() {
-            return;
+            return Ok(());
         }
         // What was changed there, or beside it, stays next time.
         let marks: Vec<Vec3> = cut.into_iter().flatten().map(|f| work.at(corner(f)[0])).collect();
@@ -438,4 +462,5 @@ fn attempt(work: &mut Refiner, near: &[u32], mut kept: Vec<bool>) {
             *lock |= marks.iter().any(|m| m.distance(*p) <= reach);
         }
     }
+    Ok(())
 }

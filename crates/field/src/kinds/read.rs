@@ -132,7 +132,9 @@ pub fn fault(error: &FieldError) -> CallError {
         FieldError::RailSingular { .. } => "rail-singular",
         FieldError::EmptyBox { .. } => "empty-box",
         FieldError::Unbounded { .. } => "unbounded-set",
-        FieldError::TooFine { .. } | FieldError::TooRough { .. } => "too-fine",
+        FieldError::TooFine { .. } | FieldError::TooRough { .. } | FieldError::FarAway { .. } => {
+            "too-fine"
+        }
         FieldError::ThinBox { .. } => "thin-box",
         FieldError::Thin { .. } => "thin-part",
         FieldError::NotReached { .. } => "accuracy-not-reached",

@@ -378,7 +378,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             return Some(body(self));
         }
         let depth = std::mem::take(&mut self.usage.depth);
-        let flow = crate::run::program::on_new_stack(|| body(self));
+        let budget = self.inputs.budget;
+        let flow = crate::run::program::on_new_stack(budget, || body(self));
         self.usage.depth = depth;
         if flow.is_none() {
             self.stop(

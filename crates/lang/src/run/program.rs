@@ -12,6 +12,7 @@ use crate::source::scope::{Binding, ScopedBinding};
 use crate::source::sketch_file::SketchFile;
 use crate::source::world::World;
 use crate::value::number_path::NumberPath;
+use moldloft_budget::Budget;
 use moldloft_diag::{Diagnostic, Sources, Span};
 use moldloft_model::{Applied, Extent, Graph, Object};
 use moldloft_registry::{CallError, Registry, Scalar, Value};
@@ -76,13 +77,16 @@ pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
 /// The stack that a part of a run with deep calls needs: [`STACK_BYTES`] has room for large frames of native
 /// functions at all levels, this for a few.
 #[cfg(not(target_arch = "wasm32"))]
-const MORE_STACK: usize = 64 << 20;
+const MORE_STACK: u32 = 64 << 20;
 
-/// Runs `f` on a stack of its own; `None` when there is no memory for one.
+/// Runs `f` on a stack of its own, which counts as memory; `None` when there is none for it.
 #[cfg(not(target_arch = "wasm32"))]
-pub(crate) fn on_new_stack<R: Send>(f: impl FnOnce() -> R + Send) -> Option<R> {
+pub(crate) fn on_new_stack<R: Send>(budget: &Budget, f: impl FnOnce() -> R + Send) -> Option<R> {
+    budget.grow(MORE_STACK.into()).ok()?;
+    let _held = moldloft_budget::beside(MORE_STACK);
     std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(MORE_STACK).spawn_scoped(scope, f);
+        let thread =
+            std::thread::Builder::new().stack_size(MORE_STACK as usize).spawn_scoped(scope, f);
         match thread.ok()?.join() {
             Ok(result) => Some(result),
             Err(panic) => std::panic::resume_unwind(panic),
@@ -92,7 +96,7 @@ pub(crate) fn on_new_stack<R: Send>(f: impl FnOnce() -> R + Send) -> Option<R> {
 
 /// There is one stack in a browser.
 #[cfg(target_arch = "wasm32")]
-pub(crate) fn on_new_stack<R: Send>(f: impl FnOnce() -> R + Send) -> Option<R> {
+pub(crate) fn on_new_stack<R: Send>(_: &Budget, f: impl FnOnce() -> R + Send) -> Option<R> {
     Some(f())
 }
 

@@ -62,9 +62,9 @@ pub fn body<T: Real>(
     planes: &Planes,
     layout: &DimensionLayout<T>,
 ) -> Result<SketchSolid<T>, NoBody> {
-    let mut body = body_of_facets(object, planes, layout)?;
-    confirm(&mut body, object, planes, layout);
-    Ok(body)
+    let mut made = body_of_facets(object, planes, layout)?;
+    confirm(&mut made, layout, &|layout| Some(body(object, planes, layout).ok()?.mass()));
+    Ok(made)
 }
 
 fn body_of_facets<T: Real>(

@@ -6,9 +6,8 @@
 
 use super::SketchSolid;
 use super::coincidence::without;
-use super::feature::body;
 use super::mass::Mass;
-use crate::{DimensionLayout, Planes, SketchObject};
+use crate::DimensionLayout;
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeSet;
 
@@ -31,12 +30,14 @@ const FORWARD: [f64; 5] = [-25.0, 48.0, -36.0, 16.0, -3.0];
 /// Derivatives within this share of their size are one.
 const ALIKE: f64 = 1e-6;
 
+/// The measures of the body of other numbers, if there is one.
+type MadeAt<'a> = dyn Fn(&DimensionLayout<f64>) -> Option<Mass<f64>> + 'a;
+
 /// Takes back the kinks of a body where both sides have the same derivative.
 pub(super) fn confirm<T: Real>(
     found: &mut SketchSolid<T>,
-    object: &SketchObject,
-    planes: &Planes,
     layout: &DimensionLayout<T>,
+    made: &MadeAt<'_>,
 ) {
     if !T::FIRST_ORDER || found.kinks.is_empty() {
         return;
@@ -56,7 +57,7 @@ pub(super) fn confirm<T: Real>(
         for share in STEPS {
             let step = share * size / most;
             let own = part_of(&mass, part);
-            let one = sides(object, planes, layout, part, step)
+            let one = sides(layout, made, part, step)
                 .map(|sides| agreed(part, &own, sides, &mass, size, most));
             let Some(one) = one else { continue };
             best.area = best.area.or(one.area);
@@ -128,13 +129,12 @@ fn shifted<T: Real>(layout: &DimensionLayout<T>, part: usize, by: f64) -> Dimens
 
 /// The derivatives for less and for more of a number; `None` where there is no body beside.
 fn sides<T: Real>(
-    object: &SketchObject,
-    planes: &Planes,
     layout: &DimensionLayout<T>,
+    made: &MadeAt<'_>,
     part: usize,
     step: f64,
 ) -> Option<[Mass<f64>; 2]> {
-    let at = |by: f64| Some(body(object, planes, &shifted(layout, part, by)).ok()?.mass());
+    let at = |by: f64| made(&shifted(layout, part, by));
     let here = at(0.0)?;
     let side = |step: f64| {
         let mut all = vec![(here, FORWARD[0] / (12.0 * step))];
