@@ -16,7 +16,7 @@ mod memory;
 pub use confine::confine;
 pub use frames::{LONGEST_FRAME, read_frame, write_frame};
 pub use machine::usual_memory;
-pub use memory::{Beside, Counting, FLUSH, RESERVE, beside, held, settle};
+pub use memory::{BesideHeap, Counting, FLUSH, RESERVE, beside, held, settle};
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

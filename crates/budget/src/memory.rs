@@ -52,15 +52,15 @@ pub fn held() -> u64 {
 
 /// Bytes beside the heap, such as a stack, that count as held until this is dropped.
 #[derive(Debug)]
-pub struct Beside(i64);
+pub struct BesideHeap(i64);
 
 /// Counts bytes that are taken beside the heap.
-pub fn beside(bytes: u32) -> Beside {
+pub fn beside(bytes: u32) -> BesideHeap {
     HELD.fetch_add(i64::from(bytes), Ordering::Relaxed);
-    Beside(i64::from(bytes))
+    BesideHeap(i64::from(bytes))
 }
 
-impl Drop for Beside {
+impl Drop for BesideHeap {
     fn drop(&mut self) {
         HELD.fetch_sub(self.0, Ordering::Relaxed);
     }
