@@ -335,10 +335,8 @@ class Model(Floating, Adapted):
 
     def __contains__(self, name: object) -> bool:
         # No name has a character that is no text, such as a lone surrogate.
-        if (
-            not isinstance(name, str)
-            or (not name.isascii()
-            and any("\ud800" <= c <= "\udfff" for c in name))
+        if not isinstance(name, str) or (
+            not name.isascii() and any("\ud800" <= c <= "\udfff" for c in name)
         ):
             return False
         return self._document.param(name) is not None or self._document.has(name)
