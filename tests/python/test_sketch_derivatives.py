@@ -159,13 +159,19 @@ def test_a_corner_of_four_planes_by_chance():
     assert gradient.kinks == (None, None)
 
 
-def test_a_body_on_another_one_has_two_derivatives():
+def one_on_another() -> Sketch:
+    """Two cubes of 4, B on A."""
     sketch = Sketch()
     rng = np.random.default_rng(0)
     for name in "AB":
         text = drawing(rng, name, corners((0, 0, 0), (4, 4, 4)), BOX_LINES)
         sketch.run(f"{text}\nDIM W X 1 2 4\nDIM D Y 1 4 4\nDIM H Z 1 5 4\nGENERATE FACES")
     sketch.run("VARIABLE MZ 4; MOVE B 0 0 MZ FEATURE; UNION A B INTO U; USING U")
+    return sketch
+
+
+def test_a_body_on_another_one_has_two_derivatives():
+    sketch = one_on_another()
     gradient = sketch.gradient(["MZ", "A.W", "H"])
     assert np.isnan(gradient.volume[0]) and gradient.kinks[0].startswith(
         "faces lie in each other at"
@@ -177,12 +183,7 @@ def test_a_body_on_another_one_has_two_derivatives():
 
 
 def test_a_model_refuses_a_derivative_that_does_not_exist(tmp_path: Path) -> None:
-    sketch = Sketch()
-    rng = np.random.default_rng(0)
-    for name in "AB":
-        text = drawing(rng, name, corners((0, 0, 0), (4, 4, 4)), BOX_LINES)
-        sketch.run(f"{text}\nDIM W X 1 2 4\nDIM D Y 1 4 4\nDIM H Z 1 5 4\nGENERATE FACES")
-    sketch.run("VARIABLE MZ 4; MOVE B 0 0 MZ FEATURE; UNION A B INTO U; USING U")
+    sketch = one_on_another()
     sketch.save(tmp_path / "two.skt")
     (tmp_path / "two.sdl").write_text('load "two.skt";')
     model = moldloft.load(tmp_path / "two.sdl")

@@ -50,7 +50,7 @@ impl<T: Real> Build<T> for FoilLoftSurf<T> {
             }
         }
         let (half, closed) = (first.layout.is_half(), first.section.is_closed());
-        let across = first.kinks();
+        let across = first.second_order_breaks();
         let loft = FoilLoft { masters, section, half, closed, across };
         Ok(Value::Surface(SurfaceRef::new(Columns(loft), context.nesting)))
     }

@@ -212,8 +212,8 @@ impl<T: Real> Section<T> {
     }
 
     /// The same without the places at which only third derivatives jump.
-    pub fn kinks(&self) -> Vec<f64> {
-        self.with_mean(self.thickness.kinks())
+    pub fn second_order_breaks(&self) -> Vec<f64> {
+        self.with_mean(self.thickness.second_order_breaks())
     }
 
     fn with_mean(&self, mut breaks: Vec<f64>) -> Vec<f64> {
@@ -251,8 +251,8 @@ impl<T: Real> Profile<T> {
     }
 
     /// The breaks without the places at which only third derivatives jump.
-    pub fn kinks(&self) -> Vec<f64> {
-        self.at_both_sides(self.section.kinks())
+    pub fn second_order_breaks(&self) -> Vec<f64> {
+        self.at_both_sides(self.section.second_order_breaks())
     }
 }
 
@@ -269,6 +269,6 @@ impl<T: Real> CurveFormula for Profile<T> {
     }
 
     fn kinks(&self) -> Vec<f64> {
-        Self::kinks(self)
+        self.second_order_breaks()
     }
 }

@@ -254,16 +254,16 @@ impl<T: Real> Thickness<T> {
             }
             Thickness::Family(_) => (1..STEPS).map(|k| k as f64 / STEPS as f64).collect(),
             Thickness::Closed { open, .. } => open.breaks(),
-            _ => self.kinks(),
+            _ => self.second_order_breaks(),
         }
     }
 
     /// The same without the places at which only third derivatives jump.
-    pub fn kinks(&self) -> Vec<f64> {
+    pub fn second_order_breaks(&self) -> Vec<f64> {
         match self {
             Thickness::Joined { at, .. } => vec![at.re().sqrt()],
             Thickness::Curve(curve) => curve.breaks(),
-            Thickness::Closed { open, .. } => open.kinks(),
+            Thickness::Closed { open, .. } => open.second_order_breaks(),
             _ => Vec::new(),
         }
     }
