@@ -78,6 +78,9 @@ const RESERVED: Layout = match Layout::from_size_align(RESERVE, 16) {
 /// The reserve; none before [`reserve`] and after it was given up.
 static KEPT_BACK: AtomicPtr<u8> = AtomicPtr::new(null_mut());
 
+/// In [`KEPT_BACK`] while a thread gives the reserve up; no block begins there.
+const GIVING_UP: *mut u8 = std::ptr::without_provenance_mut(1);
+
 /// The reserve was given up: work must end.
 static REFUSED: AtomicBool = AtomicBool::new(false);
 
@@ -169,13 +172,30 @@ impl<A: GlobalAlloc> Counting<A> {
         if size > RESERVE / 2 {
             return null_mut();
         }
-        let kept = KEPT_BACK.swap(null_mut(), Ordering::AcqRel);
-        if !kept.is_null() {
-            REFUSED.store(true, Ordering::Relaxed);
-            // SAFETY: it was allocated with this layout by this allocator, and taken out by one thread alone.
-            unsafe { self.0.dealloc(kept, RESERVED) };
+        loop {
+            let kept = KEPT_BACK.load(Ordering::Acquire);
+            if kept.is_null() {
+                break;
+            }
+            // Another thread gives it up: until it has, the system would refuse again.
+            if kept == GIVING_UP {
+                std::thread::yield_now();
+                continue;
+            }
+            let taken = KEPT_BACK.compare_exchange(
+                kept,
+                GIVING_UP,
+                Ordering::AcqRel,
+                Ordering::Acquire,
+            );
+            if taken.is_ok() {
+                REFUSED.store(true, Ordering::Relaxed);
+                // SAFETY: it was allocated with this layout by this allocator, and taken out by this thread alone.
+                unsafe { self.0.dealloc(kept, RESERVED) };
+                KEPT_BACK.store(null_mut(), Ordering::Release);
+                break;
+            }
         }
-        // Also where another thread has just given it up.
         ask()
     }
 
