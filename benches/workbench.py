@@ -2,8 +2,10 @@
 
 Every parameter of an example is moved 40 times, in a page that computes by itself
 (`export --html`, the engine in WebAssembly) and in one behind the server (`view`). Needs
-`playwright` and a Chromium. Machines are shared: a fixed computation in the page is timed beside
-each row, and the lowest time is the one to trust.
+`playwright` and a Chromium. Machines are shared: a fixed computation in the page is timed between
+the moves, and beside each figure stands the one that the machine would have given at its best
+speed in that run: times are divided by how much longer than its quickest the fixed computation
+took in the median of that row.
 
     python benches/workbench.py [--moves N] [MODEL ...]
 """
@@ -40,7 +42,15 @@ MOVES = """async ([name, count]) => {
   const slider = document.querySelector(`input[type=range][aria-label="${name}"]`)
   const [low, high] = [Number(slider.min), Number(slider.max)]
   const { stamps } = window.moldloft
+  // About 2 ms on a quiet machine.
+  const fixed = () => {
+    const from = performance.now()
+    let x = 0.5
+    for (let k = 0; k < 6e5; k++) x = 3.9 * x * (1 - x)
+    return performance.now() - from + 0 * x
+  }
   stamps.length = 0
+  const beside = [fixed()]
   for (let k = 0; k < count; k++) {
     const before = stamps.length
     slider.value = low + (high - low) * (0.3 + (0.4 * ((k * 7) % count)) / count)
@@ -48,32 +58,37 @@ MOVES = """async ([name, count]) => {
     const end = performance.now() + 5000
     while (stamps.length === before && performance.now() < end)
       await new Promise((r) => setTimeout(r))
+    beside.push(fixed())
   }
-  return stamps.map((s) => s.to - s.from)
+  return { times: stamps.map((s) => s.to - s.from), beside }
 }"""
 
-#: A computation of about 10 ms on a quiet machine.
-FIXED = """() => {
-  const from = performance.now()
-  let x = 0.5
-  for (let k = 0; k < 3e6; k++) x = 3.9 * x * (1 - x)
-  return performance.now() - from + 0 * x
-}"""
+
+def row(times: list[float]) -> str:
+    """Lowest, median and the 95 % quantile."""
+    all_ = sorted(times)
+    late = all_[min(len(all_) - 1, int(0.95 * len(all_)))]
+    return f"{all_[0]:6.1f} {statistics.median(all_):6.1f} {late:6.1f}"
 
 
 def measured(page: Any, moves: int, what: str) -> None:
     """A row for each parameter."""
     page.evaluate("() => moldloft.settled()")
+    found = {}
     for name in page.evaluate("() => moldloft.model.params.map((p) => p.name)"):
         page.evaluate(MOVES, [name, moves])  # The second compilation comes while it runs.
-        times = sorted(page.evaluate(MOVES, [name, moves]))
-        if not times:
-            print(f"  {what:8} {name:18} no answer")
+        found[name] = page.evaluate(MOVES, [name, moves])
+    best = min((x for f in found.values() for x in f["beside"]), default=1.0)
+    for name, f in found.items():
+        times, beside = f["times"], f["beside"]
+        if len(times) != moves:
+            print(f"  {what:8} {name:18} {len(times)} of {moves} answers")
             continue
-        late = times[min(len(times) - 1, int(0.95 * len(times)))]
+        slower = statistics.median(beside) / best
+        ours = row([t / slower for t in times])
         print(
-            f"  {what:8} {name:18} lowest {times[0]:6.1f}  median {statistics.median(times):6.1f}"
-            f"  95 % {late:6.1f} ms   (fixed {page.evaluate(FIXED):.1f} ms)",
+            f"  {what:8} {name:18} {row(times)}   at best speed {ours} ms"
+            f"   (fixed {best:.1f}, here {best * slower:.1f} ms)",
             flush=True,
         )
 
@@ -88,7 +103,7 @@ def main() -> None:
         browser = p.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         for name in options.models:
             model = EXAMPLES / name
-            print(name)
+            print(f"{name}: lowest, median, 95 %")
             page = browser.new_page()
             if engine_packed() is not None:
                 file = Path(folder) / "page.html"

@@ -155,6 +155,30 @@ BOMBS = {
         + "".join(f"PolyCurve c{i}({{c{i - 1}, c{i - 1}}});\n" for i in range(1, 64)),
         "build",
     ),
+    "strings double": ('string s = "a"; while (1) s = s + s;', "check"),
+    "file without end": (
+        'file f = open("a.txt", "w"); while (1) write(f, "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx");',
+        "run",
+    ),
+    "parallel chain 299": (
+        S
+        + "RuledSurf s0(l, n);"
+        + "".join(f"OffsetSurf s{i}(s{i - 1}, 0.01);\n" for i in range(1, 300)),
+        "build",
+    ),
+    "parallel curves 299": (
+        P4
+        + "BCurve c0({A,B,C});"
+        + "".join(f'OffsetCurve c{i}(c{i - 1}, 0.01, "z=0");\n' for i in range(1, 300)),
+        "build",
+    ),
+    "chains double": (
+        P4
+        + "Line l(A,B); Line m(B,A); PolyCurve c0({l, m});"
+        + "".join(f"PolyCurve c{i}({{c{i - 1}, c{i - 1}}});\n" for i in range(1, 40)),
+        "build",
+    ),
+    "printed for ever": ('for (i = 1:100000000) print "x";', "run"),
     "doubling lists": (
         "list L0 = {1};" + "".join(f" list L{i} = {{L{i - 1}, L{i - 1}}};" for i in range(1, 60)),
         "check",

@@ -13,8 +13,8 @@ use crate::{
     Brep, BrepEdge, BrepFace, Coedge, FacetFault, FacetFaultKind, LabelledFacets, SurfaceShape,
 };
 use moldloft_num::{Pace, Vec3};
+use moldloft_parallel::prelude::*;
 use moldloft_spline::nurbs::Nurbs;
-use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 

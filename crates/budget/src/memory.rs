@@ -182,12 +182,8 @@ impl<A: GlobalAlloc> Counting<A> {
                 std::thread::yield_now();
                 continue;
             }
-            let taken = KEPT_BACK.compare_exchange(
-                kept,
-                GIVING_UP,
-                Ordering::AcqRel,
-                Ordering::Acquire,
-            );
+            let taken =
+                KEPT_BACK.compare_exchange(kept, GIVING_UP, Ordering::AcqRel, Ordering::Acquire);
             if taken.is_ok() {
                 REFUSED.store(true, Ordering::Relaxed);
                 // SAFETY: it was allocated with this layout by this allocator, and taken out by this thread alone.

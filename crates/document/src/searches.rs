@@ -9,8 +9,8 @@ use moldloft_locate::march::Crossing;
 use moldloft_locate::roots::{all_curve_curve, all_curve_surface, all_on_level};
 use moldloft_locate::{FoundRoot, Level, Nearest, NearestCurve, NearestSurface, Roots, by_place};
 use moldloft_num::{Plane, Vec3};
+use moldloft_parallel::prelude::*;
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -5,7 +5,7 @@
 use crate::{GridError, GridSide, SurfaceGrid};
 use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 /// How the parameters of an inner point follow from the edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use crate::zebra::Banks;
 use crate::{GridError, GridSide, SurfaceGrid};
 use moldloft_budget::Budget;
 use moldloft_num::{Order, Real, Surface, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 /// What the grid is drawn to besides smoothness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

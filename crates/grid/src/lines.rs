@@ -1,7 +1,7 @@
 //! The rows of a grid in two colours, and control terms.
 
 use moldloft_num::Real;
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 /// Components of a grid (those that vary) with its even rows apart from its odd ones.
 #[derive(Clone)]

@@ -6,7 +6,7 @@
 use crate::{GridError, GridFace, VolumeGrid};
 use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 /// A face at which the grid shall have a first cell, at right angles.
 #[derive(Clone, Copy, Debug, PartialEq)]

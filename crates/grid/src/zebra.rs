@@ -6,7 +6,7 @@
 
 use crate::lines::{Change, larger};
 use moldloft_num::Real;
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 /// Banks that make a task for a thread, so that both threads of a small machine have several of a grid of
 /// 500 rows.

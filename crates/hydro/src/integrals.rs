@@ -10,7 +10,7 @@ use crate::cell::PolynomialCell;
 use crate::gauss::gauss;
 use crate::strip::{CoordinatePlane, Strip, StripLine, Wet, strips};
 use moldloft_num::{Real, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;

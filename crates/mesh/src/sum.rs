@@ -1,6 +1,6 @@
 //! Sums whose bits do not depend on the number of threads.
 
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 use std::ops::Range;
 
 /// Terms per chunk; part of the result's bits, so it is a constant and not a tuning knob.

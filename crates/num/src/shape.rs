@@ -74,6 +74,12 @@ pub trait Curve<T: Real>: Send + Sync {
         self.breaks()
     }
 
+    /// The curve to which this one is parallel, sideways in the plane of that normal, and the distance: a parallel
+    /// of a parallel is one of the first curve, of which no derivative is lost.
+    fn parallel_to(&self) -> Option<(&dyn Curve<T>, Vec3<T>, T)> {
+        None
+    }
+
     /// True when the curve ends where it begins: it is periodic then, and `jet` beyond 0 .. 1 gives what it
     /// gives whole turns before. Objects of a model find that out by themselves; see [`crate::period`].
     fn closed(&self) -> bool {
@@ -162,6 +168,12 @@ pub trait Surface<T: Real>: Send + Sync {
     /// Interior parameters u and v at which a first derivative may jump; see [`Curve::kinks`].
     fn kinks(&self) -> [Vec<f64>; 2] {
         self.breaks()
+    }
+
+    /// The surface to which this one is parallel, along the natural normal, and the distance: a parallel of a parallel
+    /// is one of the first surface, of which no derivative is lost.
+    fn parallel_to(&self) -> Option<(&dyn Surface<T>, T)> {
+        None
     }
 
     /// Which of u and v run round, since the two sides of the surface are one line; see [`Curve::closed`].
@@ -423,6 +435,11 @@ pub trait SurfaceFormula: Send + Sync {
         self.breaks()
     }
 
+    /// See [`Surface::parallel_to`].
+    fn parallel_to(&self) -> Option<(&dyn Surface<Self::Scalar>, Self::Scalar)> {
+        None
+    }
+
     /// See [`Surface::image_of`].
     fn image_of(&self) -> Option<(Key, bool)> {
         None
@@ -453,6 +470,9 @@ impl<F: SurfaceFormula> Surface<F::Scalar> for F {
 
     fn joints(&self) -> [Vec<f64>; 2] {
         SurfaceFormula::joints(self)
+    }
+    fn parallel_to(&self) -> Option<(&dyn Surface<F::Scalar>, F::Scalar)> {
+        SurfaceFormula::parallel_to(self)
     }
     fn image_of(&self) -> Option<(Key, bool)> {
         SurfaceFormula::image_of(self)

@@ -5,8 +5,8 @@
 use crate::roots::{EdgeParameter, MarkSource, on_its_root, pieces};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Real, Vec3};
+use moldloft_parallel::prelude::*;
 use moldloft_registry::{Point, Scalar, SurfaceRef};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// So many points of a patch are evaluated together.

@@ -11,8 +11,8 @@ use moldloft_model::Graph;
 use moldloft_num::Vec3;
 use moldloft_num::period::crease_rate;
 use moldloft_num::trace::{Edges, Key};
+use moldloft_parallel::prelude::*;
 use moldloft_registry::{Point, Scalar, SurfaceRef, Value};
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 

@@ -65,6 +65,9 @@ impl<T: Real> Curve<T> for CurveRef<T> {
     fn trace(&self) -> Trace<T> {
         self.shape.trace()
     }
+    fn parallel_to(&self) -> Option<(&dyn Curve<T>, Vec3<T>, T)> {
+        self.shape.parallel_to()
+    }
     fn image_of(&self) -> Option<Key> {
         self.shape.image_of()
     }
@@ -209,6 +212,9 @@ impl<T: Real> Surface<T> for SurfaceRef<T> {
     }
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
         self.shape.edge_made_of(k)
+    }
+    fn parallel_to(&self) -> Option<(&dyn Surface<T>, T)> {
+        self.shape.parallel_to()
     }
     fn image_of(&self) -> Option<(Key, bool)> {
         self.shape.image_of()

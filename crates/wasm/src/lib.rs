@@ -18,6 +18,8 @@
 #![cfg(target_arch = "wasm32")]
 #![allow(unsafe_code)]
 
+mod pools;
+
 use moldloft_budget::{Counting, Limits, limits, set_limits};
 use moldloft_lang::{ReadText, TextReadError, World};
 use moldloft_session::Session;
@@ -28,7 +30,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Memory is counted, as everywhere: what a page cannot hold is an error with its place.
 #[global_allocator]
-static ALLOCATOR: Counting = Counting::new();
+static ALLOCATOR: Counting<pools::Pools> = Counting::over(pools::Pools::new());
 
 /// What a model may hold of the 4 GiB that an instance can have.
 const MEMORY: u64 = 3 << 30;

@@ -13,8 +13,8 @@ use moldloft_lang::source::fault_location::unplaced;
 use moldloft_mesh::{FloatOptions, Symmetry};
 use moldloft_model::Graph;
 use moldloft_num::{Dual4, Real, Vec3};
+use moldloft_parallel::prelude::*;
 use moldloft_registry::{CallError, Role, Scalar};
-use rayon::prelude::*;
 
 /// A hydrostatics request; heel and trim in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]

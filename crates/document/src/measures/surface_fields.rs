@@ -4,7 +4,7 @@ use crate::Document;
 use moldloft_diag::Diagnostic;
 use moldloft_fair::surface::{self, PointField, SurfaceAnalysis};
 use moldloft_num::Vec3;
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 /// The fields of one structured patch, point (i, j) of its block at `i * nv + j`.
 #[derive(Clone, Debug, PartialEq)]

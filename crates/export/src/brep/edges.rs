@@ -5,10 +5,10 @@ use crate::ExportFailure;
 use moldloft_brep::{Brep, BrepEdge, BrepFace, Coedge, SurfaceShape};
 use moldloft_num::{Order, Rational, Vec3};
 use moldloft_panel::{FaceOutline, OutlineCurve, OutlineSide};
+use moldloft_parallel::prelude::*;
 use moldloft_picture::PALETTE;
 use moldloft_registry::CurveRef;
 use moldloft_spline::nurbs::{FitOptions, Nurbs, SampledShape, fit, of_curve};
-use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 

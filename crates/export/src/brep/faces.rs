@@ -5,8 +5,8 @@ use moldloft_brep::SurfaceShape;
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Surface, Vec3};
 use moldloft_panel::FaceOutline;
+use moldloft_parallel::prelude::*;
 use moldloft_spline::nurbs::{FitOptions, NotFitted, Nurbs, of_surface};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Control points within this share of the largest coordinate from a plane lie in it.

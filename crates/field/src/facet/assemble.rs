@@ -16,7 +16,7 @@ use super::vertex::{PlacedVertex, Solver, Surfaces};
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_num::Vec3;
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 use std::collections::{BTreeMap, BTreeSet};

@@ -2,7 +2,7 @@
 
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 use rustc_hash::FxHashMap;
 
 /// Pairs of faces of a triangle mesh that cut each other, in order, by the signs of volumes; pairs

@@ -7,7 +7,7 @@ use crate::FieldError;
 use crate::expr::interval::Interval;
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -25,7 +25,7 @@ const BYTES: u64 = 60_000;
 /// the cells, of which triangles show nothing.
 const ROUGH: f64 = 0.75;
 const CELLS: usize = SIDE * SIDE * SIDE;
-const MOST_ROUGH: usize = 1000;
+const MOST_ROUGH: usize = 128;
 
 struct Division<'a> {
     grid: &'a Grid,

@@ -15,7 +15,7 @@ use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_budget::{Budget, Spent};
 use moldloft_num::{Box3, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 use std::sync::Arc;

@@ -15,7 +15,7 @@ use crate::set::Leaf;
 use crate::{FieldError, Primitive, Set};
 use moldloft_budget::Budget;
 use moldloft_num::{Box3, Real, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 use std::sync::Arc;
 
 /// How much work integrals may be.

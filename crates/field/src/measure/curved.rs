@@ -21,7 +21,7 @@ use crate::facet::wires::FacetWire;
 use crate::set::Leaf;
 use crate::{Hessian, Primitive, ValueGradient};
 use moldloft_num::{Box3, Real, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 use crate::facet::vertex::{Solver, Surfaces};
 

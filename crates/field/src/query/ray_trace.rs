@@ -4,7 +4,7 @@ use crate::facet::FacetOptions;
 use crate::query::ray::{Caster, Hit, Ray};
 use crate::{FieldError, Set};
 use moldloft_num::{Box3, Real, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 /// A light.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use super::settings::{Hyperbolic, MarchBoundary};
 use crate::{GridError, SurfaceGrid};
 use moldloft_budget::Budget;
 use moldloft_num::{Real, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 /// The layers of a grid marched off a surface, along its normals s_i x s_j: the surface first.
 ///

@@ -55,6 +55,9 @@ fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T
     })
 }
 
+/// The longest text that a program may make: as long as the longest program.
+const LONGEST_TEXT: usize = 64 << 20;
+
 pub(crate) fn shapes_differ(a: ArrayShape, b: ArrayShape) -> Diagnostic {
     Diagnostic::error("shapes-differ", format!("shapes differ: {a} and {b}"))
         .expected("equal shapes, or a single value on one side")
@@ -218,6 +221,13 @@ pub(crate) fn binary<T: Real>(
         return outcome;
     }
     if let (BinaryOp::Add, Value::Text(a), Value::Text(b)) = (op, a, b) {
+        let length = a.len() + b.len();
+        if length > LONGEST_TEXT {
+            return Err(Diagnostic::error("too-many-elements", "the text is too long")
+                .expected(format!("at most {LONGEST_TEXT} bytes"))
+                .found(format!("{length}"))
+                .help("write long texts to a file, piece by piece"));
+        }
         return Ok(Value::text(&format!("{a}{b}")));
     }
     if let Some(value) = of_texts(op, a, b) {

@@ -1,7 +1,7 @@
 //! Quality of the cells of volume blocks.
 
 use super::Blocks;
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 
 /// The cell of a block with the smallest scaled Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq)]

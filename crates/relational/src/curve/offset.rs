@@ -80,6 +80,16 @@ struct ParallelCurve<T: Real> {
 }
 
 impl<T: Real> ParallelCurve<T> {
+    /// The curve that is no parallel in this plane itself, and the distance from it.
+    fn base(&self) -> (&dyn Curve<T>, T) {
+        match self.curve.parallel_to() {
+            Some((base, normal, distance)) if (0..3).all(|k| normal[k].bits_eq(self.normal[k])) => {
+                (base, distance + self.distance)
+            }
+            _ => (&*self.curve, self.distance),
+        }
+    }
+
     /// The unit vector sideways of a direction, and its derivative along the rate of that.
     fn sideways(&self, d: Vec3<T>, rate: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
         let (a, b) = (d.cross(self.normal), rate.cross(self.normal));
@@ -104,7 +114,7 @@ impl<T: Real> ParallelCurve<T> {
     /// The third derivative of the curve at `t`, from second derivatives beside it in its span:
     /// curves give two derivatives only, and this one counts in the offset's second alone. The
     /// rule is exact for polynomials of degree 6.
-    fn third(&self, t: T) -> Vec3<T> {
+    fn third(&self, curve: &dyn Curve<T>, t: T) -> Vec3<T> {
         let k = self.ends[1..self.ends.len() - 1].partition_point(|end| *end <= t.re());
         let (low, high) = (self.ends[k], self.ends[k + 1]);
         let h = (high - low).min(1.0) * 2e-3;
@@ -120,7 +130,7 @@ impl<T: Real> ParallelCurve<T> {
         };
         let mut sum = Vec3::zero();
         for (step, weight) in steps.into_iter().zip(weights).filter(|(_, w)| *w != 0.0) {
-            let second = self.curve.jet(t + step * h, Order::Second)[2];
+            let second = curve.jet(t + step * h, Order::Second)[2];
             sum += second * T::from(weight / (12.0 * h));
         }
         sum
@@ -130,25 +140,31 @@ impl<T: Real> ParallelCurve<T> {
 impl<T: Real> Curve<T> for ParallelCurve<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         let of_curve = if order == Order::Zero { Order::First } else { Order::Second };
-        let [p, d, dd] = self.curve.jet(t, of_curve);
+        let (curve, distance) = self.base();
+        let [p, d, dd] = curve.jet(t, of_curve);
         let (e, turning) = self.sideways(d, dd);
-        let mut jet = [p + e * self.distance, Vec3::zero(), Vec3::zero()];
+        let mut jet = [p + e * distance, Vec3::zero(), Vec3::zero()];
         if order >= Order::First {
-            jet[1] = d + turning * self.distance;
+            jet[1] = d + turning * distance;
         }
         if order == Order::Second {
             // With a = T x n and e = a / |a|: e'' from a'' by the quotient rule.
-            let (b, c) = (dd.cross(self.normal), self.third(t).cross(self.normal));
+            let (b, c) = (dd.cross(self.normal), self.third(curve, t).cross(self.normal));
             let size = d.cross(self.normal).norm();
             let rate = e.dot(b);
             let bend = turning.dot(b) + e.dot(c);
             let second = (c - turning * rate - e * bend - turning * rate) / size;
-            jet[2] = dd + second * self.distance;
+            jet[2] = dd + second * distance;
         }
         jet
     }
 
     fn breaks(&self) -> Vec<f64> {
         self.ends[1..self.ends.len() - 1].to_vec()
+    }
+
+    fn parallel_to(&self) -> Option<(&dyn Curve<T>, Vec3<T>, T)> {
+        let (curve, distance) = self.base();
+        Some((curve, self.normal, distance))
     }
 }

@@ -63,6 +63,9 @@ impl<T: Real> Build<T> for PolySnake<T> {
     }
 }
 
+/// The most pieces of a chain, those of chains within it included.
+const MOST_PARTS: usize = 200_000;
+
 fn too_few(noun: &str, field: FieldId) -> CallError {
     CallError::new("too-few-items", format!("a chain needs at least 1 {noun}"))
         .expected(format!("at least 1 {noun}"))
@@ -83,6 +86,14 @@ fn chain<T: Real>(
     let ends = shares(curves.len(), breaks, at)?;
     for k in 1..curves.len() {
         check_joint(&curves, k, surface.is_some(), context.tolerance, pieces)?;
+    }
+    // Chains of chains double with each line of a program.
+    let parts: usize = curves.iter().map(|curve| curve.joints().len() + 1).sum();
+    if parts > MOST_PARTS {
+        return Err(CallError::new("too-many-elements", "the chain has too many pieces")
+            .expected(format!("at most {MOST_PARTS} pieces, those of its pieces included"))
+            .found(parts.to_string())
+            .in_field(pieces));
     }
     let trace = trace(&curves, &ends);
     let shape = CompositeCurve { curves, ends, trace };

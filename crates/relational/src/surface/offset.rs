@@ -133,11 +133,26 @@ struct Parallel<T: Real> {
     edges: Edges<T>,
 }
 
+impl<T: Real> Parallel<T> {
+    /// The surface that is no parallel itself, and the distance from it.
+    fn base(&self) -> (&dyn Surface<T>, T) {
+        match self.surface.parallel_to() {
+            Some((base, distance)) => (base, distance + self.distance),
+            None => (&*self.surface, self.distance),
+        }
+    }
+}
+
 impl<T: Real> SurfaceFormula for Parallel<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
-        beside(&*self.surface, J::fixed(self.distance), u, v)
+        let (surface, distance) = self.base();
+        beside(surface, J::fixed(distance), u, v)
+    }
+
+    fn parallel_to(&self) -> Option<(&dyn Surface<T>, T)> {
+        Some(self.base())
     }
 
     fn breaks(&self) -> [Vec<f64>; 2] {
