@@ -264,7 +264,8 @@ def to_ocp(model: Model, *, accuracy: float | None = None) -> Any:
 def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldloft") -> list[Any]:
     """Adds the exact surfaces to a new model of Gmsh; the entities as (dimension, tag).
 
-    Patches become physical groups by name. Gmsh is initialised when it is not.
+    Faces become physical groups by the names of their surfaces; those that Gmsh divides or mends
+    are in the group ``faces``. Gmsh is initialised when it is not.
 
     Parameters
     ----------
@@ -281,6 +282,7 @@ def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldlof
         Pairs ``(dimension, tag)``.
     """
     from moldloft import _core
+    from moldloft.cad.gmsh_names import names_of_faces
 
     gmsh = _module("gmsh", "gmsh")
     if not gmsh.isInitialized():
@@ -295,11 +297,12 @@ def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldlof
         path = Path(folder) / f"{name}.step"
         model.write(path, format="step", tolerance=accuracy)
         entities: list[Any] = gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
+        text = path.read_text(encoding="utf-8")
     gmsh.model.occ.synchronize()
+    known = names_of_faces(gmsh, text)
     groups: dict[str, list[int]] = {}
-    for dimension, tag in gmsh.model.getEntities(2):
-        label = gmsh.model.getEntityName(dimension, tag).split("/")[-1] or "faces"
-        groups.setdefault(label, []).append(tag)
+    for _, tag in gmsh.model.getEntities(2):
+        groups.setdefault(known.get(tag, "faces"), []).append(tag)
     for label, tags in groups.items():
         gmsh.model.addPhysicalGroup(2, tags, name=label)
     return entities

@@ -40,6 +40,7 @@ def names() -> list[str]:
 GMSH = """
 import json, sys
 import gmsh, numpy as np
+from moldloft.cad.gmsh_names import names_of_faces
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
 gmsh.option.setString("Geometry.OCCTargetUnit", "M")
@@ -57,19 +58,22 @@ def whole(tag, parts=48):
     return float(np.linalg.norm(np.cross(slopes[:, 0], slopes[:, 1]), axis=1) @ w)
 wanted = set(json.loads(sys.argv[2]))
 faces = []
+known = names_of_faces(gmsh, open(sys.argv[1]).read(), float(sys.argv[3]))
 for _, tag in gmsh.model.getEntities(2):
-    name = gmsh.model.getEntityName(2, tag).split("/")[-1]
-    faces.append((name, gmsh.model.occ.getMass(2, tag), whole(tag) if name in wanted else None))
+    name = known.get(tag, "")
+    # The parameters of a plane face are not those of a rectangle.
+    is_whole = name in wanted and gmsh.model.getType(2, tag) != "Plane"
+    faces.append((name, gmsh.model.occ.getMass(2, tag), whole(tag) if is_whole else None))
 volumes = [gmsh.model.occ.getMass(3, tag) for _, tag in gmsh.model.getEntities(3)]
 print(json.dumps({"faces": faces, "volumes": volumes}))
 """
 
 
-def by_gmsh(path: Path, whole: list[str]) -> dict[str, list[float]]:
+def by_gmsh(path: Path, whole: list[str], unit: float) -> dict[str, list[float]]:
     """What Gmsh reads, in a process of its own: names and areas of faces, volumes."""
     pytest.importorskip("gmsh")
     done = subprocess.run(
-        [sys.executable, "-c", GMSH, str(path), json.dumps(whole)],
+        [sys.executable, "-c", GMSH, str(path), json.dumps(whole), repr(unit)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -118,10 +122,12 @@ def test_an_example_is_the_same_in_other_programs(name: str, tmp_path: Path) -> 
     # some surfaces of revolution: OCCT by the same rule gives the same.
     rule = GProp_GProps()
     BRepGProp.SurfaceProperties_s(found.shape, rule)
-    untrimmed = [n for n in shapes if model[n].kind != "TrimSurf"][:6]
-    gmsh = by_gmsh(step, untrimmed)
+    # Parts of surfaces are trimmed faces of these.
+    untrimmed = [n for n in shapes if model[n].kind not in ("TrimSurf", "SubSurf")][:6]
+    gmsh = by_gmsh(step, untrimmed, unit)
     assert len(gmsh["faces"]) == faces and len(gmsh["volumes"]) == solids
     assert sum(f[1] for f in gmsh["faces"]) == pytest.approx(rule.Mass(), rel=1e-9)
+    assert all(label for label, *_ in gmsh["faces"])
     for label, _, whole in gmsh["faces"]:
         if whole is not None:
             assert whole == pytest.approx(model[label].area * unit**2, rel=1e-5)
