@@ -14,7 +14,8 @@ import moldloft
 HULL = """
     Model info(units = "m t", symmetry = "y"); param float beam = 2 in [1, 3];
     BCurve keel({{0, 0, -1}, {3, 0, -1.5}, {6, 0, -1}}, divisions = 12);
-    BCurve rail({{0, 0, 1}, {3, beam, 1}, {6, 0, 1}}); RuledSurf side(keel, rail, divisions = {12, 6});
+    BCurve rail({{0, 0, 1}, {3, beam, 1}, {6, 0, 1}});
+    RuledSurf side(keel, rail, divisions = {12, 6});
 """
 
 

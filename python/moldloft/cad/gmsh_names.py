@@ -56,9 +56,7 @@ def names_of_faces(gmsh: Any, text: str, unit: float = 1.0) -> dict[int, str]:
 
 def _alike(a: NDArray[np.float64], b: NDArray[np.float64], near: float) -> bool:
     apart = np.linalg.norm(a[:, None] - b[None], axis=-1)
-    return bool(
-        not len(a) or (apart.min(axis=0).max() <= near and apart.min(axis=1).max() <= near)
-    )
+    return bool(not len(a) or (apart.min(axis=0).max() <= near and apart.min(axis=1).max() <= near))
 
 
 def _corners_in_file(text: str) -> list[tuple[str, NDArray[np.float64]]]:
