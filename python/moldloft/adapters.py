@@ -264,7 +264,7 @@ def to_ocp(model: Model, *, accuracy: float | None = None) -> Any:
 def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldloft") -> list[Any]:
     """Adds the exact surfaces to a new model of Gmsh; the entities as (dimension, tag).
 
-    Faces become physical groups by the names of their surfaces; those that Gmsh divides or mends
+    Faces become physical groups by the names of their surfaces; those that Gmsh divides
     are in the group ``faces``. Gmsh is initialised when it is not.
 
     Parameters
