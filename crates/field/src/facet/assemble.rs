@@ -30,6 +30,9 @@ pub(super) enum VertexKey {
     Face(u64),
 }
 
+/// Stands for a vertex that is none, or none any more.
+pub(super) const NO_VERTEX: u32 = u32::MAX;
+
 /// Triangles with the leaf whose surface they approximate.
 pub(super) struct Assembled {
     pub(super) positions: Vec<Vec3>,
@@ -37,8 +40,8 @@ pub(super) struct Assembled {
     pub(super) triangles: Vec<(u32, [u32; 3])>,
     /// Vertices of whose triangles nothing is known by construction, ascending, each with its cell.
     pub(super) doubtful: Vec<(u32, [usize; 3])>,
-    /// Cells with a vertex that is not on all its surfaces.
-    pub(super) blunt: Vec<[usize; 3]>,
+    /// Vertices that are not on all their surfaces, with their cells; no vertex ([`NO_VERTEX`]) where a surface has an edge of its own.
+    pub(super) blunt: Vec<(u32, [usize; 3])>,
 }
 
 /// What is done otherwise than the blocks have it.
@@ -158,7 +161,10 @@ impl<'a> Assembly<'a> {
                     doubtful.push((self.number(owner, k), cell()));
                 }
                 if vertex.blunt {
-                    blunt.push(cell());
+                    blunt.push((self.number(owner, k), cell()));
+                }
+                if vertex.creased {
+                    blunt.push((NO_VERTEX, cell()));
                 }
                 positions.push(vertex.placed.point);
                 surfaces.push(vertex.surfaces.clone());
@@ -168,7 +174,7 @@ impl<'a> Assembly<'a> {
             let (owner, k) = self.owner(vertex);
             let before = &blocks[owner].1.vertices[k];
             if on.len() < before.surfaces.len() || self.changes.merged.contains(&vertex) {
-                blunt.push(self.cell(owner, before.cell));
+                blunt.push((vertex, self.cell(owner, before.cell)));
             }
             positions[vertex as usize] = placed.point;
             surfaces[vertex as usize] = on.clone();

@@ -165,9 +165,10 @@ pub(super) fn compute(
                         registers,
                     };
                     match placement.vertices(&edges, &case.next) {
-                        PieceVertices::One { placed, surfaces, blunt } => {
+                        PieceVertices::One { placed, surfaces, blunt, creased } => {
                             let (cell, doubtful) = (small, pieces || placed.strayed);
-                            let vertex = CellVertex { placed, cell, doubtful, blunt, surfaces };
+                            let vertex =
+                                CellVertex { placed, cell, doubtful, blunt, creased, surfaces };
                             block.vertices.push(vertex);
                         }
                         PieceVertices::Several(mut split) => {
@@ -177,6 +178,7 @@ pub(super) fn compute(
                                     cell: small,
                                     doubtful: true,
                                     blunt: false,
+                                    creased: false,
                                     surfaces,
                                 };
                             let mut own = std::mem::take(&mut split.vertices).into_iter();

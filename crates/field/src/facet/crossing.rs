@@ -121,7 +121,8 @@ fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
     (x > 0.0 && y > 0.0 && z > 0.0) || (x < 0.0 && y < 0.0 && z < 0.0)
 }
 
-fn cut(names: [[u32; 3]; 2], points: [[Vec3; 3]; 2]) -> bool {
+/// True when two triangles, of vertices with these numbers, cut each other.
+pub(super) fn cut(names: [[u32; 3]; 2], points: [[Vec3; 3]; 2]) -> bool {
     // An edge can pierce the other triangle only if they share none of its ends.
     [(0, 1), (1, 0)].into_iter().any(|(s, t)| {
         (0..3).any(|k| {

@@ -18,8 +18,16 @@ pub(crate) struct Grid {
 }
 
 /// By which part of a cell the grid starts before the box, per axis: numbers without small
-/// multiples, so that the faces of ordinary models fall between the corners of the grid.
-const MARGIN: [f64; 3] = [0.381_966, 0.445_042, 0.414_214];
+/// multiples, so that the faces of ordinary models fall between the corners of the grid. The first is the usual
+/// one; the others are for bodies with edges that pass badly between its corners.
+const MARGINS: [[f64; 3]; PLACES] = [
+    [0.381_966, 0.445_042, 0.414_214],
+    [0.618_034, 0.198_062, 0.732_051],
+    [0.141_593, 0.718_282, 0.554_958],
+    [0.867_257, 0.577_216, 0.259_921],
+];
+/// How many places a grid may have.
+pub(super) const PLACES: usize = 4;
 
 /// The most cells along an axis: what the keys of edges can hold.
 const MOST: f64 = (1 << 19) as f64;
@@ -30,15 +38,21 @@ const APART: f64 = 64.0;
 impl Grid {
     /// Cells of side `step` over `over`.
     pub(crate) fn new(over: &Box3, step: f64) -> Result<Self, FieldError> {
+        Self::at(over, step, 0)
+    }
+
+    /// The same in one of a few places.
+    pub(super) fn at(over: &Box3, step: f64, place: usize) -> Result<Self, FieldError> {
+        let margin = MARGINS[place];
         let mut cells = [0; 3];
         for k in 0..3 {
-            let count = (over.high[k] - over.low[k]) / step + MARGIN[k] + 0.25;
+            let count = (over.high[k] - over.low[k]) / step + margin[k] + 0.25;
             if count >= MOST {
                 return Err(FieldError::TooFine { boxes: count * count, limit: MOST * MOST });
             }
             cells[k] = (count.ceil() as usize).div_ceil(SIDE) * SIDE;
         }
-        let origin = over.low - Vec3::from(MARGIN) * step;
+        let origin = over.low - Vec3::from(margin) * step;
         // Vertices are on their surfaces to 1e-13 of the box (1e-12 is promised), far from the origin to
         // the rounding of their coordinates.
         let far = over.low.norm().max(over.high.norm());
@@ -65,6 +79,11 @@ impl Grid {
     /// The block that a point lies in.
     pub(super) fn block_of(&self, p: Vec3) -> [u32; 3] {
         [0, 1, 2].map(|k| ((p[k] - self.origin[k]) / (self.step * SIDE as f64)).max(0.0) as u32)
+    }
+
+    /// The cell that a point lies in.
+    pub(super) fn cell_of(&self, p: Vec3) -> [usize; 3] {
+        [0, 1, 2].map(|k| ((p[k] - self.origin[k]) / self.step).max(0.0) as usize)
     }
 
     /// The box of a cell.

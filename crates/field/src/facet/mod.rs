@@ -22,12 +22,14 @@ mod padded_bounds;
 mod place_vertices;
 mod refine;
 mod remove_intersections;
+mod sharpen;
 pub(crate) mod sheets;
 pub(crate) mod shells;
 mod simplify;
 mod slivers;
 mod split;
 pub(crate) mod types;
+mod unfold;
 mod unresolved;
 pub(crate) mod vertex;
 pub(crate) mod wires;
@@ -194,7 +196,7 @@ pub(crate) fn facet_within(
             let part = 2f64.powi(LEVEL_OF_SIDE - level.min(1000) as i32);
             let step = step_of(level).min(shortest(&over).1 * part.min(1.0));
             check(step)?;
-            let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+            let facets = sharpest(set, &over, step, options, before)?;
             // Integrals have their own means for what is thin.
             if options.sharp {
                 return Ok(facets);
@@ -205,7 +207,7 @@ pub(crate) fn facet_within(
             let step = step_of(depth);
             check(step)?;
             thin(step)?;
-            let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+            let facets = sharpest(set, &over, step, options, before)?;
             // The cells are as asked; bodies that only touch are parted all the same.
             if options.sharp {
                 return Ok(facets);
@@ -361,6 +363,32 @@ fn own_leaves(capped: &Compiled<f64>) -> usize {
     capped.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0)
 }
 
+/// Facets of more cells than this are not made again with the grid in other places.
+const FEW_CELLS: usize = 60_000;
+
+/// The facets with the fewest edges that are cut off, and cells whose triangles cut others, of a few places of the grid.
+fn sharpest(
+    set: &Set,
+    over: &Box3,
+    step: f64,
+    options: &FacetOptions,
+    before: Option<&Facets>,
+) -> Result<Facets, FieldError> {
+    let mut best = at_step(set, over, step, f64::INFINITY, options, before)?;
+    let cost = |f: &Facets| f.blunt.len() + f.undecided.len();
+    for place in 1..grid::PLACES {
+        if options.sharp || cost(&best) == 0 || best.cells > FEW_CELLS {
+            break;
+        }
+        let grid = Grid::at(over, step, place)?;
+        let other = on_grid(set, over, grid, f64::INFINITY, options, before)?;
+        if cost(&other) < cost(&best) {
+            best = other;
+        }
+    }
+    Ok(best)
+}
+
 fn at_step(
     set: &Set,
     over: &Box3,
@@ -369,7 +397,18 @@ fn at_step(
     options: &FacetOptions,
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
-    let grid = Grid::new(over, step)?;
+    on_grid(set, over, Grid::new(over, step)?, accuracy, options, before)
+}
+
+fn on_grid(
+    set: &Set,
+    over: &Box3,
+    grid: Grid,
+    accuracy: f64,
+    options: &FacetOptions,
+    before: Option<&Facets>,
+) -> Result<Facets, FieldError> {
+    let step = grid.step;
     let compiled = capped(set, over)?.compiled();
     let reuse = before
         .filter(|b| b.memory.grid == grid)
@@ -380,6 +419,7 @@ fn at_step(
     let mut made = remove_intersections::assembled(&grid, &leaves, &divided.blocks, options.sharp);
     let rule = RefinementRule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
     let tapes = Tapes::new(&grid, &divided.blocks, &compiled.tape);
+    sharpen::sharpen(&mut made, &grid, &leaves, &tapes);
     options.budget.grow(made.triangles.len() as u64 * REFINEMENT_BYTES)?;
     refine(&mut made, &leaves, &tapes, rule, &options.budget)?;
     if !options.sharp {
@@ -409,7 +449,7 @@ fn at_step(
         true => cells(&grid, made.doubtful.iter().map(|d| d.1).collect()),
         false => undecided(&grid, &mesh, &made.doubtful),
     };
-    let blunt = cells(&grid, made.blunt);
+    let blunt = cells(&grid, made.blunt.into_iter().map(|b| b.1).collect());
     Ok(Facets {
         mesh,
         own_leaves,

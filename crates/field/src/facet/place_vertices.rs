@@ -27,8 +27,8 @@ pub(super) struct VertexPlacer<'a> {
 
 /// What a piece of surface comes to.
 pub(super) enum PieceVertices {
-    /// One vertex, on these surfaces; `blunt` if it should be on more.
-    One { placed: PlacedVertex, surfaces: Surfaces, blunt: bool },
+    /// One vertex, on these surfaces; `blunt` if it should be on more, `creased` if one of them has an edge of its own.
+    One { placed: PlacedVertex, surfaces: Surfaces, blunt: bool, creased: bool },
     /// Several.
     Several(Split),
 }
@@ -68,7 +68,7 @@ impl VertexPlacer<'_> {
                         let wanted = std::mem::take(&mut surfaces);
                         let (placed, surfaces) = self.blunt(edges);
                         let blunt = self.away(placed.point, &wanted);
-                        return PieceVertices::One { placed, surfaces, blunt };
+                        return PieceVertices::One { placed, surfaces, blunt, creased: false };
                     }
                     placed = strayed;
                 }
@@ -92,19 +92,32 @@ impl VertexPlacer<'_> {
             (placed, surfaces) = (PlacedVertex { strayed: placed.strayed, ..other }, more);
         }
         let creased = |s: &u32| self.leaves[*s as usize].primitive.tape().creased_in(self.cell);
-        let blunt = surfaces.iter().any(creased);
-        PieceVertices::One { placed, surfaces, blunt }
+        let creased = surfaces.iter().any(creased);
+        PieceVertices::One { placed, surfaces, blunt: false, creased }
     }
 
-    /// The apex of the cone that a piece of surface shows, if it is in the cell and on the set's surface.
+    /// The apex of a cone that a piece of surface shows, if it is in the cell, on the others and on the set's surface.
     fn apex(&mut self, surfaces: &[u32]) -> Option<Vec3> {
-        let [leaf] = surfaces else { return None };
-        let Form::Cone { axis, .. } = self.leaves[*leaf as usize].primitive.form() else {
-            return None;
-        };
-        let (p, cell) = (axis.point, self.cell);
-        let within = (0..3).all(|k| cell.low[k] <= p[k] && p[k] <= cell.high[k]);
-        (within && self.blocking_leaf(p, surfaces).is_none()).then_some(p)
+        let cell = self.cell;
+        for &leaf in surfaces {
+            let Form::Cone { axis, .. } = self.leaves[leaf as usize].primitive.form() else {
+                continue;
+            };
+            let p = axis.point;
+            let within = (0..3).all(|k| cell.low[k] <= p[k] && p[k] <= cell.high[k]);
+            let goal = self.goal;
+            let on = |solver: &mut Solver, other: u32| {
+                let g = solver.gradient(self.leaves[other as usize].primitive.tape(), p);
+                g.value.abs() <= goal * g.slope.norm()
+            };
+            if within
+                && surfaces.iter().all(|&o| o == leaf || on(&mut *self.solver, o))
+                && self.blocking_leaf(p, surfaces).is_none()
+            {
+                return Some(p);
+            }
+        }
+        None
     }
 
     /// True when a point is further from one of the surfaces than may go unsaid.

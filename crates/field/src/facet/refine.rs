@@ -65,7 +65,7 @@ impl<'a> Tapes<'a> {
         Self { grid, at: blocks.iter().map(|(tape, b)| (b.at, &**tape)).collect(), whole }
     }
 
-    fn at(&self, p: Vec3) -> &ExprTape<f64> {
+    pub(super) fn at(&self, p: Vec3) -> &ExprTape<f64> {
         self.at.get(&self.grid.block_of(p)).copied().unwrap_or(self.whole)
     }
 }

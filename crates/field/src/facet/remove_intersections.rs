@@ -1,16 +1,17 @@
 //! Triangles without crossings: vertices that make triangles cut others go where they do no harm.
 //!
-//! First the polygons about them become fans about the crossings of the grid, which are on the surface. Then
+//! First vertices are joined otherwise ([`unfold`]). Then the polygons about them become fans about the crossings of the grid, which are on the surface. Then
 //! vertices outside their cells, on an edge that passes beside, go back into them, onto one surface; pieces of
 //! surface with several vertices get one; in cells with several pieces of surface, vertices go near their
 //! crossings. What remains is reported as undecided.
 
-use super::assemble::{Assembled, Assembly};
+use super::assemble::{Assembled, Assembly, NO_VERTEX};
 use super::cell::start_corner;
 use super::crossing::crossings;
 use super::grid::Grid;
 use super::place_vertices::{VertexPlacer, nearest};
 use super::types::{FacetBlock, Ring};
+use super::unfold::unfold;
 use super::vertex::{PlacedVertex, Solver, Surfaces};
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
@@ -73,15 +74,25 @@ pub(super) fn assembled(
     let mut made = assembly.triangles();
     // After the first round only triangles near what moved, and pairs that were left, are looked at again.
     let mut changed: Option<FxHashSet<u32>> = None;
+    // What is joined otherwise is so in the triangles at hand only.
+    let mut unfolded: FxHashSet<u32> = FxHashSet::default();
     for _ in 0..if sharp { 0 } else { ROUNDS } {
         let corners = |f: usize| made.triangles[f].1;
-        let pairs = match &changed {
+        let mut pairs = match &changed {
             None => crossing(&made.positions, made.triangles.len(), corners, &made.doubtful),
             Some(changed) => crossing_near(&made, changed),
         };
         if pairs.is_empty() {
             break;
         }
+        if let Some(touched) = unfold(&mut made, grid, leaves, &pairs) {
+            pairs = crossing_near(&made, &touched);
+            unfolded.extend(touched.into_iter().filter(|v| *v < assembly.count));
+            if pairs.is_empty() {
+                break;
+            }
+        }
+        let corners = |f: usize| made.triangles[f].1;
         let cut = pairs.iter().flatten().flat_map(|&f| corners(f));
         let mut near: FxHashSet<u32> = cut.filter(|v| *v < assembly.count).collect();
         let doubtful =
@@ -116,10 +127,11 @@ pub(super) fn assembled(
                 assembly.changes.moved.insert(way.vertex, way.place);
             }
         }
+        near.extend(&unfolded);
         changed = Some(near);
         made = assembly.triangles();
     }
-    if !assembly.changes.merged.is_empty() {
+    if !assembly.changes.merged.is_empty() || !unfolded.is_empty() {
         made.compact();
     }
     made
@@ -213,6 +225,10 @@ impl Assembled {
         });
         for (_, t) in &mut self.triangles {
             *t = t.map(|v| number[v as usize]);
+        }
+        // What stood for a cut edge and was drawn onto another vertex still does.
+        for (v, _) in self.blunt.iter_mut().filter(|b| b.0 != NO_VERTEX) {
+            *v = number[*v as usize];
         }
         self.doubtful.retain(|d| kept(d.0 as usize));
         self.doubtful.iter_mut().for_each(|d| d.0 = number[d.0 as usize]);

@@ -72,6 +72,8 @@ pub(super) struct CellVertex {
     pub(super) doubtful: bool,
     /// True when it is not on all the surfaces that the crossings show.
     pub(super) blunt: bool,
+    /// True when one of its surfaces has an edge of its own in the cell.
+    pub(super) creased: bool,
     pub(super) surfaces: Surfaces,
 }
 

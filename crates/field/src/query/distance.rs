@@ -120,6 +120,8 @@ impl Ord for Pair {
 const MOST: usize = 40_000;
 /// Boxes are halved this often at most.
 const DEPTH: u32 = 60;
+/// How often the nearest points are sought by turns at the end.
+const TURNS: usize = 100;
 
 /// The distance of two boxes, rounded down, and the points of them that are that near.
 fn apart(a: &Sides, b: &Sides) -> (f64, [Vec3; 2]) {
@@ -201,8 +203,7 @@ pub fn distance(
         if let Some((found, [p, q])) = best
             && (distance >= found - accuracy || seen >= MOST)
         {
-            let at_least = distance.min(found);
-            return Ok(Some(SetDistance { distance: found, at_least, first: p, second: q }));
+            return Ok(Some(result(sets, (found, [p, q]), distance, near)));
         }
         seen += 1;
         if seen > 10 * MOST {
@@ -250,12 +251,33 @@ pub fn distance(
             }
         }
     }
-    Ok(best.map(|(distance, [p, q])| SetDistance {
-        distance,
-        at_least: (distance - accuracy).max(proved).min(distance),
-        first: p,
-        second: q,
-    }))
+    let at_least = |distance: f64| (distance - accuracy).max(proved);
+    Ok(best.map(|best| result(sets, best, at_least(best.0), near)))
+}
+
+/// The best pair, as near as points of the surfaces there are: nearest ones of each by turns, until neither moves.
+fn result(
+    sets: [&Set; 2],
+    (found, pair): (f64, [Vec3; 2]),
+    at_least: f64,
+    near: f64,
+) -> SetDistance {
+    let (mut distance, mut points) = (found, pair);
+    for _ in 0..TURNS {
+        let before = distance;
+        for k in 0..2 {
+            let foot = foot::polished(sets[k], points[1 - k], points[k], near);
+            let now = foot.distance(points[1 - k]);
+            if now < distance && sets[k].member(foot, near) != crate::Membership::Air {
+                (points[k], distance) = (foot, now);
+            }
+        }
+        if before - distance <= 1e-15 * before {
+            break;
+        }
+    }
+    let [first, second] = points;
+    SetDistance { distance, at_least: at_least.min(distance), first, second }
 }
 
 /// Points of both sets near the given ones: the points themselves where they are in the sets, else

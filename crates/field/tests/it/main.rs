@@ -4,6 +4,7 @@ mod blends;
 mod certified;
 mod common;
 mod contacts;
+mod csg;
 mod distances;
 mod faces;
 mod facets;

@@ -1,0 +1,394 @@
+//! Triangles that cut each other, joined otherwise: their vertices are where they should be, most often.
+//!
+//! A vertex on an edge that passes beside its cell lies between those of other cells, and the polygons round it fold over. Turned
+//! diagonals and vertices that are drawn together along an edge of the body unfold them: the edge stays where it is. What does
+//! not get better by either is left to those who move vertices.
+
+use super::assemble::Assembled;
+use super::crossing::cut;
+use super::grid::Grid;
+use super::vertex::Solver;
+use crate::set::Leaf;
+use moldloft_num::{Box3, Vec3};
+use rustc_hash::{FxHashMap, FxHashSet};
+use smallvec::SmallVec;
+
+/// A triangle faces its surface when the cosine between them is at least this.
+const FACING: f64 = 0.2;
+/// The least height of a new triangle as a part of its longest side, unless those before it were thinner.
+const THIN: f64 = 1e-3;
+/// How often a pair is looked at.
+const STEPS: usize = 6;
+/// How often all pairs are.
+const ROUNDS: usize = 4;
+/// So many rings round what cuts are known.
+const RINGS: usize = 3;
+
+pub(super) type Corners = [u32; 3];
+
+/// What becomes of some triangles.
+pub(super) struct Change {
+    /// New corners, with the surface, of triangles, …
+    pub(super) made: SmallVec<[(usize, u32, Corners); 8]>,
+    /// … and those that go.
+    pub(super) gone: SmallVec<[usize; 2]>,
+}
+
+impl Change {
+    fn own(&self) -> impl Iterator<Item = usize> + '_ {
+        self.made.iter().map(|m| m.0).chain(self.gone.iter().copied())
+    }
+}
+
+pub(super) struct Folds<'a> {
+    pub(super) made: &'a mut Assembled,
+    pub(super) leaves: &'a [Leaf],
+    pub(super) solver: Solver,
+    normals: FxHashMap<(u32, u32), Vec3>,
+    /// The triangles of each vertex near what cuts.
+    pub(super) round: FxHashMap<u32, Vec<usize>>,
+    /// Triangles by place.
+    bins: FxHashMap<[i64; 3], Vec<usize>>,
+    size: f64,
+    gone: FxHashSet<usize>,
+    /// Vertices of changed triangles.
+    touched: FxHashSet<u32>,
+}
+
+/// Joins the vertices of these pairs of triangles otherwise where less is cut then. If that is anywhere: the vertices of the pairs
+/// and of all triangles that changed.
+pub(super) fn unfold(
+    made: &mut Assembled,
+    grid: &Grid,
+    leaves: &[Leaf],
+    pairs: &[[usize; 2]],
+) -> Option<FxHashSet<u32>> {
+    let of_pairs: Vec<u32> = pairs.iter().flatten().flat_map(|&t| made.triangles[t].1).collect();
+    let mut folds = Folds::about(made, leaves, &of_pairs);
+    for _ in 0..ROUNDS {
+        let before = folds.touched.len();
+        pairs.iter().for_each(|pair| folds.cure(*pair));
+        if folds.touched.len() == before {
+            break;
+        }
+    }
+    let mut touched = folds.done(grid)?;
+    touched.extend(of_pairs);
+    Some(touched)
+}
+
+impl<'a> Folds<'a> {
+    /// What is round some vertices.
+    pub(super) fn about(made: &'a mut Assembled, leaves: &'a [Leaf], seeds: &[u32]) -> Self {
+        let mut marked = vec![false; made.positions.len()];
+        seeds.iter().for_each(|&v| marked[v as usize] = true);
+        let mut near = Vec::new();
+        for ring in 0..RINGS {
+            let one = |v: &u32| marked[*v as usize];
+            near = (0..made.triangles.len())
+                .filter(|&t| made.triangles[t].1.iter().any(one))
+                .collect();
+            if ring + 1 < RINGS {
+                for &t in &near {
+                    made.triangles[t].1.iter().for_each(|&v| marked[v as usize] = true);
+                }
+            }
+        }
+        let mut round: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
+        let (mut sum, mut count) = (0.0, 0.0);
+        for &t in &near {
+            let corners = made.triangles[t].1;
+            for v in corners.into_iter().filter(|&v| marked[v as usize]) {
+                round.entry(v).or_default().push(t);
+            }
+            let [p, q, _] = corners.map(|v| made.positions[v as usize]);
+            (sum, count) = (sum + p.distance(q), count + 1.0);
+        }
+        let mut folds = Self {
+            made,
+            leaves,
+            solver: Solver::default(),
+            normals: FxHashMap::default(),
+            round,
+            bins: FxHashMap::default(),
+            size: (2.0 * sum / f64::max(count, 1.0)).max(f64::MIN_POSITIVE),
+            gone: FxHashSet::default(),
+            touched: FxHashSet::default(),
+        };
+        near.iter().for_each(|&t| folds.file(t));
+        folds
+    }
+
+    /// Leaves out the triangles that went, and says of which vertices nothing is known any more, if anything changed: by
+    /// construction nothing is known of new triangles.
+    pub(super) fn done(self, grid: &Grid) -> Option<FxHashSet<u32>> {
+        let Self { made, gone, touched, .. } = self;
+        if touched.is_empty() {
+            return None;
+        }
+        if !gone.is_empty() {
+            let mut k = 0;
+            made.triangles.retain(|_| {
+                k += 1;
+                !gone.contains(&(k - 1))
+            });
+        }
+        let known: FxHashSet<u32> = made.doubtful.iter().map(|d| d.0).collect();
+        let cell = |v: u32| (v, grid.cell_of(made.positions[v as usize]));
+        let new = touched.iter().filter(|v| !known.contains(v)).map(|&v| cell(v));
+        let new: Vec<_> = new.collect();
+        made.doubtful.extend(new);
+        made.doubtful.sort_unstable();
+        Some(touched)
+    }
+
+    pub(super) fn at(&self, v: u32) -> Vec3 {
+        self.made.positions[v as usize]
+    }
+
+    pub(super) fn points(&self, t: Corners) -> [Vec3; 3] {
+        t.map(|v| self.at(v))
+    }
+
+    fn file(&mut self, t: usize) {
+        let b = Box3::around(self.points(self.made.triangles[t].1));
+        for bin in bins(&b, self.size) {
+            self.bins.entry(bin).or_default().push(t);
+        }
+    }
+
+    pub(super) fn on(&self, v: u32, leaf: u32) -> bool {
+        self.made.surfaces[v as usize].contains(&leaf)
+    }
+
+    pub(super) fn normal(&mut self, v: u32, leaf: u32) -> Vec3 {
+        let p = self.at(v);
+        let (leaves, solver) = (self.leaves, &mut self.solver);
+        *self.normals.entry((v, leaf)).or_insert_with(|| {
+            let slope = solver.gradient(leaves[leaf as usize].primitive.tape(), p).slope;
+            let size = slope.norm();
+            if size > 0.0 && size.is_finite() { slope / size } else { Vec3::zero() }
+        })
+    }
+
+    /// The cosine between a triangle and the mean of the surface's normals at its corners.
+    pub(super) fn facing(&mut self, leaf: u32, t: Corners) -> f64 {
+        let [a, b, c] = self.points(t);
+        let n = (b - a).cross(c - a);
+        let mut mean = Vec3::zero();
+        for v in t {
+            mean += self.normal(v, leaf);
+        }
+        let size = n.norm() * mean.norm();
+        if size == 0.0 { -1.0 } else { n.dot(mean) / size }
+    }
+
+    /// How much is wrong with some triangles among all others but `own`: cuts and folds.
+    fn wrong(&mut self, all: &[(u32, Corners)], others: &[Corners]) -> usize {
+        let mut count = 0;
+        for (k, &(leaf, t)) in all.iter().enumerate() {
+            let points = self.points(t);
+            let b = Box3::around(points);
+            let rest = all[k + 1..].iter().map(|x| x.1).chain(others.iter().copied());
+            for other in rest {
+                let q = self.points(other);
+                if meet(&b, &Box3::around(q)) && cut([t, other], [points, q]) {
+                    count += 1;
+                }
+            }
+            count += usize::from(self.facing(leaf, t) < FACING);
+        }
+        count
+    }
+
+    /// By how much less is wrong after a change.
+    pub(super) fn gain(&mut self, change: &Change) -> isize {
+        let there = change.own().filter_map(|t| self.made.triangles.get(t).copied());
+        let old: SmallVec<[(u32, Corners); 8]> = there.collect();
+        let new: SmallVec<[(u32, Corners); 8]> = change.made.iter().map(|m| (m.1, m.2)).collect();
+        let of = |t: &(u32, Corners)| Box3::around(self.points(t.1));
+        let reach = old.iter().chain(&new).map(of).fold(Box3::EMPTY, Box3::union);
+        let mut found: Vec<usize> = bins(&reach, self.size)
+            .filter_map(|b| self.bins.get(&b))
+            .flatten()
+            .copied()
+            .filter(|t| !self.gone.contains(t) && !change.own().any(|o| o == *t))
+            .collect();
+        found.sort_unstable();
+        found.dedup();
+        let others: Vec<Corners> = found.into_iter().map(|t| self.made.triangles[t].1).collect();
+        self.wrong(&old, &others) as isize - self.wrong(&new, &others) as isize
+    }
+
+    /// Leaves what was known of a vertex that is none after all.
+    pub(super) fn forget(&mut self, v: u32) {
+        self.normals.retain(|k, _| k.0 != v);
+    }
+
+    /// The triangle in which an edge runs from `a` to `b`, and its third corner.
+    pub(super) fn beside(&self, a: u32, b: u32) -> Option<(usize, u32)> {
+        let mut found = None;
+        for &t in self.round.get(&a)? {
+            let c = self.made.triangles[t].1;
+            let k = c.iter().position(|&v| v == a)?;
+            if c[(k + 1) % 3] == b {
+                if found.is_some() {
+                    return None;
+                }
+                found = Some((t, c[(k + 2) % 3]));
+            }
+        }
+        found
+    }
+
+    fn joined(&self, a: u32, b: u32) -> bool {
+        let of = |t: &usize| self.made.triangles[*t].1.contains(&b);
+        self.round.get(&a).is_none_or(|all| all.iter().any(of))
+    }
+
+    pub(super) fn height(&self, t: Corners) -> f64 {
+        let p = self.points(t);
+        let longest = (0..3).map(|k| (p[(k + 1) % 3] - p[k]).norm_sq()).fold(0.0, f64::max);
+        if longest == 0.0 { 0.0 } else { (p[1] - p[0]).cross(p[2] - p[0]).norm() / longest }
+    }
+
+    /// The other diagonal of the two triangles beside an edge.
+    fn turned(&mut self, a: u32, b: u32) -> Option<Change> {
+        let ((s, c), (t, d)) = (self.beside(a, b)?, self.beside(b, a)?);
+        if c == d || self.joined(c, d) {
+            return None;
+        }
+        let pair = [s, t].map(|x| self.made.triangles[x].0);
+        let new = [[a, d, c], [d, b, c]];
+        let least = self.height([a, b, c]).min(self.height([b, a, d])).min(THIN);
+        let mut made = SmallVec::new();
+        for (slot, corners) in [s, t].into_iter().zip(new) {
+            if self.height(corners) < least {
+                return None;
+            }
+            let mut best: Option<(f64, u32)> = None;
+            for leaf in pair {
+                if corners.iter().all(|&v| self.on(v, leaf)) || pair[0] == pair[1] {
+                    let facing = self.facing(leaf, corners);
+                    if best.is_none_or(|b| facing > b.0) {
+                        best = Some((facing, leaf));
+                    }
+                }
+            }
+            made.push((slot, best?.1, corners));
+        }
+        Some(Change { made, gone: SmallVec::new() })
+    }
+
+    /// A vertex drawn onto another that lies on all of its surfaces.
+    fn drawn(&mut self, from: u32, to: u32) -> Option<Change> {
+        let all = |v: &u32| self.on(to, *v);
+        if !self.made.surfaces[from as usize].iter().all(all) {
+            return None;
+        }
+        let (own, others) = (self.round.get(&from)?, self.round.get(&to)?);
+        let ring = |all: &Vec<usize>| -> FxHashSet<u32> {
+            all.iter().flat_map(|&t| self.made.triangles[t].1).collect()
+        };
+        let (a, b) = (ring(own), ring(others));
+        let common = a.intersection(&b).filter(|v| ![from, to].contains(v)).count();
+        let gone: SmallVec<[usize; 2]> =
+            own.iter().copied().filter(|t| others.contains(t)).collect();
+        if common != 2 || gone.len() != 2 || a.iter().any(|v| !self.round.contains_key(v)) {
+            return None;
+        }
+        let mut made = SmallVec::new();
+        for &t in own.iter().filter(|t| !gone.contains(t)) {
+            let (leaf, old) = self.made.triangles[t];
+            let new = old.map(|v| if v == from { to } else { v });
+            if !self.on(to, leaf) || self.height(new) < THIN.min(self.height(old)) {
+                return None;
+            }
+            made.push((t, leaf, new));
+        }
+        Some(Change { made, gone })
+    }
+
+    pub(super) fn apply(&mut self, change: &Change) {
+        for t in change.own() {
+            let Some(&(_, old)) = self.made.triangles.get(t) else { continue };
+            self.touched.extend(old);
+            for v in old {
+                if let Some(all) = self.round.get_mut(&v) {
+                    all.retain(|x| *x != t);
+                }
+            }
+        }
+        self.gone.extend(change.gone.iter().copied());
+        for &(t, leaf, corners) in &change.made {
+            match self.made.triangles.get_mut(t) {
+                Some(slot) => *slot = (leaf, corners),
+                // They come in the order of their numbers.
+                None => self.made.triangles.push((leaf, corners)),
+            }
+            self.touched.extend(corners);
+            for v in corners {
+                if let Some(all) = self.round.get_mut(&v) {
+                    all.push(t);
+                }
+            }
+            self.file(t);
+        }
+    }
+
+    /// Changes what is about a pair of triangles as long as less is wrong then and they cut each other.
+    fn cure(&mut self, pair: [usize; 2]) {
+        for _ in 0..STEPS {
+            if pair.iter().any(|t| self.gone.contains(t)) {
+                return;
+            }
+            let both = pair.map(|t| self.made.triangles[t].1);
+            if !cut(both, both.map(|t| self.points(t))) {
+                return;
+            }
+            let mut edges: Vec<(u32, u32)> = Vec::new();
+            for t in both {
+                for k in 0..3 {
+                    let (a, b) = (t[k], t[(k + 1) % 3]);
+                    edges.push((a.min(b), a.max(b)));
+                    // Those of the triangle beyond.
+                    if let Some((_, c)) = self.beside(b, a) {
+                        edges.extend([(a.min(c), a.max(c)), (b.min(c), b.max(c))]);
+                    }
+                }
+            }
+            edges.sort_unstable();
+            edges.dedup();
+            let mut best: Option<(isize, Change)> = None;
+            for (a, b) in edges {
+                for way in 0..3 {
+                    let change = match way {
+                        0 => self.turned(a, b),
+                        1 => self.drawn(a, b),
+                        _ => self.drawn(b, a),
+                    };
+                    let Some(change) = change else { continue };
+                    let gain = self.gain(&change);
+                    if gain > 0 && best.as_ref().is_none_or(|b| gain > b.0) {
+                        best = Some((gain, change));
+                    }
+                }
+            }
+            let Some((_, change)) = best else { return };
+            self.apply(&change);
+        }
+    }
+}
+
+fn bins(b: &Box3, size: f64) -> impl Iterator<Item = [i64; 3]> + use<> {
+    let end = |x: f64| (x / size).floor() as i64;
+    let [x, y, z] = [0, 1, 2].map(|k| end(b.low[k])..=end(b.high[k]));
+    x.flat_map(move |i| {
+        let z = z.clone();
+        y.clone().flat_map(move |j| z.clone().map(move |k| [i, j, k]))
+    })
+}
+
+fn meet(a: &Box3, b: &Box3) -> bool {
+    (0..3).all(|k| a.low[k] <= b.high[k] && a.high[k] >= b.low[k])
+}
