@@ -8,7 +8,7 @@
 use super::assemble::{Assembled, NO_VERTEX};
 use super::grid::Grid;
 use super::refine::Tapes;
-use super::unfold::{Change, Corners, Folds};
+use super::unfold::{Change, Corners, FoldedRegion};
 use super::vertex::Surfaces;
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
@@ -33,7 +33,7 @@ struct Sector {
 }
 
 struct Sharpener<'a, 'm> {
-    folds: Folds<'m>,
+    folds: FoldedRegion<'m>,
     tapes: &'a Tapes<'a>,
     grid: &'a Grid,
 }
@@ -44,7 +44,7 @@ pub(super) fn sharpen(made: &mut Assembled, grid: &Grid, leaves: &[Leaf], tapes:
     if seeds.is_empty() {
         return;
     }
-    let mut work = Sharpener { folds: Folds::about(made, leaves, &seeds), tapes, grid };
+    let mut work = Sharpener { folds: FoldedRegion::about(made, leaves, &seeds), tapes, grid };
     let mut open = seeds;
     open.sort_unstable();
     open.dedup();

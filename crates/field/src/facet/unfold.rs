@@ -40,7 +40,7 @@ impl Change {
     }
 }
 
-pub(super) struct Folds<'a> {
+pub(super) struct FoldedRegion<'a> {
     pub(super) made: &'a mut Assembled,
     pub(super) leaves: &'a [Leaf],
     pub(super) solver: Solver,
@@ -64,7 +64,7 @@ pub(super) fn unfold(
     pairs: &[[usize; 2]],
 ) -> Option<FxHashSet<u32>> {
     let of_pairs: Vec<u32> = pairs.iter().flatten().flat_map(|&t| made.triangles[t].1).collect();
-    let mut folds = Folds::about(made, leaves, &of_pairs);
+    let mut folds = FoldedRegion::about(made, leaves, &of_pairs);
     for _ in 0..ROUNDS {
         let before = folds.touched.len();
         pairs.iter().for_each(|pair| folds.cure(*pair));
@@ -77,7 +77,7 @@ pub(super) fn unfold(
     Some(touched)
 }
 
-impl<'a> Folds<'a> {
+impl<'a> FoldedRegion<'a> {
     /// What is round some vertices.
     pub(super) fn about(made: &'a mut Assembled, leaves: &'a [Leaf], seeds: &[u32]) -> Self {
         let mut marked = vec![false; made.positions.len()];

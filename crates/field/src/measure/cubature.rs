@@ -117,7 +117,7 @@ impl Examiner<'_> {
     }
 }
 
-/// What one cell contributes; what is no number is half of the cell.
+/// What one cell contributes: half of the cell where the sum is not finite.
 fn part<T: Real>(
     combination: &Combination,
     sides: &[Interval; 3],
