@@ -10,6 +10,9 @@ use crate::{
     Naming, PointId, Projection, SketchObject,
 };
 
+/// Points that are farther apart than this part of the drawing are welded with a warning.
+const FAR_WELD: f64 = 0.05;
+
 impl SketchSession {
     pub(super) fn sketch(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let shape = |t: &str| ["2D", "3D"].iter().any(|d| t.eq_ignore_ascii_case(d));
@@ -279,8 +282,19 @@ impl SketchSession {
             )
             .about(ReplySubject::of("no-length").points([p])));
         }
+        let apart = object.drawing.distance(p, q);
+        let far = apart > FAR_WELD * object.drawing.extent();
         object.draw().weld(p.min(q), p.max(q));
         let gone = object.drop_dangling();
+        if far {
+            let text = format!(
+                "points {p} and {q} were {} apart on the page",
+                moldloft_syntax::number::plain(super::dims::rounded(apart))
+            );
+            let about = ReplySubject::of("far-weld").points([p, q]).value(apart);
+            let next = Some("UNDO, if they are two places".to_owned());
+            self.out.push(CommandReply { next, about, ..CommandReply::warning(text) });
+        }
         self.report_gone(gone);
         Ok(())
     }

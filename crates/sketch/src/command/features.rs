@@ -358,7 +358,7 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
         NoBody::Flaw(SolidDefect::Unresolved(e)) | NoBody::Combine(e) => combine_error(name, e),
         NoBody::Flaw(SolidDefect::NotFinite) => CommandError::new(
             300,
-            format!("{name} has coordinates that are not finite"),
+            format!("{name} has coordinates that are not finite, or beyond 1e60"),
             "CHECK the dimensions",
         )
         .about(ReplySubject::of("not-finite").names([name])),

@@ -781,7 +781,7 @@ pub(super) fn suggestions(
     layout.loose.iter().map(one).collect()
 }
 
-fn no_body_warning(object: &SketchObject, why: &NoBody) -> CommandReply {
+pub(super) fn no_body_warning(object: &SketchObject, why: &NoBody) -> CommandReply {
     let fault = super::features::no_body(object, why);
     let mut reply = CommandReply::warning(fault.text);
     (reply.code, reply.next) = (Some(fault.code).filter(|c| *c > 0), Some(fault.next));

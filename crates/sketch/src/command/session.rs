@@ -238,6 +238,8 @@ const LOOKS: [&str; 12] = [
     "END",
     "EXPORT",
 ];
+/// Commands that change what a body is made of and look at nothing themselves.
+const LOSES: [&str; 7] = ["WELD", "DELETE", "TYPE", "ALIGN", "UNALIGN", "LINE", "POLYLINE"];
 /// Undo goes back this far.
 const MAX_UNDO: usize = 500;
 /// Points, lines and faces that all states of the way back hold together, at most.
@@ -345,6 +347,9 @@ impl SketchSession {
             self.out.extend(note.map(CommandReply::note));
             self.dispatch(verb, command)
         });
+        if result.is_ok() && LOSES.contains(&verb) {
+            self.report_lost(&before);
+        }
         let mut replies = std::mem::replace(&mut self.out, outer);
         match result {
             Ok(()) => {
@@ -375,6 +380,30 @@ impl SketchSession {
             }
         }
         replies
+    }
+
+    /// Says so where the active object had a body before a command and has none now.
+    fn report_lost(&mut self, before: &SessionState) {
+        let Some(key) = self.state.active.clone() else { return };
+        let (Some(old), Some(new)) = (before.objects.get(&key), self.state.objects.get(&key))
+        else {
+            return;
+        };
+        let (old, new) = (Arc::clone(old), Arc::clone(new));
+        // Only a body that was looked at, so that a text of many commands does not make one for each.
+        let had = |w: &Arc<Worked>| {
+            Arc::ptr_eq(&w.object, &old) && w.body.get().is_some_and(Result::is_ok)
+        };
+        if Arc::ptr_eq(&old, &new) || !self.worked.iter().any(had) {
+            return;
+        }
+        let worked = self.worked(&new);
+        if let Err(why) = worked.body() {
+            let reply = super::info::no_body_warning(&new, why);
+            if self.out.iter().all(|r| r.text != reply.text) {
+                self.out.push(reply);
+            }
+        }
     }
 
     /// A state that UNDO goes back to.

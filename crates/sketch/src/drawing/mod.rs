@@ -189,27 +189,37 @@ impl Drawing {
         self.aligns.retain(|a| a.p != id && a.q != id);
     }
 
-    /// Pairs of points that lie closer than `reach` with no line between them, one of them the end of a
-    /// single line: kept, gone and their distance. Without a reach, half a hundredth of the drawing.
-    pub fn gaps(&self, reach: Option<f64>) -> Vec<(PointId, PointId, f64)> {
-        let mut uses: BTreeMap<PointId, usize> = BTreeMap::new();
-        self.lines.values().flat_map(|l| [l.p, l.q]).for_each(|p| *uses.entry(p).or_default() += 1);
+    /// The greater of width and height on the page.
+    pub fn extent(&self) -> f64 {
         let far = |f: &dyn Fn(&DrawnPoint) -> f64| {
             let all = self.points.values().map(f);
             let (low, high) =
                 all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
             (high - low).max(0.0)
         };
+        far(&|p| p.u).max(far(&|p| p.v))
+    }
+
+    /// How far two points are from each other on the page; 0 where one is missing.
+    pub fn distance(&self, p: PointId, q: PointId) -> f64 {
+        let (Some(a), Some(b)) = (self.points.get(&p), self.points.get(&q)) else { return 0.0 };
+        libm::hypot(a.u - b.u, a.v - b.v)
+    }
+
+    /// Pairs of points that lie closer than `reach` with no line between them, one of them the end of a
+    /// single line: kept, gone and their distance. Without a reach, half a hundredth of the drawing.
+    pub fn gaps(&self, reach: Option<f64>) -> Vec<(PointId, PointId, f64)> {
+        let mut uses: BTreeMap<PointId, usize> = BTreeMap::new();
+        self.lines.values().flat_map(|l| [l.p, l.q]).for_each(|p| *uses.entry(p).or_default() += 1);
         let given = reach.is_some();
-        let reach = reach.unwrap_or(0.005 * far(&|p| p.u).max(far(&|p| p.v)));
+        let reach = reach.unwrap_or(0.005 * self.extent());
         let mut order: Vec<(PointId, DrawnPoint)> =
             self.points.iter().map(|(k, p)| (*k, *p)).collect();
         order.sort_by(|a, b| a.1.u.total_cmp(&b.1.u).then(a.0.cmp(&b.0)));
         let mut pairs = Vec::new();
         for (k, &(a, p)) in order.iter().enumerate() {
             for &(b, q) in order[k + 1..].iter().take_while(|x| x.1.u - p.u <= reach) {
-                let distance =
-                    moldloft_num::Real::sqrt((p.u - q.u) * (p.u - q.u) + (p.v - q.v) * (p.v - q.v));
+                let distance = libm::hypot(p.u - q.u, p.v - q.v);
                 let single = [a, b].iter().any(|p| uses.get(p).copied().unwrap_or(0) == 1);
                 if distance <= reach && (given || single) && self.line_between(a, b).is_none() {
                     pairs.push((a.min(b), a.max(b), distance));

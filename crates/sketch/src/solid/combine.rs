@@ -277,7 +277,7 @@ fn add_facets<T: Real>(
         let ring: Vec<(u32, bool)> =
             body.faces[f].loops.iter().flatten().map(|h| (h.0 as u32 + first_edge, h.1)).collect();
         if let Some(surface) = body.surface(f) {
-            let strips = outline.strips(body, f);
+            let strips = outline.strips(f).to_vec();
             let outward = along_normal(&surface, &strips, &|v| at(v).re());
             source.borders.push((ring, outward));
             put(source, surface, strips);

@@ -27,7 +27,8 @@ pub(crate) struct FacetDensity {
 /// Where the chords of an edge end, in equal parts of it.
 struct EdgeDivision {
     parts: u64,
-    at: BTreeSet<u64>,
+    /// In order.
+    at: Vec<u64>,
 }
 
 impl EdgeDivision {
@@ -67,8 +68,7 @@ impl<T: Real> SketchSolid<T> {
             {
                 let piece = self.piece((e, true));
                 let at = |k: u64| piece.at(T::from(k as f64 / division.parts as f64)).re();
-                let ends: Vec<u64> = division.at.iter().copied().collect();
-                for w in ends.windows(2) {
+                for w in division.at.windows(2) {
                     let [p, q] = [at(w[0]), at(w[1])];
                     if wanted.iter().any(|x| near_segment(*x, [p, q]) <= p.distance(q)) {
                         cut[e].insert(w[0]);
@@ -77,9 +77,13 @@ impl<T: Real> SketchSolid<T> {
             }
             self.share_cuts(&all, &mut cut);
             for (division, cut) in all.iter_mut().zip(&cut) {
-                let ends: Vec<u64> = division.at.iter().copied().collect();
-                for w in ends.windows(2).filter(|w| cut.contains(&w[0]) && w[1] - w[0] == long) {
-                    division.at.extend([w[0] + long / 3, w[0] + 2 * (long / 3)]);
+                let chords = division.at.windows(2);
+                let thirds = chords.filter(|w| cut.contains(&w[0]) && w[1] - w[0] == long);
+                let new: Vec<u64> =
+                    thirds.flat_map(|w| [w[0] + long / 3, w[0] + 2 * (long / 3)]).collect();
+                if !new.is_empty() {
+                    division.at.extend(new);
+                    division.at.sort_unstable();
                 }
             }
         }
@@ -118,7 +122,7 @@ impl<T: Real> SketchSolid<T> {
             let ends = &all[h.0].at;
             // The chord that is the k-th as the edge is run.
             let k = if h.1 { k } else { ends.len() - 2 - k };
-            cut[h.0].extend(ends.iter().nth(k));
+            cut[h.0].extend(ends.get(k));
         };
         for (j, w) in rows.windows(2).enumerate() {
             for i in 0..along.len() - 1 {
@@ -151,7 +155,7 @@ impl<T: Real> SketchSolid<T> {
     fn share_cuts(&self, all: &[EdgeDivision], cut: &mut [BTreeSet<u64>]) {
         // Where a chord of one edge begins on the other, which may run the other way.
         let carried = |from: &BTreeSet<u64>, division: &EdgeDivision, turned: bool| -> Vec<u64> {
-            let next = |k: &u64| division.at.range(k + 1..).next().copied();
+            let next = |k: &u64| division.at.get(division.at.partition_point(|x| x <= k)).copied();
             let of = |k: &u64| match turned {
                 true => Some(division.parts - next(k)?),
                 false => Some(*k),
@@ -205,8 +209,12 @@ impl<T: Real> SketchSolid<T> {
         let mut points: Vec<Vec3<T>> = self.vertices.iter().map(|v| v.at).collect();
         let mut chains: Vec<Vec<u32>> = Vec::new();
         for (e, division) in divisions.iter().enumerate() {
-            let piece = self.piece((e, true));
             let [a, b] = self.edges[e].ends.map(|v| v as u32);
+            if division.at.len() == 2 {
+                chains.push(vec![a, b]);
+                continue;
+            }
+            let piece = self.piece((e, true));
             let mut chain = vec![a];
             let shares = division.shares(true);
             for &share in &shares[1..shares.len() - 1] {
@@ -260,8 +268,8 @@ impl<T: Real> SketchSolid<T> {
 
 impl<T: Real> Outline<T> {
     /// The facets of a round face.
-    pub fn strips(&self, _: &SketchSolid<T>, face: usize) -> Vec<LoopsAndTags> {
-        self.strips[face].clone()
+    pub fn strips(&self, face: usize) -> &[LoopsAndTags] {
+        &self.strips[face]
     }
 
     /// The points along an edge as it is run.
@@ -272,15 +280,23 @@ impl<T: Real> Outline<T> {
     /// The loops of a plane face with the edge of each side.
     pub fn loops(&self, body: &SketchSolid<T>, face: usize) -> LoopsAndTags {
         let SolidFace { loops, .. } = &body.faces[face];
-        let mut points = Vec::new();
-        let mut tags = Vec::new();
+        let mut points = Vec::with_capacity(loops.len());
+        let mut tags = Vec::with_capacity(loops.len());
         for cycle in loops {
-            let (mut own, mut sides) = (Vec::new(), Vec::new());
-            for &h in cycle {
-                let mut way = directed(&self.chains, h);
-                way.pop();
-                sides.extend(std::iter::repeat_n(h.0 as u32, way.len()));
-                own.extend(way);
+            let mut own = Vec::with_capacity(cycle.len());
+            let mut sides = Vec::with_capacity(cycle.len());
+            for &(e, forward) in cycle {
+                let chain = &self.chains[e];
+                if chain.is_empty() {
+                    continue;
+                }
+                // Without the last point, where the next edge begins.
+                if forward {
+                    own.extend(&chain[..chain.len() - 1]);
+                } else {
+                    own.extend(chain[1..].iter().rev());
+                }
+                sides.extend(std::iter::repeat_n(e as u32, chain.len() - 1));
             }
             points.push(own);
             tags.push(sides);

@@ -6,6 +6,7 @@
 //! half out of the body becomes a notch, one that has left is gone.
 
 use super::combine::{CombineError, newell, resolved, unclear};
+use super::outline::Outline;
 use super::{SketchSolid, SolidFace};
 use crate::FaceId;
 use crate::PointId;
@@ -36,9 +37,12 @@ pub enum SolidDefect {
     },
     /// It crosses itself and could not be derived anew.
     Unresolved(CombineError),
-    /// A number is not finite.
+    /// A coordinate is not finite, or so large that volumes or their derivatives are not.
     NotFinite,
 }
+
+/// The largest coordinate of a body.
+const MAX_COORDINATE: f64 = 1e60;
 
 /// The body itself when it is valid, the one derived anew when it crosses itself.
 ///
@@ -46,11 +50,14 @@ pub enum SolidDefect {
 /// [`SolidDefect`], with the place.
 pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidDefect> {
     // Where there is no derivative there may be a body.
-    if body.vertices.iter().any(|v| !v.at.re().is_finite()) {
+    let within = |v: &Vec3| v.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
+    if body.vertices.iter().any(|v| !within(&v.at.re())) {
         return Err(SolidDefect::NotFinite);
     }
+    let outline = body.outline();
     if body.flat {
-        return match crossed_cycle(&body, true).or_else(|| strayed_hole(&body)) {
+        let flaw = crossed_cycle(&body, &outline, true);
+        return match flaw.or_else(|| strayed_hole(&body, &outline)) {
             Some(flaw) => Err(flaw),
             None => clear(body),
         };
@@ -59,14 +66,14 @@ pub fn valid<T: Real>(mut body: SketchSolid<T>) -> Result<SketchSolid<T>, SolidD
     if !open.is_empty() {
         return Err(SolidDefect::Open(open));
     }
-    let suspect = suspect(&body);
-    if !suspect && shells(&body) == Shells::Outward {
+    let suspect = suspect(&body, &outline);
+    if !suspect && shells(&body, &outline) == Shells::Outward {
         return clear(body);
     }
-    if let Some(flaw) = crossed_cycle(&body, false) {
+    if let Some(flaw) = crossed_cycle(&body, &outline, false) {
         return Err(flaw);
     }
-    if !suspect && shells(&body) == Shells::Inward {
+    if !suspect && shells(&body, &outline) == Shells::Inward {
         body.turn_over();
         return clear(body);
     }
@@ -146,11 +153,31 @@ struct CrossingFacet {
     loops: Vec<Vec<u32>>,
     low: Vec3,
     high: Vec3,
+    /// Its corners in order of their numbers, with cycle and place in it, once there are many.
+    corners: Vec<(u32, usize, usize)>,
+}
+
+/// A facet of more corners has them in order.
+const MANY: usize = 16;
+
+impl CrossingFacet {
+    fn has(&self, v: u32) -> bool {
+        if self.corners.is_empty() {
+            self.loops.iter().any(|c| c.contains(&v))
+        } else {
+            !self.corners_at(v).is_empty()
+        }
+    }
+
+    fn corners_at(&self, v: u32) -> &[(u32, usize, usize)] {
+        let first = self.corners.partition_point(|c| c.0 < v);
+        let count = self.corners[first..].partition_point(|c| c.0 == v);
+        &self.corners[first..first + count]
+    }
 }
 
 /// Whether any side may cross a facet, or an edge has no length.
-fn suspect<T: Real>(body: &SketchSolid<T>) -> bool {
-    let outline = body.outline();
+fn suspect<T: Real>(body: &SketchSolid<T>, outline: &Outline<T>) -> bool {
     let points: Vec<Vec3> = outline.points.iter().map(|p| p.re()).collect();
     let [low, high] = bounds(points.iter().copied());
     let size = (high - low).norm();
@@ -168,13 +195,20 @@ fn suspect<T: Real>(body: &SketchSolid<T>) -> bool {
             }));
         }
         let [low, high] = bounds(loops.iter().flatten().map(|&v| at(v)));
-        walls.push(CrossingFacet { normal, at: ring[0], loops, low, high });
+        let mut corners = Vec::new();
+        if loops.iter().map(Vec::len).sum::<usize>() > MANY {
+            for (k, cycle) in loops.iter().enumerate() {
+                corners.extend(cycle.iter().enumerate().map(|(i, &v)| (v, k, i)));
+            }
+            corners.sort_unstable();
+        }
+        walls.push(CrossingFacet { normal, at: ring[0], loops, low, high, corners });
         true
     };
     for (f, face) in body.faces.iter().enumerate() {
         if face.ruled || face.trim.is_some() {
-            for (loops, _) in outline.strips(body, f) {
-                if !put(loops) {
+            for (loops, _) in outline.strips(f) {
+                if !put(loops.clone()) {
                     return true;
                 }
             }
@@ -205,11 +239,10 @@ fn suspect<T: Real>(body: &SketchSolid<T>) -> bool {
         if !near[0] && !near[1] && (hp > 0.0) == (hq > 0.0) {
             return;
         }
-        let corner = |v: u32| wall.loops.iter().any(|c| c.contains(&v));
         let hit = match near {
             [true, true] => !own_side(wall, a, b) && overlaps(wall, &at, [p, q], tolerance),
-            [true, false] => !corner(a) && covers(wall, &at, p, tolerance),
-            [false, true] => !corner(b) && covers(wall, &at, q, tolerance),
+            [true, false] => !wall.has(a) && covers(wall, &at, p, tolerance),
+            [false, true] => !wall.has(b) && covers(wall, &at, q, tolerance),
             _ => covers(wall, &at, p + (q - p) * (hp / (hp - hq)), tolerance),
         };
         found |= hit;
@@ -238,15 +271,14 @@ fn strayed(wall: &CrossingFacet, at: &dyn Fn(u32) -> Vec3) -> Option<usize> {
 }
 
 /// The first hole of a section that is not where a hole can be.
-fn strayed_hole<T: Real>(body: &SketchSolid<T>) -> Option<SolidDefect> {
-    let outline = body.outline();
+fn strayed_hole<T: Real>(body: &SketchSolid<T>, outline: &Outline<T>) -> Option<SolidDefect> {
     let at = |v: u32| outline.points[v as usize].re();
     (0..body.faces.len()).find_map(|f| {
         let loops = outline.loops(body, f).0;
         let ring: Vec<Vec3> = loops[0].iter().map(|&v| at(v)).collect();
         let normal = newell(&ring).normalized()?;
         let [low, high] = bounds(loops.iter().flatten().map(|&v| at(v)));
-        let wall = CrossingFacet { normal, at: ring[0], loops, low, high };
+        let wall = CrossingFacet { normal, at: ring[0], loops, low, high, corners: Vec::new() };
         let hole = wall.loops.get(strayed(&wall, &at)?)?[0] as usize;
         let hole = body.vertices.get(hole).map_or(PointId(0), |v| v.id);
         Some(SolidDefect::Outside { face: body.faces[f].id, hole })
@@ -254,6 +286,12 @@ fn strayed_hole<T: Real>(body: &SketchSolid<T>) -> Option<SolidDefect> {
 }
 
 fn own_side(wall: &CrossingFacet, a: u32, b: u32) -> bool {
+    if !wall.corners.is_empty() {
+        return wall.corners_at(a).iter().any(|&(_, k, i)| {
+            let (cycle, n) = (&wall.loops[k], wall.loops[k].len());
+            cycle[(i + 1) % n] == b || cycle[(i + n - 1) % n] == b
+        });
+    }
     wall.loops.iter().any(|c| {
         (0..c.len()).any(|k| {
             let pair = (c[k], c[(k + 1) % c.len()]);
@@ -369,16 +407,14 @@ enum Shells {
 }
 
 /// The direction of the shells that hang together by edges.
-fn shells<T: Real>(body: &SketchSolid<T>) -> Shells {
+fn shells<T: Real>(body: &SketchSolid<T>, outline: &Outline<T>) -> Shells {
     let mut parts = UnionFind::new(body.faces.len());
-    let mut first: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut first: Vec<Option<usize>> = vec![None; body.edges.len()];
     for (f, face) in body.faces.iter().enumerate() {
         for &(e, _) in face.loops.iter().flatten() {
-            let other = *first.entry(e).or_insert(f);
-            parts.join(other, f);
+            parts.join(*first[e].get_or_insert(f), f);
         }
     }
-    let outline = body.outline();
     let at = |v: u32| outline.points[v as usize].re();
     let centre = outline.points.first().map_or(Vec3::zero(), |p| p.re());
     // The triangles of each shell: signed fans serve for volumes and solid angles.
@@ -389,7 +425,7 @@ fn shells<T: Real>(body: &SketchSolid<T>) -> Shells {
             fan.extend((0..c.len()).map(|k| [apex, at(c[k]), at(c[(k + 1) % c.len()])]));
         };
         if face.ruled || face.trim.is_some() {
-            outline.strips(body, f).iter().for_each(|(l, _)| add(&l[0], at(l[0][0])));
+            outline.strips(f).iter().for_each(|(l, _)| add(&l[0], at(l[0][0])));
         } else {
             let loops = outline.loops(body, f).0;
             loops.iter().for_each(|c| add(c, at(loops[0][0])));
@@ -427,8 +463,11 @@ fn solid_angle(corners: &[Vec3; 3], p: Vec3) -> f64 {
 }
 
 /// A cycle of a plane face that crosses itself; in a section also two cycles that cross.
-fn crossed_cycle<T: Real>(body: &SketchSolid<T>, between: bool) -> Option<SolidDefect> {
-    let outline = body.outline();
+fn crossed_cycle<T: Real>(
+    body: &SketchSolid<T>,
+    outline: &Outline<T>,
+    between: bool,
+) -> Option<SolidDefect> {
     let at = |v: u32| outline.points[v as usize].re();
     let [low, high] = bounds(outline.points.iter().map(|p| p.re()));
     let tolerance = 1e-9 * (high - low).norm();

@@ -723,3 +723,52 @@ fn any_line_is_answered() {
     }
     assert!(!s.history().is_empty());
 }
+
+/// A command that takes a body away says so at once, with the place.
+#[test]
+fn what_takes_a_body_away_is_said() {
+    for (command, code, kind) in [
+        ("DELETE FACE 1", 701, "open-body"),
+        ("DELETE LINE 12", 701, "open-body"),
+        ("DELETE DIMENSION D1", 404, "no-faces"),
+        ("WELD 1 7", 701, "open-body"),
+    ] {
+        let mut s = with(with_faces(cuboid([4.0, 3.0, 2.0])));
+        assert!(s.objects()[0].volume.is_some());
+        let replies = s.run_line(command);
+        assert!(s.objects()[0].volume.is_none(), "{command}");
+        let said = replies.iter().find(|r| r.about.kind == kind);
+        let said = said.unwrap_or_else(|| panic!("{command}: {replies:?}"));
+        assert_eq!((said.code, said.is_error()), (Some(code), false), "{command}");
+        s.run_line("UNDO");
+        assert!(s.objects()[0].volume.is_some(), "{command}");
+    }
+    // Nothing is said of a body that was never there.
+    let mut s = with(cuboid([4.0, 3.0, 2.0]));
+    assert!(s.run_line("DELETE DIMENSION D1").iter().all(|r| r.about.kind != "no-faces"));
+}
+
+/// Points that are far apart on the page are welded with a warning.
+#[test]
+fn a_weld_across_the_page() {
+    let mut s = SketchSession::new();
+    s.run_text("SKETCH A 2D XZ\nPOINT 1 0 0; POINT 2 100 0; POINT 3 101 1; POINT 4 100 80\nLINE 1 2; LINE 3 4");
+    let far = |replies: Vec<CommandReply>| {
+        replies.into_iter().find(|r| r.about.kind == "far-weld").map(|r| r.text)
+    };
+    assert_eq!(far(s.run_line("WELD 2 3")), None);
+    let said = far(s.run_line("WELD 1 4"));
+    assert_eq!(said.as_deref(), Some("points 1 and 4 were 128 apart on the page"));
+}
+
+/// Coordinates whose volumes are no numbers leave no body, by that name.
+#[test]
+fn coordinates_beyond_all_bounds() {
+    let mut s = with(with_faces(cuboid([4.0, 3.0, 2.0])));
+    let replies = s.run_text("SET D1 1e308\nSET D2 1e308");
+    assert_eq!(s.objects()[0].volume, None);
+    let last = replies.iter().rfind(|r| r.about.kind == "not-finite");
+    assert!(last.is_some_and(|r| r.text.contains("beyond 1e60")), "{replies:?}");
+    s.run_text("SET D1 1e40\nSET D2 1e40\nSET D3 1e40");
+    assert!((s.objects()[0].volume.unwrap() / 1e120 - 1.0).abs() < 1e-12);
+}

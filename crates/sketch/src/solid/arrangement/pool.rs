@@ -47,8 +47,11 @@ impl Pool {
     }
 }
 
-/// Pairs of boxes that overlap, each pair once, by a sweep along one axis. With `first` boxes of one
-/// kind before those of another, only pairs of both kinds.
+/// A box that overlaps more cells than this is kept apart from them.
+const MOST_CELLS: usize = 8;
+
+/// Pairs of boxes that overlap, each pair once, by a sweep along one axis with cells along another. With `first`
+/// boxes of one kind before those of another, only pairs of both kinds. The order is that of the sweep.
 pub(in crate::solid) fn overlapping(
     boxes: &[[Vec3; 2]],
     margin: f64,
@@ -56,26 +59,56 @@ pub(in crate::solid) fn overlapping(
     mut pair: impl FnMut(usize, usize),
 ) {
     let mixed = first < boxes.len();
-    let axis = (0..3).max_by(|&a, &b| spread(boxes, a).total_cmp(&spread(boxes, b))).unwrap_or(0);
+    let spreads = [0, 1, 2].map(|k| spread(boxes, k));
+    let widest = |axes: &[usize]| {
+        let best = axes.iter().max_by(|&&a, &&b| spreads[a].total_cmp(&spreads[b]));
+        best.copied().unwrap_or(0)
+    };
+    let axis = widest(&[0, 1, 2]);
+    let across = widest(&[(axis + 1) % 3, (axis + 2) % 3]);
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     order.sort_by(|&a, &b| boxes[a][0][axis].total_cmp(&boxes[b][0][axis]).then(a.cmp(&b)));
-    let mut active: Vec<usize> = Vec::new();
-    for &k in &order {
-        let low = boxes[k][0][axis] - margin;
-        active.retain(|&other| boxes[other][1][axis] >= low);
-        for &other in &active {
-            if mixed && (other < first) == (k < first) {
-                continue;
-            }
-            let apart = (0..3).any(|a| {
-                boxes[k][0][a] > boxes[other][1][a] + margin
-                    || boxes[other][0][a] > boxes[k][1][a] + margin
+    let (low, high) = boxes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| {
+        (l.min(b[0][across]), h.max(b[1][across]))
+    });
+    let wide = high - low;
+    let count = if wide > 0.0 && wide.is_finite() { boxes.len().isqrt().clamp(1, 256) } else { 1 };
+    let cell = |x: f64| (((x - low) / wide * count as f64) as usize).min(count - 1);
+    // By cell and kind, the boxes that the sweep is within, by their place in the order; the last row has the wide ones.
+    let mut active: Vec<[Vec<usize>; 2]> = vec![[Vec::new(), Vec::new()]; count + 1];
+    let mut hits: Vec<usize> = Vec::new();
+    for (place, &k) in order.iter().enumerate() {
+        let [own_low, own_high] = boxes[k];
+        let kind = usize::from(mixed && k >= first);
+        let passed = own_low[axis] - margin;
+        // Wide enough for rounding: what overlaps is decided below.
+        let (from, to) =
+            (cell(own_low[across] - 2.0 * margin), cell(own_high[across] + 2.0 * margin));
+        hits.clear();
+        for row in (from..=to).chain([count]) {
+            active[row][if mixed { 1 - kind } else { 0 }].retain(|&other| {
+                let [low, high] = boxes[order[other]];
+                if high[axis] < passed {
+                    return false;
+                }
+                let apart =
+                    (0..3).any(|a| own_low[a] > high[a] + margin || low[a] > own_high[a] + margin);
+                // In the first cell that both are in.
+                if !apart && (row == count || row == from.max(cell(low[across]))) {
+                    hits.push(other);
+                }
+                true
             });
-            if !apart {
-                pair(other.min(k), other.max(k));
-            }
         }
-        active.push(k);
+        hits.sort_unstable();
+        for &other in &hits {
+            pair(order[other].min(k), order[other].max(k));
+        }
+        let (from, to) = (cell(own_low[across]), cell(own_high[across]));
+        let rows = if to.saturating_sub(from) < MOST_CELLS { from..=to } else { count..=count };
+        for row in rows {
+            active[row][kind].push(place);
+        }
     }
 }
 
