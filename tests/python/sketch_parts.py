@@ -11,7 +11,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.random import Generator
+from OCP.Bnd import Bnd_Box
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common, BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
+from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_MakeFace,
     BRepBuilderAPI_MakePolygon,
@@ -33,6 +35,18 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
+from sketch_quadrature import (
+    Body,
+    block_of,
+    column,
+    joined,
+    measured,
+    moved,
+    polytope,
+    ring_about_z,
+    turned_about_z,
+)
+
 Values = dict[str, float]
 
 #: Numbers of pieces, by the piece and the name.
@@ -46,6 +60,8 @@ class Piece:
     text: str
     values: Values
     solid: Callable[[Values], TopoDS_Shape | None]
+    #: The same for quadrature.
+    body: Callable[[Values], Body]
     #: The least and greatest that a number is changed to.
     ranges: dict[str, tuple[float, float]]
     curved: bool = False
@@ -61,6 +77,8 @@ class Drawn:
     ranges: dict[tuple[int, str], tuple[float, float]]
     #: At a scale if one is given: OCCT's splines between round faces miss by 1e-7 at any size.
     solid: Callable[..., TopoDS_Shape | None]
+    #: Volume, area and centroid by quadrature.
+    quadrature: Callable[[Numbers], np.ndarray]
     curved: bool = False
     words: list[str] = field(default_factory=list)
 
@@ -210,8 +228,18 @@ def block(rng: Generator, name: str, kind: str | None = None) -> Piece:
         joined = BRepAlgoAPI_Fuse if kind == "boss" else BRepAlgoAPI_Cut
         return joined(body, tool).Shape()
 
+    def body(v: Values) -> Body:
+        whole = block_of((0, 0, 0), (v["W"], v["D"], v["H"]))
+        if kind == "plain":
+            return whole
+        low, high = (v["HX"], v["HY"]), (v["HX"] + v["HW"], v["HY"] + v["HD"])
+        top, deep = v["H"], v.get("P", 0)
+        span = {"hole": (0, top), "pocket": (top - deep, top), "boss": (top, top + deep)}[kind]
+        tool = block_of((*low, span[0]), (*high, span[1]))
+        return joined("UNION" if kind == "boss" else "CUT", whole, tool)
+
     text = "\n".join([drawing(rng, name, points, lines), *dims, "GENERATE FACES"])
-    return Piece(text, values, solid, ranges)
+    return Piece(text, values, solid, body, ranges)
 
 
 def section(rng: Generator, name: str) -> Piece:
@@ -279,7 +307,24 @@ def section(rng: Generator, name: str) -> Piece:
         tool = prism([(a, 0, b), (a + c, 0, b), (a, 0, b + e)], (0, v["L"], 0))
         return BRepAlgoAPI_Cut(body, tool).Shape()
 
-    return Piece("\n".join(out), values, solid, ranges)
+    def body(v: Values) -> Body:
+        w, h, across, length = v["W"], v["H"], v["S"], v["L"]
+        if shape == "dam":
+            whole = column(outline(v), 0, length)
+        else:
+            up = v["T"]
+            wide, tall = ((w, up), (across, h)) if up <= h else ((w, h), (w, up))
+            whole = block_of((0, 0, 0), (wide[0], length, wide[1]))
+            if tall[1] > wide[1] and (up <= h or across < w):
+                left = 0.0 if up <= h else across
+                rest = block_of((left, 0, wide[1]), (tall[0], length, tall[1]))
+                whole = joined("UNION", whole, rest)
+        if not hole:
+            return whole
+        a, b, c, e = (v[n] for n in "ABCE")
+        return joined("CUT", whole, column([(a, b), (a + c, b), (a, b + e)], 0, length))
+
+    return Piece("\n".join(out), values, solid, body, ranges)
 
 
 def frustum(rng: Generator, name: str) -> Piece:
@@ -302,7 +347,7 @@ def frustum(rng: Generator, name: str) -> Piece:
     if not pointed:
         dims += ["DIM A X 5 6 3", "DIM B Y 5 8 2"]
 
-    def solid(v: Values) -> TopoDS_Shape:
+    def faces(v: Values) -> list[list[tuple[float, float, float]]]:
         w, d = v["W"], v["D"]
         base = [(0.0, 0.0, 0.0), (w, 0.0, 0.0), (w, d, 0.0), (0.0, d, 0.0)]
         if pointed:
@@ -314,10 +359,13 @@ def frustum(rng: Generator, name: str) -> Piece:
             j = (k + 1) % 4
             face = [base[k], base[j], top[j], top[k]]
             sides.append(face[:3] if pointed else face)
-        return polyhedron([base[::-1], *sides] if pointed else [base[::-1], top, *sides])
+        return [base[::-1], *sides] if pointed else [base[::-1], top, *sides]
+
+    def solid(v: Values) -> TopoDS_Shape:
+        return polyhedron(faces(v))
 
     text = "\n".join([drawing(rng, name, points, lines), *dims, "GENERATE FACES"])
-    return Piece(text, values, solid, ranges)
+    return Piece(text, values, solid, lambda v: polytope(faces(v)), ranges)
 
 
 def bar(rng: Generator, name: str) -> Piece:
@@ -331,8 +379,11 @@ def bar(rng: Generator, name: str) -> Piece:
         axis = gp_Ax2(gp_Pnt(v["R"], v["R"], 0), gp_Dir(0, 0, 1))
         return BRepPrimAPI_MakeCylinder(axis, v["R"], v["H"]).Shape()
 
+    def body(v: Values) -> Body:
+        return turned_about_z((v["R"], v["R"], 0), v["R"], 0, 0, v["H"])
+
     text = "\n".join([drawing(rng, name, points, BOX_LINES), *dims, "GENERATE FACES"])
-    return Piece(text, {"R": r, "H": h}, solid, {"R": (0.5, 4), "H": (1, 14)}, True)
+    return Piece(text, {"R": r, "H": h}, solid, body, {"R": (0.5, 4), "H": (1, 14)}, True)
 
 
 def rounded(rng: Generator, name: str) -> Piece:
@@ -350,9 +401,15 @@ def rounded(rng: Generator, name: str) -> Piece:
         tool = BRepAlgoAPI_Cut(corner, BRepPrimAPI_MakeCylinder(axis, r, h).Shape()).Shape()
         return BRepAlgoAPI_Cut(body, tool).Shape()
 
+    def round_body(v: Values) -> Body:
+        w, d, h, r = (v[n] for n in "WDHR")
+        corner = block_of((w - r, 0, 0), (w, r, h))
+        tool = joined("CUT", corner, turned_about_z((w - r, r, 0), r, 0, 0, h))
+        return joined("CUT", block_of((0, 0, 0), (w, d, h)), tool)
+
     text = "\n".join([drawing(rng, name, points, BOX_LINES), *dims, "GENERATE FACES"])
     ranges = {"W": (4, 12), "D": (4, 12), "H": (1, 9), "R": (0.25, 3.5)}
-    return Piece(text, {"W": w, "D": d, "H": h, "R": r}, solid, ranges, True)
+    return Piece(text, {"W": w, "D": d, "H": h, "R": r}, solid, round_body, ranges, True)
 
 
 def turned(rng: Generator, name: str) -> Piece:
@@ -392,7 +449,16 @@ def turned(rng: Generator, name: str) -> Piece:
         axis = gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))
         return BRepPrimAPI_MakeRevol(face, axis).Shape()
 
-    return Piece("\n".join(out), values, solid, ranges, True)
+    def body(v: Values) -> Body:
+        a, b, h = v["A"], v["B"], v.get("H", v["B"])
+        if kind == "ring":
+            return ring_about_z((0, 0, b / 2), a + b / 2, b / 2)
+        if kind == "cone":
+            return turned_about_z((0, 0, 0), a, (b - a) / h, 0, h)
+        outer, inner = (turned_about_z((0, 0, 0), r, 0, 0, h) for r in (a + b, a))
+        return joined("CUT", outer, inner)
+
+    return Piece("\n".join(out), values, solid, body, ranges, True)
 
 
 PLANE = (block, section, frustum)
@@ -454,6 +520,28 @@ def drawn(rng: Generator, *, curved: bool) -> Drawn:
         bigger.SetScale(gp_Pnt(0, 0, 0), scale)
         return BRepBuilderAPI_Transform(shape, bigger, True).Shape()
 
+    def quadrature(v: Numbers) -> np.ndarray:
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
+        whole: Body | None = None
+        for piece, k, axis in makers:
+            own = {n: x for (of, n), x in v.items() if of == k}
+            shape = place(piece, k, axis, v)
+            box = Bnd_Box()
+            BRepBndLib.Add_s(shape, box)
+            p, q = (np.array([c.X(), c.Y(), c.Z()]) for c in (box.CornerMin(), box.CornerMax()))
+            low, high = np.minimum(low, p), np.maximum(high, q)
+            body = piece.body(own)
+            if k:
+                way = "XYZ".index(axis)
+                c, s = math.cos(math.radians(own["TURN"])), math.sin(math.radians(own["TURN"]))
+                turn = np.eye(3)
+                i, j = (way + 1) % 3, (way + 2) % 3
+                turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
+                body = moved(body, turn, np.array([own["MX"], own["MY"], own["MZ"]]))
+            whole = body if whole is None else joined(operations[k - 1], whole, body)
+        assert whole is not None
+        return measured(whole, (low + high) / 2, 0.51 * float(np.linalg.norm(high - low)))
+
     kinds = {"UNION": BRepAlgoAPI_Fuse, "CUT": BRepAlgoAPI_Cut, "COMMON": BRepAlgoAPI_Common}
 
     def solid(v: Numbers, scale: float = 1.0) -> TopoDS_Shape | None:
@@ -468,7 +556,9 @@ def drawn(rng: Generator, *, curved: bool) -> Drawn:
         return body
 
     words = [m[0].text.split("\n")[0] for m in makers]
-    return Drawn("\n".join(text), name, values, ranges, solid, any_round, words + operations)
+    return Drawn(
+        "\n".join(text), name, values, ranges, solid, quadrature, any_round, words + operations
+    )
 
 
 def changed(rng: Generator, low: float, high: float) -> float:
