@@ -6,7 +6,7 @@ use moldloft_fair::{
     Bound, Data, DataOptions, EndContinuity, Goal, InterpolationSpace, Job, KnotRemovalOptions,
     Limit, Measure, Motion, Network, OptimumOptions, ParameterSpacing, Space, certified,
     curvature_parameters, data_report, fair_data, knot_removal, near_budget, optimum, parameters,
-    sweeps,
+    shape, sweeps, thinned,
 };
 use moldloft_num::Vec3;
 use std::time::{Duration, Instant};
@@ -175,10 +175,41 @@ const SHAPES: [(&str, fn(f64) -> [f64; 3]); 6] = [
     }),
 ];
 
+/// The root mean square distance of a curve from a known shape.
+fn off(space: &Space, control: &[Vec3<f64>], of: fn(f64) -> [f64; 3]) -> f64 {
+    const DENSE: usize = 20_000;
+    let line: Vec<Vec3<f64>> =
+        (0..=DENSE).map(|k| Vec3::from(of(k as f64 / DENSE as f64))).collect();
+    let (start, end) = space.domain();
+    let mut near = 0;
+    let samples = 2000;
+    let squares: f64 = (0..=samples)
+        .map(|k| {
+            let t = start + (end - start) * f64::from(k) / f64::from(samples);
+            let p = shape::sample_at(space, control, None, t).point;
+            while near < DENSE && (line[near + 1] - p).norm() < (line[near] - p).norm() {
+                near += 1;
+            }
+            let side = |k: usize| {
+                let (a, b) = (line[k], line[k + 1]);
+                let along = b - a;
+                let s = ((p - a).dot(along) / along.norm_sq()).clamp(0.0, 1.0);
+                (a + along * s - p).norm_sq()
+            };
+            side(near.min(DENSE - 1)).min(side(near.saturating_sub(1)))
+        })
+        .sum();
+    (squares / f64::from(samples + 1)).sqrt()
+}
+
 /// The default of points: parameters by curvature and a budget by what noise has across the curve.
-/// Places are even or jittered, noise is a fifth of the mean step or a given one.
+/// Places are even or jittered, noise is a fifth of the mean step or a given share of the length.
 fn near(n: usize) {
-    let roughness = [("noise of a fifth of a step", 0.2 / n as f64), ("noise of 2e-5", 2e-5)];
+    let roughness = [
+        ("noise of a fifth of a step", 0.2 / n as f64),
+        ("noise of 2e-5", 2e-5),
+        ("noise of 2e-4", 2e-4),
+    ];
     let only = std::env::args().nth(3).unwrap_or_default();
     for (name, shape) in SHAPES.into_iter().filter(|s| s.0.starts_with(&only)) {
         for (jitter, (noisy, share)) in
@@ -203,33 +234,39 @@ fn near(n: usize) {
                 })
                 .collect();
             let start = Clock::start();
-            let chords =
-                parameters(&points, ParameterSpacing::Chord, false).expect("no two in one place");
-            let space = |at: &[f64]| InterpolationSpace::new(3, at, &[], false);
-            let mut data = Data {
-                limit: Limit::ball(n, noise).expect("the tolerance is good"),
-                layout: space(&chords).expect("parameters rise"),
-                ends: [EndContinuity::Free; 2],
-                points,
-            };
-            let budget = near_budget(&data.points, Motion::Ball);
-            let own = curvature_parameters(&data, &data.points, &data.limit.radii, &chords, budget);
-            data.layout = space(&own.expect("the data are good")).expect("parameters rise");
+            let limit = Limit::ball(n, noise).expect("the tolerance is good");
+            let ends = [EndContinuity::Free; 2];
+            let budget = near_budget(&points, Motion::Ball);
+            let thin = thinned(&points, &limit, ends, 3, false, true).expect("the data are good");
+            let layout = thin.unwrap_or_else(|| {
+                let chords = parameters(&points, ParameterSpacing::Chord, false);
+                let chords = chords.expect("no two in one place");
+                let space = |at: &[f64]| InterpolationSpace::new(3, at, &[], false);
+                let layout = space(&chords).expect("parameters rise");
+                let data = Data { limit: limit.clone(), layout, ends, points: points.clone() };
+                let own = curvature_parameters(&data, &points, &limit.radii, &chords, budget);
+                space(&own.expect("the data are good")).expect("parameters rise")
+            });
+            let data = Data { limit, layout, ends, points };
             let placed = start.elapsed();
             let plain = DataOptions::of(Measure::Variation, Goal::Near(budget));
             let options = DataOptions { bends: false, ..plain };
             let begun = Clock::start();
             let (made, told) = data_report(&data, &options).expect("the data are good");
+            let took = begun.elapsed();
             println!(
-                "{n} {name}, {}, {noisy}: gap {:.1e}, used {:.3}, pieces {}, inflections {}; \
-                 parameters {:.1?}, in all {:.1?}",
+                "{n} {name}, {}, {noisy}: {} control points, {:.3} of the noise off, worst datum {:.6}, gap \
+                 {:.1e}, used {:.3}, pieces {}, inflections {}; parameters {:.1?}, in all {:.1?}",
                 if jitter > 0.0 { "jittered" } else { "even" },
+                made.points.len(),
+                off(&data.layout.space, &made.points, shape) / noise,
+                made.residuals.iter().copied().fold(0.0, f64::max) / noise,
                 made.certificate.relative(),
                 made.used,
                 told.after.pieces,
                 told.after.inflections,
                 placed,
-                placed + begun.elapsed()
+                placed + took
             );
         }
     }

@@ -114,6 +114,7 @@ pub use curve::multilevel::multilevel;
 pub use curve::shape_condition::ShapeCondition;
 pub use curve::shaping::{FoundArc, ShapeConstraints};
 pub use curve::space::Space;
+pub use curve::thinning::thinned;
 pub use curve::turning::{curvature_parameters, near_budget};
 pub use error::FairError;
 pub use interrogate::deviation::{Deviation, certified, deviation};

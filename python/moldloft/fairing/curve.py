@@ -203,7 +203,8 @@ def fair_curve(
     if isinstance(points, Fairing):
         again = points
         if again.parameters is not None and at is None:
-            at = again.parameters
+            # Feet follow from the points.
+            at = None if again.thin else again.parameters
             closed = again.spline.closed
         as_ = as_ or again.as_
         points = again.data[:, : again.points.shape[1]]

@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+THIN_MEASURES = ("variation", "bending", "third", "second")
+"""Measures that have a meaning on few knots at any places."""
+
+
 def chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: int) -> list[int]:
     """Points by number, or those that findings of a kind propose."""
     if isinstance(given, str):
@@ -84,6 +88,15 @@ def fair_data(
             raise FairingError(f"expected {n} rising parameters in [0, 1]")
     measure = _data_measure(asked.measure, asked.degree)
     shape, shape_labels = shape_conditions(asked.shape, n)
+    # Of many points most knots would say nothing, if nothing asks for one at each.
+    thin = (
+        not (conditioned or shape or breaks)
+        and asked.spacing == "auto"
+        and asked.at is None
+        and word == "ball"
+        and asked.goal[0] in ("near", "fairest")
+        and measure in THIN_MEASURES
+    )
     core, original, reported = _core.Spline.fair_data(
         data,
         {
@@ -97,6 +110,7 @@ def fair_data(
             "spacing": spaced,
             "spacing_direction": spacing_way,
             "at": at,
+            "thin": thin,
             "measure": measure,
             "goal": asked.goal,
             "conditions": conditions,
@@ -111,6 +125,12 @@ def fair_data(
         off = float(reported["residuals"][k])
         notes.append(f"point {k + 1} was released: the curve passes {off:.3e} from it")
     faired, before = Spline._of(core), Spline._of(original)
+    if reported["thin"]:
+        count = len(original.control_points)
+        notes.append(
+            f"{n} points on a spline of {count} control points, as many as they show to be needed; "
+            "before is its curve of least squares; a spacing such as `chord` puts a knot at each"
+        )
     arcs = tuple(Arc(a, b, r, np.asarray(c), off) for (a, b), r, c, off in reported["arcs"])
     notes += [str(arc) for arc in arcs]
     rows = faired(reported["at"])
@@ -151,4 +171,5 @@ def fair_data(
         used=reported["used"],
         parameters=reported["at"],
         arcs=arcs,
+        thin=reported["thin"],
     )

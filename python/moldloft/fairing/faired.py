@@ -115,6 +115,8 @@ class Fairing:
     """Where the points that were given are on the curve, from 0 to 1."""
     arcs: tuple[Arc, ...] = ()
     """The circular arcs that were asked for."""
+    thin: bool = False
+    """Whether the spline has fewer knots than there are points: their feet are their parameters."""
     log: tuple[NDArray[np.uint32], Floats] | None = field(default=None, repr=False)
     """Local steps in order, when asked for: which point went where. Replayed on the original they
     give the result's bits."""

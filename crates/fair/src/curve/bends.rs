@@ -435,7 +435,7 @@ impl Data {
             return Ok(priced(made));
         }
         let bends = own_counts.signs.saturating_sub(own);
-        if bends == 0 || !options.conditions.is_empty() {
+        if bends == 0 || !options.conditions.is_empty() || !self.layout.interpolates() {
             return Ok(DataFit { bends, ..plain });
         }
         // The curve through the data bends no more often than itself.

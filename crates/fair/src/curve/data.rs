@@ -13,6 +13,7 @@ use crate::curve::exact::is_exact;
 use crate::curve::fit::released;
 use crate::curve::job::EndContinuity;
 use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
+use crate::curve::thinning::CurvesBesideData;
 use crate::optimum::goal::{
     Adaptation, CurveTest, Goal, GoalOptimum, GoalVariation, RegularizationPath, check_single,
     check_unique, moved, rounding,
@@ -232,7 +233,18 @@ impl Data {
             rows.push(columns.iter().map(|&c| c as usize).zip(factors.iter().copied()));
             own_radii.push(radii[k]);
         }
-        let finite: Vec<f64> = radii.iter().map(|r| if r.is_finite() { *r } else { 0.0 }).collect();
+        let mut finite: Vec<f64> =
+            radii.iter().map(|r| if r.is_finite() { *r } else { 0.0 }).collect();
+        let (mut offsets, mut begin) = (Vec::new(), Vec::new());
+        if let Some(thin) = &layout.thin {
+            offsets = (0..finite.len())
+                .map(|k| layout.rows.apply(k, &job.points) - self.points[k])
+                .collect();
+            for (most, off) in finite.iter_mut().zip(&offsets) {
+                *most += off.norm();
+            }
+            begin = thin.centre.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
+        }
         let reach = if radii.iter().all(|r| r.is_finite()) {
             layout.reach(&finite)?
         } else {
@@ -248,15 +260,11 @@ impl Data {
             frozen,
             conditions,
             own,
-            bounded: Bounded::Data(DataLimits {
-                rows,
-                radii: own_radii,
-                offsets: Vec::new(),
-                reach,
-            }),
+            bounded: Bounded::Data(DataLimits { rows, radii: own_radii, offsets, reach }),
             halves: Vec::new(),
             pull: None,
             accuracy: options.accuracy,
+            begin,
         })
     }
 
@@ -316,9 +324,12 @@ impl Data {
         out
     }
 
-    /// The curve through the data as a job with these limits' motion.
+    /// The curve through the data, or of few control points the nearest to them, as a job with these limits' motion.
     fn job(&self) -> Result<Job, FairError> {
-        let points = self.layout.through(&self.layout.data(&self.points))?;
+        let points = match &self.layout.thin {
+            Some(thin) => thin.nearest.clone(),
+            None => self.layout.through(&self.layout.data(&self.points))?,
+        };
         let limit = Limit { motion: self.limit.motion, radii: vec![f64::INFINITY; points.len()] };
         let (space, ends) = (self.layout.space.clone(), self.ends);
         Ok(Job { space, points, weights: None, limit, marks: Vec::new(), ends })
@@ -410,6 +421,14 @@ const SETTLED: f64 = 1e-8;
 
 /// How exactly curves are solved for where a change of the measure is settled: as a share of that.
 const ROUGHLY: f64 = 1e-3;
+
+/// How many times the squares of the curve in the middle of the tolerances, from the least, a budget is at least.
+const ROOM: f64 = 1.5;
+
+/// The root mean square residual of the nearest curve, over the tolerance, up to which data have no noise, and from
+/// which on they have.
+const QUIET: f64 = 1e-3;
+const NOISE: f64 = 1e-2;
 
 /// How far a curve is pulled back towards one that has the signs, share by share.
 const PULLED: [f64; 3] = [1e-5, 1e-4, 1e-3];
@@ -705,9 +724,10 @@ impl Data {
     }
 
     pub(super) fn fit(&self, found: GoalOptimum, job: &Job) -> DataFit {
+        let residuals = self.residuals(&found.optimum.points);
         DataFit {
-            residuals: self.residuals(&found.optimum.points),
-            used: found.used,
+            used: if self.layout.interpolates() { found.used } else { self.used(&residuals) },
+            residuals,
             least: found.least,
             fairest_used: found.fairest_used,
             weight: found.weight,
@@ -719,6 +739,34 @@ impl Data {
             bends: 0,
             arcs: Vec::new(),
         }
+    }
+
+    /// How far data on few control points move from their nearest curve: not at all without noise.
+    fn moves(&self, thin: &CurvesBesideData) -> f64 {
+        let residuals = self.residuals(&thin.nearest);
+        let within = residuals.iter().zip(&self.limit.radii).all(|(r, most)| r <= most);
+        let noise = (self.used(&residuals) / 3.0).sqrt();
+        let share = ((noise - QUIET) / (NOISE - QUIET)).clamp(0.0, 1.0);
+        if within { share * share * (3.0 - 2.0 * share) } else { 1.0 }
+    }
+
+    /// On a spline of few control points squares are counted from the least that they can be, and so is the budget
+    /// of `near`: what the goal has of noise that fills the tolerances, and at least what those control points take of
+    /// the noise that the data have. The curve of truth is in there about as often as not.
+    fn goal_beside_nearest<E, S>(
+        &self,
+        goal: Goal,
+        path: &RegularizationPath<'_, E, S>,
+        parts: &Parts<'_>,
+        pull: &SparseRows,
+    ) -> Goal {
+        let (Some(thin), Goal::Near(share)) = (&self.layout.thin, goal) else { return goal };
+        let mean = path.count.max(1) as f64 / 3.0;
+        let least = self.used(&self.residuals(&thin.nearest)) * mean;
+        let free = parts.frozen.iter().filter(|f| !**f).count();
+        let taken = least * free as f64 / path.count.saturating_sub(free).max(1) as f64;
+        let most = (share * mean - least).max(taken).max(ROOM * pull.sum_sq(&parts.begin));
+        Goal::Near(most / mean)
     }
 
     fn found(
@@ -748,8 +796,10 @@ impl Data {
             original: &job.points,
             adapts: Adaptation::None,
             enough,
+            moves: self.layout.thin.as_ref().map(|thin| self.moves(thin)),
         };
-        path.follow(options.goal, norm, conditioned, parts, &pull)
+        let goal = self.goal_beside_nearest(options.goal, &path, parts, &pull);
+        path.follow(goal, norm, conditioned, parts, &pull)
     }
 }
 
@@ -784,6 +834,17 @@ pub fn fair_data_with<T: Real>(
             return Err(FairError::Goal(
                 "derivatives of curves with conditions on their shape, places or inflections are \
                  not known: take the curve without them",
+            ));
+        }
+        let made = fair_data(data, options)?;
+        let knots = data.layout.space.knots().iter().map(|&k| T::from(k)).collect();
+        let points = made.points.iter().map(|&p| Vec3::lifted(p)).collect();
+        return Ok((MovingFit { points, knots }, made));
+    }
+    if !data.layout.interpolates() {
+        if !(plain.all(|x| x.is_constant()) && fixed(tolerances)) {
+            return Err(FairError::Goal(
+                "derivatives of curves with fewer knots than points are not known: name a spacing",
             ));
         }
         let made = fair_data(data, options)?;

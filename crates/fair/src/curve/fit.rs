@@ -336,6 +336,7 @@ pub fn fit(
             halves: Vec::new(),
             squares: None,
             reach: vec![f64::INFINITY; n],
+            begin: Vec::new(),
         };
         let step = problem::solve(&problem, 0.0, 0.0, 0.0, None)?;
         for (c, x) in control.iter_mut().zip(step.x) {
@@ -425,6 +426,7 @@ fn squares(measure: SparseRows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Pr
         halves: Vec::new(),
         squares: None,
         reach,
+        begin: Vec::new(),
     }
 }
 

@@ -1,7 +1,9 @@
 //! Splines whose knots stand at the data: where data lie on the curve, and the curve through them.
 
 use crate::curve::fit::{fit_with, values};
+
 use crate::curve::moving::{MapReal, MovingSpace};
+use crate::curve::thinning::CurvesBesideData;
 use crate::{FairError, Space, SparseRows, fit};
 use moldloft_num::{Banded, Real, Vec3};
 use moldloft_spline::KnotVector;
@@ -33,6 +35,8 @@ pub struct InterpolationSpace {
     knot_of: Vec<Share>,
     /// The datum at which a closed curve with breaks begins.
     first: Option<usize>,
+    /// Curves beside the data where the space has far fewer control points than these.
+    pub(crate) thin: Option<CurvesBesideData>,
 }
 
 /// A share of the way from one place of a list to another; from the last to the first of a closed
@@ -91,6 +95,7 @@ impl InterpolationSpace {
             site_of: (0..n).map(|k| (k, k, 0.0)).collect(),
             knot_of,
             first: None,
+            thin: None,
         })
     }
 
@@ -156,8 +161,37 @@ impl InterpolationSpace {
         let knots = knot_of.iter().map(|&s| shared(&sites, s)).collect();
         let space = Space::open(KnotVector::new(degree, knots)?)?;
         let rows = values(&space, &sites);
-        let (at, first) = (at.to_vec(), None);
-        Ok(Self { space, sites, sources, owner, at, marks, rows, site_of, knot_of, first })
+        let (at, first, thin) = (at.to_vec(), None, None);
+        Ok(Self { space, sites, sources, owner, at, marks, rows, site_of, knot_of, first, thin })
+    }
+
+    /// A space of fewer control points than there are data, at parameters `at` in any order; `rows` are the
+    /// values there.
+    pub(crate) fn thin(
+        space: Space,
+        at: Vec<f64>,
+        rows: SparseRows,
+        thin: CurvesBesideData,
+    ) -> Self {
+        let n = at.len();
+        Self {
+            space,
+            sites: at.clone(),
+            sources: SparseRows::identity(n),
+            owner: (0..n).map(Some).collect(),
+            at,
+            marks: Vec::new(),
+            rows,
+            site_of: (0..n).map(|k| (k, k, 0.0)).collect(),
+            knot_of: Vec::new(),
+            first: None,
+            thin: Some(thin),
+        }
+    }
+
+    /// Whether a knot stands at each datum, so that a spline passes through them.
+    pub fn interpolates(&self) -> bool {
+        self.thin.is_none()
     }
 
     /// The parameters of the sites and the knots for parameters of the data that carry derivatives,
@@ -343,6 +377,9 @@ impl InterpolationSpace {
     /// # Errors
     /// [`FairError::Singular`].
     pub fn reach(&self, radii: &[f64]) -> Result<Vec<f64>, FairError> {
+        if self.thin.is_some() {
+            return self.thin_reach(radii);
+        }
         let n = self.space.count();
         let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
         let size = |points: &[Vec3<f64>]| points.iter().map(|p| p.x.abs()).collect::<Vec<f64>>();
@@ -364,6 +401,31 @@ impl InterpolationSpace {
         let radii: Vec<f64> = radii.iter().chain(radii).copied().collect();
         let all = double.through(&alternating(&radii))?;
         Ok(size(&all[..n]))
+    }
+
+    /// The same by some of the sites: of each control point the one where it counts most.
+    fn thin_reach(&self, radii: &[f64]) -> Result<Vec<f64>, FairError> {
+        let n = self.space.count();
+        let mut best: Vec<Option<(f64, usize)>> = vec![None; n];
+        for k in 0..self.sites.len() {
+            let (columns, factors) = self.rows.row(k);
+            for (&c, &f) in columns.iter().zip(factors) {
+                let own = &mut best[c as usize];
+                if own.is_none_or(|b| f > b.0) {
+                    *own = Some((f, k));
+                }
+            }
+        }
+        let mut chosen: Vec<usize> = best.into_iter().flatten().map(|b| b.1).collect();
+        chosen.sort_by(|&a, &b| self.sites[a].total_cmp(&self.sites[b]));
+        chosen.dedup();
+        if chosen.len() < n {
+            return Err(FairError::Singular);
+        }
+        let sites: Vec<f64> = chosen.iter().map(|&k| self.sites[k]).collect();
+        let rows = values(&self.space, &sites);
+        let few = Self { sites, rows, thin: None, ..self.clone() };
+        few.reach(&chosen.iter().map(|&k| radii[k]).collect::<Vec<f64>>())
     }
 }
 

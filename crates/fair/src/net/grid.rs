@@ -391,6 +391,7 @@ impl GridData {
             halves: Vec::new(),
             pull: None,
             accuracy,
+            begin: Vec::new(),
         })
     }
 
@@ -457,6 +458,7 @@ impl GridData {
             original,
             adapts: Adaptation::Surface,
             enough: None,
+            moves: None,
         };
         // The measure of closed lines is never small, so that it does not show what a move is worth.
         let closed = self.layouts.iter().any(|layout| layout.space.is_closed());

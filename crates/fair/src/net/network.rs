@@ -420,6 +420,7 @@ impl Network {
             original: &self.points,
             adapts: if conditioned { Adaptation::None } else { Adaptation::Network },
             enough: None,
+            moves: None,
         };
         let found = path.follow(goal, norm, conditioned, parts, &pull)?;
         Ok((found, pull, owners))
@@ -714,6 +715,7 @@ impl Network {
             halves: Vec::new(),
             pull: None,
             accuracy,
+            begin: Vec::new(),
         })
     }
 

@@ -208,6 +208,8 @@ pub(crate) struct RegularizationPath<'a, E, S> {
     /// Whether it is enough to know a budget's curve nearly, by the fairest and by what is known of it, as
     /// another will be taken.
     pub enough: Option<CurveTest<'a>>,
+    /// How far to move from an original that is the nearest of few control points; else it goes by the gain.
+    pub moves: Option<f64>,
 }
 
 /// Asks something of two curves.
@@ -325,7 +327,8 @@ where
         };
         let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
         let begin = (self.energy)(self.original);
-        if !conditioned && (begin <= self.noise || goal == Goal::Closest) {
+        let held = conditioned || self.moves == Some(1.0);
+        if !held && (begin <= self.noise || goal == Goal::Closest) {
             // Nothing is left but rounding: not a bit moves.
             return Ok(GoalOptimum::unmoved(self.original, begin, false));
         }
@@ -373,11 +376,12 @@ where
         // the tolerances, and so is all between them.
         let settle = |optimum: Optimum, weight: f64| {
             let Goal::Near(_) = goal else { return ended(optimum, weight) };
-            if conditioned {
+            if held {
                 return ended(optimum, weight);
             }
             let value = (self.energy)(&optimum.points);
-            let share = worth_beside(begin / value.max(f64::MIN_POSITIVE), foreign);
+            let gain = || worth_beside(begin / value.max(f64::MIN_POSITIVE), foreign);
+            let share = self.moves.unwrap_or_else(gain);
             if share >= 1.0 {
                 return ended(optimum, weight);
             }
@@ -420,7 +424,7 @@ where
                 if least > most * (1.0 + GOAL_ACCURACY) {
                     return Err(FairError::Energy { asked: most, least });
                 }
-                if !conditioned && begin <= most {
+                if !held && begin <= most {
                     return Ok(self.left_as_it_is(fairest, begin, least));
                 }
                 if squares == 0.0 || least >= most {
@@ -443,7 +447,7 @@ where
                 if share == 0.0 || squares == 0.0 {
                     return ended(fairest, 0.0);
                 }
-                if !conditioned && begin <= (1.0 + share) * least + self.noise {
+                if !held && begin <= (1.0 + share) * least + self.noise {
                     return Ok(self.left_as_it_is(fairest, begin, least));
                 }
             }
@@ -480,7 +484,7 @@ where
             let value = measured(&optimum);
             // Conditions may keep the data farther off than the budget.
             let settled = low.is_some_and(|l| l.1 - value < 1e-6);
-            if conditioned && high.is_none() && value > 0.0 && settled {
+            if held && high.is_none() && value > 0.0 && settled {
                 best = Some((trial, value, optimum));
                 break;
             }

@@ -85,6 +85,8 @@ pub(crate) struct InteriorPointState<'a, const D: usize> {
     halves: Vec<Half<D>>,
     squares: Option<SquaresBound<D>>,
     pub x: Vec<V<D>>,
+    /// Where the search begins.
+    begin: Vec<V<D>>,
     /// Cones of the limits, then those of the lengths.
     pub cones: Vec<ConeScaling<D>>,
     pub nu: Vec<f64>,
@@ -217,6 +219,12 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             slack: 0.0,
             force: 0.0,
         };
+        let mut begin = vec![[0.0; D]; order.unknowns];
+        for (&at, v) in place.iter().zip(&p.begin) {
+            if at != NONE {
+                begin[at as usize] = cut(v);
+            }
+        }
         Self {
             p,
             halves: p.halves.iter().map(half).collect(),
@@ -228,7 +236,8 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             offsets: p.offsets.iter().map(cut).collect(),
             reach,
             conditions: p.conditions.iter().map(condition).collect(),
-            x: vec![[0.0; D]; order.unknowns],
+            x: begin.clone(),
+            begin,
             cones: Vec::new(),
             nu: vec![0.0; p.conditions.len()],
             active: None,
@@ -589,10 +598,11 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         let total: f64 = slope.iter().map(|s| dot(*s, *s).sqrt()).sum();
         let force = (total / slope.len().max(1) as f64).max(1e-200);
         if let Some(squares) = &mut self.squares {
-            squares.start(force * radius.max(1e-200));
+            squares.start(force * radius.max(1e-200), &self.x);
         }
         for (k, &radius) in self.p.bounds.radii.iter().enumerate() {
-            let offset: V<D> = cut(&self.p.bounds.offset(k));
+            let mut offset: V<D> = cut(&self.p.bounds.offset(k));
+            axpy(&mut offset, 1.0, apply(&self.limit_rows, k, &self.x));
             for c in 0..self.groups() {
                 let inner = self.part(c, offset);
                 self.cones.push(ConeScaling::new((radius, inner), (force, [0.0; D])));
@@ -602,7 +612,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         let size = |f: &[(usize, V<D>)]| f.iter().map(|(_, f)| dot(*f, *f).sqrt()).sum::<f64>();
         for half in &mut self.halves {
             // Outside it begins with a slack all the same, and comes in step by step.
-            half.slack = half.room.abs().max(0.1 * half.scale).max(1e-200);
+            half.slack = (half.room - half.at(&self.x)).abs().max(0.1 * half.scale).max(1e-200);
             half.force = force / size(&half.entries).max(f64::MIN_POSITIVE);
         }
     }
@@ -856,7 +866,7 @@ pub(crate) fn solve<const D: usize>(
         if state.polish(&mut band, margin) && state.polished_to(accuracy, floor, margin) {
             return Ok(state.solution(1));
         }
-        state.x.fill([0.0; D]);
+        state.x.clone_from(&state.begin);
         state.nu.fill(0.0);
         (state.cones, state.active) = (Vec::new(), None);
     }

@@ -1,6 +1,6 @@
 //! The fairest curve within the limits, with a proof.
 
-mod band;
+pub(crate) mod band;
 pub(crate) mod certificate;
 mod dual;
 pub(crate) mod goal;
@@ -233,6 +233,8 @@ pub(crate) struct Parts<'a> {
     /// A pull towards the data, beside the measure: rows that measure displacements.
     pub pull: Option<SparseRows>,
     pub accuracy: f64,
+    /// Where a search begins, as a displacement: strictly inside the limits. At the points themselves when empty.
+    pub begin: Vec<Vec3<f64>>,
 }
 
 impl DataLimits {
@@ -271,6 +273,7 @@ impl<'a> Parts<'a> {
             halves: Vec::new(),
             pull: None,
             accuracy: options.accuracy,
+            begin: Vec::new(),
         })
     }
 
@@ -607,6 +610,7 @@ impl<'a> Parts<'a> {
             frozen: self.frozen.clone(),
             conditions,
             reach,
+            begin: self.begin.iter().map(|&v| frame.down(v)).collect(),
         }
     }
 }

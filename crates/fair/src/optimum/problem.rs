@@ -78,6 +78,8 @@ pub(crate) struct Problem {
     pub squares: Option<(SparseRows, f64)>,
     /// By how much each point can move at most, for the certificate.
     pub reach: Vec<f64>,
+    /// Where the search begins, strictly inside the bounds; at no displacement when empty.
+    pub begin: Vec<V>,
 }
 
 /// A solution with the certificate's parts.

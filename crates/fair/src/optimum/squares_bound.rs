@@ -53,11 +53,22 @@ impl<const D: usize> SquaresBound<D> {
         (0..self.rows.len()).map(of).sum()
     }
 
-    /// Begins at no displacement with a complementarity.
-    pub fn start(&mut self, complementarity: f64) {
-        self.slack = self.most;
-        self.force = complementarity / self.most;
+    /// Begins at a displacement inside the bound with a complementarity.
+    pub fn start(&mut self, complementarity: f64, x: &[V<D>]) {
+        self.follow(x);
+        self.force = complementarity / self.slack;
+    }
+
+    /// Slope and slack at a displacement.
+    fn follow(&mut self, x: &[V<D>]) {
         self.slope.fill([0.0; D]);
+        let mut squares = 0.0;
+        for k in 0..self.rows.len() {
+            let r = apply(&self.rows, k, x);
+            squares += dot(r, r);
+            spread(&self.rows, k, r.map(|c| 2.0 * c), &mut self.slope);
+        }
+        self.slack = (self.most - squares).max(1e-16 * self.most);
     }
 
     pub fn complementarity(&self) -> f64 {
@@ -135,14 +146,7 @@ impl<const D: usize> SquaresBound<D> {
     /// Follows the unknowns by a step.
     pub fn step(&mut self, d: &BoundStep, by: f64, x: &[V<D>]) {
         self.force = (self.force + by * d.force).max(f64::MIN_POSITIVE);
-        self.slope.fill([0.0; D]);
-        let mut squares = 0.0;
-        for k in 0..self.rows.len() {
-            let r = apply(&self.rows, k, x);
-            squares += dot(r, r);
-            spread(&self.rows, k, r.map(|c| 2.0 * c), &mut self.slope);
-        }
-        self.slack = (self.most - squares).max(1e-16 * self.most);
+        self.follow(x);
     }
 
     /// Adds the force's share of the slope at `x`, and returns that of the gap: of all that keep the

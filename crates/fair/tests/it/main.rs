@@ -12,6 +12,7 @@ mod joined;
 mod joins;
 mod kinds_of_nets;
 mod knot_removal;
+mod many;
 mod network;
 mod optimum;
 mod rational;

@@ -6,7 +6,7 @@ use moldloft::fair::{
     Bound as Bounded, Condition, CurveStatistics, Data, DataOptions, EndContinuity, FairError,
     FairingReport, Goal, InterpolationSpace, Job, KnotRemovalOptions, Limit, Mode, Motion,
     OptimumOptions, RemovalStep, Rule, ShapeCondition, Space, Stops, curvature_parameters,
-    data_report, knot_removal, merged, near_budget, parameters_across, report, shape,
+    data_report, knot_removal, merged, near_budget, parameters_across, report, shape, thinned,
 };
 use moldloft::num::{Order, Vec3};
 use numpy::ToPyArray;
@@ -284,12 +284,18 @@ pub fn data<'py>(
     let shape_labels: Vec<String> = get(options, "shape_labels")?;
     let renumbered: Vec<ShapeCondition> =
         wanted.iter().map(|w| w.renumbered(|k| one.of.get(k).copied().unwrap_or(k))).collect();
-    let mut data = Data {
-        limit,
-        layout: InterpolationSpace::new(degree, &at, &breaks, closed).map_err(fair_error)?,
-        ends: [end(&ends.0)?, end(&ends.1)?],
-        points: one.points.clone(),
+    let ends = [end(&ends.0)?, end(&ends.1)?];
+    let thin = if get(options, "thin")? && breaks.is_empty() {
+        thinned(&one.points, &limit, ends, degree, closed, turning).map_err(fair_error)?
+    } else {
+        None
     };
+    turning &= thin.is_none();
+    let layout = match thin {
+        Some(thin) => thin,
+        None => InterpolationSpace::new(degree, &at, &breaks, closed).map_err(fair_error)?,
+    };
+    let mut data = Data { limit, layout, ends, points: one.points.clone() };
     if turning {
         let own = curvature_parameters(&data, &data.points, &data.limit.radii, &at, budget)
             .map_err(fair_error)?;
@@ -354,6 +360,7 @@ pub fn data<'py>(
     let (a, b) = space.domain();
     let at: Vec<f64> = one.of.iter().map(|&k| (data.layout.at[k] - a) / (b - a)).collect();
     dict.set_item("at", at.to_pyarray(py))?;
+    dict.set_item("thin", !data.layout.interpolates())?;
     dict.set_item("used", made.used)?;
     dict.set_item("least", made.least)?;
     let arc = |a: &moldloft::fair::FoundArc| {
