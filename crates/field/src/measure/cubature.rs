@@ -17,7 +17,7 @@ use crate::set::Leaf;
 use crate::{FieldError, Primitive, Set};
 use moldloft_budget::Budget;
 use moldloft_num::{Box3, Real, Vec3};
-use rayon::prelude::*;
+use moldloft_parallel::prelude::*;
 use std::sync::Arc;
 
 /// All cells with surface are halved this often, so that nothing is overlooked by chance.
