@@ -190,8 +190,7 @@ export class View {
       }
       this.items.set(key, item)
     }
-    // What stays while a thing moves is sent once.
-    if (head.kind) Object.assign(item, { object: head.object, stale: head.stale, colour: head.colour, hue: head.hue })
+    Object.assign(item, { object: head.object, stale: head.stale, colour: head.colour, hue: head.hue })
     item.origin.fromArray(head.origin)
     const parts: Record<string, Part> = {}
     for (const part of head.parts as Part[]) parts[part.role] = part

@@ -40,21 +40,14 @@ struct ArrayHead {
 #[derive(Serialize)]
 struct ItemHead<'a> {
     key: (u8, &'a str),
-    #[serde(flatten)]
-    looks: Option<Looks<'a>>,
-    origin: [f64; 3],
-    parts: Vec<ArrayHead>,
-}
-
-/// What stays while an item moves.
-#[derive(Serialize)]
-struct Looks<'a> {
     name: &'a str,
     object: &'a str,
     kind: &'static str,
     colour: [u8; 3],
     hue: u8,
     stale: &'a str,
+    origin: [f64; 3],
+    parts: Vec<ArrayHead>,
 }
 
 impl ReplyFrame {
@@ -199,16 +192,17 @@ impl ReplyFrame {
                 parts.push(ArrayHead { role, number: "u32", offset, count: values.len() });
             }
         }
-        let looks = is_new(0, item.head_stamp).then(|| Looks {
+        let head = ItemHead {
+            key: (item.kind as u8, &item.name),
             name: &item.name,
             object: &item.object,
             kind: item.kind.word(),
             colour: item.colour,
             hue: item.hue,
             stale: &item.stale,
-        });
-        let key = (item.kind as u8, &*item.name);
-        let head = ItemHead { key, looks, origin: item.origin, parts };
+            origin: item.origin,
+            parts,
+        };
         let text = serde_json::to_string(&head).expect("names and numbers have a text");
         match &mut self.items {
             Some(items) => {

@@ -309,8 +309,9 @@ fn bad_input_is_told() {
 fn facets_tell_where_they_are_not_the_set() {
     let mut model = open(
         "set pair = cuboid({0, 0, 0}, {1, 1, 1}) | cuboid({1, 1, 0}, {2, 2, 1}); SetBody touching(pair, depth = 4);
-         set wedge = set(plane({0, -0.15, 1}, {0, 0, 0})) & set(plane({0, -0.15, -1}, {0, 0, 0}));
-         SetBody blade(wedge, {-1, -1, -1}, {1, 1, 1}, depth = 3); SetBody ball(set(sphere({0, 0, 0}, 1)), depth = 4);",
+         AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(1, 1, 0); Arc a(A, C, B); Line l(B, A); PolyCurve c({a, l});
+         SetBody half(extruded(c, {0, 0, 1}), {-1, -1, -0.1}, {3.1, 2, 1.2}, depth = 4);
+         SetBody ball(set(sphere({0, 0, 0}, 1)), depth = 4);",
     );
     let reported = reported(&model);
     let about = |id: &str, object: &str| {
@@ -318,7 +319,7 @@ fn facets_tell_where_they_are_not_the_set() {
             .iter()
             .any(|d| d.contains(&format!("[{id}]")) && d.contains(&format!("`{object}`")))
     };
-    assert!(about("touching-bodies", "touching") && about("blunt-edges", "blade"), "{reported:?}");
+    assert!(about("touching-bodies", "touching") && about("blunt-edges", "half"), "{reported:?}");
     assert!(!reported.iter().any(|d| d.contains("`ball`")), "{reported:?}");
     // Places are asked for by the members of these names: the shared edge is along z.
     let places = model.eval("touching.touching").unwrap();

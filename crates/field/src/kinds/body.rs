@@ -4,7 +4,6 @@ use super::read::{SetArgument, fault};
 use super::region::region;
 use crate::facet::sheets::Mixed;
 use crate::facet::{FacetOptions, Facets, Resolution};
-use crate::measure::mass::checked;
 use crate::{FacetMemo, FieldError, Leaf, Lifter, Set, facet_mixed};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Group, Kind, Point, TriangleBody, Value};
@@ -67,7 +66,7 @@ impl<T: Real> Build<T> for SetBody<T> {
         let region = region(&plain, &self.low, &self.high, [Self::SET, Self::HIGH])?;
         let lifter = Lifter::of(set, &plain, region.corners);
         let simplify = self.simplify.map(T::re);
-        let mut body =
+        let body =
             facets_of(&plain, &region.over, &options(resolution, context), &context.kept.of())
                 .and_then(|pieces| match simplify {
                     Some(accuracy) => pieces.simplified(accuracy),
@@ -90,33 +89,8 @@ impl<T: Real> Build<T> for SetBody<T> {
                 .expected("a set whose surface passes through the box")
                 .in_field(Self::SET));
         }
-        if !body.triangles.is_empty() {
-            measure(&mut body, &plain, &region.over, &lifter, context).map_err(|e| fault(&e))?;
-        }
         Ok(Value::Body(Arc::new(body)))
     }
-}
-
-/// Volume and centroid are those of the set, which facets may miss where cells do not tell an edge from its neighbour.
-fn measure<T: Real>(
-    body: &mut TriangleBody<T>,
-    set: &Set,
-    over: &moldloft_num::Box3,
-    lifter: &Lifter<T>,
-    context: &Context,
-) -> Result<(), FieldError> {
-    let of = &mut body.of_triangles;
-    let by_facets = (of.volume, of.centroid);
-    let (known, uncertain) = checked(set, over, lifter, by_facets, &context.budget)?;
-    (of.volume, of.centroid) = known;
-    if uncertain > 0.0 {
-        context.remark(
-            "volume-uncertain",
-            format!("the volume of the body is known to {uncertain:.1e} only"),
-            "parts thinner than its cells are in the way: ask for `volume_bracket` with a greater depth",
-        );
-    }
-    Ok(())
 }
 
 /// The facets of a set: of solids only, or of all dimensions.

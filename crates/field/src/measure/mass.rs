@@ -1,12 +1,11 @@
 //! Volume, centroid and inertia: certified brackets, and best values within them.
 //!
-//! Best values are those of curved facets, which have the most digits where they show the whole set. Where edges
+//! Best values are those of curved facets, which have the most digits where they show the whole set. Where a part is
+//! thinner than their cells, or their volume leaves the bracket, the certified cells have the better ones. Where edges
 //! are blunt, as in the cusp between a cylinder and a plane that it touches, facets may agree with each other on a
-//! wrong value: there, where a part is thinner than their cells, and where their volume leaves the bracket, cells that are divided
-//! where it pays ([`Cubature`]) have the better ones. What stays uncertain is said.
+//! wrong value: there a narrower bracket decides, and what stays uncertain is said.
 
 use super::certified::{Certified, Effort, certified};
-use super::cubature::Cubature;
 use super::curved::Curved;
 use super::moments::Moments;
 use crate::expr::interval::Interval;
@@ -27,13 +26,6 @@ const MOST_CELLS: usize = 30_000_000;
 const CHECK: usize = 3000;
 /// Cells of best values where facets have none.
 const THIN: usize = 120_000;
-/// The most cells of cubature where facets do not settle, and of the check of a body's facets; the latter compares to this part of
-/// the volume.
-const CUBATURE: usize = 400_000;
-const CHECKED: usize = 30_000;
-/// Of more leaves than this, bodies are checked by those cells only.
-const MOST_CHECKED: usize = 100;
-const SURE: f64 = 1e-6;
 /// The coarsest and finest levels of facets for best values, and how many cells these have at most.
 const LEVELS: [u32; 2] = [5, 9];
 const MOST_FACET_CELLS: usize = 400_000;
@@ -174,30 +166,13 @@ pub fn mass_of<T: Real>(
         return Ok(BracketedMass { bracket, best: within(moments, &bracket), uncertain: 0.0 });
     }
     // What facets do not show, or not as well as was asked.
-    let agreement = measure.agreement.unwrap_or(USUAL * size);
-    let cells = cubature(&solid, over, 0.25 * agreement, CUBATURE, budget)?;
-    if let (Some(cells), Some(_)) = (&cells, &faceted)
-        && cells.doubt <= agreement
-        && near(&bracket, cells)
-    {
-        let best = within(lifted(cells, &lifter), &bracket);
-        return Ok(BracketedMass { bracket, best, uncertain: 0.0 });
-    }
     let thin = match checked.cells >= THIN {
         true => checked,
         false => certified(&solid, over, &Effort::of_cells(THIN), budget)?,
     };
     let bracket = narrower(bracket, &thin);
-    let range = bracket.volume();
+    let (range, agreement) = (bracket.volume(), measure.agreement.unwrap_or(USUAL * size));
     let half = 0.5 * range.width();
-    if let Some(cells) = &cells
-        && 2.0 * cells.doubt < half
-        && near(&bracket, cells)
-    {
-        let best = within(lifted(cells, &lifter), &bracket);
-        let uncertain = if cells.doubt <= agreement { 0.0 } else { 2.0 * cells.doubt };
-        return Ok(BracketedMass { bracket, best, uncertain });
-    }
     // Values that agree are taken where the narrower bracket holds them, too.
     if let Some(Faceted { moments, change, .. }) = faceted
         && range.contains(moments.volume().re())
@@ -208,69 +183,6 @@ pub fn mass_of<T: Real>(
     }
     let uncertain = if half <= agreement { 0.0 } else { half };
     Ok(BracketedMass { bracket, best: from_cells(&thin, &bracket), uncertain })
-}
-
-/// Sums over cells, unless the set has primitives from outside, of which each value may be a search.
-fn cubature(
-    solid: &Set,
-    over: &Box3,
-    near: f64,
-    most: usize,
-    budget: &Budget,
-) -> Result<Option<Cubature>, FieldError> {
-    if solid.compiled().tape.has_users() {
-        return Ok(None);
-    }
-    Cubature::of(solid, over, near, most, budget).map(Some)
-}
-
-/// True when a bracket holds the volume, as far as that is known.
-fn near(bracket: &Moments<Interval>, cells: &Cubature) -> bool {
-    let (range, volume) = (bracket.volume(), cells.moments().volume());
-    let slack = cells.doubt + 1e-9 * range.high;
-    range.low - slack <= volume && volume <= range.high + slack
-}
-
-fn lifted<T: Real>(cells: &Cubature, lifter: &Lifter<T>) -> Moments<T> {
-    let leaves = cells.leaves();
-    let primitives: Vec<Option<Primitive<T>>> =
-        leaves.iter().map(|l| lifter.primitive(l)).collect();
-    cells.moments_by(&|leaf| primitives[leaf as usize].clone())
-}
-
-/// Volume and centroid of a set of which facets say these, and how far the volume may be off when it is not known to a
-/// millionth: sums over cells decide where the two differ.
-pub(crate) fn checked<T: Real>(
-    set: &Set,
-    over: &Box3,
-    lifter: &Lifter<T>,
-    by_facets: (T, Vec3<T>),
-    budget: &Budget,
-) -> Result<((T, Vec3<T>), f64), FieldError> {
-    let solid = solid_part(set);
-    let volume = by_facets.0.re();
-    let enough = SURE * volume.abs();
-    let Some(coarse) = cubature(&solid, over, 0.5 * enough, CHECKED, budget)? else {
-        return Ok((by_facets, 0.0));
-    };
-    let agree = |cells: &Cubature| {
-        let apart = (cells.moments().volume() - volume).abs();
-        cells.doubt <= enough && apart <= enough + cells.doubt
-    };
-    let apart = (coarse.moments().volume() - volume).abs();
-    let many = coarse.leaves().len() > MOST_CHECKED && apart <= coarse.doubt;
-    if agree(&coarse) || many {
-        return Ok((by_facets, 0.0));
-    }
-    let finer = 1e-9 * volume.abs().max(coarse.moments().volume());
-    let cells = Cubature::of(&solid, over, finer, CUBATURE, budget)?;
-    if agree(&cells) {
-        return Ok((by_facets, 0.0));
-    }
-    let moments = lifted(&cells, lifter);
-    let uncertain = if cells.doubt <= enough { 0.0 } else { 2.0 * cells.doubt };
-    let centroid = if moments.volume().re() > 0.0 { moments.centroid() } else { by_facets.1 };
-    Ok(((moments.volume(), centroid), uncertain))
 }
 
 /// The numbers of both brackets.

@@ -1,7 +1,6 @@
 //! Integrals over sets: proved brackets by ranges, best values by curved facets, and their derivatives.
 
 pub(crate) mod certified;
-pub(crate) mod cubature;
 pub(crate) mod curved;
 pub(crate) mod implicit_derivatives;
 pub(crate) mod mass;

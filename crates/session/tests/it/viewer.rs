@@ -29,12 +29,8 @@ impl Viewer {
         }
         for item in reply.head["items"].as_array().into_iter().flatten() {
             let drawn = self.items.entry(item["key"].to_string()).or_default();
-            // What stays while a thing moves is sent once.
-            if let Some(kind) = item["kind"].as_str() {
-                drawn.kind = kind.into();
-                drawn.stale = item["stale"].as_str().unwrap().into();
-            }
-            assert!(!drawn.kind.is_empty());
+            drawn.kind = item["kind"].as_str().unwrap().into();
+            drawn.stale = item["stale"].as_str().unwrap().into();
             drawn.origin = serde_json::from_value(item["origin"].clone()).unwrap();
             for part in item["parts"].as_array().unwrap() {
                 let role = part["role"].as_str().unwrap();
