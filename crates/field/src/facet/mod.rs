@@ -375,7 +375,7 @@ fn sharpest(
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
     let mut best = at_step(set, over, step, f64::INFINITY, options, before)?;
-    let cost = |f: &Facets| f.blunt.len() + f.undecided.len();
+    let cost = |f: &Facets| f.blunt.len() + f.undecided.len() + slivers::count(&f.mesh);
     for place in 1..grid::PLACES {
         if options.sharp || cost(&best) == 0 || best.cells > FEW_CELLS {
             break;

@@ -5,6 +5,7 @@
 //! Neither changes the surface by more than rounding.
 
 use super::assemble::Assembled;
+use moldloft_mesh::Mesh;
 use moldloft_num::Vec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -118,6 +119,13 @@ impl Surroundings<'_> {
         self.stale.extend(a.into_iter().chain(b));
         true
     }
+}
+
+/// How many triangles of a mesh have no area.
+pub(super) fn count(mesh: &Mesh) -> usize {
+    let at =
+        |f: &&[u32; 4]| height([f[0], f[1], f[2]].map(|v| mesh.positions()[v as usize])) <= FLAT;
+    mesh.faces().iter().filter(at).count()
 }
 
 /// Leaves no triangle without area where its surroundings allow it.

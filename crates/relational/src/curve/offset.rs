@@ -80,7 +80,7 @@ struct ParallelCurve<T: Real> {
 }
 
 impl<T: Real> ParallelCurve<T> {
-    /// The curve that is no parallel in this plane itself, and the distance from it.
+    /// The first curve of a chain of parallels in this plane, and the distance from it.
     fn base(&self) -> (&dyn Curve<T>, T) {
         match self.curve.parallel_to() {
             Some((base, normal, distance)) if (0..3).all(|k| normal[k].bits_eq(self.normal[k])) => {

@@ -134,7 +134,7 @@ struct Parallel<T: Real> {
 }
 
 impl<T: Real> Parallel<T> {
-    /// The surface that is no parallel itself, and the distance from it.
+    /// The first surface of a chain of parallels, and the distance from it.
     fn base(&self) -> (&dyn Surface<T>, T) {
         match self.surface.parallel_to() {
             Some((base, distance)) => (base, distance + self.distance),

@@ -261,7 +261,7 @@ fn curve_fault(name: &str, fault: &CurveFault) -> CommandError {
         CurveFault::TooLarge { largest } => CommandError::new(
             310,
             format!("{name} is too large: its tangent point is beyond the end of a line"),
-            format!("at most {} fits", plain(super::dims::rounded(*largest))),
+            format!("at most {} fits", plain(super::digits::rounded(*largest))),
         )
         .about(ReplySubject::of("curve-too-large").names([&name.to_owned()]).value(*largest)),
         CurveFault::Undetermined => CommandError::new(

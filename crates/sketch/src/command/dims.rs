@@ -2,6 +2,7 @@
 
 use super::CommandError;
 use super::args::Args;
+use super::digits::rounded;
 use super::draw::{require_line, require_point, set_letters};
 use super::question::Question;
 use super::session::{CommandReply, SketchSession};
@@ -680,14 +681,6 @@ fn in_range(
         }
         _ => Ok(()),
     }
-}
-
-/// Three significant digits: what a picture can tell.
-pub(super) fn rounded(x: f64) -> f64 {
-    if x == 0.0 || !x.is_finite() {
-        return 0.0;
-    }
-    format!("{x:.2e}").parse().unwrap_or(x)
 }
 
 /// A fault of a dimension in words.

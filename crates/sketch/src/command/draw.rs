@@ -289,7 +289,7 @@ impl SketchSession {
         if far {
             let text = format!(
                 "points {p} and {q} were {} apart on the page",
-                moldloft_syntax::number::plain(super::dims::rounded(apart))
+                moldloft_syntax::number::plain(super::digits::rounded(apart))
             );
             let about = ReplySubject::of("far-weld").points([p, q]).value(apart);
             let next = Some("UNDO, if they are two places".to_owned());

@@ -2,6 +2,7 @@
 
 use super::CommandError;
 use super::args::Args;
+use super::no_body::no_body;
 use super::session::{CommandReply, SketchSession};
 use super::subject::ReplySubject;
 use crate::SketchObject;
@@ -10,8 +11,6 @@ use crate::feature::{Feature, FeatureKind, FeatureOperand, Placement};
 use crate::solid::combine::CombineError;
 use crate::solid::feature::{NoBody, body};
 use crate::solid::operation::Operation;
-use crate::solid::validity::SolidDefect;
-use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
 
 /// More copies than this are refused.
@@ -294,135 +293,5 @@ impl SketchSession {
         self.require_body(&object)?;
         let operands = vec![FeatureOperand { object: object.into(), prefix: String::new() }];
         self.make(Feature { kind: FeatureKind::Place(place), operands }, &target, |_| None)
-    }
-}
-
-/// A place in words.
-fn place_text(p: Vec3) -> String {
-    p.to_array().map(|x| plain(super::dims::rounded(x))).join(" ")
-}
-
-/// The reason why an object has no body, with the place and the next step.
-pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
-    let name = &object.name;
-    match why {
-        NoBody::Unfinished => CommandError::new(
-            404,
-            format!("{name} has no faces or is not fully dimensioned"),
-            "CONVERT says what is missing; then GENERATE FACES",
-        )
-        .about(ReplySubject::of("no-faces").names([name])),
-        NoBody::Flaw(SolidDefect::Open(edges)) => {
-            let list: Vec<String> =
-                edges.iter().take(12).map(|[p, q]| format!("{p}-{q}")).collect();
-            CommandError::new(
-                701,
-                format!(
-                    "{name} is open, so it has no volume: lines {} have a face on one side only",
-                    list.join(", ")
-                ),
-                "GENERATE FACES finds all faces; or give the missing one with FACE",
-            )
-            .about(ReplySubject::of("open-body").points(edges.iter().flatten().copied()))
-        }
-        NoBody::Flaw(SolidDefect::Crossed { face, sides: [a, b], at }) => {
-            let number = *face;
-            let face = face.map_or_else(|| "a face".to_owned(), |f| format!("face {f}"));
-            CommandError::new(
-                701,
-                format!(
-                    "{name} crosses itself: in {face} the sides {}-{} and {}-{} cross at {}",
-                    a[0],
-                    a[1],
-                    b[0],
-                    b[1],
-                    place_text(*at)
-                ),
-                "a dimension has moved lines past each other: UNDO, or change it",
-            )
-            .about(
-                ReplySubject::of("crossed-body")
-                    .faces(number)
-                    .points([a[0], a[1], b[0], b[1]])
-                    .place(*at),
-            )
-        }
-        NoBody::Flaw(SolidDefect::Outside { face, hole }) => {
-            let face = face.map_or_else(|| "a face".to_owned(), |f| format!("face {f}"));
-            CommandError::new(
-                701,
-                format!("{name}: the hole of point {hole} is not inside of {face}"),
-                "a dimension has moved it out: UNDO, change it, or GENERATE FACES",
-            )
-        }
-        NoBody::Flaw(SolidDefect::Unresolved(e)) | NoBody::Combine(e) => combine_error(name, e),
-        NoBody::Flaw(SolidDefect::NotFinite) => CommandError::new(
-            300,
-            format!("{name} has coordinates that are not finite, or beyond 1e60"),
-            "CHECK the dimensions",
-        )
-        .about(ReplySubject::of("not-finite").names([name])),
-        NoBody::Operand { name: inner, why, .. } => {
-            let inner = no_body(&SketchObject::new(inner, None), why);
-            let text = format!("{name}: {}", inner.text);
-            CommandError { text, ..inner }
-        }
-        NoBody::NoValue(reads) => CommandError::text(
-            format!("{name} reads {reads}, which has no value"),
-            format!("VARIABLE {reads} defines it"),
-        )
-        .about(ReplySubject::of("no-value").names([name, reads])),
-        NoBody::Treatment(fault) => {
-            let place = fault.at.map(|p| format!(" at {}", place_text(p))).unwrap_or_default();
-            let mut about = ReplySubject::of("treatment");
-            about.place = fault.at.map(|p| p.to_array());
-            let text = format!("{name}: {}{place}", fault.text);
-            CommandError::new(701, text, fault.next).about(about)
-        }
-        NoBody::Axis => CommandError::new(
-            701,
-            format!("{name}: the section lies on both sides of the line it is turned about"),
-            "change the dimension that moved it",
-        )
-        .about(ReplySubject::of("section-across-axis").names([name])),
-    }
-}
-
-fn combine_error(name: &str, e: &CombineError) -> CommandError {
-    match e {
-        CombineError::Open(p) => CommandError::new(
-            701,
-            format!("{name}: surfaces do not close, or nearly coincide, at {}", place_text(*p)),
-            "CHECK the bodies, or move one of them a little",
-        )
-        .about(ReplySubject::of("open-body").place(*p)),
-        CombineError::Touching(p) => CommandError::new(
-            701,
-            format!("{name}: round surfaces touch, or nearly so, at {}", place_text(*p)),
-            "let them cross clearly or stay apart",
-        )
-        .about(ReplySubject::of("touching-surfaces").place(*p)),
-        CombineError::Coarse(places) => {
-            let p = places.first().copied().unwrap_or_default();
-            CommandError::new(
-                701,
-                format!(
-                    "{name}: surfaces nearly meet at {}, too closely to tell which comes first",
-                    place_text(p)
-                ),
-                "let them meet exactly, cross clearly or stay apart",
-            )
-            .about(ReplySubject::of("nearly-meeting-surfaces").place(p))
-        }
-        CombineError::TooLarge => CommandError::new(
-            200,
-            format!("{name}: there are too many pieces"),
-            "combine smaller objects",
-        )
-        .about(ReplySubject::of("too-many-pieces").names([&name.to_owned()])),
-        CombineError::Empty => {
-            CommandError::new(701, format!("{name}: nothing is left"), "CHECK the dimensions")
-                .about(ReplySubject::of("nothing-left").names([&name.to_owned()]))
-        }
     }
 }

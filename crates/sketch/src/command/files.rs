@@ -357,7 +357,7 @@ impl SketchSession {
             }
             _ => {
                 let worked = self.worked(&object);
-                let solid = worked.body().map_err(|why| super::features::no_body(&object, why))?;
+                let solid = worked.body().map_err(|why| super::no_body::no_body(&object, why))?;
                 let size = solid.vertices.iter().map(|v| v.at.norm()).fold(0.0, f64::max);
                 let mesh = export::IndexedTriangles::of(&solid.mesh(1e-3 * size));
                 match format.as_str() {

@@ -1,8 +1,10 @@
 //! Commands that look: CHECK, WHY, ESTIMATE, LIST, MEASURE, DISPLAY and their relatives.
 
 use super::args::Args;
-use super::dims::{dimension_fault, rounded};
+use super::digits::{place_text, rounded};
+use super::dims::dimension_fault;
 use super::draw::require_point;
+use super::no_body::no_body;
 use super::session::{CommandReply, DrawingCache, SketchSession};
 use super::subject::{ReplySubject, Suggestion};
 use super::{CommandError, words::CommandTokenKind};
@@ -232,7 +234,7 @@ impl SketchSession {
         if let Err(why @ NoBody::Flaw(SolidDefect::Open(_))) = worked.body()
             && worked.layout.complete()
         {
-            self.out.push(no_body_warning(&object, why));
+            self.out.push(CommandReply::warning_of(no_body(&object, why)));
         }
         Ok(())
     }
@@ -273,7 +275,7 @@ impl SketchSession {
         if let Err(why) = worked.body()
             && finished
         {
-            let mut reply = no_body_warning(&object, why);
+            let mut reply = CommandReply::warning_of(no_body(&object, why));
             if added && matches!(why, NoBody::Flaw(SolidDefect::Open(_))) {
                 reply.severity = Severity::Note;
             }
@@ -542,7 +544,7 @@ impl SketchSession {
             {
                 rows.extend((0..solid.faces.len()).map(|f| {
                     let (text, at) = solid.face_text(f);
-                    let place = at.to_array().map(|x| plain(super::dims::rounded(x))).join(" ");
+                    let place = place_text(at);
                     format!("{text} from {place}")
                 }));
             }
@@ -601,7 +603,7 @@ impl SketchSession {
         args.end()?;
         let object = self.active_arc()?;
         let worked = self.worked(&object);
-        let solid = worked.body().map_err(|why| super::features::no_body(&object, why))?;
+        let solid = worked.body().map_err(|why| no_body(&object, why))?;
         let mass = solid.mass();
         let c = mass.centroid.to_array().map(plain).join(" ");
         let rows = [
@@ -779,12 +781,4 @@ pub(super) fn suggestions(
         Some(Suggestion { axis, p, q, value: rounded(gap(k).abs()), open })
     };
     layout.loose.iter().map(one).collect()
-}
-
-pub(super) fn no_body_warning(object: &SketchObject, why: &NoBody) -> CommandReply {
-    let fault = super::features::no_body(object, why);
-    let mut reply = CommandReply::warning(fault.text);
-    (reply.code, reply.next) = (Some(fault.code).filter(|c| *c > 0), Some(fault.next));
-    reply.about = *fault.about;
-    reply
 }

@@ -2,12 +2,14 @@
 
 mod args;
 mod curves;
+mod digits;
 mod dims;
 mod draw;
 mod error;
 mod features;
 mod files;
 mod info;
+mod no_body;
 mod objects;
 mod others;
 mod question;
@@ -21,7 +23,7 @@ pub mod verbs;
 pub mod words;
 
 pub use error::CommandError;
-pub use features::no_body;
+pub use no_body::no_body;
 pub use others::foreign;
 pub(crate) use session::Picture;
 pub use session::{CommandReply, Files, NullFiles, OutFile, SketchSession};

@@ -87,6 +87,16 @@ impl CommandReply {
         CommandReply { severity: Severity::Warning, ..CommandReply::note(text) }
     }
 
+    /// A fault that does not stop the command.
+    pub(super) fn warning_of(fault: CommandError) -> CommandReply {
+        CommandReply {
+            code: Some(fault.code).filter(|c| *c > 0),
+            next: Some(fault.next),
+            about: *fault.about,
+            ..CommandReply::warning(fault.text)
+        }
+    }
+
     /// A file to write, with a line about it.
     pub fn output(name: &str, bytes: Vec<u8>) -> CommandReply {
         let text = format!("{name}: {} bytes", bytes.len());
@@ -399,7 +409,7 @@ impl SketchSession {
         }
         let worked = self.worked(&new);
         if let Err(why) = worked.body() {
-            let reply = super::info::no_body_warning(&new, why);
+            let reply = CommandReply::warning_of(super::no_body::no_body(&new, why));
             if self.out.iter().all(|r| r.text != reply.text) {
                 self.out.push(reply);
             }

@@ -770,7 +770,7 @@ fn open_text(positions: &[Vec3], edges: &[[usize; 2]], ids: &[PointId], fitted: 
                             off,
                             format!(
                                 "{loop_text} is out of plane by {}",
-                                plain(super::dims::rounded(off))
+                                plain(super::digits::rounded(off))
                             ),
                         ));
                     }
