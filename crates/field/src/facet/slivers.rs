@@ -121,6 +121,32 @@ impl Surroundings<'_> {
     }
 }
 
+impl Surroundings<'_> {
+    /// A vertex of three triangles, two of which lie on each other between it and two vertices in one place, is drawn onto
+    /// one of these: then they can become one.
+    fn flap(&mut self, from: u32, to: u32) -> bool {
+        let Some(own) = self.round.get(&from).filter(|all| all.len() == 3) else { return false };
+        let gone: Vec<usize> =
+            own.iter().copied().filter(|&t| self.made.triangles[t].1.contains(&to)).collect();
+        let Some(&left) = own.iter().find(|t| !gone.contains(t)) else { return false };
+        let stale = |v: &u32| self.stale.contains(v);
+        let on = &self.made.surfaces[to as usize];
+        if gone.len() != 2
+            || own.iter().any(|&t| self.made.triangles[t].1.iter().any(stale))
+            || !self.made.surfaces[from as usize].iter().all(|s| on.contains(s))
+        {
+            return false;
+        }
+        for &t in own {
+            self.stale.extend(self.made.triangles[t].1);
+        }
+        let corners = &mut self.made.triangles[left].1;
+        *corners = corners.map(|v| if v == from { to } else { v });
+        self.gone.extend(gone);
+        true
+    }
+}
+
 /// How many triangles of a mesh have no area.
 pub(super) fn count(mesh: &Mesh) -> usize {
     let at =
@@ -175,7 +201,10 @@ pub(super) fn remove(made: &mut Assembled) {
                 let (a, b) = (t[shortest], t[(shortest + 1) % 3]);
                 let on = |v: u32| near.made.surfaces[v as usize].len();
                 let (from, to) = if on(a) > on(b) { (b, a) } else { (a, b) };
-                near.merge(from, to, true) || near.merge(to, from, true)
+                near.merge(from, to, true)
+                    || near.merge(to, from, true)
+                    || near.flap(t[(shortest + 2) % 3], from)
+                    || near.flap(t[(shortest + 2) % 3], to)
             } else {
                 near.turn(sliver, row)
                     || near.merge(row[1], row[0], false)
