@@ -14,7 +14,8 @@ def patch(rng: np.random.Generator) -> str:
     if rng.random() < 0.3:
         r = rng.uniform(0.8, 1.5)
         return (
-            f"AbsPoint O(0, 0, 0); AbsPoint X(0, 0, 1); AbsPoint P({r}, 0, 0); AbsPoint Q({r}, 0, 3);"
+            "AbsPoint O(0, 0, 0); AbsPoint X(0, 0, 1);"
+            f"AbsPoint P({r}, 0, 0); AbsPoint Q({r}, 0, 3);"
             "Line axis(O, X); Line ruling(P, Q); RevSurf s0(ruling, axis, 0, 6.283185307179586);"
         )
     rows = []
