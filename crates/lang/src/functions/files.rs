@@ -21,8 +21,6 @@ const FIRST_FREE: u32 = 10;
 
 /// The most bytes of all files that a run writes, and the most files open at a time.
 const MOST_BYTES: usize = 256 << 20;
-
-const GREAT: usize = 16 << 20;
 const MOST_OPEN: usize = 1_000;
 
 /// The number that a name stands for without being declared: a unit, or PI.
@@ -231,10 +229,6 @@ impl RunFiles {
             return Err(too_much());
         }
         let file = self.written.get_mut(name).expect("entered by open");
-        // A great file grows by a quarter, not by as much again.
-        if file.len() > GREAT && file.capacity() - file.len() < text.len() {
-            file.reserve_exact(text.len().max(file.len() / 4));
-        }
         file.extend_from_slice(text.as_bytes());
         Ok(())
     }
