@@ -21,6 +21,7 @@ from conftest import SAILBOAT
 from moldloft.errors import Error
 from moldloft.storage import put
 from moldloft.workbench.draft import Draft
+from moldloft.workbench.engine import Engine
 from moldloft.workbench.hub import Hub, Tab, head_of
 from moldloft.workbench.text import applied, change_set, encoded, read
 
@@ -305,6 +306,24 @@ def test_a_model_without_bounds_takes_nothing_with_it(
         assert hub.text == good
 
     workbench(model_file(LINE), play, memory=300 << 20, budget=3.0)
+
+
+def test_a_stop_that_comes_late_stops_nothing_else() -> None:
+    async def play() -> None:
+        engine = Engine("model.sdl", None, budget=60)
+        await engine.start(LINE)
+        try:
+            await engine.ask(b'{"kind": "open", "tab": 1, "id": 1}')
+            await engine._send(b'{"kind":"cancel"}')
+            await asyncio.sleep(0.1)
+            text = f"{LINE}AbsPoint P(1, 2, 3);\n"
+            request = {"kind": "text", "tab": 1, "id": 2, "version": 1, "text": text}
+            head = head_of(await engine.ask(json.dumps(request).encode()))
+            assert [o["name"] for o in head["objects"]] == ["A", "B", "l", "P"]
+        finally:
+            await engine.end()
+
+    asyncio.run(play())
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals")

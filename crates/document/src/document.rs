@@ -246,8 +246,17 @@ impl Document {
         self.run_diagnostics.clear();
         let mut evaluation = std::mem::take(&mut self.plain);
         let seeds = HashSet::new();
+        let earlier = evaluation.graph.objects().next().is_some();
         self.applied = self.evaluate(&mut evaluation, &|_, x| x, &seeds, true);
         let refused = self.budget.poll() == Err(Spent::Refused);
+        let short = self.run_diagnostics.iter().any(|d| d.id == "out-of-memory");
+        if earlier && short && !refused {
+            // It may be the results of earlier runs that fill the memory.
+            evaluation = Evaluation::default();
+            self.forget_results();
+            self.run_diagnostics.clear();
+            self.applied = self.evaluate(&mut evaluation, &|_, x| x, &seeds, true);
+        }
         let cut = |d: &Diagnostic| d.id == "cancelled" || (d.id == "out-of-memory" && refused);
         self.cut_short = self.run_diagnostics.iter().any(cut);
         self.plain = evaluation;
@@ -257,6 +266,17 @@ impl Document {
             self.solve();
         }
         self.applied
+    }
+
+    /// Frees what was computed from the plain run and is kept for the next one.
+    fn forget_results(&mut self) {
+        self.dual = None;
+        self.panelled = None;
+        self.bodied = None;
+        self.whole.clear();
+        self.blocked = None;
+        self.nominal = None;
+        self.kept = Kept::default();
     }
 
     /// Runs again what a run did not come to that was cancelled, or that the system refused memory.

@@ -2,15 +2,15 @@
 //!
 //! `request -> Session -> reply`, each in a frame of [`read_frame`].
 //!
-//! The parent has the text and may end this process at any time. A request `cancel` stops the one that is
-//! under way; everything else is answered in order.
+//! The parent has the text and may end this process at any time. A request `cancel` stops the last one before it, when
+//! it has no answer yet; everything else is answered in order.
 
 use moldloft::budget::{Budget, read_frame, write_frame};
 use moldloft::host::{FileWorld, Noted, ReadAs};
 use moldloft::session::Session;
 use pyo3::prelude::*;
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 
 /// What stops the work under way.
 const CANCEL: &[u8] = br#"{"kind":"cancel"}"#;
@@ -38,30 +38,90 @@ pub fn engine(
     });
 }
 
+/// What is counted so that a request to stop reaches the one that it was sent for, and no later one.
+struct Turns {
+    budget: Arc<Budget>,
+    counts: Mutex<Counts>,
+}
+
+#[derive(Default)]
+struct Counts {
+    /// Requests that have come in.
+    received: u64,
+    /// The last request that was begun.
+    begun: u64,
+    /// Whether it is under way.
+    running: bool,
+    /// The request that is to be stopped when it begins.
+    stopped: Option<u64>,
+}
+
+impl Turns {
+    fn counts(&self) -> MutexGuard<'_, Counts> {
+        self.counts.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn receive(&self) {
+        self.counts().received += 1;
+    }
+
+    fn cancel(&self) {
+        let mut counts = self.counts();
+        if counts.begun < counts.received {
+            counts.stopped = Some(counts.received);
+        } else if counts.running {
+            self.budget.cancel();
+        }
+    }
+
+    fn begin(&self) {
+        let mut counts = self.counts();
+        counts.begun += 1;
+        counts.running = true;
+        if counts.stopped == Some(counts.begun) {
+            self.budget.cancel();
+        }
+    }
+
+    fn end(&self) {
+        let mut counts = self.counts();
+        counts.running = false;
+        self.budget.resume();
+    }
+}
+
 fn serve(name: &str, folder: Option<&str>, library: &[String]) {
     let budget = Arc::<Budget>::default();
     let (sender, requests) = mpsc::channel::<String>();
-    let shared = budget.clone();
+    let turns = Arc::new(Turns { budget: budget.clone(), counts: Mutex::default() });
+    let shared = turns.clone();
     std::thread::spawn(move || {
         let mut input = std::io::stdin().lock();
         while let Ok(Some(message)) = read_frame(&mut input) {
             if message == CANCEL {
                 shared.cancel();
-            } else if sender.send(String::from_utf8_lossy(&message).into_owned()).is_err() {
+                continue;
+            }
+            shared.receive();
+            if sender.send(String::from_utf8_lossy(&message).into_owned()).is_err() {
                 return;
             }
         }
     });
     let Ok(text) = requests.recv() else { return };
     let world = Box::new(FileWorld::new(folder.map(Path::new), library));
-    let begun = budget.timed();
+    turns.begin();
+    let timed = budget.timed();
     let mut session = Session::within(world, name, &text, budget.clone());
-    drop(begun);
+    drop(timed);
+    turns.end();
     let mut output = std::io::stdout().lock();
     for request in requests {
+        turns.begin();
         let timed = budget.timed();
         let frame = session.answer(&request);
         drop(timed);
+        turns.end();
         if write_frame(&mut output, &frame).is_err() {
             return;
         }

@@ -49,7 +49,6 @@ pub struct Session {
     tabs: HashMap<u64, Tab>,
     drag: Option<Drag>,
     overlays: Overlays,
-    budget: Arc<Budget>,
 }
 
 /// A viewer.
@@ -93,7 +92,7 @@ impl Session {
 
     /// As [`Self::new`]; `budget` is what its work may use; it cancels what is under way.
     pub fn within(world: Box<dyn World>, name: &str, text: &str, budget: Arc<Budget>) -> Self {
-        let document = Document::edited(registry(), world, (name, text), budget.clone());
+        let document = Document::edited(registry(), world, (name, text), budget);
         Self {
             document,
             text: text.into(),
@@ -105,7 +104,6 @@ impl Session {
             tabs: HashMap::new(),
             drag: None,
             overlays: Overlays::default(),
-            budget,
         }
     }
 
@@ -144,7 +142,6 @@ impl Session {
             self.drawn = None;
             frame
         });
-        self.budget.resume();
         frame.put("id", id);
         frame.put("rev", self.rev);
         frame.put("version", self.version);
@@ -159,8 +156,6 @@ impl Session {
         }
         if let Ask::Open = request.ask {
             self.tabs.remove(&tab);
-            // What the viewer still has of an earlier engine is gone.
-            frame.put("all", true);
         }
         if matches!(request.ask, Ask::Text { .. } | Ask::Splice { .. })
             && let Some(version) = request.version
@@ -192,6 +187,10 @@ impl Session {
             && let Some(&oldest) = self.tabs.keys().min()
         {
             self.tabs.remove(&oldest);
+        }
+        if !self.tabs.contains_key(&tab) {
+            // What the viewer still has of an earlier engine is gone.
+            frame.put("all", true);
         }
         let document = &self.document;
         let known = &mut self.tabs.entry(tab).or_default().known;
