@@ -3,6 +3,11 @@
 use crate::SurfaceField;
 use moldloft_num::Vec3;
 
+const STEPS: usize = 80;
+
+/// What is nearer than this share of the accuracy is on the surfaces.
+const ON: f64 = 1e-6;
+
 /// The point near another that is on all these surfaces, by their numbers in a field, within half the accuracy; none within
 /// reach where they have none.
 pub fn foot(
@@ -12,11 +17,8 @@ pub fn foot(
     reach: f64,
     [accuracy, size]: [f64; 2],
 ) -> Option<Vec3> {
-    const STEPS: usize = 80;
     const NEAR_ENOUGH: f64 = 0.1;
     const ACROSS: usize = 3;
-    /// What is nearer than this share of the accuracy is on the surfaces.
-    const ON: f64 = 1e-6;
     let off = |p: Vec3| {
         surfaces.iter().map(move |&l| {
             let (f, slope) = field(l, p);
@@ -34,6 +36,9 @@ pub fn foot(
         };
         rows.iter().fold(0.0f64, far)
     };
+    if let [only] = surfaces {
+        return foot_on_one(field, *only, start, reach, [accuracy, size]);
+    }
     let mut p = start;
     let mut rows: Vec<(f64, Vec3)> = off(p).collect();
     let mut best = (worst(&rows), start);
@@ -64,6 +69,46 @@ pub fn foot(
         let now = worst(&rows);
         if now < best.0 {
             best = (now, p);
+        }
+        if long <= 1e-16 * size {
+            break;
+        }
+    }
+    let (off, p) = best;
+    (off <= 0.5 * accuracy && p.distance(start) <= reach).then_some(p)
+}
+
+/// The same on one surface.
+fn foot_on_one(
+    field: &SurfaceField<'_>,
+    surface: u32,
+    start: Vec3,
+    reach: f64,
+    [accuracy, size]: [f64; 2],
+) -> Option<Vec3> {
+    let off = |p: Vec3| {
+        let (f, slope) = field(surface, p);
+        let norm = slope.norm();
+        if f == 0.0 { (0.0, slope / norm.max(f64::MIN_POSITIVE)) } else { (f / norm, slope / norm) }
+    };
+    let far = |d: f64| if d.is_nan() { f64::INFINITY } else { d.abs() };
+    let on = (ON * accuracy).max(1e-15 * size);
+    let mut p = start;
+    let (mut d, mut n) = off(p);
+    let mut best = (far(d), start);
+    for _ in 0..STEPS {
+        let mut step = n * d;
+        if best.0 <= on || !step.is_finite() {
+            break;
+        }
+        let long = step.norm();
+        if long > 0.5 * reach {
+            step = step * (0.5 * reach / long);
+        }
+        p -= step;
+        (d, n) = off(p);
+        if far(d) < best.0 {
+            best = (far(d), p);
         }
         if long <= 1e-16 * size {
             break;

@@ -570,24 +570,9 @@ impl LabelledBody {
         let inner = chain.vertices[1..n - 1].iter().map(|&v| self.net.positions[v as usize]);
         match chain.exact {
             Some(ExactCurve::Line { .. }) => Some((BrepEdge::segment(p, q), None)),
-            Some(ellipse @ ExactCurve::Ellipse { centre, x, y }) => {
-                let start = ellipse.angle(p);
-                let wrapped = |d: f64| d - TAU * libm::round(d / TAU);
-                let mut at = start;
-                for p in inner.chain([q]) {
-                    at += wrapped(ellipse.angle(p) - at);
-                }
-                let mut sweep = at - start;
-                if chain.closed() {
-                    sweep = if sweep < 0.0 { -TAU } else { TAU };
-                }
-                let (y, start) = if sweep < 0.0 { (-y, -start) } else { (y, start) };
-                let own = ExactCurve::Ellipse { centre, x, y };
-                let mut curve = arc(centre, x, y, start, sweep.abs());
-                // Ends are vertices, bit for bit.
-                let last = curve.points.len() - 1;
-                (curve.points[0], curve.points[last]) = (p, q);
-                (sweep != 0.0).then_some((curve, Some(own)))
+            Some(ellipse @ ExactCurve::Ellipse { .. }) => {
+                let made = span(ellipse, [p, q], inner, chain.closed());
+                made.map(|(curve, own)| (curve, Some(own)))
             }
             None => {
                 let both = chain.surfaces.map(|s| &self.surfaces[s as usize]);
@@ -717,30 +702,8 @@ impl LabelledBody {
         cavity: bool,
     ) -> BrepFace {
         let label = self.net.labels[members[0]] as usize;
-        let area = |k: usize| {
-            let [a, b, c] = self.net.corners(k);
-            (b - a).cross(c - a)
-        };
-        let largest = members.iter().max_by(|a, b| area(**a).norm().total_cmp(&area(**b).norm()));
-        let largest = *largest.unwrap_or(&members[0]);
-        let [a, b, c] = self.net.corners(largest);
-        let (middle, out) = ((a + b + c) / 3.0, area(largest));
-        let axes = self.axes.get(&group);
-        let places = members.iter().flat_map(|&k| self.net.corners(k));
-        let surface = match &self.surfaces[label] {
-            SurfaceShape::Image(image) => {
-                let local = image.local(middle);
-                let of = placed(image.of(), axes, local, places.map(|p| image.local(p)));
-                SurfaceShape::Image(Box::new(image.with(of)))
-            }
-            other => placed(other, axes, middle, places),
-        };
-        let mut surface = surface;
-        let mut reversed = surface.normal(middle).dot(out) < 0.0;
-        if let (true, SurfaceShape::Plane { normal, .. }) = (reversed, &mut surface) {
-            *normal = -*normal;
-            reversed = false;
-        }
+        let (surface, reversed) =
+            faced(&self.surfaces[label], self.axes.get(&group), &self.net, members);
         let extent = extent(members.iter().flat_map(|&k| self.net.corners(k)));
         BrepFace {
             name: self.names[label].clone(),
@@ -754,6 +717,65 @@ impl LabelledBody {
             extent: Some((extent, cavity)),
         }
     }
+}
+
+/// The part of an ellipse between two places, by way of others; and that ellipse, run by increasing angle.
+pub fn span(
+    ellipse: ExactCurve,
+    [p, q]: [Vec3; 2],
+    inner: impl Iterator<Item = Vec3>,
+    closed: bool,
+) -> Option<(Nurbs<1>, ExactCurve)> {
+    let ExactCurve::Ellipse { centre, x, y } = ellipse else { return None };
+    let start = ellipse.angle(p);
+    let wrapped = |d: f64| d - TAU * libm::round(d / TAU);
+    let mut at = start;
+    for p in inner.chain([q]) {
+        at += wrapped(ellipse.angle(p) - at);
+    }
+    let mut sweep = at - start;
+    if closed {
+        sweep = if sweep < 0.0 { -TAU } else { TAU };
+    }
+    let (y, start) = if sweep < 0.0 { (-y, -start) } else { (y, start) };
+    let own = ExactCurve::Ellipse { centre, x, y };
+    let mut curve = arc(centre, x, y, start, sweep.abs());
+    // Ends are vertices, bit for bit.
+    let last = curve.points.len() - 1;
+    (curve.points[0], curve.points[last]) = (p, q);
+    (sweep != 0.0).then_some((curve, own))
+}
+
+/// The surface of a face of triangles, with axes of its own, and whether its normal points inwards there.
+pub fn faced(
+    surface: &SurfaceShape,
+    axes: Option<&SurfaceAxes>,
+    net: &FacetNet,
+    members: &[usize],
+) -> (SurfaceShape, bool) {
+    let area = |k: usize| {
+        let [a, b, c] = net.corners(k);
+        (b - a).cross(c - a)
+    };
+    let largest = members.iter().max_by(|a, b| area(**a).norm().total_cmp(&area(**b).norm()));
+    let largest = *largest.unwrap_or(&members[0]);
+    let [a, b, c] = net.corners(largest);
+    let (middle, out) = ((a + b + c) / 3.0, area(largest));
+    let places = members.iter().flat_map(|&k| net.corners(k));
+    let mut surface = match surface {
+        SurfaceShape::Image(image) => {
+            let local = image.local(middle);
+            let of = placed(image.of(), axes, local, places.map(|p| image.local(p)));
+            SurfaceShape::Image(Box::new(image.with(of)))
+        }
+        other => placed(other, axes, middle, places),
+    };
+    let reversed = surface.normal(middle).dot(out) < 0.0;
+    if let (true, SurfaceShape::Plane { normal, .. }) = (reversed, &mut surface) {
+        *normal = -*normal;
+        return (surface, false);
+    }
+    (surface, reversed)
 }
 
 /// A surface with the axes of a face, of which a place in the middle and others are known: of a cone at its widest place.

@@ -21,8 +21,10 @@ mod patch;
 mod patches;
 mod seams;
 mod surface_image;
+mod traces;
 mod untangle;
 mod volume;
+mod whole;
 
 pub use analytic::SurfaceAxes;
 pub use check::{Fault, ShellFacts};
@@ -252,6 +254,11 @@ impl Brep {
         if let SurfaceShape::Nurbs(surface) = &face.surface {
             return Some((**surface).clone());
         }
+        face.surface.nurbs(self.heights(face)?)
+    }
+
+    /// Least and greatest height of a face's edges along its axis, of an image in its coordinates.
+    pub(crate) fn heights(&self, face: &BrepFace) -> Option<[f64; 2]> {
         let height: Box<dyn Fn(Vec3) -> f64> = match &face.surface {
             SurfaceShape::Image(image) => Box::new(|p| image.height(p)),
             other => {
@@ -266,7 +273,7 @@ impl Brep {
                 (low, high) = (low.min(h), high.max(h));
             }
         }
-        face.surface.nurbs([low, high])
+        Some([low, high])
     }
 
     /// Adds the vertices, edges and faces of another.

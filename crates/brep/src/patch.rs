@@ -13,6 +13,12 @@ const TRIED: [usize; 2] = [1, 5];
 /// Places at which the normal of a patch is compared with that of the surface, along each parameter.
 const NORMALS: [f64; 5] = [0.04, 0.3, 0.5, 0.7, 0.96];
 
+/// The highest degree.
+const MOST: usize = 5;
+
+/// Bernstein polynomials of a degree; zeros behind them.
+type BernsteinRow = [f64; MOST + 1];
+
 /// A surface's function and its gradient at a point, by the number of the surface.
 pub type SurfaceField<'a> = dyn Fn(u32, Vec3) -> (f64, Vec3) + Sync + 'a;
 
@@ -24,11 +30,13 @@ pub struct PatchBasis {
     /// Control points of the values there.
     inverse: Vec<Vec<f64>>,
     /// The Bernstein polynomials where distances are taken.
-    rows: Vec<Vec<f64>>,
+    rows: [BernsteinRow; DISTANCES],
+    /// And at the places.
+    own: Vec<BernsteinRow>,
     /// For each order, the factors of the values there in the Chebyshev coefficient.
     chebyshev: [[f64; DISTANCES]; DISTANCES],
     /// The Bernstein polynomials where normals are taken, and their derivatives.
-    normals: [[Vec<f64>; 2]; NORMALS.len()],
+    normals: [[BernsteinRow; 2]; NORMALS.len()],
 }
 
 /// A patch and what is known of it.
@@ -46,12 +54,11 @@ impl PatchBasis {
     pub fn new(degree: usize) -> Self {
         let at: Vec<f64> =
             (0..=degree).map(|k| 0.5 * (1.0 - libm::cos(PI * k as f64 / degree as f64))).collect();
-        let inverse = inverted(at.iter().map(|t| bernstein(degree, *t)).collect());
-        let rows = (0..DISTANCES)
-            .map(|k| {
-                bernstein(degree, 0.5 * (1.0 - libm::cos(PI * (k as f64 + 0.5) / DISTANCES as f64)))
-            })
-            .collect();
+        let own: Vec<BernsteinRow> = at.iter().map(|t| bernstein(degree, *t)).collect();
+        let inverse = inverted(own.iter().map(|row| row[..=degree].to_vec()).collect());
+        let rows = std::array::from_fn(|k| {
+            bernstein(degree, 0.5 * (1.0 - libm::cos(PI * (k as f64 + 0.5) / DISTANCES as f64)))
+        });
         let chebyshev = std::array::from_fn(|k| {
             let scale = if k == 0 { 1.0 } else { 2.0 } / DISTANCES as f64;
             std::array::from_fn(|i| {
@@ -59,7 +66,7 @@ impl PatchBasis {
             })
         });
         let normals = NORMALS.map(|t| [bernstein(degree, t), slope(degree, t)]);
-        Self { degree, at, inverse, rows, chebyshev, normals }
+        Self { degree, at, inverse, rows, own, chebyshev, normals }
     }
 
     /// The control points of a curve through points at the places.
@@ -78,6 +85,29 @@ impl PatchBasis {
     pub fn on_curve(&self, net: &[Vec3], t: f64) -> Vec3 {
         let row = bernstein(self.degree, t);
         row.iter().zip(net).fold(Vec3::zero(), |sum, (w, p)| sum + *p * *w)
+    }
+
+    /// The points of a curve at the places.
+    pub fn at_places(&self, net: &[Vec3]) -> Vec<Vec3> {
+        let at = |row: &BernsteinRow| {
+            row.iter().zip(net).fold(Vec3::zero(), |sum, (w, p)| sum + *p * *w)
+        };
+        self.own.iter().map(at).collect()
+    }
+
+    /// A bound of the distance of a curve from a surface, as [`Self::distance`] is one.
+    pub fn distance_of_curve(&self, net: &[Vec3], surface: u32, field: &SurfaceField<'_>) -> f64 {
+        let values = self.rows.map(|row| {
+            let p = row.iter().zip(net).fold(Vec3::zero(), |sum, (w, p)| sum + *p * *w);
+            let (f, slope) = field(surface, p);
+            if f == 0.0 { 0.0 } else { f / slope.norm() }
+        });
+        let mut bound = 0.0;
+        for (k, along) in self.chebyshev.iter().enumerate() {
+            let c: f64 = along.iter().zip(&values).map(|(c, v)| c * v).sum();
+            bound += c.abs() * if k + 2 >= DISTANCES { 3.0 } else { 1.0 };
+        }
+        if bound.is_finite() { bound } else { f64::INFINITY }
     }
 
     /// The patch through points at the places, with these control points along its sides u = 0 and 1, v = 0 and 1.
@@ -127,6 +157,7 @@ impl PatchBasis {
         let mut values = [[0.0; DISTANCES]; DISTANCES];
         for (u, own) in self.rows.iter().zip(&mut values) {
             let line = self.across(net, u);
+            let line = &line[..=self.degree];
             for (v, value) in self.rows.iter().zip(own) {
                 let p = line.iter().zip(v).fold(Vec3::zero(), |sum, (p, w)| sum + *p * *w);
                 *value = off(p);
@@ -146,9 +177,12 @@ impl PatchBasis {
     }
 
     /// The control points of the curve of a patch at a first parameter, by its Bernstein polynomials.
-    fn across(&self, net: &[Vec3], u: &[f64]) -> Vec<Vec3> {
+    fn across(&self, net: &[Vec3], u: &BernsteinRow) -> [Vec3; MOST + 1] {
         let n = self.degree + 1;
-        (0..n).map(|j| (0..n).fold(Vec3::zero(), |sum, i| sum + net[i * n + j] * u[i])).collect()
+        std::array::from_fn(|j| {
+            let own = 0..if j < n { n } else { 0 };
+            own.fold(Vec3::zero(), |sum, i| sum + net[i * n + j] * u[i])
+        })
     }
 
     /// True where the patch's normal is not on the surface's side that `sign` says.
@@ -194,10 +228,10 @@ impl PatchBasis {
     }
 }
 
-fn bernstein(degree: usize, t: f64) -> Vec<f64> {
-    let mut row = vec![1.0];
+fn bernstein(degree: usize, t: f64) -> BernsteinRow {
+    let mut row = [0.0; MOST + 1];
+    row[0] = 1.0;
     for n in 1..=degree {
-        row.push(0.0);
         for k in (0..=n).rev() {
             let before = if k > 0 { row[k - 1] } else { 0.0 };
             row[k] = row[k] * (1.0 - t) + before * t;
@@ -207,10 +241,9 @@ fn bernstein(degree: usize, t: f64) -> Vec<f64> {
 }
 
 /// The derivatives of the Bernstein polynomials.
-fn slope(degree: usize, t: f64) -> Vec<f64> {
+fn slope(degree: usize, t: f64) -> BernsteinRow {
     let lower = bernstein(degree - 1, t);
-    let at = |k: usize| lower.get(k).copied().unwrap_or(0.0);
-    (0..=degree).map(|k| degree as f64 * (if k > 0 { at(k - 1) } else { 0.0 } - at(k))).collect()
+    std::array::from_fn(|k| degree as f64 * (if k > 0 { lower[k - 1] } else { 0.0 } - lower[k]))
 }
 
 /// The inverse of a small matrix, by elimination with pivots.

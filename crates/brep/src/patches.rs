@@ -1,4 +1,5 @@
-//! Bodies with faces on any surfaces: plane faces, and elsewhere small patches that lie on the surface within an accuracy.
+//! Bodies with faces on any surfaces: plane faces, whole ones on cylinders and cones, and elsewhere small patches that lie
+//! on the surface within an accuracy.
 //!
 //! `triangles, each with its surface -> vertices and sides on their surfaces -> quadrilaterals and triangles -> patches`
 //!
@@ -9,8 +10,10 @@ use crate::foot::foot;
 use crate::labelled::extent;
 use crate::patch::{FittedPatch, PatchBasis, SurfaceField};
 use crate::seams::{FacetNet, ordered};
+use crate::whole::{WholeSurfaces, cut_round};
 use crate::{
-    Brep, BrepEdge, BrepFace, Coedge, FacetFault, FacetFaultKind, LabelledFacets, SurfaceShape,
+    Brep, BrepEdge, BrepFace, Coedge, ExactCurve, FacetFault, FacetFaultKind, LabelledFacets,
+    SurfaceShape,
 };
 use moldloft_num::{Pace, Vec3};
 use moldloft_parallel::prelude::*;
@@ -43,7 +46,8 @@ const FINE: f64 = 3e-8;
 
 impl Brep {
     /// Adds the faces of a body whose surfaces need not be planes, cylinders, cones, spheres or tori; gives places on
-    /// them. With `patient` more rounds of halving are tried, and less is corrected.
+    /// them. With `whole` its cylinders and cones are whole faces, else patches as well; with `patient` more rounds of
+    /// halving are tried, and less is corrected.
     ///
     /// # Errors
     /// Vertices and sides that are not on their surfaces; surfaces that no patches come near enough to.
@@ -53,10 +57,10 @@ impl Brep {
         field: &SurfaceField<'_>,
         accuracy: f64,
         size: f64,
-        patient: bool,
+        [whole, patient]: [bool; 2],
     ) -> Result<Vec<Vec3>, FacetFault> {
         let shown = vec![true; facets.surfaces.len()];
-        let mut body = PatchedBody::new(facets, shown, field, accuracy, size)?;
+        let mut body = PatchedBody::new(facets, shown, field, [accuracy, size], whole)?;
         let patches = body.fit(patient)?;
         body.into_brep(self, patches)
     }
@@ -74,7 +78,7 @@ impl Brep {
         accuracy: f64,
         size: f64,
     ) -> Result<Vec<Vec3>, FacetFault> {
-        let mut body = PatchedBody::new(facets, shown, field, accuracy, size)?;
+        let mut body = PatchedBody::new(facets, shown, field, [accuracy, size], false)?;
         let patches = body.fit(true)?;
         body.into_brep(self, patches)
     }
@@ -86,14 +90,19 @@ type Corners = [u32; 4];
 pub struct PatchedBody<'a> {
     pub net: FacetNet,
     pub facets: LabelledFacets,
-    pub field: &'a SurfaceField<'a>,
+    pub field: Box<SurfaceField<'a>>,
     /// For each surface, whether its faces are wanted.
     shown: Vec<bool>,
+    pub whole: WholeSurfaces,
+    /// The lines and ellipses in which whole faces meet, by their labels.
+    pub meeting: FxHashMap<(u32, u32), Vec<ExactCurve>>,
     /// For each surface 1 where its gradient points outwards, else -1; known once triangles are corrected.
     pub signs: Vec<f64>,
-    basis: PatchBasis,
-    accuracy: f64,
-    size: f64,
+    pub basis: PatchBasis,
+    pub accuracy: f64,
+    pub size: f64,
+    /// How far edges are from whole faces.
+    stray: f64,
     /// Control points of sides, from the lower vertex.
     sides: FxHashMap<(u32, u32), Vec<Vec3>>,
 }
@@ -101,10 +110,10 @@ pub struct PatchedBody<'a> {
 impl<'a> PatchedBody<'a> {
     fn new(
         mut facets: LabelledFacets,
-        shown: Vec<bool>,
+        mut shown: Vec<bool>,
         field: &'a SurfaceField<'a>,
-        accuracy: f64,
-        size: f64,
+        [accuracy, size]: [f64; 2],
+        wholly: bool,
     ) -> Result<Self, FacetFault> {
         let degree = DEGREES[usize::from(accuracy < FINE * size)];
         let positions = std::mem::take(&mut facets.positions);
@@ -114,30 +123,52 @@ impl<'a> PatchedBody<'a> {
             shown[label as usize] && !plane
         };
         // Halving only makes more.
-        if facets.labels.iter().filter(|label| is_curved(**label)).count() > MOST {
+        let curved = facets.labels.iter().filter(|label| is_curved(**label)).count();
+        if !wholly && curved > MOST {
             return Err(FacetFault { kind: FacetFaultKind::Many, surfaces: Vec::new(), place });
         }
         let triangles = std::mem::take(&mut facets.triangles);
         let labels = std::mem::take(&mut facets.labels);
-        let Some(net) = FacetNet::new(positions, triangles, labels) else {
+        let Some(mut net) = FacetNet::new(positions, triangles, labels) else {
             let kind = FacetFaultKind::NotClosed;
             return Err(FacetFault { kind, surfaces: Vec::new(), place });
+        };
+        let whole = if wholly {
+            cut_round(&mut net, &mut facets, &mut shown)
+        } else {
+            WholeSurfaces::none(facets.surfaces.len())
+        };
+        let (before, planes) = (whole.before.clone(), whole.planes.clone());
+        // Labels behind those of surfaces are planes of cuts.
+        let field = move |label: u32, p: Vec3| match before.get(label as usize) {
+            Some(known) => field(*known, p),
+            None => {
+                let (origin, normal) = planes[label as usize - before.len()];
+                ((p - origin).dot(normal), normal)
+            }
         };
         let basis = PatchBasis::new(degree);
         let mut body = Self {
             net,
             facets,
-            field,
+            field: Box::new(field),
             shown,
+            whole,
+            meeting: FxHashMap::default(),
             signs: Vec::new(),
             basis,
             accuracy,
             size,
+            stray: 0.0,
             sides: FxHashMap::default(),
         };
+        if wholly && body.curved() > MOST {
+            return Err(body.fault(FacetFaultKind::Many, &[], place));
+        }
         body.absorb_pieces();
         body.place_vertices()?;
         body.untangle(None);
+        body.find_meetings();
         Ok(body)
     }
 
@@ -153,7 +184,7 @@ impl<'a> PatchedBody<'a> {
 
     /// Whether a triangle becomes a part of a patch.
     fn is_curved(&self, triangle: usize) -> bool {
-        self.is_shown(triangle) && self.plane(triangle).is_none()
+        self.is_shown(triangle) && !self.is_whole(self.net.labels[triangle])
     }
 
     /// How many triangles become parts of patches.
@@ -166,11 +197,13 @@ impl<'a> PatchedBody<'a> {
         surface.filter(|s| matches!(s, SurfaceShape::Plane { .. }))
     }
 
-    fn fault(&self, kind: FacetFaultKind, labels: &[u32], place: Vec3) -> FacetFault {
+    pub fn fault(&self, kind: FacetFaultKind, labels: &[u32], place: Vec3) -> FacetFault {
         let mut surfaces: Vec<String> = Vec::new();
         for &label in labels {
-            let name = &self.facets.names[label as usize];
-            if !surfaces.contains(name) {
+            // Of planes of cuts there is none.
+            if let Some(name) = self.facets.names.get(label as usize)
+                && !surfaces.contains(name)
+            {
                 surfaces.push(name.clone());
             }
         }
@@ -207,7 +240,11 @@ impl<'a> PatchedBody<'a> {
 
     /// The point near another that is on all these surfaces within the accuracy.
     pub fn foot(&self, labels: &[u32], start: Vec3, reach: f64) -> Option<Vec3> {
-        foot(self.field, labels, start, reach, [self.accuracy, self.size])
+        let scale = [self.accuracy, self.size];
+        if self.whole.cuts.is_empty() {
+            return foot(&*self.field, labels, start, reach, scale);
+        }
+        foot(&*self.field, &self.whole.with_cuts(labels), start, reach, scale)
     }
 
     /// The surfaces on both sides of a side.
@@ -249,7 +286,7 @@ impl<'a> PatchedBody<'a> {
     }
 
     /// Makes the curve of a side, if it is not known.
-    fn make_side(&mut self, a: u32, b: u32) -> Result<(), FacetFault> {
+    pub fn make_side(&mut self, a: u32, b: u32) -> Result<(), FacetFault> {
         let key = ordered(a, b);
         if !self.sides.contains_key(&key) {
             let net = self.side_curve(key)?;
@@ -286,7 +323,7 @@ impl<'a> PatchedBody<'a> {
     }
 
     /// The control points of a side from one vertex to the other.
-    fn side(&self, a: u32, b: u32) -> Vec<Vec3> {
+    pub fn side(&self, a: u32, b: u32) -> Vec<Vec3> {
         if a == b {
             return vec![self.net.positions[a as usize]; self.basis.degree + 1];
         }
@@ -366,9 +403,7 @@ impl<'a> PatchedBody<'a> {
         let [low, right, high, left] =
             [self.side(a, b), self.side(b, c), self.side(d, c), self.side(a, d)];
         let n = self.basis.degree;
-        let line = |net: &[Vec3]| -> Vec<Vec3> {
-            self.basis.at.iter().map(|t| self.basis.on_curve(net, *t)).collect()
-        };
+        let line = |net: &[Vec3]| self.basis.at_places(net);
         let [l, r, h, e] = [line(&low), line(&right), line(&high), line(&left)];
         let reach = [a, b, c, d]
             .map(|v| self.net.positions[v as usize].distance(self.net.positions[c as usize]))
@@ -401,7 +436,7 @@ impl<'a> PatchedBody<'a> {
             }
         }
         let net = self.basis.patch(&through, [&left, &right, &low, &high]);
-        let error = self.basis.distance(&net, label, self.field, self.accuracy);
+        let error = self.basis.distance(&net, label, &*self.field, self.accuracy);
         if error > self.accuracy {
             return FittedPatch { net, error, folded: false };
         }
@@ -409,7 +444,7 @@ impl<'a> PatchedBody<'a> {
         let out = (s - p).cross(t - q);
         let (_, slope) = (self.field)(label, self.basis.middle(&net));
         let sign = if out.dot(slope) < 0.0 { -1.0 } else { 1.0 };
-        let folded = self.basis.folds(&net, label, sign, self.field);
+        let folded = self.basis.folds(&net, label, sign, &*self.field);
         FittedPatch { net, error, folded }
     }
 
@@ -421,6 +456,7 @@ impl<'a> PatchedBody<'a> {
         let mut last = None;
         let mut fewest = usize::MAX;
         let (mut corrected, mut corrections) = (false, 0);
+        let mut near_sides: FxHashMap<(u32, u32), f64> = FxHashMap::default();
         for round in 0..ROUNDS[usize::from(patient)] {
             let all = self.pairs(&apart);
             let mut halved: Vec<(f64, (u32, u32))> = Vec::new();
@@ -457,10 +493,17 @@ impl<'a> PatchedBody<'a> {
                     halved.push((long, side));
                 }
             }
+            let strayed = self.strayed_sides(&mut near_sides)?;
+            if let (None, Some((_, (a, b)))) = (&last, strayed.first()) {
+                let place = self.net.positions[*a as usize];
+                last = Some(self.fault(FacetFaultKind::Edge, &self.both(*a, *b), place));
+            }
+            halved.extend(strayed);
             if round == 0 && self.expected(&all, &known) > MUCH * MOST as f64 {
                 return Err(self.too_many());
             }
             if halved.is_empty() && before == apart.len() {
+                self.stray = near_sides.values().fold(0.0, |m, off| m.max(*off));
                 return Ok(all
                     .into_iter()
                     .map(|(corners, k)| (corners, k, known[&corners].clone()))
@@ -483,6 +526,8 @@ impl<'a> PatchedBody<'a> {
                 patient.then(|| all.iter().filter(bad).flat_map(|(corners, _)| *corners).collect());
             if corrected && let Some(moved) = self.untangle(round_bad.as_ref()) {
                 self.sides.retain(|(a, b), _| !moved.contains(a) && !moved.contains(b));
+                // Sides may have given way to others, too.
+                near_sides.clear();
                 known.retain(|corners, _| corners.iter().all(|v| !moved.contains(v)));
                 apart.retain(|corners| corners.iter().all(|v| !moved.contains(v)));
                 last = None;
@@ -564,8 +609,10 @@ impl<'a> PatchedBody<'a> {
         brep: &mut Brep,
         patches: Vec<(Corners, u32, FittedPatch)>,
     ) -> Result<Vec<Vec3>, FacetFault> {
-        let places = patches.iter().map(|(.., patch)| self.basis.middle(&patch.net)).collect();
-        // Faces: those that are plane, by triangles that hang together, and each patch.
+        let middles = patches.iter().map(|(.., patch)| self.basis.middle(&patch.net));
+        let mut places: Vec<Vec3> = middles.collect();
+        places.extend(self.round_places());
+        // Faces: those that are whole, by triangles that hang together, and each patch.
         let mut group = self.net.connected();
         let plane_groups = group.iter().max().map_or(0, |g| g + 1);
         for (number, (corners, triangle, _)) in patches.iter().enumerate() {
@@ -595,14 +642,19 @@ impl<'a> PatchedBody<'a> {
                 })
             });
             let [p, q] = ends.map(|v| brep.vertices[v]);
-            let curve = if self.straight(chain[0], chain[1]) {
-                BrepEdge::segment(p, q)
+            let (curve, ellipse) = if self.straight(chain[0], chain[1]) {
+                (BrepEdge::segment(p, q), None)
+            } else if let Some(exact) = self.exact_side(chain[0], chain[1]) {
+                let made = self.exact_edge(exact, chain, [p, q]);
+                made.ok_or_else(|| {
+                    self.fault(FacetFaultKind::Edge, &self.both(chain[0], chain[1]), p)
+                })?
             } else {
                 self.make_side(chain[0], chain[1])?;
-                self.basis.nurbs(self.side(chain[0], chain[1]), 0.0)
+                (self.basis.nurbs(self.side(chain[0], chain[1]), 0.0), None)
             };
             edges.push(brep.edges.len());
-            brep.edges.push(BrepEdge { ends, curve, ellipse: None });
+            brep.edges.push(BrepEdge { ends, curve, ellipse });
         }
         // Of a sheet no side is the outer one.
         let whole = self.shown.iter().all(|s| *s);
@@ -611,7 +663,7 @@ impl<'a> PatchedBody<'a> {
         for (k, g) in self.net.groups.iter().enumerate() {
             by_group.entry(*g).or_default().push(k);
         }
-        let mut gap = 1e-14 * self.size;
+        let mut gap = self.stray.max(1e-14 * self.size);
         for (own, members) in by_group {
             if !self.is_shown(members[0]) {
                 continue;
@@ -628,6 +680,11 @@ impl<'a> PatchedBody<'a> {
                 None => {
                     let mut loops = self.net.loops(&members, &border, &first, &edges);
                     loops.sort_by(|a, b| long(brep, b).total_cmp(&long(brep, a)));
+                    if self.is_round(label as u32) {
+                        let extent = (extent, cavities[members[0]]);
+                        brep.faces.push(self.round_face(&members, loops, extent)?);
+                        continue;
+                    }
                     let area = |&k: &usize| {
                         let [a, b, c] = self.net.corners(k);
                         (b - a).cross(c - a)
@@ -672,35 +729,47 @@ impl<'a> PatchedBody<'a> {
             }
         }
         next.values_mut().for_each(|n| n.sort_unstable());
+        // A line or an ellipse goes on between the same two faces.
+        let exact = |a: u32, b: u32| {
+            let sides = [(a, b), (b, a)].map(|s| self.net.groups[self.net.across[&s] as usize]);
+            self.exact_side(a, b).map(|curve| (ordered(sides[0], sides[1]), curve))
+        };
         let through = |v: u32| {
             let around = &next[&v];
-            around.len() == 2 && around.iter().all(|w| self.straight(v, *w))
+            let &[a, b] = &around[..] else { return false };
+            let both_straight = self.straight(v, a) && self.straight(v, b);
+            both_straight || exact(v, a).is_some_and(|known| exact(v, b) == Some(known))
         };
         let mut chains = Vec::new();
-        for (&start, around) in &next {
-            if through(start) {
-                continue;
-            }
-            for &to in around {
+        let mut seen: FxHashSet<(u32, u32)> = FxHashSet::default();
+        // Rings without corners begin anywhere.
+        let mut starts: Vec<u32> = next.keys().copied().filter(|v| !through(*v)).collect();
+        starts.extend(next.keys().filter(|v| through(**v)));
+        for start in starts {
+            let corner = !through(start);
+            for &to in &next[&start] {
                 // Sides between others say where chains end, too.
                 let beside = [(start, to), (to, start)].map(|s| self.net.across[&s] as usize);
-                if !beside.into_iter().any(|k| self.is_shown(k)) {
+                if !beside.into_iter().any(|k| self.is_shown(k))
+                    || seen.contains(&ordered(start, to))
+                {
                     continue;
                 }
+                if !corner && exact(start, to).is_none() {
+                    continue;
+                }
+                seen.insert(ordered(start, to));
                 let mut chain = vec![start, to];
                 while let Some(&here) = chain.last()
+                    && here != start
                     && through(here)
                 {
                     let before = chain[chain.len() - 2];
                     let Some(&on) = next[&here].iter().find(|w| **w != before) else { break };
+                    seen.insert(ordered(here, on));
                     chain.push(on);
                 }
-                // Each is found from both ends.
-                if chain[0] < chain[chain.len() - 1]
-                    || (chain[0] == chain[chain.len() - 1] && chain[1] < chain[chain.len() - 2])
-                {
-                    chains.push(chain);
-                }
+                chains.push(chain);
             }
         }
         chains

@@ -264,7 +264,7 @@ impl FacetNet {
     }
 
     /// The widest range of angles that a face leaves free: its middle; none where it has every angle.
-    fn gap(&self, members: &[usize], angle: &dyn Fn(Vec3) -> Option<f64>) -> Option<f64> {
+    pub fn gap(&self, members: &[usize], angle: &dyn Fn(Vec3) -> Option<f64>) -> Option<f64> {
         let mut taken = [false; PARTS];
         for &k in members {
             let angles: Vec<f64> = self.corners(k).into_iter().filter_map(angle).collect();

@@ -33,7 +33,7 @@ pub fn remark<T: Scalar>(
                 "the points that it is made of lie in one place; a point is taken wherever a curve of no length is",
             ))
         }
-        Value::Surface(surface) if is_line(surface) => Some((
+        Value::Surface(surface) if has_no_area(surface) => Some((
             "zero-area",
             "the surface has no area: all of it is one line or point",
             "the curves that it is made of lie on each other, or on its axis",
@@ -64,7 +64,8 @@ fn is_point<T: Real>(curve: &CurveRef<T>) -> bool {
     PLACES.iter().chain(&[1.0]).all(|t| first.distance(at(*t)) <= ONE_PLACE * size)
 }
 
-fn is_line<T: Real>(surface: &SurfaceRef<T>) -> bool {
+/// True for a surface that is one line or point.
+pub fn has_no_area<T: Real>(surface: &SurfaceRef<T>) -> bool {
     let flat = |u: f64, v: f64| {
         let j = surface.jet(T::from(u), T::from(v), Order::First);
         let (a, b) = (j.u.re(), j.v.re());

@@ -35,6 +35,7 @@ mod set;
 mod solve;
 
 pub use convert::ModelFormat;
+pub use degenerate::has_no_area;
 pub use document::{Document, Panelled};
 pub use editor::{
     ArgumentHint, CallSignature, Completion, CompletionKind, NameRole, NameToken, Workspace,

@@ -198,7 +198,6 @@ impl File {
                 flat = made.0;
                 (&flat, Some(made.1))
             }
-            // Of cylinders, cones, spheres and tori; their curves are in space alone.
             _ => {
                 let Some(made) = brep.nurbs(face) else { return };
                 flat = made;
@@ -215,13 +214,18 @@ impl File {
             self.add(144, 0, "00000000", &style, &fields);
             return;
         }
-        for cycle in &face.loops {
+        let round = brep.traces(face, surface);
+        for (l, cycle) in face.loops.iter().enumerate() {
             let (mut inner, mut outer) = (Vec::new(), Vec::new());
-            for side in cycle {
+            for (k, side) in cycle.iter().enumerate() {
                 let curve = &brep.edges[side.edge].curve;
                 let curve = if side.forward { curve.clone() } else { curve.reversed() };
                 outer.push(self.curve(&curve, true, "00010000", &Style::default()));
-                if let Some(trace) = traced(side, &curve, frame.as_ref()) {
+                let trace = match &round {
+                    Some(known) => Some(known[l][k].clone()),
+                    None => traced(side, &curve, frame.as_ref()),
+                };
+                if let Some(trace) = trace {
                     inner.push(self.curve(&trace, false, "00010500", &Style::default()));
                 }
             }

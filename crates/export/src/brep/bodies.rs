@@ -225,9 +225,22 @@ impl SetOfBody<'_> {
                 continue;
             }
             let field = field_of(&facets);
-            let mut made = Brep::default();
             let labelled = labelled(&facets, self.mesh, self.name, self.over);
-            let places = made.add_patches(labelled, &field, accuracy, size, patient);
+            // Cylinders and cones as whole faces, unless that fails where patches do not.
+            if self.has_round(&labelled) {
+                let mut made = Brep::default();
+                let places =
+                    made.add_patches(labelled.clone(), &field, accuracy, size, [true, patient]);
+                if places.is_ok()
+                    && self.judged(&made, places, facets.step, [accuracy, size]).is_none()
+                    && self.wrong_volume(&made, &facets)?.is_none()
+                {
+                    brep.append(made);
+                    return Ok(None);
+                }
+            }
+            let mut made = Brep::default();
+            let places = made.add_patches(labelled, &field, accuracy, size, [false, patient]);
             match &places {
                 // Finer cells only make more.
                 Err(fault) if fault.kind == FacetFaultKind::Many => {
@@ -253,6 +266,17 @@ impl SetOfBody<'_> {
             }
         }
         Ok(last)
+    }
+
+    /// Whether whole faces on cylinders and cones are tried.
+    fn has_round(&self, facets: &LabelledFacets) -> bool {
+        let round = |surface: &SurfaceShape| match surface {
+            SurfaceShape::Image(image) => {
+                matches!(image.of(), SurfaceShape::Cylinder { .. } | SurfaceShape::Cone { .. })
+            }
+            other => matches!(other, SurfaceShape::Cylinder { .. } | SurfaceShape::Cone { .. }),
+        };
+        facets.surfaces.iter().flatten().any(round)
     }
 
     /// What is wrong with faces.

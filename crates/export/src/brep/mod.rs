@@ -19,7 +19,7 @@ use crate::{ExportFailure, length_unit};
 use edges::Sewing;
 use moldloft_brep::{Brep, Part, Shell};
 use moldloft_diag::Diagnostic;
-use moldloft_document::Document;
+use moldloft_document::{Document, has_no_area};
 use moldloft_io::WriteError;
 use moldloft_mesh::Mesh;
 
@@ -75,6 +75,11 @@ pub fn brep_or_facets(
     let Some((mut outlines, bodies)) = panelled.panelling.outlines(document.graph()) else {
         return Err(Diagnostic::error("cannot-write", "a surface has no value").into());
     };
+    if let Some(none) = outlines.iter().find(|outline| has_no_area(&outline.surface)) {
+        let message = format!("`{}` has no area: all of it is one line or point", none.name);
+        let help = "hide it, or give it other curves; formats of panels hold it";
+        return Err(Diagnostic::error("cannot-write", message).help(help).into());
+    }
     outlines.iter_mut().for_each(|outline| parents::on_parent(document, outline));
     let faces = faces::all(&outlines, accuracy)?;
     let mut brep = Sewing::new(&outlines, &faces, positions, accuracy, size).finish()?;
