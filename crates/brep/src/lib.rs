@@ -21,7 +21,6 @@ mod patch;
 mod patches;
 mod seams;
 mod surface_image;
-mod traces;
 mod untangle;
 mod volume;
 mod whole;

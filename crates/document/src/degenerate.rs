@@ -1,12 +1,13 @@
-//! Curves without length, surfaces and bodies without area: nothing is wrong with them for the kernel, and hardly ever are
-//! they meant.
+//! Curves without length, surfaces and bodies without area, surfaces that cover themselves: nothing is wrong with them for
+//! the kernel, and hardly ever are they meant.
 
 use moldloft_model::{Graph, Object};
-use moldloft_num::{Order, Real, Vec3};
+use moldloft_num::{Order, Pace, Real, Vec3};
 use moldloft_registry::{CurveRef, Scalar, SurfaceRef, TriangleBody, Value};
+use std::f64::consts::TAU;
 
 /// The ids of these remarks.
-pub const IDS: [&str; 2] = ["zero-length", "zero-area"];
+pub const IDS: [&str; 3] = ["zero-length", "zero-area", "more-than-one-turn"];
 
 /// A share of the coordinates below which places are one.
 const ONE_PLACE: f64 = 1e-12;
@@ -37,6 +38,11 @@ pub fn remark<T: Scalar>(
             "zero-area",
             "the surface has no area: all of it is one line or point",
             "the curves that it is made of lie on each other, or on its axis",
+        )),
+        Value::Surface(surface) if turns_on(surface) => Some((
+            "more-than-one-turn",
+            "the surface turns by more than one turn and covers itself: area and volume count each turn",
+            "angles are in radians; `0, 2*pi` is a whole turn",
         )),
         Value::Body(body) if is_flat(body) => Some((
             "zero-area",
@@ -73,6 +79,13 @@ pub fn has_no_area<T: Real>(surface: &SurfaceRef<T>) -> bool {
         a.cross(b).norm() <= ONE_LINE * long || a.norm().min(b.norm()) <= small
     };
     PLACES.iter().all(|u| PLACES.iter().all(|v| flat(*u, *v)))
+}
+
+/// True for a surface that turns about an axis by more than once.
+fn turns_on<T: Real>(surface: &SurfaceRef<T>) -> bool {
+    const ROUNDING: f64 = 1e-9;
+    let turn = |pace: &Pace| matches!(pace, Pace::Angle(angle) if angle.abs() > TAU + ROUNDING);
+    surface.rational().paces[1..].iter().any(turn)
 }
 
 fn is_flat<T: Real>(body: &TriangleBody<T>) -> bool {

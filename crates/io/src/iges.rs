@@ -198,6 +198,7 @@ impl File {
                 flat = made.0;
                 (&flat, Some(made.1))
             }
+            // Of cylinders, cones, spheres and tori; their curves are in space alone.
             _ => {
                 let Some(made) = brep.nurbs(face) else { return };
                 flat = made;
@@ -214,18 +215,13 @@ impl File {
             self.add(144, 0, "00000000", &style, &fields);
             return;
         }
-        let round = brep.traces(face, surface);
-        for (l, cycle) in face.loops.iter().enumerate() {
+        for cycle in &face.loops {
             let (mut inner, mut outer) = (Vec::new(), Vec::new());
-            for (k, side) in cycle.iter().enumerate() {
+            for side in cycle {
                 let curve = &brep.edges[side.edge].curve;
                 let curve = if side.forward { curve.clone() } else { curve.reversed() };
                 outer.push(self.curve(&curve, true, "00010000", &Style::default()));
-                let trace = match &round {
-                    Some(known) => Some(known[l][k].clone()),
-                    None => traced(side, &curve, frame.as_ref()),
-                };
-                if let Some(trace) = trace {
+                if let Some(trace) = traced(side, &curve, frame.as_ref()) {
                     inner.push(self.curve(&trace, false, "00010500", &Style::default()));
                 }
             }

@@ -3,7 +3,7 @@
 use crate::brep::{brep, fitted, metres};
 use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
-use moldloft_brep::{BrepFace, SurfaceShape};
+use moldloft_brep::SurfaceShape;
 use moldloft_diag::Diagnostic;
 use moldloft_io::iges::{self, IgesHeader};
 use moldloft_io::vtk::NamedFile;
@@ -24,12 +24,10 @@ fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
     let stem = export.stem().to_string();
     let brep = brep(export.document, export.options.tolerance, &stem)?;
     let mut images = brep.faces.iter().filter(|f| matches!(f.surface, SurfaceShape::Image(_)));
-    let untraced =
-        |face: &&BrepFace| brep.nurbs(face).is_none_or(|n| brep.traces(face, &n).is_none());
-    let in_space = images.find(untraced).map(|face| {
+    let in_space = images.next().map(|face| {
         Diagnostic::remark(
             "curves-in-space",
-            format!("edges of `{}` go through its pole: those have no curves in its parameters", face.name),
+            format!("edges of `{}` and its like have no curves in the parameters of their surfaces", face.name),
         )
         .help("programs make these anew, and may read a face that crosses its seam wrongly; STEP holds the same faces")
     });
