@@ -4,6 +4,7 @@
 //! only what it has not. What has lost its value while the model has errors stays as it was, with the reason.
 
 use crate::patches::{self, Connections, Prepared, PreparedPatch};
+use moldloft_diag::Diagnostic;
 use moldloft_document::{ContourSection, Document};
 use moldloft_mesh::{Mesh, Topology};
 use moldloft_model::Object;
@@ -197,6 +198,8 @@ pub struct Scene {
     clock: u64,
     /// The patches of a topology.
     known: Option<KnownPatches>,
+    /// Why there are no panels, though surfaces are shown.
+    fault: Option<Diagnostic>,
     /// Whether sections are drawn.
     pub contours: bool,
     /// Names of things that stay although the model hides them.
@@ -207,6 +210,11 @@ impl Scene {
     /// What is drawn, in the order of the model.
     pub fn items(&self) -> &[SceneItem] {
         &self.items
+    }
+
+    /// What is to be said beside the document's own diagnostics.
+    pub fn fault(&self) -> Option<&Diagnostic> {
+        self.fault.as_ref()
     }
 
     /// Takes the state of the document.
@@ -229,16 +237,23 @@ impl Scene {
             let old = before.get(&(item.kind as u8, item.name.clone())).map(|&k| &self.items[k]);
             stamp(item, old, &mut self.clock);
         }
-        if document.has_errors() {
+        if document.has_errors() || self.fault.is_some() {
             let reasons = reasons(document);
+            let otherwise: Arc<str> = match &self.fault {
+                Some(fault) => fault.message.as_str().into(),
+                None => "not made: the text has errors".into(),
+            };
             for item in &self.items {
                 let key = (item.kind as u8, item.name.clone());
                 if seen.contains(&key) || item.kind == SceneItemKind::Contour && !self.contours {
                     continue;
                 }
+                let unpanelled = self.fault.is_some() && item.kind == SceneItemKind::Patch;
+                if !document.has_errors() && !unpanelled {
+                    continue;
+                }
                 let mut item = item.clone();
-                let why = reasons.get(&*item.object).cloned();
-                let why = why.unwrap_or_else(|| "not made: the text has errors".into());
+                let why = reasons.get(&*item.object).cloned().unwrap_or_else(|| otherwise.clone());
                 if item.stale != why {
                     self.clock += 1;
                     item.stale = why;
@@ -252,7 +267,15 @@ impl Scene {
     }
 
     fn patches(&mut self, document: &mut Document) -> Vec<SceneItem> {
-        let Ok(panelled) = document.panelled() else { return Vec::new() };
+        let panelled = match document.panelled() {
+            Ok(panelled) => panelled,
+            Err(fault) => {
+                // Without a surface there is nothing to be said.
+                self.fault = (fault.id != "no-mesh").then_some(fault);
+                return Vec::new();
+            }
+        };
+        self.fault = None;
         let mesh = &panelled.mesh;
         let known = match self.known.take() {
             Some(known) if Arc::ptr_eq(&known.topology, mesh.topology()) => known,

@@ -198,7 +198,10 @@ impl Session {
         known.fact(frame, "params", facts::params(document, &self.text));
         let stamp = facts::objects_stamp(document);
         known.stamped(frame, "objects", stamp, || facts::objects(document));
-        let diagnostics = document.diagnostics();
+        let mut diagnostics = document.diagnostics();
+        // What the run has said already it says better.
+        let fault = self.scene.fault().filter(|f| diagnostics.iter().all(|d| d.id != f.id));
+        diagnostics.extend(fault.cloned());
         known.fact(frame, "diagnostics", facts::diagnostics(document, &self.text, &diagnostics));
         known.fact(frame, "printed", document.printed().iter().take(1000).cloned().collect());
         known.fact(frame, "mirror", document.symmetry().into());

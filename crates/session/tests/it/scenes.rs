@@ -123,6 +123,30 @@ fn what_fails_stays_as_it_was_and_says_why() {
 }
 
 #[test]
+fn surfaces_of_too_many_panels_stay_as_they_were_and_say_why() {
+    let text = |n: u32| {
+        format!(
+            "Line l({{0, 0, 0}}, {{1, 0, 0}}); Line m({{0, 1, 0}}, {{1, 1, 0.5}}); \
+             RuledSurf s(l, m, divisions = {{{n}, {n}}});"
+        )
+    };
+    let put = |s: &mut _, n: u32| ask(s, json!({"kind": "text", "tab": 1, "text": text(n)}));
+    let mut s = session(&text(4));
+    let mut page = opened(&mut s, 1);
+    let before = page.clone();
+    let reply = put(&mut s, 30_000);
+    assert_eq!(reply.head["diagnostics"][0]["id"], "too-many-panels");
+    page.take(&reply);
+    let stale: Vec<_> = page.items.iter().filter(|(_, d)| !d.stale.is_empty()).collect();
+    let [(key, drawn)] = stale[..] else { panic!("{stale:?}") };
+    assert_eq!((&*drawn.stale, &*drawn.kind), ("900000000 panels are too many", "patch"));
+    assert_eq!(drawn.parts, before.items[key].parts);
+    page.take(&put(&mut s, 4));
+    assert_eq!(page.items, before.items);
+    assert_eq!(page.facts["diagnostics"], json!([]));
+}
+
+#[test]
 fn only_what_changed_is_sent() {
     let mut s = session(&example("sailboat/yacht.sdl"));
     let v = opened(&mut s, 1);
