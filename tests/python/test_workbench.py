@@ -7,6 +7,7 @@ import json
 import os
 import random
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -456,6 +457,27 @@ def server_app(hub: Hub, port: int = 4321) -> Any:
     # Nothing listens: applications are called without a socket.
     server._socket.close()
     return server
+
+
+def test_answers_do_not_wait_for_acknowledgements(model_file: Callable[..., Path]) -> None:
+    pytest.importorskip("starlette", reason="the extra `view` is not installed")
+    from moldloft.workbench.server import Server
+
+    async def play(hub: Hub) -> None:
+        server, seen = Server(hub, 0), asyncio.Queue[int]()
+
+        async def taken(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            connection = writer.get_extra_info("socket")
+            seen.put_nowait(connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+
+        async with await asyncio.start_server(taken, sock=server._socket):
+            _, writer = await asyncio.open_connection("127.0.0.1", server.port)
+            assert await asyncio.wait_for(seen.get(), 10) != 0
+            writer.close()
+            await writer.wait_closed()
+
+    workbench(model_file(LINE), play)
 
 
 def request(

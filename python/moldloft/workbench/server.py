@@ -108,7 +108,9 @@ class Server:
         self.hub = hub
         self._announce = announce
         self._files = page_files()
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        # By its protocol asyncio knows that answers are not to wait for acknowledgements of those
+        # before them, which come after 40 ms.
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._socket.bind(("127.0.0.1", port))
