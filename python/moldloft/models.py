@@ -261,6 +261,11 @@ class Model(Floating, Adapted):
         return self._document.printed()
 
     @property
+    def written_names(self) -> list[str]:
+        """The names of the files that the program wrote, without their contents."""
+        return self._document.written_names()
+
+    @property
     def written(self) -> dict[str, bytes]:
         """What the program wrote, by file name; ``moldloft run`` puts it on the disk."""
         files = dict(self._document.written())

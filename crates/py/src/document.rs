@@ -330,6 +330,11 @@ impl PyDocument {
         document.written_for_cgns().map(of).collect()
     }
 
+    /// The names of the files that the program wrote.
+    fn written_names(&self, py: Python<'_>) -> Vec<String> {
+        self.lock(py).written().map(|(name, _)| name.to_owned()).collect()
+    }
+
     /// What the program wrote: names and contents; nothing is on the disk yet.
     fn written<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyBytes>)> {
         let document = self.lock(py);

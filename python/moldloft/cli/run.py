@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
         diagnostics = [d.to_dict() for d in model.diagnostics]
         data = {"ok": not failed, "printed": model.printed, "files": sizes}
         print_json(data | {"diagnostics": diagnostics})
-    elif failed and model.written:
+    elif failed and model.written_names:
         print(f"{options.model}: errors; nothing was written")
     else:
         for path in written:
