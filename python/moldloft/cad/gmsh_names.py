@@ -37,12 +37,14 @@ def names_of_faces(gmsh: Any, text: str, unit: float = 1.0) -> dict[int, str]:
         return {}
     places = np.concatenate([corners for _, corners in known])
     near = _NEAR * float(np.ptp(places, axis=0).max()) if len(places) else 0.0
+    # At a pole two vertices of a face may be in one place.
+    known = [(name, _distinct(corners, near)) for name, corners in known]
     by_count: dict[int, list[int]] = {}
     for k, (_, corners) in enumerate(known):
         by_count.setdefault(len(corners), []).append(k)
     named = {}
     for position, tag in enumerate(tags):
-        corners = _corners_in_gmsh(gmsh, tag)
+        corners = _distinct(_corners_in_gmsh(gmsh, tag), near)
         free = by_count.get(len(corners), [])
         # The order is that of the file but where bodies and sheets are mixed.
         order = [position, *free] if position in free else free
@@ -52,6 +54,14 @@ def names_of_faces(gmsh: Any, text: str, unit: float = 1.0) -> dict[int, str]:
                 free.remove(k)
                 break
     return named
+
+
+def _distinct(corners: NDArray[np.float64], near: float) -> NDArray[np.float64]:
+    kept: list[NDArray[np.float64]] = []
+    for corner in corners:
+        if all(np.linalg.norm(corner - other) > near for other in kept):
+            kept.append(corner)
+    return np.array(kept).reshape(-1, 3)
 
 
 def _alike(a: NDArray[np.float64], b: NDArray[np.float64], near: float) -> bool:

@@ -37,7 +37,8 @@ pub enum Binary {
 pub(crate) enum Op<T: Real> {
     Real(T),
     Plane { normal: Vec3<T>, offset: T },
-    User { oracle: Arc<dyn Oracle<T>>, map: Affine<T> },
+    /// The map is apart: few are from outside, and all expressions would be as large.
+    User { oracle: Arc<dyn Oracle<T>>, map: Box<Affine<T>> },
     Unary(Unary, Primitive<T>),
     Over(Primitive<T>, T),
     Power(Primitive<T>, u32),
@@ -46,11 +47,33 @@ pub(crate) enum Op<T: Real> {
 
 pub(crate) struct PrimitiveNode<T: Real> {
     pub(crate) op: Op<T>,
-    form: Form<T>,
+    /// What is remembered of it beside what the operation says.
+    form: OnceLock<Box<Form<T>>>,
     degree: u32,
     /// By which different expressions mostly differ.
     pub(crate) fingerprint: u64,
     tape: OnceLock<Arc<ExprTape<T>>>,
+}
+
+impl<T: Real> PrimitiveNode<T> {
+    fn remember(&mut self, form: Form<T>) {
+        let says = matches!(self.op, Op::Real(_) | Op::Plane { .. } | Op::Unary(Unary::Neg, _));
+        self.form = match form {
+            // Most are that, without a word.
+            Form::General if !says => OnceLock::new(),
+            form => OnceLock::from(Box::new(form)),
+        };
+    }
+}
+
+fn plane_form<T: Real>(normal: Vec3<T>, offset: T) -> Form<T> {
+    match normal.normalized() {
+        Some(unit) => {
+            let point = normal * -(offset / normal.norm_sq());
+            Form::Plane(Plane { point, normal: unit })
+        }
+        None => Form::General,
+    }
 }
 
 /// An implicit function f(x, y, z): solid where it is negative, surface where it is zero, air where it
@@ -128,19 +151,6 @@ impl<T: Real> Drop for PrimitiveNode<T> {
 
 impl<T: Real> Primitive<T> {
     pub(crate) fn from_op(op: Op<T>) -> Self {
-        let form = match &op {
-            Op::Real(c) => Form::Real(*c),
-            Op::Plane { normal, offset } => match normal.normalized() {
-                Some(unit) => {
-                    let point = *normal * -(*offset / normal.norm_sq());
-                    Form::Plane(Plane { point, normal: unit })
-                }
-                None => Form::General,
-            },
-            // The complement of a ball has the ball's surface.
-            Op::Unary(Unary::Neg, a) => a.form().clone(),
-            _ => Form::General,
-        };
         let degree = match &op {
             Op::Real(_) => 0,
             Op::Plane { .. } => 1,
@@ -153,7 +163,8 @@ impl<T: Real> Primitive<T> {
             Op::Binary(_, a, b) => a.degree().max(b.degree()),
         };
         let fingerprint = op.fingerprint();
-        Self(Arc::new(PrimitiveNode { op, form, degree, fingerprint, tape: OnceLock::new() }))
+        let (form, tape) = (OnceLock::new(), OnceLock::new());
+        Self(Arc::new(PrimitiveNode { op, form, degree, fingerprint, tape }))
     }
 
     /// The same function, remembered as `form`.
@@ -162,7 +173,7 @@ impl<T: Real> Primitive<T> {
             Ok(mut node) => {
                 // The torus's square root is a shorthand of its quartic.
                 node.degree = if matches!(form, Form::Torus { .. }) { 4 } else { node.degree };
-                node.form = form;
+                node.remember(form);
                 Self(Arc::new(node))
             }
             // Somebody else holds it: a new node for the same expression, times one.
@@ -170,7 +181,7 @@ impl<T: Real> Primitive<T> {
                 let op = Op::Over(Self(shared), T::one());
                 let mut node = Self::from_op(op);
                 if let Some(inner) = Arc::get_mut(&mut node.0) {
-                    inner.form = form;
+                    inner.remember(form);
                 }
                 node
             }
@@ -206,7 +217,7 @@ impl<T: Real> Primitive<T> {
 
     /// A primitive from outside.
     pub fn user(oracle: Arc<dyn Oracle<T>>) -> Self {
-        Self::from_op(Op::User { oracle, map: Affine::identity() })
+        Self::from_op(Op::User { oracle, map: Box::new(Affine::identity()) })
     }
 
     fn as_real(&self) -> Option<T> {
@@ -356,7 +367,21 @@ impl<T: Real> Primitive<T> {
 
     /// What it was made as.
     pub fn form(&self) -> &Form<T> {
-        &self.0.form
+        let mut node = self;
+        loop {
+            if let Some(form) = node.0.form.get() {
+                return form;
+            }
+            match &node.0.op {
+                // The complement of a ball has the ball's surface.
+                Op::Unary(Unary::Neg, inner) => node = inner,
+                Op::Real(c) => return node.0.form.get_or_init(|| Box::new(Form::Real(*c))),
+                Op::Plane { normal, offset } => {
+                    return node.0.form.get_or_init(|| Box::new(plane_form(*normal, *offset)));
+                }
+                _ => return &Form::General,
+            }
+        }
     }
 
     /// The degree of the polynomial, as svLis counts it: reals 0, planes 1, sums the larger,
@@ -452,7 +477,7 @@ impl<T: Real> Primitive<T> {
             };
             let mut new = Primitive::from_op(op);
             if let Some(inner) = Arc::get_mut(&mut new.0) {
-                inner.form = form(&node.0.form);
+                inner.remember(form(node.form()));
             }
             made.insert(Arc::as_ptr(&node.0), new);
         }
@@ -470,7 +495,7 @@ impl<T: Real> Primitive<T> {
             &|op| match op {
                 Op::Plane { normal, offset } => Primitive::linear(normal.re(), offset.re()),
                 Op::User { oracle, map } => {
-                    Primitive::from_op(Op::User { oracle: oracle.re(), map: map.re() })
+                    Primitive::from_op(Op::User { oracle: oracle.re(), map: Box::new(map.re()) })
                 }
                 Op::Real(c) => Primitive::real(c.re()),
                 _ => unreachable!("leaves only"),
@@ -491,10 +516,10 @@ impl Primitive<f64> {
                 }
                 Op::User { oracle, map } => Primitive::from_op(Op::User {
                     oracle: Arc::new(crate::Constant(oracle.clone())),
-                    map: Affine {
+                    map: Box::new(Affine {
                         rows: map.rows.map(Vec3::lifted),
                         shift: Vec3::lifted(map.shift),
-                    },
+                    }),
                 }),
                 Op::Real(c) => Primitive::real(S::from(*c)),
                 _ => unreachable!("leaves only"),

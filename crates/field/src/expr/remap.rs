@@ -25,7 +25,7 @@ impl<T: Real> Primitive<T> {
                 Op::User { oracle, map } => {
                     let inner = RemappedOracle {
                         oracle: oracle.clone(),
-                        map: *map,
+                        map: **map,
                         coordinates: coordinates.clone(),
                     };
                     Self::user(Arc::new(inner))

@@ -124,7 +124,7 @@ impl<T: Real> Builder<T> {
                 Op::Real(c) => ExprInstruction::Real(*c),
                 Op::Plane { normal, offset } => ExprInstruction::Plane(*normal, *offset),
                 Op::User { oracle, map } => {
-                    self.users.push((oracle.clone(), *map));
+                    self.users.push((oracle.clone(), **map));
                     ExprInstruction::User(self.users.len() as u32 - 1)
                 }
                 Op::Unary(f, a) => ExprInstruction::Unary(*f, of(a, nodes)),

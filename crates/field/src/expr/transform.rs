@@ -75,7 +75,7 @@ impl<T: Real> Primitive<T> {
                 ),
                 Op::User { oracle, map } => Primitive::from_op(Op::User {
                     oracle: oracle.clone(),
-                    map: map.after(&local_from),
+                    map: Box::new(map.after(&local_from)),
                 }),
                 Op::Real(c) => Primitive::real(*c),
                 _ => unreachable!("leaves only"),
