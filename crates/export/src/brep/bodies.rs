@@ -10,7 +10,8 @@
 
 use crate::ExportFailure;
 use moldloft_brep::{
-    Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxes, SurfaceImage, SurfaceShape,
+    Brep, FacetFault, FacetFaultKind, LabelledFacets, SurfaceAxes, SurfaceField, SurfaceImage,
+    SurfaceShape,
 };
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
@@ -227,7 +228,7 @@ impl SetOfBody<'_> {
             let field = field_of(&facets);
             let labelled = labelled(&facets, self.mesh, self.name, self.over);
             // Cylinders and cones as whole faces, unless that fails where patches do not.
-            if self.has_round(&labelled) {
+            if wants_whole(&labelled, &field) {
                 let mut made = Brep::default();
                 let places =
                     made.add_patches(labelled.clone(), &field, accuracy, size, [true, patient]);
@@ -266,17 +267,6 @@ impl SetOfBody<'_> {
             }
         }
         Ok(last)
-    }
-
-    /// Whether whole faces on cylinders and cones are tried.
-    fn has_round(&self, facets: &LabelledFacets) -> bool {
-        let round = |surface: &SurfaceShape| match surface {
-            SurfaceShape::Image(image) => {
-                matches!(image.of(), SurfaceShape::Cylinder { .. } | SurfaceShape::Cone { .. })
-            }
-            other => matches!(other, SurfaceShape::Cylinder { .. } | SurfaceShape::Cone { .. }),
-        };
-        facets.surfaces.iter().flatten().any(round)
     }
 
     /// What is wrong with faces.
@@ -538,4 +528,36 @@ fn reported(name: &str, fault: &FacetFault) -> Diagnostic {
     };
     Diagnostic::error("curved-body", format!("{of} {what} near {}", place_of(fault.place)))
         .help(help)
+}
+
+/// Whether whole faces on cylinders and cones are tried: there are such, and what meets them crosses them. Beside a surface that
+/// touches one, as a blend does, edges would cross their neighbours within the accuracy.
+fn wants_whole(facets: &LabelledFacets, field: &SurfaceField<'_>) -> bool {
+    /// The sine of the angle between surfaces that cross.
+    const CROSSING: f64 = 0.1;
+    let shape = |label: u32| facets.surfaces[label as usize].as_ref();
+    let round = |label: u32| {
+        let of = shape(label).map(|s| match s {
+            SurfaceShape::Image(image) => image.of(),
+            other => other,
+        });
+        matches!(of, Some(SurfaceShape::Cylinder { .. } | SurfaceShape::Cone { .. }))
+    };
+    let flat = |label: u32| matches!(shape(label), Some(SurfaceShape::Plane { .. }));
+    if !(0..facets.surfaces.len() as u32).any(round) {
+        return false;
+    }
+    let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+    let all = facets.triangles.iter().zip(&facets.labels);
+    let label_at: HashMap<[u32; 2], u32> =
+        all.flat_map(|(t, label)| sides(t).map(|side| (side, *label))).collect();
+    label_at.iter().all(|(&[a, b], &own)| {
+        let Some(&other) = label_at.get(&[b, a]) else { return true };
+        if own == other || !round(own) || flat(other) {
+            return true;
+        }
+        let middle = facets.positions[a as usize].lerp(facets.positions[b as usize], 0.5);
+        let [n, m] = [own, other].map(|label| field(label, middle).1);
+        n.cross(m).norm() > CROSSING * n.norm() * m.norm()
+    })
 }
