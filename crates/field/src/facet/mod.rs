@@ -14,6 +14,7 @@ mod block;
 mod cell;
 mod contacts;
 mod crossing;
+mod cut_off;
 mod divide;
 mod grid;
 mod lost;
@@ -71,7 +72,8 @@ pub struct Facets {
     /// construction, or where a cell has several vertices or one outside it, by test.
     pub undecided: Vec<Box3>,
     /// Cells with an edge or corner that no vertex lies on or within a hundredth of a cell, so that it is cut off there: it is thinner than a
-    /// cell, or its vertices would have made triangles cut each other.
+    /// cell, or its vertices would have made triangles cut each other. Cells, too, in which another primitive cuts off by as much what
+    /// triangles show at their corners, middles of sides or centres.
     pub blunt: Vec<Box3>,
     /// Cells, or parts of them, that may hold what their corners do not show, by place. Elsewhere nothing is missed.
     pub unresolved: Vec<Unresolved>,
@@ -417,14 +419,16 @@ fn on_grid(
     let own_leaves = own_leaves(&compiled);
     let leaves = compiled.leaves;
     let mut made = remove_intersections::assembled(&grid, &leaves, &divided.blocks, options.sharp);
-    let rule = RefinementRule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
+    let (shortest, slack) = (0.2 * step, cut_off::NEAR * step);
+    let rule = RefinementRule { turn: TURN, accuracy, shortest, goal: grid.goal, slack };
     let tapes = Tapes::new(&grid, &divided.blocks, &compiled.tape);
     sharpen::sharpen(&mut made, &grid, &leaves, &tapes);
     options.budget.grow(made.triangles.len() as u64 * REFINEMENT_BYTES)?;
-    refine(&mut made, &leaves, &tapes, rule, &options.budget)?;
+    let bends = refine(&mut made, &leaves, &tapes, rule, &options.budget)?;
     if !options.sharp {
         slivers::remove(&mut made);
     }
+    let cut_off = cut_off::cut_off(&made, &grid, &leaves, &tapes);
     let open = divided.blocks.iter().flat_map(|b| b.1.unresolved.iter().copied()).collect();
     let unresolved = unresolved::not_shown(open, &made.positions, &made.triangles, step);
 
@@ -449,7 +453,9 @@ fn on_grid(
         true => cells(&grid, made.doubtful.iter().map(|d| d.1).collect()),
         false => undecided(&grid, &mesh, &made.doubtful),
     };
-    let blunt = cells(&grid, made.blunt.into_iter().map(|b| b.1).collect());
+    let bends = bends.into_iter().map(|p| grid.cell_of(p));
+    let blunt = made.blunt.into_iter().map(|b| b.1).chain(cut_off).chain(bends).collect();
+    let blunt = cells(&grid, blunt);
     Ok(Facets {
         mesh,
         own_leaves,

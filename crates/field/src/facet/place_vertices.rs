@@ -14,6 +14,10 @@ use smallvec::SmallVec;
 /// An edge or corner within this fraction of a cell from its vertex counts as hit: such are
 /// those of surfaces that touch along it.
 const MIN_FEATURE: f64 = 0.01;
+/// What shows beside an edge is looked at this part of a cell away from it, …
+const ASIDE: f64 = 1e-4;
+/// … where surfaces meet at an angle of more than this.
+const TOUCH: f64 = 1e-2;
 
 /// What the vertices of a cell are placed with.
 pub(super) struct VertexPlacer<'a> {
@@ -54,16 +58,18 @@ impl VertexPlacer<'_> {
         if placed.residual > self.goal {
             // The edge or corner that the crossings announce lies in a neighbour, or there are several.
             let Self { leaves, cell, goal, .. } = *self;
-            let stray =
-                |solver: &mut Solver| solver.outside_cell(leaves, &surfaces, middle, cell, goal);
-            let strayed = (surfaces.len() <= 3).then(|| stray(&mut *self.solver));
+            let stray = |work: &mut Self, surfaces: &Surfaces| {
+                let found = work.solver.outside_cell(leaves, surfaces, middle, cell, goal);
+                work.shown(found, surfaces)
+            };
+            let strayed = (surfaces.len() <= 3).then(|| stray(self, &surfaces));
             match strayed.filter(|s| s.residual <= goal) {
                 Some(strayed) => placed = strayed,
                 None => {
                     if let Some(several) = split(self, edges, next) {
                         return PieceVertices::Several(several);
                     }
-                    let strayed = stray(&mut *self.solver);
+                    let strayed = stray(self, &surfaces);
                     if strayed.residual > goal {
                         let wanted = std::mem::take(&mut surfaces);
                         let (placed, surfaces) = self.blunt(edges);
@@ -212,6 +218,7 @@ impl VertexPlacer<'_> {
         let both = [p.leaf.min(q.leaf), p.leaf.max(q.leaf)];
         let start = (p.point + q.point) * 0.5;
         let change = self.solver.place(self.leaves, &both, start, side, self.goal);
+        let change = self.shown(change, &both);
         (change.residual <= self.goal).then_some(change)
     }
 
@@ -262,7 +269,59 @@ impl VertexPlacer<'_> {
     }
 
     pub(super) fn place(&mut self, surfaces: &[u32], start: Vec3) -> PlacedVertex {
-        self.solver.place(self.leaves, surfaces, start, self.cell, self.goal)
+        let found = self.solver.place(self.leaves, surfaces, start, self.cell, self.goal);
+        self.shown(found, surfaces)
+    }
+
+    /// A point of two or three surfaces if it is on an edge or in a corner of the set: one that does not show there, such as the
+    /// other half of a double cone, has none.
+    fn shown(&mut self, found: PlacedVertex, surfaces: &[u32]) -> PlacedVertex {
+        let asked = (2..=3).contains(&surfaces.len()) && !self.tape.has_users();
+        if !asked || found.residual > self.goal {
+            return found;
+        }
+        let p = found.point;
+        let mut normals: SmallVec<[Vec3; 3]> = SmallVec::new();
+        for &s in surfaces {
+            let slope = self.solver.gradient(self.leaves[s as usize].primitive.tape(), p).slope;
+            let size = slope.norm();
+            if !(size > 0.0 && size.is_finite()) {
+                return found;
+            }
+            normals.push(slope / size);
+        }
+        let reach = ASIDE * (self.cell.high.x - self.cell.low.x);
+        for (k, &own) in surfaces.iter().enumerate() {
+            let mut lines: SmallVec<[Vec3; 2]> = SmallVec::new();
+            for (_, n) in normals.iter().enumerate().filter(|(j, _)| *j != k) {
+                let line = normals[k].cross(*n);
+                let size = line.norm();
+                // Surfaces that touch say nothing of each other.
+                if size < TOUCH {
+                    return found;
+                }
+                // Across one edge; between two.
+                lines.push(if surfaces.len() == 2 { line.cross(normals[k]) } else { line } / size);
+            }
+            let aside: SmallVec<[Vec3; 4]> = match lines[..] {
+                [across] => SmallVec::from_slice(&[across, -across]),
+                [u, v] => SmallVec::from_slice(&[u + v, u - v, v - u, -u - v]),
+                _ => return found,
+            };
+            let hidden = aside.into_iter().all(|d| {
+                let size = d.norm();
+                if size < TOUCH {
+                    return false;
+                }
+                self.tape.eval::<f64>(&(p + d * (reach / size)), self.registers);
+                let leaf = self.tape.leaf[self.tape.winner(self.registers, |v: f64| v)];
+                leaf != own && surfaces.contains(&leaf)
+            });
+            if hidden {
+                return PlacedVertex { residual: f64::INFINITY, ..found };
+            }
+        }
+        found
     }
 }
 

@@ -31,6 +31,8 @@ pub(super) struct RefinementRule {
     pub(super) shortest: f64,
     /// Vertices are on their surfaces to this.
     pub(super) goal: f64,
+    /// A bend that is cut off by less than this is not.
+    pub(super) slack: f64,
 }
 
 /// How often edges are divided: each time the distance of their middles is quartered.
@@ -63,6 +65,11 @@ impl<'a> Tapes<'a> {
         whole: &'a ExprTape<f64>,
     ) -> Self {
         Self { grid, at: blocks.iter().map(|(tape, b)| (b.at, &**tape)).collect(), whole }
+    }
+
+    /// That of a block which holds some surface.
+    pub(super) fn of(&self, block: [u32; 3]) -> Option<&ExprTape<f64>> {
+        self.at.get(&block).copied()
     }
 
     pub(super) fn at(&self, p: Vec3) -> &ExprTape<f64> {
@@ -168,6 +175,38 @@ impl Refiner<'_> {
 
     fn facing_of(&self, leaf: u32, t: Corner) -> f64 {
         Self::facing(t.map(|v| self.at(v)), t.map(|v| self.normal(v, leaf)))
+    }
+
+    /// The middle of a triangle, when that of a quadratic one through the middles of its sides is not on the surface.
+    fn cut_off(&mut self, t: u32) -> Option<Vec3> {
+        let (leaf, corners) = self.triangles[t as usize];
+        let side = |k: usize| (corners[k], corners[(k + 1) % 3]);
+        let bent = |(a, b): (u32, u32)| match (self.normal(a, leaf), self.normal(b, leaf)) {
+            (Some(n), Some(m)) => n.dot(m) < self.rule.turn,
+            _ => false,
+        };
+        if !(0..3).any(|k| bent(side(k))) {
+            return None;
+        }
+        let mut patch = Vec3::zero();
+        for k in 0..3 {
+            let (a, b) = side(k);
+            let (p, q) = (self.at(a), self.at(b));
+            let other = |s: &u32| *s != leaf && self.surfaces[b as usize].contains(s);
+            let mut on: Surfaces =
+                self.surfaces[a as usize].iter().copied().filter(other).take(1).collect();
+            on.push(leaf);
+            on.sort_unstable();
+            let (chord, away) = ((p + q) * 0.5, AWAY * p.distance(q));
+            let reach = Vec3::of(away, away, away);
+            let around = Box3 { low: chord - reach, high: chord + reach };
+            let placed = self.solver.place(self.leaves, &on, chord, &around, self.rule.goal);
+            let middle = if placed.residual <= self.rule.goal { placed.point } else { chord };
+            patch += middle * (4.0 / 9.0) - p * (1.0 / 9.0);
+        }
+        let g = self.solver.gradient(self.leaves[leaf as usize].primitive.tape(), patch);
+        let near = g.value.abs() <= self.rule.slack * g.slope.norm();
+        (!near).then_some(patch)
     }
 
     fn collect_edges(&mut self, near: &[u32]) {
@@ -370,7 +409,8 @@ impl Refiner<'_> {
     }
 }
 
-/// Divides the edges that want it. Where that makes triangles cut others, all is left as it was.
+/// Divides the edges that want it. Where that makes triangles cut others, all is left as it was. Returns places of bends that are
+/// cut off all the same.
 ///
 /// # Errors
 /// [`Spent`].
@@ -380,7 +420,8 @@ pub(super) fn refine(
     tapes: &Tapes,
     rule: RefinementRule,
     budget: &Budget,
-) -> Result<(), Spent> {
+) -> Result<Vec<Vec3>, Spent> {
+    let mut cut_off = Vec::new();
     let normals = normals(&made.positions, &made.surfaces, leaves);
     let mut work = Refiner {
         rule,
@@ -416,11 +457,15 @@ pub(super) fn refine(
         }
         let near: Vec<u32> = (0..chosen.len() as u32).filter(|&t| chosen[t as usize]).collect();
         attempt(&mut work, &near, rim, budget)?;
+        let new = chosen.len() as u32..work.triangles.len() as u32;
+        for t in near.into_iter().chain(new) {
+            cut_off.extend(work.cut_off(t));
+        }
     }
     made.positions = work.positions;
     made.surfaces = work.surfaces;
     made.triangles = work.triangles;
-    Ok(())
+    Ok(cut_off)
 }
 
 /// All passes, as often as it takes until no changed triangle cuts another; `kept` are vertices beside which

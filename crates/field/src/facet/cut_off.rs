@@ -1,0 +1,216 @@
+//! Where triangles show a surface that another primitive cuts off: an edge or corner that passes between the corners of
+//! cells, of which no crossing tells.
+//!
+//! The middles of triangles and of their sides are put onto the surfaces that they should be on. There the set is zero, or
+//! another primitive decides: then its edge runs through the triangle and is not among the triangles' sides.
+
+use super::assemble::Assembled;
+use super::grid::Grid;
+use super::refine::Tapes;
+use super::vertex::{Solver, Surfaces};
+use crate::expr::tape::{ExprTape, NO_LEAF, Room};
+use crate::set::Leaf;
+use moldloft_num::{Box3, Vec3};
+use moldloft_parallel::prelude::*;
+
+/// What is cut off by less than this part of a cell is not.
+pub(super) const NEAR: f64 = 0.01;
+/// Two values are the same when they differ by no more than this part.
+const SAME: f64 = 1e-9;
+/// A point farther than this part of a side from its middle is none of the surface between.
+const AWAY: f64 = 0.5;
+
+/// A place to look at: what it should be on, and how far round it.
+struct Sample {
+    triangle: u32,
+    /// A corner or the side after it, or the middle: 0 to 2, 3 to 5, 6.
+    part: u8,
+}
+
+struct Search<'a> {
+    made: &'a Assembled,
+    leaves: &'a [Leaf],
+    grid: &'a Grid,
+}
+
+/// Reusable room.
+#[derive(Default)]
+struct Scratch {
+    points: Vec<Vec3>,
+    samples: Vec<Sample>,
+    values: Vec<f64>,
+    own: Vec<f64>,
+    room: Room,
+    registers: Vec<f64>,
+    solver: Solver,
+}
+
+/// The cells in which another primitive cuts off what triangles show.
+pub(super) fn cut_off(
+    made: &Assembled,
+    grid: &Grid,
+    leaves: &[Leaf],
+    tapes: &Tapes,
+) -> Vec<[usize; 3]> {
+    let search = Search { made, leaves, grid };
+    // The triangles of each block in which several primitives may decide.
+    let mut of_block: Vec<([u32; 3], u32)> = Vec::new();
+    for (t, (_, corners)) in made.triangles.iter().enumerate() {
+        let [a, b, c] = corners.map(|v| made.positions[v as usize]);
+        of_block.push((grid.block_of((a + b + c) / 3.0), t as u32));
+    }
+    of_block.sort_unstable();
+    let blocks: Vec<&[([u32; 3], u32)]> = of_block.chunk_by(|a, b| a.0 == b.0).collect();
+    let found: Vec<Vec<[usize; 3]>> = blocks
+        .par_iter()
+        .map_init(Scratch::default, |scratch, block| match tapes.of(block[0].0) {
+            Some(tape) => search.block(tape, block, scratch),
+            None => Vec::new(),
+        })
+        .collect();
+    let mut cells: Vec<[usize; 3]> = found.into_iter().flatten().collect();
+    cells.sort_unstable();
+    cells.dedup();
+    cells
+}
+
+/// Whether several primitives may decide.
+fn several(tape: &ExprTape<f64>) -> bool {
+    let mut shown = tape.leaf.iter().filter(|l| **l != NO_LEAF);
+    let first = shown.next();
+    shown.any(|l| Some(l) != first)
+}
+
+impl Search<'_> {
+    fn block(
+        &self,
+        tape: &ExprTape<f64>,
+        block: &[([u32; 3], u32)],
+        scratch: &mut Scratch,
+    ) -> Vec<[usize; 3]> {
+        let mut cells = Vec::new();
+        if !several(tape) || tape.has_users() {
+            return cells;
+        }
+        // In the order of the triangles, and so of their leaves.
+        let mut rest = block;
+        while let Some(&(_, first)) = rest.first() {
+            let leaf = self.made.triangles[first as usize].0;
+            let same = |x: &([u32; 3], u32)| self.made.triangles[x.1 as usize].0 == leaf;
+            let count = rest.iter().position(|x| !same(x)).unwrap_or(rest.len());
+            let (own, others) = rest.split_at(count);
+            self.leaf(tape, leaf, own, scratch, &mut cells);
+            rest = others;
+        }
+        cells
+    }
+
+    fn leaf(
+        &self,
+        tape: &ExprTape<f64>,
+        leaf: u32,
+        triangles: &[([u32; 3], u32)],
+        scratch: &mut Scratch,
+        cells: &mut Vec<[usize; 3]>,
+    ) {
+        let Scratch { points, samples, values, own, room, registers, solver } = scratch;
+        points.clear();
+        samples.clear();
+        for &(_, triangle) in triangles {
+            let p = self.points(triangle);
+            for part in 0..7u8 {
+                points.push(place(p, part));
+                samples.push(Sample { triangle, part });
+            }
+        }
+        values.resize(points.len(), 0.0);
+        own.resize(points.len(), 0.0);
+        tape.bulk(points, values, room);
+        self.leaves[leaf as usize].primitive.tape().bulk(points, own, room);
+        for (k, sample) in samples.iter().enumerate() {
+            let (v, o) = (values[k].abs(), own[k].abs());
+            if (v - o).abs() <= SAME * o {
+                continue;
+            }
+            if let Some(at) = self.cuts(tape, leaf, sample, solver, registers) {
+                cells.push(self.grid.cell_of(at));
+            }
+        }
+    }
+
+    fn points(&self, triangle: u32) -> [Vec3; 3] {
+        self.made.triangles[triangle as usize].1.map(|v| self.made.positions[v as usize])
+    }
+
+    /// What a side of a triangle lies on.
+    fn on(&self, leaf: u32, [a, b]: [u32; 2]) -> Surfaces {
+        let surfaces = &self.made.surfaces;
+        let other = |s: &u32| *s != leaf && surfaces[b as usize].contains(s);
+        let mut on: Surfaces = surfaces[a as usize].iter().copied().filter(other).collect();
+        on.truncate(1);
+        on.push(leaf);
+        on.sort_unstable();
+        on
+    }
+
+    /// The place, on the surfaces that it should be on, if the set is not zero there nor near.
+    fn cuts(
+        &self,
+        tape: &ExprTape<f64>,
+        leaf: u32,
+        sample: &Sample,
+        solver: &mut Solver,
+        registers: &mut Vec<f64>,
+    ) -> Option<Vec3> {
+        let corners = self.made.triangles[sample.triangle as usize].1;
+        let p = self.points(sample.triangle);
+        let longest = (0..3).map(|k| p[k].distance(p[(k + 1) % 3])).fold(0.0, f64::max);
+        let start = place(p, sample.part);
+        let side = |k: usize| [corners[k], corners[(k + 1) % 3]];
+        let on = match sample.part {
+            v @ 0..3 => self.made.surfaces[corners[v as usize] as usize].clone(),
+            k @ 3..6 => self.on(leaf, side(k as usize - 3)),
+            _ => Surfaces::from_slice(&[leaf]),
+        };
+        let mut put = |on: &Surfaces, start: Vec3| {
+            let away = AWAY * longest;
+            let reach = Vec3::of(away, away, away);
+            let around = Box3 { low: start - reach, high: start + reach };
+            let placed = solver.place(self.leaves, on, start, &around, self.grid.goal);
+            (placed.residual <= self.grid.goal).then_some(placed.point)
+        };
+        let Some(at) = put(&on, start) else {
+            // There is nothing of the surface, but of another that all corners are on.
+            tape.eval::<f64>(&start, registers);
+            let winner = tape.leaf[tape.winner(registers, |v: f64| v)];
+            let all = |s: &u32| corners.iter().all(|&v| self.made.surfaces[v as usize].contains(s));
+            return (winner != leaf && all(&winner)).then_some(start);
+        };
+        // Sides that stand for an edge leave it by this much.
+        let mut slack = NEAR * self.grid.step;
+        if sample.part == 6 {
+            for k in 0..3 {
+                let middle = (p[k] + p[(k + 1) % 3]) * 0.5;
+                if let Some(q) = put(&self.on(leaf, side(k)), middle) {
+                    slack = slack.max(NEAR * self.grid.step + q.distance(middle));
+                }
+            }
+        }
+        let value = tape.eval::<f64>(&at, registers);
+        let winner = tape.leaf[tape.winner(registers, |v: f64| v)];
+        if winner == NO_LEAF || on.contains(&winner) {
+            return None;
+        }
+        let other = solver.gradient(self.leaves[winner as usize].primitive.tape(), at);
+        (value.abs() > slack * other.slope.norm()).then_some(at)
+    }
+}
+
+/// A corner of a triangle, the middle of a side, or the middle of all.
+fn place(p: [Vec3; 3], part: u8) -> Vec3 {
+    match part {
+        k @ 0..3 => p[k as usize],
+        k @ 3..6 => (p[k as usize - 3] + p[(k as usize - 2) % 3]) * 0.5,
+        _ => (p[0] + p[1] + p[2]) / 3.0,
+    }
+}
