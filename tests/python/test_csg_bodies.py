@@ -142,7 +142,11 @@ def test_a_random_body_beside_occt(seed: int) -> None:
         return
     # OCCT keeps to a tolerance, 1e-7 along all edges.
     assert low <= exact + 1e-6 and high >= exact - 1e-6
-    assert mass.volume == pytest.approx(exact, rel=1e-4)
+    # OCCT's own edges are off by some 1e-6, too.
+    assert abs(mass.volume - exact) <= 3e-6 * exact + mass.uncertain
     facets = part.facets(depth=6)
     assert facets.closed and facets.manifold and not facets.undecided and facets.crossings() == 0
     assert heights(facets).min() > 1e-9
+    # What facets leave out is said.
+    if not (facets.blunt or facets.unresolved):
+        assert abs(facets.best_volume - mass.volume) <= 1e-6 * mass.volume + mass.uncertain

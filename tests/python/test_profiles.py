@@ -90,8 +90,8 @@ def test_bodies_of_revolution_have_the_volume_of_pappus(seed: int) -> None:
     model = moldloft.loads(f"{text}\nSetBody b(s, {box}, depth = 5);")
     area, centre = area_and_centre(flat)
     exact = 2 * math.pi * abs(float(centre[0])) * area
-    # At this depth cells may not tell a corner from its neighbour.
-    assert model.eval("b.volume") == pytest.approx(exact, rel=3e-2)
+    # At this depth cells may not tell a corner from its neighbour, which is remarked.
+    assert model.eval("b.volume") == pytest.approx(exact, rel=3e-2 if model.diagnostics else 1e-6)
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         volume = model.eval("volume(s)")

@@ -60,6 +60,8 @@ class Mass:
     """Volume."""
     volume_bracket: tuple[float, float]
     """Its bounds."""
+    uncertain: float
+    """How far the volume may be off where edges are thinner than the cells; 0 where it is known."""
     centroid: Floats | None
     """Centre of mass ``(3,)``; None where there is no volume."""
     centroid_bracket: Floats

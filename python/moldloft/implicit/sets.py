@@ -596,7 +596,8 @@ class Set(Moving, Edged, Pictured):
         -------
         Mass
             ``volume``, ``centroid`` ``(3,)`` and ``inertia`` ``(3, 3)`` for density 1, each with
-            its bracket.
+            its bracket. ``uncertain`` is 0, or how far the volume may be off where edges are
+            thinner than cells: look at it, or ask for an accuracy.
 
         Raises
         ------
@@ -617,6 +618,7 @@ class Set(Moving, Edged, Pictured):
         return Mass(
             volume=facts["volume"],
             volume_bracket=facts["volume_bracket"],
+            uncertain=facts["uncertain"],
             centroid=None if facts["centroid"] is None else np.array(facts["centroid"]),
             centroid_bracket=np.array(facts["centroid_bracket"]),
             inertia=None if facts["inertia"] is None else np.array(facts["inertia"]),

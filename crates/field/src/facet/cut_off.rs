@@ -53,19 +53,22 @@ pub(super) fn cut_off(
     tapes: &Tapes,
 ) -> Vec<[usize; 3]> {
     let search = Search { made, leaves, grid };
-    // The triangles of each block in which several primitives may decide.
+    // The triangles of each block in which several primitives may decide; most have one.
+    let mixed = tapes.those(|tape| several(tape) && !tape.has_users());
     let mut of_block: Vec<([u32; 3], u32)> = Vec::new();
     for (t, (_, corners)) in made.triangles.iter().enumerate() {
         let [a, b, c] = corners.map(|v| made.positions[v as usize]);
-        of_block.push((grid.block_of((a + b + c) / 3.0), t as u32));
+        let at = grid.block_of((a + b + c) / 3.0);
+        if mixed.contains_key(&at) {
+            of_block.push((at, t as u32));
+        }
     }
     of_block.sort_unstable();
     let blocks: Vec<&[([u32; 3], u32)]> = of_block.chunk_by(|a, b| a.0 == b.0).collect();
     let found: Vec<Vec<[usize; 3]>> = blocks
         .par_iter()
-        .map_init(Scratch::default, |scratch, block| match tapes.of(block[0].0) {
-            Some(tape) => search.block(tape, block, scratch),
-            None => Vec::new(),
+        .map_init(Scratch::default, |scratch, block| {
+            search.block(mixed[&block[0].0], block, scratch)
         })
         .collect();
     let mut cells: Vec<[usize; 3]> = found.into_iter().flatten().collect();
@@ -89,9 +92,6 @@ impl Search<'_> {
         scratch: &mut Scratch,
     ) -> Vec<[usize; 3]> {
         let mut cells = Vec::new();
-        if !several(tape) || tape.has_users() {
-            return cells;
-        }
         // In the order of the triangles, and so of their leaves.
         let mut rest = block;
         while let Some(&(_, first)) = rest.first() {

@@ -367,6 +367,8 @@ fn own_leaves(capped: &Compiled<f64>) -> usize {
 
 /// Facets of more cells than this are not made again with the grid in other places.
 const FEW_CELLS: usize = 60_000;
+/// The same of those for integrals, whose finer levels follow.
+const FEW_SHARP: usize = 12_000;
 
 /// The facets with the fewest edges that are cut off, and cells whose triangles cut others, of a few places of the grid.
 fn sharpest(
@@ -377,9 +379,14 @@ fn sharpest(
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
     let mut best = at_step(set, over, step, f64::INFINITY, options, before)?;
-    let cost = |f: &Facets| f.blunt.len() + f.undecided.len() + slivers::count(&f.mesh);
+    // Integrals do not mind triangles that cut others.
+    let cost = |f: &Facets| match options.sharp {
+        true => f.blunt.len(),
+        false => f.blunt.len() + f.undecided.len() + slivers::count(&f.mesh),
+    };
+    let few = if options.sharp { FEW_SHARP } else { FEW_CELLS };
     for place in 1..grid::PLACES {
-        if options.sharp || cost(&best) == 0 || best.cells > FEW_CELLS {
+        if cost(&best) == 0 || best.cells > few {
             break;
         }
         let grid = Grid::at(over, step, place)?;

@@ -67,9 +67,12 @@ impl<'a> Tapes<'a> {
         Self { grid, at: blocks.iter().map(|(tape, b)| (b.at, &**tape)).collect(), whole }
     }
 
-    /// That of a block which holds some surface.
-    pub(super) fn of(&self, block: [u32; 3]) -> Option<&ExprTape<f64>> {
-        self.at.get(&block).copied()
+    /// Those of some blocks that hold surface.
+    pub(super) fn those(
+        &self,
+        which: impl Fn(&ExprTape<f64>) -> bool,
+    ) -> FxHashMap<[u32; 3], &'a ExprTape<f64>> {
+        self.at.iter().filter(|(_, tape)| which(tape)).map(|(at, tape)| (*at, *tape)).collect()
     }
 
     pub(super) fn at(&self, p: Vec3) -> &ExprTape<f64> {

@@ -170,8 +170,9 @@ fn least_norm(rows: &[(Vec3, f64)]) -> Vec3 {
     let top = values.into_iter().fold(0.0, f64::max);
     let mut step = Vec3::zero();
     for k in 0..3 {
-        // Directions that no surface determines to rounding are left alone.
-        if values[k] > 1e-9 * top {
+        // Directions that no surface determines to rounding are left alone. Where two touch, their normals differ by the
+        // way to the contact, which is halved by each step, and the value here by its square.
+        if values[k] > 1e-13 * top {
             step += vectors[k] * (vectors[k].dot(b) / values[k]);
         }
     }

@@ -49,7 +49,7 @@ pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
             "blunt" => (
                 "blunt-edges",
                 format!(
-                    "{}, an edge or corner is cut off: it is thinner than the cell, or a corner of a curved profile",
+                    "{}, an edge, corner or bend is cut off: it is thinner than the cell, or a corner of a curved profile",
                     counted(&places, facets)
                 ),
                 "give smaller cells (a greater depth, or a finer accuracy) if the edge matters",

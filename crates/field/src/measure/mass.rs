@@ -206,13 +206,13 @@ fn within<T: Real>(mut best: Moments<T>, bracket: &Moments<Interval>) -> Moments
 /// Moments by facets.
 struct Faceted<T: Real> {
     moments: Moments<T>,
-    /// How far the volumes of the last two levels are apart.
+    /// How far the volumes of the last two levels are apart, and what the last may lack.
     change: f64,
     /// True when these agree as well as was asked, and no edge is blunt.
     settled: bool,
 }
 
-/// Moments from facets that are made finer until two agree; `None` when these do not show the whole set.
+/// Moments from facets that are made finer until two agree; `None` when these do not show the set.
 fn by_facets<T: Real>(
     solid: &Set,
     over: &Box3,
@@ -228,6 +228,7 @@ fn by_facets<T: Real>(
     };
     let mut before: Option<(Arc<Facets>, f64)> = None;
     let mut change = f64::INFINITY;
+    let mut complete = false;
     for level in LEVELS[0]..=FINEST {
         let options = FacetOptions {
             sharp: true,
@@ -235,15 +236,20 @@ fn by_facets<T: Real>(
             ..FacetOptions::new(Resolution::Level(level))
         };
         let facets = memo.facet(solid, over, &options)?;
-        let missed = facets.unresolved.iter().filter(|u| u.missed).count();
+        let places = facets.unresolved.iter().filter(|u| u.missed);
+        let (missed, held) = places.fold((0, 0.0), |(n, v), u| (n + 1, v + u.volume));
         let next = 4 * (facets.cells + missed);
-        if missed > 0 && (level == FINEST || next > MOST_FACET_CELLS) {
-            return Ok(None);
-        }
+        let last = level == FINEST || next > MOST_FACET_CELLS;
         let volume = facets.moments().volume();
         change = before.as_ref().map_or(f64::INFINITY, |(_, v)| (volume - v).abs());
         let enough = change <= agreement;
         before = Some((facets, volume));
+        complete = missed == 0;
+        if missed > 0 && last {
+            // What they do not show is known to hold no more than this.
+            change += held;
+            break;
+        }
         if missed == 0 && (enough || level >= LEVELS[1] || next > MOST_FACET_CELLS) {
             break;
         }
@@ -258,9 +264,9 @@ fn by_facets<T: Real>(
     if facets.mesh.faces().is_empty() {
         let zero = Moments { about: facets.about, terms: [T::zero(); 10] };
         let nothing = Faceted { moments: zero, change: 0.0, settled: true };
-        return Ok((v.high <= agreement || v.low <= 0.0).then_some(nothing));
+        return Ok((complete && (v.high <= agreement || v.low <= 0.0)).then_some(nothing));
     }
-    let settled = change <= agreement && facets.blunt.is_empty();
+    let settled = complete && change <= agreement && facets.blunt.is_empty();
     Ok(Some(Faceted { moments: facets.lifted_by(lifter)?.moments, change, settled }))
 }
 

@@ -440,10 +440,11 @@ impl PySet {
                 IntegralOptions { depth, accuracy, cells, budget, ..IntegralOptions::default() };
             moldloft::field::mass(set, &over, &measure).map(Some)
         })?;
-        let Some(BracketedMass { bracket, best, .. }) = found else {
+        let Some(BracketedMass { bracket, best, uncertain }) = found else {
             let dict = PyDict::new(py);
             dict.set_item("volume", 0.0)?;
             dict.set_item("volume_bracket", (0.0, 0.0))?;
+            dict.set_item("uncertain", 0.0)?;
             for name in ["centroid", "inertia"] {
                 dict.set_item(name, None::<f64>)?;
             }
@@ -455,6 +456,7 @@ impl PySet {
         let dict = PyDict::new(py);
         dict.set_item("volume", best.volume())?;
         let v = bracket.volume();
+        dict.set_item("uncertain", uncertain)?;
         dict.set_item("volume_bracket", (v.low.max(0.0), v.high))?;
         let empty = best.volume() <= 0.0;
         dict.set_item("centroid", (!empty).then(|| best.centroid().to_array()))?;
