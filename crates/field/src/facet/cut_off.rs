@@ -1,5 +1,5 @@
 //! Where triangles show a surface that another primitive cuts off: an edge or corner that passes between the corners of
-//! cells, of which no crossing tells.
+//! cells and has no crossing.
 //!
 //! The middles of triangles and of their sides are put onto the surfaces that they should be on. There the set is zero, or
 //! another primitive decides: then its edge runs through the triangle and is not among the triangles' sides.
@@ -21,13 +21,13 @@ const SAME: f64 = 1e-9;
 const AWAY: f64 = 0.5;
 
 /// A place to look at: what it should be on, and how far round it.
-struct Sample {
+struct CutOffSample {
     triangle: u32,
     /// A corner or the side after it, or the middle: 0 to 2, 3 to 5, 6.
     part: u8,
 }
 
-struct Search<'a> {
+struct CutOffSearch<'a> {
     made: &'a Assembled,
     leaves: &'a [Leaf],
     grid: &'a Grid,
@@ -35,9 +35,9 @@ struct Search<'a> {
 
 /// Reusable room.
 #[derive(Default)]
-struct Scratch {
+struct CutOffRoom {
     points: Vec<Vec3>,
-    samples: Vec<Sample>,
+    samples: Vec<CutOffSample>,
     values: Vec<f64>,
     own: Vec<f64>,
     room: Room,
@@ -52,7 +52,7 @@ pub(super) fn cut_off(
     leaves: &[Leaf],
     tapes: &Tapes,
 ) -> Vec<[usize; 3]> {
-    let search = Search { made, leaves, grid };
+    let search = CutOffSearch { made, leaves, grid };
     // The triangles of each block in which several primitives may decide; most have one.
     let mixed = tapes.those(|tape| several(tape) && !tape.has_users());
     let mut of_block: Vec<([u32; 3], u32)> = Vec::new();
@@ -67,7 +67,7 @@ pub(super) fn cut_off(
     let blocks: Vec<&[([u32; 3], u32)]> = of_block.chunk_by(|a, b| a.0 == b.0).collect();
     let found: Vec<Vec<[usize; 3]>> = blocks
         .par_iter()
-        .map_init(Scratch::default, |scratch, block| {
+        .map_init(CutOffRoom::default, |scratch, block| {
             search.block(mixed[&block[0].0], block, scratch)
         })
         .collect();
@@ -84,12 +84,12 @@ fn several(tape: &ExprTape<f64>) -> bool {
     shown.any(|l| Some(l) != first)
 }
 
-impl Search<'_> {
+impl CutOffSearch<'_> {
     fn block(
         &self,
         tape: &ExprTape<f64>,
         block: &[([u32; 3], u32)],
-        scratch: &mut Scratch,
+        scratch: &mut CutOffRoom,
     ) -> Vec<[usize; 3]> {
         let mut cells = Vec::new();
         // In the order of the triangles, and so of their leaves.
@@ -110,17 +110,17 @@ impl Search<'_> {
         tape: &ExprTape<f64>,
         leaf: u32,
         triangles: &[([u32; 3], u32)],
-        scratch: &mut Scratch,
+        scratch: &mut CutOffRoom,
         cells: &mut Vec<[usize; 3]>,
     ) {
-        let Scratch { points, samples, values, own, room, registers, solver } = scratch;
+        let CutOffRoom { points, samples, values, own, room, registers, solver } = scratch;
         points.clear();
         samples.clear();
         for &(_, triangle) in triangles {
             let p = self.points(triangle);
             for part in 0..7u8 {
                 points.push(place(p, part));
-                samples.push(Sample { triangle, part });
+                samples.push(CutOffSample { triangle, part });
             }
         }
         values.resize(points.len(), 0.0);
@@ -158,7 +158,7 @@ impl Search<'_> {
         &self,
         tape: &ExprTape<f64>,
         leaf: u32,
-        sample: &Sample,
+        sample: &CutOffSample,
         solver: &mut Solver,
         registers: &mut Vec<f64>,
     ) -> Option<Vec3> {
