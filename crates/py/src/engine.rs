@@ -41,11 +41,11 @@ pub fn engine(
 /// What is counted so that a request to stop reaches the one that it was sent for, and no later one.
 struct Turns {
     budget: Arc<Budget>,
-    counts: Mutex<Counts>,
+    counts: Mutex<TurnCounts>,
 }
 
 #[derive(Default)]
-struct Counts {
+struct TurnCounts {
     /// Requests that have come in.
     received: u64,
     /// The last request that was begun.
@@ -57,7 +57,7 @@ struct Counts {
 }
 
 impl Turns {
-    fn counts(&self) -> MutexGuard<'_, Counts> {
+    fn counts(&self) -> MutexGuard<'_, TurnCounts> {
         self.counts.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

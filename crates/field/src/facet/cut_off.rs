@@ -12,6 +12,7 @@ use crate::expr::tape::{ExprTape, NO_LEAF, Room};
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use moldloft_parallel::prelude::*;
+use rustc_hash::FxHashSet;
 
 /// What is cut off by less than this part of a cell is not.
 pub(super) const NEAR: f64 = 0.01;
@@ -113,14 +114,24 @@ impl CutOffSearch<'_> {
         scratch: &mut CutOffRoom,
         cells: &mut Vec<[usize; 3]>,
     ) {
-        let CutOffRoom { points, samples, values, own, room, registers, solver } = scratch;
+        let CutOffRoom { points, samples, seen, values, own, room, registers, solver } = scratch;
         points.clear();
         samples.clear();
+        seen.clear();
         for &(_, triangle) in triangles {
             let p = self.points(triangle);
+            let corners = self.made.triangles[triangle as usize].1;
             for part in 0..7u8 {
-                points.push(place(p, part));
-                samples.push(CutOffSample { triangle, part });
+                // Corners and sides are those of several triangles.
+                let key = match part {
+                    v @ 0..3 => [corners[v as usize]; 2],
+                    k @ 3..6 => ordered(corners[k as usize - 3], corners[(k as usize - 2) % 3]),
+                    _ => [0; 2],
+                };
+                if part == 6 || seen.insert(key) {
+                    points.push(place(p, part));
+                    samples.push(CutOffSample { triangle, part });
+                }
             }
         }
         values.resize(points.len(), 0.0);
@@ -204,6 +215,10 @@ impl CutOffSearch<'_> {
         let other = solver.gradient(self.leaves[winner as usize].primitive.tape(), at);
         (value.abs() > slack * other.slope.norm()).then_some(at)
     }
+}
+
+fn ordered(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// A corner of a triangle, the middle of a side, or the middle of all.
