@@ -7590,18 +7590,28 @@ def FairCurve(
     spacing: _Text | None = ...,
     goal: _Text | None = ...,
     along: _Vector | None = ...,
-    shape: Sequence[_Text] | _Any | None = ...,
+    motion: _Text | None = ...,
     share: _Number | None = ...,
+    shape: Sequence[_Text] | _Any | None = ...,
     tolerances: _Numbers | None = ...,
     fixed: Sequence[_Integer] | _Array | _Any | None = ...,
     release: Sequence[_Integer] | _Array | _Any | None = ...,
-    through: _Vectors | None = ...,
     through_at: _Numbers | None = ...,
     tangents: _Vectors | None = ...,
     tangents_at: _Numbers | None = ...,
-    keep: Sequence[_Text] | _Any | None = ...,
     bends: _Integer | None = ...,
     at: _Numbers | None = ...,
+    last_end: _Text | None = ...,
+    bound: _Text | None = ...,
+    count: _Integer | None = ...,
+    period: _Number | None = ...,
+    steps: _Integer | None = ...,
+    least_move: _Number | None = ...,
+    least_drop: _Number | None = ...,
+    stop_gap: _Number | None = ...,
+    stop_pieces: _Integer | None = ...,
+    through: _Vectors | None = ...,
+    keep: Sequence[_Text] | _Any | None = ...,
     relabel: _Relabel | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -7623,12 +7633,19 @@ def FairCurve(
     `fairest_used` (the same of the fairest) and `findings` (points that do not fit their neighbours).
     Parameters and knots follow the points' spacing. Points that are as fair as the tolerance allows do
     not move. The result is continuous in the points. Points can be control points
-    or be faired themselves instead (`as`); these, curves that join others and the mode "faithful"
-    take the number of a point for its parameter, as the report of 1991 does. Their members are `deviation`
-    (how far control points, or the points themselves, moved) and, of optima, `value`, `gap` and `active`.
+    (`as = "control"`); these, curves that join others, the bounds "curve" and "points" and the modes of single steps
+    move control points, and take the number of a point for its parameter, as the report of 1991 does, unless
+    `spacing` names another. Their members are `deviation`
+    (how far control points, or the points themselves, moved; of fits with `knots` or a `count` the greatest distance of a
+    point), `value`, `gap`, of optima `active`, and of the others `steps`.
     Points on a line, conic, plane cubic or helix stay in any case, unless `goal` is "fairest". In mode "faithful" the
     worst knots are removed and re-inserted one after the other (Farin and Sapidis 1989), one step per
     point, and which knot comes first may change with the points.
+
+    What Python has besides: `breaks` and `release` are numbers here, never "auto", so that a small move of a point makes no
+    corner; `ends` are words; the log of single steps is no property of a curve (`moldloft fair model.sdl:name --log`);
+    optima are solved to rounding, so that derivatives are known, and have no `accuracy`; a model's points are
+    those that were read, so that there is no `original`.
 
     Parameters
     ----------
@@ -7643,8 +7660,8 @@ def FairCurve(
         "variation". Default second.
     as : text, optional
         Meaning of the points: "fit" (the curve passes through them before it is faired),
-        "control" (its control points) or "points" (they are faired and then interpolated).
-        Default fit.
+        "control" (its control points) or "points" (they are faired and then interpolated: of
+        optima the same as "fit" unless the spacing is "index"). Default fit.
     breaks : list of integer, optional
         Numbers of points, from 1, that are intended breaks: they stay, and nothing is smoothed
         across them. A curve through its points has corners there; a closed one begins at the
@@ -7653,7 +7670,11 @@ def FairCurve(
         What open ends keep of the curve through the points: "free" (within the tolerance),
         "position", "tangent" or "curvature". Default position.
     mode : text, optional
-        "optimum" or "faithful". Default optimum.
+        "optimum", or steps of the report of 1991: "faithful" (knots removed and re-inserted,
+        the longest achievable move first), "literal" (the largest jump first; may stall),
+        "vertex" (one control point at a time to its own best place), "sweeps" (all points in
+        order) or "levels" (waves of all lengths). The last two have no derivatives. Default
+        optimum.
     degree : integer, optional
         Polynomial degree. 2 to 9, default 3.
     closed : integer, optional
@@ -7663,56 +7684,91 @@ def FairCurve(
         each begins or ends where this one does. They stay as they are; `ends` is for the other
         end.
     weights : list of number, optional
-        Positive weights of the control points (`as = "control"`), which make it rational and
-        stay as they are. They count as constants: derivatives do not go through them.
+        Positive weights of the control points (`as = "control"`, or of a fit with as many
+        points), which make it rational and stay as they are. They count as constants:
+        derivatives do not go through them.
     knots : list of number, optional
-        Knots of the control points (`as = "control"`) of an open curve, degree + 1 more of
-        them, non-decreasing; constants too.
+        Knots of the control points (`as = "control"`) or of a fit, whose number gives that of
+        the control points: degree + 1 more, non-decreasing; of a closed curve as many,
+        increasing. Constants too.
     spacing : text, optional
         How points get their parameters: "chord", "centripetal", a coordinate ("x", "y" or "z",
         for offsets at stations), "index", or "curvature" (lengths, longer where the curve
         turns). "auto" is "curvature" for the goals "near" and "budget" where nothing but these
-        is asked for and ends keep no tangents, else "chord". Default auto.
+        is asked for and ends keep no tangents, else "chord"; of single steps and joins "index".
+        Default auto.
     goal : text, optional
-        Which of the curves within the tolerance: "near" (no fairer than noise of the
+        Which of the results within the tolerance: "near" (no fairer than noise of the
         tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
         same, moved in any case), "fairest", "nearest" (the nearest to the points that measures
-        little more than the fairest), "energy" (the nearest that measures at most `share`) or
-        "closest" (the nearest of the `shape`). Default near.
+        little more than the fairest), "energy" (the nearest that measures at most `share`) or,
+        of curves, "closest" (the nearest of the `shape`). Default near.
     along : vector, optional
-        The direction in which the curve may leave its points, such as {0, 1, 0} for offsets at
-        fixed stations; any direction without it.
+        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
+        stations; any direction without it.
+    motion : text, optional
+        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
+        by itself); without it points move along `along`, or in any direction.
+    share : number, optional
+        The share of the goals "near" (0.5 of free plane curves, 0.8 of others, 0.3 of networks
+        that noise does not explain), "budget" (the same, networks 0.8) and "nearest" (0.1), or
+        the measure of "energy".
     shape : list of text, optional
-        The shape that the curve has to have, points from 1: "convex=4-10", "concave=1-4", "one-
+        The shape that it has to have, points from 1: "convex=4-10", "concave=1-4", "one-
         way=1-9" (no inflection), "straight=1-9", "straight=1-9:0,1" (in a direction),
         "arc=9-15", "pieces=2" (of monotone curvature), "within=0,1:4.6" (the largest value
         along a direction), "side=0,-1" (the points are left only against it). A word alone is
         about the whole curve. No derivatives.
-    share : number, optional
-        The share of the goals "budget" (0.8) and "nearest" (0.1), or the measure of "energy".
     tolerances : list of number, optional
         Tolerances of the points one by one, instead of `tolerance`.
     fixed : list of integer, optional
-        Numbers of points, from 1, through which the curve passes.
+        Numbers of points, from 1, through which it passes.
     release : list of integer, optional
-        Numbers of points, from 1, that are wrong: the curve may leave them.
-    through : list of point, optional
-        Points that the curve passes through at `through_at`. No derivatives.
+        Numbers of points, from 1, that are wrong: they may be left.
     through_at : list of number, optional
         Parameters, from 0 to 1, of `through`.
     tangents : list of vector, optional
-        Directions that the curve has at `tangents_at`. No derivatives.
+        Directions that it has at `tangents_at`. No derivatives.
     tangents_at : list of number, optional
         Parameters, from 0 to 1, of `tangents`.
-    keep : list of text, optional
-        What it keeps of the curve through the points, to first order: "area" (swept about the
-        origin in the plane of x and y) or "volume" (of revolution about x). No derivatives.
     bends : integer, optional
-        0 to have no more inflections than the curve of least bending within the tolerances; no
+        0 to have no more inflections than the one of least bending within the tolerances; no
         derivatives then. 0 to 1, default 1.
     at : list of number, optional
         Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed
         curve less than 1 apart).
+    last_end : text, optional
+        What the end keeps, if it is something else than the start (`ends`).
+    bound : text, optional
+        What the tolerance bounds: "data", the distance of each point (the default of fits);
+        "curve", that of the curve from the one before, everywhere (the default of control
+        points); "points", the move of each control point. "curve" and "points" have derivatives
+        where parameters do not follow the points (`spacing = "index"`).
+    count : integer, optional
+        Control points of a fit by least squares, fewer than points; no derivatives. At least 3.
+    period : number, optional
+        How far the first knot of a closed curve with `knots` is from itself, once round (1).
+    steps : integer, optional
+        Steps of the modes "faithful", "literal" and "vertex" (one per point), sweeps (10) or
+        cycles of levels (2). 0 to 1e+07.
+    least_move : number, optional
+        Single steps end when a move is shorter than this share of the tolerance. At least 0,
+        default 0.
+    least_drop : number, optional
+        Single steps end when one lowers the measure by less than this share. At least 0,
+        default 0.
+    stop_gap : number, optional
+        Single steps end when the certified gap is below this share of the measure. At least 0,
+        default 0.
+    stop_pieces : integer, optional
+        1 to end single steps when as many as there are points bring no fewer monotone pieces of
+        curvature. 0 to 1, default 0.
+    through : list of point, optional
+        Points that the curve passes through at `through_at`. No derivatives.
+    keep : list of text, optional
+        What it keeps of the curve before, to first order: "area" (swept about the origin in the
+        plane of x and y), "volume" (of revolution about x) or "centroid" (of the control
+        points). No derivatives.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v). Default: none.
     **attributes
@@ -7747,7 +7803,27 @@ def FairSnake(
     tolerances: _Numbers | None = ...,
     fixed: Sequence[_Integer] | _Array | _Any | None = ...,
     release: Sequence[_Integer] | _Array | _Any | None = ...,
+    through_at: _Numbers | None = ...,
+    tangents: _Vectors | None = ...,
+    tangents_at: _Numbers | None = ...,
     bends: _Integer | None = ...,
+    at: _Numbers | None = ...,
+    last_end: _Text | None = ...,
+    bound: _Text | None = ...,
+    count: _Integer | None = ...,
+    period: _Number | None = ...,
+    steps: _Integer | None = ...,
+    least_move: _Number | None = ...,
+    least_drop: _Number | None = ...,
+    stop_gap: _Number | None = ...,
+    stop_pieces: _Integer | None = ...,
+    along: _Vector | None = ...,
+    motion: _Text | None = ...,
+    weights: _Numbers | None = ...,
+    knots: _Numbers | None = ...,
+    through: Sequence[_Magnet] | _Any | None = ...,
+    as_: _Text | None = ...,
+    closed: _Integer | None = ...,
     relabel: _Relabel | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -7763,14 +7839,16 @@ def FairSnake(
     """A fair curve on a surface: its path in the parameter plane is faired within a tolerance.
 
     The path passes through the magnets' parameters before it is faired; the tolerance is a
-    distance in the parameter plane, and so are its members. See `FairCurve`.
+    distance in the parameter plane, and so are its members. Its options are those of `FairCurve`, in that plane:
+    directions are {u, v, 0}, "x" is u and "y" is v. It joins no other curves, which are in space and not
+    in the plane, and keeps no area or volume, which would be those of the plane. See `FairCurve`.
 
     Parameters
     ----------
     name : str
         The name of the object.
     magnets : list of magnet
-        Magnets of one surface, at least degree + 2 of them.
+        Magnets of one surface, at least degree + 2 of them (closed: 2 degree + 2).
     tolerance : number
         Largest distance from the path through the magnets, in u and v. At least 0.
     measure : text, optional
@@ -7778,30 +7856,95 @@ def FairSnake(
     ends : text, optional
         Kept at the ends: "position", "tangent" or "curvature". Default tangent.
     mode : text, optional
-        "optimum" or "faithful". Default optimum.
+        "optimum", or a mode of single steps; see `FairCurve`. Default optimum.
     degree : integer, optional
         Polynomial degree of the path. 2 to 9, default 3.
     spacing : text, optional
         How magnets get their parameters along the path, as for `FairCurve`: "chord",
-        "centripetal", "x" (u) or "y" (v) where it rises, or "curvature". Default chord.
+        "centripetal", "x" (u) or "y" (v) where it rises, "index" or "curvature"; "auto" is
+        "chord", of single steps "index". Default auto.
     goal : text, optional
-        Which of the paths within the tolerance; see `FairCurve`. Default near.
+        Which of the results within the tolerance: "near" (no fairer than noise of the
+        tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
+        same, moved in any case), "fairest", "nearest" (the nearest to the points that measures
+        little more than the fairest), "energy" (the nearest that measures at most `share`) or,
+        of curves, "closest" (the nearest of the `shape`). Default near.
     share : number, optional
-        The share of the goals "near" and "budget" (0.8) and "nearest" (0.1), or the measure of
-        "energy".
+        The share of the goals "near" (0.5 of free plane curves, 0.8 of others, 0.3 of networks
+        that noise does not explain), "budget" (the same, networks 0.8) and "nearest" (0.1), or
+        the measure of "energy".
     breaks : list of integer, optional
         Numbers of magnets, from 1, that are intended breaks: the path has corners there.
     shape : list of text, optional
-        The shape that the path has in the parameter plane; see `FairCurve`. No derivatives.
+        The shape that it has to have, points from 1: "convex=4-10", "concave=1-4", "one-
+        way=1-9" (no inflection), "straight=1-9", "straight=1-9:0,1" (in a direction),
+        "arc=9-15", "pieces=2" (of monotone curvature), "within=0,1:4.6" (the largest value
+        along a direction), "side=0,-1" (the points are left only against it). A word alone is
+        about the whole curve. No derivatives.
     tolerances : list of number, optional
-        Tolerances of the magnets one by one, instead of `tolerance`.
+        Tolerances of the points one by one, instead of `tolerance`.
     fixed : list of integer, optional
-        Numbers of magnets, from 1, through which the path passes.
+        Numbers of points, from 1, through which it passes.
     release : list of integer, optional
-        Numbers of magnets, from 1, that are wrong: the path may leave them.
+        Numbers of points, from 1, that are wrong: they may be left.
+    through_at : list of number, optional
+        Parameters, from 0 to 1, of `through`.
+    tangents : list of vector, optional
+        Directions that it has at `tangents_at`. No derivatives.
+    tangents_at : list of number, optional
+        Parameters, from 0 to 1, of `tangents`.
     bends : integer, optional
-        0 to have no more inflections in the parameter plane than the path of least bending
-        within the tolerances; no derivatives then. 0 to 1, default 1.
+        0 to have no more inflections than the one of least bending within the tolerances; no
+        derivatives then. 0 to 1, default 1.
+    at : list of number, optional
+        Parameters of the points one by one, instead of `spacing`: rising numbers (of a closed
+        curve less than 1 apart).
+    last_end : text, optional
+        What the end keeps, if it is something else than the start (`ends`).
+    bound : text, optional
+        What the tolerance bounds: "data", the distance of each point (the default of fits);
+        "curve", that of the curve from the one before, everywhere (the default of control
+        points); "points", the move of each control point. "curve" and "points" have derivatives
+        where parameters do not follow the points (`spacing = "index"`).
+    count : integer, optional
+        Control points of a fit by least squares, fewer than points; no derivatives. At least 3.
+    period : number, optional
+        How far the first knot of a closed curve with `knots` is from itself, once round (1).
+    steps : integer, optional
+        Steps of the modes "faithful", "literal" and "vertex" (one per point), sweeps (10) or
+        cycles of levels (2). 0 to 1e+07.
+    least_move : number, optional
+        Single steps end when a move is shorter than this share of the tolerance. At least 0,
+        default 0.
+    least_drop : number, optional
+        Single steps end when one lowers the measure by less than this share. At least 0,
+        default 0.
+    stop_gap : number, optional
+        Single steps end when the certified gap is below this share of the measure. At least 0,
+        default 0.
+    stop_pieces : integer, optional
+        1 to end single steps when as many as there are points bring no fewer monotone pieces of
+        curvature. 0 to 1, default 0.
+    along : vector, optional
+        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
+        stations; any direction without it.
+    motion : text, optional
+        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
+        by itself); without it points move along `along`, or in any direction.
+    weights : list of number, optional
+        Positive weights of the control points (`as = "control"`, or of a fit with as many
+        points), which make it rational and stay as they are. They count as constants:
+        derivatives do not go through them.
+    knots : list of number, optional
+        Knots of the control points (`as = "control"`) or of a fit, whose number gives that of
+        the control points: degree + 1 more, non-decreasing; of a closed curve as many,
+        increasing. Constants too.
+    through : list of magnet, optional
+        Magnets of the surface that the path passes through at `through_at`. No derivatives.
+    as : text, optional
+        Meaning of the magnets; see `FairCurve`. Default fit.
+    closed : integer, optional
+        1 for a closed path, whose first magnet is not repeated. 0 to 1, default 0.
     relabel : relabel, optional
         Reparametrisation of t (surfaces: v). Default: none.
     **attributes
@@ -7838,6 +7981,7 @@ def FairSurf(
     spacing: _Text | None = ...,
     goal: _Text | None = ...,
     along: _Vector | None = ...,
+    motion: _Text | None = ...,
     degree_v: _Integer | None = ...,
     closed_u: _Integer | None = ...,
     closed_v: _Integer | None = ...,
@@ -7917,10 +8061,17 @@ def FairSurf(
         in each direction. The mode "faithful" takes "index", and so do control points. Default
         chord.
     goal : text, optional
-        Which of the surfaces within the tolerance; see `FairCurve`. Default near.
+        Which of the results within the tolerance: "near" (no fairer than noise of the
+        tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
+        same, moved in any case), "fairest", "nearest" (the nearest to the points that measures
+        little more than the fairest), "energy" (the nearest that measures at most `share`) or,
+        of curves, "closest" (the nearest of the `shape`). Default near.
     along : vector, optional
-        The direction in which the surface may leave its points, such as {0, 1, 0} for offsets;
-        any direction without it.
+        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
+        stations; any direction without it.
+    motion : text, optional
+        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
+        by itself); without it points move along `along`, or in any direction.
     degree_v : integer, optional
         Polynomial degree along v, if it is another than along u. 2 to 9.
     closed_u : integer, optional
@@ -7929,7 +8080,9 @@ def FairSurf(
     closed_v : integer, optional
         The same along v. 0 to 1, default 0.
     share : number, optional
-        The share of the goals "budget" (0.8) and "nearest" (0.1), or the measure of "energy".
+        The share of the goals "near" (0.5 of free plane curves, 0.8 of others, 0.3 of networks
+        that noise does not explain), "budget" (the same, networks 0.8) and "nearest" (0.1), or
+        the measure of "energy".
     tolerances : farray, optional
         Tolerances of the points one by one, a grid like these, instead of `tolerance`.
     fixed : list of integer, optional
@@ -7985,6 +8138,7 @@ def FairNet(
     breaks: _Vectors | None = ...,
     keep: _Text | None = ...,
     along: _Vector | None = ...,
+    motion: _Text | None = ...,
     degree: _Integer | None = ...,
     mode: _Text | None = ...,
     passes: _Integer | None = ...,
@@ -8033,8 +8187,11 @@ def FairNet(
         Kept ends of open curves: "corners" (the points at which every curve that has them
         ends), "ends" or "none". Default corners.
     along : vector, optional
-        The direction in which points may move, such as {0, 1, 0} for offsets of stations and
-        waterlines; any direction without it.
+        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
+        stations; any direction without it.
+    motion : text, optional
+        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
+        by itself); without it points move along `along`, or in any direction.
     degree : integer, optional
         Polynomial degree. 2 to 9, default 3.
     mode : text, optional
@@ -8048,12 +8205,15 @@ def FairNet(
         taken where it rises or falls along a curve, chords elsewhere. The mode "faithful" takes
         "index". Default chord.
     goal : text, optional
-        Which of the results within the tolerance; see `FairCurve`. Of "near" squared residuals
-        are those that noise has where it explains the fairest, else `share` of these. Default
-        near.
+        Which of the results within the tolerance: "near" (no fairer than noise of the
+        tolerance's size asks for, and unmoved where there is little to gain), "budget" (the
+        same, moved in any case), "fairest", "nearest" (the nearest to the points that measures
+        little more than the fairest), "energy" (the nearest that measures at most `share`) or,
+        of curves, "closest" (the nearest of the `shape`). Default near.
     share : number, optional
-        The share of the goals "near" (0.3), "budget" (0.8) and "nearest" (0.1), or the measure
-        of "energy".
+        The share of the goals "near" (0.5 of free plane curves, 0.8 of others, 0.3 of networks
+        that noise does not explain), "budget" (the same, networks 0.8) and "nearest" (0.1), or
+        the measure of "energy".
     fixed : list of point, optional
         Points that stay besides those of `keep`.
     tolerances : list of number, optional
@@ -8135,6 +8295,7 @@ def FairPatches(
     goal: _Text | None = ...,
     degree_v: _Integer | None = ...,
     along: _Vector | None = ...,
+    motion: _Text | None = ...,
     bound: _Text | None = ...,
     *,
     colour: _Integer | None = ...,
@@ -8184,8 +8345,11 @@ def FairPatches(
     degree_v : integer, optional
         Polynomial degree along v, if it is another than along u. 2 to 9.
     along : vector, optional
-        The direction in which control points may move, such as {0, 1, 0} for offsets; any
-        direction without it.
+        The direction in which points may be left, such as {0, 1, 0} for offsets at fixed
+        stations; any direction without it.
+    motion : text, optional
+        "across" (points stay in the plane across `along`) or "box" (each coordinate is limited
+        by itself); without it points move along `along`, or in any direction.
     bound : text, optional
         What the tolerance bounds: "points", the move of each control point, or "curve", that of
         the surfaces, which leaves control points more room. Default points.

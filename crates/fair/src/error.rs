@@ -42,6 +42,8 @@ pub enum FairError {
     },
     /// A budget or a share is out of range, or the measure has none.
     Goal(&'static str),
+    /// The derivative that is asked for is not known.
+    NoDerivative(&'static str),
     /// A tolerance is negative, NaN or infinite.
     Tolerance {
         /// The number given.
@@ -180,7 +182,7 @@ impl fmt::Display for FairError {
                     index + 1
                 )
             }
-            Self::Goal(why) => f.write_str(why),
+            Self::Goal(why) | Self::NoDerivative(why) => f.write_str(why),
             Self::Tolerance { value } => {
                 write!(f, "expected a tolerance of at least 0, found {value}")
             }

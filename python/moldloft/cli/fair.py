@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from moldloft.cli import fair_words as words
 from moldloft.cli.console import Progress, assignment, print_json
 from moldloft.errors import Error, FairingError
 
@@ -39,10 +40,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="points, a Plot3D surface, or MODEL:OBJECT")
     parser.add_argument(
         "--tol",
-        metavar="D",
+        metavar="D|FILE",
         required=True,
-        type=_tolerance,
-        help="largest distance from the original; 0 changes nothing; `none` for no limit",
+        type=words.tolerance,
+        help="largest distance from the original; 0 changes nothing; `none` for no limit; a file "
+        "has one for each point",
     )
     parser.add_argument(
         "--as",
@@ -100,7 +102,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--degree",
         metavar="P[,Q]",
-        type=_degrees,
+        type=words.degrees,
         default=3,
         help="polynomial degree; default: 3; of surfaces one or two",
     )
@@ -116,10 +118,22 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="weights of a rational curve or surface, one per control point",
     )
     parser.add_argument(
+        "--period",
+        metavar="D",
+        type=float,
+        help="how far the first of the knots of a closed curve is from itself, once round",
+    )
+    parser.add_argument(
         "--along",
         metavar="X,Y[,Z]",
-        type=_vector,
+        type=words.vector,
         help="points move in this direction only, as in 0,1 for offsets at fixed stations",
+    )
+    parser.add_argument(
+        "--across",
+        metavar="X,Y[,Z]",
+        type=words.vector,
+        help="points stay in the planes across this direction",
     )
     parser.add_argument("--box", action="store_true", help="limit each coordinate by itself")
     for word, place, what in (
@@ -130,7 +144,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(
             f"--{word}",
             metavar=f"{place}=X,Y[,Z]",
-            type=_condition,
+            type=words.condition,
             action="append",
             default=[],
             help=f"{what}, parameters in [0, 1]; may be repeated",
@@ -154,16 +168,19 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--spacing",
         metavar="WORD|X,Y[,Z]",
-        type=_spacing,
+        type=words.spacing,
         default="auto",
         help="parameters of points: chord, centripetal, a coordinate (x, y, z) or a direction that "
         "they run along, index, or curvature (of single curves: lengths, longer where they turn; "
         "the default where one is to be near the truth, else chord)",
     )
     parser.add_argument(
+        "--at", metavar="FILE", help="the parameters of the points themselves, rising, in [0, 1]"
+    )
+    parser.add_argument(
         "--goal",
         metavar="WORD[=SHARE]",
-        type=_goal,
+        type=words.goal,
         default="near",
         help="which of the results within the tolerance: near (the default: no fairer than noise "
         "of that size asks for, unmoved where there is little to gain), fairest, budget=SHARE of "
@@ -197,6 +214,29 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--steps", type=int, help="local steps; of surfaces per point")
     parser.add_argument(
+        "--stop",
+        metavar="WORD[=SHARE]",
+        type=words.stop,
+        action="append",
+        default=[],
+        help="local steps end when a move is shorter than this share of the tolerance "
+        "(move=SHARE), a step lowers the measure by less (drop=SHARE), the certified gap is below "
+        "it (gap=SHARE), or a pass brings no fewer monotone pieces (pieces); may be repeated",
+    )
+    parser.add_argument(
+        "--accuracy",
+        metavar="SHARE",
+        type=float,
+        default=1e-9,
+        help="certified gap of the optimum of a curve, as a share of the measure; default: 1e-9",
+    )
+    parser.add_argument(
+        "--original",
+        metavar="FILE",
+        help="the points as they were first read, where FILE was faired already: tolerances are "
+        "counted from these",
+    )
+    parser.add_argument(
         "--passes", type=int, help="passes of the faithful mode, which this implies"
     )
     parser.add_argument("--block", type=int, help="the block of a Plot3D file, from 1")
@@ -220,63 +260,20 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--library", metavar="DIR", action="append", default=[])
 
 
-def _tolerance(text: str) -> float | None:
-    if text.lower() == "none":
-        return None
-    try:
-        value = float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"`{text}` is neither a length nor `none`") from None
-    return value
-
-
-def _spacing(text: str) -> Any:
-    if text in ("auto", "curvature", "chord", "centripetal", "index", "uniform", "x", "y", "z"):
-        return text
-    return tuple(_vector(text))
-
-
-def _goal(text: str) -> Any:
-    word, equals, share = text.partition("=")
-    if word not in ("near", "fairest", "budget", "nearest", "energy", "closest"):
-        raise argparse.ArgumentTypeError(
-            f"`{word}` is not a goal; there are: near, fairest, budget=SHARE, nearest=SHARE, "
-            "energy=MOST, closest"
-        )
-    try:
-        return (word, float(share)) if equals else word
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"`{share}` is not a number") from None
-
-
-def _vector(text: str) -> list[float]:
-    try:
-        vector = [float(c) for c in text.split(",")]
-    except ValueError:
-        vector = []
-    if len(vector) not in (2, 3):
-        raise argparse.ArgumentTypeError(f"`{text}` is not of the form X,Y or X,Y,Z")
-    return vector
-
-
-def _condition(text: str) -> tuple[list[float], list[float]]:
-    place, equals, vector = text.partition("=")
-    try:
-        at = [float(t) for t in place.split(",")]
-    except ValueError:
-        at = []
-    if not equals or len(at) not in (1, 2) or not all(0 <= t <= 1 for t in at):
-        raise argparse.ArgumentTypeError(
-            f"`{text}` is not of the form T=X,Y (of surfaces U,V=X,Y,Z) with T in [0, 1]"
-        )
-    return at, _vector(vector)
-
-
-def _degrees(text: str) -> int | tuple[int, int]:
-    words = text.split(",")
-    if len(words) > 2 or not all(w.isdigit() for w in words):
-        raise argparse.ArgumentTypeError(f"`{text}` is not a degree or a pair of degrees")
-    return int(words[0]) if len(words) == 1 else (int(words[0]), int(words[1]))
+def _refuse_curves_only(options: argparse.Namespace) -> None:
+    """What single curves have, where it would be dropped without a word."""
+    for name, given in (
+        ("--shape", options.shape),
+        ("--release", options.release),
+        ("--bends", options.bends),
+        ("--at", options.at),
+        ("--period", options.period is not None),
+        ("--stop", options.stop),
+        ("--accuracy", options.accuracy != 1e-9),
+        ("--original", options.original),
+    ):
+        if given:
+            raise Error(f"{name} is for single curves")
 
 
 def _places(text: str, count: int | None = None, what: str = "--breaks") -> list[int]:
@@ -298,6 +295,8 @@ def run(options: argparse.Namespace) -> int:
         raise Error(
             f"a report is .html, not `{options.report}`: a browser prints such a page as PDF"
         )
+    if isinstance(options.tol, str):
+        options.tol = _numbers(options.tol)
     if options.tol is None and not options.json:
         print(
             "warning: without a tolerance nothing keeps the result near the data: steps without "
@@ -366,6 +365,11 @@ def _source(options: argparse.Namespace) -> _Source:
 
 
 def _motion(options: argparse.Namespace) -> Any:
+    given = [options.along is not None, options.across is not None, options.box]
+    if sum(given) > 1:
+        raise Error("--along, --across and --box: one of these")
+    if options.across is not None:
+        return "across", tuple(options.across)
     if options.along is not None:
         return tuple(options.along)
     return "box" if options.box else "ball"
@@ -472,7 +476,26 @@ def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[s
         "count": options.count,
         "steps": steps,
         "log": bool(options.log),
+        "at": _numbers(options.at),
+        "period": options.period,
+        "accuracy": options.accuracy,
+        "original": _original(options, count),
+        **dict(options.stop),
     }
+
+
+def _original(options: argparse.Namespace, count: int) -> Any:
+    """The points that tolerances are counted from, where they are not those of the file."""
+    if not options.original:
+        return None
+    from moldloft.fairing.files import read_points
+
+    file = read_points(options.original)
+    if len(file.points) != count:
+        raise Error(
+            f"--original: {options.original} has {len(file.points)} points, the file {count}"
+        )
+    return file.points
 
 
 def _shapes(texts: list[str], count: int) -> list[Any]:
@@ -523,7 +546,7 @@ class _Points(_Source):
                 "stations and waterlines that are plain numbers are inches, too: "
                 "write their places, if they are numbers of stations"
             )
-        if self.file.offsets and options.along is None and not options.box:
+        if self.file.offsets and _motion(options) == "ball":
             if self.file.moves == 2:
                 self.said.append("heights move; stations and buttocks stay")
                 options.along = [0.0, 0.0, 1.0]
@@ -560,6 +583,7 @@ class _Points(_Source):
     def _network(self, options: argparse.Namespace) -> NetworkFairing:
         from moldloft.fairing import network
 
+        _refuse_curves_only(options)
         for name, given in (
             ("--as", options.role not in (None, "points")),
             ("--closed", options.closed or options.closed_v),
@@ -603,7 +627,7 @@ class _Points(_Source):
             result = network(
                 self.file.points[rows],
                 curves,
-                options.tol,
+                self._tolerances(options, rows),
                 degree=options.degree,
                 measure=options.measure or "third",
                 mode=options.mode,
@@ -622,6 +646,16 @@ class _Points(_Source):
         if self.file.offsets and self.file.moves == 1:
             self._across(result, rows)
         return result
+
+    def _tolerances(self, options: argparse.Namespace, rows: list[int]) -> Any:
+        """One tolerance, or that of each different point."""
+        if not isinstance(options.tol, list):
+            return options.tol
+        if len(options.tol) != len(self.file.points):
+            raise Error(
+                f"--tol: expected {len(self.file.points)} tolerances, found {len(options.tol)}"
+            )
+        return [options.tol[k] for k in rows]
 
     def _across(self, result: NetworkFairing, rows: list[int]) -> None:
         """Half-breadths that were not below zero and are now."""
@@ -697,6 +731,7 @@ def _grid_weights(path: str | None, shape: tuple[int, int]) -> Any:
 def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFairing:
     from moldloft.fairing import fair
 
+    _refuse_curves_only(options)
     for option, given in (
         ("--tangent", options.tangent),
         ("--join", options.join),
@@ -732,7 +767,16 @@ def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFair
         "knots": (_numbers(options.knots), _numbers(options.knots_v)),
         "weights": _grid_weights(options.weights, grid.shape[:2]),
     }
-    return fair(grid, options.tol, **chosen)  # type: ignore[return-value]
+    tol: Any = options.tol
+    if isinstance(tol, list):
+        if len(tol) != grid.shape[0] * grid.shape[1]:
+            raise Error(
+                f"--tol: expected {grid.shape[0]} x {grid.shape[1]} tolerances, found {len(tol)}"
+            )
+        import numpy as np
+
+        tol = np.reshape(tol, grid.shape[:2])
+    return fair(grid, tol, **chosen)  # type: ignore[return-value]
 
 
 class _Grids(_Source):
@@ -762,7 +806,10 @@ class _Grids(_Source):
     def _patches(self, options: argparse.Namespace) -> PatchesFairing:
         from moldloft.fairing import patches
 
+        _refuse_curves_only(options)
         for name, given in (
+            ("--tol FILE", isinstance(options.tol, list)),
+            ("--spacing", options.spacing != "auto"),
             ("--closed", options.closed or options.closed_v),
             ("--mode", options.mode != "optimum"),
             ("--breaks", options.breaks),
@@ -798,6 +845,7 @@ class _Grids(_Source):
             bound=options.bound or "points",
             rims=rims,
             motion=_motion(options),
+            goal=options.goal,
         )
 
     def write(self, result: Any, path: Path) -> Path:
@@ -818,6 +866,8 @@ class _Object(_Source):
         from moldloft.fairing.objects import sampled
         from moldloft.loading import load
 
+        if isinstance(options.tol, list):
+            raise Error("--tol FILE is for points: those of an object are sampled")
         loaded = load(model, library=options.library)
         if options.set:
             loaded.set(dict(options.set))

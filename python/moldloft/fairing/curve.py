@@ -250,6 +250,8 @@ def fair_curve(
         raise FairingError('bound `data` is for optima of data, `as_="fit"`')
     if len(release):
         raise FairingError('release is for optima of data, `as_="fit"`')
+    if at is not None:
+        raise FairingError('parameters of your own are for optima of data, `as_="fit"`')
     measure = measure or "second"
     if spacing in ("index", "auto"):
         spacing = "uniform" if spacing == "index" else "chord"

@@ -818,7 +818,7 @@ pub struct MovingFit<T> {
 /// too, where there are no conditions but those of the ends and inflections are not held back (`bends`).
 ///
 /// # Errors
-/// As [`fair_data`]; [`FairError::Goal`] for the goal `nearest`, and for sums of lengths on knots
+/// As [`fair_data`]; [`FairError::NoDerivative`] for the goal `nearest`, and for sums of lengths on knots
 /// that move.
 pub fn fair_data_with<T: Real>(
     data: &Data,
@@ -831,7 +831,7 @@ pub fn fair_data_with<T: Real>(
     let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
     if !options.shape.is_empty() || !options.conditions.is_empty() || !options.bends {
         if !(plain.all(|x| x.is_constant()) && fixed(tolerances)) {
-            return Err(FairError::Goal(
+            return Err(FairError::NoDerivative(
                 "derivatives of curves with conditions on their shape, places or inflections are \
                  not known: take the curve without them",
             ));
@@ -843,7 +843,7 @@ pub fn fair_data_with<T: Real>(
     }
     if !data.layout.interpolates() {
         if !(plain.all(|x| x.is_constant()) && fixed(tolerances)) {
-            return Err(FairError::Goal(
+            return Err(FairError::NoDerivative(
                 "derivatives of curves with fewer knots than points are not known: name a spacing",
             ));
         }
@@ -886,7 +886,7 @@ pub fn fair_data_with<T: Real>(
         check_single(&found, crate::measure::value(&parts.measure, parts.norm, &job.points))?;
     }
     if parts.norm != crate::RowNorm::Square {
-        return Err(FairError::Goal(
+        return Err(FairError::NoDerivative(
             "derivatives of a sum of lengths through moving knots are not known: take another \
              measure, or spacing \"index\"",
         ));

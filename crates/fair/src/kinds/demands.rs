@@ -4,7 +4,7 @@ use super::figures::FairFigures;
 use super::{ACCURACY, Intent};
 use crate::{
     Condition, Data, DataFinding, DataOptions, FairError, InterpolationSpace, Limit,
-    ShapeCondition, curvature_parameters, data_findings, fair_data_with, near_budget,
+    ShapeCondition, Space, curvature_parameters, data_findings, fair_data_with, near_budget,
     parameters_across,
 };
 use moldloft_num::{Real, Vec3};
@@ -19,6 +19,22 @@ pub(crate) enum Demand {
     Tangent(Vec3<f64>),
     Area,
     Volume,
+    Centroid,
+}
+
+impl Demand {
+    /// What it asks of control points that are at `control` before; the parameter is a share of the domain.
+    pub fn conditions(self, space: &Space, control: &[Vec3<f64>], share: f64) -> Vec<Condition> {
+        let (a, b) = space.domain();
+        let t = a + (b - a) * share;
+        match self {
+            Demand::Through(p) => Condition::point(space, t, p),
+            Demand::Tangent(d) => Condition::tangent(space, t, d),
+            Demand::Area => vec![Condition::area(space, control, Vec3::of(0.0, 0.0, 1.0))],
+            Demand::Volume => vec![Condition::revolution(space, control, Vec3::of(1.0, 0.0, 0.0))],
+            Demand::Centroid => Condition::centroid(control),
+        }
+    }
 }
 
 /// All that is asked.
@@ -105,7 +121,7 @@ impl<T: Real> Intent<T> {
         let mut data = Data {
             layout: laid(&at)?,
             limit: Limit::new(self.motion, radii)?,
-            ends: [self.end; 2],
+            ends: self.ends,
             points: plain,
         };
         if self.turning && demands.at.is_none() {
@@ -122,19 +138,8 @@ impl<T: Real> Intent<T> {
         if !demands.conditions.is_empty() {
             let space = &data.layout.space;
             let control = data.layout.through(&data.layout.data(&data.points))?;
-            let (a, b) = space.domain();
             for &(t, demand) in &demands.conditions {
-                let t = a + (b - a) * t;
-                options.conditions.extend(match demand {
-                    Demand::Through(p) => Condition::point(space, t, p),
-                    Demand::Tangent(d) => Condition::tangent(space, t, d),
-                    Demand::Area => {
-                        vec![Condition::area(space, &control, Vec3::of(0.0, 0.0, 1.0))]
-                    }
-                    Demand::Volume => {
-                        vec![Condition::revolution(space, &control, Vec3::of(1.0, 0.0, 0.0))]
-                    }
-                });
+                options.conditions.extend(demand.conditions(space, &control, t));
             }
         }
         let (made, fit) = fair_data_with(&data, &options, points, &tolerances, &at)?;

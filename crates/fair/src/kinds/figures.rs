@@ -1,6 +1,6 @@
 //! What faired objects say of themselves.
 
-use crate::{Certificate, DataFit, GridFit, NetworkFit, Optimum};
+use crate::{Certificate, DataFit, GridFit, NetworkFit};
 
 /// Figures of a faired object, which become its members.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,6 +17,8 @@ pub(crate) struct FairFigures {
     pub fairest_used: f64,
     /// Points that do not fit their neighbours.
     pub findings: usize,
+    /// Single steps, sweeps or cycles that were made.
+    pub steps: Option<usize>,
 }
 
 impl FairFigures {
@@ -43,14 +45,19 @@ impl FairFigures {
         own.of_goal(&made.certificate, made.used, made.fairest_used)
     }
 
-    /// Of control points, or points that move themselves: how far they moved, and what the optimum says.
-    pub fn of_moves(moved: impl Iterator<Item = f64>, best: Option<&Optimum>) -> Self {
+    /// Of control points, or points that move themselves: how far they moved, and what is known of the
+    /// optimum: the certificate, how many limits an optimum reaches, and how many steps were made.
+    pub fn of_moves(
+        moved: impl Iterator<Item = f64>,
+        made: Option<(&Certificate, Option<usize>, Option<usize>)>,
+    ) -> Self {
         let deviation = moved.fold(0.0, f64::max);
         let unknown = Self { deviation, value: f64::NAN, gap: f64::NAN, ..Self::default() };
-        best.map_or(unknown, |best| Self {
-            value: best.certificate.value,
-            gap: best.certificate.gap,
-            active: best.active,
+        made.map_or(unknown, |(certificate, active, steps)| Self {
+            value: certificate.value,
+            gap: certificate.gap,
+            active: active.unwrap_or(0),
+            steps,
             ..unknown
         })
     }
@@ -59,8 +66,10 @@ impl FairFigures {
     pub fn members_of_moves(&self) -> Vec<(&'static str, f64)> {
         let all = self.members().into_iter();
         let known = ["deviation", "value", "gap", "active"];
+        let optimum = !self.value.is_nan() && self.steps.is_none();
         all.filter(|(name, x)| known.contains(name) && !x.is_nan())
-            .filter(|(name, _)| *name != "active" || !self.value.is_nan())
+            .filter(|(name, _)| *name != "active" || optimum)
+            .chain(self.steps.map(|steps| ("steps", steps as f64)))
             .collect()
     }
 

@@ -1,7 +1,8 @@
 //! The functions `fair`, `jumps` and `curvature` of the language.
 
+use super::direct::{CurveMethod, DirectCurve};
 use super::{ArgumentFields, Intent, PointRole, faithful, fault, measure};
-use crate::{FairError, Space};
+use crate::{FairError, KnotRemovalOptions, Space};
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Array, Build, CallError, Context, CurveRef, Kind, Value, Vectors};
 use std::sync::Arc;
@@ -39,21 +40,34 @@ pub struct Fair<T: Real> {
 
 impl<T: Real> Build<T> for Fair<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let method = if faithful(&self.mode, Self::MODE)? {
+            CurveMethod::Steps(KnotRemovalOptions::faithful(0), None)
+        } else {
+            CurveMethod::Optimum
+        };
         let intent = Intent {
             tolerance: self.tolerance,
             degree: 3,
             closed: self.closed == 1,
-            role: PointRole::Control,
             measure: measure(&self.measure, Self::MEASURE)?,
-            faithful: faithful(&self.mode, Self::MODE)?,
-            end: crate::EndContinuity::Points(2),
+            ends: [crate::EndContinuity::Points(2); 2],
             breaks: Vec::new(),
-            joins: [None; 2],
-            own: super::GivenKnots::default(),
             spacing: crate::ParameterSpacing::Uniform,
             turning: false,
             goal: crate::Goal::Near(super::BUDGET),
             motion: crate::Motion::Ball,
+        };
+        let curve = DirectCurve {
+            intent,
+            role: PointRole::Points,
+            method,
+            bound: None,
+            joins: [None; 2],
+            own: super::GivenKnots::default(),
+            count: None,
+            tolerances: None,
+            fixed: Vec::new(),
+            conditions: Vec::new(),
         };
         let places = ArgumentFields {
             points: Self::POINTS,
@@ -61,10 +75,11 @@ impl<T: Real> Build<T> for Fair<T> {
             degree: Self::POINTS,
             breaks: Self::POINTS,
         };
-        if intent.stays(&self.points, &[]) {
+        let plain: Vec<Vec3<f64>> = self.points.iter().map(|p| p.re()).collect();
+        if curve.stays(&plain, &[]) {
             return Ok(Value::Vectors(Arc::new(Vectors::row(self.points))));
         }
-        let (faired, _) = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;
+        let faired = curve.faired_points(&self.points).map_err(|e| fault(e, &places))?;
         Ok(Value::Vectors(Arc::new(Vectors::row(faired))))
     }
 }

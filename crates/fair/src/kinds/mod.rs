@@ -2,10 +2,13 @@
 
 mod curve;
 mod demands;
+mod direct;
+mod faired;
 mod figures;
 mod functions;
 mod moving_surface;
 mod net;
+mod options;
 mod patches;
 mod shapes;
 mod snake;
@@ -13,13 +16,7 @@ mod surface;
 mod surface_demands;
 mod surface_method;
 
-use crate::curve::condition::{end_jet, joined};
-use crate::kinds::figures::FairFigures;
-use crate::{
-    Bound, Condition, EndContinuity, FairError, Goal, Job, KnotRemovalOptions, Limit, Measure,
-    Motion, Optimum, OptimumOptions, ParameterSpacing, Space, interpolate_with_corners, is_exact,
-    knot_removal, optimum_with, replay_with,
-};
+use crate::{EndContinuity, FairError, Goal, Measure, Motion, ParameterSpacing, Space};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{CallError, FieldId, Row};
@@ -56,17 +53,10 @@ pub(crate) struct Intent<T> {
     pub tolerance: T,
     pub degree: usize,
     pub closed: bool,
-    pub role: PointRole,
     pub measure: Measure,
-    pub faithful: bool,
-    pub end: EndContinuity,
+    pub ends: [EndContinuity; 2],
     /// Intended breaks, from 1.
     pub breaks: Vec<usize>,
-    /// First and second derivative of what the curve runs on from, at its start and end, by a
-    /// parameter that runs as its own.
-    pub joins: [Option<[Vec3<T>; 2]>; 2],
-    /// Knots of the control points, and their weights, which stay.
-    pub own: GivenKnots,
     /// How points get their parameters; the index for control points and knot removal.
     pub spacing: ParameterSpacing,
     /// Whether parameters run faster where the curve turns.
@@ -132,6 +122,8 @@ pub(crate) fn goal_of(
 pub(crate) struct GivenKnots {
     pub knots: Option<Vec<f64>>,
     pub weights: Option<Vec<f64>>,
+    /// How far the first knot of a closed curve is from itself, once round.
+    pub period: Option<f64>,
 }
 
 impl GivenKnots {
@@ -154,6 +146,22 @@ impl GivenKnots {
             return Err(FairError::Unsorted { index: index + 1 });
         }
         Space::open(KnotVector::new(degree, knots.clone())?)
+    }
+
+    /// The closed space of `count` control points.
+    pub fn ring(&self, degree: usize, count: usize) -> Result<Space, FairError> {
+        let Some(knots) = &self.knots else {
+            return Space::periodic(
+                degree,
+                (0..count).map(|k| k as f64 / count as f64).collect(),
+                1.0,
+            );
+        };
+        if knots.len() != count {
+            let (expected, actual) = (count, knots.len());
+            return Err(FairError::Count { what: "knots", expected, actual });
+        }
+        Space::periodic(degree, knots.clone(), self.period.unwrap_or(1.0))
     }
 }
 
@@ -216,6 +224,40 @@ pub(crate) fn end(name: &str, field: FieldId) -> Result<EndContinuity, CallError
     EndContinuity::named(name).ok_or_else(|| unknown("end condition", name, &all, field))
 }
 
+/// The directions in which points may move: `along`, and what it means; the fields of both.
+pub(crate) fn motion<T: Real>(
+    along: Option<Vec3<T>>,
+    word: Option<&str>,
+    [field, of_word]: [FieldId; 2],
+) -> Result<Motion, CallError> {
+    let undetermined = |word: &str, expected: &'static str| {
+        CallError::new("other-mode", format!("the motion \"{word}\" is not determined"))
+            .expected(expected)
+            .in_field(of_word)
+    };
+    let Some(direction) = along else {
+        return match word {
+            None => Ok(Motion::Ball),
+            Some("box") => Ok(Motion::Box),
+            Some("across") => Err(undetermined("across", "`along`, the direction across which")),
+            Some(word) => Err(unknown("motion", word, &["across", "box"], of_word)),
+        };
+    };
+    options::constant("along", field, direction.to_array().into_iter())?;
+    let direction = direction.re();
+    if direction.norm() == 0.0 {
+        return Err(CallError::new("zero-direction", "the direction has no length")
+            .expected("a direction such as {0, 1, 0}")
+            .in_field(field));
+    }
+    match word {
+        None => Ok(Motion::Along(direction)),
+        Some("across") => Ok(Motion::Across(direction)),
+        Some("box") => Err(undetermined("box", "no `along`")),
+        Some(word) => Err(unknown("motion", word, &["across", "box"], of_word)),
+    }
+}
+
 /// A refusal as a fault at its argument.
 pub(crate) fn fault(error: FairError, places: &ArgumentFields) -> CallError {
     let text = error.to_string();
@@ -245,6 +287,9 @@ pub(crate) fn fault(error: FairError, places: &ArgumentFields) -> CallError {
             .expected(format!("degree {expected} or more for this measure"))
             .found(actual.to_string())
             .in_field(places.degree),
+        FairError::NoDerivative(_) => {
+            CallError::new("no-derivative", text).expected("constants").in_field(places.points)
+        }
         _ => CallError::new("not-faired", text).in_field(places.points),
     }
 }
@@ -258,147 +303,10 @@ pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, Fai
     numbers.iter().map(from_zero).collect()
 }
 
-/// Points that moved, and the optimum that they are.
-type Moved<T> = (Vec<Vec3<T>>, Option<Optimum>);
-
 /// How far points moved.
 pub(crate) fn moves<T: Real, U: Real>(
     after: &[Vec3<T>],
     before: &[Vec3<U>],
 ) -> impl Iterator<Item = f64> {
     after.iter().zip(before).map(|(p, q)| (p.re() - q.re()).norm())
-}
-
-impl<T: Real> Intent<T> {
-    /// The faired spline of points.
-    ///
-    /// Its figures are those of what moves: control points, or the points themselves.
-    pub fn spline(
-        &self,
-        points: &[Vec3<T>],
-    ) -> Result<(Space, Vec<Vec3<T>>, FairFigures), FairError> {
-        let n = points.len();
-        let marks = indices(&self.breaks, n)?;
-        let fitted = |points: &[Vec3<T>]| {
-            interpolate_with_corners(
-                self.degree,
-                points,
-                ParameterSpacing::Uniform,
-                self.closed,
-                &marks,
-            )
-        };
-        let stays = self.stays(points, &marks);
-        match self.role {
-            PointRole::Control => {
-                let space = if self.closed {
-                    let knots = (0..n).map(|k| k as f64 / n as f64).collect();
-                    Space::periodic(self.degree, knots, 1.0)?
-                } else {
-                    self.own.space(self.degree, n)?
-                };
-                if stays {
-                    return Ok((
-                        space,
-                        points.to_vec(),
-                        FairFigures::of_moves([].into_iter(), None),
-                    ));
-                }
-                let (faired, best) = self.within(&space, points, Bound::Bezier, marks)?;
-                let figures = FairFigures::of_moves(moves(&faired, points), best.as_ref());
-                Ok((space, faired, figures))
-            }
-            PointRole::Fit => {
-                let sharp = fitted(points)?;
-                let space = sharp.fit.space;
-                if stays {
-                    return Ok((space, sharp.points, FairFigures::of_moves([].into_iter(), None)));
-                }
-                let (faired, best) =
-                    self.within(&space, &sharp.points, Bound::Bezier, sharp.marks)?;
-                let figures = FairFigures::of_moves(moves(&faired, &sharp.points), best.as_ref());
-                Ok((space, faired, figures))
-            }
-            PointRole::Points => {
-                if stays {
-                    let sharp = fitted(points)?;
-                    let figures = FairFigures::of_moves([].into_iter(), None);
-                    return Ok((sharp.fit.space, sharp.points, figures));
-                }
-                let (faired, best) = self.faired_points(points)?;
-                let figures = FairFigures::of_moves(moves(&faired, points), best.as_ref());
-                let sharp = fitted(&faired)?;
-                Ok((sharp.fit.space, sharp.points, figures))
-            }
-        }
-    }
-
-    /// Whether points stay: exact ones are as fair as can be, and what is near them is they themselves.
-    pub fn stays(&self, points: &[Vec3<T>], marks: &[usize]) -> bool {
-        let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
-        let free = self.own.weights.is_none() && self.joins.iter().all(Option::is_none);
-        free && matches!(self.goal, Goal::Near(_)) && is_exact(&plain, marks, self.closed)
-    }
-
-    /// Points, faired with a bound on each of them: as the control points of a uniform spline, for
-    /// which interpolation and the measures commute.
-    pub fn faired_points(&self, points: &[Vec3<T>]) -> Result<Moved<T>, FairError> {
-        let (n, degree) = (points.len(), self.degree);
-        let space = if self.closed {
-            Space::closed(degree, n)?
-        } else if n < degree + 2 {
-            return Err(FairError::TooFew { expected: degree + 2, actual: n });
-        } else {
-            Space::floating(degree, n)?
-        };
-        // What an end keeps is counted in points: with tangents, two of them.
-        let end = match self.end {
-            EndContinuity::Points(k) => k,
-            end => end.kept(),
-        };
-        let (breaks, own) = (self.breaks.clone(), self.own.clone());
-        let held = Self { end: EndContinuity::Points(end), breaks, own, ..*self };
-        held.within(&space, points, Bound::ControlPoints, indices(&self.breaks, n)?)
-    }
-
-    fn within(
-        &self,
-        space: &Space,
-        points: &[Vec3<T>],
-        bound: Bound,
-        marks: Vec<usize>,
-    ) -> Result<Moved<T>, FairError> {
-        let n = points.len();
-        let mut job = Job {
-            space: space.clone(),
-            points: points.iter().map(|p| p.re()).collect(),
-            weights: self.own.weights.clone(),
-            limit: Limit::new(self.motion, vec![self.tolerance.re(); n])?,
-            marks,
-            ends: [self.end; 2],
-        };
-        let (mut conditions, mut targets) = (Vec::new(), Vec::new());
-        for (at, other) in self.joins.iter().enumerate() {
-            let Some(other) = other else { continue };
-            job.ends[at] = EndContinuity::Position;
-            let plain = other.map(|v| v.re());
-            conditions.extend(Condition::join(space, &job.points, at == 1, plain)?);
-            let aims = joined(end_jet(space, points, at == 1), *other)?;
-            targets.extend(aims.iter().flat_map(|v| v.to_array()));
-        }
-        let tolerances = vec![self.tolerance; n];
-        if self.faithful {
-            let mut options = KnotRemovalOptions::faithful(n);
-            options.log = true;
-            let steps = knot_removal(&job, &options)?;
-            Ok((replay_with(&job, &options, &steps.log, points, &tolerances)?, None))
-        } else {
-            let mut options = OptimumOptions::of(self.measure);
-            options.bound = bound;
-            options.accuracy = ACCURACY;
-            options.conditions = conditions;
-            let best = optimum_with(&job, &options, points, &tolerances, &targets)?;
-            Ok((best.0, Some(best.1)))
-        }
-    }
 }

@@ -1,11 +1,12 @@
 //! `FairNet` and `NetCurve`: networks of curves that share points.
 
 use super::figures::FairFigures;
+use super::options::{constant, shared_options};
 use super::shapes::{self, AnchoredSpline};
 use super::{ACCURACY, ArgumentFields, fault, measure};
 use crate::{
-    EndContinuity, FairError, InterpolationSpace, Limit, Motion, Network, NetworkCurve,
-    ParameterSpacing, Space, are_exact, interpolate_with_corners, line_findings, parameters_across,
+    EndContinuity, FairError, InterpolationSpace, Limit, Network, NetworkCurve, ParameterSpacing,
+    Space, are_exact, interpolate_with_corners, line_findings, parameters_across,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
@@ -25,80 +26,81 @@ impl<T: Real> FromValue<T> for PointRow<T> {
     }
 }
 
-/// Curves that share points, faired together within a tolerance: the stations, waterlines and
-/// buttocks of a hull.
-///
-/// Each curve is a list of points; a point object in several lists is one point of all
-/// these curves. All points move at once, none by more than the tolerance, so that the sum of the
-/// measure over all curves is the least; each curve then passes through its moved points, so that
-/// curves still meet where they did. A list that ends with its first point is a closed curve. The
-/// value is the list of the faired curves: `net[2]` is the second, `NetCurve` makes it an object.
-/// Equal coordinates alone join nothing.
-#[derive(Kind)]
-#[kind(
-    class = List,
-    example = "AbsPoint A1(0, 0, 0); AbsPoint A2(1, 0.5, 0); AbsPoint A3(2, 0.83, 0); \
-               AbsPoint A4(3, 0.88, 0); AbsPoint A5(4, 1.02, 0); AbsPoint B2(1, 0.6, 1); \
-               AbsPoint C2(1, 0.72, 2); AbsPoint D2(1, 0.7, 3); AbsPoint E2(1, 0.66, 4); \
-               FairNet n({{A1, A2, A3, A4, A5}, {A2, B2, C2, D2, E2}}, 0.05); \
-               NetCurve waterline(n, 1); NetCurve station(n, 2);"
-)]
-pub struct FairNet<T: Real> {
-    /// The curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
-    #[field(min_items = 1)]
-    curves: Vec<PointRow<T>>,
-    /// Largest move of each point; 0 leaves all unchanged.
-    #[field(min = 0)]
-    tolerance: T,
-    /// The measure to minimise; see `FairCurve`.
-    #[field(default = "second")]
-    measure: Arc<str>,
-    /// Points that are intended breaks: they stay, nothing is smoothed across them, and curves have
-    /// corners there.
-    #[field(default)]
-    breaks: Option<Vec<Point<T>>>,
-    /// Kept ends of open curves: "corners" (the points at which every curve that has them
-    /// ends), "ends" or "none".
-    #[field(default = "corners")]
-    keep: Arc<str>,
-    /// The direction in which points may move, such as {0, 1, 0} for offsets of stations and
-    /// waterlines; any direction without it.
-    #[field(default)]
-    along: Option<Vec3<T>>,
-    /// Polynomial degree.
-    #[field(default = 3, min = 2, max = 9)]
-    degree: usize,
-    /// "optimum", or "faithful": curve after curve in the order of the list, knots removed and
-    /// re-inserted one by one, `steps` per point. The result then depends on that order and may
-    /// jump where two knots tie.
-    #[field(default = "optimum")]
-    mode: Arc<str>,
-    /// Passes of the faithful mode.
-    #[field(default = 1, min = 1, max = 100)]
-    passes: usize,
-    /// How points get their parameters along each curve, as for `FairCurve`; a coordinate is taken where
-    /// it rises or falls along a curve, chords elsewhere. The mode "faithful" takes "index".
-    #[field(default = "chord")]
-    spacing: Arc<str>,
-    /// Which of the results within the tolerance; see `FairCurve`. Of "near" squared residuals are those that
-    /// noise has where it explains the fairest, else `share` of these.
-    #[field(default = "near")]
-    goal: Arc<str>,
-    /// The share of the goals "near" (0.3), "budget" (0.8) and "nearest" (0.1), or the measure of "energy".
-    #[field(default)]
-    share: Option<T>,
-    /// Points that stay besides those of `keep`.
-    #[field(default)]
-    fixed: Option<Vec<Point<T>>>,
-    /// Tolerances of the points `tolerances_at`, instead of `tolerance`.
-    #[field(default)]
-    tolerances: Option<Vec<T>>,
-    /// The points of `tolerances`.
-    #[field(default)]
-    tolerances_at: Option<Vec<Point<T>>>,
-    /// Steps per point of each curve in a pass of the faithful mode.
-    #[field(default = 3, min = 1, max = 1000)]
-    steps: usize,
+shared_options! {
+    {
+        /// Curves that share points, faired together within a tolerance: the stations, waterlines and
+        /// buttocks of a hull.
+        ///
+        /// Each curve is a list of points; a point object in several lists is one point of all
+        /// these curves. All points move at once, none by more than the tolerance, so that the sum of the
+        /// measure over all curves is the least; each curve then passes through its moved points, so that
+        /// curves still meet where they did. A list that ends with its first point is a closed curve. The
+        /// value is the list of the faired curves: `net[2]` is the second, `NetCurve` makes it an object.
+        /// Equal coordinates alone join nothing.
+        #[derive(Kind)]
+        #[kind(
+            class = List,
+            example = "AbsPoint A1(0, 0, 0); AbsPoint A2(1, 0.5, 0); AbsPoint A3(2, 0.83, 0); \
+                       AbsPoint A4(3, 0.88, 0); AbsPoint A5(4, 1.02, 0); AbsPoint B2(1, 0.6, 1); \
+                       AbsPoint C2(1, 0.72, 2); AbsPoint D2(1, 0.7, 3); AbsPoint E2(1, 0.66, 4); \
+                       FairNet n({{A1, A2, A3, A4, A5}, {A2, B2, C2, D2, E2}}, 0.05); \
+                       NetCurve waterline(n, 1); NetCurve station(n, 2);"
+        )]
+        pub struct FairNet<T: Real>
+    }
+    {
+        /// The curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
+        #[field(min_items = 1)]
+        curves: Vec<PointRow<T>>,
+        /// Largest move of each point; 0 leaves all unchanged.
+        #[field(min = 0)]
+        tolerance: T,
+        /// The measure to minimise; see `FairCurve`.
+        #[field(default = "second")]
+        measure: Arc<str>,
+        /// Points that are intended breaks: they stay, nothing is smoothed across them, and curves have
+        /// corners there.
+        #[field(default)]
+        breaks: Option<Vec<Point<T>>>,
+        /// Kept ends of open curves: "corners" (the points at which every curve that has them
+        /// ends), "ends" or "none".
+        #[field(default = "corners")]
+        keep: Arc<str>,
+    }
+    [along]
+    {
+        /// Polynomial degree.
+        #[field(default = 3, min = 2, max = 9)]
+        degree: usize,
+        /// "optimum", or "faithful": curve after curve in the order of the list, knots removed and
+        /// re-inserted one by one, `steps` per point. The result then depends on that order and may
+        /// jump where two knots tie.
+        #[field(default = "optimum")]
+        mode: Arc<str>,
+        /// Passes of the faithful mode.
+        #[field(default = 1, min = 1, max = 100)]
+        passes: usize,
+        /// How points get their parameters along each curve, as for `FairCurve`; a coordinate is taken where
+        /// it rises or falls along a curve, chords elsewhere. The mode "faithful" takes "index".
+        #[field(default = "chord")]
+        spacing: Arc<str>,
+    }
+    [goal]
+    [share]
+    {
+        /// Points that stay besides those of `keep`.
+        #[field(default)]
+        fixed: Option<Vec<Point<T>>>,
+        /// Tolerances of the points `tolerances_at`, instead of `tolerance`.
+        #[field(default)]
+        tolerances: Option<Vec<T>>,
+        /// The points of `tolerances`.
+        #[field(default)]
+        tolerances_at: Option<Vec<Point<T>>>,
+        /// Steps per point of each curve in a pass of the faithful mode.
+        #[field(default = 3, min = 1, max = 1000)]
+        steps: usize,
+    }
 }
 
 /// A network with points by identity.
@@ -215,6 +217,7 @@ impl<T: Real> Build<T> for FairNet<T> {
         };
         let spaced = super::spacing(&self.spacing, Self::SPACING)?;
         let budget = if &*self.goal == "near" { super::NETWORK_BUDGET } else { super::BUDGET };
+        constant("share", Self::SHARE, self.share.into_iter())?;
         let goal = super::goal_of(
             &self.goal,
             self.share.map(|s| s.re()),
@@ -223,15 +226,8 @@ impl<T: Real> Build<T> for FairNet<T> {
         )?;
         let index =
             matches!(spaced, ParameterSpacing::Uniform) || super::faithful(&self.mode, Self::MODE)?;
-        let motion = match &self.along {
-            None => Motion::Ball,
-            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
-            Some(_) => {
-                return Err(CallError::new("zero-direction", "the direction has no length")
-                    .expected("a direction such as {0, 1, 0}")
-                    .in_field(Self::ALONG));
-            }
-        };
+        let motion =
+            super::motion(self.along, self.motion.as_deref(), [Self::ALONG, Self::MOTION])?;
         let (mut strands, mut ats) = (Vec::new(), Vec::new());
         for (k, (own, closed)) in joined.curves.iter().enumerate() {
             let space = match (closed, own.len()) {
@@ -279,6 +275,14 @@ impl<T: Real> Build<T> for FairNet<T> {
         }
         let measure = measure(&self.measure, Self::MEASURE)?;
         let passes = super::faithful(&self.mode, Self::MODE)?.then_some(self.passes);
+        let known = matches!(goal, crate::Goal::Near(_) | crate::Goal::Fairest);
+        if passes.is_some() && (!known || self.share.is_some()) {
+            let (what, field) = if known { ("share", Self::SHARE) } else { ("goal", Self::GOAL) };
+            return Err(CallError::new("other-mode", format!("`{what}` is for the optimum"))
+                .expected("mode = \"optimum\"")
+                .found("mode = \"faithful\"")
+                .in_field(field));
+        }
         let mut kept = joined.kept(&self.keep)?;
         kept.extend(fixed.iter().filter(|i| !kept.contains(i)).copied().collect::<Vec<_>>());
         let mut still: Vec<bool> = tolerances.iter().map(|t| t.re() == 0.0).collect();

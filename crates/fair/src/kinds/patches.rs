@@ -1,11 +1,10 @@
 //! `FairPatches` and `NetSurf`: surfaces faired together with their common edges.
 
 use super::figures::FairFigures;
+use super::options::shared_options;
 use super::surface::{PointGrid, Rims, fitted, lines, turned};
 use super::{ACCURACY, ArgumentFields, PointRole, fault, measure, role};
-use crate::{
-    Bound, EndContinuity, FairError, Limit, Motion, Network, PatchNet, Seam, Space, are_exact,
-};
+use crate::{Bound, EndContinuity, FairError, Limit, Network, PatchNet, Seam, Space, are_exact};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Build, CallError, Class, Context, Kind, SurfaceRef, Value};
 use moldloft_spline::BSplineSurface;
@@ -14,62 +13,67 @@ use std::sync::Arc;
 /// What rounding moves, as a share of the size.
 const ROUNDING: f64 = 1e-13;
 
-/// Surfaces with common edges, faired together within a tolerance, so that tangents and curvature run
-/// on across the edges.
-///
-/// Each grid of points is a surface; where a side of one has the same points as a side of another (or
-/// of itself), in either direction, they share a seam. All points of all surfaces move at once, those
-/// of a seam for both, so that the sum of the measure over all curves of the nets is the least. Across
-/// seams the surfaces stay together (`seams = "position"`), with continuous tangent planes ("tangent")
-/// or curvature too ("curvature"): the ratio of the parameters' speeds on both sides is read from the
-/// surfaces as given. Corners that lie on no seam keep position, tangents and twist. The value is the
-/// list of the faired surfaces: `NetSurf` makes one an object.
-#[derive(Kind)]
-#[kind(
-    class = List,
-    example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; surface h[5, 5]; \
-               vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; \
-               g[3,] = g[2,] + {0, 1, 0.2}; g[4,] = g[2,] + {0, 2, 0.32}; g[5,] = g[1,] + {0, 4, 0.7}; \
-               h[1,] = g[5,]; h[2,] = g[5,] + {0, 1, 0.01}; h[3,] = g[5,] + {0, 2, 0}; \
-               h[4,] = g[5,] + {0, 3, -0.04}; h[5,] = g[5,] + {0, 4, -0.1}; \
-               FairPatches n({g, h}, 0.2); NetSurf first(n, 1); NetSurf second(n, 2);"
-)]
-pub struct FairPatches<T: Real> {
-    /// Grids of points, each at least degree + 2 in each direction.
-    #[field(min_items = 1)]
-    surfaces: Vec<PointGrid<T>>,
-    /// Largest move of control points; 0 leaves all unchanged.
-    #[field(min = 0)]
-    tolerance: T,
-    /// The measure to minimise; see `FairCurve`.
-    #[field(default = "second")]
-    measure: Arc<str>,
-    /// Meaning of the points: "fit" or "control".
-    #[field(default = "fit")]
-    r#as: Arc<str>,
-    /// Polynomial degree, in both directions or along u.
-    #[field(default = 3, min = 2, max = 9)]
-    degree: usize,
-    /// Continuity across seams: "position", "tangent" or "curvature".
-    #[field(default = "curvature")]
-    seams: Arc<str>,
-    /// Kept at rims that are not seams; see `FairSurf`.
-    #[field(default = "corners")]
-    rims: Rims,
-    /// "fairest", or "near": where all lines of all grids are exact (lines, conics, plane cubics, helices)
-    /// these move no farther than continuity across the seams asks for, give or take a factor of eight.
-    #[field(default = "near")]
-    goal: Arc<str>,
-    /// Polynomial degree along v, if it is another than along u.
-    #[field(default, min = 2, max = 9)]
-    degree_v: Option<usize>,
-    /// The direction in which control points may move, such as {0, 1, 0} for offsets; any direction without it.
-    #[field(default)]
-    along: Option<Vec3<T>>,
-    /// What the tolerance bounds: "points", the move of each control point, or "curve", that of the surfaces, which
-    /// leaves control points more room.
-    #[field(default = "points")]
-    bound: Arc<str>,
+shared_options! {
+    {
+        /// Surfaces with common edges, faired together within a tolerance, so that tangents and curvature run
+        /// on across the edges.
+        ///
+        /// Each grid of points is a surface; where a side of one has the same points as a side of another (or
+        /// of itself), in either direction, they share a seam. All points of all surfaces move at once, those
+        /// of a seam for both, so that the sum of the measure over all curves of the nets is the least. Across
+        /// seams the surfaces stay together (`seams = "position"`), with continuous tangent planes ("tangent")
+        /// or curvature too ("curvature"): the ratio of the parameters' speeds on both sides is read from the
+        /// surfaces as given. Corners that lie on no seam keep position, tangents and twist. The value is the
+        /// list of the faired surfaces: `NetSurf` makes one an object.
+        #[derive(Kind)]
+        #[kind(
+            class = List,
+            example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; surface h[5, 5]; \
+                       vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; \
+                       g[3,] = g[2,] + {0, 1, 0.2}; g[4,] = g[2,] + {0, 2, 0.32}; g[5,] = g[1,] + {0, 4, 0.7}; \
+                       h[1,] = g[5,]; h[2,] = g[5,] + {0, 1, 0.01}; h[3,] = g[5,] + {0, 2, 0}; \
+                       h[4,] = g[5,] + {0, 3, -0.04}; h[5,] = g[5,] + {0, 4, -0.1}; \
+                       FairPatches n({g, h}, 0.2); NetSurf first(n, 1); NetSurf second(n, 2);"
+        )]
+        pub struct FairPatches<T: Real>
+    }
+    {
+        /// Grids of points, each at least degree + 2 in each direction.
+        #[field(min_items = 1)]
+        surfaces: Vec<PointGrid<T>>,
+        /// Largest move of control points; 0 leaves all unchanged.
+        #[field(min = 0)]
+        tolerance: T,
+        /// The measure to minimise; see `FairCurve`.
+        #[field(default = "second")]
+        measure: Arc<str>,
+        /// Meaning of the points: "fit" or "control".
+        #[field(default = "fit")]
+        r#as: Arc<str>,
+        /// Polynomial degree, in both directions or along u.
+        #[field(default = 3, min = 2, max = 9)]
+        degree: usize,
+        /// Continuity across seams: "position", "tangent" or "curvature".
+        #[field(default = "curvature")]
+        seams: Arc<str>,
+        /// Kept at rims that are not seams; see `FairSurf`.
+        #[field(default = "corners")]
+        rims: Rims,
+        /// "fairest", or "near": where all lines of all grids are exact (lines, conics, plane cubics, helices)
+        /// these move no farther than continuity across the seams asks for, give or take a factor of eight.
+        #[field(default = "near")]
+        goal: Arc<str>,
+        /// Polynomial degree along v, if it is another than along u.
+        #[field(default, min = 2, max = 9)]
+        degree_v: Option<usize>,
+    }
+    [along]
+    {
+        /// What the tolerance bounds: "points", the move of each control point, or "curve", that of the surfaces, which
+        /// leaves control points more room.
+        #[field(default = "points")]
+        bound: Arc<str>,
+    }
 }
 
 impl<T: Real> Build<T> for FairPatches<T> {
@@ -102,15 +106,8 @@ impl<T: Real> Build<T> for FairPatches<T> {
             breaks: Self::SURFACES,
         };
         let degrees = [self.degree, self.degree_v.unwrap_or(self.degree)];
-        let motion = match &self.along {
-            None => Motion::Ball,
-            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
-            Some(_) => {
-                return Err(CallError::new("zero-direction", "the direction has no length")
-                    .expected("a direction such as {0, 1, 0}")
-                    .in_field(Self::ALONG));
-            }
-        };
+        let motion =
+            super::motion(self.along, self.motion.as_deref(), [Self::ALONG, Self::MOTION])?;
         let bound = match &*self.bound {
             "points" => Bound::ControlPoints,
             "curve" => Bound::Bezier,
@@ -213,7 +210,8 @@ impl<T: Real> Build<T> for FairPatches<T> {
             let [u, v] = sheet.spaces.each_ref().map(|s| s.knot_vector().0);
             let surface = BSplineSurface::new(u, v, points.clone(), None)
                 .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::SURFACES))?;
-            let own = FairFigures::of_moves(super::moves(points, &sheet.points), best.as_ref());
+            let made = best.as_ref().map(|b| (&b.certificate, Some(b.active), None));
+            let own = FairFigures::of_moves(super::moves(points, &sheet.points), made);
             let surface = SurfaceRef::new(surface, 0);
             Ok(Value::Surface(surface.with_figures(&own.members_of_moves())))
         };

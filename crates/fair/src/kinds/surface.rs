@@ -2,12 +2,13 @@
 
 use super::figures::FairFigures;
 use super::moving_surface::MovingSurface;
+use super::options::{constant, shared_options};
 use super::surface_demands::{NumberGrid, PlacedValues, SurfaceDemands, places as points_of};
 use super::surface_method::{MethodOptions, SurfaceMethod};
 use super::{ACCURACY, ArgumentFields, GivenKnots, PointRole, fault, indices, measure, role};
 use crate::{
-    EndContinuity, FairError, GridData, InterpolationSpace, Limit, Motion, MovingGrid, Network,
-    Optimum, ParameterSpacing, Space, are_exact, fair_grid, fair_grid_with, grid_parameters,
+    EndContinuity, FairError, GridData, InterpolationSpace, Limit, MovingGrid, Network, Optimum,
+    ParameterSpacing, Space, are_exact, fair_grid, fair_grid_with, grid_parameters,
     interpolate_with_corners, line_findings,
 };
 use moldloft_num::{Real, Vec3};
@@ -31,130 +32,132 @@ impl<T: Real> FromValue<T> for PointGrid<T> {
     }
 }
 
-/// A fair B-spline surface within a tolerance of the one through a grid of points.
-///
-/// All rows and columns of the net are faired at once: the sum of the measure over both
-/// directions is the least within the tolerance. The four corners keep position, tangents and
-/// twist. Mode "faithful" fairs curve after curve as the report of 1991 has it, first those of
-/// constant v, then those of constant u, `passes` times over, three steps per point: its result
-/// depends on that order and may jump where two knots tie.
-#[derive(Kind)]
-#[kind(
-    class = Surface,
-    example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; \
-               vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; \
-               g[3,] = g[2,] + {0, 1, 0.1}; g[4,] = g[2,] + {0, 2, 0}; g[5,] = g[1,] + {0, 4, 0}; \
-               FairSurf s(g, 0.02);"
-)]
-pub struct FairSurf<T: Real> {
-    /// A grid of points, at least degree + 2 in each direction.
-    points: PointGrid<T>,
-    /// Largest distance of each point from the surface (`as = "control"`, of the surface from the one
-    /// with these control points); 0 leaves it unchanged.
-    #[field(min = 0)]
-    tolerance: T,
-    /// The measure to minimise; see `FairCurve`.
-    #[field(default = "second")]
-    measure: Arc<str>,
-    /// Meaning of the points: "fit" or "control".
-    #[field(default = "fit")]
-    r#as: Arc<str>,
-    /// Polynomial degree, in both directions or along u.
-    #[field(default = 3, min = 2, max = 9)]
-    degree: usize,
-    /// SparseRows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
-    /// nothing is smoothed across them. A surface through its points has a sharp edge there.
-    #[field(default)]
-    breaks_u: Option<Vec<usize>>,
-    /// The same along v.
-    #[field(default)]
-    breaks_v: Option<Vec<usize>>,
-    /// "optimum", "faithful", or "sweeps": all points in order, each to its own minimum, for nets too
-    /// large for the optimum. Sweeps have no derivatives.
-    #[field(default = "optimum")]
-    mode: Arc<str>,
-    /// Passes of the faithful mode.
-    #[field(default = 1, min = 1, max = 100)]
-    passes: usize,
-    /// Kept at the rims, so that neighbours still fit: "corners" (only these), "position",
-    /// "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
-    #[field(default = "corners")]
-    rims: Rims,
-    /// Positive weights of the control points (`as = "control"`), a grid like the points, which make
-    /// it rational and stay as they are. They count as constants: derivatives do not go through them.
-    #[field(default)]
-    weights: Option<NumberGrid<T>>,
-    /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, none
-    /// decreasing; constants too.
-    #[field(default)]
-    knots_u: Option<Vec<T>>,
-    /// The same along v.
-    #[field(default)]
-    knots_v: Option<Vec<T>>,
-    /// How points get their parameters, as for `FairCurve`: the mean over all lines of the grid in
-    /// each direction. The mode "faithful" takes "index", and so do control points.
-    #[field(default = "chord")]
-    spacing: Arc<str>,
-    /// Which of the surfaces within the tolerance; see `FairCurve`.
-    #[field(default = "near")]
-    goal: Arc<str>,
-    /// The direction in which the surface may leave its points, such as {0, 1, 0} for offsets; any
-    /// direction without it.
-    #[field(default)]
-    along: Option<Vec3<T>>,
-    /// Polynomial degree along v, if it is another than along u.
-    #[field(default, min = 2, max = 9)]
-    degree_v: Option<usize>,
-    /// 1 for a surface that is closed along u, whose first row of points is not repeated.
-    #[field(default = 0, min = 0, max = 1)]
-    closed_u: usize,
-    /// The same along v.
-    #[field(default = 0, min = 0, max = 1)]
-    closed_v: usize,
-    /// The share of the goals "budget" (0.8) and "nearest" (0.1), or the measure of "energy".
-    #[field(default)]
-    share: Option<T>,
-    /// Tolerances of the points one by one, a grid like these, instead of `tolerance`.
-    #[field(default)]
-    tolerances: Option<NumberGrid<T>>,
-    /// Numbers of points, from 1 and row by row, (i - 1) n + j in a grid [m, n], that the surface passes
-    /// through.
-    #[field(default)]
-    fixed: Option<Vec<usize>>,
-    /// Points that the surface passes through at `through_u`, `through_v`. No derivatives.
-    #[field(default)]
-    through: Option<Vec<Point<T>>>,
-    /// Parameters along u, from 0 to 1, of `through`.
-    #[field(default)]
-    through_u: Option<Vec<T>>,
-    /// Parameters along v of `through`.
-    #[field(default)]
-    through_v: Option<Vec<T>>,
-    /// Directions that its normal has at `normals_u`, `normals_v`. No derivatives.
-    #[field(default)]
-    normals: Option<Vec<Vec3<T>>>,
-    /// Parameters along u, from 0 to 1, of `normals`.
-    #[field(default)]
-    normals_u: Option<Vec<T>>,
-    /// Parameters along v of `normals`.
-    #[field(default)]
-    normals_v: Option<Vec<T>>,
-    /// What it keeps of the surface through the points, to first order: "volume" (the displacement of a
-    /// hull) or "area". No derivatives.
-    #[field(default)]
-    keep: Option<Vec<Arc<str>>>,
-    /// What the tolerance bounds in the optimum: "data", the distance of each point from the surface (the
-    /// default of points on it); "points", the move of each control point; "curve", that of the surface from
-    /// the one through the points, which leaves control points more room.
-    #[field(default)]
-    bound: Option<Arc<str>>,
-    /// Local steps per point of each curve in the faithful mode (3), or sweeps (50).
-    #[field(default, min = 1, max = 100_000)]
-    steps: Option<usize>,
-    /// Which curves come first in a pass of the faithful mode: "vu", those of constant v (the default), or
-    /// "uv".
-    #[field(default)]
-    order: Option<Arc<str>>,
+shared_options! {
+    {
+        /// A fair B-spline surface within a tolerance of the one through a grid of points.
+        ///
+        /// All rows and columns of the net are faired at once: the sum of the measure over both
+        /// directions is the least within the tolerance. The four corners keep position, tangents and
+        /// twist. Mode "faithful" fairs curve after curve as the report of 1991 has it, first those of
+        /// constant v, then those of constant u, `passes` times over, three steps per point: its result
+        /// depends on that order and may jump where two knots tie.
+        #[derive(Kind)]
+        #[kind(
+            class = Surface,
+            example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; \
+                       vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; \
+                       g[3,] = g[2,] + {0, 1, 0.1}; g[4,] = g[2,] + {0, 2, 0}; g[5,] = g[1,] + {0, 4, 0}; \
+                       FairSurf s(g, 0.02);"
+        )]
+        pub struct FairSurf<T: Real>
+    }
+    {
+        /// A grid of points, at least degree + 2 in each direction.
+        points: PointGrid<T>,
+        /// Largest distance of each point from the surface (`as = "control"`, of the surface from the one
+        /// with these control points); 0 leaves it unchanged.
+        #[field(min = 0)]
+        tolerance: T,
+        /// The measure to minimise; see `FairCurve`.
+        #[field(default = "second")]
+        measure: Arc<str>,
+        /// Meaning of the points: "fit" or "control".
+        #[field(default = "fit")]
+        r#as: Arc<str>,
+        /// Polynomial degree, in both directions or along u.
+        #[field(default = 3, min = 2, max = 9)]
+        degree: usize,
+        /// SparseRows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
+        /// nothing is smoothed across them. A surface through its points has a sharp edge there.
+        #[field(default)]
+        breaks_u: Option<Vec<usize>>,
+        /// The same along v.
+        #[field(default)]
+        breaks_v: Option<Vec<usize>>,
+        /// "optimum", "faithful", or "sweeps": all points in order, each to its own minimum, for nets too
+        /// large for the optimum. Sweeps have no derivatives.
+        #[field(default = "optimum")]
+        mode: Arc<str>,
+        /// Passes of the faithful mode.
+        #[field(default = 1, min = 1, max = 100)]
+        passes: usize,
+        /// Kept at the rims, so that neighbours still fit: "corners" (only these), "position",
+        /// "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
+        #[field(default = "corners")]
+        rims: Rims,
+        /// Positive weights of the control points (`as = "control"`), a grid like the points, which make
+        /// it rational and stay as they are. They count as constants: derivatives do not go through them.
+        #[field(default)]
+        weights: Option<NumberGrid<T>>,
+        /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, none
+        /// decreasing; constants too.
+        #[field(default)]
+        knots_u: Option<Vec<T>>,
+        /// The same along v.
+        #[field(default)]
+        knots_v: Option<Vec<T>>,
+        /// How points get their parameters, as for `FairCurve`: the mean over all lines of the grid in
+        /// each direction. The mode "faithful" takes "index", and so do control points.
+        #[field(default = "chord")]
+        spacing: Arc<str>,
+    }
+    [goal]
+    [along]
+    {
+        /// Polynomial degree along v, if it is another than along u.
+        #[field(default, min = 2, max = 9)]
+        degree_v: Option<usize>,
+        /// 1 for a surface that is closed along u, whose first row of points is not repeated.
+        #[field(default = 0, min = 0, max = 1)]
+        closed_u: usize,
+        /// The same along v.
+        #[field(default = 0, min = 0, max = 1)]
+        closed_v: usize,
+    }
+    [share]
+    {
+        /// Tolerances of the points one by one, a grid like these, instead of `tolerance`.
+        #[field(default)]
+        tolerances: Option<NumberGrid<T>>,
+        /// Numbers of points, from 1 and row by row, (i - 1) n + j in a grid [m, n], that the surface passes
+        /// through.
+        #[field(default)]
+        fixed: Option<Vec<usize>>,
+        /// Points that the surface passes through at `through_u`, `through_v`. No derivatives.
+        #[field(default)]
+        through: Option<Vec<Point<T>>>,
+        /// Parameters along u, from 0 to 1, of `through`.
+        #[field(default)]
+        through_u: Option<Vec<T>>,
+        /// Parameters along v of `through`.
+        #[field(default)]
+        through_v: Option<Vec<T>>,
+        /// Directions that its normal has at `normals_u`, `normals_v`. No derivatives.
+        #[field(default)]
+        normals: Option<Vec<Vec3<T>>>,
+        /// Parameters along u, from 0 to 1, of `normals`.
+        #[field(default)]
+        normals_u: Option<Vec<T>>,
+        /// Parameters along v of `normals`.
+        #[field(default)]
+        normals_v: Option<Vec<T>>,
+        /// What it keeps of the surface through the points, to first order: "volume" (the displacement of a
+        /// hull) or "area". No derivatives.
+        #[field(default)]
+        keep: Option<Vec<Arc<str>>>,
+        /// What the tolerance bounds in the optimum: "data", the distance of each point from the surface (the
+        /// default of points on it); "points", the move of each control point; "curve", that of the surface from
+        /// the one through the points, which leaves control points more room.
+        #[field(default)]
+        bound: Option<Arc<str>>,
+        /// Local steps per point of each curve in the faithful mode (3), or sweeps (50).
+        #[field(default, min = 1, max = 100_000)]
+        steps: Option<usize>,
+        /// Which curves come first in a pass of the faithful mode: "vu", those of constant v (the default), or
+        /// "uv".
+        #[field(default)]
+        order: Option<Arc<str>>,
+    }
 }
 
 /// The fields of what only surfaces near their points have.
@@ -174,8 +177,11 @@ impl<T: Real> FairSurf<T> {
     fn own(&self, shape: ArrayShape) -> Result<[GivenKnots; 2], CallError> {
         let plain =
             |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
-        let own =
-            [&self.knots_u, &self.knots_v].map(|k| GivenKnots { knots: plain(k), weights: None });
+        let own = [&self.knots_u, &self.knots_v]
+            .map(|k| GivenKnots { knots: plain(k), ..GivenKnots::default() });
+        constant("weights", WEIGHTS, self.weights.iter().flat_map(|w| w.items.iter().copied()))?;
+        constant("knots_u", KNOTS[0], self.knots_u.iter().flatten().copied())?;
+        constant("knots_v", KNOTS[1], self.knots_v.iter().flatten().copied())?;
         let fields = [
             (self.weights.is_some(), "weights", WEIGHTS),
             (own[0].knots.is_some(), "knots", KNOTS[0]),
@@ -391,16 +397,10 @@ impl<T: Real> Build<T> for FairSurf<T> {
         );
         let (marks_u, marks_v) = (marks_u?, marks_v?);
         let own = self.own(grid.shape)?;
-        let motion = match &self.along {
-            None => Motion::Ball,
-            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
-            Some(_) => {
-                return Err(CallError::new("zero-direction", "the direction has no length")
-                    .expected("a direction such as {0, 1, 0}")
-                    .in_field(Self::ALONG));
-            }
-        };
+        let motion =
+            super::motion(self.along, self.motion.as_deref(), [Self::ALONG, Self::MOTION])?;
         let spacing = super::spacing(&self.spacing, Self::SPACING)?;
+        constant("share", SHARE, self.share.into_iter())?;
         let goal =
             super::goal_of(&self.goal, self.share.map(|s| s.re()), super::BUDGET, [GOAL, SHARE])?;
         let degrees = [self.degree, self.degree_v.unwrap_or(self.degree)];
@@ -461,7 +461,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
                 SurfaceMethod::Sweeps(count) => {
                     let mut numbers = net.iter().flat_map(|p| p.to_array()).chain([self.tolerance]);
                     if !numbers.all(|x| x.is_constant()) {
-                        return Err(FairError::Goal(
+                        return Err(FairError::NoDerivative(
                             "derivatives of sweeps are not known: take the optimum",
                         ));
                     }
@@ -476,7 +476,8 @@ impl<T: Real> Build<T> for FairSurf<T> {
                 }
                 SurfaceMethod::NearPoints => unreachable!("made from its points"),
             };
-            let figures = FairFigures::of_moves(super::moves(&points, &net), best.as_ref());
+            let made = best.as_ref().map(|b| (&b.certificate, Some(b.active), None));
+            let figures = FairFigures::of_moves(super::moves(&points, &net), made);
             Ok((spaces, points, figures))
         };
         let owners = std::cell::RefCell::new(Vec::new());
@@ -513,7 +514,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
                     .chain(at.iter().flat_map(|a| a.iter().copied()))
                     .chain(tolerances.iter().copied());
                 if !numbers.all(|x| x.is_constant()) {
-                    return Err(FairError::Goal(
+                    return Err(FairError::NoDerivative(
                         "derivatives of surfaces with conditions are not known: take the surface \
                          without them",
                     ));

@@ -588,7 +588,7 @@ fn products<T: Real>(u: &[Vec<(usize, T)>], v: &[Vec<(usize, T)>], nv: usize) ->
 /// parts are those of the data; see [`crate::fair_data_with`]. There are no conditions but rims.
 ///
 /// # Errors
-/// As [`fair_grid`]; [`FairError::Goal`] for the goal `nearest`, and for sums of lengths.
+/// As [`fair_grid`]; [`FairError::NoDerivative`] for the goal `nearest`, and for sums of lengths.
 pub fn fair_grid_with<T: Real>(
     data: &GridData,
     measure: Measure,
@@ -651,7 +651,7 @@ pub fn fair_grid_with<T: Real>(
     }
     check_unique(&mut parts, &found, &pull)?;
     if parts.norm != RowNorm::Square {
-        return Err(FairError::Goal(
+        return Err(FairError::NoDerivative(
             "derivatives of a sum of lengths through moving knots are not known: take another \
              measure",
         ));
@@ -714,7 +714,7 @@ pub fn fair_grid_with<T: Real>(
         Goal::Near(own) if found.between => {
             // What the fairest takes of the squares moves, too.
             if found.share < 1.0 {
-                return Err(FairError::Goal(
+                return Err(FairError::NoDerivative(
                     "the budget of this surface and how far it is worth a move both hang on the fairest, so \
                      that derivatives are not known: take the goal \"budget\"",
                 ));

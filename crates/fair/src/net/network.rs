@@ -481,7 +481,7 @@ impl Network {
         if found.weight == 0.0 && free {
             // Limits at one line leave the others' parabolas free, and which of them the solver takes
             // says nothing about how they move.
-            return Err(FairError::Goal(
+            return Err(FairError::NoDerivative(
                 "the fairest network may be one of many as fair, so that its derivatives are not \
                  known: take the goal \"budget\"",
             ));
@@ -490,7 +490,7 @@ impl Network {
         if parts.norm != crate::RowNorm::Square
             && (found.share < 1.0 || ats.iter().any(Option::is_some))
         {
-            return Err(FairError::Goal(
+            return Err(FairError::NoDerivative(
                 "derivatives of a sum of lengths through moving parameters are not known: take \
                  another measure, or spacing \"index\"",
             ));

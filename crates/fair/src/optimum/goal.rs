@@ -562,10 +562,10 @@ where
 /// takes says nothing about how they move.
 ///
 /// # Errors
-/// [`FairError::Goal`].
+/// [`FairError::NoDerivative`].
 pub(crate) fn check_single(found: &GoalOptimum, begin: f64) -> Result<(), FairError> {
     if found.weight == 0.0 && found.share > 0.0 && found.least <= NOTHING * begin {
-        return Err(FairError::Goal(
+        return Err(FairError::NoDerivative(
             "more than one result within the tolerance measures nothing, so derivatives of the one \
              that was taken are not known: take a smaller tolerance",
         ));
@@ -582,7 +582,7 @@ const APART: f64 = 0.05;
 /// network limits that are reached on one line may leave others free.
 ///
 /// # Errors
-/// [`FairError::Goal`]; those of the solver.
+/// [`FairError::NoDerivative`]; those of the solver.
 pub(crate) fn check_unique(
     parts: &mut Parts<'_>,
     found: &GoalOptimum,
@@ -606,7 +606,7 @@ pub(crate) fn check_unique(
     let between: Vec<Vec3<f64>> = other.iter().zip(&fairest).map(|(p, q)| *p - *q).collect();
     let far = (0..pull.len()).map(|k| pull.apply(k, &between).norm()).fold(0.0, f64::max);
     if far > APART {
-        return Err(FairError::Goal(
+        return Err(FairError::NoDerivative(
             "more than one result within the tolerance is the fairest, so derivatives of the one that \
              was taken are not known: take the goal \"budget\"",
         ));
@@ -618,10 +618,10 @@ pub(crate) fn check_unique(
 /// has then is near the optimum and does not move as it does.
 ///
 /// # Errors
-/// [`FairError::Goal`].
+/// [`FairError::NoDerivative`].
 pub(crate) fn check_decided(found: &GoalOptimum, solved: &Solved) -> Result<(), FairError> {
     if found.weight == 0.0 && found.share > 0.0 && !solved.is_decided() {
-        return Err(FairError::Goal(
+        return Err(FairError::NoDerivative(
             "which tolerances the fairest reaches is not decided to rounding, so its derivatives are \
              not known: take the goal \"budget\"",
         ));
@@ -700,7 +700,7 @@ pub(crate) fn moved<T: Real>(
             answer.iter().map(|p| Vec3::of(p.x.part(1), p.y.part(1), p.z.part(1))).collect();
         let (change, rate) = match goal {
             Goal::Nearest(_) | Goal::Energy(_) | Goal::Closest => {
-                return Err(FairError::Goal(
+                return Err(FairError::NoDerivative(
                     "derivatives of the nearest curve are not known: take `near`, `budget` or `fairest`",
                 ));
             }

@@ -9,7 +9,7 @@ use moldloft_registry::{
 };
 use std::sync::Arc;
 
-fn call<T: Scalar>(
+pub fn call<T: Scalar>(
     name: &str,
     positional: Vec<Value<T>>,
     named: Vec<(&str, Value<T>)>,

@@ -15,6 +15,7 @@ mod knot_removal;
 mod many;
 mod network;
 mod optimum;
+mod option_derivatives;
 mod rational;
 mod shapes;
 mod truth;

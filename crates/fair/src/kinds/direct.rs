@@ -1,0 +1,400 @@
+//! Curves whose control points are faired: at the index, under a bound on the whole curve, with knots or a
+//! number of control points of the user's, or step by step.
+
+use super::demands::Demand;
+use super::figures::FairFigures;
+use super::{ACCURACY, GivenKnots, Intent, PointRole, indices, moves};
+use crate::curve::condition::{end_jet, joined};
+use crate::{
+    Bound, Certificate, Condition, EndContinuity, FairError, Goal, Job, KnotRemovalOptions, Limit,
+    Measure, OptimumOptions, ParameterSpacing, RowNorm, Space, ball_gap, fit, fit_rational,
+    interpolate, interpolate_with_corners, is_exact, knot_removal, least_squares, multilevel,
+    optimum_with, parameters, parameters_with, replay_with, shape, sweeps,
+};
+use moldloft_num::{Real, Vec3};
+
+/// How control points are faired.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum CurveMethod {
+    /// The optimum.
+    Optimum,
+    /// Single steps; as many as there are points where no number is given.
+    Steps(KnotRemovalOptions, Option<usize>),
+    /// So many sweeps over all points.
+    Sweeps(usize),
+    /// So many cycles over waves of all lengths.
+    Levels(usize),
+}
+
+/// A curve whose control points move.
+pub(crate) struct DirectCurve<T> {
+    pub intent: Intent<T>,
+    pub role: PointRole,
+    pub method: CurveMethod,
+    /// What the tolerance bounds; that of the role without it.
+    pub bound: Option<Bound>,
+    /// First and second derivative of what the curve runs on from, at its start and end, by a
+    /// parameter that runs as its own.
+    pub joins: [Option<[Vec3<T>; 2]>; 2],
+    /// Knots of the control points, and their weights, which stay.
+    pub own: GivenKnots,
+    /// Control points of a fit by least squares.
+    pub count: Option<usize>,
+    /// Tolerances of the points.
+    pub tolerances: Option<Vec<T>>,
+    /// Points that do not move, from 1.
+    pub fixed: Vec<usize>,
+    pub conditions: Vec<(f64, Demand)>,
+}
+
+/// What came of it.
+pub(crate) struct DirectResult<T> {
+    pub space: Space,
+    pub control: Vec<Vec3<T>>,
+    pub figures: FairFigures,
+}
+
+/// A spline before it is faired.
+struct Laid<T> {
+    space: Space,
+    control: Vec<Vec3<T>>,
+    marks: Vec<usize>,
+    /// The parameters of points on it.
+    at: Option<Vec<f64>>,
+    /// Whether it need not pass through these.
+    beside: bool,
+}
+
+/// Points that moved, the certificate, tolerances that are reached by an optimum, and steps.
+struct Moved<T> {
+    points: Vec<Vec3<T>>,
+    certificate: Option<Certificate>,
+    active: Option<usize>,
+    steps: Option<usize>,
+}
+
+const MOVING_KNOTS: &str = "derivatives of a bound on the curve, of steps or joins are not known where parameters \
+                            follow the points: take spacing \"index\"";
+const FITTED: &str = "derivatives of fits by least squares and of fits with knots of their own are not known: name \
+                      neither count nor knots";
+const STEPS: &str =
+    "derivatives of sweeps and levels, and of steps with weights, are not known: take the optimum";
+const CONDITIONS: &str =
+    "derivatives of curves with conditions are not known: take the curve without them";
+
+/// The largest residual, as a share of the extent, at which a fit passes through its points.
+const THROUGH: f64 = 1e-9;
+
+impl<T: Real> DirectCurve<T> {
+    /// The faired spline of points.
+    ///
+    /// Its figures are those of what moves: control points, or the points themselves; of fits with knots or a
+    /// number of control points of the user's how far points are from the curve.
+    pub fn made(&self, points: &[Vec3<T>]) -> Result<DirectResult<T>, FairError> {
+        let n = points.len();
+        let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
+        crate::error::check_finite(&plain)?;
+        let marks = indices(&self.intent.breaks, n)?;
+        let stays = self.stays(&plain, &marks);
+        if self.role == PointRole::Points {
+            let faired = if stays { None } else { Some(self.moved_points(points)?) };
+            let after = faired.as_ref().map_or(points, |m| &m.points);
+            let figures = FairFigures::of_moves(moves(after, points), None);
+            let sharp = self.through(after, ParameterSpacing::Uniform, &marks)?;
+            let figures = faired.map_or(figures, |m| m.figures(points));
+            return Ok(DirectResult { space: sharp.space, control: sharp.control, figures });
+        }
+        let laid = match self.role {
+            PointRole::Control => self.controlled(points, marks)?,
+            _ => self.fitted(points, &plain, &marks)?,
+        };
+        let each = self.each(&laid, &plain)?;
+        let off = |control: &[Vec3<T>]| {
+            let real: Vec<Vec3<f64>> = control.iter().map(|p| p.re()).collect();
+            let weights = self.own.weights.as_deref();
+            let far = |(&t, p): (&f64, &Vec3<f64>)| {
+                (shape::sample_at(&laid.space, &real, weights, t).point - *p).norm()
+            };
+            let at = laid.at.as_ref().filter(|_| laid.beside)?;
+            Some(at.iter().zip(&plain).map(far).fold(0.0, f64::max))
+        };
+        if stays {
+            let mut figures = FairFigures::of_moves([].into_iter(), None);
+            figures.deviation = off(&laid.control).unwrap_or(0.0);
+            return Ok(DirectResult { space: laid.space, control: laid.control, figures });
+        }
+        let moved = self.within(&laid, &each)?;
+        let mut figures = moved.figures(&laid.control);
+        if let Some(off) = off(&moved.points) {
+            figures.deviation = off;
+        }
+        Ok(DirectResult { space: laid.space, control: moved.points, figures })
+    }
+
+    /// Whether points stay: exact ones are as fair as can be, and what is near them is they themselves.
+    pub fn stays(&self, plain: &[Vec3<f64>], marks: &[usize]) -> bool {
+        let free = self.own.weights.is_none()
+            && self.conditions.is_empty()
+            && self.joins.iter().all(Option::is_none);
+        free && matches!(self.intent.goal, Goal::Near(_))
+            && is_exact(plain, marks, self.intent.closed)
+    }
+
+    /// The points faired themselves: as the control points of a uniform spline, for which interpolation and
+    /// the measures commute.
+    pub fn faired_points(&self, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
+        Ok(self.moved_points(points)?.points)
+    }
+
+    fn moved_points(&self, points: &[Vec3<T>]) -> Result<Moved<T>, FairError> {
+        let (n, degree) = (points.len(), self.intent.degree);
+        let space = if self.intent.closed {
+            Space::closed(degree, n)?
+        } else if n < degree + 2 {
+            return Err(FairError::TooFew { expected: degree + 2, actual: n });
+        } else {
+            Space::floating(degree, n)?
+        };
+        let marks = indices(&self.intent.breaks, n)?;
+        let laid = Laid { space, control: points.to_vec(), marks, at: None, beside: false };
+        let each = self.each(&laid, &[])?;
+        self.within(&laid, &each)
+    }
+
+    /// The points as control points.
+    fn controlled(&self, points: &[Vec3<T>], marks: Vec<usize>) -> Result<Laid<T>, FairError> {
+        let (degree, n) = (self.intent.degree, points.len());
+        let space = if self.intent.closed {
+            self.own.ring(degree, n)?
+        } else {
+            self.own.space(degree, n)?
+        };
+        Ok(Laid { space, control: points.to_vec(), marks, at: None, beside: false })
+    }
+
+    /// The spline through all points, with corners at marks.
+    fn through(
+        &self,
+        points: &[Vec3<T>],
+        spacing: ParameterSpacing,
+        marks: &[usize],
+    ) -> Result<Laid<T>, FairError> {
+        let (degree, closed) = (self.intent.degree, self.intent.closed);
+        let sharp = interpolate_with_corners(degree, points, spacing, closed, marks)?;
+        Ok(Laid {
+            space: sharp.fit.space,
+            control: sharp.points,
+            marks: sharp.marks,
+            at: Some(sharp.at),
+            beside: false,
+        })
+    }
+
+    /// The spline through the points, or near them.
+    fn fitted(
+        &self,
+        points: &[Vec3<T>],
+        plain: &[Vec3<f64>],
+        marks: &[usize],
+    ) -> Result<Laid<T>, FairError> {
+        let (degree, closed) = (self.intent.degree, self.intent.closed);
+        let spacing = self.intent.spacing;
+        let own = self.own.knots.is_some() || self.own.weights.is_some();
+        let moving = || points.iter().flat_map(|p| p.to_array()).any(|x| !x.is_constant());
+        let loose = || {
+            let each = self.tolerances.iter().flatten().copied();
+            each.chain([self.intent.tolerance]).any(|x| !x.is_constant())
+        };
+        if !own && self.count.is_none() {
+            if spacing != ParameterSpacing::Uniform
+                && moving()
+                && !parameters_with(points, spacing, closed)?.iter().all(|t| t.is_constant())
+            {
+                return Err(FairError::NoDerivative(MOVING_KNOTS));
+            }
+            return self.through(points, spacing, marks);
+        }
+        if moving() || loose() {
+            return Err(FairError::NoDerivative(FITTED));
+        }
+        let made = if own {
+            let count = match &self.own.knots {
+                Some(knots) if closed => knots.len(),
+                Some(knots) => knots.len().saturating_sub(degree + 1),
+                None => plain.len(),
+            };
+            if !(degree + 2..=plain.len()).contains(&count) {
+                let (expected, actual) = (plain.len() + degree + 1, count + degree + 1);
+                return Err(FairError::Count { what: "knots at most", expected, actual });
+            }
+            let space = match &self.own.knots {
+                None => interpolate(degree, plain, spacing, closed)?.space,
+                Some(_) if closed => self.own.ring(degree, count)?,
+                Some(_) => self.own.space(degree, count)?,
+            };
+            let (a, b) = space.domain();
+            let at = parameters(plain, spacing, closed)?;
+            let at = at.into_iter().map(|t| a + (b - a) * t).collect();
+            match &self.own.weights {
+                Some(weights) => fit_rational(space, plain, at, weights)?,
+                None => fit(space, plain, at, &vec![1.0; plain.len()])?,
+            }
+        } else {
+            least_squares(degree, plain, self.count.unwrap_or(plain.len()), spacing, closed)?
+        };
+        let control = made.points.iter().map(|&p| Vec3::lifted(p)).collect();
+        Ok(Laid {
+            space: made.space,
+            control,
+            marks: Vec::new(),
+            at: Some(made.parameters),
+            beside: true,
+        })
+    }
+
+    /// The tolerance of each control point: of fits what they leave of those of the points near it.
+    fn each(&self, laid: &Laid<T>, plain: &[Vec3<f64>]) -> Result<Vec<T>, FairError> {
+        let n = laid.control.len();
+        let mut own = match (&self.tolerances, &laid.at) {
+            (None, _) => vec![self.intent.tolerance; n],
+            (Some(each), Some(at)) => near(&laid.space, at, each),
+            (Some(each), None) => each.clone(),
+        };
+        if let Some(at) = laid.at.as_ref().filter(|_| laid.beside) {
+            // A fit that misses its points leaves less.
+            let given = match &self.tolerances {
+                Some(each) => each.iter().map(|t| t.re()).collect(),
+                None => vec![self.intent.tolerance.re(); plain.len()],
+            };
+            let real: Vec<Vec3<f64>> = laid.control.iter().map(|p| p.re()).collect();
+            let weights = self.own.weights.as_deref();
+            let far = |(&t, p): (&f64, &Vec3<f64>)| {
+                (shape::sample_at(&laid.space, &real, weights, t).point - *p).norm()
+            };
+            let off: Vec<f64> = at.iter().zip(plain).map(far).collect();
+            let size = plain.iter().map(|p| (*p - plain[0]).norm()).fold(0.0, f64::max);
+            let passes = off.iter().all(|&o| o <= THROUGH * size);
+            let left: Vec<f64> =
+                given.iter().zip(&off).map(|(t, o)| if passes { *t } else { t - o }).collect();
+            let worst = (0..left.len()).min_by(|&a, &b| left[a].total_cmp(&left[b]));
+            if let Some(index) = worst.filter(|&k| left[k] < 0.0) {
+                return Err(FairError::OutOfReach { index, distance: off[index] });
+            }
+            own = near(&laid.space, at, &left).into_iter().map(T::from).collect();
+        }
+        for k in indices(&self.fixed, own.len())? {
+            own[k] = T::zero();
+        }
+        Ok(own)
+    }
+
+    fn within(&self, laid: &Laid<T>, tolerances: &[T]) -> Result<Moved<T>, FairError> {
+        let Laid { space, control: points, .. } = laid;
+        let measure = self.intent.measure;
+        // What an end keeps is counted in points where these move: with tangents, two of them.
+        let end = |end: EndContinuity| match (self.role, end) {
+            (PointRole::Points, EndContinuity::Points(k)) => EndContinuity::Points(k),
+            (PointRole::Points, end) => EndContinuity::Points(end.kept()),
+            (_, end) => end,
+        };
+        let radii = tolerances.iter().map(|t| t.re()).collect();
+        let mut job = Job {
+            space: space.clone(),
+            points: points.iter().map(|p| p.re()).collect(),
+            weights: self.own.weights.clone(),
+            limit: Limit::new(self.intent.motion, radii)?,
+            marks: laid.marks.clone(),
+            ends: self.intent.ends.map(end),
+        };
+        let (mut conditions, mut targets) = (Vec::new(), Vec::new());
+        for (at, other) in self.joins.iter().enumerate() {
+            let Some(other) = other else { continue };
+            job.ends[at] = EndContinuity::Position;
+            let plain = other.map(|v| v.re());
+            conditions.extend(Condition::join(space, &job.points, at == 1, plain)?);
+            let aims = joined(end_jet(space, points, at == 1), *other)?;
+            targets.extend(aims.iter().flat_map(|v| v.to_array()));
+        }
+        let still = points.iter().flat_map(|p| p.to_array()).all(|x| x.is_constant())
+            && tolerances.iter().chain(&targets).all(|x| x.is_constant());
+        if !self.conditions.is_empty() && !still {
+            return Err(FairError::NoDerivative(CONDITIONS));
+        }
+        for &(t, demand) in &self.conditions {
+            conditions.extend(demand.conditions(space, &job.points, t));
+        }
+        let lifted =
+            |points: Vec<Vec3<f64>>| points.into_iter().map(Vec3::lifted).collect::<Vec<Vec3<T>>>();
+        let gap = |measure: Measure, points: &[Vec3<f64>]| -> Result<Certificate, FairError> {
+            Ok(ball_gap(&job, &job.measure_rows(measure)?, RowNorm::Square, points))
+        };
+        match self.method {
+            CurveMethod::Optimum => {
+                let mut options = OptimumOptions::of(measure);
+                options.bound = self.bound.unwrap_or(match self.role {
+                    PointRole::Points => Bound::ControlPoints,
+                    _ => Bound::Bezier,
+                });
+                options.accuracy = ACCURACY;
+                options.conditions = conditions;
+                let (points, best) = optimum_with(&job, &options, points, tolerances, &targets)?;
+                let (certificate, active) = (Some(best.certificate), Some(best.active));
+                Ok(Moved { points, certificate, active, steps: None })
+            }
+            CurveMethod::Steps(mut options, steps) => {
+                if measure.norm() != RowNorm::Square {
+                    return Err(FairError::Squares);
+                }
+                if job.weights.is_some() && !still {
+                    return Err(FairError::NoDerivative(STEPS));
+                }
+                options.measure = measure;
+                options.stops.steps = steps.unwrap_or(points.len());
+                options.log = true;
+                let made = knot_removal(&job, &options)?;
+                let points = if still {
+                    lifted(made.points.clone())
+                } else {
+                    replay_with(&job, &options, &made.log, points, tolerances)?
+                };
+                let certificate = Some(gap(measure, &made.points)?);
+                Ok(Moved { points, certificate, active: None, steps: Some(made.steps) })
+            }
+            CurveMethod::Sweeps(count) | CurveMethod::Levels(count) => {
+                if measure.norm() != RowNorm::Square {
+                    return Err(FairError::Squares);
+                }
+                if !still {
+                    return Err(FairError::NoDerivative(STEPS));
+                }
+                let points = match self.method {
+                    CurveMethod::Sweeps(_) => sweeps(&job, measure, count)?,
+                    _ => multilevel(&job, measure, count, u32::BITS)?,
+                };
+                let certificate = Some(gap(measure, &points)?);
+                Ok(Moved { points: lifted(points), certificate, active: None, steps: Some(count) })
+            }
+        }
+    }
+}
+
+impl<T: Real> Moved<T> {
+    fn figures(&self, before: &[Vec3<T>]) -> FairFigures {
+        let made = self.certificate.as_ref().map(|c| (c, self.active, self.steps));
+        FairFigures::of_moves(moves(&self.points, before), made)
+    }
+}
+
+/// The tolerance of data as that of control points: the least near each, of all where none is near.
+fn near<T: Real>(space: &Space, at: &[f64], tolerances: &[T]) -> Vec<T> {
+    let less = |a: T, b: T| if b.re() < a.re() { b } else { a };
+    let all = tolerances.iter().copied().reduce(less).unwrap_or_else(T::zero);
+    let mut out = vec![None; space.count()];
+    for (&t, &own) in at.iter().zip(tolerances) {
+        let (k, _) = space.locate(t);
+        for c in space.columns(k) {
+            out[c] = Some(out[c].map_or(own, |a| less(a, own)));
+        }
+    }
+    out.into_iter().map(|x| x.unwrap_or(all)).collect()
+}

@@ -1,0 +1,500 @@
+//! From the options of curves and snakes to the faired spline.
+
+use super::demands::{Demand, Demands, one_each, shapes_of};
+use super::direct::{CurveMethod, DirectCurve};
+use super::options::{CurveOptions, constant};
+use super::{
+    ArgumentFields, GivenKnots, Intent, PointRole, end, fault, goal_of, measure, role, shapes,
+    spacing, unknown,
+};
+use crate::{
+    Bound, FairError, Goal, KnotRemovalOptions, Motion, ParameterSpacing, RemovalStep, Rule, Stops,
+};
+use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use moldloft_registry::{CallError, FieldId};
+use moldloft_spline::{BSplineCurve, SplineWithKnotDerivatives};
+
+/// What curves ask for that snakes do not, or in another way.
+pub(crate) struct CurveContext<T> {
+    /// First and second derivative of what the curve runs on from, at its start and end.
+    pub joins: [Option<[Vec3<T>; 2]>; 2],
+    /// Points that it passes through, and what it keeps.
+    pub through: Vec<Vec3<T>>,
+    pub keep: Vec<Demand>,
+    /// The field of what it keeps.
+    pub keep_field: FieldId,
+    /// What ends that are free keep none the less.
+    pub least_end: crate::EndContinuity,
+    /// The share of the goals.
+    pub budget: f64,
+    /// Whether "auto" may be "curvature".
+    pub turns: bool,
+    /// The ways in which points get parameters.
+    pub spacings: &'static [&'static str],
+}
+
+/// A faired spline and its members.
+pub(crate) struct FairedSpline<T: Real> {
+    pub curve: FairedCurve<T>,
+    pub members: Vec<(&'static str, f64)>,
+    /// Whether an open curve begins and ends at its points.
+    pub kept: [bool; 2],
+}
+
+/// A spline whose knots follow the points, or not.
+pub(crate) enum FairedCurve<T: Real> {
+    Moving(SplineWithKnotDerivatives<T>),
+    Still(BSplineCurve<T>),
+}
+
+impl<T: Real> Curve<T> for FairedCurve<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        match self {
+            Self::Moving(curve) => curve.jet(t, order),
+            Self::Still(curve) => curve.jet(t, order),
+        }
+    }
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        match self {
+            Self::Moving(curve) => curve.grid(ts, out),
+            Self::Still(curve) => curve.grid(ts, out),
+        }
+    }
+    fn breaks(&self) -> Vec<f64> {
+        match self {
+            Self::Moving(curve) => curve.breaks(),
+            Self::Still(curve) => curve.breaks(),
+        }
+    }
+}
+
+/// The modes of curves.
+const MODES: [&str; 6] = ["optimum", "faithful", "literal", "vertex", "sweeps", "levels"];
+
+/// Sweeps and cycles of levels where no number is given.
+const SWEEPS: usize = 10;
+const CYCLES: usize = 2;
+
+impl<T: Real> CurveOptions<T> {
+    /// The faired spline of points.
+    pub fn faired(
+        &self,
+        points: &[Vec3<T>],
+        context: CurveContext<T>,
+        unmade: impl Fn(&FairError) -> Option<CallError>,
+    ) -> Result<FairedSpline<T>, CallError> {
+        let unmade = |e: FairError| unmade(&e).unwrap_or_else(|| self.unmade(e));
+        let demands = self.demands(points.len(), &context)?;
+        let method = self.method()?;
+        let role = role(&self.role, self.fields.role)?;
+        let bound = self.bound()?;
+        let intent = self.intent(&context, &demands)?;
+        let optimum = matches!(method, CurveMethod::Optimum);
+        let alone = context.joins.iter().all(Option::is_none);
+        let index = intent.spacing == ParameterSpacing::Uniform;
+        let own = self.own()?;
+        let given = own.knots.is_some() || own.weights.is_some();
+        // Points that move are those of the curve through them.
+        let data = role != PointRole::Control && (!index || bound.is_some());
+        let near = data && optimum && alone && !given && self.count.is_none();
+        if near && matches!(bound, None | Some(None)) {
+            if let Some((what, field)) = self.stepwise_only() {
+                return Err(self.elsewhere(what, field, "mode = \"faithful\""));
+            }
+            let (curve, figures) = intent.near(points, &demands).map_err(unmade)?;
+            // A free end leaves its point, and a closed curve has no ends.
+            let still = self.tolerance.re() == 0.0;
+            let kept = intent.ends.map(|e| !intent.closed && (e.kept() > 0 || still));
+            let members = figures.members().to_vec();
+            return Ok(FairedSpline { curve: FairedCurve::Moving(curve), members, kept });
+        }
+        self.direct(points, context, demands, (role, method, bound, intent, own), unmade)
+    }
+
+    /// A curve whose control points move.
+    #[expect(clippy::type_complexity, reason = "what was read of the options")]
+    fn direct(
+        &self,
+        points: &[Vec3<T>],
+        context: CurveContext<T>,
+        demands: Demands<T>,
+        (role, method, bound, mut intent, own): (
+            PointRole,
+            CurveMethod,
+            Option<Option<Bound>>,
+            Intent<T>,
+            GivenKnots,
+        ),
+        unmade: impl Fn(FairError) -> CallError,
+    ) -> Result<FairedSpline<T>, CallError> {
+        let fields = &self.fields;
+        let optimum = matches!(method, CurveMethod::Optimum);
+        let stepwise = matches!(method, CurveMethod::Steps(..));
+        if bound == Some(None) {
+            let text = "the bound \"data\" is for optima near their points";
+            return Err(CallError::new("not-near", text)
+                .expected("as = \"fit\", mode = \"optimum\", without joins, knots and count")
+                .found("bound = \"data\"")
+                .in_field(fields.bound));
+        }
+        if let Some((what, field)) = self.near_only(role) {
+            return Err(self.not_near(what, field));
+        }
+        if !matches!(intent.goal, Goal::Near(_) | Goal::Fairest) || self.share.is_some() {
+            let (what, field) =
+                if self.share.is_some() { ("share", fields.share) } else { ("goal", fields.goal) };
+            return Err(self.not_near(what, field));
+        }
+        let refused = |what: &str, field, expected: &'static str| {
+            CallError::new("other-mode", format!("`{what}` does not go with the other options"))
+                .expected(expected)
+                .in_field(field)
+        };
+        if !optimum && bound.is_some() {
+            return Err(refused("bound", fields.bound, "mode = \"optimum\""));
+        }
+        if !optimum && !demands.conditions.is_empty() {
+            let field = if context.keep.is_empty() { fields.through } else { context.keep_field };
+            let field = if self.tangents.is_some() { fields.tangents } else { field };
+            return Err(refused("through, tangents and keep", field, "mode = \"optimum\""));
+        }
+        if let Some((what, field)) = self.stepwise_only().filter(|_| !stepwise && optimum) {
+            return Err(self.elsewhere(what, field, "mode = \"faithful\""));
+        }
+        if let Some((what, field)) =
+            self.stepwise_only().filter(|(what, _)| !stepwise && *what != "steps")
+        {
+            return Err(self.elsewhere(what, field, "mode = \"faithful\""));
+        }
+        if own.weights.is_some() && context.joins.iter().any(Option::is_some) {
+            return Err(CallError::new("not-control", "weights and joins do not go together")
+                .expected("one of them")
+                .found("both")
+                .in_field(fields.weights));
+        }
+        let fitted = own.knots.is_some() || own.weights.is_some() || self.count.is_some();
+        if role == PointRole::Fit && fitted && !self.breaks.is_empty() {
+            return Err(refused("breaks", fields.breaks, "a fit of all points without knots"));
+        }
+        if role != PointRole::Fit && self.count.is_some() {
+            return Err(refused("count", fields.count, "as = \"fit\""));
+        }
+        if role == PointRole::Points && (own.knots.is_some() || own.weights.is_some()) {
+            return Err(CallError::new(
+                "not-control",
+                "knots and weights are of control points and fits",
+            )
+            .expected("as = \"control\" or \"fit\"")
+            .found("as = \"points\"")
+            .in_field(if own.knots.is_some() { fields.knots } else { fields.weights }));
+        }
+        if role != PointRole::Fit && !matches!(&*self.spacing, "auto" | "index") {
+            return Err(refused(
+                "spacing",
+                fields.spacing,
+                "as = \"fit\": the index is the parameter here",
+            ));
+        }
+        // The index is the parameter of the report's modes and of joins unless another is named.
+        let by_chords = fitted || bound.is_some();
+        intent.spacing = match &*self.spacing {
+            "chord" | "centripetal" | "index" => intent.spacing,
+            "auto" if by_chords && role == PointRole::Fit => ParameterSpacing::Chord,
+            "auto" => ParameterSpacing::Uniform,
+            _ => {
+                let expected = "\"chord\", \"centripetal\" or \"index\"";
+                return Err(refused("spacing", fields.spacing, expected));
+            }
+        };
+        let kept = intent.ends;
+        let joined = context.joins.each_ref().map(Option::is_some);
+        let closed = intent.closed;
+        let curve = DirectCurve {
+            intent,
+            role,
+            method,
+            bound: bound.flatten(),
+            joins: context.joins,
+            own,
+            count: self.count,
+            tolerances: self.tolerances.clone(),
+            fixed: self.fixed.clone(),
+            conditions: demands.conditions,
+        };
+        let made = curve.made(points).map_err(unmade)?;
+        let spline = match &curve.own.weights {
+            Some(weights) => shapes::rational(&made.space, &made.control, weights),
+            None => shapes::curve(&made.space, &made.control),
+        };
+        let spline = spline
+            .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(fields.points))?;
+        // Fits of few control points end at their points, too.
+        let end = |at: usize| !closed && (kept[at].kept() > 0 || joined[at]);
+        let members = made.figures.members_of_moves();
+        Ok(FairedSpline { curve: FairedCurve::Still(spline), members, kept: [end(0), end(1)] })
+    }
+
+    fn intent(
+        &self,
+        context: &CurveContext<T>,
+        demands: &Demands<T>,
+    ) -> Result<Intent<T>, CallError> {
+        let fields = &self.fields;
+        let motion = self.motion()?;
+        constant("share", fields.share, self.share.into_iter())?;
+        let share = self.share.map(|s| s.re());
+        let goal = goal_of(&self.goal, share, context.budget, [fields.goal, fields.share])?;
+        let first = end(&self.ends, fields.ends)?;
+        let last = match &self.last_end {
+            Some(word) => end(word, fields.last_end)?,
+            None => first,
+        };
+        let ends = [first, last].map(|e| if e.kept() == 0 { context.least_end } else { e });
+        let free = demands.shape.is_empty()
+            && demands.conditions.is_empty()
+            && motion == Motion::Ball
+            && (self.closed || ends.iter().all(|e| e.kept() < 2));
+        let to_the_truth = matches!(goal, Goal::Near(_) | Goal::Budget(_));
+        let turning = match &*self.spacing {
+            "auto" => context.turns && free && to_the_truth,
+            word => word == "curvature",
+        };
+        if !context.spacings.contains(&&*self.spacing) {
+            return Err(unknown("spacing", &self.spacing, context.spacings, fields.spacing));
+        }
+        let word =
+            if matches!(&*self.spacing, "auto" | "curvature") { "chord" } else { &self.spacing };
+        Ok(Intent {
+            tolerance: self.tolerance,
+            degree: self.degree,
+            closed: self.closed,
+            measure: measure(&self.measure, fields.measure)?,
+            ends,
+            breaks: self.breaks.clone(),
+            spacing: spacing(word, fields.spacing)?,
+            turning,
+            goal,
+            motion,
+        })
+    }
+
+    /// The directions in which points may move.
+    pub fn motion(&self) -> Result<Motion, CallError> {
+        let fields = [self.fields.along, self.fields.motion];
+        super::motion(self.along, self.motion.as_deref(), fields)
+    }
+
+    /// What the tolerance bounds: none given, the data, or a bound of control points.
+    #[expect(clippy::option_option, reason = "not given, the data, or a bound of control points")]
+    fn bound(&self) -> Result<Option<Option<Bound>>, CallError> {
+        Ok(match self.bound.as_deref() {
+            None => None,
+            Some("data") => Some(None),
+            Some("points") => Some(Some(Bound::ControlPoints)),
+            Some("curve") => Some(Some(Bound::Bezier)),
+            Some(word) => {
+                return Err(unknown(
+                    "bound",
+                    word,
+                    &["data", "points", "curve"],
+                    self.fields.bound,
+                ));
+            }
+        })
+    }
+
+    fn method(&self) -> Result<CurveMethod, CallError> {
+        let fields = &self.fields;
+        constant("least_move, least_drop, stop_gap", fields.stops, self.stops.into_iter())?;
+        let [least_move, least_drop, gap] = self.stops.map(|x| x.re());
+        let steps = |rule, step| {
+            let mut options = KnotRemovalOptions::faithful(0);
+            (options.rule, options.step) = (rule, step);
+            let pieces = self.stop_pieces;
+            options.stops = Stops { steps: 0, least_move, least_drop, gap, pieces };
+            CurveMethod::Steps(options, self.steps)
+        };
+        Ok(match &*self.mode {
+            "optimum" => CurveMethod::Optimum,
+            "faithful" => steps(Rule::Achievable, RemovalStep::Knot),
+            "literal" => steps(Rule::Literal, RemovalStep::Knot),
+            "vertex" => steps(Rule::Achievable, RemovalStep::Vertex),
+            "sweeps" => CurveMethod::Sweeps(self.steps.unwrap_or(SWEEPS)),
+            "levels" => CurveMethod::Levels(self.steps.unwrap_or(CYCLES)),
+            word => return Err(unknown("mode", word, &MODES, fields.mode)),
+        })
+    }
+
+    /// Weights and knots.
+    fn own(&self) -> Result<GivenKnots, CallError> {
+        let fields = &self.fields;
+        let list = |what, x: &Option<Vec<T>>, field| -> Result<Option<Vec<f64>>, CallError> {
+            constant(what, field, x.iter().flatten().copied())?;
+            Ok(x.as_ref().map(|x| x.iter().map(|x| x.re()).collect()))
+        };
+        constant("period", fields.period, self.period.into_iter())?;
+        if self.period.is_some() && !(self.closed && self.knots.is_some()) {
+            return Err(CallError::new(
+                "other-mode",
+                "`period` is that of knots of a closed curve",
+            )
+            .expected("closed = 1, knots = {...}")
+            .in_field(fields.period));
+        }
+        Ok(GivenKnots {
+            knots: list("knots", &self.knots, fields.knots)?,
+            weights: list("weights", &self.weights, fields.weights)?,
+            period: self.period.map(|p| p.re()),
+        })
+    }
+
+    /// What is asked of a curve near its points.
+    fn demands(&self, n: usize, context: &CurveContext<T>) -> Result<Demands<T>, CallError> {
+        let fields = &self.fields;
+        let shape = shapes_of(self.shape.as_deref(), n, fields.shape)?;
+        one_each("tolerances", self.tolerances.as_deref(), n, fields.tolerances)?;
+        one_each("parameters", self.at.as_deref(), n, fields.at)?;
+        if let Some(k) = self.tolerances.iter().flatten().position(|t| !(t.re() >= 0.0)) {
+            return Err(CallError::new("out-of-range", "a tolerance is negative")
+                .expected("0 or more")
+                .in_item(k)
+                .in_field(fields.tolerances));
+        }
+        let rises = |w: &[T]| w[0].re() < w[1].re();
+        if let Some(k) = self.at.as_deref().and_then(|at| at.windows(2).position(|w| !rises(w))) {
+            return Err(CallError::new("out-of-range", "parameters rise from point to point")
+                .in_item(k + 1)
+                .in_field(fields.at));
+        }
+        let mut conditions = Vec::new();
+        let tangents: Vec<Vec3<T>> = self.tangents.iter().flatten().copied().collect();
+        if let Some(k) = tangents.iter().position(|d| d.re().norm() == 0.0) {
+            return Err(CallError::new("zero-direction", "the direction has no length")
+                .in_item(k)
+                .in_field(fields.tangents));
+        }
+        let placed = [
+            ("through", &context.through, &self.through_at, fields.through, false),
+            ("tangents", &tangents, &self.tangents_at, fields.tangents, true),
+        ];
+        for (what, values, at, field, direction) in placed {
+            let at = at.as_deref().unwrap_or_default();
+            if at.len() != values.len() {
+                let message = format!("`{what}` has a parameter for each");
+                return Err(CallError::new("wrong-count", message)
+                    .expected(format!("{} parameters", values.len()))
+                    .found(at.len().to_string())
+                    .in_field(field));
+            }
+            for (k, (v, t)) in values.iter().zip(at).enumerate() {
+                constant(what, field, v.to_array().into_iter().chain([*t]))
+                    .map_err(|fault| fault.in_item(k))?;
+                if !(0.0..=1.0).contains(&t.re()) {
+                    return Err(CallError::new("out-of-range", "a parameter is out of range")
+                        .expected("0 to 1")
+                        .found(t.re().to_string())
+                        .in_item(k)
+                        .in_field(field));
+                }
+                let v = v.re();
+                conditions.push((
+                    t.re(),
+                    if direction { Demand::Tangent(v) } else { Demand::Through(v) },
+                ));
+            }
+        }
+        conditions.extend(context.keep.iter().map(|&what| (0.0, what)));
+        Ok(Demands {
+            shape,
+            conditions,
+            tolerances: self.tolerances.clone(),
+            fixed: self.fixed.clone(),
+            release: self.release.clone().unwrap_or_default(),
+            bends: self.bends,
+            at: self.at.clone(),
+        })
+    }
+
+    /// The first of what only curves near their points have that is given.
+    fn near_only(&self, role: PointRole) -> Option<(&'static str, FieldId)> {
+        let fields = &self.fields;
+        let given = [
+            (self.shape.is_some(), "shape", fields.shape),
+            // Control points of a fit are no points of the user's.
+            (role == PointRole::Fit && !self.fixed.is_empty(), "fixed", fields.fixed),
+            (self.release.is_some(), "release", fields.release),
+            (!self.bends, "bends", fields.bends),
+            (self.at.is_some(), "at", fields.at),
+            (&*self.spacing == "curvature", "spacing \"curvature\"", fields.spacing),
+        ];
+        given.into_iter().find(|g| g.0).map(|g| (g.1, g.2))
+    }
+
+    /// The first option of steps that is given.
+    fn stepwise_only(&self) -> Option<(&'static str, FieldId)> {
+        let fields = &self.fields;
+        let stops = self.stops.iter().any(|x| x.re() != 0.0) || self.stop_pieces;
+        let given = [
+            (stops, "least_move, least_drop, stop_gap or stop_pieces", fields.stops),
+            (self.steps.is_some(), "steps", fields.steps),
+        ];
+        given.into_iter().find(|g| g.0).map(|g| (g.1, g.2))
+    }
+
+    fn not_near(&self, what: &str, field: FieldId) -> CallError {
+        CallError::new("not-near", format!("`{what}` is for curves near their points"))
+            .expected("as = \"fit\", mode = \"optimum\", without joins, knots, count and spacing \"index\"")
+            .in_field(field)
+    }
+
+    fn elsewhere(&self, what: &str, field: FieldId, expected: &'static str) -> CallError {
+        CallError::new("other-mode", format!("`{what}` is for another mode"))
+            .expected(expected)
+            .found(format!("mode = \"{}\"", self.mode))
+            .in_field(field)
+    }
+
+    /// A refusal as a fault at its argument.
+    fn unmade(&self, error: FairError) -> CallError {
+        let fields = &self.fields;
+        let places = ArgumentFields {
+            points: fields.points,
+            tolerance: fields.tolerance,
+            degree: fields.degree,
+            breaks: fields.breaks,
+        };
+        let text = error.to_string();
+        match error {
+            FairError::Weight { .. } | FairError::Count { what: "weights", .. } => {
+                CallError::new("bad-weight", text).in_field(fields.weights)
+            }
+            FairError::Unsorted { .. }
+            | FairError::Knots(_)
+            | FairError::Count { what: "knots" | "knots at most", .. } => {
+                CallError::new("bad-knots", text).in_field(fields.knots)
+            }
+            FairError::TurnsAlong { index } => {
+                CallError::new("runs-back", text).in_item(index).in_field(fields.spacing)
+            }
+            FairError::OutOfReach { index, .. } => {
+                CallError::new("not-faired", text).in_item(index).in_field(fields.points)
+            }
+            FairError::Goal(_) => CallError::new("no-goal", text).in_field(fields.goal),
+            FairError::Energy { .. } => CallError::new("no-goal", text).in_field(fields.share),
+            FairError::Squares => CallError::new("other-mode", text)
+                .expected("mode = \"optimum\"")
+                .in_field(fields.measure),
+            FairError::Shape { shapes, miss } => {
+                let message = format!(
+                    "no curve with this shape was found within the tolerance (missed by {miss:.3e})"
+                );
+                let fault = CallError::new("no-shape", message);
+                shapes.first().map_or(fault.clone(), |&k| fault.in_item(k)).in_field(fields.shape)
+            }
+            FairError::Shapeless { shape, why } => {
+                CallError::new("no-shape", why).in_item(shape).in_field(fields.shape)
+            }
+            other => fault(other, &places),
+        }
+    }
+}

@@ -1,0 +1,95 @@
+"""Words of ``moldloft fair``: what its arguments are written as."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+__all__ = ["condition", "degrees", "goal", "spacing", "stop", "tolerance", "vector"]
+
+
+def tolerance(text: str) -> float | str | None:
+    """A length, a file of lengths, or none."""
+    if text.lower() == "none":
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        if Path(text).is_file():
+            return text
+        raise argparse.ArgumentTypeError(
+            f"`{text}` is neither a length, nor `none`, nor a file of lengths"
+        ) from None
+
+
+STOPS = {"move": "least_move", "drop": "least_drop", "gap": "stop_gap", "pieces": "stop_pieces"}
+
+
+def stop(text: str) -> tuple[str, float | bool]:
+    """What ends local steps, and its share."""
+    word, equals, share = text.partition("=")
+    if word == "pieces" and not equals:
+        return STOPS[word], True
+    try:
+        if word not in STOPS or word == "pieces" or not float(share) >= 0:
+            raise ValueError
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"`{text}` is none of move=SHARE, drop=SHARE, gap=SHARE, pieces"
+        ) from None
+    return STOPS[word], float(share)
+
+
+def spacing(text: str) -> Any:
+    """How points get their parameters."""
+    if text in ("auto", "curvature", "chord", "centripetal", "index", "uniform", "x", "y", "z"):
+        return text
+    return tuple(vector(text))
+
+
+def goal(text: str) -> Any:
+    """Which of the curves within the tolerance."""
+    word, equals, share = text.partition("=")
+    if word not in ("near", "fairest", "budget", "nearest", "energy", "closest"):
+        raise argparse.ArgumentTypeError(
+            f"`{word}` is not a goal; there are: near, fairest, budget=SHARE, nearest=SHARE, "
+            "energy=MOST, closest"
+        )
+    try:
+        return (word, float(share)) if equals else word
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"`{share}` is not a number") from None
+
+
+def vector(text: str) -> list[float]:
+    """Two or three coordinates."""
+    try:
+        vector = [float(c) for c in text.split(",")]
+    except ValueError:
+        vector = []
+    if len(vector) not in (2, 3):
+        raise argparse.ArgumentTypeError(f"`{text}` is not of the form X,Y or X,Y,Z")
+    return vector
+
+
+def condition(text: str) -> tuple[list[float], list[float]]:
+    """Parameters and the vector there."""
+    place, equals, given = text.partition("=")
+    try:
+        at = [float(t) for t in place.split(",")]
+    except ValueError:
+        at = []
+    if not equals or len(at) not in (1, 2) or not all(0 <= t <= 1 for t in at):
+        raise argparse.ArgumentTypeError(
+            f"`{text}` is not of the form T=X,Y (of surfaces U,V=X,Y,Z) with T in [0, 1]"
+        )
+    return at, vector(given)
+
+
+def degrees(text: str) -> int | tuple[int, int]:
+    """A degree, or one along u and one along v."""
+    words = text.split(",")
+    if len(words) > 2 or not all(w.isdigit() for w in words):
+        raise argparse.ArgumentTypeError(f"`{text}` is not a degree or a pair of degrees")
+    return int(words[0]) if len(words) == 1 else (int(words[0]), int(words[1]))
