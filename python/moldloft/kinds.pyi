@@ -7643,7 +7643,7 @@ def FairCurve(
     point, and which knot comes first may change with the points.
 
     What Python has besides: `breaks` and `release` are numbers here, never "auto", so that a small move of a point makes no
-    corner; `ends` are words; the log of single steps is no property of a curve (`moldloft fair model.sdl:name --log`);
+    corner; `ends` are words; the log of single steps comes from the command (`moldloft fair model.sdl:name --log`);
     optima are solved to rounding, so that derivatives are known, and have no `accuracy`; a model's points are
     those that were read, so that there is no `original`.
 

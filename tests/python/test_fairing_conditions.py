@@ -304,3 +304,57 @@ def test_fixed_ends_stay(end):
     tolerances = np.full(len(points), 0.015)
     tolerances[fixed] = 0
     assert moldloft.fair(points, tolerances, goal="fairest").deviation_data > 1e-3
+
+
+def test_the_command_has_parameters_tolerances_and_stops_of_the_users(cli, tmp_path):
+    """What the command reads from files and words is what Python takes."""
+    n = 24
+    rng = np.random.default_rng(9)
+    t = np.sort(np.r_[0, 1, rng.uniform(0, 1, n - 2)])
+    points = np.column_stack([t, 0.3 * np.sin(3 * t), 0.1 * t**2]) + 2e-3 * rng.normal(size=(n, 3))
+    np.savetxt(tmp_path / "p.csv", points, delimiter=",", fmt="%.17g")
+    at, each = np.linspace(0, 1, n) ** 1.2, 2e-3 * (1 + rng.random(n))
+    np.savetxt(tmp_path / "at.txt", at, fmt="%.17g")
+    np.savetxt(tmp_path / "tol.txt", each, fmt="%.17g")
+    np.savetxt(tmp_path / "first.csv", points + 1e-4, delimiter=",", fmt="%.17g")
+    data = ["p.csv", "--tol", "0.003"]
+    vertex = {"mode": "vertex", "as_": "control", "steps": 999}
+    stop = [*data, "--mode", "vertex", "--steps", "999", "--stop"]
+    for arguments, options in (
+        (["p.csv", "--tol", "tol.txt"], {"tol": each}),
+        ([*data, "--at", "at.txt"], {"at": at}),
+        ([*data, "--across", "1,0,0"], {"motion": ("across", (1, 0, 0))}),
+        ([*data, "--accuracy", "1e-3"], {"accuracy": 1e-3}),
+        ([*data, "--original", "first.csv"], {"original": points + 1e-4}),
+        ([*stop, "move=0.2"], {**vertex, "least_move": 0.2}),
+        ([*stop, "drop=0.01"], {**vertex, "least_drop": 0.01}),
+        ([*stop, "gap=0.5"], {**vertex, "stop_gap": 0.5}),
+        ([*stop, "pieces"], {**vertex, "stop_pieces": True}),
+    ):
+        made = reported(cli, *arguments)
+        tol = options.pop("tol", 0.003)
+        wanted = moldloft.fair(points, tol, **options)
+        assert made["value"] == pytest.approx(wanted.value, rel=1e-12), arguments
+        assert made["steps"] == wanted.steps, arguments
+    for arguments, words in (
+        ([*data, "--stop", "soup"], "none of move=SHARE"),
+        ([*data, "--across", "1,0", "--box"], "one of these"),
+        ([*data, "--original", "tol.txt"], "columns"),
+        (["p.csv", "--tol", "soup"], "nor a file of lengths"),
+        ([*data, "--at", "at.txt", "--bound", "curve"], "parameters of your own"),
+    ):
+        status = 2 if "soup" in arguments else 1
+        assert words in cli("fair", *arguments, status=status).stderr, arguments
+    lines = DATA / "lines.csv"
+    for words in (["--shape", "convex"], ["--release", "3"], ["--bends"], ["--at", "at.txt"]):
+        done = cli("fair", lines, "--tol", "0.006", *words, status=1)
+        assert f"{words[0]} is for single curves" in done.stderr
+
+
+def test_a_run_beside_a_break_has_a_reason():
+    x = np.linspace(0, 1, 20)
+    points = np.column_stack([x, 0.2 * np.maximum(x - 0.3, 0) ** 2])
+    with pytest.raises(moldloft.Error, match="a run ends at a break, or three points from it"):
+        moldloft.fair(points, 1e-3, shape=[("straight", 0, 4)], breaks=[5])
+    made = moldloft.fair(points, 1e-3, shape=[("straight", 0, 4)], breaks=[4])
+    assert made.deviation_data <= 1e-3 * (1 + 1e-9)

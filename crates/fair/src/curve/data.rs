@@ -896,6 +896,13 @@ pub fn fair_data_with<T: Real>(
     check_unique(&mut parts, &found, &pull)?;
     parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
     let solved = parts.whole()?;
+    // Of jumps there are too few digits, and what a softened problem answers is near.
+    if weight > 0.0 && options.measure != Measure::Jumps && !solved.is_decided() {
+        return Err(FairError::NoDerivative(
+            "which tolerances are reached is not decided to rounding, so that derivatives are not \
+             known: take another tolerance",
+        ));
+    }
     let control = &solved.optimum.points;
     let rows = space.measure(options.measure)?;
     let mut forces: Vec<Vec3<T>> =

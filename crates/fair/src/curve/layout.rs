@@ -68,6 +68,11 @@ impl InterpolationSpace {
         if !closed {
             return Self::open(degree, at, (0..n).collect(), &breaks);
         }
+        if let [first, .., last] = at
+            && last - first >= 1.0
+        {
+            return Err(FairError::Unsorted { index: n });
+        }
         if let Some(&first) = breaks.first() {
             let owner: Vec<usize> = (0..=n).map(|k| (first + k) % n).collect();
             let turned: Vec<f64> = (0..=n)
@@ -239,9 +244,9 @@ impl InterpolationSpace {
         datum: usize,
         share: Option<f64>,
         spare: impl Fn(usize) -> bool,
-    ) -> Result<(), FairError> {
+    ) -> Result<bool, FairError> {
         let site = |k: usize| self.owner.iter().position(|o| *o == Some(k));
-        let (Some(a), b) = (site(datum), site(datum + 1)) else { return Ok(()) };
+        let (Some(a), b) = (site(datum), site(datum + 1)) else { return Ok(true) };
         let place: Share = match (share, b) {
             (Some(s), Some(b)) => (a, b, s),
             _ => (a, a, 0.0),
@@ -249,6 +254,10 @@ impl InterpolationSpace {
         let t = shared(&self.sites, place);
         let here = self.knot_of.iter().filter(|&&k| shared(&self.sites, k) == t).count();
         let wanted = 2usize.saturating_sub(here);
+        // A piece between breaks keeps as many knots as it has data.
+        let breaks = self.marks.iter().map(|&m| self.sites[m]);
+        let low = breaks.clone().filter(|&m| m <= t).fold(f64::NEG_INFINITY, f64::max);
+        let high = breaks.filter(|&m| m > t).fold(f64::INFINITY, f64::min);
         // Simple knots at data, the nearest first, those that are spare sixteen times nearer.
         let mut near: Vec<(f64, usize)> = Vec::new();
         for (at, &k) in self.knot_of.iter().enumerate() {
@@ -257,6 +266,8 @@ impl InterpolationSpace {
             let owner = self.owner[k.0].filter(|_| k.2 == 0.0);
             if let (1, Some(owner)) = (alone, owner)
                 && value != t
+                && low < value
+                && value < high
             {
                 let weight = if spare(owner) { 1.0 } else { 16.0 };
                 near.push(((value - t).abs() * weight, at));
@@ -264,17 +275,28 @@ impl InterpolationSpace {
         }
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         if near.len() < wanted {
-            return Ok(());
+            return Ok(true);
         }
+        let before = self.knot_of.clone();
         for &(_, at) in near.iter().take(wanted) {
             self.knot_of[at] = place;
         }
         let value = |k: &Share| shared(&self.sites, *k);
         self.knot_of.sort_by(|a, b| value(a).total_cmp(&value(b)));
         let knots = self.knot_of.iter().map(value).collect();
-        self.space = Space::open(KnotVector::new(self.space.degree(), knots)?)?;
-        self.rows = values(&self.space, &self.sites);
-        Ok(())
+        let space = Space::open(KnotVector::new(self.space.degree(), knots)?)?;
+        let rows = values(&space, &self.sites);
+        // Each site in the support of its own basis function (Schoenberg and Whitney 1953).
+        let own = |k: usize| {
+            let (columns, factors) = rows.row(k);
+            columns.iter().zip(factors).any(|(&c, &f)| c as usize == k && f > 0.0)
+        };
+        if !(0..self.sites.len()).all(own) {
+            self.knot_of = before;
+            return Ok(false);
+        }
+        (self.space, self.rows) = (space, rows);
+        Ok(true)
     }
 
     /// The data that a site hangs on.
@@ -306,7 +328,10 @@ impl InterpolationSpace {
             let mut matrix = Banded::<T>::zero(n, self.space.degree().min(n - 1));
             for k in 0..n {
                 let (columns, factors) = self.rows.row(k);
-                for (&c, &f) in columns.iter().zip(factors) {
+                for (&c, &f) in columns.iter().zip(factors).filter(|(_, f)| **f != 0.0) {
+                    if k.abs_diff(c as usize) > self.space.degree() {
+                        return Err(FairError::Singular);
+                    }
                     *matrix.entry(k, c as usize) = T::from(f);
                 }
             }

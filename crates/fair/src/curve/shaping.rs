@@ -139,6 +139,17 @@ fn refused(shape: usize, why: impl Into<String>) -> FairError {
     FairError::Shapeless { shape, why: why.into() }
 }
 
+/// A run whose end has no room for the knots of another curvature.
+fn crowded(shape: usize, point: usize) -> FairError {
+    refused(
+        shape,
+        format!(
+            "too few points beside the end of a run, point {}, for another curvature",
+            point + 1
+        ),
+    )
+}
+
 impl Data {
     /// The data with knots where straight runs and arcs begin and end, and the shape for them.
     ///
@@ -339,6 +350,15 @@ impl ShapeConstraints {
                 let why = "a run ends at an end of the data, or three points from it";
                 return Err(refused(owner, why));
             }
+            let beside = |k: usize, other: usize| alone(k) && breaks.contains(&other);
+            if let Some(k) = [(a, a.wrapping_sub(1)), (b, b + 1)]
+                .into_iter()
+                .find_map(|(k, other)| beside(k, other).then_some(other))
+            {
+                let why =
+                    format!("a run ends at a break, or three points from it: point {}", k + 1);
+                return Err(refused(owner, why));
+            }
         }
         // Runs that touch an arc are found together with it.
         let mut chains: Vec<Vec<Run>> = Vec::new();
@@ -380,8 +400,12 @@ impl ShapeConstraints {
                 // A line by itself may leave with another curvature.
                 for k in group[0].1 {
                     let inside = |m: usize| group[0].1[0] < m && m < group[0].1[1];
-                    if k != 0 && k != last && !breaks.contains(&k) {
-                        data.layout.doubled(k, None, inside)?;
+                    if k != 0
+                        && k != last
+                        && !breaks.contains(&k)
+                        && !data.layout.doubled(k, None, inside)?
+                    {
+                        return Err(crowded(group[0].0, k));
                     }
                 }
                 found.push(None);
@@ -394,7 +418,9 @@ impl ShapeConstraints {
                 let share = if share.abs() < 1e-9 { None } else { Some(share) };
                 let lines: Vec<[usize; 2]> = pair.iter().filter(|r| !r.2).map(|r| r.1).collect();
                 let inside = |m: usize| lines.iter().any(|l| l[0] <= m && m <= l[1]);
-                data.layout.doubled(k, share, inside)?;
+                if !data.layout.doubled(k, share, inside)? {
+                    return Err(crowded(pair[1].0, k));
+                }
             }
             found.push(Some(made));
         }
@@ -634,23 +660,66 @@ fn placed(data: &Data, plane: CurvePlane, group: &[Run]) -> Result<(Chain, Vec<f
     })?;
     let (from, to) = (group[0].1[0], group[group.len() - 1].1[1]);
     let mut feet: Vec<f64> = Vec::new();
+    // How far along the chain a point may be from its foot.
+    let mut rooms: Vec<f64> = Vec::new();
+    let near = |k: usize| group.iter().position(|r| r.1[0] <= k && k <= r.1[1]).unwrap_or(0);
     for (k, &p) in points.iter().enumerate().take(to + 1).skip(from) {
-        let near = group.iter().position(|r| r.1[0] <= k && k <= r.1[1]).unwrap_or(0);
-        let (s, d) = found.foot(p, near);
-        if let Some(&before) = feet.last()
-            && s <= before
-        {
-            let why = format!("point {} runs back along the arc", k + 1);
-            return Err(refused(group[near].0, why));
-        }
-        if d > data.limit.radii[k] {
+        let (s, d) = found.foot(p, near(k));
+        let radius = data.limit.radii[k];
+        if d > radius {
             let why = format!("point {} stays {d:.3e} off the arc and its tangents", k + 1);
-            return Err(refused(group[near].0, why));
+            return Err(refused(group[near(k)].0, why));
         }
         feet.push(s);
+        rooms.push(ROOM * (radius * radius - d * d).sqrt());
     }
+    let feet = in_order(feet, &rooms).map_err(|k| {
+        let k = from + k;
+        let why = format!("point {} runs back along the arc", k + 1);
+        refused(group[near(k)].0, why)
+    })?;
     Ok((found, feet))
 }
+
+/// The share of the way that a tolerance leaves along a chain by which a point may be beside its foot.
+const ROOM: f64 = 0.9;
+
+/// Places that rise, each within its room of a foot: noise puts points that are near each other in the wrong
+/// order. The nearest in the sum of squares with a step between them (by pooling neighbours that violate the
+/// order: Ayer, Brunk, Ewing, Reid and Silverman 1955), the step as large as the rooms allow; else the first
+/// foot that runs back.
+fn in_order(feet: Vec<f64>, rooms: &[f64]) -> Result<Vec<f64>, usize> {
+    let Some(first) = (1..feet.len()).find(|&k| feet[k] <= feet[k - 1]) else { return Ok(feet) };
+    let least = rooms.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = rooms.iter().copied().fold(0.0, f64::max);
+    let mut step = if largest.is_finite() { largest } else { least };
+    for _ in 0..HALVINGS {
+        step *= 0.5;
+        // Blocks of one mean, with how many feet they have.
+        let mut blocks: Vec<(f64, usize)> = Vec::new();
+        for (k, s) in feet.iter().enumerate() {
+            blocks.push((s - step * k as f64, 1));
+            while let [.., a, b] = blocks[..]
+                && a.0 > b.0
+            {
+                blocks.truncate(blocks.len() - 2);
+                let count = a.1 + b.1;
+                blocks.push(((a.0 * a.1 as f64 + b.0 * b.1 as f64) / count as f64, count));
+            }
+        }
+        let means = blocks.iter().flat_map(|&(mean, count)| std::iter::repeat_n(mean, count));
+        let placed: Vec<f64> = means.enumerate().map(|(k, mean)| mean + step * k as f64).collect();
+        let within =
+            placed.iter().zip(&feet).zip(rooms).all(|((p, s), room)| (p - s).abs() <= *room);
+        if within && placed.windows(2).all(|w| w[0] < w[1]) {
+            return Ok(placed);
+        }
+    }
+    Err(first)
+}
+
+/// How often the step between places is halved.
+const HALVINGS: usize = 12;
 
 impl ShapeConstraints {
     /// The equations of lines and arcs, made linear at a curve, and whose they are.

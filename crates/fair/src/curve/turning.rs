@@ -255,8 +255,10 @@ impl<'a, T: Real> Smoothing<'a, T> {
             own > 0.0 && own.is_finite() && !open[i]
         };
         let pulling: Vec<usize> = (0..points.len()).filter(|&i| pulls(i)).collect();
-        let squared = pulling.iter().map(|&i| tolerances[i].re() * tolerances[i].re());
-        let mean = squared.sum::<f64>() / pulling.len().max(1) as f64;
+        // Weights are shares of the mean, which moves with the tolerances, too.
+        let squared = pulling.iter().map(|&i| tolerances[i] * tolerances[i]);
+        let whole = squared.fold(T::zero(), |s, x| s + x) / pulling.len().max(1) as f64;
+        let mean = whole.re();
         let weights: Vec<T> = layout
             .owner
             .iter()
@@ -272,7 +274,7 @@ impl<'a, T: Real> Smoothing<'a, T> {
                     } else if square.re() > mean * HEAVY || mean == 0.0 {
                         T::from(if mean == 0.0 { 1.0 } else { 1.0 / HEAVY })
                     } else {
-                        T::from(mean) / square
+                        whole / square
                     }
                 };
                 match owner {
@@ -286,7 +288,7 @@ impl<'a, T: Real> Smoothing<'a, T> {
             .collect();
         let counted = layout.owner.iter().map(|o| o.is_some_and(pulls)).collect::<Vec<_>>();
         let count = counted.iter().filter(|c| **c).count();
-        let target = T::from(budget * mean * count as f64 / 3.0);
+        let target = whole * budget * count as f64 / 3.0;
         let energy = Bands::of(space.space, &energy, |_| T::one());
         let squares = Bands::of(space.space, &values, |k| weights[k]);
         Ok(Self { space, sites, wanted, values, weights, energy, squares, counted, target })

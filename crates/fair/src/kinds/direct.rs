@@ -55,7 +55,7 @@ pub(crate) struct DirectResult<T> {
 }
 
 /// A spline before it is faired.
-struct Laid<T> {
+struct SplineToFair<T> {
     space: Space,
     control: Vec<Vec3<T>>,
     marks: Vec<usize>,
@@ -66,7 +66,7 @@ struct Laid<T> {
 }
 
 /// Points that moved, the certificate, tolerances that are reached by an optimum, and steps.
-struct Moved<T> {
+struct MovedControlPoints<T> {
     points: Vec<Vec3<T>>,
     certificate: Option<Certificate>,
     active: Option<usize>,
@@ -146,7 +146,7 @@ impl<T: Real> DirectCurve<T> {
         Ok(self.moved_points(points)?.points)
     }
 
-    fn moved_points(&self, points: &[Vec3<T>]) -> Result<Moved<T>, FairError> {
+    fn moved_points(&self, points: &[Vec3<T>]) -> Result<MovedControlPoints<T>, FairError> {
         let (n, degree) = (points.len(), self.intent.degree);
         let space = if self.intent.closed {
             Space::closed(degree, n)?
@@ -156,20 +156,20 @@ impl<T: Real> DirectCurve<T> {
             Space::floating(degree, n)?
         };
         let marks = indices(&self.intent.breaks, n)?;
-        let laid = Laid { space, control: points.to_vec(), marks, at: None, beside: false };
+        let laid = SplineToFair { space, control: points.to_vec(), marks, at: None, beside: false };
         let each = self.each(&laid, &[])?;
         self.within(&laid, &each)
     }
 
     /// The points as control points.
-    fn controlled(&self, points: &[Vec3<T>], marks: Vec<usize>) -> Result<Laid<T>, FairError> {
+    fn controlled(&self, points: &[Vec3<T>], marks: Vec<usize>) -> Result<SplineToFair<T>, FairError> {
         let (degree, n) = (self.intent.degree, points.len());
         let space = if self.intent.closed {
             self.own.ring(degree, n)?
         } else {
             self.own.space(degree, n)?
         };
-        Ok(Laid { space, control: points.to_vec(), marks, at: None, beside: false })
+        Ok(SplineToFair { space, control: points.to_vec(), marks, at: None, beside: false })
     }
 
     /// The spline through all points, with corners at marks.
@@ -178,10 +178,10 @@ impl<T: Real> DirectCurve<T> {
         points: &[Vec3<T>],
         spacing: ParameterSpacing,
         marks: &[usize],
-    ) -> Result<Laid<T>, FairError> {
+    ) -> Result<SplineToFair<T>, FairError> {
         let (degree, closed) = (self.intent.degree, self.intent.closed);
         let sharp = interpolate_with_corners(degree, points, spacing, closed, marks)?;
-        Ok(Laid {
+        Ok(SplineToFair {
             space: sharp.fit.space,
             control: sharp.points,
             marks: sharp.marks,
@@ -196,7 +196,7 @@ impl<T: Real> DirectCurve<T> {
         points: &[Vec3<T>],
         plain: &[Vec3<f64>],
         marks: &[usize],
-    ) -> Result<Laid<T>, FairError> {
+    ) -> Result<SplineToFair<T>, FairError> {
         let (degree, closed) = (self.intent.degree, self.intent.closed);
         let spacing = self.intent.spacing;
         let own = self.own.knots.is_some() || self.own.weights.is_some();
@@ -243,7 +243,7 @@ impl<T: Real> DirectCurve<T> {
             least_squares(degree, plain, self.count.unwrap_or(plain.len()), spacing, closed)?
         };
         let control = made.points.iter().map(|&p| Vec3::lifted(p)).collect();
-        Ok(Laid {
+        Ok(SplineToFair {
             space: made.space,
             control,
             marks: Vec::new(),
@@ -253,7 +253,7 @@ impl<T: Real> DirectCurve<T> {
     }
 
     /// The tolerance of each control point: of fits what they leave of those of the points near it.
-    fn each(&self, laid: &Laid<T>, plain: &[Vec3<f64>]) -> Result<Vec<T>, FairError> {
+    fn each(&self, laid: &SplineToFair<T>, plain: &[Vec3<f64>]) -> Result<Vec<T>, FairError> {
         let n = laid.control.len();
         let mut own = match (&self.tolerances, &laid.at) {
             (None, _) => vec![self.intent.tolerance; n],
@@ -288,8 +288,8 @@ impl<T: Real> DirectCurve<T> {
         Ok(own)
     }
 
-    fn within(&self, laid: &Laid<T>, tolerances: &[T]) -> Result<Moved<T>, FairError> {
-        let Laid { space, control: points, .. } = laid;
+    fn within(&self, laid: &SplineToFair<T>, tolerances: &[T]) -> Result<MovedControlPoints<T>, FairError> {
+        let SplineToFair { space, control: points, .. } = laid;
         let measure = self.intent.measure;
         // What an end keeps is counted in points where these move: with tangents, two of them.
         let end = |end: EndContinuity| match (self.role, end) {
@@ -339,7 +339,7 @@ impl<T: Real> DirectCurve<T> {
                 options.conditions = conditions;
                 let (points, best) = optimum_with(&job, &options, points, tolerances, &targets)?;
                 let (certificate, active) = (Some(best.certificate), Some(best.active));
-                Ok(Moved { points, certificate, active, steps: None })
+                Ok(MovedControlPoints { points, certificate, active, steps: None })
             }
             CurveMethod::Steps(mut options, steps) => {
                 if measure.norm() != RowNorm::Square {
@@ -358,7 +358,7 @@ impl<T: Real> DirectCurve<T> {
                     replay_with(&job, &options, &made.log, points, tolerances)?
                 };
                 let certificate = Some(gap(measure, &made.points)?);
-                Ok(Moved { points, certificate, active: None, steps: Some(made.steps) })
+                Ok(MovedControlPoints { points, certificate, active: None, steps: Some(made.steps) })
             }
             CurveMethod::Sweeps(count) | CurveMethod::Levels(count) => {
                 if measure.norm() != RowNorm::Square {
@@ -372,13 +372,13 @@ impl<T: Real> DirectCurve<T> {
                     _ => multilevel(&job, measure, count, u32::BITS)?,
                 };
                 let certificate = Some(gap(measure, &points)?);
-                Ok(Moved { points: lifted(points), certificate, active: None, steps: Some(count) })
+                Ok(MovedControlPoints { points: lifted(points), certificate, active: None, steps: Some(count) })
             }
         }
     }
 }
 
-impl<T: Real> Moved<T> {
+impl<T: Real> MovedControlPoints<T> {
     fn figures(&self, before: &[Vec3<T>]) -> FairFigures {
         let made = self.certificate.as_ref().map(|c| (c, self.active, self.steps));
         FairFigures::of_moves(moves(&self.points, before), made)

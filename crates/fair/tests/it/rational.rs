@@ -146,21 +146,23 @@ fn wrong_weights_and_knots_are_refused() {
         (fault.id, fault.field())
     };
     let control = || ("as", Value::text("control"));
-    assert_eq!(refused(vec![("weights", numbers(&weights))]), ("not-control", Some(10)));
-    assert_eq!(refused(vec![("knots", numbers(&knots))]), ("not-control", Some(11)));
+    let points_move = || ("as", Value::text("points"));
+    let own = vec![points_move(), ("weights", numbers(&weights))];
+    assert_eq!(refused(own), ("not-control", Some(10)));
+    let own = vec![points_move(), ("knots", numbers(&knots))];
+    assert_eq!(refused(own), ("not-control", Some(11)));
     let some = |w: &[f64]| refused(vec![control(), ("weights", numbers(w))]);
     assert_eq!(some(&weights[1..]), ("bad-weight", Some(10)));
     let mut zero = weights.clone();
     zero[3] = 0.0;
     assert_eq!(some(&zero), ("bad-weight", Some(10)));
-    let faithful =
-        vec![control(), ("weights", numbers(&weights)), ("mode", Value::text("faithful"))];
-    assert_eq!(refused(faithful), ("not-control", Some(10)));
+    let short = vec![control(), ("weights", numbers(&weights)), ("mode", Value::text("slow"))];
+    assert_eq!(refused(short), ("unknown-name", Some(6)));
     let some = |k: &[f64]| refused(vec![control(), ("knots", numbers(k))]);
     assert_eq!(some(&knots[1..]), ("bad-knots", Some(11)));
     let mut falling = knots.clone();
     falling.swap(5, 6);
     assert_eq!(some(&falling), ("bad-knots", Some(11)));
     let closed = vec![control(), ("knots", numbers(&knots)), ("closed", Value::Number(1.0))];
-    assert_eq!(refused(closed), ("not-control", Some(11)));
+    assert_eq!(refused(closed), ("bad-knots", Some(11)));
 }

@@ -152,3 +152,97 @@ fn the_nearest_of_a_measure_is_between_the_data_and_the_fairest() {
     assert!(matches!(run(Goal::Energy(0.5 * most / 1.5)), Err(FairError::Energy { .. })));
     assert_eq!(run(Goal::Closest).unwrap().points, near.original);
 }
+
+/// Flats and a bilge of random sizes with points at random places, some so near each other that noise puts
+/// them in the wrong order.
+#[test]
+fn midship_sections_at_random_places() {
+    let mut g = moldloft_testing::Random::new(77);
+    let count = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 600 } else { 60 };
+    let mut crossed = 0;
+    for _ in 0..count {
+        let (radius, half, depth) =
+            (g.between(0.5, 3.0), g.between(3.5, 10.0), g.between(3.5, 8.0));
+        let [on_flat, on_arc, on_side] = [0; 3].map(|_| 6 + g.below(8));
+        let mut along = |from: f64, to: f64, n: usize| {
+            let mut all: Vec<f64> = (2..n).map(|_| g.between(from, to)).collect();
+            all.extend([from, to]);
+            all.sort_by(f64::total_cmp);
+            all
+        };
+        let flat = along(0.0, half - radius, on_flat);
+        let side = along(radius, depth, on_side);
+        let bilge = (1..=on_arc).map(|k| {
+            let angle = std::f64::consts::FRAC_PI_2 * k as f64 / (on_arc + 1) as f64;
+            (half - radius + radius * angle.sin(), radius - radius * angle.cos())
+        });
+        let exact =
+            flat.iter().map(|&x| (x, 0.0)).chain(bilge).chain(side.iter().map(|&y| (half, y)));
+        let noise = 1e-3 * radius;
+        let points: Vec<Vec3<f64>> = exact
+            .collect::<Vec<_>>()
+            .into_iter()
+            .map(|(x, y)| {
+                let slip = noise / 2f64.sqrt();
+                Vec3::of(x + slip * g.between(-1.0, 1.0), y + slip * g.between(-1.0, 1.0), 0.0)
+            })
+            .collect();
+        let n = points.len();
+        let (i, j) = (on_flat - 1, on_flat + on_arc);
+        crossed += (0..i).filter(|&k| points[k + 1].x <= points[k].x).count();
+        crossed += (j..n - 1).filter(|&k| points[k + 1].y <= points[k].y).count();
+        let wanted = [
+            ShapeCondition::Straight { between: [0, i], along: None },
+            ShapeCondition::Arc { between: [i, j] },
+            ShapeCondition::Straight { between: [j, n - 1], along: None },
+        ];
+        let tolerance = 1.5 * noise;
+        let data = data_of(&points, tolerance, ParameterSpacing::Chord);
+        let (_, fit) = shaped(data, &wanted, Goal::Near(0.8)).unwrap();
+        assert!(fit.residuals.iter().all(|&r| r <= tolerance * (1.0 + 1e-9)));
+        assert!((fit.arcs[0].radius / radius - 1.0).abs() < 0.01, "{:?}", fit.arcs);
+    }
+    assert!(crossed > 0);
+}
+
+/// Straight runs and arcs beside breaks, before them, after them and across: the curve, or a reason.
+#[test]
+fn runs_beside_breaks() {
+    let mut g = Lcg::new(5);
+    let noise = 2e-3;
+    let points: Vec<Vec3<f64>> = (0..18)
+        .map(|k| {
+            let x = f64::from(k) / 17.0;
+            Vec3::of(x, 0.2 * x * x + 2.0 * noise * g.unit(), 0.0)
+        })
+        .collect();
+    let (mut made, mut refused) = (0, 0);
+    for first in 0..8 {
+        for length in [3, 5] {
+            for mark in 1..14 {
+                for arc in [false, true] {
+                    let between = [first, first + length];
+                    let wanted = if arc {
+                        ShapeCondition::Arc { between }
+                    } else {
+                        ShapeCondition::Straight { between, along: None }
+                    };
+                    let mut data = data_of(&points, 0.02, ParameterSpacing::Chord);
+                    let at = data.layout.at.clone();
+                    data.layout = InterpolationSpace::new(3, &at, &[mark], false).unwrap();
+                    match shaped(data, &[wanted], Goal::Fairest) {
+                        Ok((_, fit)) => {
+                            made += 1;
+                            let most = fit.residuals.iter().copied().fold(0.0, f64::max);
+                            assert!(most <= 0.02 * (1.0 + 1e-9), "{between:?} {mark} {arc}");
+                        }
+                        Err(FairError::Shapeless { .. } | FairError::Shape { .. }) => refused += 1,
+                        Err(FairError::Contradiction { .. }) => refused += 1,
+                        Err(other) => panic!("{between:?} {mark} {arc}: {other:?}"),
+                    }
+                }
+            }
+        }
+    }
+    assert!(made > 100 && refused > 100, "{made} {refused}");
+}
