@@ -325,5 +325,5 @@ fn faults_of_networks_name_their_argument() {
     let along = vec![("along", Value::Vector(Vec3::zero()))];
     assert_eq!(fault(Value::list([good.clone()]), along), ("zero-direction", Some(5), None));
     let mode = vec![("mode", Value::text("slow"))];
-    assert_eq!(fault(Value::list([good]), mode), ("unknown-name", Some(7), None));
+    assert_eq!(fault(Value::list([good]), mode), ("unknown-name", Some(8), None));
 }
