@@ -162,7 +162,11 @@ impl<T: Real> DirectCurve<T> {
     }
 
     /// The points as control points.
-    fn controlled(&self, points: &[Vec3<T>], marks: Vec<usize>) -> Result<SplineToFair<T>, FairError> {
+    fn controlled(
+        &self,
+        points: &[Vec3<T>],
+        marks: Vec<usize>,
+    ) -> Result<SplineToFair<T>, FairError> {
         let (degree, n) = (self.intent.degree, points.len());
         let space = if self.intent.closed {
             self.own.ring(degree, n)?
@@ -288,7 +292,11 @@ impl<T: Real> DirectCurve<T> {
         Ok(own)
     }
 
-    fn within(&self, laid: &SplineToFair<T>, tolerances: &[T]) -> Result<MovedControlPoints<T>, FairError> {
+    fn within(
+        &self,
+        laid: &SplineToFair<T>,
+        tolerances: &[T],
+    ) -> Result<MovedControlPoints<T>, FairError> {
         let SplineToFair { space, control: points, .. } = laid;
         let measure = self.intent.measure;
         // What an end keeps is counted in points where these move: with tangents, two of them.
@@ -358,7 +366,12 @@ impl<T: Real> DirectCurve<T> {
                     replay_with(&job, &options, &made.log, points, tolerances)?
                 };
                 let certificate = Some(gap(measure, &made.points)?);
-                Ok(MovedControlPoints { points, certificate, active: None, steps: Some(made.steps) })
+                Ok(MovedControlPoints {
+                    points,
+                    certificate,
+                    active: None,
+                    steps: Some(made.steps),
+                })
             }
             CurveMethod::Sweeps(count) | CurveMethod::Levels(count) => {
                 if measure.norm() != RowNorm::Square {
@@ -372,7 +385,12 @@ impl<T: Real> DirectCurve<T> {
                     _ => multilevel(&job, measure, count, u32::BITS)?,
                 };
                 let certificate = Some(gap(measure, &points)?);
-                Ok(MovedControlPoints { points: lifted(points), certificate, active: None, steps: Some(count) })
+                Ok(MovedControlPoints {
+                    points: lifted(points),
+                    certificate,
+                    active: None,
+                    steps: Some(count),
+                })
             }
         }
     }

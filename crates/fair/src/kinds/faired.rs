@@ -112,7 +112,6 @@ impl<T: Real> CurveOptions<T> {
     }
 
     /// A curve whose control points move.
-    #[expect(clippy::type_complexity, reason = "what was read of the options")]
     fn direct(
         &self,
         points: &[Vec3<T>],
@@ -354,7 +353,9 @@ impl<T: Real> CurveOptions<T> {
         let shape = shapes_of(self.shape.as_deref(), n, fields.shape)?;
         one_each("tolerances", self.tolerances.as_deref(), n, fields.tolerances)?;
         one_each("parameters", self.at.as_deref(), n, fields.at)?;
-        if let Some(k) = self.tolerances.iter().flatten().position(|t| !(t.re() >= 0.0)) {
+        if let Some(k) =
+            self.tolerances.iter().flatten().position(|t| t.re() < 0.0 || t.re().is_nan())
+        {
             return Err(CallError::new("out-of-range", "a tolerance is negative")
                 .expected("0 or more")
                 .in_item(k)
