@@ -39,6 +39,7 @@ struct CutOffSearch<'a> {
 struct CutOffRoom {
     points: Vec<Vec3>,
     samples: Vec<CutOffSample>,
+    seen: FxHashSet<[u32; 2]>,
     values: Vec<f64>,
     own: Vec<f64>,
     room: Room,
