@@ -42,7 +42,7 @@ pub fn remark<T: Scalar>(
         Value::Surface(surface) if turns_on(surface) => Some((
             "more-than-one-turn",
             "the surface turns by more than one turn and covers itself: area and volume count each turn",
-            "angles are in radians; `0, 2*pi` is a whole turn",
+            "angles are in radians; without them it is a whole turn",
         )),
         Value::Body(body) if is_flat(body) => Some((
             "zero-area",

@@ -36,9 +36,15 @@ pub enum Binary {
 /// How a primitive is made.
 pub(crate) enum Op<T: Real> {
     Real(T),
-    Plane { normal: Vec3<T>, offset: T },
+    Plane {
+        normal: Vec3<T>,
+        offset: T,
+    },
     /// The map is apart: few are from outside, and all expressions would be as large.
-    User { oracle: Arc<dyn Oracle<T>>, map: Box<Affine<T>> },
+    User {
+        oracle: Arc<dyn Oracle<T>>,
+        map: Box<Affine<T>>,
+    },
     Unary(Unary, Primitive<T>),
     Over(Primitive<T>, T),
     Power(Primitive<T>, u32),
