@@ -269,17 +269,15 @@ class Model(Floating, Adapted):
     def written(self) -> dict[str, bytes]:
         """What the program wrote, by file name; ``moldloft run`` puts it on the disk."""
         files = dict(self._document.written())
-        for name, blocks, joints, boundaries in self._document.written_for_cgns():
+        for name, blocks, joints, ends in self._document.written_for_cgns():
+            # CGNS is HDF5: the program left its blocks in Plot3D, the file is made here.
             from moldloft import _core, grids, volume_cgns
 
-            # CGNS is HDF5: the program left its blocks in Plot3D, the file is made here.
             found, _ = _core.read_plot3d(files[name])
             if found[0].shape[2] > 1:
-                title = Path(name).stem
-                files[name] = volume_cgns.write_grids(title, blocks, found, joints, boundaries)
-                continue
-            surfaces = [block[:, :, 0, :] for block in found]
-            files[name] = grids.cgns_bytes(name, surfaces, blocks)
+                files[name] = volume_cgns.write_grids(Path(name).stem, blocks, found, joints, ends)
+            else:
+                files[name] = grids.cgns_bytes(name, [b[:, :, 0, :] for b in found], blocks)
         return files
 
     def refine(self, times: int) -> None:
