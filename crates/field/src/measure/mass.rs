@@ -235,7 +235,12 @@ fn by_facets<T: Real>(
             budget: measure.budget.clone(),
             ..FacetOptions::new(Resolution::Level(level))
         };
-        let facets = memo.facet(solid, over, &options)?;
+        let facets = match memo.facet(solid, over, &options) {
+            // What the levels before show is what there is.
+            Err(FieldError::TooFine { .. }) if before.is_some() => break,
+            Err(FieldError::TooFine { .. }) => return Ok(None),
+            made => made?,
+        };
         let places = facets.unresolved.iter().filter(|u| u.missed);
         let (missed, held) = places.fold((0, 0.0), |(n, v), u| (n + 1, v + u.volume));
         let next = 4 * (facets.cells + missed);
