@@ -8033,7 +8033,7 @@ def FairSurf(
     degree : integer, optional
         Polynomial degree, in both directions or along u. 2 to 9, default 3.
     breaks_u : list of integer, optional
-        SparseRows (numbers of points along u, from 1) that are knuckle lines: their points
+        Rows (numbers of points along u, from 1) that are knuckle lines: their points
         stay, and nothing is smoothed across them. A surface through its points has a sharp edge
         there.
     breaks_v : list of integer, optional

@@ -5,7 +5,6 @@ Bodies as engineers draw them, prisms and turned polygons. MOLDLOFT_SOAK makes t
 
 from __future__ import annotations
 
-import math
 import os
 
 import numpy as np
@@ -13,7 +12,7 @@ import pytest
 
 import moldloft
 from random_sets import program
-from test_profiles import area_and_centre, around, closed, frame, star, triple
+from test_profiles import area_and_centre, around, closed, frame, star, triple, turned_body
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
 # What may go unsaid with cells of a thirty-second of the box, as parts of the volume and the size.
@@ -45,19 +44,7 @@ def test_a_body_has_the_figures_of_its_set(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(1000) if SOAK else [0, 2, 11, 18, 34, 38])
 def test_a_turned_body_has_the_volume_of_pappus(seed: int) -> None:
-    rng = np.random.default_rng([52, seed])
-    flat, turn, place = star(rng), frame(rng), rng.uniform(-3, 3, 3)
-    flat[:, 0] += 1.6 if seed % 3 else -1.6
-    points = np.column_stack([flat, np.zeros(len(flat))]) @ turn.T + place
-    axis = f"AbsPoint O({triple(place)[1:-1]});\nAbsPoint U({triple(place + turn[:, 1])[1:-1]});"
-    reach = np.array([4.0, 4.0, 4.0])
-    box = f"{triple(place - reach)}, {triple(place + 1.02 * reach)}"
-    model = moldloft.loads(
-        f"{closed(points)}\n{axis}\nLine l(O, U);\nset s = revolved(c, l);\n"
-        f"SetBody b(s, {box}, depth = 5);"
-    )
-    area, centre = area_and_centre(flat)
-    exact = 2 * math.pi * abs(float(centre[0])) * area
+    model, exact = turned_body(seed)
     sure, volume = known(model)
     # The other halves of cones cross faces of the body without being there.
     assert volume == pytest.approx(exact, rel=UNSAID if sure else 0.1)

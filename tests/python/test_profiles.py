@@ -77,8 +77,8 @@ def test_prisms_have_the_volume_of_the_shoelace_formula(seed: int) -> None:
     assert np.abs(np.array(model.eval("b.centroid")) - middle).max() < (1e-3 if blunt else 1e-8)
 
 
-@pytest.mark.parametrize("seed", range(60 if SOAK else 2))
-def test_bodies_of_revolution_have_the_volume_of_pappus(seed: int) -> None:
+def turned_body(seed: int) -> tuple[moldloft.Model, float]:
+    """A turned star `s` anywhere in space with its coarse body `b`, and its volume by Pappus."""
     rng = np.random.default_rng([52, seed])
     flat, turn, place = star(rng), frame(rng), rng.uniform(-3, 3, 3)
     flat[:, 0] += 1.6 if seed % 3 else -1.6
@@ -89,7 +89,12 @@ def test_bodies_of_revolution_have_the_volume_of_pappus(seed: int) -> None:
     text = f"{closed(points)}\n{axis}\nLine l(O, U);\nset s = revolved(c, l);"
     model = moldloft.loads(f"{text}\nSetBody b(s, {box}, depth = 5);")
     area, centre = area_and_centre(flat)
-    exact = 2 * math.pi * abs(float(centre[0])) * area
+    return model, 2 * math.pi * abs(float(centre[0])) * area
+
+
+@pytest.mark.parametrize("seed", range(60 if SOAK else 2))
+def test_bodies_of_revolution_have_the_volume_of_pappus(seed: int) -> None:
+    model, exact = turned_body(seed)
     # At this depth cells may not tell a corner from its neighbour, which is remarked.
     assert model.eval("b.volume") == pytest.approx(exact, rel=3e-2 if model.diagnostics else 1e-6)
     with warnings.catch_warnings(record=True) as said:

@@ -67,7 +67,7 @@ shared_options! {
         /// Polynomial degree, in both directions or along u.
         #[field(default = 3, min = 2, max = 9)]
         degree: usize,
-        /// SparseRows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
+        /// Rows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
         /// nothing is smoothed across them. A surface through its points has a sharp edge there.
         #[field(default)]
         breaks_u: Option<Vec<usize>>,
