@@ -8033,9 +8033,8 @@ def FairSurf(
     degree : integer, optional
         Polynomial degree, in both directions or along u. 2 to 9, default 3.
     breaks_u : list of integer, optional
-        Rows (numbers of points along u, from 1) that are knuckle lines: their points
-        stay, and nothing is smoothed across them. A surface through its points has a sharp edge
-        there.
+        Rows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
+        nothing is smoothed across them. A surface through its points has a sharp edge there.
     breaks_v : list of integer, optional
         The same along v.
     mode : text, optional

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 from moldloft import _core
 from moldloft.adapted import Adapted
 from moldloft.arguments import explain, names_of
-from moldloft.errors import Error, FileError, ModelError, UnknownNameError
+from moldloft.errors import Error, ModelError, UnknownNameError
 from moldloft.floating import Floating
 from moldloft.objects import object_of, wrapped
+from moldloft.writing import Writable
 
 if TYPE_CHECKING:
     import numpy as np
@@ -47,7 +47,7 @@ class Param:
     """True when it takes whole numbers only."""
 
 
-class Model(Floating, Adapted):
+class Model(Floating, Writable, Adapted):
     """A model: named objects that depend on each other, and the text that declares them.
 
     ``m["beam"]`` is a parameter's value and ``m["hull"]`` an object; ``m["beam"] = 4.5`` changes
@@ -680,278 +680,7 @@ class Model(Floating, Adapted):
         """
         return self._document.derivatives(names_of(expressions), names_of(by))
 
-    # -- writing ---------------------------------------------------------------------------
-
-    def write(
-        self,
-        path: str | os.PathLike[str],
-        *,
-        format: str | None = None,
-        lids: bool = False,
-        immersed: bool = False,
-        tags: str | Sequence[str] = (),
-        tolerance: float | None = None,
-        whole: bool = False,
-        triangles: bool = False,
-    ) -> list[Path]:
-        """Write the panels to a file, whole or not at all.
-
-        Parameters
-        ----------
-        path
-            The file, in a folder that exists.
-        format
-            One of :data:`moldloft.files.FORMATS`, such as ``gdf``, ``nemoh``, ``stl``, ``glb``,
-            ``vts``, ``svg`` or ``sdl``; by default what the file's name ends in.
-        lids
-            For panel codes: write lids too. HAMS has them in a file of their own.
-        immersed
-            For panel codes: write only what is below z = 0, its panels cut there. AQWA's file is
-            always cut.
-        tags
-            Only the patches that carry one of these tags; by default all.
-        tolerance
-            For ``gdf-high``, ``step``, ``iges``, ``3dm`` and ``dxf``: the largest error of fits,
-            by default 1e-6 of the model's diagonal (``gdf-high``: 1e-5). Surfaces that are
-            B-splines are exact.
-        whole
-            Both sides of a symmetric model, joined in its planes, in files of plain panels; by
-            default these hold one side. Files of panel codes name the planes instead.
-        triangles
-            Triangles only, in files of plain panels.
-
-        Returns
-        -------
-        list of pathlib.Path
-            The files written; some formats take several.
-
-        Raises
-        ------
-        FileError
-            When there is no such folder, or it cannot be written to.
-        FormatError
-            When the format is unknown or cannot hold the model.
-
-        Examples
-        --------
-        >>> import moldloft
-        >>> m = moldloft.loads('''
-        ... param float b = 2 in [1, 3];
-        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
-        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
-        ... ''')
-        >>> import tempfile, pathlib
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     [path.name for path in m.write(pathlib.Path(folder) / "plate.stl")]
-        ['plate.stl']
-        """
-        from moldloft.files import commit, ending, produce
-
-        path = Path(path)
-        if not path.parent.is_dir():
-            raise FileError(f"cannot write `{path}`: there is no folder `{path.parent}`")
-        wanted = format or ending(path)
-        names = [tags] if isinstance(tags, str) else list(tags)
-        files = produce(
-            self,
-            wanted,
-            path,
-            lids=lids,
-            immersed=immersed,
-            tolerance=tolerance,
-            tags=names,
-            whole=whole,
-            triangles=triangles,
-        )
-        return commit(path.parent, files, make=False)
-
-    def encoded(
-        self,
-        format: str,
-        name: str,
-        *,
-        lids: bool = False,
-        immersed: bool = False,
-        tags: Sequence[str] = (),
-        tolerance: float | None = None,
-        whole: bool = False,
-        triangles: bool = False,
-    ) -> dict[str, bytes]:
-        """The files of a format by name, without writing them; the first is called ``name``.
-
-        For the formats of the Rust table; :func:`moldloft.files.produce` takes all. Arguments as
-        for :meth:`write`.
-
-        Parameters
-        ----------
-        format
-            The name of a format, see :data:`moldloft.files.FORMATS`.
-        name
-            The name of the main file.
-        lids
-            Include lids.
-        immersed
-            Cut at z = 0 and keep what is below, for panel codes.
-        tags
-            Only patches with one of these tags; by default all.
-        tolerance
-            The largest error of fitted surfaces.
-        whole
-            Both sides of a symmetric model, in files of plain panels.
-        triangles
-            Triangles only, in files of plain panels.
-
-        Returns
-        -------
-        dict
-            The bytes of each file by its name.
-
-        Raises
-        ------
-        Error
-            When the format is unknown or cannot hold the model.
-
-        Examples
-        --------
-        >>> import moldloft
-        >>> m = moldloft.loads('''
-        ... param float b = 2 in [1, 3];
-        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
-        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
-        ... ''')
-        >>> sorted(m.encoded("off", "plate.off"))
-        ['plate.off']
-        """
-        files = self._document.write(
-            format, name, lids, immersed, list(tags), tolerance, whole, triangles
-        )
-        self._warn_of_export()
-        return dict(files)
-
-    @property
-    def export_remarks(self) -> list[_core.Diagnostic]:
-        """What the text or file that was written last does not keep of the model, or not exactly.
-
-        Notes, such as the error of fitted surfaces, are no warnings of Python.
-        """
-        return self._document.export_remarks()
-
-    def _warn_of_export(self) -> None:
-        for remark in self.export_remarks:
-            if remark.severity == "note":
-                continue
-            warnings.warn(str(remark), stacklevel=4)
-
     # -- for other packages ----------------------------------------------------------------
-
-    def picture(self, width: int = 1280, height: int = 720) -> bytes:
-        """A picture of the panels, contours and wires, as PNG.
-
-        Parameters
-        ----------
-        width, height
-            In points of the picture.
-
-        Returns
-        -------
-        bytes
-            The PNG file.
-
-        Raises
-        ------
-        ModelError
-            When a side is not 1 to 8192.
-
-        Examples
-        --------
-        >>> import moldloft
-        >>> m = moldloft.loads('''
-        ... param float b = 2 in [1, 3];
-        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
-        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
-        ... ''')
-        >>> m.picture(64, 48)[1:4]
-        b'PNG'
-        """
-        return bytes(self._document.picture(width, height))
-
-    def kind_picture(self, kind: str, width: int = 360, height: int = 240) -> bytes:
-        """A picture, as PNG, in which the objects of one kind stand out among the others.
-
-        Parameters
-        ----------
-        kind
-            The name of a kind.
-        width
-            Width of the picture, pixels.
-        height
-            Height of the picture, pixels.
-
-        Returns
-        -------
-        bytes
-            The PNG file.
-
-        Raises
-        ------
-        UnknownNameError
-            When there is no such kind.
-        ModelError
-            When a side is not 1 to 8192.
-
-        Examples
-        --------
-        >>> import moldloft
-        >>> m = moldloft.loads('''
-        ... param float b = 2 in [1, 3];
-        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, b, 0); AbsPoint D(4, b, 0);
-        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
-        ... ''')
-        >>> m.kind_picture("RuledSurf", 64, 48)[1:4]
-        b'PNG'
-        """
-        from moldloft.language import reference
-        from moldloft.spelling import nearest
-
-        known = [row["name"] for row in reference() if row["is_kind"]]
-        if kind not in known:
-            near = nearest(kind, known)
-            hint = f"; did you mean `{near}`?" if near else ""
-            raise UnknownNameError(f"unknown kind `{kind}`{hint}")
-        return bytes(self._document.portrait(kind, width, height))
-
-    def convert(self, to: str) -> str:
-        """The model's text in another form: ``"sdl"`` or ``"ms2"``.
-
-        A program becomes a model file of its objects. Parameters become ``Variable``, variables
-        that are assigned once ``Formula``, expressions of the main program in arguments ``[...]``;
-        what routines and loops compute becomes numbers. Arguments that have no column are
-        attributes ``A:Moldloft(name value)``. The text is read again, and refused where it makes
-        another object.
-
-        Parameters
-        ----------
-        to
-            ``"sdl"`` or ``"ms2"``.
-
-        Returns
-        -------
-        str
-            The text.
-
-        Raises
-        ------
-        Error
-            When ``to`` is another word, or an object would come back as another.
-
-        Warns
-        -----
-        UserWarning
-            Which objects have numbers that no longer follow the parameters.
-        """
-        text = self._document.convert(to)
-        self._warn_of_export()
-        return text
 
     def view(self, *, height: int = 600, follow: bool = True) -> Any:
         """The workbench's page in a notebook's cell: sliders, drags, typing, hydrostatics.
