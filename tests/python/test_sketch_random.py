@@ -7,6 +7,7 @@ result must be OCCT's, or refused by name.
 
 from __future__ import annotations
 
+import math
 import os
 
 import numpy as np
@@ -23,7 +24,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 
 from moldloft import Sketch, SketchError
-from sketch_parts import Drawn, Numbers, block, changed, drawn, measures
+from sketch_parts import Drawn, Numbers, bar, block, changed, drawn, measures
 from sketch_quadrature import block_of, joined, measured, moved, ring_about_z, turned_about_z
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
@@ -235,6 +236,27 @@ def test_a_corner_within_a_chord_of_another_face():
     assert part.words == ["SKETCH P0 2D XZ", "SKETCH P1 2D XZ", "CUT"]
     sketch[called[1, "B"]] = 4.1007214076613945
     assert sketch.area == pytest.approx(150.49635625249036, rel=1e-12)
+
+
+def test_a_block_on_its_edge_upon_a_bar_and_a_cut_of_both():
+    # The edge touches the bar's end face and crosses its circle within that plane: places on the
+    # chords there were vertices of what is made of the union, 2e-4 beside both.
+    sketch, rng = Sketch(), np.random.default_rng(3)
+    sketch.run(bar(rng, "A").text)
+    sketch["R"], sketch["H"] = 2.0, 5.0
+    sketch.run(block(rng, "B", "plain").text)
+    sketch["W"], sketch["D"], sketch["H"] = 7.0, 3.0, 2.0
+    sketch.run("ROTATE B X 30 FEATURE; MOVE B -0.5 2.37 5; UNION A B INTO U")
+    assert sketch.objects["U"]["volume"] == pytest.approx(20 * math.pi + 42, rel=1e-13)
+    sketch.run(block(rng, "E", "plain").text)
+    sketch["W"], sketch["D"], sketch["H"] = 1.0, 0.9, 20.0
+    sketch.run("MOVE E 5 3 0; CUT U E INTO V")
+    cut = 0.9 * 2 / math.cos(math.radians(30))
+    assert sketch.objects["V"]["volume"] == pytest.approx(20 * math.pi + 42 - cut, rel=1e-13)
+    places = np.array([p["at"] for p in sketch.objects["V"]["points"]])
+    across = math.sqrt(4 - 0.37**2)
+    for x in (2 - across, 2 + across):
+        assert np.abs(places - [x, 2.37, 5]).max(axis=1).min() < 1e-14
 
 
 def test_quadrature_has_the_closed_forms():

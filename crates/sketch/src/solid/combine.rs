@@ -502,17 +502,24 @@ impl<'a, T: Real> Placing<'a, T> {
             (own.min(other), own.max(other), edge)
         };
         let mut corners: BTreeSet<u32> = BTreeSet::new();
+        // Edges of bodies that touch may pass through a point in which no loop turns into another edge.
+        let mut passing: HashMap<u32, Kind> = HashMap::new();
         for (f, face) in faces.iter().enumerate() {
             for c in &face.loops {
                 let n = c.len();
-                let kinds: Vec<Kind> = (0..n).map(|k| kind(c[k], c[(k + 1) % n], f)).collect();
-                let mut any = false;
                 for k in 0..n {
-                    if kinds[k] != kinds[(k + n - 1) % n] {
-                        corners.insert(c[k]);
-                        any = true;
+                    let kind = kind(c[k], c[(k + 1) % n], f);
+                    for v in [c[k], c[(k + 1) % n]] {
+                        if *passing.entry(v).or_insert(kind) != kind {
+                            corners.insert(v);
+                        }
                     }
                 }
+            }
+        }
+        for face in faces {
+            for c in &face.loops {
+                let any = c.iter().any(|v| corners.contains(v));
                 if !any {
                     // A closed edge: its lowest point is its vertex.
                     corners.extend(c.iter().min());
