@@ -5,6 +5,7 @@
 
 use crate::optimum::band::Band;
 use crate::optimum::problem::{Active, CertifiedSolution, NONE, Problem, UnknownOrder};
+use crate::optimum::schur::{Schur, met};
 use crate::optimum::second_order_cone::{ConeScaling, Pair, V, axpy, dot};
 use crate::optimum::squares_bound::{BoundStep, SquaresBound};
 use crate::{FairError, RowNorm, SparseRows};
@@ -419,7 +420,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
     }
 
     /// Solves with the factored matrix, in place.
-    fn inverse(&self, band: &Band, x: &mut [f64]) {
+    pub fn inverse(&self, band: &Band, x: &mut [f64]) {
         band.solve(x);
         if let Some(squares) = &self.squares {
             squares.correct(x);
@@ -752,98 +753,28 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
     }
 }
 
-/// The left side of a condition.
-fn met<const D: usize>(condition: &LinearConstraint<D>, x: &[V<D>]) -> f64 {
-    condition.entries.iter().map(|(i, factor)| dot(*factor, x[*i])).sum()
+/// The iterate with the least gap of those that meet what is asked.
+struct BestIterate<const D: usize> {
+    gap: f64,
+    x: Vec<V<D>>,
+    cones: Vec<ConeScaling<D>>,
+    nu: Vec<f64>,
+    /// Slack and force of each half-space.
+    halves: Vec<(f64, f64)>,
 }
 
-/// The dense system of the conditions' multipliers.
-pub(crate) struct Schur {
-    /// Solutions of the band matrix for each condition.
-    columns: Vec<Vec<f64>>,
-    /// Conditions over the unknowns.
-    rows: Vec<Vec<f64>>,
-    matrix: Vec<f64>,
-}
-
-impl Schur {
-    pub fn new<const D: usize>(state: &InteriorPointState<D>, band: &Band) -> Self {
-        let row = |c: &LinearConstraint<D>| {
-            let mut by_point = vec![[0.0; D]; state.x.len()];
-            for (i, factor) in &c.entries {
-                axpy(&mut by_point[*i], 1.0, *factor);
-            }
-            by_point.as_flattened().to_vec()
-        };
-        let rows: Vec<Vec<f64>> = state.conditions.iter().map(row).collect();
-        let columns: Vec<Vec<f64>> = rows
-            .iter()
-            .map(|row| {
-                let mut y = row.clone();
-                state.inverse(band, &mut y);
-                y
-            })
-            .collect();
-        let m = rows.len();
-        let mut matrix = vec![0.0; m * m];
-        for i in 0..m {
-            for j in 0..m {
-                matrix[i * m + j] = rows[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum();
-            }
-        }
-        // Conditions that repeat each other leave a singular matrix: a trace of weight decides.
-        for i in 0..m {
-            matrix[i * m + i] *= 1.0 + 1e-13;
-        }
-        Self { columns, rows, matrix }
+impl<const D: usize> BestIterate<D> {
+    fn of(state: &InteriorPointState<D>, gap: f64) -> Self {
+        let halves = state.halves.iter().map(|h| (h.slack, h.force)).collect();
+        let (x, cones, nu) = (state.x.clone(), state.cones.clone(), state.nu.clone());
+        Self { gap, x, cones, nu, halves }
     }
 
-    /// Turns the unconstrained direction into one that meets the conditions; returns their
-    /// multipliers.
-    pub fn solve<const D: usize>(
-        &self,
-        state: &InteriorPointState<D>,
-        now: &[V<D>],
-        x: &mut [f64],
-    ) -> Vec<f64> {
-        let m = self.rows.len();
-        if m == 0 {
-            return Vec::new();
+    fn restore(self, state: &mut InteriorPointState<D>) {
+        (state.x, state.cones, state.nu) = (self.x, self.cones, self.nu);
+        for (half, (slack, force)) in state.halves.iter_mut().zip(self.halves) {
+            (half.slack, half.force) = (slack, force);
         }
-        let mut nu: Vec<f64> = (0..m)
-            .map(|k| {
-                let here: f64 = self.rows[k].iter().zip(&*x).map(|(a, b)| a * b).sum();
-                here - (state.conditions[k].value - met(&state.conditions[k], now))
-            })
-            .collect();
-        let mut matrix = self.matrix.clone();
-        if moldloft_num::solve_dense(&mut matrix, &mut nu).is_err() {
-            return vec![0.0; m];
-        }
-        for (column, nu) in self.columns.iter().zip(&nu) {
-            for (x, y) in x.iter_mut().zip(column) {
-                *x -= nu * y;
-            }
-        }
-        nu
-    }
-
-    /// The same for a direction of numbers of any kind, whose conditions should come to `wanted`.
-    pub fn answer<T: Real>(&self, wanted: &[T], x: &mut [T]) -> Vec<T> {
-        let short = |(row, &wanted): (&Vec<f64>, &T)| {
-            row.iter().zip(&*x).fold(T::zero(), |s, (a, b)| s + *b * *a) - wanted
-        };
-        let mut nu: Vec<T> = self.rows.iter().zip(wanted).map(short).collect();
-        let mut matrix: Vec<T> = self.matrix.iter().map(|&a| T::from(a)).collect();
-        if moldloft_num::solve_dense(&mut matrix, &mut nu).is_err() {
-            return vec![T::zero(); nu.len()];
-        }
-        for (column, nu) in self.columns.iter().zip(&nu) {
-            for (x, y) in x.iter_mut().zip(column) {
-                *x -= *nu * *y;
-            }
-        }
-        nu
     }
 }
 
@@ -874,11 +805,13 @@ pub(crate) fn solve<const D: usize>(
     if state.unknowns() == 0 {
         return Ok(state.solution(iterations));
     }
-    let mut best: Option<(f64, Vec<V<D>>, Vec<ConeScaling<D>>, Vec<f64>)> = None;
+    let mut best: Option<BestIterate<D>> = None;
     let (cones, halves) = (state.cones.len(), state.halves.len());
     let mut affine = NewtonDirection::zero(state.unknowns(), cones, halves);
     let mut corrected = NewtonDirection::zero(state.unknowns(), cones, halves);
     let mut idle = 0;
+    // The complementarity when it last rose or had been halved.
+    let mut turned = f64::INFINITY;
     let mut shows = SHOWS;
     while iterations < MOST_ITERATIONS {
         iterations += 1;
@@ -917,12 +850,19 @@ pub(crate) fn solve<const D: usize>(
             break;
         }
         let meets = missed <= 1e-9;
-        if meets && best.as_ref().is_none_or(|b| gap < b.0) {
+        // Half-spaces may be met by chance, long before the search is near: as long as it goes on, it is not idle.
+        let mu = state.complementarity();
+        let nears = halves > 0 && mu < 0.5 * turned;
+        if nears || mu > turned {
+            turned = mu;
+        }
+        if meets && best.as_ref().is_none_or(|b| gap < b.gap) {
             // Better by a hair is no better.
-            idle = if best.as_ref().is_some_and(|b| gap > 0.99 * b.0) { idle + 1 } else { 0 };
-            best = Some((gap, state.x.clone(), state.cones.clone(), state.nu.clone()));
+            let hair = best.as_ref().is_some_and(|b| gap > 0.99 * b.gap);
+            idle = if hair && !nears { idle + 1 } else { 0 };
+            best = Some(BestIterate::of(&state, gap));
         } else {
-            idle += 1;
+            idle = if nears { 0 } else { idle + 1 };
         }
         let rounded = state.complementarity() <= ROUNDING * gap;
         // Half-spaces are entered step by step.
@@ -947,8 +887,9 @@ pub(crate) fn solve<const D: usize>(
             break;
         }
     }
-    if let Some((gap, x, cones, nu)) = best {
-        (state.x, state.cones, state.nu) = (x, cones, nu);
+    if let Some(best) = best {
+        let gap = best.gap;
+        best.restore(&mut state);
         if state.polished() && state.unknowns() <= POLISHED {
             // Where rounding ends the search early, the limits that are reached may show all the same.
             let kept = (state.x.clone(), state.cones.clone(), state.nu.clone());

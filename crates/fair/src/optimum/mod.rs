@@ -7,6 +7,7 @@ pub(crate) mod goal;
 mod interior_point;
 mod polish;
 pub(crate) mod problem;
+mod schur;
 mod second_order_cone;
 mod squares_bound;
 

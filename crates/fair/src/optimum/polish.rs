@@ -10,8 +10,9 @@
 
 use crate::SparseRows;
 use crate::optimum::band::Band;
-use crate::optimum::interior_point::{InteriorPointState, Schur, add_block, apply, spread};
+use crate::optimum::interior_point::{InteriorPointState, add_block, apply, spread};
 use crate::optimum::problem::Active;
+use crate::optimum::schur::Schur;
 use crate::optimum::second_order_cone::{V, axpy, dot};
 use moldloft_num::Real;
 

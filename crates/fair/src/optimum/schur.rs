@@ -1,0 +1,101 @@
+//! The dense system of the conditions' multipliers.
+
+use crate::optimum::band::Band;
+use crate::optimum::interior_point::{InteriorPointState, LinearConstraint};
+use crate::optimum::second_order_cone::{V, axpy, dot};
+use moldloft_num::Real;
+
+/// The left side of a condition.
+pub(crate) fn met<const D: usize>(condition: &LinearConstraint<D>, x: &[V<D>]) -> f64 {
+    condition.entries.iter().map(|(i, factor)| dot(*factor, x[*i])).sum()
+}
+
+/// The dense system of the conditions' multipliers.
+pub(crate) struct Schur {
+    /// Solutions of the band matrix for each condition.
+    columns: Vec<Vec<f64>>,
+    /// Conditions over the unknowns.
+    rows: Vec<Vec<f64>>,
+    matrix: Vec<f64>,
+}
+
+impl Schur {
+    pub fn new<const D: usize>(state: &InteriorPointState<D>, band: &Band) -> Self {
+        let row = |c: &LinearConstraint<D>| {
+            let mut by_point = vec![[0.0; D]; state.x.len()];
+            for (i, factor) in &c.entries {
+                axpy(&mut by_point[*i], 1.0, *factor);
+            }
+            by_point.as_flattened().to_vec()
+        };
+        let rows: Vec<Vec<f64>> = state.conditions.iter().map(row).collect();
+        let columns: Vec<Vec<f64>> = rows
+            .iter()
+            .map(|row| {
+                let mut y = row.clone();
+                state.inverse(band, &mut y);
+                y
+            })
+            .collect();
+        let m = rows.len();
+        let mut matrix = vec![0.0; m * m];
+        for i in 0..m {
+            for j in 0..m {
+                matrix[i * m + j] = rows[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum();
+            }
+        }
+        // Conditions that repeat each other leave a singular matrix: a trace of weight decides.
+        for i in 0..m {
+            matrix[i * m + i] *= 1.0 + 1e-13;
+        }
+        Self { columns, rows, matrix }
+    }
+
+    /// Turns the unconstrained direction into one that meets the conditions; returns their
+    /// multipliers.
+    pub fn solve<const D: usize>(
+        &self,
+        state: &InteriorPointState<D>,
+        now: &[V<D>],
+        x: &mut [f64],
+    ) -> Vec<f64> {
+        let m = self.rows.len();
+        if m == 0 {
+            return Vec::new();
+        }
+        let mut nu: Vec<f64> = (0..m)
+            .map(|k| {
+                let here: f64 = self.rows[k].iter().zip(&*x).map(|(a, b)| a * b).sum();
+                here - (state.conditions[k].value - met(&state.conditions[k], now))
+            })
+            .collect();
+        let mut matrix = self.matrix.clone();
+        if moldloft_num::solve_dense(&mut matrix, &mut nu).is_err() {
+            return vec![0.0; m];
+        }
+        for (column, nu) in self.columns.iter().zip(&nu) {
+            for (x, y) in x.iter_mut().zip(column) {
+                *x -= nu * y;
+            }
+        }
+        nu
+    }
+
+    /// The same for a direction of numbers of any kind, whose conditions should come to `wanted`.
+    pub fn answer<T: Real>(&self, wanted: &[T], x: &mut [T]) -> Vec<T> {
+        let short = |(row, &wanted): (&Vec<f64>, &T)| {
+            row.iter().zip(&*x).fold(T::zero(), |s, (a, b)| s + *b * *a) - wanted
+        };
+        let mut nu: Vec<T> = self.rows.iter().zip(wanted).map(short).collect();
+        let mut matrix: Vec<T> = self.matrix.iter().map(|&a| T::from(a)).collect();
+        if moldloft_num::solve_dense(&mut matrix, &mut nu).is_err() {
+            return vec![T::zero(); nu.len()];
+        }
+        for (column, nu) in self.columns.iter().zip(&nu) {
+            for (x, y) in x.iter_mut().zip(column) {
+                *x -= *nu * *y;
+            }
+        }
+        nu
+    }
+}
