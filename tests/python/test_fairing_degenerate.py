@@ -129,3 +129,10 @@ def test_surfaces_and_networks(seed):
             is_what_it_says(faired, points.reshape(own.shape), tol, size)
             done += 1
     assert done > 2
+
+
+def test_points_in_one_place_are_counted_by_places():
+    for points, places in [([[1.0, 2, 3]] * 9, 1), ([[0.0, 0], [0, 0], [1, 1], [1, 1], [2, 0]], 3)]:
+        wanted = f"at least 4 different places .* found {places}: of {len(points)} points"
+        with pytest.raises(moldloft.FairingError, match=wanted):
+            moldloft.fair(points, 1e-3)
