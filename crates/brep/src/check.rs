@@ -1,6 +1,6 @@
 //! Shells: which faces hang together, whether they close, and what is wrong with them.
 
-use crate::{Brep, Coedge, Shell, SurfaceShape};
+use crate::{Brep, BrepFace, Coedge, Shell, SurfaceShape};
 use moldloft_num::Vec3;
 
 /// What counts of a shell.
@@ -104,6 +104,47 @@ impl Brep {
             }
         }
         Some(sum / 6.0)
+    }
+
+    /// Plane faces that are less than `width` across, by number, with a place of each: their area over half their
+    /// border. Of such faces between fitted edges it is not known whether these cross.
+    pub fn thin_faces(&self, width: f64) -> Vec<(usize, Vec3)> {
+        let thin = |(f, face): (usize, &BrepFace)| {
+            let SurfaceShape::Plane { normal, .. } = face.surface else { return None };
+            let first = face.loops.first()?.first()?;
+            let place = self.vertices[self.edges[first.edge].ends[0]];
+            let (mut area, mut border) = (0.0, 0.0);
+            for side in face.loops.iter().flatten() {
+                let (twice, length) = self.swept(side.edge, place, normal);
+                area += if side.forward { twice } else { -twice };
+                border += length;
+            }
+            (0.5 * area.abs() <= 0.5 * border * width).then_some((f, place))
+        };
+        self.faces.iter().enumerate().filter_map(thin).collect()
+    }
+
+    /// Twice the area that the way from a place to an edge sweeps, and the edge's length.
+    fn swept(&self, edge: usize, place: Vec3, normal: Vec3) -> (f64, f64) {
+        const STEPS: usize = 16;
+        let curve = &self.edges[edge].curve;
+        let mut knots = curve.knots[0].clone();
+        knots.dedup();
+        let (mut sum, mut length) = (0.0, 0.0);
+        for span in knots.windows(2) {
+            let at = |k: usize| span[0] + (span[1] - span[0]) * k as f64 / STEPS as f64;
+            let points: Vec<Vec3> = curve.grid(&[(0..=STEPS).map(at).collect()]);
+            let by = |stride: usize| -> f64 {
+                let ends =
+                    (stride..=STEPS).step_by(stride).map(|k| [points[k - stride], points[k]]);
+                ends.map(|[p, q]| (p - place).cross(q - place).dot(normal)).sum()
+            };
+            // Chords of half the length miss a quarter of the area.
+            let (coarse, fine) = (by(2), by(1));
+            sum += fine + (fine - coarse) / 3.0;
+            length += points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
+        }
+        (sum, length)
     }
 
     /// The counts of a shell.

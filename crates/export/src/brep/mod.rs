@@ -180,6 +180,29 @@ pub(crate) fn fitted(brep: &Brep, document: &Document) -> Option<Diagnostic> {
     Some(Diagnostic::remark("fitted-surfaces", message).help("`tolerance` asks for less, or more"))
 }
 
+/// Plane faces that are thinner than fits are exact: which of their edges come first is not known there, and programs
+/// that test for it find the file invalid.
+pub(crate) fn thin(brep: &Brep, document: &Document) -> Option<Diagnostic> {
+    let error = brep.error().max(brep.gap);
+    if brep.exact() {
+        return None;
+    }
+    let found = brep.thin_faces(error);
+    let &(face, place) = found.first()?;
+    let name = brep.faces[face].name.split('.').next().unwrap_or("");
+    let unit = length_unit(document).0;
+    let faces = if found.len() == 1 { "1 plane face is" } else { "plane faces are" };
+    let count = if found.len() == 1 { String::new() } else { format!("{} ", found.len()) };
+    let message =
+        format!("`{name}`: {count}{faces} thinner than the accuracy of fits, {error:.2e} {unit}");
+    let remark = Diagnostic::warning("thin-faces", message)
+        .found(format!("the first near ({:.6}, {:.6}, {:.6})", place.x, place.y, place.z))
+        .help(
+            "another `tolerance` may leave none; else check the file in the program that reads it",
+        );
+    Some(remark)
+}
+
 /// The metres of the model's unit.
 pub(crate) fn metres(document: &Document) -> f64 {
     length_unit(document).1 / 1000.0

@@ -1,6 +1,6 @@
 //! The shape itself as IGES.
 
-use crate::brep::{brep, fitted, metres};
+use crate::brep::{brep, fitted, metres, thin};
 use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_brep::SurfaceShape;
@@ -31,7 +31,8 @@ fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
         )
         .help("programs make these anew, and may read a face that crosses its seam wrongly; STEP holds the same faces")
     });
-    let reported = fitted(&brep, export.document).into_iter().chain(in_space).collect();
+    let reported = [thin(&brep, export.document), fitted(&brep, export.document), in_space];
+    let reported = reported.into_iter().flatten().collect();
     export.document.set_export_remarks(reported);
     let metres = metres(export.document);
     let header = IgesHeader { title: &stem, metres, version: env!("CARGO_PKG_VERSION") };

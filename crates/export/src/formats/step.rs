@@ -1,6 +1,6 @@
 //! The shape itself as STEP.
 
-use crate::brep::{brep_or_facets, fitted, metres};
+use crate::brep::{brep_or_facets, fitted, metres, thin};
 use crate::format::{Format, Holds};
 use crate::{Export, ExportFailure};
 use moldloft_diag::Diagnostic;
@@ -39,7 +39,10 @@ fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, ExportFailure> {
             None => remark,
         }
     });
-    let reported = reported.chain(fitted(&brep, export.document)).collect();
+    let reported = reported
+        .chain(thin(&brep, export.document))
+        .chain(fitted(&brep, export.document))
+        .collect();
     export.document.set_export_remarks(reported);
     let header = StepHeader {
         title: &stem,
