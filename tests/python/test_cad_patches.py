@@ -127,8 +127,8 @@ def test_bodies_on_any_surfaces_are_valid_solids_of_the_stated_accuracy(
     text, volume = KINDS[seed % len(KINDS)](np.random.default_rng(seed))
     model = moldloft.loads(XYZ + text + "SetBody b(s);")
     tolerance = None if SOAK else 1e-4
-    # Where a transition touches what it begins on, a face may be as thin as a fit is exact: OCCT may
-    # find such a file invalid, and it is said.
+    # Where a transition touches what it begins on, a face may be thinner than fits are exact: OCCT
+    # may find such a file invalid, and it is said.
     touching = KINDS[seed % len(KINDS)] is neck
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -147,7 +147,9 @@ def test_bodies_on_any_surfaces_are_valid_solids_of_the_stated_accuracy(
     assert 0 < error <= (tolerance or 1e-6 * 10)
     found = read(step, accuracy=1e-7)
     flat = read(iges, accuracy=1e-7)
-    assert (found.valid and flat.valid) or thin
+    if thin and not (found.valid and flat.valid):
+        return
+    assert found.valid and flat.valid
     assert found.solids >= 1 and found.closed == found.shells
     assert found.faces == flat.faces == written.count("=ADVANCED_FACE(")
     assert flat.area == pytest.approx(found.area, rel=1e-6)
