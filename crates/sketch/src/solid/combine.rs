@@ -417,6 +417,16 @@ const MOST_FACETS: usize = 200_000;
 /// Two faces beside a side, and the edge of a body that it is part of.
 pub(super) type Kind = (usize, usize, Option<(usize, u32)>);
 
+/// Whether edges cross in a point, by its sides: two have no neighbour in common.
+fn crosses(sides: &BTreeSet<(Kind, u32)>) -> bool {
+    let mut by_edge: BTreeMap<Kind, BTreeSet<u32>> = BTreeMap::new();
+    for &(kind, end) in sides {
+        by_edge.entry(kind).or_default().insert(end);
+    }
+    let ends: Vec<&BTreeSet<u32>> = by_edge.values().collect();
+    (1..ends.len()).any(|k| (0..k).any(|j| ends[j].is_disjoint(ends[k])))
+}
+
 /// Placing of the result of an arrangement.
 pub(super) struct Placing<'a, T> {
     pub(super) all: &'a Facetted<T>,
@@ -502,21 +512,25 @@ impl<'a, T: Real> Placing<'a, T> {
             (own.min(other), own.max(other), edge)
         };
         let mut corners: BTreeSet<u32> = BTreeSet::new();
-        // Edges of bodies that touch may pass through a point in which no loop turns into another edge.
-        let mut passing: HashMap<u32, Kind> = HashMap::new();
+        // The sides at each point, by the other end.
+        let mut sides: BTreeMap<u32, BTreeSet<(Kind, u32)>> = BTreeMap::new();
         for (f, face) in faces.iter().enumerate() {
             for c in &face.loops {
                 let n = c.len();
+                let kinds: Vec<Kind> = (0..n).map(|k| kind(c[k], c[(k + 1) % n], f)).collect();
                 for k in 0..n {
-                    let kind = kind(c[k], c[(k + 1) % n], f);
-                    for v in [c[k], c[(k + 1) % n]] {
-                        if *passing.entry(v).or_insert(kind) != kind {
-                            corners.insert(v);
-                        }
+                    if kinds[k] != kinds[(k + n - 1) % n] {
+                        corners.insert(c[k]);
                     }
+                    let (a, b) = (c[k], c[(k + 1) % n]);
+                    sides.entry(a).or_default().insert((kinds[k], b));
+                    sides.entry(b).or_default().insert((kinds[k], a));
                 }
             }
         }
+        // Where bodies touch, an edge of one crosses one of the other though no loop turns from it into that one. Edges
+        // that run together through a point do not cross there.
+        corners.extend(sides.iter().filter(|(_, own)| crosses(own)).map(|(v, _)| *v));
         for face in faces {
             for c in &face.loops {
                 let any = c.iter().any(|v| corners.contains(v));
