@@ -25,6 +25,8 @@ def known(model: moldloft.Model) -> tuple[bool, float]:
     return not flaws & {d.id for d in model.diagnostics}, model.eval("b.volume")
 
 
+# What is not known is `uncertain`.
+@pytest.mark.filterwarnings("ignore:.*volume-uncertain")
 # Of the quick ones, some have corners that pass between the corners of cells.
 @pytest.mark.parametrize("seed", range(2200) if SOAK else [3, 8, 20, 47, 69, 123, 190, 212])
 def test_a_body_has_the_figures_of_its_set(seed: int) -> None:

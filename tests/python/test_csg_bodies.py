@@ -28,6 +28,7 @@ from OCP.BRepPrimAPI import (
 )
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.GProp import GProp_GProps
+from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 from OCP.TopoDS import TopoDS_Shape
 
 SOAK = os.environ.get("MOLDLOFT_SOAK") == "1"
@@ -122,12 +123,21 @@ def heights(facets: im.Facets) -> Floats:
     return area / sides.max(axis=0) ** 2
 
 
-# Judges where OCCT's solid is not the one that was meant.
-def sampled(part: im.Set, low: Floats, high: Floats) -> float:
-    points = np.random.default_rng(0).uniform(low, high, (400_000, 3))
-    return float((part(points) < 0).mean() * np.prod(high - low))
+def nearer(part: im.Set, ours: float, theirs: float) -> bool:
+    """Random points judge where OCCT's solid is not the one that was meant."""
+    low, high = np.array(part.bounds())
+    box, rng = float(np.prod(high - low)), np.random.default_rng(0)
+    inside = count = 0
+    while count < 200_000_000:
+        points = rng.uniform(low, high, (1_000_000, 3))
+        inside, count = inside + int((part(points) < 0).sum()), count + len(points)
+        share = inside / count
+        if box * math.sqrt(share * (1 - share) / count) < abs(ours - theirs) / 8:
+            break
+    return abs(box * inside / count - ours) < abs(box * inside / count - theirs)
 
 
+@pytest.mark.filterwarnings("ignore:.*volume-uncertain")
 @pytest.mark.parametrize("seed", range(COUNT))
 def test_a_random_body_beside_occt(seed: int) -> None:
     part, shape = body(seed)
@@ -136,15 +146,16 @@ def test_a_random_body_beside_occt(seed: int) -> None:
     assert low <= mass.volume <= high
     if mass.volume < 1e-4:
         return
-    if abs(mass.volume / exact - 1) > 1e-3:
-        exact = sampled(part, *part.bounds())
-        assert mass.volume == pytest.approx(exact, rel=2e-2)
+    if abs(mass.volume / exact - 1) > 1e-4:
+        assert nearer(part, mass.volume, exact)
         return
     # OCCT keeps to a tolerance, 1e-7 along all edges.
     assert low <= exact + 1e-6 and high >= exact - 1e-6
-    # OCCT's own edges are off by some 1e-6, too.
-    assert abs(mass.volume - exact) <= 3e-6 * exact + mass.uncertain
     facets = part.facets(depth=6)
+    # OCCT's own edges are off by some 1e-6, too; where by more, its shape says so.
+    loose = ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1)
+    slack = max(3e-6 * exact, loose * facets.area if loose > 1e-6 else 0)
+    assert abs(mass.volume - exact) <= slack + mass.uncertain
     assert facets.closed and facets.manifold and not facets.undecided and facets.crossings() == 0
     assert heights(facets).min() > 1e-9
     # What facets leave out is said.

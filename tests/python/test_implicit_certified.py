@@ -44,6 +44,29 @@ def test_what_is_too_thin_is_listed_or_refused():
         plate.facets(accuracy=1e-5)
 
 
+def test_a_volume_that_is_not_known_as_well_as_asked_is_warned_of():
+    # Faces that touch in a point leave a cusp thinner than any cell.
+    touching = im.Set(im.sphere((0, 0, 0), 1)) & -im.Set(im.sphere((0.5, 0, 0), 0.5))
+    with pytest.warns(UserWarning, match=r"volume-uncertain\]: the volume is known to") as caught:
+        mass = touching.mass()
+    assert caught[0].filename == __file__
+    assert mass.uncertain > 1e-6 * mass.volume
+    assert abs(mass.volume - 7 / 6 * math.pi) <= mass.uncertain
+
+
+def test_a_volume_of_facets_with_edges_cut_off_is_warned_of():
+    # Corners of a curved profile are none of the set's edges.
+    model = moldloft.loads(
+        "AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(1, 1, 0); Arc a(A, C, B);"
+        "Line l(B, A); PolyCurve c({a, l}); set s = extruded(c, {0, 0, 1});"
+    )
+    facets = model["s"].value.facets((-1, -1, -0.1), (3.1, 2, 1.2), depth=4)
+    assert facets.blunt and facets.volume > 0
+    with pytest.warns(UserWarning, match=r"the facets are not their set in \d+ cells"):
+        assert facets.best_volume > 0
+    assert im.cuboid((0, 0, 0), (1, 1, 1)).facets().best_volume == pytest.approx(1)
+
+
 @pytest.mark.parametrize("offset", [0.0, 1e3, 1e5, 1e6])
 def test_moments_do_not_depend_on_the_place(offset):
     cube = im.cuboid((offset,) * 3, (offset + 1,) * 3).mass()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
@@ -17,6 +18,11 @@ if TYPE_CHECKING:
     Triple = Sequence[float]
 
 __all__ = ["Attributes", "Distance", "Hit", "Lamp", "Leaf", "Mass", "Nearest", "Sun"]
+
+
+def warn_of(remark: str, frames: int = 1) -> None:
+    """Warns the caller of a method, so many frames above it, of a number not known as asked."""
+    warnings.warn(remark, stacklevel=2 + frames)
 
 
 @dataclass(frozen=True)

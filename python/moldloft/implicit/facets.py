@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.arguments import explain
+from moldloft.implicit.answers import warn_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -178,7 +179,18 @@ class Facets:
 
     @property
     def best_volume(self) -> float:
-        """The same, corrected for the distance of the triangles from the surface."""
+        """The same, corrected for the distance of the triangles from the surface.
+
+        That is the volume of the set but for what is ``blunt`` or ``unresolved``, of which there is
+        a warning.
+        """
+        missed = len(self.blunt) + len(self.unresolved)
+        if missed:
+            cells = "cell" if missed == 1 else "cells"
+            warn_of(
+                f"note[volume-uncertain]: the facets are not their set in {missed} {cells}\n"
+                "help: look at `blunt` and `unresolved`; `Set.mass` says how well it is known"
+            )
         return float(self.summary["best_volume"])
 
     def simplified(self, accuracy: float) -> Facets:

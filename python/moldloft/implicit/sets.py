@@ -19,6 +19,7 @@ from moldloft.implicit.answers import (
     Leaf,
     Mass,
     Nearest,
+    warn_of,
 )
 from moldloft.implicit.edges import Edged
 from moldloft.implicit.facets import Facets
@@ -597,7 +598,7 @@ class Set(Moving, Edged, Pictured):
         Mass
             ``volume``, ``centroid`` ``(3,)`` and ``inertia`` ``(3, 3)`` for density 1, each with
             its bracket. ``uncertain`` is 0, or how far the volume may be off where edges are
-            thinner than cells: look at it, or ask for an accuracy.
+            thinner than cells; more than a millionth of the volume is warned of.
 
         Raises
         ------
@@ -615,6 +616,9 @@ class Set(Moving, Edged, Pictured):
             raise ValueError("give a depth or an accuracy, not both")
         depth = _whole(depth, "depth", 0)
         facts = self._core.mass(corners_of(low, high), depth, accuracy, _whole(cells, "cells", 1))
+        if facts["doubt"] is not None and accuracy is None:
+            advice = "ask for the accuracy that will do: then it is proved"
+            warn_of(f"{facts['doubt']}\nhelp: {advice}", frames=2)
         return Mass(
             volume=facts["volume"],
             volume_bracket=facts["volume_bracket"],

@@ -21,6 +21,7 @@ mod lost;
 pub(crate) mod memo;
 mod padded_bounds;
 mod place_vertices;
+mod rebuild;
 mod refine;
 mod remove_intersections;
 mod sharpen;
@@ -29,6 +30,7 @@ pub(crate) mod shells;
 mod simplify;
 mod slivers;
 mod split;
+mod trace;
 pub(crate) mod types;
 mod unfold;
 mod unresolved;
@@ -435,7 +437,26 @@ fn on_grid(
     if !options.sharp {
         slivers::remove(&mut made);
     }
-    let cut_off = cut_off::cut_off(&made, &grid, &leaves, &tapes);
+    let mut bends: Vec<[usize; 3]> = bends.into_iter().map(|p| grid.cell_of(p)).collect();
+    let mut cut_off = cut_off::cut_off(&made, &grid, &leaves, &tapes);
+    let own = made.blunt.iter().map(|b| b.1);
+    let mut bad: Vec<[usize; 3]> = own.chain(cut_off.iter().chain(&bends).copied()).collect();
+    // A surface with an edge of its own keeps it to itself.
+    bad.retain(|c| !tapes.at(grid.cell(*c).centre()).creased_in(&grid.cell(*c)));
+    if !bad.is_empty() {
+        bad.sort_unstable();
+        bad.dedup();
+        let done = rebuild::rebuild(&mut made, &grid, &leaves, &tapes, &bad, &options.budget)?;
+        if !done.is_empty() {
+            made.blunt.retain(|b| done.binary_search(&b.1).is_err());
+            let again = refine(&mut made, &leaves, &tapes, rule, &options.budget)?;
+            bends = again.into_iter().map(|p| grid.cell_of(p)).collect();
+            if !options.sharp {
+                slivers::remove(&mut made);
+            }
+            cut_off = cut_off::cut_off(&made, &grid, &leaves, &tapes);
+        }
+    }
     let open = divided.blocks.iter().flat_map(|b| b.1.unresolved.iter().copied()).collect();
     let unresolved = unresolved::not_shown(open, &made.positions, &made.triangles, step);
 
@@ -460,7 +481,6 @@ fn on_grid(
         true => cells(&grid, made.doubtful.iter().map(|d| d.1).collect()),
         false => undecided(&grid, &mesh, &made.doubtful),
     };
-    let bends = bends.into_iter().map(|p| grid.cell_of(p));
     let blunt = made.blunt.into_iter().map(|b| b.1).chain(cut_off).chain(bends).collect();
     let blunt = cells(&grid, blunt);
     Ok(Facets {

@@ -12,7 +12,8 @@ use crate::{
 };
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_registry::{
-    Array, Build, CallError, Class, Context, FieldId, FromValue, Kind, Point, Value, Vectors,
+    Array, Build, CallError, Class, Context, FieldId, FromValue, Kind, Point, Remark, Value,
+    Vectors,
 };
 use std::sync::Arc;
 
@@ -40,16 +41,8 @@ fn moments<T: Real>(
         ..IntegralOptions::default()
     };
     let found = mass_of(set, &region.over, region.corners, &measure, &context.kept.of())?;
-    // Without an accuracy, six digits are taken for enough.
-    let enough = accuracy.map_or(1e-6 * found.best.volume().re().abs(), T::re);
-    if found.uncertain > enough {
-        let off = format!("the volume is known to {:.1e} only", found.uncertain);
-        context.remark(
-            "volume-uncertain",
-            off,
-            "edges thinner than its cells are in the way; `volume_bracket` with a greater depth is narrower, \
-             and a greater `accuracy` takes what there is",
-        );
+    if let Some(Remark { id, message, advice }) = found.doubt(accuracy.map(T::re)) {
+        context.remark(id, message, advice);
     }
     Ok(found.best)
 }

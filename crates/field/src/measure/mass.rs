@@ -16,6 +16,7 @@ use crate::facet::{FacetOptions, Facets, Resolution};
 use crate::{FieldError, Lifter, Primitive, Set};
 use moldloft_budget::Budget;
 use moldloft_num::{Box3, Real, Vec3};
+use moldloft_registry::Remark;
 use std::sync::Arc;
 
 /// Boxes may be halved this often at most.
@@ -99,6 +100,20 @@ pub struct BracketedMass<T: Real = f64> {
     pub best: Moments<T>,
     /// How far the best volume may be off when it is not known to the agreement that was asked for; else 0.
     pub uncertain: f64,
+}
+
+impl<T: Real> BracketedMass<T> {
+    /// What there is to say of a volume, and of all that follows from it, that is not known as well as asked: without an accuracy, to
+    /// six digits.
+    pub fn doubt(&self, accuracy: Option<f64>) -> Option<Remark> {
+        let enough = accuracy.unwrap_or(1e-6 * self.best.volume().re().abs());
+        (self.uncertain > enough).then(|| Remark {
+            id: "volume-uncertain",
+            message: format!("the volume is known to {:.1e} only", self.uncertain),
+            advice: "edges thinner than its cells are in the way; `volume_bracket` with a greater depth is narrower, \
+                     and a greater `accuracy` takes what there is",
+        })
+    }
 }
 
 /// The moments of a set within a box: a proved bracket, and a best value inside it.

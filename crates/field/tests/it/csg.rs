@@ -5,8 +5,8 @@
 
 use crate::common::{axis, sound, v};
 use moldloft_field::{
-    FacetOptions, IntegralOptions, Primitive, Resolution, Set, bounds, bracket, crossing_faces,
-    facet, mass,
+    Affine, FacetOptions, IntegralOptions, Primitive, Resolution, Set, bounds, bracket,
+    crossing_faces, facet, mass,
 };
 use moldloft_num::Vec3;
 use moldloft_testing::{Random, rounds};
@@ -120,8 +120,8 @@ fn few_bodies_have_edges_that_are_cut_off() {
         all += f.cells;
     }
     println!("{blunt} of {bodies} bodies, {cells} of {all} cells");
-    // Of the first 136 bodies 21 (41 in a hundred before edges were put back), and 63 cells.
-    assert!(5 * blunt <= bodies && 10_000 * cells <= all, "{blunt} of {bodies}, {cells} of {all}");
+    // Of the first 136 bodies 21 had some before edges were followed, 63 cells.
+    assert!(50 * blunt <= bodies && 10_000 * cells <= all, "{blunt} of {bodies}, {cells} of {all}");
 }
 
 #[test]
@@ -136,5 +136,54 @@ fn volumes_lie_in_narrow_brackets() {
             proved.low - slack <= best && best <= proved.high + slack,
             "seed {seed}: {best} not in {proved:?}"
         );
+    }
+}
+
+/// A block whose edge is cut by a plane that runs out along it, one with two bores that cross at ten degrees, a ball whose
+/// flat and bore meet in a thin tip, and a rod through a side at a small angle.
+fn with_small_angles() -> Vec<(&'static str, Set)> {
+    let block = Set::cuboid(v(0.0, 0.0, 0.0), v(4.0, 3.0, 2.0)).unwrap();
+    let bore = |at: Vec3, d: Vec3, r: f64| Set::new(&Primitive::cylinder(axis(at, d), r).unwrap());
+    let ball = Set::new(&Primitive::sphere(v(0.0, 0.0, 0.0), 1.5).unwrap());
+    let slope = 10f64.to_radians().tan();
+    vec![
+        ("chamfer", block.clone() & half(v(0.1, 1.0, 1.0), v(1.0, 3.0, 2.0))),
+        (
+            "bores",
+            block.clone()
+                - bore(v(2.0, 1.5, 0.0), v(0.0, 0.0, 1.0), 0.4)
+                - bore(v(2.0, 1.5, 1.0), v(slope, 0.0, 1.0), 0.4),
+        ),
+        (
+            "flat",
+            (ball & half(v(0.0, 0.0, 1.0), v(0.0, 0.0, 0.9)))
+                - bore(v(0.0, 1.0, 0.0), v(0.0, 0.1, 1.0), 0.3),
+        ),
+        ("rod", block - bore(v(2.0, 0.0, 2.02), v(1.0, 0.1, 0.05), 0.2)),
+    ]
+}
+
+#[test]
+fn edges_that_meet_at_small_angles_are_kept() {
+    let mut random = Random::new(21);
+    for round in 0..rounds(2, 40) {
+        for (name, set) in with_small_angles() {
+            let line = axis(v(0.0, 0.0, 0.0), unit(&mut random));
+            let turn = Affine::rotation(&line, random.between(0.0, 6.0));
+            let set = set.mapped(&turn).unwrap();
+            let over = bounds(&set, 0.01).unwrap().unwrap();
+            let f = facet(&set, &over, &FacetOptions::new(Resolution::Depth(5))).unwrap();
+            sound(&f);
+            assert!(f.blunt.is_empty(), "{name} {round}: {:?}", f.blunt);
+            assert!(f.undecided.is_empty() && crossing_faces(&f.mesh, None).is_empty());
+            assert!(f.worst_vertex() < 1e-12 * over.diagonal(), "{name} {round}");
+            // The plane takes a tetrahedron of height 3 over half a square of 0.3.
+            let (exact, accuracy) = match name {
+                "chamfer" => (24.0 - 0.045, 1e-12),
+                _ => (mass(&set, &over, &IntegralOptions::default()).unwrap().best.volume(), 1e-6),
+            };
+            let off = (f.moments().volume() / exact - 1.0).abs();
+            assert!(off < accuracy, "{name} {round}: {off}");
+        }
     }
 }

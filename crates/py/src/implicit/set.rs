@@ -440,8 +440,10 @@ impl PySet {
                 IntegralOptions { depth, accuracy, cells, budget, ..IntegralOptions::default() };
             moldloft::field::mass(set, &over, &measure).map(Some)
         })?;
+        let doubt = found.as_ref().and_then(|mass| mass.doubt(None));
         let Some(BracketedMass { bracket, best, uncertain }) = found else {
             let dict = PyDict::new(py);
+            dict.set_item("doubt", None::<String>)?;
             dict.set_item("volume", 0.0)?;
             dict.set_item("volume_bracket", (0.0, 0.0))?;
             dict.set_item("uncertain", 0.0)?;
@@ -457,6 +459,8 @@ impl PySet {
         dict.set_item("volume", best.volume())?;
         let v = bracket.volume();
         dict.set_item("uncertain", uncertain)?;
+        let doubt = doubt.map(|d| format!("note[{}]: {}", d.id, d.message));
+        dict.set_item("doubt", doubt)?;
         dict.set_item("volume_bracket", (v.low.max(0.0), v.high))?;
         let empty = best.volume() <= 0.0;
         dict.set_item("centroid", (!empty).then(|| best.centroid().to_array()))?;
