@@ -140,7 +140,7 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// An end with one edge, on whose left the first of two surfaces shows. None where that is no edge.
+    /// An end with one edge, on whose left the first of two surfaces shows; `None` if there is no such edge.
     pub(super) fn end(&mut self, point: Vec3, left: u32, right: u32) -> Option<usize> {
         let pair = [left.min(right), left.max(right)];
         let bend = self.bend(point, pair)?;
