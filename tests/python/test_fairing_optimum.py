@@ -96,9 +96,7 @@ def test_the_optimum_is_a_conic_solvers(shape, kind, name):
     _, data, noise = fair_truth.case(SHAPES[shape], kind, 1)
     options, extra = PROBLEMS[name]
     stated = Stated(data, noise)
-    faired = moldloft.fair(
-        data, noise, measure="variation", bends=True, spacing="chord", **options
-    )
+    faired = moldloft.fair(data, noise, measure="variation", bends=True, spacing="chord", **options)
     dim = data.shape[1]
     assert np.abs(np.asarray(faired.spline.knots) - stated.knots).max() < 1e-12
     control = np.asarray(faired.spline.control_points)[:, :dim]
