@@ -5,7 +5,7 @@
 
 use crate::optimum::band::Band;
 use crate::optimum::problem::{Active, CertifiedSolution, NONE, Problem, UnknownOrder};
-use crate::optimum::schur::{Schur, met};
+use crate::optimum::schur::{LinearConstraint, Schur, met};
 use crate::optimum::second_order_cone::{ConeScaling, Pair, V, axpy, dot};
 use crate::optimum::squares_bound::{BoundStep, SquaresBound};
 use crate::{FairError, RowNorm, SparseRows};
@@ -38,12 +38,6 @@ const POLISHED: usize = 1000;
 
 /// The largest matrix of which the measure's share is kept beside the sum.
 const KEPT: usize = 1 << 24;
-
-/// A condition over unknowns.
-pub(crate) struct LinearConstraint<const D: usize> {
-    pub entries: Vec<(usize, V<D>)>,
-    pub value: f64,
-}
 
 /// How far inside a half-space the solution aims, as a share of its scale, so that rounding and the
 /// last step cannot leave it.
@@ -398,7 +392,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         }
         self.inverse(band, out.x.as_flattened_mut());
         // Conditions by their Schur complement: x = x0 - Y nu, A x = b - A x_now.
-        out.nu = dense.solve(self, &self.x, out.x.as_flattened_mut());
+        out.nu = dense.solve(&self.conditions, &self.x, out.x.as_flattened_mut());
         for (c, cone) in self.cones.iter().enumerate() {
             let (rows, k) = self.rows_of(c);
             let length = c >= limits;
@@ -419,8 +413,13 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
         }
     }
 
+    /// The system of the conditions' multipliers by the factored matrix.
+    pub fn schur(&self, band: &Band) -> Schur {
+        Schur::new(&self.conditions, self.x.len(), &|y| self.inverse(band, y))
+    }
+
     /// Solves with the factored matrix, in place.
-    pub fn inverse(&self, band: &Band, x: &mut [f64]) {
+    fn inverse(&self, band: &Band, x: &mut [f64]) {
         band.solve(x);
         if let Some(squares) = &self.squares {
             squares.correct(x);
@@ -738,7 +737,7 @@ impl<'a, const D: usize> InteriorPointState<'a, D> {
             band.factor();
             band.solve_any(right.as_flattened_mut());
             if !self.conditions.is_empty() {
-                Schur::new(&self, &band).answer(values, right.as_flattened_mut());
+                self.schur(&band).answer(values, right.as_flattened_mut());
             }
             right
         };
@@ -821,7 +820,7 @@ pub(crate) fn solve<const D: usize>(
         if let Some(squares) = &mut state.squares {
             squares.factored(&band);
         }
-        let dense = Schur::new(&state, &band);
+        let dense = state.schur(&band);
         state.direction(&band, &dense, 0.0, None, &mut affine);
         if cones + halves == 0 && state.squares.is_none() {
             // Nothing is limited: one step solves a sum of squares.

@@ -12,7 +12,6 @@ use crate::SparseRows;
 use crate::optimum::band::Band;
 use crate::optimum::interior_point::{InteriorPointState, add_block, apply, spread};
 use crate::optimum::problem::Active;
-use crate::optimum::schur::Schur;
 use crate::optimum::second_order_cone::{V, axpy, dot};
 use moldloft_num::Real;
 
@@ -142,7 +141,7 @@ impl<const D: usize> InteriorPointState<'_, D> {
             }
             band.solve(dx.as_flattened_mut());
             if !self.conditions.is_empty() {
-                let more = Schur::new(self, band).solve(self, &x, dx.as_flattened_mut());
+                let more = self.schur(band).solve(&self.conditions, &x, dx.as_flattened_mut());
                 nu.iter_mut().zip(more).for_each(|(nu, more)| *nu += more);
             }
             for (at, &c) in active.cones.iter().enumerate() {
@@ -233,7 +232,7 @@ impl<const D: usize> InteriorPointState<'_, D> {
                 STIFF * own_stiffness(&self.limit_rows, c as usize / self.groups(), &h);
         }
         self.assemble_active(band, active, &self.x, &rho);
-        let dense = Schur::new(self, band);
+        let dense = self.schur(band);
         let zero = [T::zero(); D];
         let apply = |rows: &SparseRows, k: usize, x: &[[T; D]]| {
             let (columns, factors) = rows.row(k);

@@ -1,9 +1,13 @@
 //! The dense system of the conditions' multipliers.
 
-use crate::optimum::band::Band;
-use crate::optimum::interior_point::{InteriorPointState, LinearConstraint};
 use crate::optimum::second_order_cone::{V, axpy, dot};
 use moldloft_num::Real;
+
+/// A condition over unknowns.
+pub(crate) struct LinearConstraint<const D: usize> {
+    pub entries: Vec<(usize, V<D>)>,
+    pub value: f64,
+}
 
 /// The left side of a condition.
 pub(crate) fn met<const D: usize>(condition: &LinearConstraint<D>, x: &[V<D>]) -> f64 {
@@ -20,20 +24,25 @@ pub(crate) struct Schur {
 }
 
 impl Schur {
-    pub fn new<const D: usize>(state: &InteriorPointState<D>, band: &Band) -> Self {
+    /// The system of conditions over so many unknowns; `inverse` solves with the factored matrix, in place.
+    pub fn new<const D: usize>(
+        conditions: &[LinearConstraint<D>],
+        unknowns: usize,
+        inverse: &dyn Fn(&mut [f64]),
+    ) -> Self {
         let row = |c: &LinearConstraint<D>| {
-            let mut by_point = vec![[0.0; D]; state.x.len()];
+            let mut by_point = vec![[0.0; D]; unknowns];
             for (i, factor) in &c.entries {
                 axpy(&mut by_point[*i], 1.0, *factor);
             }
             by_point.as_flattened().to_vec()
         };
-        let rows: Vec<Vec<f64>> = state.conditions.iter().map(row).collect();
+        let rows: Vec<Vec<f64>> = conditions.iter().map(row).collect();
         let columns: Vec<Vec<f64>> = rows
             .iter()
             .map(|row| {
                 let mut y = row.clone();
-                state.inverse(band, &mut y);
+                inverse(&mut y);
                 y
             })
             .collect();
@@ -55,7 +64,7 @@ impl Schur {
     /// multipliers.
     pub fn solve<const D: usize>(
         &self,
-        state: &InteriorPointState<D>,
+        conditions: &[LinearConstraint<D>],
         now: &[V<D>],
         x: &mut [f64],
     ) -> Vec<f64> {
@@ -66,7 +75,7 @@ impl Schur {
         let mut nu: Vec<f64> = (0..m)
             .map(|k| {
                 let here: f64 = self.rows[k].iter().zip(&*x).map(|(a, b)| a * b).sum();
-                here - (state.conditions[k].value - met(&state.conditions[k], now))
+                here - (conditions[k].value - met(&conditions[k], now))
             })
             .collect();
         let mut matrix = self.matrix.clone();
