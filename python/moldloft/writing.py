@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
+from moldloft.arguments import explain
 from moldloft.errors import FileError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -293,3 +294,11 @@ class Writable:
         text = self._document.convert(to)
         self._warn_of_export()
         return text
+
+
+# Messages and help name the class that users know.
+for _name, _method in list(vars(Writable).items()):
+    if callable(_method):
+        _method.__qualname__ = f"Model.{_name}"
+
+explain(globals())

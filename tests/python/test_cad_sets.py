@@ -170,11 +170,22 @@ def test_random_bodies_are_valid_solids_of_their_certified_volume(
     assert low - slack <= found.volume <= high + slack
 
 
-def test_what_is_thinner_than_cells_is_refused_by_place(tmp_path: Path) -> None:
-    corner = half("1, 1, 1", "2.995, 2, 1")
+@pytest.mark.parametrize("cut", [0.05, 0.005, 1e-3, 1e-4])
+def test_a_corner_cut_off_is_there_or_refused_by_place(cut: float, tmp_path: Path) -> None:
+    from cad_reading import read
+
+    # Cells are larger than all but the first of these; edges are followed where they can be found.
+    corner = half("1, 1, 1", f"{3 - cut}, 2, 1")
     text = f"set s = cuboid({{0, 0, 0}}, {{3, 2, 1}}) & {corner}; SetBody b(s);"
-    with pytest.raises(moldloft.Error, match=r"thinner than cells near \(3\.0"):
-        moldloft.loads(text).write(tmp_path / "b.step")
+    model = moldloft.loads(text)
+    if cut < 1e-3:
+        with pytest.raises(moldloft.Error, match=r"thinner than cells near \(3\.0"):
+            model.write(tmp_path / "b.step")
+        return
+    (file,) = model.write(tmp_path / "b.step")
+    found = read(file, accuracy=1e-9)
+    assert found.valid and found.faces == 7
+    assert found.volume == pytest.approx(6 - cut**3 / 6, abs=1e-14)
 
 
 def test_what_all_cells_miss_is_refused(tmp_path: Path) -> None:

@@ -58,6 +58,10 @@ def fair_data(
     least = 2 * asked.degree + 2 if asked.closed else asked.degree + 2
     if n < least:
         raise FairingError(f"expected at least {least} points for degree {asked.degree}, found {n}")
+    found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
+    breaks = chosen(asked.breaks, found, "corner", n)
+    release = chosen(asked.release, found, "outlier", n)
+    limits = radii(tol, n)
     # Neighbours in one place have one parameter.
     places = 1 + int((data[1:] != data[:-1]).any(axis=1).sum())
     if places <= asked.degree:
@@ -65,10 +69,6 @@ def fair_data(
             f"expected at least {asked.degree + 1} different places for degree {asked.degree}, "
             f"found {places}: of {n} points the others coincide with the one before"
         )
-    found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
-    breaks = chosen(asked.breaks, found, "corner", n)
-    release = chosen(asked.release, found, "outlier", n)
-    limits = radii(tol, n)
     notes = []
     for k in asked.fixed:
         limits[index_of(k, n)] = 0.0

@@ -181,7 +181,7 @@ class Edged:
         --------
         >>> from moldloft import implicit as im
         >>> plate, post = im.cuboid((-2, -2, -1), (2, 2, 0)), im.cuboid((-1, -1, -1), (1, 1, 2))
-        >>> round(plate.filleted(post, 0.5).mass().volume - 24, 2) > 0
+        >>> round(plate.filleted(post, 0.5).mass(accuracy=1e-3).volume - 24, 2) > 0
         True
         """
         o = type(self)(other) if isinstance(other, Field) else other
