@@ -137,9 +137,11 @@ def test_an_example_is_the_same_in_other_programs(name: str, tmp_path: Path) -> 
             bound = max(1e-5, settled)
             assert sums[1] == pytest.approx(model[label].area * unit**2, rel=bound), label
     if found.solids:
-        # By that rule, too: 2e-2 off for the helmet's ellipsoids.
+        # By a fixed rule, too, 2e-2 off for the helmet's ellipsoids; Gmsh's own OCCT may have
+        # another one than this, but not a worse one.
         BRepGProp.VolumeProperties_s(found.shape, rule)
-        assert sum(gmsh["volumes"]) == pytest.approx(rule.Mass(), rel=1e-6)
+        off = max(1e-6 * found.volume, abs(rule.Mass() - found.volume))
+        assert abs(sum(gmsh["volumes"]) - found.volume) <= 1.001 * off
     print(name, faces, deviation, found.tolerance)
     # The same in IGES, but for what it does not hold.
     (iges,) = model.write(tmp_path / "model.igs")
