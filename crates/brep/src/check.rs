@@ -124,7 +124,7 @@ impl Brep {
         self.faces.iter().enumerate().filter_map(thin).collect()
     }
 
-    /// Twice the area that the way from a place to an edge sweeps, and the edge's length.
+    /// Twice the area between a place and an edge, seen against the normal, and the edge's length.
     fn swept(&self, edge: usize, place: Vec3, normal: Vec3) -> (f64, f64) {
         const STEPS: usize = 16;
         let curve = &self.edges[edge].curve;

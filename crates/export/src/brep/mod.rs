@@ -191,10 +191,12 @@ pub(crate) fn thin(brep: &Brep, document: &Document) -> Option<Diagnostic> {
     let &(face, place) = found.first()?;
     let name = brep.faces[face].name.split('.').next().unwrap_or("");
     let unit = length_unit(document).0;
-    let faces = if found.len() == 1 { "1 plane face is" } else { "plane faces are" };
-    let count = if found.len() == 1 { String::new() } else { format!("{} ", found.len()) };
+    let faces = match found.len() {
+        1 => "1 plane face is".to_string(),
+        n => format!("{n} plane faces are"),
+    };
     let message =
-        format!("`{name}`: {count}{faces} thinner than the accuracy of fits, {error:.2e} {unit}");
+        format!("`{name}`: {faces} thinner than the accuracy of fits, {error:.2e} {unit}");
     let remark = Diagnostic::warning("thin-faces", message)
         .found(format!("the first near ({:.6}, {:.6}, {:.6})", place.x, place.y, place.z))
         .help(
