@@ -24,13 +24,13 @@ impl Box3 {
     }
 
     /// The smallest box around this one and `p`.
+    #[inline]
     pub fn including(self, p: Vec3) -> Self {
-        let pick = |f: fn(f64, f64) -> f64, a: Vec3| Vec3 {
-            x: f(a.x, p.x),
-            y: f(a.y, p.y),
-            z: f(a.z, p.z),
-        };
-        Self { low: pick(f64::min, self.low), high: pick(f64::max, self.high) }
+        let (low, high) = (self.low, self.high);
+        Self {
+            low: Vec3 { x: low.x.min(p.x), y: low.y.min(p.y), z: low.z.min(p.z) },
+            high: Vec3 { x: high.x.max(p.x), y: high.y.max(p.y), z: high.z.max(p.z) },
+        }
     }
 
     /// The smallest box around both.

@@ -244,7 +244,7 @@ class Facets:
 
     @cached_property
     def blunt(self) -> list[tuple[list[float], list[float]]]:
-        """Boxes with an edge or corner that is cut off: low and high corners.
+        """Boxes with an edge or corner that is cut off, or triangles that fold back: low and high.
 
         It is thinner than a cell there, or its vertices would have made triangles cut each other.
         """

@@ -104,19 +104,24 @@ pub(super) fn crossings(
     pairs
 }
 
+/// How far from its limit a comparison of squares is sure.
+const SURE: f64 = 1e-9;
+
 /// Six times the volume of a tetrahedron, or zero when rounding may decide its sign.
 fn volume(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
     let (p, q, r) = (b - a, c - a, d - a);
     let v = p.dot(q.cross(r));
+    // Squares decide most without roots.
+    let (square, most) = (v * v, 1e-26 * (p.norm_sq() * q.norm_sq() * r.norm_sq()));
+    if most > 1e-280 && square > most * (1.0 + SURE) {
+        return v;
+    }
     let sure = 1e-13 * p.norm() * q.norm() * r.norm();
     if v.abs() > sure { v } else { 0.0 }
 }
 
-/// True when the segment passes through the inside of the triangle.
+/// True when a segment whose ends are on both sides of a triangle passes through its inside.
 fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
-    if volume(a, b, c, p) * volume(a, b, c, q) >= 0.0 {
-        return false;
-    }
     let [x, y, z] = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
     (x > 0.0 && y > 0.0 && z > 0.0) || (x < 0.0 && y < 0.0 && z < 0.0)
 }
@@ -124,13 +129,24 @@ fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
 /// True when two triangles, of vertices with these numbers, cut each other.
 pub(super) fn cut(names: [[u32; 3]; 2], points: [[Vec3; 3]; 2]) -> bool {
     // An edge can pierce the other triangle only if they share none of its ends.
-    [(0, 1), (1, 0)].into_iter().any(|(s, t)| {
-        (0..3).any(|k| {
+    for (s, t) in [(0, 1), (1, 0)] {
+        let apart = names[s].map(|v| !names[t].contains(&v));
+        let [a, b, c] = points[t];
+        let side = |k: usize| if apart[k] { volume(a, b, c, points[s][k]) } else { 0.0 };
+        let sides = [side(0), side(1), side(2)];
+        // All on one side of the other's plane: they cannot meet.
+        if sides.iter().all(|v| *v > 0.0) || sides.iter().all(|v| *v < 0.0) {
+            return false;
+        }
+        let through = (0..3).any(|k| {
             let l = (k + 1) % 3;
-            let apart = |k: usize| !names[t].contains(&names[s][k]);
-            apart(k) && apart(l) && pierces([points[s][k], points[s][l]], points[t])
-        })
-    })
+            sides[k] * sides[l] < 0.0 && pierces([points[s][k], points[s][l]], points[t])
+        });
+        if through {
+            return true;
+        }
+    }
+    false
 }
 
 #[cfg(test)]

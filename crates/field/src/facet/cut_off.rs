@@ -79,6 +79,38 @@ pub(super) fn cut_off(
     cells
 }
 
+/// A triangle folds back when the cosine between it and its surface's normal is less than this.
+const BACK: f64 = -0.5;
+
+/// The cells in which triangles fold back: they are in several layers there, which together enclose nothing.
+pub(super) fn folded(
+    made: &Assembled,
+    grid: &Grid,
+    leaves: &[Leaf],
+    tapes: &Tapes,
+) -> Vec<[usize; 3]> {
+    // Elsewhere triangles face their surface by construction.
+    let mut doubtful = vec![false; made.positions.len()];
+    made.doubtful.iter().for_each(|d| doubtful[d.0 as usize] = true);
+    let mut solver = Solver::default();
+    let mut cells = Vec::new();
+    for (leaf, t) in made.triangles.iter().filter(|t| t.1.iter().any(|v| doubtful[*v as usize])) {
+        let [a, b, c] = t.map(|v| made.positions[v as usize]);
+        let (across, middle) = ((b - a).cross(c - a), (a + b + c) / 3.0);
+        let slope = solver.gradient(leaves[*leaf as usize].primitive.tape(), middle).slope;
+        if slope.dot(across) < BACK * slope.norm() * across.norm() {
+            let cell = grid.cell_of(middle);
+            // A surface with an edge of its own keeps it to itself.
+            if !tapes.at(middle).creased_in(&grid.cell(cell)) {
+                cells.push(cell);
+            }
+        }
+    }
+    cells.sort_unstable();
+    cells.dedup();
+    cells
+}
+
 /// Whether several primitives may decide.
 fn several(tape: &ExprTape<f64>) -> bool {
     let mut shown = tape.leaf.iter().filter(|l| **l != NO_LEAF);

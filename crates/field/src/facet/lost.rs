@@ -3,7 +3,8 @@
 //!
 //! Places that stay unresolved are joined to clusters where they touch. A cluster is lost when no vertex is as near as the
 //! accuracy, when the triangles about it belong to several bodies, or when a place of it is larger than the accuracy; all are when
-//! they hold a part of the volume that counts.
+//! they hold a part of the volume that counts. So are cells whose edges or corners are cut off: of a plate about as thick as a
+//! cell these are most of its cells, and its triangles have holes.
 
 use super::{Facets, Unresolved};
 use moldloft_mesh::Mesh;
@@ -75,6 +76,12 @@ pub(super) fn lost(facets: &Facets, accuracy: f64) -> Option<Unresolved> {
     let body = moldloft_mesh::measure(&facets.mesh).volume.abs();
     if open.iter().map(|u| u.volume).sum::<f64>() > HELD * body {
         return largest(&every);
+    }
+    let cell = facets.step.powi(3);
+    if facets.blunt.len() as f64 * cell > HELD * body {
+        let place = facets.blunt[facets.blunt.len() / 2];
+        let witness = place.centre();
+        return Some(Unresolved { place, volume: cell, missed: true, witness, solid: true });
     }
     let reach = accuracy.max(2.0 * facets.step);
     let positions = facets.mesh.positions();

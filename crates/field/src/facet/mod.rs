@@ -75,7 +75,7 @@ pub struct Facets {
     pub undecided: Vec<Box3>,
     /// Cells with an edge or corner that no vertex lies on or within a hundredth of a cell, so that it is cut off there: it is thinner than a
     /// cell, or its vertices would have made triangles cut each other. Cells, too, in which another primitive cuts off by as much what
-    /// triangles show at their corners, middles of sides or centres.
+    /// triangles show at their corners, middles of sides or centres, and those in which triangles fold back upon each other.
     pub blunt: Vec<Box3>,
     /// Cells, or parts of them, that may hold what their corners do not show, by place. Elsewhere nothing is missed.
     pub unresolved: Vec<Unresolved>,
@@ -438,7 +438,13 @@ fn on_grid(
         slivers::remove(&mut made);
     }
     let mut bends: Vec<[usize; 3]> = bends.into_iter().map(|p| grid.cell_of(p)).collect();
-    let mut cut_off = cut_off::cut_off(&made, &grid, &leaves, &tapes);
+    let amiss = |made: &_| {
+        let mut cells = cut_off::cut_off(made, &grid, &leaves, &tapes);
+        cells.extend(cut_off::folded(made, &grid, &leaves, &tapes));
+        cells
+    };
+    shells::remove_flat(&mut made, step);
+    let mut cut_off = amiss(&made);
     let own = made.blunt.iter().map(|b| b.1);
     let mut bad: Vec<[usize; 3]> = own.chain(cut_off.iter().chain(&bends).copied()).collect();
     // A surface with an edge of its own keeps it to itself.
@@ -454,7 +460,8 @@ fn on_grid(
             if !options.sharp {
                 slivers::remove(&mut made);
             }
-            cut_off = cut_off::cut_off(&made, &grid, &leaves, &tapes);
+            shells::remove_flat(&mut made, step);
+            cut_off = amiss(&made);
         }
     }
     let open = divided.blocks.iter().flat_map(|b| b.1.unresolved.iter().copied()).collect();

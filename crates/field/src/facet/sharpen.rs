@@ -272,8 +272,7 @@ impl Sharpener<'_, '_> {
         if change.made.iter().any(flat) {
             return;
         }
-        let gain = self.folds.gain(&change);
-        if gain >= 0 && best.as_ref().is_none_or(|b| gain > b.0) {
+        if let Some(gain) = self.folds.gain(&change, best.as_ref().map_or(-1, |b| b.0)) {
             *best = Some((gain, change));
         }
     }

@@ -1,9 +1,44 @@
 //! The connected parts of facets: how many bodies there are, and where they touch.
 
 use super::Facets;
+use super::assemble::Assembled;
 use moldloft_num::Vec3;
 use moldloft_num::union_find::UnionFind;
+use rustc_hash::FxHashMap;
 use std::collections::HashMap;
+
+/// A shell encloses nothing when it is no thicker than this part of a cell.
+const FLAT: f64 = 1e-9;
+
+/// Leaves out shells that enclose nothing: a corner of the grid just within a sharp edge, whose neighbours all are outside, has a shell of
+/// its own, whose vertices all go to the edge and the faces beside it, where the other triangles are already.
+pub(super) fn remove_flat(made: &mut Assembled, step: f64) {
+    // By construction there is none elsewhere.
+    if made.doubtful.is_empty() {
+        return;
+    }
+    let mut parts = UnionFind::new(made.positions.len());
+    for (_, t) in &made.triangles {
+        parts.join(t[0], t[1]);
+        parts.join(t[0], t[2]);
+    }
+    // Volume and area of each shell, by its first vertex.
+    let mut shells: FxHashMap<u32, (f64, f64)> = FxHashMap::default();
+    for (_, t) in &made.triangles {
+        let first = parts.find(t[0]);
+        let [o, a, b, c] = [first, t[0], t[1], t[2]].map(|v| made.positions[v as usize]);
+        let across = (b - a).cross(c - a);
+        let shell = shells.entry(first).or_default();
+        shell.0 += (a - o).dot(across) / 6.0;
+        shell.1 += 0.5 * across.norm();
+    }
+    let flat = |of: &(f64, f64)| of.0.abs() <= FLAT * step * of.1;
+    if shells.len() < 2 || shells.values().all(flat) || !shells.values().any(flat) {
+        return;
+    }
+    made.triangles.retain(|(_, t)| !flat(&shells[&parts.find(t[0])]));
+    made.compact();
+}
 
 /// A connected part of facets.
 #[derive(Clone, Debug, PartialEq)]

@@ -40,6 +40,20 @@ impl Change {
     }
 }
 
+/// A triangle with the box about it.
+struct Placed {
+    corners: Corners,
+    points: [Vec3; 3],
+    around: Box3,
+}
+
+impl Placed {
+    fn cuts(&self, other: &Placed) -> bool {
+        meet(&self.around, &other.around)
+            && cut([self.corners, other.corners], [self.points, other.points])
+    }
+}
+
 pub(super) struct FoldedRegion<'a> {
     pub(super) made: &'a mut Assembled,
     pub(super) leaves: &'a [Leaf],
@@ -48,8 +62,10 @@ pub(super) struct FoldedRegion<'a> {
     /// The triangles of each vertex near what cuts.
     pub(super) round: FxHashMap<u32, Vec<usize>>,
     /// Triangles by place.
-    bins: FxHashMap<[i64; 3], Vec<usize>>,
+    bins: FxHashMap<[i64; 3], Vec<(usize, Box3)>>,
     size: f64,
+    /// What some triangles cut, as far as it is known.
+    cuts: FxHashMap<usize, Vec<usize>>,
     gone: FxHashSet<usize>,
     /// Vertices of changed triangles.
     touched: FxHashSet<u32>,
@@ -112,6 +128,7 @@ impl<'a> FoldedRegion<'a> {
             round,
             bins: FxHashMap::default(),
             size: (2.0 * sum / f64::max(count, 1.0)).max(f64::MIN_POSITIVE),
+            cuts: FxHashMap::default(),
             gone: FxHashSet::default(),
             touched: FxHashSet::default(),
         };
@@ -153,7 +170,17 @@ impl<'a> FoldedRegion<'a> {
     fn file(&mut self, t: usize) {
         let b = Box3::around(self.points(self.made.triangles[t].1));
         for bin in bins(&b, self.size) {
-            self.bins.entry(bin).or_default().push(t);
+            self.bins.entry(bin).or_default().push((t, b));
+        }
+    }
+
+    /// Takes out a triangle that changes or goes.
+    fn unfile(&mut self, t: usize) {
+        let b = Box3::around(self.points(self.made.triangles[t].1));
+        for bin in bins(&b, self.size) {
+            if let Some(all) = self.bins.get_mut(&bin) {
+                all.retain(|x| x.0 != t);
+            }
         }
     }
 
@@ -183,41 +210,84 @@ impl<'a> FoldedRegion<'a> {
         if size == 0.0 { -1.0 } else { n.dot(mean) / size }
     }
 
-    /// How much is wrong with some triangles among all others but `own`: cuts and folds.
-    fn wrong(&mut self, all: &[(u32, Corners)], others: &[Corners]) -> usize {
+    /// How much is wrong with some triangles among all others but their own: cuts and folds. Counted no further than `most`.
+    fn wrong(&mut self, all: &[(u32, Corners)], others: &[(usize, Placed)], most: isize) -> isize {
         let mut count = 0;
+        let placed: SmallVec<[Placed; 8]> = all.iter().map(|x| self.placed(x.1)).collect();
         for (k, &(leaf, t)) in all.iter().enumerate() {
-            let points = self.points(t);
-            let b = Box3::around(points);
-            let rest = all[k + 1..].iter().map(|x| x.1).chain(others.iter().copied());
-            for other in rest {
-                let q = self.points(other);
-                if meet(&b, &Box3::around(q)) && cut([t, other], [points, q]) {
-                    count += 1;
+            count += isize::from(self.facing(leaf, t) < FACING);
+            let own = &placed[k];
+            for other in placed[k + 1..].iter().chain(others.iter().map(|o| &o.1)) {
+                if count >= most {
+                    return count;
                 }
+                count += isize::from(own.cuts(other));
             }
-            count += usize::from(self.facing(leaf, t) < FACING);
         }
         count
     }
 
-    /// By how much less is wrong after a change.
-    pub(super) fn gain(&mut self, change: &Change) -> isize {
-        let there = change.own().filter_map(|t| self.made.triangles.get(t).copied());
-        let old: SmallVec<[(u32, Corners); 8]> = there.collect();
+    fn placed(&self, corners: Corners) -> Placed {
+        let points = self.points(corners);
+        Placed { corners, points, around: Box3::around(points) }
+    }
+
+    /// The triangles near a box but some.
+    fn near(&self, reach: &Box3, but: impl Fn(usize) -> bool) -> Vec<(usize, Placed)> {
+        let mut found = Vec::new();
+        for bin in bins(reach, self.size) {
+            for (t, around) in self.bins.get(&bin).into_iter().flatten() {
+                // Those of several bins are found in the first.
+                let first = |k: usize| bin_of(reach.low[k].max(around.low[k]), self.size) == bin[k];
+                if meet(reach, around) && (0..3).all(first) && !but(*t) {
+                    let corners = self.made.triangles[*t].1;
+                    found.push((
+                        *t,
+                        Placed { corners, points: self.points(corners), around: *around },
+                    ));
+                }
+            }
+        }
+        found
+    }
+
+    /// The triangles that a triangle cuts.
+    fn cuts(&mut self, t: usize) -> &[usize] {
+        if !self.cuts.contains_key(&t) {
+            let own = self.placed(self.made.triangles[t].1);
+            let near = self.near(&own.around, |o| o == t);
+            let found = near.into_iter().filter(|(_, other)| own.cuts(other)).map(|n| n.0);
+            let found: Vec<usize> = found.collect();
+            self.cuts.insert(t, found);
+        }
+        &self.cuts[&t]
+    }
+
+    /// How much is wrong with some of the triangles: cuts, with each other counted once, and folds.
+    fn wrong_now(&mut self, own: &[usize]) -> isize {
+        let mut count = 0;
+        for (k, &t) in own.iter().enumerate() {
+            count += self.cuts(t).iter().filter(|o| !own[..k].contains(o)).count() as isize;
+            let (leaf, corners) = self.made.triangles[t];
+            count += isize::from(self.facing(leaf, corners) < FACING);
+        }
+        count
+    }
+
+    /// By how much less is wrong after a change, if by more than `least`.
+    pub(super) fn gain(&mut self, change: &Change, least: isize) -> Option<isize> {
+        let count = self.made.triangles.len();
+        let own: SmallVec<[usize; 8]> = change.own().filter(|t| *t < count).collect();
+        let before = self.wrong_now(&own);
+        if before <= least {
+            return None;
+        }
         let new: SmallVec<[(u32, Corners); 8]> = change.made.iter().map(|m| (m.1, m.2)).collect();
         let of = |t: &(u32, Corners)| Box3::around(self.points(t.1));
-        let reach = old.iter().chain(&new).map(of).fold(Box3::EMPTY, Box3::union);
-        let mut found: Vec<usize> = bins(&reach, self.size)
-            .filter_map(|b| self.bins.get(&b))
-            .flatten()
-            .copied()
-            .filter(|t| !self.gone.contains(t) && !change.own().any(|o| o == *t))
-            .collect();
-        found.sort_unstable();
-        found.dedup();
-        let others: Vec<Corners> = found.into_iter().map(|t| self.made.triangles[t].1).collect();
-        self.wrong(&old, &others) as isize - self.wrong(&new, &others) as isize
+        let reach = new.iter().map(of).fold(Box3::EMPTY, Box3::union);
+        let others = self.near(&reach, |t| change.own().any(|o| o == t));
+        let gain = before - self.wrong(&new, &others, before - least);
+        (gain > least).then_some(gain)
     }
 
     /// Leaves what was known of a vertex that is none after all.
@@ -312,6 +382,11 @@ impl<'a> FoldedRegion<'a> {
     pub(super) fn apply(&mut self, change: &Change) {
         for t in change.own() {
             let Some(&(_, old)) = self.made.triangles.get(t) else { continue };
+            if self.gone.contains(&t) {
+                continue;
+            }
+            self.forget_cuts(old);
+            self.unfile(t);
             self.touched.extend(old);
             for v in old {
                 if let Some(all) = self.round.get_mut(&v) {
@@ -333,6 +408,19 @@ impl<'a> FoldedRegion<'a> {
                 }
             }
             self.file(t);
+            self.forget_cuts(corners);
+        }
+    }
+
+    /// What triangles near one that changes cut is not known any more.
+    fn forget_cuts(&mut self, corners: Corners) {
+        let reach = Box3::around(self.points(corners));
+        for bin in bins(&reach, self.size) {
+            for (t, around) in self.bins.get(&bin).into_iter().flatten() {
+                if meet(&reach, around) {
+                    self.cuts.remove(t);
+                }
+            }
         }
     }
 
@@ -368,8 +456,7 @@ impl<'a> FoldedRegion<'a> {
                         _ => self.drawn(b, a),
                     };
                     let Some(change) = change else { continue };
-                    let gain = self.gain(&change);
-                    if gain > 0 && best.as_ref().is_none_or(|b| gain > b.0) {
+                    if let Some(gain) = self.gain(&change, best.as_ref().map_or(0, |b| b.0)) {
                         best = Some((gain, change));
                     }
                 }
@@ -380,9 +467,12 @@ impl<'a> FoldedRegion<'a> {
     }
 }
 
+fn bin_of(x: f64, size: f64) -> i64 {
+    (x / size).floor() as i64
+}
+
 fn bins(b: &Box3, size: f64) -> impl Iterator<Item = [i64; 3]> + use<> {
-    let end = |x: f64| (x / size).floor() as i64;
-    let [x, y, z] = [0, 1, 2].map(|k| end(b.low[k])..=end(b.high[k]));
+    let [x, y, z] = [0, 1, 2].map(|k| bin_of(b.low[k], size)..=bin_of(b.high[k], size));
     x.flat_map(move |i| {
         let z = z.clone();
         y.clone().flat_map(move |j| z.clone().map(move |k| [i, j, k]))
