@@ -6,6 +6,8 @@ import math
 import os
 import random
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -299,6 +301,34 @@ def test_the_reader_is_bounded_in_time_and_memory(tmp_path: Path) -> None:
     finally:
         moldloft.limits(seconds=before.seconds)
     assert program(path)[1] == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_a_reader_that_ended_does_not_end_the_program(tmp_path: Path) -> None:
+    path = tmp_path / "part.step"
+    path.write_text(step_of(tmp_path))
+    # As Gmsh leaves it; the reader has ended before it is asked.
+    program = """
+import signal, sys
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+import moldloft
+from moldloft.cad import apart, importing
+begun = apart._Worker._begun
+def ended(self):
+    process = begun(self)
+    process.kill()
+    process.wait()
+    return process
+apart._Worker._begun = ended
+try:
+    importing.program(sys.argv[1])
+except moldloft.Error as error:
+    print(error)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(path)], capture_output=True, text=True, timeout=100
+    )
+    assert done.returncode == 0 and "OCCT ended over the file (SIGKILL)" in done.stdout, done
 
 
 def test_comments_are_no_entities(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ named, and left out; of IGES files it is an error.
 from __future__ import annotations
 
 import atexit
+import contextlib
 import json
 import math
 import os
@@ -26,6 +27,7 @@ from moldloft.cad.occt import Imported, ImportedFace, of_part
 from moldloft.cad.part21 import StepText
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs
+from moldloft.pipes import broken_pipes_raise
 from moldloft.storage import read_bytes
 
 __all__ = ["read"]
@@ -161,8 +163,9 @@ class _Worker:
         timer.daemon = True
         timer.start()
         try:
-            process.stdin.write(struct.pack("<Q", len(message)) + message)
-            process.stdin.flush()
+            with broken_pipes_raise():
+                process.stdin.write(struct.pack("<Q", len(message)) + message)
+                process.stdin.flush()
             head = process.stdout.read(8)
             if len(head) == 8:
                 (length,) = struct.unpack("<Q", head)
@@ -178,6 +181,10 @@ class _Worker:
             timer.cancel()
         process.wait()
         self._process = None
+        # What was not written is tried once more.
+        with broken_pipes_raise(), contextlib.suppress(OSError):
+            process.stdin.close()
+        process.stdout.close()
         if late.is_set():
             return f"OCCT was ended: it took longer than {seconds:g} s"
         number = -process.returncode

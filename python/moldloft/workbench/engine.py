@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 
 from moldloft._engine import command
+from moldloft.pipes import broken_pipes_raise
 
 if sys.platform == "linux":
     import fcntl
@@ -124,7 +125,8 @@ class Engine:
         if process is None or process.stdin is None:
             raise EngineLostError("the engine is not running")
         try:
-            process.stdin.write(struct.pack("<I", len(message)) + message)
+            with broken_pipes_raise():
+                process.stdin.write(struct.pack("<I", len(message)) + message)
             await process.stdin.drain()
         except (BrokenPipeError, ConnectionResetError):
             raise EngineLostError(await self._why()) from None
