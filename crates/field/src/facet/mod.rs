@@ -440,7 +440,10 @@ fn on_grid(
     let mut bends: Vec<[usize; 3]> = bends.into_iter().map(|p| grid.cell_of(p)).collect();
     let amiss = |made: &_| {
         let mut cells = cut_off::cut_off(made, &grid, &leaves, &tapes);
-        cells.extend(cut_off::folded(made, &grid, &leaves, &tapes));
+        // Integrals do not mind.
+        if !options.sharp {
+            cells.extend(cut_off::folded(made, &grid, &leaves, &tapes));
+        }
         cells
     };
     shells::remove_flat(&mut made, step);

@@ -7,10 +7,10 @@ use moldloft_num::union_find::UnionFind;
 use rustc_hash::FxHashMap;
 use std::collections::HashMap;
 
-/// A shell encloses nothing when it is no thicker than this part of a cell.
+/// Shells no thicker than this part of a cell enclose nothing.
 const FLAT: f64 = 1e-9;
 
-/// Leaves out shells that enclose nothing: a corner of the grid just within a sharp edge, whose neighbours all are outside, has a shell of
+/// Removes shells that enclose nothing: a corner of the grid just within a sharp edge, whose neighbours all are outside, has a shell of
 /// its own, whose vertices all go to the edge and the faces beside it, where the other triangles are already.
 pub(super) fn remove_flat(made: &mut Assembled, step: f64) {
     // By construction there is none elsewhere.

@@ -41,14 +41,14 @@ impl Change {
 }
 
 /// A triangle with the box about it.
-struct Placed {
+struct PlacedTriangle {
     corners: Corners,
     points: [Vec3; 3],
     around: Box3,
 }
 
-impl Placed {
-    fn cuts(&self, other: &Placed) -> bool {
+impl PlacedTriangle {
+    fn cuts(&self, other: &PlacedTriangle) -> bool {
         meet(&self.around, &other.around)
             && cut([self.corners, other.corners], [self.points, other.points])
     }
@@ -211,9 +211,14 @@ impl<'a> FoldedRegion<'a> {
     }
 
     /// How much is wrong with some triangles among all others but their own: cuts and folds. Counted no further than `most`.
-    fn wrong(&mut self, all: &[(u32, Corners)], others: &[(usize, Placed)], most: isize) -> isize {
+    fn wrong(
+        &mut self,
+        all: &[(u32, Corners)],
+        others: &[(usize, PlacedTriangle)],
+        most: isize,
+    ) -> isize {
         let mut count = 0;
-        let placed: SmallVec<[Placed; 8]> = all.iter().map(|x| self.placed(x.1)).collect();
+        let placed: SmallVec<[PlacedTriangle; 8]> = all.iter().map(|x| self.placed(x.1)).collect();
         for (k, &(leaf, t)) in all.iter().enumerate() {
             count += isize::from(self.facing(leaf, t) < FACING);
             let own = &placed[k];
@@ -227,13 +232,13 @@ impl<'a> FoldedRegion<'a> {
         count
     }
 
-    fn placed(&self, corners: Corners) -> Placed {
+    fn placed(&self, corners: Corners) -> PlacedTriangle {
         let points = self.points(corners);
-        Placed { corners, points, around: Box3::around(points) }
+        PlacedTriangle { corners, points, around: Box3::around(points) }
     }
 
     /// The triangles near a box but some.
-    fn near(&self, reach: &Box3, but: impl Fn(usize) -> bool) -> Vec<(usize, Placed)> {
+    fn near(&self, reach: &Box3, but: impl Fn(usize) -> bool) -> Vec<(usize, PlacedTriangle)> {
         let mut found = Vec::new();
         for bin in bins(reach, self.size) {
             for (t, around) in self.bins.get(&bin).into_iter().flatten() {
@@ -243,7 +248,7 @@ impl<'a> FoldedRegion<'a> {
                     let corners = self.made.triangles[*t].1;
                     found.push((
                         *t,
-                        Placed { corners, points: self.points(corners), around: *around },
+                        PlacedTriangle { corners, points: self.points(corners), around: *around },
                     ));
                 }
             }
