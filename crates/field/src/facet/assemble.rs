@@ -44,6 +44,30 @@ pub(super) struct Assembled {
     pub(super) blunt: Vec<(u32, [usize; 3])>,
 }
 
+/// What the numbers of vertices stand for in triangles that were assembled.
+pub(super) struct VertexNames {
+    /// How many vertices of cells there are: they come first.
+    count: u32,
+    others: Vec<VertexKey>,
+}
+
+impl VertexNames {
+    pub(super) fn name(&self, v: u32) -> VertexKey {
+        match v.checked_sub(self.count) {
+            None => VertexKey::Cell(v),
+            Some(k) => self.others[k as usize],
+        }
+    }
+
+    /// The number, if there is that vertex.
+    pub(super) fn number(&self, name: VertexKey) -> Option<u32> {
+        match name {
+            VertexKey::Cell(v) => Some(v),
+            _ => Some(self.count + self.others.binary_search(&name).ok()? as u32),
+        }
+    }
+}
+
 /// What is done otherwise than the blocks have it.
 #[derive(Default)]
 pub(super) struct Changes {
@@ -135,7 +159,7 @@ impl<'a> Assembly<'a> {
     }
 
     /// All triangles.
-    pub(super) fn triangles(&self) -> Assembled {
+    pub(super) fn triangles(&self) -> (Assembled, VertexNames) {
         let Self { blocks, count, .. } = *self;
         let parts: Vec<AssemblyPart> = (0..blocks.len())
             .into_par_iter()
@@ -192,7 +216,9 @@ impl<'a> Assembly<'a> {
         let triangles = triangles.collect();
         let pinned = extra.iter().enumerate().filter(|(_, e)| matches!(e.0, VertexKey::Face(_)));
         doubtful.extend(pinned.map(|(k, e)| (count + k as u32, e.3)));
-        Assembled { positions, surfaces, triangles, doubtful, blunt }
+        let others = extra.iter().map(|e| e.0).collect();
+        let made = Assembled { positions, surfaces, triangles, doubtful, blunt };
+        (made, VertexNames { count, others })
     }
 
     /// The position in the grid of a block's cell.

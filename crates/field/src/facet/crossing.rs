@@ -3,7 +3,7 @@
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Vec3};
 use moldloft_parallel::prelude::*;
-use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 /// Pairs of faces of a triangle mesh that cut each other, in order, by the signs of volumes; pairs
 /// that touch to rounding only do not count. With `flagged`, only pairs of which one is flagged.
@@ -46,78 +46,154 @@ pub(super) fn crossings(
     if longest == 0.0 {
         return Vec::new();
     }
-    let size = (2.0 * sum / number).min(longest).max(longest / 32.0);
+    let size = (SIDES_IN_BIN * sum / number).min(longest).max(longest / 32.0);
+    let bin = |p: Vec3| p.to_array().map(|x| (x / size).floor() as i64);
     let bins = |b: Box3| {
-        let end = |x: f64| (x / size).floor() as i64;
-        let [x, y, z] = [0, 1, 2].map(|k| end(b.low[k])..=end(b.high[k]));
+        let (low, high) = (bin(b.low), bin(b.high));
+        let [x, y, z] = [0, 1, 2].map(|k| low[k]..=high[k]);
         x.flat_map(move |i| {
             let z = z.clone();
-            y.clone().flat_map(move |j| z.clone().map(move |k| [i, j, k]))
+            y.clone().flat_map(move |j| z.clone().map(move |k| hash([i, j, k])))
         })
     };
-    let mut map: FxHashMap<[i64; 3], Vec<usize>> = FxHashMap::default();
-    // Which bins hold something, by a hash of few bits: most are known to be empty without a look.
-    let mut filled = vec![false; 1 << 16];
-    let place = |[i, j, k]: [i64; 3]| {
-        let mix = (i.wrapping_mul(73_856_093))
-            ^ (j.wrapping_mul(19_349_663))
-            ^ (k.wrapping_mul(83_492_791));
-        (mix & 0xFFFF) as usize
-    };
+    // Which bins hold something that was chosen, by some bits of their hashes: most others are known without a look.
+    let mut filled = vec![false; (8 * number as usize).next_power_of_two().clamp(1 << 12, 1 << 26)];
+    let mask = filled.len() as u64 - 1;
     let mut all = Box3::EMPTY;
     for f in (0..count).filter(|&f| chosen(f)) {
         let own = Box3::around(corners(f));
         all = all.union(own);
-        for bin in bins(own) {
-            filled[place(bin)] = true;
-            map.entry(bin).or_default().push(f);
-        }
+        bins(own).for_each(|h| filled[(h & mask) as usize] = true);
     }
-    let with_one = |f: usize| {
+    let in_bins = |f: usize| {
         let own = Box3::around(corners(f));
-        if (0..3).any(|k| own.low[k] > all.high[k] || own.high[k] < all.low[k]) {
-            return Vec::new();
-        }
         let inside = Box3 {
             low: Vec3::from([0, 1, 2].map(|k| own.low[k].max(all.low[k]))),
             high: Vec3::from([0, 1, 2].map(|k| own.high[k].min(all.high[k]))),
         };
-        let mut near: Vec<usize> = bins(inside)
-            .filter(|b| filled[place(*b)])
-            .filter_map(|b| map.get(&b))
+        let found = (0..3).all(|k| inside.low[k] <= inside.high[k]).then(|| bins(inside));
+        found
+            .into_iter()
             .flatten()
-            .copied()
-            .filter(|&g| g != f && (g < f || !chosen(f)))
-            .collect();
-        near.sort_unstable();
-        near.dedup();
-        let meets = |g: &usize| {
-            let other = Box3::around(corners(*g));
-            (0..3).all(|k| own.low[k] <= other.high[k] && own.high[k] >= other.low[k])
-        };
-        let pairs = near.into_iter().filter(meets).map(|g| [f.min(g), f.max(g)]);
-        pairs.filter(|pair| cut(pair.map(&names), pair.map(corners))).collect()
+            .filter(|h| filled[(h & mask) as usize])
+            .map(move |h| (h, f as u32))
     };
-    let mut pairs: Vec<[usize; 2]> = (0..count).into_par_iter().flat_map_iter(with_one).collect();
+    let entries: Vec<(u64, u32)> = (0..count).into_par_iter().flat_map_iter(in_bins).collect();
+    let table = Buckets::of(&entries);
+    let in_bucket = |k: usize| {
+        let of = |&(h, f): &(u64, u32)| (h, f as usize, Box3::around(corners(f as usize)));
+        let here: SmallVec<[(u64, usize, Box3); 16]> = table.bucket(k).iter().map(of).collect();
+        let mut pairs: SmallVec<[[usize; 2]; 4]> = SmallVec::new();
+        for (n, (h, f, own)) in here.iter().enumerate() {
+            for (i, g, other) in &here[n + 1..] {
+                // What is in several bins is looked at in the first.
+                let first = || Vec3::from([0, 1, 2].map(|k| own.low[k].max(other.low[k])));
+                if h == i
+                    && (0..3).all(|k| own.low[k] <= other.high[k] && own.high[k] >= other.low[k])
+                    && (chosen(*f) || chosen(*g))
+                    && hash(bin(first())) == *h
+                    && f != g
+                {
+                    let pair = [*f.min(g), *f.max(g)];
+                    if cut(pair.map(&names), pair.map(corners)) {
+                        pairs.push(pair);
+                    }
+                }
+            }
+        }
+        pairs
+    };
+    let mut pairs: Vec<[usize; 2]> =
+        (0..table.count()).into_par_iter().flat_map_iter(in_bucket).collect();
     pairs.sort_unstable();
     pairs.dedup();
     pairs
 }
 
+/// How wide bins are, in sides of triangles.
+const SIDES_IN_BIN: f64 = 1.5;
+
+/// A number for a bin; two bins may have the same, which costs a look and does no harm.
+fn hash(bin: [i64; 3]) -> u64 {
+    let mix = |h: u64, x: i64| (h.rotate_left(23) ^ x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let h = bin.into_iter().fold(0, mix);
+    h ^ (h >> 32)
+}
+
+/// Numbered things by the low bits of their hashes, those of a bucket side by side.
+struct Buckets {
+    starts: Vec<u32>,
+    all: Vec<(u64, u32)>,
+}
+
+impl Buckets {
+    fn of(entries: &[(u64, u32)]) -> Self {
+        let count = (entries.len() / 8).next_power_of_two();
+        let bucket = |h: u64| (h as usize) & (count - 1);
+        let mut starts = vec![0u32; count + 1];
+        entries.iter().for_each(|e| starts[bucket(e.0) + 1] += 1);
+        for k in 0..count {
+            starts[k + 1] += starts[k];
+        }
+        let mut next = starts.clone();
+        let mut all = vec![(0, 0); entries.len()];
+        for &e in entries {
+            let place = &mut next[bucket(e.0)];
+            all[*place as usize] = e;
+            *place += 1;
+        }
+        Self { starts, all }
+    }
+
+    fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn bucket(&self, k: usize) -> &[(u64, u32)] {
+        &self.all[self.starts[k] as usize..self.starts[k + 1] as usize]
+    }
+}
+
 /// How far from its limit a comparison of squares is sure.
 const SURE: f64 = 1e-9;
 
-/// Six times the volume of a tetrahedron, or zero when rounding may decide its sign.
-fn volume(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
-    let (p, q, r) = (b - a, c - a, d - a);
-    let v = p.dot(q.cross(r));
+/// Six times the volume of a tetrahedron, or zero when rounding may decide its sign: the product of two sides, the square of
+/// their lengths' product, and the third side.
+fn sure_volume(normal: Vec3, square: f64, r: Vec3) -> f64 {
+    let v = normal.dot(r);
+    let other = r.norm_sq();
     // Squares decide most without roots.
-    let (square, most) = (v * v, 1e-26 * (p.norm_sq() * q.norm_sq() * r.norm_sq()));
-    if most > 1e-280 && square > most * (1.0 + SURE) {
+    let most = 1e-26 * (square * other);
+    if most > 1e-280 && v * v > most * (1.0 + SURE) {
         return v;
     }
-    let sure = 1e-13 * p.norm() * q.norm() * r.norm();
+    let sure = 1e-13 * square.sqrt() * other.sqrt();
     if v.abs() > sure { v } else { 0.0 }
+}
+
+/// As [`sure_volume`] of four points.
+fn volume(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
+    Plane::of([a, b, c]).side(d)
+}
+
+/// The plane of a triangle.
+#[derive(Clone, Copy)]
+pub(super) struct Plane {
+    at: Vec3,
+    normal: Vec3,
+    square: f64,
+}
+
+impl Plane {
+    pub(super) fn of([a, b, c]: [Vec3; 3]) -> Self {
+        let (p, q) = (b - a, c - a);
+        Self { at: a, normal: p.cross(q), square: p.norm_sq() * q.norm_sq() }
+    }
+
+    /// On which side a point is, by the sign; zero when rounding may decide.
+    fn side(&self, p: Vec3) -> f64 {
+        sure_volume(self.normal, self.square, p - self.at)
+    }
 }
 
 /// True when a segment whose ends are on both sides of a triangle passes through its inside.
@@ -128,25 +204,34 @@ fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
 
 /// True when two triangles, of vertices with these numbers, cut each other.
 pub(super) fn cut(names: [[u32; 3]; 2], points: [[Vec3; 3]; 2]) -> bool {
+    cut_in_planes(names, points, points.map(Plane::of))
+}
+
+/// As [`cut`], of triangles whose planes are known.
+pub(super) fn cut_in_planes(
+    names: [[u32; 3]; 2],
+    points: [[Vec3; 3]; 2],
+    planes: [Plane; 2],
+) -> bool {
     // An edge can pierce the other triangle only if they share none of its ends.
+    let mut sides = [[0.0; 3]; 2];
     for (s, t) in [(0, 1), (1, 0)] {
-        let apart = names[s].map(|v| !names[t].contains(&v));
-        let [a, b, c] = points[t];
-        let side = |k: usize| if apart[k] { volume(a, b, c, points[s][k]) } else { 0.0 };
-        let sides = [side(0), side(1), side(2)];
+        for k in 0..3 {
+            if !names[t].contains(&names[s][k]) {
+                sides[s][k] = planes[t].side(points[s][k]);
+            }
+        }
         // All on one side of the other's plane: they cannot meet.
-        if sides.iter().all(|v| *v > 0.0) || sides.iter().all(|v| *v < 0.0) {
+        if sides[s].iter().all(|v| *v > 0.0) || sides[s].iter().all(|v| *v < 0.0) {
             return false;
         }
-        let through = (0..3).any(|k| {
-            let l = (k + 1) % 3;
-            sides[k] * sides[l] < 0.0 && pierces([points[s][k], points[s][l]], points[t])
-        });
-        if through {
-            return true;
-        }
     }
-    false
+    [(0, 1), (1, 0)].into_iter().any(|(s, t)| {
+        (0..3).any(|k| {
+            let l = (k + 1) % 3;
+            sides[s][k] * sides[s][l] < 0.0 && pierces([points[s][k], points[s][l]], points[t])
+        })
+    })
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::set::Leaf;
 use moldloft_budget::{Budget, Spent};
 use moldloft_num::{Box3, Vec3};
 use moldloft_parallel::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
@@ -121,6 +121,8 @@ struct Refiner<'a> {
     edges: FxHashMap<(u32, u32), SmallVec<[u32; 2]>>,
     /// Vertices beside which nothing is changed.
     locked: Vec<bool>,
+    /// The part of the surface that a vertex is in: what is done in one does not bear on others. [`NO_PART`] where nothing is changed.
+    parts: Vec<u32>,
     changed: Vec<u32>,
     solver: Solver,
 }
@@ -300,6 +302,7 @@ impl Refiner<'_> {
         self.surfaces.push(on);
         self.normals.push(found);
         self.locked.push(false);
+        self.parts.push(self.parts[a as usize]);
         let (s2, t2) = (self.triangles.len() as u32, self.triangles.len() as u32 + 1);
         self.triangles[s as usize].1 = [a, m, c];
         self.triangles[t as usize].1 = [m, a, d];
@@ -365,7 +368,7 @@ impl Refiner<'_> {
             }
         }
         found.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
-        let mut seen = rustc_hash::FxHashSet::default();
+        let mut seen = FxHashSet::default();
         found.into_iter().map(|f| f.1).filter(|e| seen.insert(*e)).collect()
     }
 
@@ -436,6 +439,7 @@ pub(super) fn refine(
         triangles: std::mem::take(&mut made.triangles),
         edges: FxHashMap::default(),
         locked: Vec::new(),
+        parts: Vec::new(),
         changed: Vec::new(),
         solver: Solver::default(),
     };
@@ -471,8 +475,104 @@ pub(super) fn refine(
     Ok(cut_off)
 }
 
-/// All passes, as often as it takes until no changed triangle cuts another; `kept` are vertices beside which
-/// nothing may change.
+/// Points in bins as wide as the reach in which they are looked for.
+struct PointsByPlace {
+    reach: f64,
+    bins: FxHashMap<[i64; 3], Vec<Vec3>>,
+}
+
+impl PointsByPlace {
+    fn new(points: impl Iterator<Item = Vec3>, reach: f64) -> Self {
+        let mut bins: FxHashMap<[i64; 3], Vec<Vec3>> = FxHashMap::default();
+        for p in points {
+            bins.entry(Self::bin(p, reach)).or_default().push(p);
+        }
+        Self { reach, bins }
+    }
+
+    fn bin(p: Vec3, reach: f64) -> [i64; 3] {
+        p.to_array().map(|x| (x / reach).floor() as i64)
+    }
+
+    fn any_within_reach(&self, p: Vec3) -> bool {
+        let [x, y, z] = Self::bin(p, self.reach).map(|i| i.saturating_sub(1)..=i.saturating_add(1));
+        x.into_iter().any(|i| {
+            y.clone().any(|j| {
+                z.clone().any(|k| {
+                    let here = self.bins.get(&[i, j, k]).into_iter().flatten();
+                    here.into_iter().any(|m| m.distance(p) <= self.reach)
+                })
+            })
+        })
+    }
+}
+
+/// The part of a vertex beside which nothing is changed.
+const NO_PART: u32 = u32::MAX;
+
+/// The parts in which vertices are that triangles join, but for those that are kept.
+fn parts(triangles: impl Iterator<Item = Corner>, kept: &[bool]) -> Vec<u32> {
+    let mut parts: Vec<u32> = (0..kept.len() as u32).collect();
+    fn root(parts: &mut [u32], v: u32) -> u32 {
+        let mut v = v as usize;
+        while parts[v] as usize != v {
+            parts[v] = parts[parts[v] as usize];
+            v = parts[v] as usize;
+        }
+        v as u32
+    }
+    for t in triangles {
+        let mut free = t.into_iter().filter(|&v| !kept[v as usize]);
+        let Some(first) = free.next() else { continue };
+        for v in free {
+            let (a, b) = (root(&mut parts, first), root(&mut parts, v));
+            parts[a.max(b) as usize] = a.min(b);
+        }
+    }
+    for v in 0..kept.len() {
+        parts[v] = if kept[v] { NO_PART } else { root(&mut parts, v as u32) };
+    }
+    parts
+}
+
+impl Refiner<'_> {
+    /// The part of the surface that a triangle is in.
+    fn part(&self, corners: Corner) -> Option<u32> {
+        corners.into_iter().map(|v| self.parts[v as usize]).find(|&p| p != NO_PART)
+    }
+
+    /// Makes some parts what they were: with those triangles, and that many vertices.
+    fn revert(&mut self, parts: &FxHashSet<u32>, old: &[(u32, Corner)], count: usize) {
+        let gone = |v: usize| v >= count && parts.contains(&self.parts[v]);
+        let gone: Vec<bool> = (0..self.positions.len()).map(gone).collect();
+        let mut number: Vec<u32> = Vec::with_capacity(gone.len());
+        let mut kept = 0;
+        for gone in &gone {
+            number.push(kept);
+            kept += u32::from(!gone);
+        }
+        let mut triangles = Vec::with_capacity(self.triangles.len());
+        for (k, &(leaf, corners)) in self.triangles.iter().enumerate() {
+            if !self.part(corners).is_some_and(|part| parts.contains(&part)) {
+                triangles.push((leaf, corners.map(|v| number[v as usize])));
+            } else if let Some(&before) = old.get(k) {
+                triangles.push(before);
+            }
+        }
+        self.triangles = triangles;
+        fn keep<T>(all: &mut Vec<T>, gone: &[bool]) {
+            let mut gone = gone.iter();
+            all.retain(|_| gone.next() == Some(&false));
+        }
+        keep(&mut self.positions, &gone);
+        keep(&mut self.surfaces, &gone);
+        keep(&mut self.normals, &gone);
+        keep(&mut self.parts, &gone);
+    }
+}
+
+/// All passes. Where changed triangles cut others, that part of the surface is done again with what is about them left alone, and
+/// left as it was if that does not help. `kept` are vertices beside which nothing may change.
 fn attempt(
     work: &mut Refiner,
     near: &[u32],
@@ -481,34 +581,34 @@ fn attempt(
 ) -> Result<(), Spent> {
     let count = work.positions.len();
     let old: Vec<(u32, Corner)> = work.triangles.clone();
-    for attempt in 0..=TRIES {
-        work.positions.truncate(count);
-        work.surfaces.truncate(count);
-        work.normals.truncate(count);
-        work.triangles.clone_from(&old);
+    work.parts = parts(near.iter().map(|&t| old[t as usize].1), &kept);
+    let mut near = near.to_vec();
+    for _ in 0..TRIES {
         work.edges.clear();
         work.changed.clear();
         work.locked.clone_from(&kept);
-        if attempt == TRIES {
-            return Ok(());
-        }
-        work.collect_edges(near);
-        work.run(near, budget)?;
+        work.locked.resize(work.positions.len(), false);
+        work.collect_edges(&near);
+        work.run(&near, budget)?;
         budget.poll()?;
         let mut flagged = vec![false; work.triangles.len()];
         work.changed.iter().for_each(|&t| flagged[t as usize] = true);
         let corner = |f: usize| work.triangles[f].1;
         let cut = crossings(&work.positions, work.triangles.len(), corner, Some(&flagged));
         if cut.is_empty() {
-            return Ok(());
+            break;
         }
         // What was changed there, or beside it, stays next time.
-        let marks: Vec<Vec3> = cut.into_iter().flatten().map(|f| work.at(corner(f)[0])).collect();
+        let cut: Vec<Corner> = cut.into_iter().flatten().map(corner).collect();
         // About two cells.
         let reach = 10.0 * work.rule.shortest;
+        let marks = PointsByPlace::new(cut.iter().map(|c| work.at(c[0])), reach);
         for (p, lock) in work.positions.iter().zip(&mut kept) {
-            *lock |= marks.iter().any(|m| m.distance(*p) <= reach);
+            *lock = *lock || marks.any_within_reach(*p);
         }
+        let again: FxHashSet<u32> = cut.iter().filter_map(|c| work.part(*c)).collect();
+        work.revert(&again, &old, count);
+        near.retain(|&t| work.part(old[t as usize].1).is_some_and(|part| again.contains(&part)));
     }
     Ok(())
 }

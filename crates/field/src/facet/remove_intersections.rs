@@ -11,7 +11,7 @@ use super::crossing::crossings;
 use super::grid::Grid;
 use super::place_vertices::{VertexPlacer, nearest};
 use super::types::{FacetBlock, Ring};
-use super::unfold::unfold;
+use super::unfold::{unfold, unfold_again};
 use super::vertex::{PlacedVertex, Solver, Surfaces};
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
@@ -71,11 +71,11 @@ pub(super) fn assembled(
 ) -> Assembled {
     let mut assembly = Assembly::new(grid, leaves, blocks);
     let mut ways: BTreeMap<u32, u8> = BTreeMap::new();
-    let mut made = assembly.triangles();
+    let (mut made, mut names) = assembly.triangles();
     // After the first round only triangles near what moved, and pairs that were left, are looked at again.
     let mut changed: Option<FxHashSet<u32>> = None;
-    // What is joined otherwise is so in the triangles at hand only.
-    let mut unfolded: FxHashSet<u32> = FxHashSet::default();
+    // What is joined otherwise is so in the triangles at hand only, and done again in others.
+    let mut unfoldings = Vec::new();
     for _ in 0..if sharp { 0 } else { ROUNDS } {
         let corners = |f: usize| made.triangles[f].1;
         let mut pairs = match &changed {
@@ -85,9 +85,9 @@ pub(super) fn assembled(
         if pairs.is_empty() {
             break;
         }
-        if let Some(touched) = unfold(&mut made, grid, leaves, &pairs) {
+        let unfolding = unfold(&mut made, &names, grid, leaves, &pairs, &mut unfoldings);
+        if let Some(touched) = unfolding {
             pairs = crossing_near(&made, &touched);
-            unfolded.extend(touched.into_iter().filter(|v| *v < assembly.count));
             if pairs.is_empty() {
                 break;
             }
@@ -113,8 +113,9 @@ pub(super) fn assembled(
         chosen.sort_unstable();
         chosen.dedup();
         let mut solver = Solver::default();
+        let mut moved = FxHashSet::default();
         for vertex in chosen {
-            near.insert(vertex);
+            moved.insert(vertex);
             let way = ways.entry(vertex).or_insert(0);
             *way += 1;
             if *way == 1 {
@@ -123,15 +124,16 @@ pub(super) fn assembled(
                 if way.several {
                     assembly.changes.merged.insert(way.vertex);
                 }
-                near.insert(way.vertex);
+                moved.insert(way.vertex);
                 assembly.changes.moved.insert(way.vertex, way.place);
             }
         }
-        near.extend(&unfolded);
+        near.extend(&moved);
+        (made, names) = assembly.triangles();
+        near.extend(unfold_again(&mut made, &names, grid, leaves, &mut unfoldings, &moved));
         changed = Some(near);
-        made = assembly.triangles();
     }
-    if !assembly.changes.merged.is_empty() || !unfolded.is_empty() {
+    if !assembly.changes.merged.is_empty() || !unfoldings.is_empty() {
         made.compact();
     }
     made

@@ -8,7 +8,7 @@
 use super::assemble::{Assembled, NO_VERTEX};
 use super::grid::Grid;
 use super::refine::Tapes;
-use super::unfold::{Change, Corners, FoldedRegion};
+use super::unfold::{Change, Corners, FoldedRegion, RINGS};
 use super::vertex::Surfaces;
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
@@ -44,7 +44,8 @@ pub(super) fn sharpen(made: &mut Assembled, grid: &Grid, leaves: &[Leaf], tapes:
     if seeds.is_empty() {
         return;
     }
-    let mut work = Sharpener { folds: FoldedRegion::about(made, leaves, &seeds), tapes, grid };
+    let mut work =
+        Sharpener { folds: FoldedRegion::about(made, leaves, &seeds, RINGS), tapes, grid };
     let mut open = seeds;
     open.sort_unstable();
     open.dedup();

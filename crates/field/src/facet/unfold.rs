@@ -4,8 +4,8 @@
 //! diagonals and vertices that are drawn together along an edge of the body unfold them: the edge stays where it is. What does
 //! not get better by either is left to those who move vertices.
 
-use super::assemble::Assembled;
-use super::crossing::cut;
+use super::assemble::{Assembled, VertexKey, VertexNames};
+use super::crossing::{Plane, cut, cut_in_planes};
 use super::grid::Grid;
 use super::vertex::Solver;
 use crate::set::Leaf;
@@ -22,7 +22,9 @@ const STEPS: usize = 6;
 /// How often all pairs are.
 const ROUNDS: usize = 4;
 /// So many rings round what cuts are known.
-const RINGS: usize = 3;
+pub(super) const RINGS: usize = 3;
+/// The same where it is known what is done.
+const KNOWN_RINGS: usize = 1;
 
 pub(super) type Corners = [u32; 3];
 
@@ -44,13 +46,18 @@ impl Change {
 struct PlacedTriangle {
     corners: Corners,
     points: [Vec3; 3],
+    plane: Plane,
     around: Box3,
 }
 
 impl PlacedTriangle {
     fn cuts(&self, other: &PlacedTriangle) -> bool {
         meet(&self.around, &other.around)
-            && cut([self.corners, other.corners], [self.points, other.points])
+            && cut_in_planes(
+                [self.corners, other.corners],
+                [self.points, other.points],
+                [self.plane, other.plane],
+            )
     }
 }
 
@@ -61,30 +68,58 @@ pub(super) struct FoldedRegion<'a> {
     normals: FxHashMap<(u32, u32), Vec3>,
     /// The triangles of each vertex near what cuts.
     pub(super) round: FxHashMap<u32, Vec<usize>>,
-    /// Triangles by place.
+    /// Triangles by place; none where what is done is known.
     bins: FxHashMap<[i64; 3], Vec<(usize, Box3)>>,
     size: f64,
     /// What some triangles cut, as far as it is known.
     cuts: FxHashMap<usize, Vec<usize>>,
     gone: FxHashSet<usize>,
-    /// Vertices of changed triangles.
-    touched: FxHashSet<u32>,
+    /// Vertices of changed triangles, with the number of the last change.
+    touched: FxHashMap<u32, usize>,
+    /// How many changes there were.
+    changes: usize,
+}
+
+/// How triangles about an edge are joined otherwise.
+#[derive(Clone, Copy, Debug)]
+enum Joining {
+    /// By the other diagonal.
+    Turned,
+    /// With the first end drawn onto the second.
+    Drawn,
+}
+
+/// A change that can be made again when the triangles are assembled anew.
+pub(super) struct Unfolding {
+    how: Joining,
+    edge: [VertexKey; 2],
+    /// The triangles that it changed.
+    of: SmallVec<[[VertexKey; 3]; 8]>,
 }
 
 /// Joins the vertices of these pairs of triangles otherwise where less is cut then. If that is anywhere: the vertices of the pairs
-/// and of all triangles that changed.
+/// and of all triangles that changed. What was done is added to `done`.
 pub(super) fn unfold(
     made: &mut Assembled,
+    names: &VertexNames,
     grid: &Grid,
     leaves: &[Leaf],
     pairs: &[[usize; 2]],
+    done: &mut Vec<Unfolding>,
 ) -> Option<FxHashSet<u32>> {
     let of_pairs: Vec<u32> = pairs.iter().flatten().flat_map(|&t| made.triangles[t].1).collect();
-    let mut folds = FoldedRegion::about(made, leaves, &of_pairs);
+    let mut folds = FoldedRegion::about(made, leaves, &of_pairs, RINGS);
+    // A pair beside which nothing changed since it was looked at is left.
+    let mut looked: Vec<Option<usize>> = vec![None; pairs.len()];
     for _ in 0..ROUNDS {
-        let before = folds.touched.len();
-        pairs.iter().for_each(|pair| folds.cure(*pair));
-        if folds.touched.len() == before {
+        let before = folds.changes;
+        for (pair, looked) in pairs.iter().zip(&mut looked) {
+            if looked.is_none_or(|then| folds.changed_near(*pair, then)) {
+                folds.cure(*pair, names, done);
+                *looked = Some(folds.changes);
+            }
+        }
+        if folds.changes == before {
             break;
         }
     }
@@ -93,18 +128,60 @@ pub(super) fn unfold(
     Some(touched)
 }
 
+/// Does again what was done before the triangles were assembled anew, where none of its vertices moved, and keeps that alone of it.
+/// Returns the vertices of what is not done.
+pub(super) fn unfold_again(
+    made: &mut Assembled,
+    names: &VertexNames,
+    grid: &Grid,
+    leaves: &[Leaf],
+    done: &mut Vec<Unfolding>,
+    moved: &FxHashSet<u32>,
+) -> FxHashSet<u32> {
+    let number = |name: &VertexKey| names.number(*name).filter(|v| !moved.contains(v));
+    let seeds: Vec<u32> =
+        done.iter().flat_map(|u| u.of.iter().flatten()).filter_map(number).collect();
+    let mut folds = FoldedRegion::about(made, leaves, &seeds, KNOWN_RINGS);
+    let mut left = FxHashSet::default();
+    done.retain(|u| {
+        let all = u.of.iter().flatten().all(|name| number(name).is_some());
+        let edge = u.edge.each_ref().map(number);
+        let change = match edge {
+            [Some(a), Some(b)] if all => folds.change(u.how, a, b),
+            _ => None,
+        };
+        match change.filter(|c| folds.triangles_of(c, names) == u.of) {
+            Some(change) => {
+                folds.apply(&change);
+                true
+            }
+            None => {
+                left.extend(u.of.iter().flatten().filter_map(|name| names.number(*name)));
+                false
+            }
+        }
+    });
+    folds.done(grid);
+    left
+}
+
 impl<'a> FoldedRegion<'a> {
-    /// What is round some vertices.
-    pub(super) fn about(made: &'a mut Assembled, leaves: &'a [Leaf], seeds: &[u32]) -> Self {
+    /// What is within some rings round some vertices.
+    pub(super) fn about(
+        made: &'a mut Assembled,
+        leaves: &'a [Leaf],
+        seeds: &[u32],
+        rings: usize,
+    ) -> Self {
         let mut marked = vec![false; made.positions.len()];
         seeds.iter().for_each(|&v| marked[v as usize] = true);
         let mut near = Vec::new();
-        for ring in 0..RINGS {
+        for ring in 0..rings {
             let one = |v: &u32| marked[*v as usize];
             near = (0..made.triangles.len())
                 .filter(|&t| made.triangles[t].1.iter().any(one))
                 .collect();
-            if ring + 1 < RINGS {
+            if ring + 1 < rings {
                 for &t in &near {
                     made.triangles[t].1.iter().for_each(|&v| marked[v as usize] = true);
                 }
@@ -130,9 +207,12 @@ impl<'a> FoldedRegion<'a> {
             size: (2.0 * sum / f64::max(count, 1.0)).max(f64::MIN_POSITIVE),
             cuts: FxHashMap::default(),
             gone: FxHashSet::default(),
-            touched: FxHashSet::default(),
+            touched: FxHashMap::default(),
+            changes: 0,
         };
-        near.iter().for_each(|&t| folds.file(t));
+        if rings > KNOWN_RINGS {
+            near.iter().for_each(|&t| folds.file(t));
+        }
         folds
     }
 
@@ -152,11 +232,11 @@ impl<'a> FoldedRegion<'a> {
         }
         let known: FxHashSet<u32> = made.doubtful.iter().map(|d| d.0).collect();
         let cell = |v: u32| (v, grid.cell_of(made.positions[v as usize]));
-        let new = touched.iter().filter(|v| !known.contains(v)).map(|&v| cell(v));
+        let new = touched.keys().filter(|v| !known.contains(v)).map(|&v| cell(v));
         let new: Vec<_> = new.collect();
         made.doubtful.extend(new);
         made.doubtful.sort_unstable();
-        Some(touched)
+        Some(touched.into_keys().collect())
     }
 
     pub(super) fn at(&self, v: u32) -> Vec3 {
@@ -217,11 +297,10 @@ impl<'a> FoldedRegion<'a> {
         others: &[(usize, PlacedTriangle)],
         most: isize,
     ) -> isize {
-        let mut count = 0;
+        let folded = all.iter().filter(|x| self.facing(x.0, x.1) < FACING);
+        let mut count = folded.count() as isize;
         let placed: SmallVec<[PlacedTriangle; 8]> = all.iter().map(|x| self.placed(x.1)).collect();
-        for (k, &(leaf, t)) in all.iter().enumerate() {
-            count += isize::from(self.facing(leaf, t) < FACING);
-            let own = &placed[k];
+        for (k, own) in placed.iter().enumerate() {
             for other in placed[k + 1..].iter().chain(others.iter().map(|o| &o.1)) {
                 if count >= most {
                     return count;
@@ -234,7 +313,7 @@ impl<'a> FoldedRegion<'a> {
 
     fn placed(&self, corners: Corners) -> PlacedTriangle {
         let points = self.points(corners);
-        PlacedTriangle { corners, points, around: Box3::around(points) }
+        PlacedTriangle { corners, points, plane: Plane::of(points), around: Box3::around(points) }
     }
 
     /// The triangles near a box but some.
@@ -245,11 +324,7 @@ impl<'a> FoldedRegion<'a> {
                 // Those of several bins are found in the first.
                 let first = |k: usize| bin_of(reach.low[k].max(around.low[k]), self.size) == bin[k];
                 if meet(reach, around) && (0..3).all(first) && !but(*t) {
-                    let corners = self.made.triangles[*t].1;
-                    found.push((
-                        *t,
-                        PlacedTriangle { corners, points: self.points(corners), around: *around },
-                    ));
+                    found.push((*t, self.placed(self.made.triangles[*t].1)));
                 }
             }
         }
@@ -281,9 +356,19 @@ impl<'a> FoldedRegion<'a> {
 
     /// By how much less is wrong after a change, if by more than `least`.
     pub(super) fn gain(&mut self, change: &Change, least: isize) -> Option<isize> {
+        let before = self.wrong_before(change);
+        self.gain_from(before, change, least)
+    }
+
+    /// How much is wrong with the triangles that a change changes.
+    fn wrong_before(&mut self, change: &Change) -> isize {
         let count = self.made.triangles.len();
         let own: SmallVec<[usize; 8]> = change.own().filter(|t| *t < count).collect();
-        let before = self.wrong_now(&own);
+        self.wrong_now(&own)
+    }
+
+    /// As [`FoldedRegion::gain`], with what is wrong before.
+    fn gain_from(&mut self, before: isize, change: &Change, least: isize) -> Option<isize> {
         if before <= least {
             return None;
         }
@@ -384,15 +469,46 @@ impl<'a> FoldedRegion<'a> {
         Some(Change { made, gone })
     }
 
+    /// What becomes of the triangles about an edge, if it can be done.
+    fn change(&mut self, how: Joining, a: u32, b: u32) -> Option<Change> {
+        match how {
+            Joining::Turned => self.turned(a, b),
+            Joining::Drawn => self.drawn(a, b),
+        }
+    }
+
+    /// The triangles that a change changes, as they are before it.
+    fn triangles_of(&self, change: &Change, names: &VertexNames) -> SmallVec<[[VertexKey; 3]; 8]> {
+        let own = change.own().map(|t| self.made.triangles[t].1.map(|v| names.name(v)));
+        let mut own: SmallVec<[[VertexKey; 3]; 8]> = own.collect();
+        own.iter_mut().for_each(|t| {
+            let first = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
+            t.rotate_left(first);
+        });
+        own.sort_unstable();
+        own
+    }
+
+    /// True when a triangle beside the vertices of a pair, or one of its own, was changed after that many changes.
+    fn changed_near(&self, pair: [usize; 2], then: usize) -> bool {
+        let near = pair.into_iter().flat_map(|t| self.made.triangles[t].1);
+        let beside = near.flat_map(|v| self.round.get(&v)).flatten();
+        let mut vertices = beside.flat_map(|&t| self.made.triangles[t].1);
+        vertices.any(|v| self.touched.get(&v).is_some_and(|&last| last > then))
+    }
+
     pub(super) fn apply(&mut self, change: &Change) {
+        self.changes += 1;
         for t in change.own() {
             let Some(&(_, old)) = self.made.triangles.get(t) else { continue };
             if self.gone.contains(&t) {
                 continue;
             }
-            self.forget_cuts(old);
-            self.unfile(t);
-            self.touched.extend(old);
+            if !self.bins.is_empty() {
+                self.forget_cuts(old);
+                self.unfile(t);
+            }
+            self.touched.extend(old.map(|v| (v, self.changes)));
             for v in old {
                 if let Some(all) = self.round.get_mut(&v) {
                     all.retain(|x| *x != t);
@@ -406,14 +522,16 @@ impl<'a> FoldedRegion<'a> {
                 // They come in the order of their numbers.
                 None => self.made.triangles.push((leaf, corners)),
             }
-            self.touched.extend(corners);
+            self.touched.extend(corners.map(|v| (v, self.changes)));
             for v in corners {
                 if let Some(all) = self.round.get_mut(&v) {
                     all.push(t);
                 }
             }
-            self.file(t);
-            self.forget_cuts(corners);
+            if !self.bins.is_empty() {
+                self.file(t);
+                self.forget_cuts(corners);
+            }
         }
     }
 
@@ -430,7 +548,7 @@ impl<'a> FoldedRegion<'a> {
     }
 
     /// Changes what is about a pair of triangles as long as less is wrong then and they cut each other.
-    fn cure(&mut self, pair: [usize; 2]) {
+    fn cure(&mut self, pair: [usize; 2], names: &VertexNames, done: &mut Vec<Unfolding>) {
         for _ in 0..STEPS {
             if pair.iter().any(|t| self.gone.contains(t)) {
                 return;
@@ -452,21 +570,27 @@ impl<'a> FoldedRegion<'a> {
             }
             edges.sort_unstable();
             edges.dedup();
-            let mut best: Option<(isize, Change)> = None;
+            let mut all: Vec<(isize, Change, Joining, [u32; 2])> = Vec::new();
             for (a, b) in edges {
-                for way in 0..3 {
-                    let change = match way {
-                        0 => self.turned(a, b),
-                        1 => self.drawn(a, b),
-                        _ => self.drawn(b, a),
-                    };
-                    let Some(change) = change else { continue };
-                    if let Some(gain) = self.gain(&change, best.as_ref().map_or(0, |b| b.0)) {
-                        best = Some((gain, change));
-                    }
+                let ways =
+                    [(Joining::Turned, a, b), (Joining::Drawn, a, b), (Joining::Drawn, b, a)];
+                for (how, a, b) in ways {
+                    let Some(change) = self.change(how, a, b) else { continue };
+                    all.push((self.wrong_before(&change), change, how, [a, b]));
                 }
             }
-            let Some((_, change)) = best else { return };
+            // Where most is wrong, most can be gained: the others need no look then.
+            all.sort_by_key(|x| std::cmp::Reverse(x.0));
+            let mut best: Option<(isize, usize)> = None;
+            for (k, (before, change, ..)) in all.iter().enumerate() {
+                let least = best.map_or(0, |b| b.0);
+                let gain = self.gain_from(*before, change, least);
+                best = gain.map(|gain| (gain, k)).or(best);
+            }
+            let Some((_, best)) = best else { return };
+            let (_, change, how, edge) = all.swap_remove(best);
+            let of = self.triangles_of(&change, names);
+            done.push(Unfolding { how, edge: edge.map(|v| names.name(v)), of });
             self.apply(&change);
         }
     }
