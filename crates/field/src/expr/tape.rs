@@ -10,6 +10,7 @@ use crate::expr::interval::Interval;
 use crate::expr::oracle::{Affine, Oracle};
 use crate::expr::primitive::{Binary, Op, Primitive, PrimitiveNode};
 use moldloft_num::{Box3, Real, Vec3};
+use smallvec::{SmallVec, smallvec};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -510,24 +511,54 @@ impl ExprTape<f64> {
     /// an intersection, so that the sign is the same everywhere and the value where it is zero. `None`
     /// when nothing can be left out.
     pub(crate) fn pruned(&self, ranges: &[Interval]) -> Option<Self> {
-        let decide = |k: usize, a: u32, b: u32| {
-            let (x, y) = (ranges[a as usize], ranges[b as usize]);
-            let (a_smaller, b_smaller) = (x.high < y.low, y.high < x.low);
-            match self.code[k] {
-                ExprInstruction::Min(..) | ExprInstruction::Union(..) if a_smaller => Some(a),
-                ExprInstruction::Min(..) | ExprInstruction::Union(..) if b_smaller => Some(b),
-                ExprInstruction::Max(..) | ExprInstruction::Common(..) if a_smaller => Some(b),
-                ExprInstruction::Max(..) | ExprInstruction::Common(..) if b_smaller => Some(a),
-                ExprInstruction::Union(..) if y.low > 0.0 => Some(a),
-                ExprInstruction::Union(..) if x.low > 0.0 => Some(b),
-                ExprInstruction::Common(..) if y.high < 0.0 => Some(a),
-                ExprInstruction::Common(..) if x.high < 0.0 => Some(b),
-                _ => None,
-            }
-        };
+        let decide = |k: usize, a: u32, b: u32| self.decided(k, a, b, ranges);
         let mut choices = self.code.iter().enumerate().filter_map(|(k, c)| Some((k, c.choice()?)));
         let decided = choices.any(|(k, (a, b))| decide(k, a, b).is_some());
         decided.then(|| self.reduced(self.code.len() as u32 - 1, decide))
+    }
+
+    /// Which operand of an instruction alone decides, given the ranges.
+    fn decided(&self, k: usize, a: u32, b: u32, ranges: &[Interval]) -> Option<u32> {
+        let (x, y) = (ranges[a as usize], ranges[b as usize]);
+        let (a_smaller, b_smaller) = (x.high < y.low, y.high < x.low);
+        match self.code[k] {
+            ExprInstruction::Min(..) | ExprInstruction::Union(..) if a_smaller => Some(a),
+            ExprInstruction::Min(..) | ExprInstruction::Union(..) if b_smaller => Some(b),
+            ExprInstruction::Max(..) | ExprInstruction::Common(..) if a_smaller => Some(b),
+            ExprInstruction::Max(..) | ExprInstruction::Common(..) if b_smaller => Some(a),
+            ExprInstruction::Union(..) if y.low > 0.0 => Some(a),
+            ExprInstruction::Union(..) if x.low > 0.0 => Some(b),
+            ExprInstruction::Common(..) if y.high < 0.0 => Some(a),
+            ExprInstruction::Common(..) if x.high < 0.0 => Some(b),
+            _ => None,
+        }
+    }
+
+    /// True when a leaf that is not `known` may be on the surface over a box, given the range of every instruction there.
+    pub(crate) fn may_show_other(&self, ranges: &[Interval], known: impl Fn(u32) -> bool) -> bool {
+        let count = self.code.len();
+        let mut open: SmallVec<[bool; 64]> = smallvec![false; count];
+        open[count - 1] = true;
+        // Operands come before what uses them.
+        for k in (0..count).rev() {
+            if !open[k] || !ranges[k].contains(0.0) {
+                continue;
+            }
+            if self.leaf[k] != NO_LEAF {
+                if !known(self.leaf[k]) {
+                    return true;
+                }
+                continue;
+            }
+            match self.code[k].choice().and_then(|(a, b)| self.decided(k, a, b, ranges)) {
+                Some(one) => open[one as usize] = true,
+                None => {
+                    let operands = self.code[k].operands();
+                    operands.into_iter().flatten().for_each(|o| open[o as usize] = true);
+                }
+            }
+        }
+        false
     }
 
     /// The values at many points: bit for bit those of [`ExprTape::eval`], in the widest registers at hand.

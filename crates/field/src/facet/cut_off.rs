@@ -2,29 +2,35 @@
 //! cells and has no crossing.
 //!
 //! The middles of triangles and of their sides are put onto the surfaces that they should be on. There the set is zero, or
-//! another primitive decides: then its edge runs through the triangle and is not among the triangles' sides.
+//! another primitive decides: then its edge runs through the triangle and is not among the triangles' sides. Where a primitive
+//! may show, by ranges, that no corner there is on, points between are looked at, too.
 
 use super::assemble::Assembled;
 use super::grid::Grid;
 use super::refine::Tapes;
+use super::types::SIDE;
 use super::vertex::{Solver, Surfaces};
+use crate::expr::interval::Interval;
 use crate::expr::tape::{ExprTape, NO_LEAF, Room};
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use moldloft_parallel::prelude::*;
 use rustc_hash::FxHashSet;
+use smallvec::SmallVec;
 
 /// What is cut off by less than this part of a cell is not.
 pub(super) const NEAR: f64 = 0.01;
 /// Two values are the same when they differ by no more than this part.
 const SAME: f64 = 1e-9;
+/// So far from triangles their surfaces are looked for, in cells.
+const MARGIN: f64 = 0.05;
 /// A point farther than this part of a side from its middle is none of the surface between.
 const AWAY: f64 = 0.5;
 
 /// A place to look at: what it should be on, and how far round it.
 struct CutOffSample {
     triangle: u32,
-    /// A corner or the side after it, or the middle: 0 to 2, 3 to 5, 6.
+    /// A corner or the side after it, the middle, or a point between: 0 to 2, 3 to 5, 6, 7 and more.
     part: u8,
 }
 
@@ -45,6 +51,28 @@ struct CutOffRoom {
     room: Room,
     registers: Vec<f64>,
     solver: Solver,
+    /// Triangles where a primitive may show that none of their cell's corners is on.
+    hidden: FxHashSet<u32>,
+    /// Triangles by the places of their cells in the block.
+    placed: Vec<(u16, u32)>,
+    cells: Vec<ShownCell>,
+    ranges: Vec<Interval>,
+}
+
+/// A cell with what the corners of its triangles are on.
+struct ShownCell {
+    /// Its place in the block, the bits of the axes interleaved.
+    place: u16,
+    around: Box3,
+    shown: SmallVec<[u32; 4]>,
+    triangles: usize,
+}
+
+/// The bits of a cell's place in its block in turn.
+fn interleaved(local: [usize; 3]) -> u16 {
+    let bits = SIDE.ilog2();
+    let bit = |b: u32, k: usize| (local[k] >> b & 1) << (3 * b + k as u32);
+    (0..bits).flat_map(|b| (0..3).map(move |k| bit(b, k))).sum::<usize>() as u16
 }
 
 /// The cells in which another primitive cuts off what triangles show.
@@ -126,6 +154,7 @@ impl CutOffSearch<'_> {
         scratch: &mut CutOffRoom,
     ) -> Vec<[usize; 3]> {
         let mut cells = Vec::new();
+        self.find_hidden(tape, block, scratch);
         // In the order of the triangles, and so of their leaves.
         let mut rest = block;
         while let Some(&(_, first)) = rest.first() {
@@ -139,6 +168,75 @@ impl CutOffSearch<'_> {
         cells
     }
 
+    /// Finds the triangles in whose cells a primitive may show that none of the corners is on.
+    fn find_hidden(
+        &self,
+        tape: &ExprTape<f64>,
+        block: &[([u32; 3], u32)],
+        scratch: &mut CutOffRoom,
+    ) {
+        let CutOffRoom { hidden, placed, cells, ranges, .. } = scratch;
+        hidden.clear();
+        cells.clear();
+        placed.clear();
+        placed.extend(block.iter().map(|&(_, t)| {
+            let middle = place(self.points(t), 6);
+            let local = self.grid.cell_of(middle).map(|x| x % SIDE);
+            (interleaved(local), t)
+        }));
+        placed.sort_unstable();
+        for triangles in placed.chunk_by(|a, b| a.0 == b.0) {
+            let mut cell = ShownCell {
+                place: triangles[0].0,
+                around: Box3::EMPTY,
+                shown: SmallVec::new(),
+                triangles: triangles.len(),
+            };
+            for &(_, t) in triangles {
+                let corners = self.made.triangles[t as usize].1;
+                for leaf in corners.iter().flat_map(|&v| &self.made.surfaces[v as usize]) {
+                    if !cell.shown.contains(leaf) {
+                        cell.shown.push(*leaf);
+                    }
+                }
+                cell.around = cell.around.union(Box3::around(self.points(t)));
+            }
+            cells.push(cell);
+        }
+        self.open_cells(tape, cells, SIDE.ilog2(), placed, (ranges, hidden));
+    }
+
+    /// Halves cells of a block, in the order of their interleaved places, as long as something that not all of them show may be there.
+    fn open_cells(
+        &self,
+        tape: &ExprTape<f64>,
+        cells: &[ShownCell],
+        level: u32,
+        placed: &[(u16, u32)],
+        (ranges, hidden): (&mut Vec<Interval>, &mut FxHashSet<u32>),
+    ) {
+        let around = cells.iter().map(|c| c.around).fold(Box3::EMPTY, Box3::union);
+        // Curved surfaces are beside their triangles.
+        let margin = MARGIN * self.grid.step;
+        let sides = [0, 1, 2]
+            .map(|k| Interval { low: around.low[k] - margin, high: around.high[k] + margin });
+        tape.range(&sides, ranges);
+        if !tape.may_show_other(ranges, |leaf| cells.iter().all(|c| c.shown.contains(&leaf))) {
+            return;
+        }
+        if level == 0 {
+            let own = &placed[..cells[0].triangles];
+            hidden.extend(own.iter().map(|p| p.1));
+            return;
+        }
+        let mut placed = placed;
+        for half in cells.chunk_by(|a, b| a.place >> (3 * level - 3) == b.place >> (3 * level - 3))
+        {
+            self.open_cells(tape, half, level - 1, placed, (&mut *ranges, &mut *hidden));
+            placed = &placed[half.iter().map(|c| c.triangles).sum()..];
+        }
+    }
+
     fn leaf(
         &self,
         tape: &ExprTape<f64>,
@@ -147,21 +245,24 @@ impl CutOffSearch<'_> {
         scratch: &mut CutOffRoom,
         cells: &mut Vec<[usize; 3]>,
     ) {
-        let CutOffRoom { points, samples, seen, values, own, room, registers, solver } = scratch;
+        let CutOffRoom {
+            points, samples, seen, values, own, room, registers, solver, hidden, ..
+        } = scratch;
         points.clear();
         samples.clear();
         seen.clear();
         for &(_, triangle) in triangles {
             let p = self.points(triangle);
             let corners = self.made.triangles[triangle as usize].1;
-            for part in 0..7u8 {
+            let parts = if hidden.contains(&triangle) { 7 + BETWEEN.len() } else { 7 };
+            for part in 0..parts as u8 {
                 // Corners and sides are those of several triangles.
                 let key = match part {
                     v @ 0..3 => [corners[v as usize]; 2],
                     k @ 3..6 => ordered(corners[k as usize - 3], corners[(k as usize - 2) % 3]),
                     _ => [0; 2],
                 };
-                if part == 6 || seen.insert(key) {
+                if part >= 6 || seen.insert(key) {
                     points.push(place(p, part));
                     samples.push(CutOffSample { triangle, part });
                 }
@@ -216,37 +317,38 @@ impl CutOffSearch<'_> {
             k @ 3..6 => self.on(leaf, side(k as usize - 3)),
             _ => Surfaces::from_slice(&[leaf]),
         };
-        let mut put = |on: &Surfaces, start: Vec3| {
+        let put = |solver: &mut Solver, on: &Surfaces, start: Vec3| {
             let away = AWAY * longest;
             let reach = Vec3::of(away, away, away);
             let around = Box3 { low: start - reach, high: start + reach };
             let placed = solver.place(self.leaves, on, start, &around, self.grid.goal);
             (placed.residual <= self.grid.goal).then_some(placed.point)
         };
-        let Some(at) = put(&on, start) else {
+        let Some(at) = put(solver, &on, start) else {
             // There is nothing of the surface, but of another that all corners are on.
             tape.eval::<f64>(&start, registers);
             let winner = tape.leaf[tape.winner(registers, |v: f64| v)];
             let all = |s: &u32| corners.iter().all(|&v| self.made.surfaces[v as usize].contains(s));
             return (winner != leaf && all(&winner)).then_some(start);
         };
-        // Sides that stand for an edge leave it by this much.
-        let mut slack = NEAR * self.grid.step;
-        if sample.part == 6 {
-            for k in 0..3 {
-                let middle = (p[k] + p[(k + 1) % 3]) * 0.5;
-                if let Some(q) = put(&self.on(leaf, side(k)), middle) {
-                    slack = slack.max(NEAR * self.grid.step + q.distance(middle));
-                }
-            }
-        }
         let value = tape.eval::<f64>(&at, registers);
         let winner = tape.leaf[tape.winner(registers, |v: f64| v)];
         if winner == NO_LEAF || on.contains(&winner) {
             return None;
         }
         let other = solver.gradient(self.leaves[winner as usize].primitive.tape(), at);
-        (value.abs() > slack * other.slope.norm()).then_some(at)
+        let far = |slack: f64| value.abs() > slack * other.slope.norm();
+        let mut slack = NEAR * self.grid.step;
+        // Sides that stand for an edge leave it by this much.
+        if sample.part >= 6 && far(slack) {
+            for k in 0..3 {
+                let middle = (p[k] + p[(k + 1) % 3]) * 0.5;
+                if let Some(q) = put(solver, &self.on(leaf, side(k)), middle) {
+                    slack = slack.max(NEAR * self.grid.step + q.distance(middle));
+                }
+            }
+        }
+        far(slack).then_some(at)
     }
 }
 
@@ -254,11 +356,18 @@ fn ordered(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// A corner of a triangle, the middle of a side, or the middle of all.
+/// Points of a triangle between its sides, by the weights of its corners in fifths.
+const BETWEEN: [[u8; 3]; 3] = [[1, 1, 3], [1, 3, 1], [3, 1, 1]];
+
+/// A corner of a triangle, the middle of a side, the middle of all, or a point between.
 fn place(p: [Vec3; 3], part: u8) -> Vec3 {
     match part {
         k @ 0..3 => p[k as usize],
         k @ 3..6 => (p[k as usize - 3] + p[(k as usize - 2) % 3]) * 0.5,
-        _ => (p[0] + p[1] + p[2]) / 3.0,
+        6 => (p[0] + p[1] + p[2]) / 3.0,
+        _ => {
+            let [a, b, c] = BETWEEN[part as usize - 7].map(|w| f64::from(w) / 5.0);
+            p[0] * a + p[1] * b + p[2] * c
+        }
     }
 }

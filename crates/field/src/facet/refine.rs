@@ -48,6 +48,8 @@ const FARTHEST: f64 = 1.2;
 const FACING: f64 = 0.2;
 /// The least height of a triangle made by turning a diagonal, as a share of its longest side.
 const THIN: f64 = 0.05;
+/// An edge between whose ends the normal still turns by more than this cosine says nothing of the surface there.
+const SHARPEST: f64 = -0.2;
 /// A diagonal is turned when the squares of distances fall below this part.
 const GAIN: f64 = 0.9;
 
@@ -182,7 +184,8 @@ impl Refiner<'_> {
         Self::facing(t.map(|v| self.at(v)), t.map(|v| self.normal(v, leaf)))
     }
 
-    /// The middle of a triangle, when that of a quadratic one through the middles of its sides is not on the surface.
+    /// The middle of a triangle, when that of a quadratic one through the middles of its sides is not on the surface; that of a side
+    /// about which the surface turns too far.
     fn cut_off(&mut self, t: u32) -> Option<Vec3> {
         let (leaf, corners) = self.triangles[t as usize];
         let side = |k: usize| (corners[k], corners[(k + 1) % 3]);
@@ -192,6 +195,13 @@ impl Refiner<'_> {
         };
         if !(0..3).any(|k| bent(side(k))) {
             return None;
+        }
+        let sharpest = |(a, b): (u32, u32)| match (self.normal(a, leaf), self.normal(b, leaf)) {
+            (Some(n), Some(m)) => n.dot(m) < SHARPEST,
+            _ => false,
+        };
+        if let Some((a, b)) = (0..3).map(side).find(|&ab| sharpest(ab)) {
+            return Some((self.at(a) + self.at(b)) * 0.5);
         }
         let mut patch = Vec3::zero();
         for k in 0..3 {
