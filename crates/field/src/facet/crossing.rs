@@ -173,18 +173,18 @@ fn sure_volume(normal: Vec3, square: f64, r: Vec3) -> f64 {
 
 /// As [`sure_volume`] of four points.
 fn volume(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
-    Plane::of([a, b, c]).side(d)
+    TrianglePlane::of([a, b, c]).side(d)
 }
 
 /// The plane of a triangle.
 #[derive(Clone, Copy)]
-pub(super) struct Plane {
+pub(super) struct TrianglePlane {
     at: Vec3,
     normal: Vec3,
     square: f64,
 }
 
-impl Plane {
+impl TrianglePlane {
     pub(super) fn of([a, b, c]: [Vec3; 3]) -> Self {
         let (p, q) = (b - a, c - a);
         Self { at: a, normal: p.cross(q), square: p.norm_sq() * q.norm_sq() }
@@ -204,14 +204,14 @@ fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
 
 /// True when two triangles, of vertices with these numbers, cut each other.
 pub(super) fn cut(names: [[u32; 3]; 2], points: [[Vec3; 3]; 2]) -> bool {
-    cut_in_planes(names, points, points.map(Plane::of))
+    cut_in_planes(names, points, points.map(TrianglePlane::of))
 }
 
 /// As [`cut`], of triangles whose planes are known.
 pub(super) fn cut_in_planes(
     names: [[u32; 3]; 2],
     points: [[Vec3; 3]; 2],
-    planes: [Plane; 2],
+    planes: [TrianglePlane; 2],
 ) -> bool {
     // An edge can pierce the other triangle only if they share none of its ends.
     let mut sides = [[0.0; 3]; 2];

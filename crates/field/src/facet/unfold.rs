@@ -5,7 +5,7 @@
 //! not get better by either is left to those who move vertices.
 
 use super::assemble::{Assembled, VertexKey, VertexNames};
-use super::crossing::{Plane, cut, cut_in_planes};
+use super::crossing::{TrianglePlane, cut, cut_in_planes};
 use super::grid::Grid;
 use super::vertex::Solver;
 use crate::set::Leaf;
@@ -46,7 +46,7 @@ impl Change {
 struct PlacedTriangle {
     corners: Corners,
     points: [Vec3; 3],
-    plane: Plane,
+    plane: TrianglePlane,
     around: Box3,
 }
 
@@ -313,7 +313,12 @@ impl<'a> FoldedRegion<'a> {
 
     fn placed(&self, corners: Corners) -> PlacedTriangle {
         let points = self.points(corners);
-        PlacedTriangle { corners, points, plane: Plane::of(points), around: Box3::around(points) }
+        PlacedTriangle {
+            corners,
+            points,
+            plane: TrianglePlane::of(points),
+            around: Box3::around(points),
+        }
     }
 
     /// The triangles near a box but some.
