@@ -47,15 +47,7 @@ pub(super) fn crossings(
         return Vec::new();
     }
     let size = (SIDES_IN_BIN * sum / number).min(longest).max(longest / 32.0);
-    let bin = |p: Vec3| p.to_array().map(|x| (x / size).floor() as i64);
-    let bins = |b: Box3| {
-        let (low, high) = (bin(b.low), bin(b.high));
-        let [x, y, z] = [0, 1, 2].map(|k| low[k]..=high[k]);
-        x.flat_map(move |i| {
-            let z = z.clone();
-            y.clone().flat_map(move |j| z.clone().map(move |k| hash([i, j, k])))
-        })
-    };
+    let bins = |b: Box3| bins(&b, size).map(hash);
     // Which bins hold something that was chosen, by some bits of their hashes: most others are known without a look.
     let mut filled = vec![false; (8 * number as usize).next_power_of_two().clamp(1 << 12, 1 << 26)];
     let mask = filled.len() as u64 - 1;
@@ -68,10 +60,10 @@ pub(super) fn crossings(
     let in_bins = |f: usize| {
         let own = Box3::around(corners(f));
         let inside = Box3 {
-            low: Vec3::from([0, 1, 2].map(|k| own.low[k].max(all.low[k]))),
+            low: common_low(&own, &all),
             high: Vec3::from([0, 1, 2].map(|k| own.high[k].min(all.high[k]))),
         };
-        let found = (0..3).all(|k| inside.low[k] <= inside.high[k]).then(|| bins(inside));
+        let found = meet(&own, &all).then(|| bins(inside));
         found
             .into_iter()
             .flatten()
@@ -87,11 +79,10 @@ pub(super) fn crossings(
         for (n, (h, f, own)) in here.iter().enumerate() {
             for (i, g, other) in &here[n + 1..] {
                 // What is in several bins is looked at in the first.
-                let first = || Vec3::from([0, 1, 2].map(|k| own.low[k].max(other.low[k])));
                 if h == i
-                    && (0..3).all(|k| own.low[k] <= other.high[k] && own.high[k] >= other.low[k])
+                    && meet(own, other)
                     && (chosen(*f) || chosen(*g))
-                    && hash(bin(first())) == *h
+                    && hash(bin_of(common_low(own, other), size)) == *h
                     && f != g
                 {
                     let pair = [*f.min(g), *f.max(g)];
@@ -108,6 +99,31 @@ pub(super) fn crossings(
     pairs.sort_unstable();
     pairs.dedup();
     pairs
+}
+
+/// The bin of a point, of bins that wide.
+pub(super) fn bin_of(p: Vec3, size: f64) -> [i64; 3] {
+    p.to_array().map(|x| (x / size).floor() as i64)
+}
+
+/// The bins that a box passes through.
+pub(super) fn bins(b: &Box3, size: f64) -> impl Iterator<Item = [i64; 3]> + use<> {
+    let (low, high) = (bin_of(b.low, size), bin_of(b.high, size));
+    let [x, y, z] = [0, 1, 2].map(|k| low[k]..=high[k]);
+    x.flat_map(move |i| {
+        let z = z.clone();
+        y.clone().flat_map(move |j| z.clone().map(move |k| [i, j, k]))
+    })
+}
+
+/// True when two boxes meet.
+pub(super) fn meet(a: &Box3, b: &Box3) -> bool {
+    (0..3).all(|k| a.low[k] <= b.high[k] && a.high[k] >= b.low[k])
+}
+
+/// The low corner of what two boxes have in common.
+pub(super) fn common_low(a: &Box3, b: &Box3) -> Vec3 {
+    Vec3::from([0, 1, 2].map(|k| a.low[k].max(b.low[k])))
 }
 
 /// How wide bins are, in sides of triangles.
@@ -157,21 +173,7 @@ impl Buckets {
 /// How far from its limit a comparison of squares is sure.
 const SURE: f64 = 1e-9;
 
-/// Six times the volume of a tetrahedron, or zero when rounding may decide its sign: the product of two sides, the square of
-/// their lengths' product, and the third side.
-fn sure_volume(normal: Vec3, square: f64, r: Vec3) -> f64 {
-    let v = normal.dot(r);
-    let other = r.norm_sq();
-    // Squares decide most without roots.
-    let most = 1e-26 * (square * other);
-    if most > 1e-280 && v * v > most * (1.0 + SURE) {
-        return v;
-    }
-    let sure = 1e-13 * square.sqrt() * other.sqrt();
-    if v.abs() > sure { v } else { 0.0 }
-}
-
-/// As [`sure_volume`] of four points.
+/// Six times the volume of a tetrahedron, or zero when rounding may decide its sign.
 fn volume(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
     TrianglePlane::of([a, b, c]).side(d)
 }
@@ -180,7 +182,9 @@ fn volume(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
 #[derive(Clone, Copy)]
 pub(super) struct TrianglePlane {
     at: Vec3,
+    /// The product of two sides, …
     normal: Vec3,
+    /// … and the square of their lengths' product.
     square: f64,
 }
 
@@ -190,9 +194,17 @@ impl TrianglePlane {
         Self { at: a, normal: p.cross(q), square: p.norm_sq() * q.norm_sq() }
     }
 
-    /// On which side a point is, by the sign; zero when rounding may decide.
+    /// Six times the volume between triangle and point, whose sign says on which side it is; zero when rounding may decide.
     fn side(&self, p: Vec3) -> f64 {
-        sure_volume(self.normal, self.square, p - self.at)
+        let r = p - self.at;
+        let (v, other) = (self.normal.dot(r), r.norm_sq());
+        // Squares decide most without roots.
+        let most = 1e-26 * (self.square * other);
+        if most > 1e-280 && v * v > most * (1.0 + SURE) {
+            return v;
+        }
+        let sure = 1e-13 * self.square.sqrt() * other.sqrt();
+        if v.abs() > sure { v } else { 0.0 }
     }
 }
 

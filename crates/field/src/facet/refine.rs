@@ -7,13 +7,14 @@
 //! a chord e whose ends have normals n and m leaves an arc's middle by |e . (m - n)| / 8.
 
 use super::assemble::Assembled;
-use super::crossing::crossings;
+use super::crossing::{bin_of, bins, crossings};
 use super::grid::Grid;
 use super::types::FacetBlock;
 use super::vertex::{Solver, Surfaces};
 use crate::expr::tape::ExprTape;
 use crate::set::Leaf;
 use moldloft_budget::{Budget, Spent};
+use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Vec3};
 use moldloft_parallel::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -495,24 +496,16 @@ impl PointsByPlace {
     fn new(points: impl Iterator<Item = Vec3>, reach: f64) -> Self {
         let mut bins: FxHashMap<[i64; 3], Vec<Vec3>> = FxHashMap::default();
         for p in points {
-            bins.entry(Self::bin(p, reach)).or_default().push(p);
+            bins.entry(bin_of(p, reach)).or_default().push(p);
         }
         Self { reach, bins }
     }
 
-    fn bin(p: Vec3, reach: f64) -> [i64; 3] {
-        p.to_array().map(|x| (x / reach).floor() as i64)
-    }
-
     fn any_within_reach(&self, p: Vec3) -> bool {
-        let [x, y, z] = Self::bin(p, self.reach).map(|i| i.saturating_sub(1)..=i.saturating_add(1));
-        x.into_iter().any(|i| {
-            y.clone().any(|j| {
-                z.clone().any(|k| {
-                    let here = self.bins.get(&[i, j, k]).into_iter().flatten();
-                    here.into_iter().any(|m| m.distance(p) <= self.reach)
-                })
-            })
+        let reach = Vec3::of(self.reach, self.reach, self.reach);
+        bins(&Box3 { low: p - reach, high: p + reach }, self.reach).any(|bin| {
+            let here = self.bins.get(&bin).into_iter().flatten();
+            here.into_iter().any(|m| m.distance(p) <= self.reach)
         })
     }
 }
@@ -522,27 +515,14 @@ const NO_PART: u32 = u32::MAX;
 
 /// The parts in which vertices are that triangles join, but for those that are kept.
 fn parts(triangles: impl Iterator<Item = Corner>, kept: &[bool]) -> Vec<u32> {
-    let mut parts: Vec<u32> = (0..kept.len() as u32).collect();
-    fn root(parts: &mut [u32], v: u32) -> u32 {
-        let mut v = v as usize;
-        while parts[v] as usize != v {
-            parts[v] = parts[parts[v] as usize];
-            v = parts[v] as usize;
-        }
-        v as u32
-    }
+    let mut joined = UnionFind::new(kept.len());
     for t in triangles {
         let mut free = t.into_iter().filter(|&v| !kept[v as usize]);
         let Some(first) = free.next() else { continue };
-        for v in free {
-            let (a, b) = (root(&mut parts, first), root(&mut parts, v));
-            parts[a.max(b) as usize] = a.min(b);
-        }
+        free.for_each(|v| joined.join(first, v));
     }
-    for v in 0..kept.len() {
-        parts[v] = if kept[v] { NO_PART } else { root(&mut parts, v as u32) };
-    }
-    parts
+    let part = |(v, kept): (usize, &bool)| if *kept { NO_PART } else { joined.find(v as u32) };
+    kept.iter().enumerate().map(part).collect()
 }
 
 impl Refiner<'_> {

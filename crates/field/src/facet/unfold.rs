@@ -5,7 +5,7 @@
 //! not get better by either is left to those who move vertices.
 
 use super::assemble::{Assembled, VertexKey, VertexNames};
-use super::crossing::{TrianglePlane, cut, cut_in_planes};
+use super::crossing::{TrianglePlane, bin_of, bins, common_low, cut, cut_in_planes, meet};
 use super::grid::Grid;
 use super::vertex::Solver;
 use crate::set::Leaf;
@@ -327,8 +327,8 @@ impl<'a> FoldedRegion<'a> {
         for bin in bins(reach, self.size) {
             for (t, around) in self.bins.get(&bin).into_iter().flatten() {
                 // Those of several bins are found in the first.
-                let first = |k: usize| bin_of(reach.low[k].max(around.low[k]), self.size) == bin[k];
-                if meet(reach, around) && (0..3).all(first) && !but(*t) {
+                let first = || bin_of(common_low(reach, around), self.size) == bin;
+                if meet(reach, around) && first() && !but(*t) {
                     found.push((*t, self.placed(self.made.triangles[*t].1)));
                 }
             }
@@ -599,20 +599,4 @@ impl<'a> FoldedRegion<'a> {
             self.apply(&change);
         }
     }
-}
-
-fn bin_of(x: f64, size: f64) -> i64 {
-    (x / size).floor() as i64
-}
-
-fn bins(b: &Box3, size: f64) -> impl Iterator<Item = [i64; 3]> + use<> {
-    let [x, y, z] = [0, 1, 2].map(|k| bin_of(b.low[k], size)..=bin_of(b.high[k], size));
-    x.flat_map(move |i| {
-        let z = z.clone();
-        y.clone().flat_map(move |j| z.clone().map(move |k| [i, j, k]))
-    })
-}
-
-fn meet(a: &Box3, b: &Box3) -> bool {
-    (0..3).all(|k| a.low[k] <= b.high[k] && a.high[k] >= b.low[k])
 }
