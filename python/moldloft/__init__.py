@@ -163,7 +163,7 @@ _HOMES = {
 }
 
 # Submodules that may be named after `import moldloft` alone.
-_MODULES = ("fairing", "functions", "grids", "implicit", "kinds", "overlays")
+_MODULES = ("fairing", "functions", "grids", "implicit", "kinds", "overlays", "study")
 
 
 def __getattr__(name: str) -> object:

@@ -32,6 +32,7 @@ GROUPS = {
         "render": "render a picture without a display",
         "graph": "draw the dependency graph as SVG",
         "export": "write a model as one page that opens offline",
+        "study": "evaluate many variants, or find the best one",
     },
     "Texts and formats": {
         "fmt": "format as canonical text",
@@ -80,6 +81,11 @@ EXAMPLES = {
   moldloft graph hull.sdl --json""",
     "export": """\
   moldloft export --html hull.sdl -o hull.html""",
+    "study": """\
+  moldloft study sweep hull.toml --processes 2 --html hull.html
+  moldloft study resume hull.toml --retry failed
+  moldloft study optimize hull.toml
+  moldloft study show hull.toml --csv cases.csv""",
     "fmt": """\
   moldloft fmt hull.sdl                                 to standard output
   moldloft fmt --check '*.sdl'                          names the files that would change

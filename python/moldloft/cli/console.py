@@ -299,9 +299,9 @@ class Progress:
         self._terminal = sys.stderr.isatty()
         self._thread = threading.Thread(target=self._watch, daemon=True)
 
-    def stage(self, words: str) -> None:
-        """What is being done from now on."""
-        self._stage = words
+    def stage(self, words: str, detail: str = "") -> None:
+        """What is being done from now on; the detail is shown on terminals only."""
+        self._stage = f"{words}: {detail}" if detail and self._terminal else words
 
     def __enter__(self) -> Progress:
         self._thread.start()

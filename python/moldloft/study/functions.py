@@ -1,28 +1,14 @@
-"""Models in optimisation: a callable with exact derivatives, and an OpenMDAO component.
-
->>> import moldloft
->>> from moldloft.study import function
->>> m = moldloft.loads('''
-... param float beam = 2 in [1, 3]; param float depth = 1 in [0, 2];
-... AbsPoint A(0, beam, depth);
-... ''')
->>> f = function(m, ["beam", "depth"], {"size": "sqrt(A.y * A.y + A.z * A.z)", "area": "A.y * A.z"})
->>> f([2.0, 1.0])
-array([2.23606798, 2.        ])
->>> f.jacobian([2.0, 1.0])
-array([[0.89442719, 0.4472136 ],
-       [1.        , 2.        ]])
-"""
+"""Numbers of a model as functions of others, with exact derivatives."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from moldloft.arguments import explain
-from moldloft.errors import Error, UnknownNameError
+from moldloft.errors import Error
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -31,7 +17,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Function", "component", "function"]
+__all__ = ["Function", "function"]
 
 
 class Function:
@@ -165,83 +151,6 @@ def function(
     """
     named = dict(outputs) if isinstance(outputs, Mapping) else {text: text for text in outputs}
     return Function(model, inputs, named)
-
-
-def _plain(name: str) -> str:
-    """A name that OpenMDAO takes."""
-    word = "".join(c if c.isalnum() else "_" for c in name).strip("_")
-    return word if word and word[0].isalpha() else f"x_{word}"
-
-
-def component(
-    model: Model, inputs: Sequence[str], outputs: Sequence[str] | Mapping[str, str]
-) -> Any:
-    """An ``openmdao.api.ExplicitComponent`` with exact partial derivatives.
-
-    Inputs start at the model's values. A state at which the model fails raises OpenMDAO's
-    ``AnalysisError``, so that line searches step back.
-
-    Parameters
-    ----------
-    model
-        The model; runs change it.
-    inputs
-        Parameters, or literals such as ``"P21.y"`` (named ``P21_y`` in OpenMDAO).
-    outputs
-        Expressions, or names with expressions.
-
-    Returns
-    -------
-    openmdao.api.ExplicitComponent
-        With the inputs and outputs named.
-    """
-    try:
-        import openmdao.api as om
-    except ImportError as error:
-        raise Error(f"this needs openmdao: pip install 'moldloft[study]' ({error})") from error
-    of = function(model, inputs, outputs)
-    ins = [_plain(name) for name in of.inputs]
-    outs = [_plain(name) for name in of.outputs]
-    for names in (ins, outs):
-        if len(set(names)) < len(names):
-            raise UnknownNameError(f"two of {', '.join(names)} have one name in OpenMDAO")
-    if clash := set(ins) & set(outs):
-        raise UnknownNameError(f"`{clash.pop()}` is the name of an input and of an output")
-
-    class ModelComponent(om.ExplicitComponent):  # type: ignore[misc]
-        def setup(self) -> None:
-            for name, value in zip(ins, of.start, strict=True):
-                self.add_input(name, val=value)
-            for name, size in zip(outs, of.sizes.values(), strict=True):
-                self.add_output(name, shape=(size,))
-            self.declare_partials("*", "*")
-
-        def _point(self, values: Any) -> Floats:
-            point: Floats = np.array([float(np.ravel(values[name])[0]) for name in ins])
-            return point
-
-        def compute(self, inputs: Any, outputs: Any) -> None:
-            try:
-                values = of(self._point(inputs))
-            except Error as error:
-                raise om.AnalysisError(str(error)) from error
-            at = 0
-            for name, size in zip(outs, of.sizes.values(), strict=True):
-                outputs[name] = values[at : at + size]
-                at += size
-
-        def compute_partials(self, inputs: Any, partials: Any) -> None:
-            try:
-                slopes = of.jacobian(self._point(inputs))
-            except Error as error:
-                raise om.AnalysisError(str(error)) from error
-            at = 0
-            for name, size in zip(outs, of.sizes.values(), strict=True):
-                for k, own in enumerate(ins):
-                    partials[name, own] = slopes[at : at + size, k : k + 1]
-                at += size
-
-    return ModelComponent()
 
 
 explain(globals())

@@ -1,0 +1,378 @@
+"""One case of a study: set the inputs, evaluate the outputs, run the analyses.
+
+Works in a process of its own (:mod:`moldloft.study.workers`); a request and its answer are data
+of JSON.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import io
+import json
+import math
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from importlib import util
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.errors import Error
+from moldloft.formats import format_named
+
+if TYPE_CHECKING:
+    from moldloft.models import Model
+
+__all__ = ["DONE", "REFUSED", "SOLVER_FAILED", "SolverError", "evaluate", "number"]
+
+DONE = "done"
+REFUSED = "refused"
+SOLVER_FAILED = "solver failed"
+
+#: Files of a solver beyond this are not read: a number is looked for, not a field.
+MAX_RESULT_BYTES = 64 << 20
+
+#: A constraint counts as held within this fraction of its limit's size (rounding).
+CONSTRAINT_ROUNDING = 1e-12
+
+#: The models of this process by the digest of their files.
+_models: dict[str, Model] = {}
+_modules: dict[str, Any] = {}
+
+
+class SolverError(Error):
+    """An analysis failed: it ended with an error, ran too long or wrote no number."""
+
+
+def evaluate(request: Mapping[str, Any]) -> dict[str, Any]:
+    """The outputs of one case.
+
+    Parameters
+    ----------
+    request
+        Made by :meth:`moldloft.study.running.Cases.request`.
+
+    Returns
+    -------
+    dict
+        ``state``, and ``outputs`` by name, or ``id`` and ``message`` of the failure.
+    """
+    began = time.perf_counter()
+    try:
+        answer: dict[str, Any] = {"state": DONE, "outputs": _outputs(request)}
+    except SolverError as error:
+        answer = _failed(SOLVER_FAILED, "solver-failed", str(error))
+    except Error as error:
+        first = next((d for d in error.diagnostics if d.severity == "error"), None)
+        answer = _failed(REFUSED, first.id if first else "refused", str(first or error))
+    except MemoryError:
+        answer = _failed(REFUSED, "out-of-memory", "the case needs more memory than its limit")
+    except RecursionError as error:
+        answer = _failed(SOLVER_FAILED, "solver-failed", f"RecursionError: {error}")
+    if "message" in answer and request["root"]:
+        # The files are a snapshot in a folder of another name each time.
+        answer["message"] = answer["message"].replace(request["root"] + os.sep, "")
+    answer["seconds"] = time.perf_counter() - began
+    return answer
+
+
+def _failed(state: str, reason: str, message: str) -> dict[str, Any]:
+    return {"state": state, "id": reason, "message": message.strip()[:2000]}
+
+
+def _outputs(request: Mapping[str, Any]) -> dict[str, float]:
+    model = _model(request)
+    inputs: dict[str, float] = request["inputs"]
+    model.set(inputs)
+    model.check()
+    for name, value, low, high in request["constraints"]:
+        _held(model, name, value, low, high)
+    found = {name: _value(model, name, text) for name, text in request["outputs"].items()}
+    if request["derivatives"] and request["outputs"]:
+        found |= _derivatives(model, request["outputs"], list(inputs))
+    for analysis in request["analyses"]:
+        run = _of_python if analysis["python"] else _of_command
+        found |= run(model, analysis, request, found)
+    return found
+
+
+def _model(request: Mapping[str, Any]) -> Model:
+    from moldloft.loading import load
+
+    digest = request["digest"]
+    if digest not in _models:
+        _models.clear()
+        _models[digest] = load(request["model"], library=request["library"])
+    return _models[digest]
+
+
+def _held(model: Model, name: str, value: str, low: float | None, high: float | None) -> None:
+    found = _value(model, name, value)
+    least = -math.inf if low is None else low
+    most = math.inf if high is None else high
+    room = CONSTRAINT_ROUNDING * max(abs(found), 1.0)
+    if not least - room <= found <= most + room:
+        limit = f"at least {least:g}" if found < least else f"at most {most:g}"
+        raise ConstraintError(f"constraint `{name}`: `{value}` is {found:g}, {limit} is allowed")
+
+
+class ConstraintError(Error):
+    """A constraint of the study does not hold."""
+
+
+def _value(model: Model, name: str, text: str) -> float:
+    try:
+        return number(model.eval(text), text)
+    except NumberError as error:
+        raise Error(f"output `{name}`: {error}") from None
+
+
+def number(value: object, text: str) -> float:
+    """The value of an expression as a finite number.
+
+    Parameters
+    ----------
+    value
+        The value.
+    text
+        The expression, for the message.
+
+    Raises
+    ------
+    NumberError
+        When it is none.
+    """
+    try:
+        numbers = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        numbers = np.empty(0)
+    if numbers.size != 1:
+        what = f"{numbers.size} numbers" if numbers.size else type(value).__name__
+        raise NumberError(f"`{text}` is {what}, expected a number")
+    found = float(numbers.reshape(-1)[0])
+    if not math.isfinite(found):
+        raise NumberError(f"`{text}` is {found}, expected a finite number")
+    return found
+
+
+class NumberError(Error):
+    """The value of an expression is not a finite number."""
+
+
+def _derivatives(model: Model, outputs: Mapping[str, str], inputs: list[str]) -> dict[str, float]:
+    rows = model.derivatives(list(outputs.values()), inputs)
+    return {
+        f"d {name} / d {by}": float(np.ravel(value)[0])
+        for name, row in zip(outputs, rows, strict=True)
+        for by, value in zip(inputs, row, strict=True)
+    }
+
+
+def _of_python(
+    model: Model, analysis: Mapping[str, Any], request: Mapping[str, Any], _: Mapping[str, float]
+) -> dict[str, float]:
+    place, _, name = analysis["python"].rpartition(":")
+    function = _function(str(Path(request["folder"]) / place), name)
+    try:
+        found = function(model)
+    except Error:
+        raise
+    except Exception as error:
+        raise SolverError(
+            f"`{analysis['python']}` raised {type(error).__name__}: {error}"
+        ) from error
+    if not isinstance(found, Mapping):
+        if len(analysis["outputs"]) != 1:
+            raise SolverError(f"`{analysis['python']}` returned no mapping of numbers by name")
+        found = {analysis["outputs"][0]: found}
+    numbers = {}
+    for key in analysis["outputs"]:
+        try:
+            value = float(np.asarray(found[key]).reshape(-1)[0])
+        except (KeyError, TypeError, ValueError, IndexError):
+            raise SolverError(f"`{analysis['python']}` returned no number `{key}`") from None
+        numbers[key] = _finite(value, key, analysis["python"])
+    return numbers
+
+
+def _finite(value: float, name: str, source: str) -> float:
+    if not math.isfinite(value):
+        raise SolverError(f"`{name}` of `{source}` is {value}, expected a finite number")
+    return value
+
+
+def _function(place: str, name: str) -> Any:
+    if place not in _modules:
+        spec = util.spec_from_file_location(f"_study_{len(_modules)}", place)
+        if spec is None or spec.loader is None or not Path(place).is_file():
+            raise SolverError(f"`{place}` is no Python file")
+        module = util.module_from_spec(spec)
+        sys.path.insert(0, str(Path(place).parent))
+        try:
+            spec.loader.exec_module(module)
+        except Exception as error:
+            raise SolverError(f"`{place}` raised {type(error).__name__}: {error}") from error
+        finally:
+            sys.path.pop(0)
+        _modules[place] = module
+    function = getattr(_modules[place], name, None)
+    if not callable(function):
+        raise SolverError(f"`{place}` has no function `{name}`")
+    return function
+
+
+def _of_command(
+    model: Model,
+    analysis: Mapping[str, Any],
+    request: Mapping[str, Any],
+    found: Mapping[str, float],
+) -> dict[str, float]:
+    """Writes the case's folder, runs the command in it, and reads its numbers."""
+    place = Path(request["place"]) / analysis["name"]
+    if place.exists():
+        shutil.rmtree(place)
+    place.mkdir(parents=True)
+    keep = analysis["keep"] == "all"
+    try:
+        stem = Path(request["model"]).stem
+        words = {**request["inputs"], **found}
+        if analysis["template"]:
+            _fill(Path(request["folder"]) / analysis["template"], place, words)
+        for name in analysis["formats"]:
+            row = format_named(name)
+            model.write(place / row.file_name(stem), format=row.name)
+        command = [
+            word.replace("{model}", stem).replace("{folder}", request["folder"])
+            for word in analysis["command"]
+        ]
+        _run(command, place, analysis["seconds"])
+        return {key: _result(place, key, p) for key, p in analysis["results"].items()}
+    except BaseException:
+        keep = analysis["keep"] != "none"
+        raise
+    finally:
+        if not keep:
+            shutil.rmtree(place, ignore_errors=True)
+
+
+def _fill(template: Path, place: Path, words: Mapping[str, float]) -> None:
+    if not template.is_dir():
+        raise SolverError(f"the template `{template}` is no folder")
+    for source in sorted(template.rglob("*")):
+        target = place / source.relative_to(template)
+        if source.is_dir():
+            target.mkdir(parents=True, exist_ok=True)
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        data = source.read_bytes()
+        try:
+            text = data.decode()
+        except UnicodeDecodeError:
+            target.write_bytes(data)
+            continue
+        for name, value in words.items():
+            text = text.replace("{" + name + "}", repr(value))
+        target.write_text(text, encoding="utf-8")
+
+
+def _run(command: list[str], place: Path, seconds: float) -> None:
+    log = place / "command.log"
+    with log.open("wb") as out:
+        try:
+            process = subprocess.Popen(
+                command,
+                cwd=place,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise SolverError(
+                f"cannot run `{command[0]}`: {(error.strerror or str(error)).lower()}"
+            ) from None
+        try:
+            status = process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            _end(process)
+            raise SolverError(f"`{command[0]}` took longer than {seconds:g} s") from None
+        except BaseException:
+            _end(process)
+            raise
+    if status:
+        last = log.read_bytes()[-400:].decode("utf-8", "replace").strip().splitlines()
+        said = f": {last[-1]}" if last else ""
+        raise SolverError(f"`{command[0]}` ended with status {status}{said}")
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Ends a command and what it started."""
+    if hasattr(os, "killpg"):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+    else:
+        process.kill()
+    process.wait()
+
+
+def _result(place: Path, name: str, pattern: Mapping[str, Any]) -> float:
+    file = place / pattern["file"]
+    try:
+        if file.stat().st_size > MAX_RESULT_BYTES:
+            raise SolverError(f"`{pattern['file']}` is larger than {MAX_RESULT_BYTES >> 20} MiB")
+        text = file.read_bytes().decode("utf-8", "replace")
+    except OSError as error:
+        raise SolverError(
+            f"`{name}`: the command wrote no `{pattern['file']}` ({error.strerror})"
+        ) from None
+    word: Any
+    if pattern["pattern"]:
+        matches = list(re.finditer(pattern["pattern"], text, re.MULTILINE))
+        if not matches:
+            raise SolverError(
+                f"`{name}`: `{pattern['file']}` has no match of `{pattern['pattern']}`"
+            )
+        word = matches[-1][1] if matches[-1].re.groups else matches[-1][0]
+    elif pattern["column"]:
+        word = _of_csv(text, name, pattern)
+    else:
+        word = _of_json(text, name, pattern)
+    try:
+        value = float(word)
+    except (TypeError, ValueError):
+        raise SolverError(
+            f"`{name}` in `{pattern['file']}`: expected a number, found `{word}`"
+        ) from None
+    return _finite(value, name, pattern["file"])
+
+
+def _of_csv(text: str, name: str, pattern: Mapping[str, Any]) -> str:
+    rows = [[word.strip() for word in row] for row in csv.reader(io.StringIO(text)) if row]
+    if not rows or pattern["column"] not in rows[0]:
+        raise SolverError(f"`{name}`: `{pattern['file']}` has no column `{pattern['column']}`")
+    column = rows[0].index(pattern["column"])
+    try:
+        word: str = rows[1:][pattern["row"]][column]
+        return word
+    except IndexError:
+        raise SolverError(f"`{name}`: `{pattern['file']}` has no row {pattern['row']}") from None
+
+
+def _of_json(text: str, name: str, pattern: Mapping[str, Any]) -> Any:
+    try:
+        value = json.loads(text)
+        for word in pattern["key"].split("."):
+            value = value[int(word)] if isinstance(value, list) else value[word]
+    except (ValueError, KeyError, IndexError, TypeError):
+        raise SolverError(
+            f"`{name}`: `{pattern['file']}` has no value `{pattern['key']}`"
+        ) from None
+    return value

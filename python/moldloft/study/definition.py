@@ -1,0 +1,496 @@
+"""The definition of a study: model, inputs, outputs, constraints, plan, analyses, optimisation.
+
+A definition is read from TOML (:func:`read`) or made in Python (:class:`Study`).
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from moldloft.budget import parsed
+from moldloft.errors import Error
+from moldloft.spelling import nearest
+from moldloft.storage import read_text
+
+__all__ = ["Analysis", "Bound", "Goal", "Input", "Pattern", "Plan", "Study", "StudyError", "read"]
+
+#: Times and memory of one case unless the study says otherwise.
+DEFAULT_SECONDS = 600.0
+DEFAULT_MEMORY = "4G"
+
+METHODS = {
+    "grid": "all combinations of `levels` values of each input",
+    "table": "the rows of a CSV file",
+    "one-at-a-time": "each input alone over `levels` values, the others as in the model",
+    "latin-hypercube": "`count` points, one in each of `count` slices of each input",
+    "sobol": "`count` points of the scrambled Sobol sequence",
+    "saltelli": "count (inputs + 2) points for Sobol indices",
+}
+"""The plans by name, with a line about each."""
+
+OPTIMISERS = ("slsqp", "trust-constr", "cobyqa", "differential-evolution")
+"""The optimisers of SciPy that a study may name."""
+
+
+class StudyError(Error):
+    """A study's definition is wrong; the message says where and what was expected."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input of a study: a parameter or a literal of the model, and its range."""
+
+    name: str
+    """A parameter, or a literal such as ``"P21.y"``."""
+    low: float | None = None
+    """Least value; by default the model's."""
+    high: float | None = None
+    """Greatest value; by default the model's."""
+    values: tuple[float, ...] = ()
+    """The values of a grid; by default `levels` equally spaced ones."""
+    tolerance: float = 0.0
+    """Standard deviation of manufacture; spreads of the outputs are derived from it."""
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A constraint: an expression in the model's names within limits."""
+
+    name: str
+    value: str
+    low: float = -math.inf
+    high: float = math.inf
+
+    @property
+    def equal(self) -> bool:
+        """Whether both limits are the same value."""
+        return self.low == self.high
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """The source of one number among the files that a program writes."""
+
+    file: str
+    """Its name in the case's folder."""
+    pattern: str = ""
+    """A regular expression whose first group is the number; the last match counts."""
+    column: str = ""
+    """Or a column of a CSV file, by its header."""
+    row: int = -1
+    """The row of that column, from 0; negative ones count from the end."""
+    key: str = ""
+    """Or the dotted path of a value in a JSON file."""
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """A calculation on the model of each case: a Python function or an external program."""
+
+    name: str
+    python: str = ""
+    """``file.py:function``; called with the model, it returns a mapping of numbers by name."""
+    outputs: tuple[str, ...] = ()
+    """The names of those numbers."""
+    command: tuple[str, ...] = ()
+    """Or the words of a command, run in the case's folder; ``{model}`` is the stem of its files."""
+    formats: tuple[str, ...] = ()
+    """Formats that the model is written as before the command runs."""
+    template: str = ""
+    """A folder whose files are copied; ``{name}`` of inputs and outputs is replaced in texts."""
+    results: Mapping[str, Pattern] = field(default_factory=dict)
+    """Numbers that are read afterwards, by name."""
+    seconds: float = DEFAULT_SECONDS
+    """Time limit of the command."""
+    keep: str = "failed"
+    """Which folders stay: ``"failed"``, ``"all"`` or ``"none"``."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all its numbers."""
+        return (*self.outputs, *self.results)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Which points are evaluated."""
+
+    method: str = "latin-hypercube"
+    count: int = 100
+    levels: int = 5
+    seed: int = 0
+    file: str = ""
+    """The CSV file of a table."""
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What is optimised, and by which method of SciPy."""
+
+    output: str
+    maximise: bool = False
+    method: str = "slsqp"
+    evaluations: int = 200
+    tolerance: float = 1e-8
+    seed: int = 0
+    start: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study: which numbers of a model depend how on which others.
+
+    Parameters
+    ----------
+    model
+        Path of the model.
+    inputs
+        Inputs by name, with ranges.
+    outputs
+        Expressions in the model's names, by name.
+    constraints
+        Expressions within limits. A case that violates one of them is refused; an optimisation
+        holds them.
+    plan
+        The points of a sweep.
+    goal
+        The objective of an optimisation.
+    analyses
+        Further calculations of each case.
+    derivatives
+        Whether the exact derivatives of the outputs by the inputs are stored.
+    seconds, memory
+        Limits of one case.
+    """
+
+    model: Path
+    inputs: tuple[Input, ...]
+    outputs: Mapping[str, str]
+    constraints: tuple[Bound, ...] = ()
+    plan: Plan = field(default_factory=Plan)
+    goal: Goal | None = None
+    analyses: tuple[Analysis, ...] = ()
+    derivatives: bool = False
+    seconds: float = DEFAULT_SECONDS
+    memory: str = DEFAULT_MEMORY
+    library: tuple[str, ...] = ()
+    folder: Path = Path()
+    """The folder that relative names of analyses start from."""
+
+    def __post_init__(self) -> None:
+        try:
+            parsed(f"memory={self.memory}")
+        except Error as error:
+            raise StudyError(str(error)) from None
+        if not self.inputs:
+            raise StudyError("a study needs an input: `[inputs]` names parameters or literals")
+        if not self.names:
+            raise StudyError("a study needs an output: `[outputs]` names expressions")
+        seen: set[str] = set()
+        for name in (*(i.name for i in self.inputs), *self.names):
+            if name in seen:
+                raise StudyError(f"`{name}` is named twice among inputs and outputs")
+            seen.add(name)
+        for each in self.inputs:
+            if each.low is not None and each.high is not None and not each.low <= each.high:
+                raise StudyError(
+                    f"`inputs.{each.name}`: the range runs from {each.low:g} down to {each.high:g}"
+                )
+        if self.goal and self.goal.output not in self.names:
+            known = ", ".join(self.names)
+            raise StudyError(f"`optimize`: `{self.goal.output}` is no output; outputs: {known}")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all outputs, those of the analyses last."""
+        return (*self.outputs, *(name for each in self.analyses for name in each.names))
+
+
+def read(path: str | os.PathLike[str]) -> Study:
+    """Read the definition of a study.
+
+    Parameters
+    ----------
+    path
+        A TOML file; `docs/studies.md` describes its tables.
+
+    Returns
+    -------
+    Study
+        Names of files in it are relative to the file's folder.
+
+    Raises
+    ------
+    StudyError
+        With the key that is wrong, and what was expected.
+    FileError
+        When the file cannot be read.
+    """
+    place = Path(path)
+    data = _parsed(place)
+    try:
+        return _study(Table(data, ""), place.parent)
+    except StudyError as error:
+        raise StudyError(f"{place}: {error}") from None
+
+
+def _parsed(place: Path) -> dict[str, Any]:
+    try:
+        import tomllib
+    except ImportError:
+        try:
+            import tomli as tomllib
+        except ImportError:
+            raise Error(
+                "Python 3.10 reads TOML with tomli: pip install 'moldloft[study]'"
+            ) from None
+    try:
+        found: dict[str, Any] = tomllib.loads(read_text(place))
+        return found
+    except tomllib.TOMLDecodeError as error:
+        raise StudyError(f"{place}: it is not TOML: {error}") from None
+
+
+class Table:
+    """A table of TOML whose keys are taken one by one; those left over are unknown."""
+
+    def __init__(self, data: object, where: str) -> None:
+        if not isinstance(data, dict):
+            raise StudyError(f"`{where}` is a table, found {_kind(data)}")
+        self.data: dict[str, Any] = dict(data)
+        self.where = where
+        self._known: list[str] = []
+
+    def at(self, key: str) -> str:
+        """The full name of a key."""
+        return f"{self.where}.{key}" if self.where else key
+
+    def take(self, key: str, kind: str, default: Any = None) -> Any:
+        """The value of a key, checked."""
+        self._known.append(key)
+        if key not in self.data:
+            return default
+        value = self.data.pop(key)
+        return _checked(value, kind, self.at(key))
+
+    def need(self, key: str, kind: str) -> Any:
+        """The value of a key that must be there."""
+        if key not in self.data:
+            raise StudyError(f"`{self.at(key)}` is missing")
+        return self.take(key, kind)
+
+    def table(self, key: str) -> Table:
+        """A table within, empty when it is not there."""
+        self._known.append(key)
+        return Table(self.data.pop(key, {}), self.at(key))
+
+    def end(self) -> None:
+        """Refuses the keys that nobody took."""
+        for key in self.data:
+            near = nearest(key, self._known)
+            hint = f"; did you mean `{near}`?" if near else f"; known: {', '.join(self._known)}"
+            raise StudyError(f"`{self.at(key)}` is unknown{hint}")
+
+
+def _kind(value: object) -> str:
+    kinds = {bool: "true or false", str: "a text", list: "a list", dict: "a table"}
+    return kinds.get(type(value), "a number" if isinstance(value, (int, float)) else repr(value))
+
+
+def _number(value: object, where: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise StudyError(f"`{where}` is a number, found {_kind(value)}")
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
+    if not math.isfinite(found):
+        raise StudyError(f"`{where}` is a finite number, found {value}")
+    return found
+
+
+def _checked(value: Any, kind: str, where: str) -> Any:
+    if kind == "number":
+        return _number(value, where)
+    if kind == "count":
+        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < 2**31:
+            raise StudyError(f"`{where}` is a whole number of at least 0, found {value!r}")
+        return value
+    if kind == "text" and not isinstance(value, str):
+        raise StudyError(f"`{where}` is a text, found {_kind(value)}")
+    if kind == "flag" and not isinstance(value, bool):
+        raise StudyError(f"`{where}` is true or false, found {_kind(value)}")
+    if kind == "numbers":
+        if not isinstance(value, list) or not value:
+            raise StudyError(f"`{where}` is a list of numbers, found {_kind(value)}")
+        return tuple(_number(each, f"{where}[{k}]") for k, each in enumerate(value))
+    if kind == "texts":
+        value = [value] if isinstance(value, str) else value
+        if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
+            raise StudyError(f"`{where}` is a list of texts, found {_kind(value)}")
+        return tuple(value)
+    return value
+
+
+def _choice(word: str, known: Sequence[str], where: str) -> str:
+    if word in known:
+        return word
+    near = nearest(word, known)
+    hint = f"did you mean `{near}`?" if near else f"expected one of: {', '.join(known)}"
+    raise StudyError(f"`{where}`: `{word}` is unknown; {hint}")
+
+
+def _study(top: Table, folder: Path) -> Study:
+    model = folder / top.need("model", "text")
+    inputs = top.table("inputs")
+    outputs = top.table("outputs")
+    bounds = top.table("constraints")
+    analyses = top.table("analysis")
+    found = Study(
+        model=model,
+        inputs=tuple(_input(name, data, inputs.at(name)) for name, data in inputs.data.items()),
+        outputs={
+            name: _checked(text, "text", outputs.at(name)) for name, text in outputs.data.items()
+        },
+        constraints=tuple(
+            _bound(name, Table(t, bounds.at(name))) for name, t in bounds.data.items()
+        ),
+        plan=_plan(top.table("plan"), folder),
+        goal=_goal(top.table("optimize")) if "optimize" in top.data else None,
+        analyses=tuple(
+            _analysis(name, Table(t, analyses.at(name))) for name, t in analyses.data.items()
+        ),
+        derivatives=top.take("derivatives", "flag", False),
+        seconds=_positive(top.take("seconds", "number", DEFAULT_SECONDS), "seconds"),
+        memory=top.take("memory", "text", DEFAULT_MEMORY),
+        library=tuple(str(folder / each) for each in top.take("library", "texts", ())),
+        folder=folder,
+    )
+    top._known.append("optimize")
+    top.end()
+    return found
+
+
+def _positive(value: float, where: str) -> float:
+    if value <= 0:
+        raise StudyError(f"`{where}` is above 0, found {value:g}")
+    return value
+
+
+def _input(name: str, data: object, where: str) -> Input:
+    if isinstance(data, list):
+        pair = _checked(data, "numbers", where)
+        if len(pair) != 2:
+            raise StudyError(
+                f"`{where}` is a range [low, high], found {len(pair)} numbers; "
+                "a list of values is {values = [...]}"
+            )
+        return Input(name, pair[0], pair[1])
+    table = Table(data, where)
+    values = table.take("values", "numbers", ())
+    found = Input(
+        name,
+        table.take("low", "number", min(values) if values else None),
+        table.take("high", "number", max(values) if values else None),
+        values,
+        table.take("tolerance", "number", 0.0),
+    )
+    table.end()
+    return found
+
+
+def _bound(name: str, table: Table) -> Bound:
+    value = table.need("value", "text")
+    equal = table.take("equal", "number")
+    low, high = table.take("low", "number"), table.take("high", "number")
+    table.end()
+    if equal is not None:
+        if low is not None or high is not None:
+            raise StudyError(f"`{table.where}` has `equal` beside `low` or `high`")
+        return Bound(name, value, equal, equal)
+    if low is None and high is None:
+        raise StudyError(f"`{table.where}` needs `low`, `high` or `equal`")
+    return Bound(name, value, -math.inf if low is None else low, math.inf if high is None else high)
+
+
+def _plan(table: Table, folder: Path) -> Plan:
+    default = Plan()
+    method = _choice(
+        table.take("method", "text", default.method), tuple(METHODS), table.at("method")
+    )
+    file = table.take("file", "text", "")
+    found = Plan(
+        method,
+        max(table.take("count", "count", default.count), 1),
+        max(table.take("levels", "count", default.levels), 1),
+        table.take("seed", "count", default.seed),
+        str(folder / file) if file else "",
+    )
+    table.end()
+    if method == "table" and not file:
+        raise StudyError("`plan.file` is missing: a table is read from a CSV file")
+    return found
+
+
+def _goal(table: Table) -> Goal:
+    least, most = table.take("minimize", "text"), table.take("maximize", "text")
+    if (least is None) == (most is None):
+        raise StudyError("`optimize` needs either `minimize` or `maximize`, an output's name")
+    method = _choice(table.take("method", "text", "slsqp"), OPTIMISERS, table.at("method"))
+    start = table.table("start")
+    values = {name: _number(value, start.at(name)) for name, value in start.data.items()}
+    found = Goal(
+        least if most is None else most,
+        most is not None,
+        method,
+        max(table.take("evaluations", "count", 200), 1),
+        _positive(table.take("tolerance", "number", 1e-8), table.at("tolerance")),
+        table.take("seed", "count", 0),
+        values,
+    )
+    table.end()
+    return found
+
+
+def _analysis(name: str, table: Table) -> Analysis:
+    results = table.table("results")
+    found = Analysis(
+        name,
+        table.take("python", "text", ""),
+        table.take("outputs", "texts", ()),
+        table.take("command", "texts", ()),
+        table.take("formats", "texts", ()),
+        table.take("template", "text", ""),
+        {key: _pattern(Table(t, results.at(key))) for key, t in results.data.items()},
+        _positive(table.take("seconds", "number", DEFAULT_SECONDS), table.at("seconds")),
+        _choice(table.take("keep", "text", "failed"), ("failed", "all", "none"), table.at("keep")),
+    )
+    table.end()
+    if bool(found.python) == bool(found.command):
+        raise StudyError(f"`{table.where}` needs either `python` or `command`")
+    if found.python and ":" not in found.python:
+        raise StudyError(f"`{table.at('python')}` is `file.py:function`, found `{found.python}`")
+    if found.python and not found.outputs:
+        raise StudyError(f"`{table.at('outputs')}` is missing: the names of the numbers returned")
+    if found.command and not found.results:
+        raise StudyError(f"`{table.at('results')}` is missing: the numbers read from files")
+    return found
+
+
+def _pattern(table: Table) -> Pattern:
+    found = Pattern(
+        table.need("file", "text"),
+        table.take("pattern", "text", ""),
+        table.take("column", "text", ""),
+        int(table.take("row", "number", -1)),
+        table.take("key", "text", ""),
+    )
+    table.end()
+    if sum(map(bool, (found.pattern, found.column, found.key))) != 1:
+        raise StudyError(f"`{table.where}` needs one of `pattern`, `column`, `key`")
+    return found

@@ -1,0 +1,193 @@
+"""The points of a study: grids, tables, one input at a time, Latin hypercubes, Sobol sequences."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.errors import Error
+from moldloft.storage import read_text
+from moldloft.study.definition import Input, Study, StudyError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from moldloft.models import Model
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["points", "ranges"]
+
+#: A plan of more cases is refused: its store would outgrow a disk.
+MAX_CASES = 100_000_000
+
+
+def ranges(study: Study, model: Model) -> Floats:
+    """The ranges of the inputs, ``(inputs, 2)``: the study's, or those that the model states.
+
+    Parameters
+    ----------
+    study
+        The definition.
+    model
+        Its model.
+
+    Raises
+    ------
+    StudyError
+        When an input has no range, or a range beyond the model's.
+    """
+    known = model.params
+    rows = []
+    for each in study.inputs:
+        low, high = each.low, each.high
+        if each.name in known:
+            own = known[each.name]
+            low = own.low if low is None else low
+            high = own.high if high is None else high
+            for limit, side, past in (
+                (own.low, "below", low is not None and own.low is not None and low < own.low),
+                (own.high, "above", high is not None and own.high is not None and high > own.high),
+            ):
+                if past:
+                    raise StudyError(
+                        f"`inputs.{each.name}`: the range runs {side} the model's own, {limit:g}"
+                    )
+        if low is None or high is None:
+            raise StudyError(
+                f"`inputs.{each.name}` has no range: write `{each.name} = [low, high]`, "
+                "or state one in the model"
+            )
+        rows.append((low, high))
+    return np.array(rows)
+
+
+def points(study: Study, model: Model) -> Floats:
+    """The points of the plan, ``(cases, inputs)``.
+
+    Parameters
+    ----------
+    study
+        The definition.
+    model
+        Its model: ranges that the study does not state, and values of inputs at rest.
+
+    Returns
+    -------
+    numpy.ndarray
+        The same for the same definition on every machine.
+
+    Raises
+    ------
+    StudyError
+        For a plan that cannot be made.
+    """
+    method = study.plan.method
+    if method == "table":
+        return _table(study)
+    box = ranges(study, model)
+    made: Floats
+    if method == "grid":
+        levels = [
+            _levels(each, row, study.plan.levels)
+            for each, row in zip(study.inputs, box, strict=True)
+        ]
+        _limited(math.prod(map(len, levels)))
+        made = np.array(list(itertools.product(*levels)))
+    elif method == "one-at-a-time":
+        rest = np.array([float(model.eval(each.name)) for each in study.inputs])
+        rows = [rest]
+        for k, (each, row) in enumerate(zip(study.inputs, box, strict=True)):
+            for value in _levels(each, row, study.plan.levels):
+                if value != rest[k]:
+                    rows.append(np.concatenate([rest[:k], [value], rest[k + 1 :]]))
+        made = np.array(rows)
+    else:
+        unit = _unit(method, len(box), study.plan.count, study.plan.seed)
+        made = box[:, 0] + (box[:, 1] - box[:, 0]) * unit
+    for k, each in enumerate(study.inputs):
+        own = model.params.get(each.name)
+        if own is not None and own.whole:
+            made[:, k] = np.round(made[:, k])
+    return made
+
+
+def _limited(count: int) -> None:
+    if count > MAX_CASES:
+        raise StudyError(f"`plan`: {count} cases, at most {MAX_CASES} are possible")
+
+
+def _levels(each: Input, row: Any, count: int) -> list[float]:
+    if each.values:
+        return list(each.values)
+    return [float(v) for v in np.linspace(row[0], row[1], count)]
+
+
+def _unit(method: str, size: int, count: int, seed: int) -> Floats:
+    """Points of the unit cube."""
+    try:
+        from scipy.stats import qmc
+    except ImportError as error:
+        raise Error(f"this needs SciPy: pip install 'moldloft[study]' ({error})") from None
+    if method == "latin-hypercube":
+        _limited(count)
+        found: Floats = qmc.LatinHypercube(size, rng=seed).random(count)
+        return found
+    if method == "sobol":
+        _limited(count)
+        return _sobol(qmc, size, count, seed)
+    # Saltelli's scheme: A, B, and A with column k of B for each k.
+    _limited(count * (size + 2))
+    both = _sobol(qmc, 2 * size, count, seed)
+    a, b = both[:, :size], both[:, size:]
+    mixed = []
+    for k in range(size):
+        row = a.copy()
+        row[:, k] = b[:, k]
+        mixed.append(row)
+    return np.concatenate([a, b, *mixed])
+
+
+def _sobol(qmc: Any, size: int, count: int, seed: int) -> Floats:
+    # Whole powers of two are balanced; what is beyond `count` is left out.
+    power = max(count - 1, 0).bit_length()
+    found: Floats = qmc.Sobol(size, scramble=True, rng=seed).random_base2(power)[:count]
+    return found
+
+
+def _table(study: Study) -> Floats:
+    place = Path(study.plan.file)
+    rows = list(csv.reader(io.StringIO(read_text(place))))
+    rows = [row for row in rows if row and not row[0].lstrip().startswith("#")]
+    if not rows:
+        raise StudyError(f"{place}: the table is empty")
+    header = [word.strip() for word in rows[0]]
+    missing = [each.name for each in study.inputs if each.name not in header]
+    if missing:
+        raise StudyError(f"{place}: no column `{missing[0]}`; columns: {', '.join(header)}")
+    columns = [header.index(each.name) for each in study.inputs]
+    found = []
+    for number, row in enumerate(rows[1:], start=2):
+        values = []
+        for column in columns:
+            word = row[column].strip() if column < len(row) else ""
+            try:
+                value = float(word)
+            except ValueError:
+                value = math.nan
+            if not math.isfinite(value):
+                raise StudyError(
+                    f"{place}: row {number}, column `{header[column]}`: expected a number, "
+                    f"found `{word}`"
+                )
+            values.append(value)
+        found.append(values)
+    if not found:
+        raise StudyError(f"{place}: the table has a header and no rows")
+    return np.array(found)

@@ -1,0 +1,393 @@
+"""A study as one HTML page that opens offline: states, failures, plots, sensitivities."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from html import escape
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from moldloft.study.store import Results
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["failures", "front", "html", "sensitivities", "sobol_indices", "spreads"]
+
+#: Points drawn of a plot: more cannot be told apart. The page states the number left out.
+MAX_DRAWN = 2_000
+
+#: Rows listed of the table.
+MAX_ROWS = 200
+
+WIDTH, HEIGHT, MARGIN = 300.0, 220.0, 42.0
+
+_STYLE = """
+body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:76rem;padding:0 1rem;
+color:#1c2733;background:#fff}
+h1,h2{font-weight:600}table{border-collapse:collapse;font-variant-numeric:tabular-nums}
+td,th{padding:2px 12px 2px 0;text-align:right;border-bottom:1px solid #e3e8ee}
+th:first-child,td:first-child{text-align:left}.plots{display:flex;flex-wrap:wrap;gap:1rem}
+figure{margin:0}figcaption{font-size:13px;color:#51606f}svg text{font:11px system-ui;fill:#51606f}
+.wide{overflow-x:auto}
+@media (prefers-color-scheme:dark){body{color:#dde5ec;background:#12181f}
+td,th{border-color:#2b3743}}
+"""
+
+
+def sensitivities(results: Results) -> dict[str, dict[str, float]]:
+    """Standardised regression coefficients of each output by each input.
+
+    Parameters
+    ----------
+    results
+        The table.
+
+    Returns
+    -------
+    dict
+        Coefficients by output and input: the change of the output, in its standard deviations,
+        by one standard deviation of the input. Empty where there are fewer cases than inputs.
+    """
+    done = results.done
+    names = [n for n, c in results.inputs.items() if np.ptp(c[done]) > 0] if done.any() else []
+    if done.sum() < len(names) + 2 or not names:
+        return {}
+    columns = np.stack([_standard(results.inputs[n][done]) for n in names], axis=1)
+    found = {}
+    for output, values in _plotted(results).items():
+        if np.ptp(values[done]) > 0:
+            slopes, *_ = np.linalg.lstsq(columns, _standard(values[done]), rcond=None)
+            found[output] = dict(zip(names, slopes.tolist(), strict=True))
+    return found
+
+
+def _standard(values: Floats) -> Floats:
+    found: Floats = (values - values.mean()) / values.std()
+    return found
+
+
+def _plotted(results: Results) -> dict[str, Floats]:
+    """The outputs without derivatives."""
+    return {n: c for n, c in results.outputs.items() if not n.startswith("d ")}
+
+
+def sobol_indices(results: Results, count: int) -> dict[str, dict[str, tuple[float, float]]]:
+    """First-order and total Sobol indices of a plan by Saltelli's scheme (Jansen's estimators).
+
+    Parameters
+    ----------
+    results
+        The table of a plan ``saltelli``.
+    count
+        The `count` of the plan: the table has ``count (inputs + 2)`` rows.
+
+    Returns
+    -------
+    dict
+        ``(first, total)`` by output and input. Rows with a case that is not done are left out.
+        Empty for tables of other plans.
+    """
+    names = list(results.inputs)
+    if len(results) != count * (len(names) + 2):
+        return {}
+    found: dict[str, dict[str, tuple[float, float]]] = {}
+    for output, values in _plotted(results).items():
+        blocks = values.reshape(len(names) + 2, count)
+        blocks = blocks[:, np.isfinite(blocks).all(axis=0)]
+        a, b = blocks[0], blocks[1]
+        variance = np.concatenate([a, b]).var() if a.size else 0.0
+        if variance == 0.0:
+            continue
+        found[output] = {
+            name: (
+                float(1 - ((b - mixed) ** 2).mean() / (2 * variance)),
+                float(((a - mixed) ** 2).mean() / (2 * variance)),
+            )
+            for name, mixed in zip(names, blocks[2:], strict=True)
+        }
+    return found
+
+
+def spreads(results: Results, tolerances: Mapping[str, float]) -> dict[str, Floats]:
+    """Standard deviations of the outputs for independent deviations of the inputs, to first order.
+
+    Parameters
+    ----------
+    results
+        A table with derivatives.
+    tolerances
+        Standard deviations by input.
+
+    Returns
+    -------
+    dict
+        ``sqrt(sum((d output / d input * tolerance)**2))`` by output, ``(cases,)``.
+    """
+    found = {}
+    for output in _plotted(results):
+        terms = [
+            (results.outputs[f"d {output} / d {name}"] * tolerance) ** 2
+            for name, tolerance in tolerances.items()
+            if tolerance > 0 and f"d {output} / d {name}" in results.outputs
+        ]
+        if terms:
+            found[output] = np.sqrt(np.sum(terms, axis=0))
+    return found
+
+
+def front(first: Floats, second: Floats) -> NDArray[np.int64]:
+    """The rows of the Pareto front of two numbers that are to be small.
+
+    >>> front(np.array([1.0, 2.0, 3.0, 2.5]), np.array([3.0, 1.0, 2.0, 0.5])).tolist()
+    [0, 1, 3]
+    """
+    order = np.lexsort((second, first))
+    order = order[np.isfinite(first[order]) & np.isfinite(second[order])]
+    least = np.minimum.accumulate(second[order])
+    better = np.concatenate([[True], second[order][1:] < least[:-1]]) if order.size else order
+    found: NDArray[np.int64] = order[better.astype(bool)]
+    return found
+
+
+def failures(results: Results) -> dict[str, int]:
+    """The number of failures by id, the most frequent first."""
+    ids = results.id[(results.state != "done") & (results.state != "pending")].astype(str)
+    names, numbers = np.unique(ids, return_counts=True)
+    order = np.argsort(-numbers, kind="stable")
+    return {str(names[k]): int(numbers[k]) for k in order}
+
+
+def html(results: Results, title: str, facts: Mapping[str, str], saltelli: int = 0) -> bytes:
+    """The page.
+
+    Parameters
+    ----------
+    results
+        The table.
+    title
+        The heading.
+    facts
+        Lines about the study, by name.
+    saltelli
+        The `count` of a plan by Saltelli's scheme.
+
+    Returns
+    -------
+    bytes
+        HTML without references to other files.
+    """
+    parts = [
+        f"<h1>{escape(title)}</h1>",
+        _rows(["", ""], [[k, v] for k, v in facts.items()]),
+        "<h2>States</h2>",
+        _rows(["state", "cases"], [[k, str(v)] for k, v in results.counts.items()]),
+    ]
+    if failed := failures(results):
+        parts += [
+            "<h2>Failures</h2>",
+            _rows(["reason", "cases"], [[k, str(v)] for k, v in failed.items()]),
+            _plots(_failure_plots(results)),
+        ]
+    if results.done.any():
+        parts += [
+            "<h2>Numbers</h2>",
+            _rows(["", "least", "mean", "greatest"], _statistics(results)),
+        ]
+        parts += _sensitivity_parts(results, saltelli)
+        parts += ["<h2>Outputs by inputs</h2>", _plots(_scatters(results))]
+        if len(_plotted(results)) > 1:
+            parts += ["<h2>Outputs by outputs</h2>", _plots(_output_plots(results))]
+        parts += ["<h2>Parallel coordinates</h2>", _parallel(results)]
+    parts += ["<h2>Cases</h2>", _listed(results)]
+    body = "\n".join(parts)
+    return (
+        f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>'
+        '<meta name="viewport" content="width=device-width">'
+        f"<style>{_STYLE}</style><body><main>{body}</main></body></html>\n"
+    ).encode()
+
+
+def _text(value: float) -> str:
+    return "" if math.isnan(value) else f"{value:.6g}"
+
+
+def _rows(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    head = "".join(f"<th>{escape(word)}</th>" for word in header)
+    body = "".join(
+        "<tr>" + "".join(f"<td>{escape(word)}</td>" for word in row) + "</tr>" for row in rows
+    )
+    top = f"<thead><tr>{head}</tr></thead>" if any(header) else ""
+    return f'<div class="wide"><table>{top}<tbody>{body}</tbody></table></div>'
+
+
+def _plots(figures: Sequence[str]) -> str:
+    return f'<div class="plots">{"".join(figures)}</div>'
+
+
+def _statistics(results: Results) -> list[list[str]]:
+    done = results.done
+    return [
+        [name, *(_text(float(v)) for v in (c[done].min(), c[done].mean(), c[done].max()))]
+        for name, c in {**results.inputs, **_plotted(results)}.items()
+    ]
+
+
+def _sensitivity_parts(results: Results, saltelli: int) -> list[str]:
+    parts = []
+    if indices := sobol_indices(results, saltelli) if saltelli else {}:
+        names = list(results.inputs)
+        rows = [
+            [output, *(f"{own[n][0]:.3f} / {own[n][1]:.3f}" for n in names)]
+            for output, own in indices.items()
+        ]
+        parts += ["<h2>Sobol indices (first order / total)</h2>", _rows(["", *names], rows)]
+    if found := sensitivities(results):
+        names = list(next(iter(found.values())))
+        rows = [[output, *(f"{own[n]:+.3f}" for n in names)] for output, own in found.items()]
+        parts += ["<h2>Standardised regression coefficients</h2>", _rows(["", *names], rows)]
+    return parts
+
+
+def _drawn(results: Results, chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
+    rows = np.flatnonzero(chosen)
+    if rows.size > MAX_DRAWN:
+        rows = rows[np.linspace(0, rows.size - 1, MAX_DRAWN).astype(int)]
+    return rows
+
+
+def _span(values: Floats) -> tuple[float, float]:
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    return (low, high) if high > low else (low - 0.5, high + 0.5)
+
+
+def _scatter(
+    x: Floats, y: Floats, names: tuple[str, str], marked: NDArray[np.int64] | None = None
+) -> str:
+    (x0, x1), (y0, y1) = _span(x), _span(y)
+    px = MARGIN + (x - x0) / (x1 - x0) * (WIDTH - MARGIN - 8)
+    py = HEIGHT - MARGIN - (y - y0) / (y1 - y0) * (HEIGHT - MARGIN - 8)
+    special = set() if marked is None else set(marked.tolist())
+    dots = "".join(
+        f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{3 if k in special else 2}" '
+        f'fill="{"#c2410c" if k in special else "#2563a8"}" fill-opacity=".65"/>'
+        for k, (a, b) in enumerate(zip(px, py, strict=True))
+    )
+    right, low = WIDTH - 8, HEIGHT - MARGIN
+    axes = (
+        f'<path d="M{MARGIN} 8V{low}H{right}" fill="none" stroke="#8a97a5"/>'
+        f'<text x="{MARGIN}" y="{low + 14}">{_text(x0)}</text>'
+        f'<text x="{right}" y="{low + 14}" text-anchor="end">{_text(x1)}</text>'
+        f'<text x="{MARGIN - 4}" y="{low}" text-anchor="end">{_text(y0)[:7]}</text>'
+        f'<text x="{MARGIN - 4}" y="16" text-anchor="end">{_text(y1)[:7]}</text>'
+    )
+    label = f"{names[1]} by {names[0]}"
+    return (
+        f'<figure><svg role="img" aria-label="{escape(label)}" width="{WIDTH:.0f}" '
+        f'height="{HEIGHT:.0f}">{axes}{dots}</svg><figcaption>{escape(label)}</figcaption></figure>'
+    )
+
+
+def _scatters(results: Results) -> list[str]:
+    rows = _drawn(results, results.done)
+    return [
+        _scatter(x[rows], y[rows], (by, name))
+        for name, y in _plotted(results).items()
+        for by, x in results.inputs.items()
+    ][:60]
+
+
+def _output_plots(results: Results) -> list[str]:
+    rows = _drawn(results, results.done)
+    columns = [(n, c[rows]) for n, c in _plotted(results).items()]
+    return [
+        _scatter(x, y, (a, b), front(x, y))
+        for k, (a, x) in enumerate(columns)
+        for b, y in columns[k + 1 :]
+    ][:30]
+
+
+def _failure_plots(results: Results) -> list[str]:
+    """The fraction of failures over tenths of each input's range."""
+    failed = ~results.done & (results.state != "pending")
+    figures = []
+    for name, values in results.inputs.items():
+        tried = np.isfinite(values)
+        if not tried.any() or np.ptp(values[tried]) == 0:
+            continue
+        low, high = _span(values[tried])
+        bins = np.clip(((values[tried] - low) / (high - low) * 10).astype(int), 0, 9)
+        of = np.bincount(bins, minlength=10)
+        wrong = np.bincount(bins, weights=failed[tried].astype(float), minlength=10)
+        share = np.where(of > 0, wrong / np.maximum(of, 1), 0.0)
+        width = (WIDTH - MARGIN) / 10
+        bars = "".join(
+            f'<rect x="{MARGIN + k * width:.1f}" y="{8 + 100 * (1 - s):.1f}" '
+            f'width="{width - 2:.1f}" height="{100 * s:.1f}" fill="#c2410c"/>'
+            for k, s in enumerate(share)
+        )
+        label = f"fraction of failures by {name}"
+        figures.append(
+            f'<figure><svg role="img" aria-label="{escape(label)}" width="{WIDTH:.0f}" '
+            f'height="128">{bars}<path d="M{MARGIN} 8V108H{WIDTH}" fill="none" stroke="#8a97a5"/>'
+            f'<text x="{MARGIN - 4}" y="16" text-anchor="end">1</text>'
+            f'<text x="{MARGIN}" y="122">{_text(low)}</text>'
+            f'<text x="{WIDTH}" y="122" text-anchor="end">{_text(high)}</text></svg>'
+            f"<figcaption>{escape(label)}</figcaption></figure>"
+        )
+    return figures
+
+
+def _parallel(results: Results) -> str:
+    rows = _drawn(results, results.done)
+    columns = {**results.inputs, **_plotted(results)}
+    step = 110.0
+    width, height = step * (len(columns) - 1) + 120, 260.0
+    units = []
+    for values in columns.values():
+        low, high = _span(values[rows])
+        units.append((values[rows] - low) / (high - low))
+    last = units[-1]
+    lines = []
+    for k in range(rows.size):
+        points = " ".join(
+            f"{60 + step * i:.0f},{height - 40 - (height - 70) * float(u[k]):.1f}"
+            for i, u in enumerate(units)
+        )
+        hue = 230 - 200 * float(last[k])
+        lines.append(f'<polyline points="{points}" stroke="hsl({hue:.0f} 65% 45%)"/>')
+    axes = "".join(
+        f'<path d="M{60 + step * i:.0f} 30V{height - 40:.0f}" stroke="#8a97a5"/>'
+        f'<text x="{60 + step * i:.0f}" y="18" text-anchor="middle">{escape(n)}</text>'
+        f'<text x="{60 + step * i:.0f}" y="{height - 24:.0f}" text-anchor="middle">'
+        f"{_text(_span(c[rows])[0])}</text>"
+        f'<text x="{60 + step * i + 4:.0f}" y="36">{_text(_span(c[rows])[1])}</text>'
+        for i, (n, c) in enumerate(columns.items())
+    )
+    left = int(results.done.sum()) - rows.size
+    note = f"{rows.size} cases, {left} more not drawn" if left else f"{rows.size} cases"
+    return (
+        f'<div class="wide"><svg role="img" aria-label="parallel coordinates" '
+        f'width="{width:.0f}" height="{height:.0f}"><g fill="none" stroke-opacity=".35">'
+        f"{''.join(lines)}</g>{axes}</svg></div><p>{note}; colour by the last column.</p>"
+    )
+
+
+def _listed(results: Results) -> str:
+    columns = results.columns()
+    plain = {n: c for n, c in columns.items() if not n.startswith("d ")}
+    rows = [
+        [
+            str(k),
+            *(_text(float(c[k])) if c.dtype == np.float64 else str(c[k]) for c in plain.values()),
+        ]
+        for k in range(min(len(results), MAX_ROWS))
+    ]
+    note = (
+        f"<p>The first {MAX_ROWS} of {len(results)} cases.</p>" if len(results) > MAX_ROWS else ""
+    )
+    return _rows(["case", *plain], rows) + note

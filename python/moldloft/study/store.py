@@ -1,0 +1,410 @@
+"""The results of a study in one SQLite file: the plan in order, and a row for each evaluated case.
+
+A case is known by the digest of everything that decides its numbers, so that a study that was
+stopped goes on where it was, and equal points of several plans are evaluated once.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import sqlite3
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.errors import Error, FileError
+from moldloft.storage import Lock, Output, commit
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Outcome", "Results", "Store"]
+
+#: The layout of the file; others are refused.
+SCHEMA_VERSION = 1
+
+#: Results are committed after so many seconds at the latest: what a kill may cost.
+COMMIT_SECONDS = 0.25
+
+PENDING = "pending"
+"""The state of a case that was not evaluated."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one case."""
+
+    key: str
+    state: str
+    """``"done"``, ``"refused"``, ``"timed out"``, ``"crashed"`` or ``"solver failed"``."""
+    id: str
+    """The id of the diagnostic, empty when done."""
+    message: str
+    seconds: float
+    inputs: Mapping[str, float]
+    outputs: Mapping[str, float]
+
+
+def _column(prefix: str, name: str) -> str:
+    return '"' + prefix + name.replace('"', '""') + '"'
+
+
+class Store:
+    """The file of a study's results, open for reading or for one run.
+
+    Parameters
+    ----------
+    path
+        The SQLite file; it is made when it is not there.
+    writing
+        Whether results are added: one process at a time may.
+
+    Raises
+    ------
+    BusyError
+        When another process runs the study.
+    FileError
+        When the file is no store of this version, is damaged, or cannot be made.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], *, writing: bool = False) -> None:
+        self.path = Path(path)
+        self._lock: Lock | None = None
+        self._since = time.monotonic()
+        if writing:
+            self._lock = Lock(
+                self.path.with_name(f".{self.path.name}.lock"), f"the study `{self.path}`"
+            )
+        elif not self.path.exists():
+            raise FileError(
+                f"`{self.path}`: there are no results; `moldloft study sweep` makes them"
+            )
+        try:
+            with self._named():
+                # Threads of an executor hand their results to the one that writes.
+                self._db = sqlite3.connect(self.path, isolation_level=None)
+                self._prepare(writing)
+        except BaseException:
+            self.close()
+            raise
+
+    def _named(self) -> _Named:
+        return _Named(self.path)
+
+    def _prepare(self, writing: bool) -> None:
+        (version,) = self._db.execute("PRAGMA user_version").fetchone()
+        (tables,) = self._db.execute("SELECT count(*) FROM sqlite_master").fetchone()
+        if tables and version != SCHEMA_VERSION:
+            raise FileError(
+                f"`{self.path}` is a store of layout {version}, this version reads {SCHEMA_VERSION}"
+            )
+        if not writing:
+            return
+        self._db.execute("PRAGMA journal_mode = WAL")
+        self._db.execute("PRAGMA synchronous = NORMAL")
+        if not tables:
+            self._db.executescript(
+                f"""
+                BEGIN;
+                CREATE TABLE study (name TEXT PRIMARY KEY, value TEXT);
+                CREATE TABLE cases (position INTEGER PRIMARY KEY, key TEXT NOT NULL);
+                CREATE TABLE results (
+                    key TEXT PRIMARY KEY, state TEXT NOT NULL, id TEXT NOT NULL,
+                    message TEXT NOT NULL, seconds REAL NOT NULL
+                ) WITHOUT ROWID;
+                PRAGMA user_version = {SCHEMA_VERSION};
+                COMMIT;
+                """
+            )
+        self._columns = {row[1] for row in self._db.execute("PRAGMA table_info(results)")}
+        self._db.execute("BEGIN")
+
+    # -- writing ---------------------------------------------------------------------------
+
+    def begin(self, facts: Mapping[str, str], keys: Iterator[str] | Sequence[str]) -> None:
+        """Record the definition and the plan, in order."""
+        with self._named():
+            self._db.execute("DELETE FROM cases")
+            self._db.executemany(
+                "INSERT INTO cases VALUES (?, ?)", ((k, key) for k, key in enumerate(keys))
+            )
+            self._db.executemany("INSERT OR REPLACE INTO study VALUES (?, ?)", facts.items())
+            self._commit()
+
+    def append(self, key: str) -> None:
+        """Add one case at the end of the plan."""
+        with self._named():
+            self._db.execute(
+                "INSERT INTO cases SELECT coalesce(max(position) + 1, 0), ? FROM cases", (key,)
+            )
+
+    def add(self, outcome: Outcome) -> None:
+        """Record what became of a case; it is on the disk within a quarter of a second."""
+        values: dict[str, Any] = {
+            '"key"': outcome.key,
+            '"state"': outcome.state,
+            '"id"': outcome.id,
+            '"message"': outcome.message,
+            '"seconds"': outcome.seconds,
+        }
+        for prefix, numbers in (("in ", outcome.inputs), ("out ", outcome.outputs)):
+            for name, value in numbers.items():
+                values[_column(prefix, name)] = float(value)
+                if prefix + name not in self._columns:
+                    with self._named():
+                        self._db.execute(
+                            f"ALTER TABLE results ADD COLUMN {_column(prefix, name)} REAL"
+                        )
+                    self._columns.add(prefix + name)
+        names, marks = ", ".join(values), ", ".join("?" * len(values))
+        with self._named():
+            self._db.execute(
+                f"INSERT OR REPLACE INTO results ({names}) VALUES ({marks})", list(values.values())
+            )
+            if time.monotonic() - self._since > COMMIT_SECONDS:
+                self._commit()
+
+    def _commit(self) -> None:
+        self._db.execute("COMMIT")
+        self._db.execute("BEGIN")
+        self._since = time.monotonic()
+
+    def forget(self, states: Sequence[str]) -> int:
+        """Forget the results in these states, so that they are evaluated again; their number."""
+        marks = ", ".join("?" * len(states))
+        with self._named():
+            return self._db.execute(
+                f"DELETE FROM results WHERE state IN ({marks})", list(states)
+            ).rowcount
+
+    def collect(self, other: Store) -> int:
+        """Take the results of another store that are not here; their number."""
+        taken = 0
+        with self._named():
+            known = self.known()
+            for outcome in other.outcomes():
+                if outcome.key not in known:
+                    self.add(outcome)
+                    taken += 1
+        return taken
+
+    # -- reading ---------------------------------------------------------------------------
+
+    def known(self) -> set[str]:
+        """The keys of all cases with a result."""
+        with self._named():
+            return {key for (key,) in self._db.execute("SELECT key FROM results")}
+
+    def facts(self) -> dict[str, str]:
+        """The definition as it was recorded."""
+        with self._named():
+            return dict(self._db.execute("SELECT name, value FROM study"))
+
+    def find(self, key: str) -> Outcome | None:
+        """The outcome of a case, if it has one."""
+        return next(self._outcomes("WHERE key = ?", (key,)), None)
+
+    def outcomes(self) -> Iterator[Outcome]:
+        """All outcomes, by key."""
+        return self._outcomes("", ())
+
+    def _outcomes(self, where: str, values: Sequence[str]) -> Iterator[Outcome]:
+        with self._named():
+            rows = self._db.execute(f"SELECT * FROM results {where} ORDER BY key", values)
+            names = [column[0] for column in rows.description]
+            for row in rows:
+                found = dict(zip(names, row, strict=True))
+                inputs, outputs = (
+                    {
+                        name.removeprefix(prefix): value
+                        for name, value in found.items()
+                        if name.startswith(prefix) and value is not None
+                    }
+                    for prefix in ("in ", "out ")
+                )
+                yield Outcome(
+                    found["key"],
+                    found["state"],
+                    found["id"],
+                    found["message"],
+                    found["seconds"],
+                    inputs,
+                    outputs,
+                )
+
+    def results(self) -> Results:
+        """The table of the plan, in its order."""
+        with self._named():
+            columns = [row[1] for row in self._db.execute("PRAGMA table_info(results)")]
+            names = [n for n in columns if n.startswith(("in ", "out "))]
+            selected = "".join(f", {_column('', n)}" for n in names)
+            rows = self._db.execute(
+                f"SELECT state, id, message, seconds{selected} FROM cases"
+                " LEFT JOIN results USING (key) ORDER BY position"
+            ).fetchall()
+        turned = list(zip(*rows, strict=True)) if rows else [()] * (4 + len(names))
+        texts = [np.array([t or "" for t in column], dtype=object) for column in turned[:3]]
+        texts[0][texts[0] == ""] = PENDING
+        numbers = [np.array(column, dtype=np.float64) for column in turned[3:]]
+        values = dict(zip(names, numbers[1:], strict=True))
+        return Results(
+            {n.removeprefix("in "): v for n, v in values.items() if n.startswith("in ")},
+            {n.removeprefix("out "): v for n, v in values.items() if n.startswith("out ")},
+            texts[0],
+            texts[1],
+            texts[2],
+            numbers[0],
+        )
+
+    def close(self) -> None:
+        """Commits and releases the file."""
+        try:
+            if hasattr(self, "_db"):
+                with self._named():
+                    if self._db.in_transaction:
+                        self._db.execute("COMMIT")
+                    self._db.close()
+        finally:
+            if self._lock is not None:
+                self._lock.release()
+                self._lock = None
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+class _Named:
+    """Errors of SQLite name the file."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if isinstance(error, sqlite3.Error):
+            raise FileError(f"`{self.path}`: {error}") from None
+
+
+@dataclass(frozen=True)
+class Results:
+    """The table of a study: one row for each case, in the order of the plan.
+
+    Numbers of cases that are not done are NaN.
+    """
+
+    inputs: dict[str, Floats]
+    """The inputs by name, ``(cases,)`` each."""
+    outputs: dict[str, Floats]
+    """The outputs by name, ``(cases,)`` each."""
+    state: NDArray[np.object_]
+    """The states, ``(cases,)``; ``"pending"`` before a case was evaluated."""
+    id: NDArray[np.object_]
+    """The ids of failures."""
+    message: NDArray[np.object_]
+    """The messages of failures."""
+    seconds: Floats
+    """The time that each case took."""
+
+    def __len__(self) -> int:
+        return len(self.state)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """The number of cases in each state."""
+        names, numbers = np.unique(self.state.astype(str), return_counts=True)
+        return dict(zip(names.tolist(), numbers.tolist(), strict=True))
+
+    @property
+    def done(self) -> NDArray[np.bool_]:
+        """Which cases are done, ``(cases,)``."""
+        found: NDArray[np.bool_] = self.state == "done"
+        return found
+
+    def columns(self) -> dict[str, Any]:
+        """All columns by name: inputs, outputs, state, id, message."""
+        texts = {"state": self.state, "id": self.id, "message": self.message}
+        return {**self.inputs, **self.outputs, **texts}
+
+    def csv(self) -> bytes:
+        """The table as CSV; numbers have all their digits, missing ones are empty."""
+        out = io.StringIO()
+        writer = csv.writer(out, lineterminator="\n")
+        columns = self.columns()
+        writer.writerow(columns)
+        for row in zip(*columns.values(), strict=True):
+            writer.writerow(
+                ""
+                if isinstance(v, float) and v != v
+                else repr(float(v))
+                if isinstance(v, float)
+                else v
+                for v in row
+            )
+        return out.getvalue().encode()
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame`` with a row for each case."""
+        try:
+            import pandas as pd
+        except ImportError as error:
+            raise Error(f"this needs pandas: pip install pandas ({error})") from None
+        return pd.DataFrame(self.columns())
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` over the dimension ``case``."""
+        try:
+            import xarray as xr
+        except ImportError as error:
+            raise Error(f"this needs xarray: pip install xarray ({error})") from None
+        return xr.Dataset({name: ("case", column) for name, column in self.columns().items()})
+
+    def write(self, path: str | os.PathLike[str]) -> Path:
+        """Write the table as ``.csv`` or ``.parquet``.
+
+        Parameters
+        ----------
+        path
+            The file; Parquet needs pandas and pyarrow.
+
+        Returns
+        -------
+        Path
+            The file written.
+        """
+        place = Path(path)
+        if place.suffix.lower() == ".parquet":
+            out = io.BytesIO()
+            try:
+                self.to_pandas().to_parquet(out, index=False)
+            except ImportError as error:
+                raise Error(f"Parquet needs pyarrow: pip install pyarrow ({error})") from None
+            data = out.getvalue()
+        elif place.suffix.lower() == ".csv":
+            data = self.csv()
+        else:
+            raise Error(f"`{place}`: a table is written as .csv or .parquet")
+        return commit(place.parent, [Output(place.name, data)])[0]
