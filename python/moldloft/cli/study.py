@@ -233,8 +233,11 @@ def _files(study: Study, results: Results, options: argparse.Namespace) -> None:
     if options.parquet:
         results.write(options.parquet)
     if options.html:
+        from moldloft.study import Store
         from moldloft.study.report import html
 
-        facts = {"model": str(study.model), "plan": study.plan.method, "cases": str(len(results))}
-        saltelli = study.plan.count if study.plan.method == "saltelli" else 0
+        with Store(options.store) as store:
+            plan = store.facts().get("plan", "")
+        facts = {"model": study.model.name, "plan": plan, "cases": str(len(results))}
+        saltelli = study.plan.count if plan == "saltelli" else 0
         emit(options.html, html(results, f"Study {Path(options.study).stem}", facts, saltelli))

@@ -21,10 +21,13 @@ __all__ = ["failures", "front", "html", "sensitivities", "sobol_indices", "sprea
 #: Points drawn of a plot: more cannot be told apart. The page states the number left out.
 MAX_DRAWN = 2_000
 
+#: Plans whose points fill the ranges, so that a regression means something.
+SAMPLED = ("grid", "latin-hypercube", "sobol", "saltelli")
+
 #: Rows listed of the table.
 MAX_ROWS = 200
 
-WIDTH, HEIGHT, MARGIN = 300.0, 220.0, 42.0
+WIDTH, HEIGHT, MARGIN = 300.0, 220.0, 58.0
 
 _STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:76rem;padding:0 1rem;
@@ -172,7 +175,7 @@ def html(results: Results, title: str, facts: Mapping[str, str], saltelli: int =
     title
         The heading.
     facts
-        Lines about the study, by name.
+        Lines about the study, by name; sensitivities are given for a sampled `plan`.
     saltelli
         The `count` of a plan by Saltelli's scheme.
 
@@ -198,7 +201,8 @@ def html(results: Results, title: str, facts: Mapping[str, str], saltelli: int =
             "<h2>Numbers</h2>",
             _rows(["", "least", "mean", "greatest"], _statistics(results)),
         ]
-        parts += _sensitivity_parts(results, saltelli)
+        if facts.get("plan") in SAMPLED:
+            parts += _sensitivity_parts(results, saltelli)
         parts += ["<h2>Outputs by inputs</h2>", _plots(_scatters(results))]
         if len(_plotted(results)) > 1:
             parts += ["<h2>Outputs by outputs</h2>", _plots(_output_plots(results))]
@@ -282,8 +286,8 @@ def _scatter(
         f'<path d="M{MARGIN} 8V{low}H{right}" fill="none" stroke="#8a97a5"/>'
         f'<text x="{MARGIN}" y="{low + 14}">{_text(x0)}</text>'
         f'<text x="{right}" y="{low + 14}" text-anchor="end">{_text(x1)}</text>'
-        f'<text x="{MARGIN - 4}" y="{low}" text-anchor="end">{_text(y0)[:7]}</text>'
-        f'<text x="{MARGIN - 4}" y="16" text-anchor="end">{_text(y1)[:7]}</text>'
+        f'<text x="{MARGIN - 4}" y="{low}" text-anchor="end">{_text(y0)[:8]}</text>'
+        f'<text x="{MARGIN - 4}" y="16" text-anchor="end">{_text(y1)[:8]}</text>'
     )
     label = f"{names[1]} by {names[0]}"
     return (
