@@ -20,15 +20,6 @@ optimised: PROFILE = release
 
 SOURCES := pyproject.toml Cargo.toml $(shell find crates -name '*.rs' -o -name Cargo.toml -o -name '*.sdl')
 
-# The packages of the extras `test` and `view` by name: `pip install '.[test,view]'` would build the extension once more.
-define TEST_PACKAGES
-from importlib.metadata import requires
-for line in requires("moldloft"):
-    if line.replace("'", '"').endswith(('extra == "test"', 'extra == "view"')):
-        print(line.split(";")[0])
-endef
-export TEST_PACKAGES
-
 PAGE := python/moldloft/workbench/page/index.html
 PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildcard web/src/*)
 # Without Node.js everything but the workbench is there.
@@ -51,7 +42,7 @@ setup: $(VENV)/.with-tests $(VENV)/.with-browser ## .venv with the package and e
 define INSTALL
 @test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 @echo "building and installing moldloft into $(VENV) (a first build takes a few minutes)"
-@$(PIP) install 'maturin>=1.10,<2'
+@$(PIP) install --require-hashes --requirement requirements/build.txt
 @PATH="$$PWD/$(BIN):$$PATH" MATURIN_PEP517_ARGS="--profile $(PROFILE)" $(PIP) install --no-build-isolation --editable .
 @touch $@
 endef
@@ -63,10 +54,9 @@ $(VENV)/.for-demo: PROFILE = demo
 $(VENV)/.for-demo: $(SOURCES)
 	$(INSTALL)
 
-$(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
+$(VENV)/.with-tests: $(VENV)/.installed requirements/test.txt $(WEB)
 	@echo "installing the packages that the tests need into $(VENV)"
-	@$(BIN)/python -c "$$TEST_PACKAGES" > $(VENV)/test-packages.txt
-	@$(PIP) install --requirement $(VENV)/test-packages.txt
+	@$(PIP) install --require-hashes --requirement requirements/test.txt
 	@touch $@
 
 web: $(PAGE) ## the page of the workbench; needs Node.js

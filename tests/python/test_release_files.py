@@ -38,8 +38,10 @@ def test_versions_agree() -> None:
 
 #: What steps of workflows may call: commands of the Makefile and of the release script.
 STEPS = re.compile(
-    r"make (\w+)$|python tools/release\.py (\w+)$|mkdocs build --strict$|rm -f dist/|"
-    r"python -m pip install '[a-z-]+[><=.,0-9]*'$|"
+    r"make (\w+)$|python tools/release\.py (\w+)$|mkdocs build --strict$|rm -f dist/|cp dist/|"
+    r"python -m pip install --require-hashes --requirement requirements/\w+\.txt$|"
+    r"pip-audit --disable-pip --require-hashes --requirement requirements/test\.txt$|"
+    r"npm audit --prefix web --audit-level=high$|"
     # What needs another toolchain than the house.
     r"cargo (?:miri|llvm-cov|fuzz) |cargo test -Zbuild-std |for target in |"
     # Other processors, emulated.
@@ -66,7 +68,8 @@ def test_a_workflow_calls_what_there_is(path: Path) -> None:
         for step in job["steps"]:
             assert ("uses" in step) != ("run" in step), (name, step)
             if "uses" in step:
-                assert re.fullmatch(r"[\w.-]+/[\w./-]+@[\w./-]+", step["uses"]), step
+                # By commit: a tag can be moved to other code.
+                assert re.fullmatch(r"[\w.-]+/[\w./-]+@[0-9a-f]{40}", step["uses"]), step
                 continue
             found = STEPS.match(step["run"])
             assert found, (name, step["run"])
@@ -74,6 +77,28 @@ def test_a_workflow_calls_what_there_is(path: Path) -> None:
                 assert re.search(rf"^{found[1]}:", makefile, re.M), step
             if found[2]:
                 assert found[2] in steps_of_release, step
+
+
+def named(line: str) -> str:
+    """The name of a requirement, as registries spell it."""
+    return re.sub(r"[-_.]+", "-", re.split(r"[ ;<>=!~\[]", line.strip())[0]).lower()
+
+
+def test_all_that_the_tests_install_is_locked_with_hashes() -> None:
+    """`requirements/README.md` says how the files are made."""
+    for path in (ROOT / "requirements").glob("*.txt"):
+        for entry in re.split(r"\n(?=\S)", path.read_text(encoding="utf-8").strip()):
+            assert re.match(r"[\w.-]+==[\w.]+( ; .*)? \\\n +--hash=sha256:[0-9a-f]{64}", entry), (
+                entry
+            )
+    text = (ROOT / "requirements" / "test.txt").read_text(encoding="utf-8")
+    locked = {named(line) for line in text.splitlines() if "==" in line}
+    wanted = [
+        line
+        for line in requires("moldloft") or []
+        if re.search(r"extra == ['\"](test|view)['\"]", line)
+    ]
+    assert wanted and {named(line) for line in wanted} <= locked
 
 
 def test_the_recipe_needs_what_the_package_needs() -> None:

@@ -32,6 +32,8 @@ export class SocketLink implements Link {
   private waiting = new Map<number, Waiting>()
   private count = 0
   private retry = 250
+  /** The number of the last connection, by which the server knows a page that it has dropped. */
+  private tab = 0
 
   async start(): Promise<void> {
     const token = new URLSearchParams(location.hash.slice(1)).get('t')
@@ -44,7 +46,7 @@ export class SocketLink implements Link {
   }
 
   private connect(): void {
-    const socket = new WebSocket(`ws://${location.host}/ws`)
+    const socket = new WebSocket(`ws://${location.host}/ws?before=${this.tab}`)
     socket.binaryType = 'arraybuffer'
     this.socket = socket
     socket.onopen = () => {
@@ -64,6 +66,7 @@ export class SocketLink implements Link {
   private receive(data: string | ArrayBuffer): void {
     if (typeof data === 'string') {
       const message = JSON.parse(data)
+      if (message.kind === 'hello') this.tab = message.tab
       const waiting = this.waiting.get(message.id)
       if (waiting) {
         this.waiting.delete(message.id)

@@ -481,6 +481,7 @@ async function begin(hello: any): Promise<void> {
     changed('watched')
   }
   if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Take the file” in the commands drops them.')
+  if (hello.dropped) say(`This page was disconnected: ${hello.dropped}. It shows the newest state.`)
   showSaved()
   try {
     // A file's own scene is there at once; a server's is asked for with all that is to be drawn.

@@ -123,6 +123,9 @@ impl Session {
         let request: Request = match serde_json::from_str(request) {
             Ok(request) => request,
             Err(error) => {
+                // Who asked knows the answer by its id.
+                let id = serde_json::from_str(request).map(|given: Value| given["id"].clone());
+                frame.put("id", id.unwrap_or_default());
                 frame.put("error", format!("not a request: {error}"));
                 return frame.encoded();
             }

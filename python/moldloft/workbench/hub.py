@@ -2,7 +2,7 @@
 
 The text is here, not in the engine and not in a page: a page's change counts once the hub has it,
 and it is on disk before the page hears so. The engine is asked one thing at a time; what has become
-out of date while it waited is left out.
+out of date while it waited is left out. Nothing here waits for a page: each has an outbox.
 """
 
 from __future__ import annotations
@@ -12,21 +12,20 @@ import contextlib
 import json
 import secrets
 import struct
-from collections.abc import Awaitable, Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from moldloft.errors import Error, FileError
 from moldloft.language import check_language
-from moldloft.storage import ChangedError, put
+from moldloft.storage import ChangedError, digest, put
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.engine import Engine, EngineLostError
+from moldloft.workbench.outbox import Outbox, Send
 from moldloft.workbench.text import Stored, applied, change_set, decoded, encoded, read
 
 __all__ = ["Hub", "Tab"]
-
-Send = Callable[["str | bytes"], Awaitable[None]]
 
 #: Requests of which only the newest of a tab counts.
 NEWEST = {
@@ -45,8 +44,13 @@ ASKED = NEWEST | {
 CHANGING = {"set", "drag_to", "commit", "reset", "write", "drag_end", "show"}
 
 MOST_TABS = 32
-MOST_WAITING = 256
+#: Bytes of a frame that says no more than what is wrong.
+LONGEST_FAULT = 2000
+#: Requests of one page that wait for the engine.
+MOST_WAITING = 64
 MOST_UPDATES = 20_000
+#: Pages that were dropped and may ask why.
+MOST_DROPPED = 4 * MOST_TABS
 
 
 @dataclass
@@ -54,7 +58,11 @@ class Tab:
     """A page that is connected."""
 
     number: int
-    send: Send
+    outbox: Outbox
+    known: int
+    """The version of the text that it has, once what waits is sent."""
+    dropped: str = ""
+    """Why its connection was ended, which it is told when it is back."""
 
 
 @dataclass
@@ -107,6 +115,8 @@ class Hub:
         self._failed: tuple[int, int] = (-1, 0)
         self._tasks: list[asyncio.Task[None]] = []
         self._sending: set[asyncio.Task[None]] = set()
+        self._dropped: dict[int, str] = {}
+        self._served = 0
         self._noted = self.stored.digest
         self._disk = asyncio.Lock()
         self._published = 0
@@ -132,28 +142,53 @@ class Hub:
             for task in left:
                 task.cancel()
             _, left = await asyncio.wait(left, timeout=0.5)
+        for tab in list(self.tabs.values()):
+            tab.outbox.close()
         await self.engine.end()
         self.draft.close(keep=self.dirty)
 
     # Tabs.
 
-    def join(self, send: Send) -> Tab:
-        """A new tab."""
+    def join(self, send: Send, drop: Callable[[], None] = lambda: None, *, before: int = 0) -> Tab:
+        """A new tab.
+
+        Parameters
+        ----------
+        send
+            Sends one message, and returns when it is taken.
+        drop
+            Ends the connection at once.
+        before
+            The number that the page had in its last connection, if it had one.
+        """
         if len(self.tabs) >= MOST_TABS:
             raise Error(f"{MOST_TABS} pages are open: close one first")
         self._count += 1
-        tab = Tab(self._count, send)
-        self.tabs[tab.number] = tab
+        number = self._count
+
+        def give_up(why: str) -> None:
+            self._dropped[number] = why
+            while len(self._dropped) > MOST_DROPPED:
+                del self._dropped[next(iter(self._dropped))]
+            self.leave(tab)
+            drop()
+
+        outbox = Outbox(send, give_up, room=self._wake.set)
+        tab = Tab(number, outbox, self.version, self._dropped.pop(before, ""))
+        self.tabs[number] = tab
         return tab
 
     def leave(self, tab: Tab) -> None:
         """A tab has gone."""
-        self.tabs.pop(tab.number, None)
+        tab.outbox.close()
+        if self.tabs.pop(tab.number, None) is None:
+            return
         self._jobs = [job for job in self._jobs if job.tab != tab.number]
         self._queue(_Job("close", tab.number, {"kind": "close", "tab": tab.number}))
 
     def hello(self, tab: Tab) -> dict[str, Any]:
         """What a page needs first."""
+        tab.known = self.version
         return {
             "kind": "hello",
             "instance": self.instance,
@@ -163,20 +198,36 @@ class Hub:
             "version": self.version,
             "dirty": self.dirty,
             "recovered": self.recovered,
+            "dropped": tab.dropped,
         }
 
-    async def tell(self, message: dict[str, Any], *, but: int | None = None) -> None:
-        """Send something to all tabs."""
-        text = json.dumps(message)
-        for tab in list(self.tabs.values()):
+    def _tell(
+        self, kind: str, state: Callable[[Tab], dict[str, Any]], *, but: int | None = None
+    ) -> None:
+        """Has all tabs sent a state, as it is when their turn comes."""
+        for tab in self.tabs.values():
             if tab.number != but:
-                await self._to(tab, text)
+                tab.outbox.put_newest(kind, lambda t=tab: json.dumps({"kind": kind, **state(t)}))
 
-    async def _to(self, tab: Tab | None, data: str | bytes) -> None:
+    def _tell_saved(self, *, but: int | None = None) -> None:
+        self._tell("saved", lambda _: {"version": self.version, "dirty": self.dirty}, but=but)
+
+    def _tell_conflict(self, theirs: str) -> None:
+        self._tell("conflict", lambda _: {"theirs": theirs})
+
+    def _tell_engine(self, **state: str) -> None:
+        self._tell("engine", lambda _: state)
+
+    def _news(self, tab: Tab) -> dict[str, Any]:
+        """The changes that are on disk and that a tab has not been sent."""
+        first = max(min(tab.known, self._published), self._first)
+        updates = self._updates[first - self._first : self._published - self._first]
+        tab.known = max(tab.known, self._published)
+        return {"from": first, "updates": updates, "dirty": self.dirty}
+
+    def _to(self, tab: Tab | None, message: dict[str, Any] | bytes) -> None:
         if tab is not None:
-            # One that has gone is noticed by its own reader.
-            with contextlib.suppress(Exception):
-                await tab.send(data)
+            tab.outbox.put(message if isinstance(message, bytes) else json.dumps(message))
 
     # What pages say.
 
@@ -184,9 +235,9 @@ class Hub:
         """Take a message of a page."""
         kind, number = message.get("kind"), message.get("id", 0)
         if kind == "push":
-            await self._push(tab, message)
+            self._push(tab, message)
         elif kind == "pull":
-            await self._pull(tab, message)
+            self._pull(tab, message)
         elif kind == "save":
             await self._save(tab, message)
         elif kind == "revert":
@@ -194,11 +245,13 @@ class Hub:
         elif isinstance(kind, str) and kind in ASKED:
             self._ask(tab, kind, message)
         else:
-            await self._to(
-                tab, json.dumps({"kind": "refused", "id": number, "error": "no such request"})
-            )
+            self.refuse(tab, number, "no such request")
 
-    async def _push(self, tab: Tab, message: dict[str, Any]) -> None:
+    def refuse(self, tab: Tab | None, number: Any, error: str) -> None:
+        """Tell a page that a request is not carried out, by the id that it gave."""
+        self._to(tab, {"kind": "refused", "id": number, "error": error})
+
+    def _push(self, tab: Tab, message: dict[str, Any]) -> None:
         """Changes of the text. They count when the page knew the newest version."""
         number, updates = message.get("id", 0), message.get("updates")
         reply = {"kind": "pushed", "id": number, "ok": False, "version": self.version}
@@ -217,14 +270,14 @@ class Hub:
                 reply["text"] = self.text
         except (ValueError, KeyError, TypeError, IndexError) as error:
             reply = {**reply, "error": str(error), "text": self.text}
-        await self._to(tab, json.dumps(reply))
+        self._to(tab, reply)
 
     async def _pushed(self, tab: Tab, reply: dict[str, Any]) -> None:
         """Says that changes count, once the draft is on disk: moves of sliders do not wait."""
         await self._publish()
         if self._unkept:
             reply["error"] = self._unkept
-        await self._to(tab, json.dumps(reply))
+        self._to(tab, reply)
 
     def _accept(self, text: str, updates: list[dict[str, Any]]) -> None:
         """A new text, which counts at once; :meth:`_publish` has to follow."""
@@ -244,8 +297,8 @@ class Hub:
         counts all the same, and the answers of pushes say so.
         """
         async with self._disk:
-            first, version = self._published, self.version
-            if first == version:
+            version = self.version
+            if self._published == version:
                 return
             try:
                 if self.dirty:
@@ -255,14 +308,10 @@ class Hub:
                 self._unkept = ""
             except (OSError, Error) as error:
                 self._unkept = f"the draft cannot be written: {error}"
-            first = max(first, self._first)
-            updates = self._updates[first - self._first : version - self._first]
             self._published = version
-            await self.tell(
-                {"kind": "updates", "from": first, "updates": updates, "dirty": self.dirty}
-            )
+            self._tell("updates", self._news)
 
-    async def _pull(self, tab: Tab, message: dict[str, Any]) -> None:
+    def _pull(self, tab: Tab, message: dict[str, Any]) -> None:
         """The updates after the version of a page, or the whole text when they are not kept."""
         version = message.get("version")
         reply = {"kind": "pulled", "id": message.get("id", 0), "version": self.version}
@@ -270,7 +319,7 @@ class Hub:
             reply.update({"from": version, "updates": self._updates[version - self._first :]})
         else:
             reply["text"] = self.text
-        await self._to(tab, json.dumps(reply))
+        self._to(tab, reply)
 
     async def _save(self, tab: Tab, message: dict[str, Any]) -> None:
         """Write the text to the model's file, unless that has changed meanwhile."""
@@ -283,28 +332,24 @@ class Hub:
             now = read(self.path) if self.path.exists() else None
             if now and now.digest != self.stored.digest and not message.get("force"):
                 self._noted = now.digest
-                await self._to(
-                    tab, json.dumps({"kind": "conflict", "id": number, "theirs": now.text})
-                )
+                self._to(tab, {"kind": "conflict", "id": number, "theirs": now.text})
                 return
             expected = now.digest if now else None
             data = encoded(self.text, self.stored)
-            put(self.path, data, expected=expected)
+            self._noted = digest(data)
+            await asyncio.to_thread(put, self.path, data, expected=expected)
             self.stored = decoded(data)
-            self._noted = self.stored.digest
             self.draft.drop()
         except ChangedError:
             # Between looking and writing; what is there now is shown.
             await self._write(tab, message)
             return
         except (Error, OSError) as error:
-            await self._to(tab, json.dumps({"kind": "refused", "id": number, "error": str(error)}))
+            self.refuse(tab, number, str(error))
             return
         self.recovered = False
-        await self._to(tab, json.dumps({"kind": "saved", "id": number, "version": self.version}))
-        await self.tell(
-            {"kind": "saved", "version": self.version, "dirty": self.dirty}, but=tab.number
-        )
+        self._to(tab, {"kind": "saved", "id": number, "version": self.version})
+        self._tell_saved(but=tab.number)
 
     async def _watch(self) -> None:
         """Follow the file on disk."""
@@ -325,7 +370,7 @@ class Hub:
                 continue
             if self.dirty and now.text != self.text:
                 self._noted = now.digest
-                await self.tell({"kind": "conflict", "theirs": now.text})
+                self._tell_conflict(now.text)
                 continue
             try:
                 await self._outside(now)
@@ -341,7 +386,7 @@ class Hub:
         except (OSError, Error) as error:
             reply = {"kind": "refused", "id": number, "error": str(error)}
         self.recovered = False
-        await self._to(tab, json.dumps(reply))
+        self._to(tab, reply)
 
     async def _outside(self, now: Stored) -> None:
         """The file's text takes the place of ours."""
@@ -353,7 +398,7 @@ class Hub:
         else:
             async with self._disk:
                 self.draft.drop()
-            await self.tell({"kind": "saved", "version": self.version, "dirty": self.dirty})
+            self._tell_saved()
         self._noted = now.digest
 
     # The engine.
@@ -363,10 +408,10 @@ class Hub:
         if kind in NEWEST:
             for job in self._jobs:
                 if job.kind == kind and job.tab == tab.number:
-                    self._later(self._superseded(tab, job.request))
-                    if kind == "set":
-                        values = {**job.request.get("values", {}), **request.get("values", {})}
-                        request["values"] = values
+                    self._to(tab, {"kind": "superseded", "id": job.request.get("id", 0)})
+                    old, new = job.request.get("values"), request.get("values")
+                    if kind == "set" and isinstance(old, dict) and isinstance(new, dict):
+                        request["values"] = {**old, **new}
                     job.request = request
                     return
         self._queue(_Job(kind, tab.number, request))
@@ -376,9 +421,6 @@ class Hub:
         self._sending.add(task)
         task.add_done_callback(self._sending.discard)
 
-    async def _superseded(self, tab: Tab, request: dict[str, Any]) -> None:
-        await self._to(tab, json.dumps({"kind": "superseded", "id": request.get("id", 0)}))
-
     def _queue(self, job: _Job) -> None:
         if job.kind in ("text", "sync") and any(
             j.kind == job.kind and j.tab == job.tab for j in self._jobs
@@ -386,25 +428,33 @@ class Hub:
             return
         if job.kind == "text":
             self._jobs.insert(0, job)
-        elif len(self._jobs) < MOST_WAITING:
+        elif job.kind == "close" or sum(j.tab == job.tab for j in self._jobs) < MOST_WAITING:
             self._jobs.append(job)
         else:
-            tab = self.tabs.get(job.tab)
-            if tab is not None:
-                error = {
-                    "kind": "refused",
-                    "id": job.request.get("id", 0),
-                    "error": "too many requests",
-                }
-                self._later(self._to(tab, json.dumps(error)))
+            self.refuse(self.tabs.get(job.tab), job.request.get("id", 0), "too many requests")
         self._wake.set()
+
+    def _next(self) -> _Job | None:
+        """The first job of a page other than the last one's, else the first.
+
+        Those of a page that is behind wait, so that it is sent the newest state and nothing older.
+        """
+        ready = [
+            (job.tab == self._served, k)
+            for k, job in enumerate(self._jobs)
+            if job.tab not in self.tabs or not self.tabs[job.tab].outbox.behind
+        ]
+        if not ready:
+            return None
+        job = self._jobs.pop(min(ready)[1])
+        self._served = job.tab
+        return job
 
     async def _work(self) -> None:
         while True:
-            while not self._jobs:
+            while (job := self._next()) is None:
                 self._wake.clear()
                 await self._wake.wait()
-            job = self._jobs.pop(0)
             try:
                 await self._carry_out(job)
             except EngineLostError as lost:
@@ -419,17 +469,25 @@ class Hub:
             await self.engine.start(self.text)
         request = job.request
         if job.kind == "text":
-            tab = next(iter(self.tabs), 0)
+            tab = next((n for n, tab in self.tabs.items() if not tab.outbox.behind), 0)
             request = {"kind": "text", "tab": tab, "version": version, "text": self.text, "id": 0}
             job = _Job("text", tab, request)
         if fresh and job.kind not in ("open", "text", "close"):
             # What a new engine needs first: the version it has, and the viewers it sends to.
             await self.engine.ask(_data({"kind": "text", "version": version, "text": self.text}))
-        frame = await self.engine.ask(_data(request))
-        await self._to(self.tabs.get(job.tab), frame)
+        try:
+            data = _data(request)
+        except ValueError as error:
+            self.refuse(self.tabs.get(job.tab), request.get("id", 0), f"not a request: {error}")
+            return
+        frame = await self.engine.ask(data)
+        if fault := _unread(frame):
+            self.refuse(self.tabs.get(job.tab), request.get("id", 0), fault)
+        else:
+            self._to(self.tabs.get(job.tab), frame)
         if self._failed[0] == version:
             self._failed = (-1, 0)
-            await self.tell({"kind": "engine", "state": "back"})
+            self._tell_engine(state="back")
         if job.kind == "text" or job.kind in CHANGING:
             for number in self.tabs:
                 if number != job.tab:
@@ -444,9 +502,8 @@ class Hub:
         if why.startswith("this text"):
             count -= 1
         self._failed = (self.version, count)
-        error = json.dumps({"kind": "refused", "id": job.request.get("id", 0), "error": why})
-        await self._to(self.tabs.get(job.tab), error)
-        await self.tell({"kind": "engine", "state": "lost", "reason": why})
+        self.refuse(self.tabs.get(job.tab), job.request.get("id", 0), why)
+        self._tell_engine(state="lost", reason=why)
         if again:
             for number in self.tabs:
                 request = {"kind": "open", "tab": number, "id": 0}
@@ -454,7 +511,16 @@ class Hub:
 
 
 def _data(request: dict[str, Any]) -> bytes:
-    return json.dumps(request).encode()
+    """A request as the engine reads it; ValueError for numbers and texts that are none in JSON."""
+    return json.dumps(request, allow_nan=False, ensure_ascii=False).encode()
+
+
+def _unread(frame: bytes) -> str:
+    """The fault of a request that the engine could not read, and so did not know by its id."""
+    if len(frame) > LONGEST_FAULT:
+        return ""
+    head = head_of(frame)
+    return str(head.get("error", "")) if head.get("id") is None else ""
 
 
 def head_of(frame: bytes) -> dict[str, Any]:

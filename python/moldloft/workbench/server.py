@@ -18,16 +18,18 @@ from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route, WebSocketRoute
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
 from moldloft.errors import Error
-from moldloft.workbench.hub import Hub
+from moldloft.workbench.hub import Hub, Tab
 from moldloft.workbench.page import page_files
 
 __all__ = ["Server"]
 
 LONGEST_MESSAGE = 16 << 20
 IDLE_PING = 30.0
+#: Bytes that the system takes for a page.
+SEND_BUFFER = 1 << 20
 
 _TYPES = {
     ".html": "text/html; charset=utf-8",
@@ -62,6 +64,9 @@ class Guard:
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """ASGI."""
+        # A page that does not read has no use for a farewell, which would wait for it.
+        transport = getattr(getattr(send, "__self__", None), "transport", None)
+        scope["moldloft.abort"] = getattr(transport, "abort", lambda: None)
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -112,6 +117,8 @@ class Server:
         # before them, which come after 40 ms.
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        # What the system keeps for a page that does not read; unset it grows to several times that.
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER)
         try:
             self._socket.bind(("127.0.0.1", port))
         except OSError as error:
@@ -228,6 +235,7 @@ class Server:
             await socket.close(4401)
             return
         await socket.accept()
+        abort = socket.scope["moldloft.abort"]
 
         async def send(data: str | bytes) -> None:
             if isinstance(data, str):
@@ -236,18 +244,30 @@ class Server:
                 await socket.send_bytes(data)
 
         try:
-            tab = self.hub.join(send)
+            before = int(socket.query_params.get("before", "0"))
+        except ValueError:
+            before = 0
+        try:
+            tab = self.hub.join(send, abort, before=before)
         except Error as error:
             await socket.send_text(json.dumps({"kind": "full", "error": str(error)}))
             await socket.close(4429)
             return
         try:
-            await socket.send_text(json.dumps(self.hub.hello(tab)))
-            while True:
-                message = json.loads(await socket.receive_text())
-                if isinstance(message, dict):
-                    await self.hub.hear(tab, message)
-        except (WebSocketDisconnect, ValueError, KeyError):
-            pass
+            await self._listen(socket, tab)
         finally:
             self.hub.leave(tab)
+
+    async def _listen(self, socket: WebSocket, tab: Tab) -> None:
+        """Takes what a page says until it goes."""
+        tab.outbox.put(json.dumps(self.hub.hello(tab)))
+        while (received := await socket.receive())["type"] != "websocket.disconnect":
+            try:
+                message = json.loads(received.get("text") or "")
+            except (ValueError, RecursionError) as error:
+                self.hub.refuse(tab, None, f"not a request: {error}")
+                continue
+            if isinstance(message, dict):
+                await self.hub.hear(tab, message)
+            else:
+                self.hub.refuse(tab, None, "not a request: expected an object of JSON")
