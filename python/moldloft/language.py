@@ -289,7 +289,7 @@ def search(words: str) -> list[dict[str, Any]]:
     >>> "CLoftSurf" in [row["name"] for row in search("loft")]
     True
     """
-    wanted = words.lower().split()
+    wanted = _wanted(words)
     scored: list[tuple[int, int, dict[str, Any]]] = []
     for row in reference():
         name = row["name"].lower()
@@ -322,7 +322,8 @@ _GUIDES = (
     (
         "hydrostatics",
         "hydrostatics, equilibrium, righting arms and stability criteria",
-        "hydrostatic displacement draft draught trim heel gz kg waterline lcb tpc bonjean",
+        "hydrostatic displacement draft draught trim heel gz kg waterline lcb vcb tpc bonjean "
+        "centre of buoyancy flotation gravity metacentre metacentric height freeboard",
     ),
     (
         "relational",
@@ -374,9 +375,33 @@ def guides(words: str) -> list[tuple[str, str]]:
     found = []
     for page, about, more in _GUIDES:
         known = f"{page} {about} {more}".lower()
-        if all(_stem(word) in known for word in words.lower().split()):
+        if all(_stem(word) in known for word in _wanted(words)):
             found.append((about, f"{SITE}/{page}.html"))
     return found
+
+
+def _wanted(words: str) -> list[str]:
+    """The words of a phrase that say something; all of them where none does."""
+    every = words.lower().split()
+    return [word for word in every if word not in _PARTICLES] or every
+
+
+_PARTICLES = {
+    "a",
+    "an",
+    "and",
+    "at",
+    "by",
+    "for",
+    "from",
+    "in",
+    "of",
+    "on",
+    "or",
+    "the",
+    "to",
+    "with",
+}
 
 
 def _stem(word: str) -> str:

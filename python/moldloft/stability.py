@@ -45,6 +45,10 @@ _STEP = math.radians(5.0)
 _ANGLE_ACCURACY = 1e-11
 
 
+#: Degrees of heel between which criteria take areas under the curve of righting arms.
+_AREAS = ((0, 30), (0, 40), (30, 40))
+
+
 @dataclass(frozen=True)
 class Opening:
     """A point through which water enters when it is under water."""
@@ -398,6 +402,36 @@ class Stability:
                 return _root(height, a, b)
         return None
 
+    def figures(self) -> dict[str, Any]:
+        """The main figures of the loading, as :meth:`summary` prints them; angles in radians.
+
+        Returns
+        -------
+        dict
+            ``None`` for a heel that is not reached up to pi, such as that of vanishing stability.
+        """
+        heel, largest = self.largest()
+        flood = self.flooding()
+        areas = {
+            f"area_{low}_{high}": self.area(math.radians(low), math.radians(high))
+            for low, high in _AREAS
+        }
+        return {
+            "mass": self.mass,
+            "cg": list(self.cg),
+            "gmt": self.upright.gmt,
+            "gml": self.upright.gml,
+            "stable": self.stable,
+            "loll": None if self.stable else self.loll(),
+            "largest_gz": largest,
+            "largest_gz_heel": heel,
+            "vanishing": self.vanishing(),
+            "range": self.range(),
+            **areas,
+            "deck_edge": self.deck_edge(),
+            "flooding": None if flood is None else {"heel": flood[0], "opening": flood[1]},
+        }
+
     def summary(self) -> str:
         """The main figures of the loading, a line each, with units."""
         row = self.upright
@@ -426,7 +460,7 @@ class Stability:
             line("angle of vanishing stability", angle(self.vanishing(), "none up to 180 deg")),
             line("range", f"{math.degrees(self.range()):.4f} deg"),
         ]
-        for low, high in ((0, 30), (0, 40), (30, 40)):
+        for low, high in _AREAS:
             area = self.area(math.radians(low), math.radians(high))
             text = f"{area:.6g} {arm}·rad" if arm else f"{area:.6g}"
             lines.append(line(f"area {low} to {high} deg", text))

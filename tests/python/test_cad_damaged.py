@@ -274,11 +274,11 @@ def test_a_face_that_ends_the_reader_is_left_out(
     bad = 0
     asked = apart._asked
 
-    def ends(path: Path, metres: float, numbers: list[int] | None) -> object:
+    def ends(path: Path, metres: float, numbers: list[int] | None, spending: object) -> object:
         nonlocal bad
         if numbers is None or bad in numbers:
             return "OCCT ended over the file (SIGSEGV)"
-        return asked(path, metres, numbers)
+        return asked(path, metres, numbers, spending)
 
     bad = int(entity(path.read_text(), "ADVANCED_FACE", 2)[0][1:])
     monkeypatch.setattr(apart, "_asked", ends)
@@ -286,6 +286,19 @@ def test_a_face_that_ends_the_reader_is_left_out(
     assert len(found.faces) == 5
     assert found.remarks[0].startswith("OCCT ended over the file (SIGSEGV); 5 of 6 faces were read")
     assert found.remarks[0].endswith(f"left out: #{bad}")
+
+
+@pytest.mark.parametrize("number", ["1.E400", "-1.E99"])
+def test_numbers_that_are_none_are_refused_with_their_entity(tmp_path: Path, number: str) -> None:
+    from moldloft.cad.importing import program
+
+    path = tmp_path / "part.step"
+    text = step_of(tmp_path)
+    entity_, rest = text[text.index("CARTESIAN_POINT") :].split("(", 2)[1:]
+    first = rest.split(",")[0]
+    path.write_text(text.replace(f"{entity_}({first}", f"{entity_}({number}", 1))
+    with pytest.raises(moldloft.FileError, match=rf"#\d+ \(CARTESIAN_POINT\).*{number}"):
+        program(path)
 
 
 def test_the_reader_is_bounded_in_time_and_memory(tmp_path: Path) -> None:

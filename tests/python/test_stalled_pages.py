@@ -127,7 +127,7 @@ class Page:
             self.answers[message["id"]] = message
         self.news.set()
 
-    async def ask(self, kind: str, **fields: Any) -> dict[str, Any]:
+    async def ask(self, kind: Any, **fields: Any) -> dict[str, Any]:
         self.count += 1
         number = self.count
         await self.hub.hear(self.tab, {"kind": kind, "id": number, **fields})

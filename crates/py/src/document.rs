@@ -827,8 +827,8 @@ pub fn format_text(name: &str, text: &[u8]) -> PyResult<String> {
         Ok(text) => text,
         Err(diagnostic) => return Err(model_error(&[diagnostic], &sources)),
     };
-    sources.add(name, text);
-    moldloft::syntax::sdl::format(text).map_err(|diagnostics| model_error(&diagnostics, &sources))
+    sources.add(name, &*text);
+    moldloft::syntax::sdl::format(&text).map_err(|diagnostics| model_error(&diagnostics, &sources))
 }
 
 fn object_named<'d>(document: &'d Document, name: &str) -> PyResult<&'d Object<f64>> {

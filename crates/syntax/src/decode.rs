@@ -1,16 +1,17 @@
 //! Bytes into text.
 
 use moldloft_diag::{Diagnostic, FileId, Span};
+use std::borrow::Cow;
 
 /// The longest text that is read: spans are 32 bits wide, and a model of this size is a mistake.
 pub const MAX_BYTES: usize = 64 << 20;
 
-/// The bytes as text.
+/// The bytes as text. Carriage returns that alone end the lines of a file are line feeds, so that places stay.
 ///
 /// # Errors
 /// `binary-file` for NUL bytes or invalid UTF-8, with the place of the first one; `file-too-large` beyond
 /// [`MAX_BYTES`]. The file shown is `name`; the diagnostic has no span, because there is no text to point into.
-pub fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, Diagnostic> {
+pub fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<Cow<'a, str>, Diagnostic> {
     if bytes.len() > MAX_BYTES {
         return Err(too_large(bytes.len()));
     }
@@ -23,11 +24,15 @@ pub fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, Diagnostic> {
     if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
         return Err(binary(at, "a NUL byte".to_owned()));
     }
-    std::str::from_utf8(bytes).map_err(|error| {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
         let at = error.valid_up_to();
         binary(at, format!("the byte 0x{:02x}", bytes[at]))
             .help("if it is text in an older encoding, convert it to UTF-8 first")
-    })
+    })?;
+    if text.contains('\r') && !text.contains('\n') {
+        return Ok(text.replace('\r', "\n").into());
+    }
+    Ok(text.into())
 }
 
 /// The diagnostic for a text that is too long.
@@ -49,6 +54,8 @@ mod tests {
     #[test]
     fn binary_is_told_apart() {
         assert_eq!(decode(b"abc\xc3\xa9", "a").unwrap(), "abcé");
+        assert_eq!(decode(b"# a\rb\r", "a").unwrap(), "# a\nb\n");
+        assert_eq!(decode(b"a\r\nb\r", "a").unwrap(), "a\r\nb\r");
         let nul = decode(b"ab\nc\0", "a.bin").unwrap_err();
         assert_eq!(nul.id, "binary-file");
         assert_eq!(nul.found.as_deref(), Some("a NUL byte at byte 4 (line 2)"));

@@ -16,6 +16,7 @@ import struct
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 from typing import Any
 
@@ -32,8 +33,14 @@ from moldloft.storage import read_bytes
 
 __all__ = ["read"]
 
-SECONDS = 600.0
-"""Time for one file, unless the limits of this process say less."""
+SECONDS, SECONDS_A_MEGABYTE = 10.0, 30.0
+"""Processor time for one file, and for each megabyte of it, unless the limits of this process state
+a time. Sound files take a tenth of that."""
+
+PATIENCE = 20
+"""So many times the processor time an answer is waited for: others may have the processor."""
+
+_MORE = "help: allow more: `--limit seconds=600`, `moldloft.limits(seconds=...)`"
 
 _IDLE = 30.0
 """After so many seconds without a request the other process ends."""
@@ -61,15 +68,17 @@ def read(path: Path, metres: float) -> Imported:
     if not sys.executable:
         # A program that has Python inside: there is none to start.
         return of_part(path, metres, None)
-    answer = _asked(path, metres, None)
+    spending = _Spending(path)
+    answer = _asked(path, metres, None, spending)
     if isinstance(answer, Imported):
         return answer
     numbers: list[int] = []
     if path.suffix.lower() in (".step", ".stp"):
         numbers = StepText.of(path, read_bytes(path).decode("latin-1")).whole_faces
-    parts, lost, _ = _by_halves(path, metres, numbers, _TRIES) if numbers else ([], numbers, 0)
+    parts, lost, _ = _by_halves(path, metres, numbers, _TRIES, spending)
     if not parts:
-        raise FileError(f"cannot read `{path}`: {answer}")
+        more = "" if spending.left > 0 else f"\n{_MORE}"
+        raise FileError(f"cannot read `{path}`: {answer}{more}")
     found = _together(parts, metres)
     few = ", ".join(f"#{n}" for n in lost[:20]) + (", ..." if len(lost) > 20 else "")
     found.remarks.insert(
@@ -81,19 +90,19 @@ def read(path: Path, metres: float) -> Imported:
 
 
 def _by_halves(
-    path: Path, metres: float, numbers: list[int], tries: int
+    path: Path, metres: float, numbers: list[int], tries: int, spending: _Spending
 ) -> tuple[list[Imported], list[int], int]:
     """What can be read of some faces, the faces that cannot, and how many tries are left."""
-    if not numbers or tries <= 0:
+    if not numbers or tries <= 0 or spending.left < _LEAST:
         return [], numbers, tries
-    answer = _asked(path, metres, numbers)
+    answer = _asked(path, metres, numbers, spending)
     if isinstance(answer, Imported):
         return [answer], [], tries - 1
     if len(numbers) == 1:
         return [], numbers, tries - 1
     middle = len(numbers) // 2
-    low, lost, tries = _by_halves(path, metres, numbers[:middle], tries - 1)
-    high, more, tries = _by_halves(path, metres, numbers[middle:], tries)
+    low, lost, tries = _by_halves(path, metres, numbers[:middle], tries - 1, spending)
+    high, more, tries = _by_halves(path, metres, numbers[middle:], tries, spending)
     return low + high, lost + more, tries
 
 
@@ -117,6 +126,25 @@ def _together(parts: list[Imported], metres: float) -> Imported:
     return found
 
 
+_LEAST = 2.0
+"""Seconds of processor time without which no part is tried: a new process takes as many."""
+
+
+class _Spending:
+    """The processor time that is left for a file."""
+
+    def __init__(self, path: Path) -> None:
+        stated = limits().seconds
+        usual = SECONDS + SECONDS_A_MEGABYTE * path.stat().st_size / 1e6 if path.exists() else 0.0
+        self.allowed = stated if math.isfinite(stated) else usual
+        self.left = self.allowed
+
+    @property
+    def clock(self) -> float:
+        """How long an answer is waited for."""
+        return self.left if math.isfinite(limits().seconds) else PATIENCE * self.left
+
+
 class _Worker:
     """A process that reads files, one after the other; it ends when nobody asks for a while."""
 
@@ -133,7 +161,7 @@ class _Worker:
                 old = process is not None and process.poll() is None
                 if process is None or not old:
                     process = self._process = self._begun()
-                answer = self._answered(process, message, request["seconds"])
+                answer = self._answered(process, message, request["clock"], request["seconds"])
                 # It may have ended by itself just then.
                 if isinstance(answer, bytes) or not old or process.returncode != 0:
                     return answer
@@ -150,7 +178,7 @@ class _Worker:
         return process
 
     def _answered(
-        self, process: subprocess.Popen[bytes], message: bytes, seconds: float
+        self, process: subprocess.Popen[bytes], message: bytes, seconds: float, allowed: float
     ) -> bytes | str:
         assert process.stdin is not None and process.stdout is not None
         late = threading.Event()
@@ -188,6 +216,8 @@ class _Worker:
         if late.is_set():
             return f"OCCT was ended: it took longer than {seconds:g} s"
         number = -process.returncode
+        if number == getattr(signal, "SIGXCPU", None):
+            return f"OCCT was ended: it took longer than {allowed:g} s of processor time"
         known = number in {*signal.Signals}
         name = signal.Signals(number).name if known else f"status {process.returncode}"
         return f"OCCT ended over the file ({name})"
@@ -196,26 +226,39 @@ class _Worker:
 _worker = _Worker()
 
 
-def _asked(path: Path, metres: float, numbers: list[int] | None) -> Imported | str:
+def _asked(
+    path: Path, metres: float, numbers: list[int] | None, spending: _Spending
+) -> Imported | str:
     """What another process reads, of these faces or of all, or how it ended."""
-    own = limits()
+    before = _children()
     request = {
         "path": str(path.absolute()),
         "called": str(path),
         "metres": metres,
         "faces": numbers,
-        "memory": own.memory,
-        "seconds": min(SECONDS, own.seconds),
+        "memory": limits().memory,
+        "seconds": spending.left,
+        "clock": spending.clock,
     }
     sent = _worker.ask(request)
     if isinstance(sent, str):
+        # What ended over the file is known by its time; a part that took all leaves none.
+        ended = sent.startswith("OCCT ended")
+        spending.left -= max(_LEAST, _children() - before) if ended else spending.left
         return sent
     answer: dict[str, Any] = json.loads(sent)
+    spending.left -= answer["seconds"]
     if "refused" in answer:
         raise FileError(answer["refused"].replace(request["path"], request["called"]))
     if "fault" in answer:
         return f"OCCT cannot read the file ({answer['fault']})"
     return _imported(answer, metres)
+
+
+def _children() -> float:
+    """Processor time of the processes that this one began and that have ended."""
+    spent = os.times()
+    return spent.children_user + spent.children_system
 
 
 def _sent(shape: Nurbs) -> dict[str, Any]:
@@ -288,7 +331,7 @@ def _bounded(memory: int, seconds: float) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (held, most))
     # Should nobody wait for it any more.
     used = resource.getrusage(resource.RUSAGE_SELF)
-    until = math.ceil(used.ru_utime + used.ru_stime + seconds) + 1
+    until = math.ceil(used.ru_utime + used.ru_stime + seconds)
     resource.setrlimit(resource.RLIMIT_CPU, (until, resource.getrlimit(resource.RLIMIT_CPU)[1]))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
@@ -311,8 +354,10 @@ def _main() -> None:
                 os._exit(0)
             (length,) = struct.unpack("<Q", head)
             request = json.loads(sys.stdin.buffer.read(length))
+            began = time.process_time()
             _bounded(request["memory"], request["seconds"])
-            answer = json.dumps(_answer(request)).encode()
+            found = _answer(request)
+            answer = json.dumps({**found, "seconds": time.process_time() - began}).encode()
             target.write(struct.pack("<Q", len(answer)) + answer)
             target.flush()
 

@@ -49,6 +49,11 @@ _TAKEN = {"LENGTH_UNIT": "millimetres are taken", "PLANE_ANGLE_UNIT": "radians a
 _PREFIXES = {"$": 1.0, ".MILLI.": 1e-3, ".CENTI.": 1e-2, ".DECI.": 0.1, ".MICRO.": 1e-6}
 _PREFIXES |= {".KILO.": 1e3, ".NANO.": 1e-9}
 
+_EXPONENT = re.compile(r"[-+]?\d+\.?\d*[Ee]\+?\d{2,}")
+"""Numbers that may be too large."""
+_LARGEST = 1e50
+"""As of coordinates in models."""
+
 _ROUNDED = 1e-4
 """Factors of units are written with few digits: 0.01745 for a degree."""
 
@@ -88,6 +93,7 @@ class StepText:
         text = re.sub(rf"({_STRING})|/\*.*?(?:\*/|\Z)", _no_comment, text, flags=re.DOTALL)
         whole = re.search(r"END-ISO-10303-21\s*;", re.sub(_STRING, "''", text)) is not None
         made = cls(text if whole else _ended(text))
+        made._check_numbers(path)
         made._look_at_references()
         if whole:
             made._look_at_units()
@@ -105,6 +111,17 @@ class StepText:
         )
         made._mark()
         return made.only_faces()
+
+    def _check_numbers(self, path: object) -> None:
+        """Refuses numbers that no double holds, and coordinates beyond those of models."""
+        for number, body in self.entities.items():
+            for found in _EXPONENT.finditer(body):
+                size = abs(float(found[0]))
+                if size == math.inf or (size > _LARGEST and _kind(body) == "CARTESIAN_POINT"):
+                    raise FileError(
+                        f"cannot read `{path}`: #{number} ({_kind(body)}): expected numbers of at "
+                        f"most {_LARGEST:g}, found {found[0]}"
+                    )
 
     @cached_property
     def entities(self) -> dict[int, str]:

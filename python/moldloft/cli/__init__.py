@@ -9,7 +9,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, TextIO, cast
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -130,7 +130,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             # A terminal that has no letter for something shows its number.
             stream.reconfigure(errors="backslashreplace")
-    shown, warnings.showwarning = warnings.showwarning, _show_warning
+    before, warnings.showwarning = warnings.showwarning, _show_warning
+    streams, sys.stdout, sys.stderr = _shown_streams()
     try:
         status = _run(arguments)
         sys.stdout.flush()
@@ -155,8 +156,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(_unexpected(error, arguments), file=sys.stderr)
         return 1
     finally:
-        warnings.showwarning = shown
+        warnings.showwarning = before
+        sys.stdout, sys.stderr = streams
     return status
+
+
+def _shown_streams() -> tuple[tuple[TextIO, TextIO], TextIO, TextIO]:
+    """Standard output and error, and both as they are safe for the texts of others."""
+    from moldloft.cli.shown import ShownStream
+
+    out, error = sys.stdout, sys.stderr
+    return (out, error), cast("TextIO", ShownStream(out)), cast("TextIO", ShownStream(error))
 
 
 def _show_warning(

@@ -13,6 +13,7 @@ from moldloft.cli.console import (
     Progress,
     add_force,
     add_model,
+    add_name,
     add_quiet,
     block_problems,
     each_model,
@@ -57,6 +58,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=".",
         help="folder for the files; default: the current one; - is standard output, for one file",
     )
+    add_name(parser)
     parser.add_argument(
         "--level", metavar="Z", type=float, default=0.0, help="height of the water, by default 0"
     )
@@ -179,7 +181,7 @@ def _build(
         refused: list[tuple[str, Error]] = []
         inexact: list[Any] = []
         folder = Path("." if options.output == "-" else options.output)
-        stem = stem_of(options)
+        stem = stem_of(options) if options.to else ""
         for name in dict.fromkeys(options.to):
             progress.stage(f"writing {name}")
             path = folder / file_name(stem, name)
@@ -223,6 +225,9 @@ def _build(
     if mesh.patches and not mesh.closed:
         report(model.junctions())
     report(block_problems(model))
+    if options.to and not model.objects:
+        # An empty file is easily taken for one that is right.
+        print(f"warning: {options.model}: it has no objects; its files are empty", file=sys.stderr)
     data = facts(model, mesh, floating, written)
     data["closure"] = mesh.closure(level=options.level)
     data["one_side"] = halves

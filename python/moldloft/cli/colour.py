@@ -6,6 +6,8 @@ import os
 import re
 from typing import IO
 
+from moldloft.cli.shown import OwnText, shown
+
 __all__ = ["choose", "painted"]
 
 _RED, _YELLOW, _BLUE, _CYAN, _GREEN = "31;1", "33;1", "34;1", "36;1", "32;1"
@@ -51,7 +53,7 @@ def painted(text: str, stream: IO[str]) -> str:
     """
     if not _wanted(stream):
         return text
-    return "\n".join(_line(line) for line in text.split("\n"))
+    return OwnText("\n".join(_line(line) for line in shown(text).split("\n")))
 
 
 def _line(line: str) -> str:

@@ -13,6 +13,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from moldloft.cli.shown import STEERING, OwnText, shown
+
 if TYPE_CHECKING:
     from moldloft import Diagnostic
     from moldloft.models import Model
@@ -21,6 +23,7 @@ __all__ = [
     "Progress",
     "add_force",
     "add_model",
+    "add_name",
     "add_quiet",
     "assignment",
     "block_problems",
@@ -30,6 +33,7 @@ __all__ = [
     "format_argument",
     "open_model",
     "print_json",
+    "put_text",
     "report",
     "say",
     "stem_of",
@@ -154,6 +158,8 @@ def each_model(
     from moldloft.errors import Error
 
     names = expanded(options.models)
+    if len(names) > 1 and getattr(options, "name", None) is not None:
+        raise Error("--name takes one model: several would have the same files")
     if len(names) > 1 and getattr(options, "output", None) == "-":
         raise Error("standard output takes one model: give a folder with -o")
     worst, collected = 0, []
@@ -173,9 +179,39 @@ def each_model(
     return worst
 
 
+def add_name(parser: argparse.ArgumentParser) -> None:
+    """The option that names the files of a model."""
+    parser.add_argument(
+        "--name", metavar="STEM", help="names of files without ending; default: the model's"
+    )
+
+
 def stem_of(options: argparse.Namespace) -> str:
-    """The name of a model's files: that of its file without ending."""
-    return "stdin" if options.model == "-" else Path(options.model).stem
+    """The name of a model's files without ending: by ``--name``, or that of its own file.
+
+    Raises
+    ------
+    Error
+        When files of that name cannot be written on every system.
+    """
+    from moldloft.errors import Error, FileError
+    from moldloft.permissions import checked_name
+
+    given = getattr(options, "name", None)
+    own = "stdin" if options.model == "-" else Path(options.model).stem
+    stem = own if given is None else given
+    if not hasattr(options, "name"):
+        return stem
+    try:
+        # The longest ending.
+        plain = checked_name(f"{stem}.stl-text")
+    except FileError as error:
+        help_ = "" if given is not None else "\nhelp: give another name: `--name STEM`"
+        why = str(error).partition("`: ")[2]
+        raise Error(f"cannot name files `{stem}`: {why}{help_}") from None
+    if len(plain.parts) > 1:
+        raise Error(f"`{stem}` is not a name of a file; `-o DIR` names the folder")
+    return stem
 
 
 def emit(path: str | Path, data: bytes, sources: Sequence[str] = ()) -> Path | None:
@@ -194,6 +230,14 @@ def emit(path: str | Path, data: bytes, sources: Sequence[str] = ()) -> Path | N
     path = Path(path)
     check_not_source(path, sources)
     return commit(path.parent, [Output(path.name, data)])[0]
+
+
+def put_text(text: str) -> None:
+    """Writes a text of a person's on standard output: as it is, but on a terminal shown."""
+    if sys.stdout.isatty():
+        sys.stdout.write(text)
+    else:
+        emit("-", text.encode())
 
 
 def _from_standard_input(options: argparse.Namespace) -> Model:
@@ -272,7 +316,8 @@ def block_problems(model: Model) -> list[Diagnostic]:
 
 def print_json(data: Any) -> None:
     """Prints data as JSON on standard output; non-finite numbers become null."""
-    print(json.dumps(_finite(data), indent=2, ensure_ascii=False, allow_nan=False))
+    text = json.dumps(_finite(data), indent=2, ensure_ascii=False, allow_nan=False)
+    print(STEERING.sub(lambda found: f"\\u{ord(found[0]):04x}", text))
 
 
 def _finite(data: Any) -> Any:
@@ -316,7 +361,7 @@ class Progress:
         self._over.set()
         self._thread.join()
         if self._said and self._terminal:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+            print(OwnText("\r\x1b[K"), end="", file=sys.stderr, flush=True)
 
     def _watch(self) -> None:
         wait = 1.0
@@ -324,7 +369,7 @@ class Progress:
             wait = 0.25
             seconds = time.monotonic() - self._began
             if self._terminal:
-                line = f"\r\x1b[K{self._stage} … {seconds:.0f} s"
+                line = OwnText(f"\r\x1b[K{shown(self._stage)} … {seconds:.0f} s; Ctrl-C ends it")
                 print(line, end="", file=sys.stderr, flush=True)
             elif self._said != self._stage:
                 print(f"{self._stage} …", file=sys.stderr, flush=True)

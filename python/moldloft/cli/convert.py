@@ -6,7 +6,15 @@ import argparse
 import sys
 from pathlib import Path
 
-from moldloft.cli.console import add_model, emit, format_argument, open_model, report, stem_of
+from moldloft.cli.console import (
+    add_model,
+    emit,
+    format_argument,
+    open_model,
+    put_text,
+    report,
+    stem_of,
+)
 from moldloft.errors import Error
 
 __all__ = ["add", "run"]
@@ -67,10 +75,10 @@ def run(options: argparse.Namespace) -> int:
     if target is not None:
         commit(target.parent, produce(model, form, target))
     elif form in ("sdl", "ms2"):
-        sys.stdout.write(model.convert(form))
+        put_text(model.convert(form))
     elif formats()[form].text:
         (output,) = produce(model, form, Path(f"{stem_of(options)}.{form}"))
-        sys.stdout.write(output.data.decode())
+        put_text(output.data.decode())
     elif options.output == "-":
         files = produce(model, form, Path(f"{stem_of(options)}.{form}"))
         if len(files) > 1:
@@ -96,7 +104,7 @@ def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> in
         print(f"warning: {options.model}: {remark}", file=sys.stderr)
     if form == "sdl":
         if target is None:
-            sys.stdout.write(text)
+            put_text(text)
         else:
             commit(target.parent, [Output(target.name, text.encode())])
         return 0
@@ -115,7 +123,7 @@ def _from_offsets(options: argparse.Namespace, target: Path | None, form: str) -
     text = offsets.read(options.model).program(curves=options.curves)
     if form == "sdl":
         if target is None:
-            sys.stdout.write(text)
+            put_text(text)
         else:
             commit(target.parent, [Output(target.name, text.encode())])
         return 0

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from moldloft.cli.console import expanded
+from moldloft.cli.console import expanded, put_text
 
 __all__ = ["add", "run"]
 
@@ -21,6 +21,17 @@ def add(parser: argparse.ArgumentParser) -> None:
     how.add_argument("-w", "--write", action="store_true", help="write the files")
 
 
+def _ended_as(old: bytes, new: bytes) -> bytes:
+    r"""Canonical text with the ends of lines that the file has.
+
+    >>> _ended_as(b"a\r\nb", b"a\nb\n"), _ended_as(b"a\rb", b"a\nb\n")
+    (b'a\r\nb\r\n', b'a\rb\r')
+    """
+    if b"\r\n" in old:
+        return new.replace(b"\r\n", b"\n").replace(b"\n", b"\r\n")
+    return new.replace(b"\n", b"\r") if b"\r" in old and b"\n" not in old else new
+
+
 def run(options: argparse.Namespace) -> int:
     """Formats each file; a program that does not parse stays as it is and is reported."""
     from moldloft.errors import Error
@@ -32,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
         path = Path(file)
         old = sys.stdin.buffer.read() if file == "-" else read_bytes(path)
         try:
-            new = format_text(file, old).encode()
+            new = _ended_as(old, format_text(file, old).encode())
         except Error as error:
             print(error.rendered, file=sys.stderr)
             status = 1
@@ -47,5 +58,5 @@ def run(options: argparse.Namespace) -> int:
                 # Who saved it meanwhile keeps what was saved.
                 put(path, new, expected=digest(old))
         else:
-            sys.stdout.write(new.decode())
+            put_text(new.decode())
     return status

@@ -316,7 +316,8 @@ def _criteria(model: Any, options: argparse.Namespace) -> int:
     wind = Wind(*options.wind) if options.wind else None
     found = stability.assess(options.criteria, wind=wind)
     if options.json:
-        print_json({"rule": found.rule, "passed": found.passed, "checks": found.as_list()})
+        checks = {"rule": found.rule, "passed": found.passed, "checks": found.as_list()}
+        print_json({**checks, "stability": stability.figures()})
     elif options.csv:
         _write_csv(options, found.csv())
     else:

@@ -5,7 +5,15 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from moldloft.cli.console import add_force, add_model, open_model, print_json, report, stem_of
+from moldloft.cli.console import (
+    add_force,
+    add_model,
+    add_name,
+    open_model,
+    print_json,
+    report,
+    stem_of,
+)
 from moldloft.errors import Error
 from moldloft.models import Model
 from moldloft.permissions import write_outputs
@@ -35,6 +43,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="the surfaces of the program as structured grids: " + ", ".join(grids),
     )
+    add_name(parser)
     add_force(parser)
     parser.add_argument("--json", action="store_true", help="one object: lines printed, files")
 

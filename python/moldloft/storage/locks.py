@@ -124,9 +124,12 @@ class Lock:
     def _open(self) -> int:
         try:
             return os.open(self.path, os.O_RDWR | _FLAGS, 0o666)
-        except PermissionError:
+        except PermissionError as denied:
             # That of another user, whose folder this is, too.
-            return os.open(self.path, os.O_RDONLY | (_FLAGS & ~os.O_CREAT))
+            try:
+                return os.open(self.path, os.O_RDONLY | (_FLAGS & ~os.O_CREAT))
+            except FileNotFoundError:
+                raise denied from None
 
     def _is_current(self, file: int) -> bool:
         if os.name == "nt":

@@ -14,6 +14,7 @@ import secrets
 import struct
 from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -207,7 +208,7 @@ class Hub:
         """Has all tabs sent a state, as it is when their turn comes."""
         for tab in self.tabs.values():
             if tab.number != but:
-                tab.outbox.put_newest(kind, lambda t=tab: json.dumps({"kind": kind, **state(t)}))
+                tab.outbox.put_newest(kind, partial(_message, kind, state, tab))
 
     def _tell_saved(self, *, but: int | None = None) -> None:
         self._tell("saved", lambda _: {"version": self.version, "dirty": self.dirty}, but=but)
@@ -508,6 +509,10 @@ class Hub:
             for number in self.tabs:
                 request = {"kind": "open", "tab": number, "id": 0}
                 self._queue(_Job("open", number, request))
+
+
+def _message(kind: str, state: Callable[[Tab], dict[str, Any]], tab: Tab) -> str:
+    return json.dumps({"kind": kind, **state(tab)})
 
 
 def _data(request: dict[str, Any]) -> bytes:

@@ -213,8 +213,8 @@ impl Modules {
         if let Some(known) = known {
             return Ok(known.clone());
         }
-        let file = loader.sources.add(read.name.clone(), text);
-        let sketch = Arc::new(SketchFile::open(&read.name, text, file, loader.world));
+        let file = loader.sources.add(read.name.clone(), &*text);
+        let sketch = Arc::new(SketchFile::open(&read.name, &text, file, loader.world));
         self.sketches.push(sketch.clone());
         Ok(sketch)
     }
@@ -243,9 +243,9 @@ impl Modules {
         }
         let text = moldloft_syntax::decode(&read.bytes, &read.name).map_err(|d| d.or_at(span))?;
         let text = if read.name.to_ascii_lowercase().ends_with(".ms2") {
-            (loader.converted)(&read.name, text, loader.registry).map_err(|d| d.at(span))?
+            (loader.converted)(&read.name, &text, loader.registry).map_err(|d| d.at(span))?
         } else {
-            text.to_string()
+            text.into_owned()
         };
         let text = text.as_str();
         let file = loader.sources.add(read.name.clone(), text);
