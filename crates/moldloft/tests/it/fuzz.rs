@@ -114,7 +114,8 @@ fn readers_seeds() -> Vec<Vec<u8>> {
         ply.split("0 0 0").next().unwrap().replace("ascii", "binary_little_endian").into_bytes();
     binary_ply
         .extend([0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_le_bytes).concat());
-    binary_ply.extend([&[3u8][..], &[0u32, 1, 2].map(u32::to_le_bytes).concat()].concat());
+    binary_ply.push(3);
+    binary_ply.extend([0u32, 1, 2].map(u32::to_le_bytes).concat());
     let plain: [(u8, &[u8]); 12] = [
         (0, b"hull\n1.0 9.81\n0 1\n1\n0 0 0 1 0 0 1 0 -1 0 0 -1\n"),
         (1, b"o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2//1 4//1 3//1\nf -1 -2 -3 -4\n"),
