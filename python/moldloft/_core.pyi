@@ -430,6 +430,10 @@ def format_text(name: str, text: bytes) -> str: ...
 def limits() -> tuple[int, int, int, float]:
     """Bytes, steps, objects and seconds that a run may use."""
 
+def held_memory() -> int: ...
+def read_mesh(
+    data: bytes, ending: str
+) -> tuple[NDArray[np.float64], NDArray[np.uint32], list[tuple[str, int, int]], list[str]]: ...
 def set_limits(memory: int, steps: int, objects: int, seconds: float) -> None:
     """Sets what a run may use."""
 

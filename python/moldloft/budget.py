@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
+import os
 import re
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import NamedTuple
 
 from moldloft import _core
 from moldloft.arguments import explain
-from moldloft.errors import ModelError
+from moldloft.errors import FileError, ModelError
 
-__all__ = ["Limits", "limits", "parsed"]
+__all__ = ["Limits", "limits", "parsed", "within_limits"]
 
 _UNITS = {"": 1, "k": 1 << 10, "m": 1 << 20, "g": 1 << 30, "t": 1 << 40}
 
@@ -114,6 +121,97 @@ def parsed(text: str) -> dict[str, str | int | float]:
     if name == "seconds":
         return {name: _seconds(number)}
     return {name: _count(name, int(number) if number.is_integer() else number)}
+
+
+@contextmanager
+def within_limits() -> Iterator[None]:
+    """Holds code of Python, such as readers of foreign files, to the limits of time and memory.
+
+    It is ended as Ctrl-C would end it: what it calls of other libraries is held as well, but not
+    within a call that is no Python. Memory is that by which the process grows, where the system
+    says it.
+
+    Raises
+    ------
+    FileError
+        When the work inside takes more than is allowed.
+    """
+    watch = _Watch(limits())
+    watch.start()
+    try:
+        try:
+            yield
+        finally:
+            watch.end()
+    except _OverspentError:
+        watch.end()
+        raise FileError(watch.reason) from None
+
+
+class _OverspentError(BaseException):
+    """Raised in the thread that is watched; no reader takes it for a fault of its file."""
+
+
+class _Watch(threading.Thread):
+    """Looks at what the thread that made it uses, and raises :class:`_OverspentError` there."""
+
+    _LOOK = 0.02
+    """Seconds between two looks."""
+    _AGAIN = 1.0
+    """Seconds after which code that went on all the same is interrupted again."""
+
+    def __init__(self, allowed: Limits) -> None:
+        super().__init__(daemon=True)
+        self.reason = ""
+        self._allowed = allowed
+        self._whom = ctypes.c_ulong(threading.get_ident())
+        self._began, self._before = time.monotonic(), _resident() - _core.held_memory()
+        self._ended = threading.Event()
+        self._lock = threading.Lock()
+
+    def run(self) -> None:
+        wait = self._LOOK
+        while not self._ended.wait(wait):
+            self.reason = self._spent()
+            wait = self._AGAIN if self.reason else self._LOOK
+            with self._lock:
+                if self.reason and not self._ended.is_set():
+                    self._raise(ctypes.py_object(_OverspentError))
+
+    def end(self) -> None:
+        """Nothing is raised once this returns."""
+        with self._lock:
+            self._ended.set()
+            self._raise(None)
+
+    def _raise(self, error: ctypes.py_object[type[BaseException]] | None) -> None:
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(self._whom, error)
+
+    def _spent(self) -> str:
+        seconds, memory = self._allowed.seconds, self._allowed.memory
+        if time.monotonic() - self._began > seconds:
+            return (
+                f"this takes longer than the {seconds:g} s that are allowed\n"
+                "help: allow more: `--limit seconds=600`, `moldloft.limits(seconds=...)`"
+            )
+        needed = _resident() - self._before
+        if needed > memory:
+            return (
+                f"this needs {needed / 2**30:.2f} GiB of memory, {memory / 2**30:.2f} are allowed\n"
+                "help: allow more: `--limit memory=8G`, `moldloft.limits(memory=...)`"
+            )
+        return ""
+
+
+def _resident() -> int:
+    """Bytes of the process that are in memory; 0 where the system does not say it."""
+    try:
+        return int(_STATM.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, AttributeError):
+        return 0
+
+
+_STATM = Path("/proc/self/statm")
 
 
 def _bytes(memory: int | str) -> int:

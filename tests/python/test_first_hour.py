@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -37,6 +38,7 @@ def test_figures_are_those_of_the_shape() -> None:
     assert ratios == pytest.approx([4, 4, 4], rel=0.1)
 
 
+@pytest.mark.skipif(not os.environ.get("MOLDLOFT_SOAK"), reason="by the clock")
 def test_long_calls_let_other_threads_run() -> None:
     text = HULL.read_text(encoding="utf-8").replace("{10, 20}", "{400, 800}")
     m = moldloft.loads(text)
@@ -212,9 +214,7 @@ def test_the_interpreter_starts_at_once() -> None:
     """Beyond Python's own start: modules are counted in `test_house.py`, here is the whole."""
     spent = []
     for code in ("pass", "import moldloft"):
-        start = time.process_time()
         child = [sys.executable, "-c", f"{code}\nimport time; print(time.process_time())"]
         spent.append(float(subprocess.run(child, capture_output=True, text=True).stdout))
-        assert time.process_time() - start < 5
     # 0.03 s were measured; ten times as much would be felt.
     assert spent[1] - spent[0] < 0.3

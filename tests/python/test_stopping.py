@@ -70,4 +70,5 @@ def test_ctrl_c_stops_it(program: str) -> None:
     assert done.returncode == 0, done.stderr
     # A second is what is waited for work that does not look; then it would go on unseen.
     # In the ordinary run that it ended is all: the loops have no end.
-    assert float(done.stdout) < (0.9 if SOAK else 30), done.stdout
+    took = float(done.stdout)
+    assert took < 0.9 or not SOAK, took

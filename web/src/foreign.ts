@@ -77,7 +77,7 @@ export class Foreign {
 
   /** Lets a person choose files. */
   choose(): void {
-    const input = h('input', { type: 'file', accept: '.stl,.obj,.gdf,.csv,.txt,.dat,.xyz', multiple: true })
+    const input = h('input', { type: 'file', accept: '.stl,.obj,.ply,.off,.gdf,.csv,.txt,.dat,.xyz', multiple: true })
     input.addEventListener('change', () => [...(input.files ?? [])].forEach((f) => void this.lay(f)))
     input.click()
   }

@@ -594,7 +594,7 @@ function commands(): Command[] {
       if (!hands.measuring) view.overlay('measure', null)
       buildToolbar()
     } },
-    { name: 'Lay a mesh or offsets over the model (STL, OBJ, GDF, table)', run: () => foreign.choose() },
+    { name: 'Lay a mesh or offsets over the model (STL, OBJ, PLY, OFF, GDF, table)', run: () => foreign.choose() },
     { name: 'Remove what lies over the model', run: () => void foreign.remove().catch((e) => say(e.message)) },
     { name: 'Curvature comb of the selected curve', keys: 'K', run: () => analysis.toggleComb(selected) },
     ...[0, 1, 2].map((k) => ({ name: `Section across ${'xyz'[k]}`, keys: `Shift+${'XYZ'[k]}`, run: () => analysis.cut(view.clip?.axis === k ? null : k) })),

@@ -7,12 +7,12 @@
 //! | HydroStar | [`hydrostar::write`] | – |
 //! | HAMS | [`hams::write`], [`hams::write_lids`] | – |
 //! | AQWA geometry decks | [`aqwa::write`] | – |
-//! | PLY | [`ply::write`] (binary) | – |
+//! | PLY | [`ply::write`] (binary) | [`ply::read`] (binary and text) |
 //! | glTF | [`gltf::write`] (`.glb`) | – |
 //! | STL | [`stl::write`] (binary) | [`stl::read`] (binary and text) |
 //! | 3MF | [`threemf::write`] | – |
 //! | Wavefront OBJ | [`obj::write`] | [`obj::read`] |
-//! | OFF | [`off::write`] | – |
+//! | OFF | [`off::write`] | [`off::read`] |
 //! | Gmsh | [`msh::write`] | – |
 //! | SU2 | [`su2::write`] | – |
 //! | hexahedra of SU2, Gmsh, blockMesh | [`hexahedra::su2`], [`hexahedra::gmsh`], [`hexahedra::block_mesh`] | – |
@@ -38,6 +38,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod error;
+mod foreign;
 mod hdf5;
 mod solver;
 mod structured_grid;
@@ -69,6 +70,7 @@ pub mod threemf;
 pub mod vtk;
 
 pub use error::{Bits, FilePosition, ReadError, WriteError};
+pub use foreign::ForeignMesh;
 pub use solver::PanelFileOptions;
 pub use structured_grid::StructuredGrid;
 

@@ -1,10 +1,12 @@
 //! Wavefront OBJ: vertices, faces, groups.
 
 use crate::error::check_positions;
-use crate::text::{TextLine, put, quoted, real, utf8, word};
+use crate::foreign::{ForeignMesh, MeshInProgress};
+use crate::text::{TextLine, lines, lines_text, put, quoted, real, word};
 use crate::{FilePosition, LinesAndPoints, ReadError, WriteError};
-use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, is_triangle};
+use moldloft_mesh::{Mesh, is_triangle};
 use moldloft_num::Vec3;
+use std::borrow::Cow;
 
 const FORMAT: &str = "OBJ";
 
@@ -71,79 +73,99 @@ pub fn write_with(mesh: &Mesh, strands: &LinesAndPoints) -> Result<Vec<u8>, Writ
     Ok(out.into_bytes())
 }
 
-/// The mesh: a patch per run of faces of one group or object. Faces of more than four corners are
-/// split into a fan of triangles; texture and normal references, materials and comments are skipped.
+/// The mesh: a patch per run of faces of one group or object. Texture and normal references, materials, colours and
+/// comments are skipped; polylines, points and free-form curves and surfaces are counted in the remarks. A face may
+/// name vertices that follow it, and a line go on after `\`.
 ///
 /// # Errors
 /// Bad numbers, faces of fewer than three corners, references to vertices that are not there.
-pub fn read(bytes: &[u8]) -> Result<Mesh, ReadError> {
-    let text = utf8(bytes, FORMAT)?;
-    let mut positions: Vec<Vec3> = Vec::new();
-    let mut patches: Vec<(String, Vec<[u32; 4]>)> = vec![("default".into(), Vec::new())];
-    let mut last = 0;
-    for (number, text) in (1..).zip(text.lines()) {
+pub fn read(bytes: &[u8]) -> Result<ForeignMesh, ReadError> {
+    let text = lines_text(bytes, FORMAT)?;
+    let mut mesh = MeshInProgress::default();
+    let (mut strands, mut free_form) = (0, 0);
+    let mut corners = Vec::new();
+    // The first corner beyond the vertices before it: it must be there in the end.
+    let mut ahead: Option<(u32, usize)> = None;
+    let mut last = 1;
+    for (number, text) in statements(&text) {
         last = number;
-        let line = TextLine { format: FORMAT, number, text };
+        let line = TextLine { format: FORMAT, number, text: &text };
         let mut words = text.split_whitespace();
         match words.next() {
             Some("v") => {
                 let mut next = || line.real(words.next(), "a coordinate");
-                positions.push(Vec3::of(next()?, next()?, next()?));
+                mesh.points.push(Vec3::of(next()?, next()?, next()?));
             }
-            Some("g" | "o") => {
-                let name = words.next().unwrap_or("default");
-                patches.push((name.into(), Vec::new()));
-            }
-            Some("f") => {
-                let corners = words
-                    .map(|w| vertex(&line, w, positions.len()))
-                    .collect::<Result<Vec<_>, _>>()?;
-                let faces = patches.last_mut().map(|p| &mut p.1);
-                match (corners.as_slice(), faces) {
-                    (&[a, b, c, d], Some(faces)) => faces.push([a, b, c, d]),
-                    (&[first, ref rest @ ..], Some(faces)) if rest.len() >= 2 => {
-                        faces.extend(rest.windows(2).map(|w| [first, w[0], w[1], w[1]]));
+            Some("g" | "o") => mesh.group(words.next().unwrap_or("default")),
+            Some("f" | "fo") => {
+                corners.clear();
+                for word in words {
+                    let corner = vertex(&line, word, mesh.points.len())?;
+                    if corner as usize >= mesh.points.len()
+                        && ahead.is_none_or(|(furthest, _)| corner > furthest)
+                    {
+                        ahead = Some((corner, number));
                     }
-                    (few, _) => {
-                        return Err(
-                            line.error("a face of three corners or more", few.len().to_string())
-                        );
-                    }
+                    corners.push(corner);
                 }
+                if corners.len() < 3 {
+                    let found = corners.len().to_string();
+                    return Err(line.error("a face of three corners or more", found));
+                }
+                mesh.polygon(&corners);
             }
+            Some("l" | "p") => strands += 1,
+            Some("curv" | "curv2" | "surf") => free_form += 1,
             _ => {}
         }
     }
-    let build = || {
-        let mut builder = TopologyBuilder::new();
-        builder.add_vertices(positions.len())?;
-        for (name, faces) in patches.into_iter().filter(|p| !p.1.is_empty()) {
-            builder.add_faces(PatchInfo::new(name), faces)?;
-        }
-        Mesh::new(builder.build().into(), positions)
-    };
-    build().map_err(|e| ReadError::mesh(FORMAT, FilePosition::Line(last), e))
+    if let Some((corner, number)) = ahead
+        && corner as usize >= mesh.points.len()
+    {
+        let line = TextLine { format: FORMAT, number, text: "" };
+        let expected = format!("a vertex from 1 to {}", mesh.points.len());
+        return Err(line.error(expected, format!("`{}`", u64::from(corner) + 1)));
+    }
+    mesh.left_out(strands, "polylines and points");
+    mesh.left_out(free_form, "free-form curves and surfaces");
+    mesh.built(FORMAT, FilePosition::Line(last), false)
 }
 
-/// The vertex of a reference such as `3`, `-1` or `3/1/2`.
+/// The lines with their numbers, those that end in `\` together with the next.
+fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
+    let mut rows = (1..).zip(lines(text));
+    std::iter::from_fn(move || {
+        let (number, first) = rows.next()?;
+        let mut line = Cow::Borrowed(first);
+        while let Some(begun) = line.strip_suffix('\\') {
+            let next = rows.next().map_or("", |(_, next)| next);
+            line = format!("{begun} {next}").into();
+        }
+        Some((number, line))
+    })
+}
+
+/// The vertex of a reference such as `3`, `-1` or `3/1/2`; it may be one that follows.
 fn vertex(line: &TextLine<'_>, word: &str, count: usize) -> Result<u32, ReadError> {
     let index = line.integer(word.split('/').next(), "a vertex number")?;
     let zero_based = if index < 0 { index.saturating_add(count as i64) } else { index - 1 };
-    match u32::try_from(zero_based) {
-        Ok(v) if (v as usize) < count => Ok(v),
-        _ => Err(line.error(format!("a vertex from 1 to {count}"), quoted(word))),
-    }
+    // The greatest number marks none.
+    u32::try_from(zero_based)
+        .ok()
+        .filter(|&v| v < u32::MAX)
+        .ok_or_else(|| line.error("a vertex number from 1, or from -1 backwards", quoted(word)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::fixtures::two_patches;
+    use moldloft_mesh::{PatchInfo, TopologyBuilder};
 
     #[test]
     fn everything_comes_back() {
         let mesh = two_patches();
-        let back = read(&write(&mesh).unwrap()).unwrap();
+        let back = read(&write(&mesh).unwrap()).unwrap().mesh;
         assert_eq!(back.positions(), mesh.positions());
         assert_eq!(back.faces(), mesh.faces());
         let names: Vec<_> = back.patches().iter().map(|p| p.info.name.as_str()).collect();
@@ -157,14 +179,14 @@ mod tests {
         b.add_faces(PatchInfo::new("a"), [[1, 2, 3, 3]]).unwrap();
         let p = [[f64::NAN; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vec3::from);
         let mesh = Mesh::new(b.build().into(), p.to_vec()).unwrap();
-        assert_eq!(read(&write(&mesh).unwrap()).unwrap().faces(), [[0, 1, 2, 2]]);
+        assert_eq!(read(&write(&mesh).unwrap()).unwrap().mesh.faces(), [[0, 1, 2, 2]]);
     }
 
     #[test]
     fn common_forms_and_errors() {
         let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 .5 0\nvn 0 0 1\n\
             usemtl x\nf 1/1/1 2//1 3/1 4\nf -5 -4 -3 -2 -1\n";
-        let mesh = read(text.as_bytes()).unwrap();
+        let mesh = read(text.as_bytes()).unwrap().mesh;
         assert_eq!(mesh.faces(), [[0, 1, 2, 3], [0, 1, 2, 2], [0, 2, 3, 3], [0, 3, 4, 4]]);
         for (bad, place) in [
             ("v 0 0\n", 1),

@@ -4,7 +4,7 @@
 //! `bytes -> PointTable` keeps what a program needs to write the same file with other numbers: the
 //! headings, what separates the columns, the empty lines between curves, an aerofoil's two halves.
 
-use crate::text::{pointed, quoted, text_of};
+use crate::text::{lines, pointed, quoted, text_of};
 use crate::{FilePosition, ReadError};
 use moldloft_num::Vec3;
 use std::ops::Range;
@@ -99,12 +99,6 @@ pub fn read(bytes: &[u8]) -> Result<PointTable, ReadError> {
     }
     table.join_halves();
     Ok(table)
-}
-
-/// The lines of a text that ends them by LF, CR LF or CR.
-fn lines(text: &str) -> impl Iterator<Item = &str> {
-    let text = text.trim_start_matches('\u{feff}');
-    text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'))
 }
 
 fn error(line: usize, expected: impl Into<String>, found: impl Into<String>) -> ReadError {

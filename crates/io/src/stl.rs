@@ -6,7 +6,8 @@
 //! precision, little endian) and two unused bytes (3D Systems 1989, Appendix).
 
 use crate::error::{check_positions, check_single};
-use crate::text::{TextLine, put, quoted, real, utf8, word};
+use crate::foreign::{ForeignMesh, MeshInProgress};
+use crate::text::{TextLine, lines, lines_text, put, quoted, real, word};
 use crate::{FilePosition, ReadError, StructuredGrid, WriteError, facing};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::Vec3;
@@ -97,32 +98,58 @@ pub fn write_text(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
 }
 
 /// The triangles, corners at equal positions made one vertex; those without area by that rule are
-/// left out. A file is text if it begins with `solid` and is not of the size its binary count says.
+/// left out. A file is binary if it is of the size that its count says, else text if it begins with `solid` and has a
+/// facet. A count that is 0 or the greatest, as programs leave it that write without going back, is taken from the size.
 ///
 /// # Errors
 /// A size that does not fit the count, coordinates that are not finite, and text out of order.
-pub fn read(bytes: &[u8]) -> Result<Mesh, ReadError> {
+pub fn read(bytes: &[u8]) -> Result<ForeignMesh, ReadError> {
     let count = bytes.get(80..HEADER).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
-    let promised = count.map(|n| HEADER + TRIANGLE * n as usize);
-    if promised == Some(bytes.len()) {
-        return binary(&bytes[HEADER..]);
+    let promised = count.map(|n| HEADER as u64 + TRIANGLE as u64 * u64::from(n));
+    let size = bytes.len() as u64;
+    if promised == Some(size) {
+        return binary(&bytes[HEADER..], MeshInProgress::default());
     }
-    if bytes.trim_ascii_start().starts_with(b"solid") {
+    if is_text(bytes) {
         return text(bytes);
     }
-    Err(ReadError {
-        format: FORMAT,
-        place: FilePosition::Byte(bytes.len().min(80)),
-        expected: match count {
-            Some(n) => format!("{} bytes of {n} triangles", HEADER + TRIANGLE * n as usize),
-            None => "a header of 84 bytes".into(),
-        },
-        found: format!("{} bytes", bytes.len()),
-    })
+    let mut mesh = MeshInProgress::default();
+    match (count, promised) {
+        (Some(n @ (0 | u32::MAX)), _) if bytes.len() >= HEADER + TRIANGLE => {
+            mesh.remark(format!("the count of triangles is {n}: all that the file holds are read"));
+            let whole = (bytes.len() - HEADER) / TRIANGLE * TRIANGLE;
+            mesh.left_out(bytes.len() - HEADER - whole, "bytes after the last triangle");
+            binary(&bytes[HEADER..HEADER + whole], mesh)
+        }
+        (Some(_), Some(promised)) if promised < size => {
+            mesh.left_out((size - promised) as usize, "bytes after the last triangle");
+            binary(&bytes[HEADER..promised as usize], mesh)
+        }
+        _ => Err(ReadError {
+            format: FORMAT,
+            place: FilePosition::Byte(bytes.len().min(80)),
+            expected: match (count, promised) {
+                (Some(n), Some(promised)) => format!("{promised} bytes of {n} triangles"),
+                _ => "a header of 84 bytes, or text that begins with `solid`".into(),
+            },
+            found: format!("{size} bytes"),
+        }),
+    }
 }
 
-fn binary(triangles: &[u8]) -> Result<Mesh, ReadError> {
-    let mut corners = Vec::with_capacity(3 * (triangles.len() / TRIANGLE));
+/// Whether a file is text: `solid` in any case, and a word of a facet or the end among what follows.
+fn is_text(bytes: &[u8]) -> bool {
+    const LOOKED_AT: usize = 4096;
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let head = bytes[..bytes.len().min(LOOKED_AT)].to_ascii_lowercase();
+    let holds = |word: &[u8]| head.windows(word.len()).any(|w| w == word);
+    head.starts_with(b"solid")
+        && [b"facet".as_slice(), b"vertex", b"endsolid"].iter().any(|word| holds(word))
+}
+
+fn binary(triangles: &[u8], mut mesh: MeshInProgress) -> Result<ForeignMesh, ReadError> {
+    mesh.group("solid");
+    mesh.points.reserve(3 * (triangles.len() / TRIANGLE));
     for (k, triangle) in triangles.chunks_exact(TRIANGLE).enumerate() {
         let number = |b: &[u8]| b.try_into().map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(b)));
         for corner in triangle[12..48].chunks_exact(12) {
@@ -135,50 +162,56 @@ fn binary(triangles: &[u8]) -> Result<Mesh, ReadError> {
                     found: format!("{:?}", p.to_array()),
                 });
             }
-            corners.push(p);
+            mesh.points.push(p);
         }
+        facet(&mut mesh);
     }
-    built(corners, "solid", FilePosition::Byte(HEADER))
+    mesh.built(FORMAT, FilePosition::Byte(HEADER), true)
 }
 
-fn text(bytes: &[u8]) -> Result<Mesh, ReadError> {
-    let text = utf8(bytes, FORMAT)?;
-    let mut corners = Vec::new();
-    let mut name = "solid";
-    let mut last = 1;
-    for (number, text) in (1..).zip(text.lines()) {
+/// The last three points as a triangle.
+fn facet(mesh: &mut MeshInProgress) {
+    let end = mesh.points.len() as u32;
+    mesh.polygon(&[end - 3, end - 2, end - 1]);
+}
+
+fn text(bytes: &[u8]) -> Result<ForeignMesh, ReadError> {
+    let text = lines_text(bytes, FORMAT)?;
+    let mut mesh = MeshInProgress::default();
+    let (mut open, mut last) = (false, 1);
+    for (number, text) in (1..).zip(lines(&text)) {
         last = number;
         let line = TextLine { format: FORMAT, number, text };
         let mut words = line.words();
-        match words.next() {
+        let word = words.next().map(str::to_ascii_lowercase);
+        match word.as_deref() {
             Some("vertex") => {
                 let mut next = || line.real(words.next(), "a coordinate");
-                corners.push(Vec3::of(next()?, next()?, next()?));
+                mesh.points.push(Vec3::of(next()?, next()?, next()?));
+                if mesh.points.len().is_multiple_of(3) {
+                    facet(&mut mesh);
+                }
             }
-            Some("endloop") if corners.len() % 3 != 0 => {
+            Some("endloop" | "endfacet") if !mesh.points.len().is_multiple_of(3) => {
                 return Err(line.error("three vertices in a loop", "another number"));
             }
-            Some("solid") => name = words.next().unwrap_or(name),
-            None | Some("facet" | "outer" | "endloop" | "endfacet" | "endsolid") => {}
+            Some("solid") => {
+                open = true;
+                mesh.group(words.next().unwrap_or("solid"));
+            }
+            Some("endsolid") => open = false,
+            None | Some("facet" | "outer" | "endloop" | "endfacet" | "color") => {}
             Some(other) => return Err(line.error("a line of an STL text", quoted(other))),
         }
     }
-    if corners.len() % 3 != 0 {
+    if !mesh.points.len().is_multiple_of(3) {
         let line = TextLine { format: FORMAT, number: last, text: "" };
         return Err(line.error("three vertices in a loop", "the end of the file"));
     }
-    built(corners, name, FilePosition::Line(last))
-}
-
-fn built(corners: Vec<Vec3>, name: &str, place: FilePosition) -> Result<Mesh, ReadError> {
-    let build = || {
-        let mut builder = TopologyBuilder::new();
-        builder.add_vertices(corners.len())?;
-        let faces = (0..corners.len() as u32 / 3).map(|k| [3 * k, 3 * k + 1, 3 * k + 2, 3 * k + 2]);
-        builder.add_faces(PatchInfo::new(name), faces)?;
-        Mesh::new(builder.build().into(), corners)?.welded()
-    };
-    build().map_err(|e| ReadError::mesh(FORMAT, place, e))
+    if open {
+        mesh.remark(format!("line {last}: `endsolid` is missing, the file may be cut short"));
+    }
+    mesh.built(FORMAT, FilePosition::Line(last), true)
 }
 
 /// The surfaces as one binary STL. Quads are split along their shorter diagonal; triangles without
@@ -237,7 +270,7 @@ mod tests {
         let mesh = two_patches();
         let bytes = write(&mesh, "hull").unwrap();
         assert_eq!(bytes.len(), 84 + 50 * 7);
-        let back = read(&bytes).unwrap();
+        let back = read(&bytes).unwrap().mesh;
         assert_eq!((back.faces().len(), back.positions().len()), (7, 9));
         let area = measure(&mesh.triangulated()).area;
         assert!((measure(&back).area - area).abs() < 1e-6);
@@ -254,7 +287,7 @@ mod tests {
         let names: Vec<String> =
             mesh.patches().iter().map(|p| format!("solid {}", word(&p.info.name))).collect();
         assert_eq!(solids, names);
-        let (back, area) = (read(&bytes).unwrap(), measure(&mesh.triangulated()).area);
+        let (back, area) = (read(&bytes).unwrap().mesh, measure(&mesh.triangulated()).area);
         assert_eq!((back.faces().len(), back.positions().len()), (7, 9));
         assert!((measure(&back).area - area).abs() < 1e-15);
     }
@@ -263,7 +296,7 @@ mod tests {
     fn text_is_read() {
         let text = b"solid wedge\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n\
             vertex 0 1 0\nendloop\nendfacet\nendsolid wedge\n";
-        let mesh = read(text).unwrap();
+        let mesh = read(text).unwrap().mesh;
         assert_eq!((measure(&mesh).area, mesh.patches()[0].info.name.as_str()), (0.5, "wedge"));
         let bad = b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n";
         assert_eq!(read(bad).unwrap_err().place, FilePosition::Line(6));

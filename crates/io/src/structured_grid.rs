@@ -129,10 +129,10 @@ mod tests {
     fn a_body_as_stl_without_the_triangles_of_its_nose() {
         let bytes = stl::write_grids(&[body()], "body", false, &|| true).unwrap();
         assert_eq!(bytes.len(), 84 + 50 * 2223);
-        let back = stl::read(&bytes).unwrap();
+        let back = stl::read(&bytes).unwrap().mesh;
         assert_eq!(back.faces().len(), 2223);
         let flipped =
-            stl::read(&stl::write_grids(&[body()], "body", true, &|| true).unwrap()).unwrap();
+            stl::read(&stl::write_grids(&[body()], "body", true, &|| true).unwrap()).unwrap().mesh;
         let sum = |mesh: &Mesh| -> Vec3 {
             mesh.faces().iter().fold(Vec3::zero(), |sum, face| {
                 let [a, b, c, _] = face.map(|v| mesh.positions()[v as usize]);

@@ -109,13 +109,24 @@ impl<'a> TextLine<'a> {
     }
 }
 
-/// A word of the input between quotes, shortened.
+/// A word of the input between quotes, shortened, with pictures for control characters.
 pub(crate) fn quoted(word: &str) -> String {
-    let mut short: String = word.chars().take(24).collect();
-    if short.len() < word.len() {
+    let picture = |c: char| match c as u32 {
+        code @ 0..0x20 => char::from_u32(0x2400 + code).unwrap_or('\u{fffd}'),
+        0x7f..0xa0 => '\u{fffd}',
+        _ => c,
+    };
+    let mut short: String = word.chars().take(24).map(picture).collect();
+    if word.chars().nth(24).is_some() {
         short.push('…');
     }
     format!("`{short}`")
+}
+
+/// The lines of a text that ends them by LF, CR LF or CR.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = &str> {
+    let text = text.trim_start_matches('\u{feff}');
+    text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'))
 }
 
 /// The bytes as text: UTF-8, else Latin-1, which old files are in and where every byte is a letter.
@@ -124,6 +135,18 @@ pub(crate) fn text_of(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
         Ok(text) => text.into(),
         Err(_) => bytes.iter().map(|&b| char::from(b)).collect::<String>().into(),
     }
+}
+
+/// [`text_of`] of a file of lines; UTF-16, whose letters would be read as none, is refused.
+pub(crate) fn lines_text<'a>(
+    bytes: &'a [u8],
+    format: &'static str,
+) -> Result<std::borrow::Cow<'a, str>, ReadError> {
+    if bytes.starts_with(b"\xfe\xff") || bytes.starts_with(b"\xff\xfe") {
+        let (expected, found) = ("text in UTF-8 or Latin-1".into(), "UTF-16".into());
+        return Err(ReadError { format, place: FilePosition::Byte(0), expected, found });
+    }
+    Ok(text_of(bytes))
 }
 
 /// The bytes as text.

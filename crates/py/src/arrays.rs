@@ -4,8 +4,9 @@ use crate::error::plain_error;
 use moldloft::budget::{Budget, Spent};
 use moldloft::num::Vec3;
 use numpy::ndarray::Dimension;
-use numpy::{PyArray, PyArrayMethods};
+use numpy::{PyArray, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use std::ptr::NonNull;
 
 /// Numbers, a whole number of threes, as vectors.
 fn vectors(numbers: &mut [f64]) -> &mut [Vec3] {
@@ -35,6 +36,41 @@ pub fn room(shape: [usize; 2], bytes: usize) -> PyResult<usize> {
     let tried = Vec::<u8>::new().try_reserve_exact(bytes);
     tried.map_err(|_| spent(Spent::Refused))?;
     Ok(count)
+}
+
+/// A new array of vectors, its last extent 3, which only its owner can reach: work in another thread fills it, and what
+/// is interrupted takes it along.
+pub struct Unshared<D> {
+    array: Py<PyArray<f64, D>>,
+    first: NonNull<f64>,
+    count: usize,
+}
+
+// SAFETY: the numbers belong to the array, which lives as long as this and is not handed out before; a reference to an
+// object of Python may be moved and dropped in any thread.
+#[allow(unsafe_code)]
+unsafe impl<D> Send for Unshared<D> {}
+
+impl<D: Dimension> Unshared<D> {
+    /// Zeros; the system gives memory for them as they are written.
+    pub fn new(py: Python<'_>, shape: impl numpy::ndarray::IntoDimension<Dim = D>) -> Self {
+        let array = PyArray::<f64, D>::zeros(py, shape, false);
+        let (first, count) =
+            (NonNull::new(array.data()).unwrap_or(NonNull::dangling()), array.len());
+        Self { array: array.unbind(), first, count }
+    }
+
+    /// The vectors.
+    pub fn vectors(&mut self) -> &mut [Vec3] {
+        // SAFETY: a new array is contiguous, and nobody else has it.
+        #[allow(unsafe_code)]
+        vectors(unsafe { std::slice::from_raw_parts_mut(self.first.as_ptr(), self.count) })
+    }
+
+    /// The array, filled.
+    pub fn shared(self, py: Python<'_>) -> Bound<'_, PyArray<f64, D>> {
+        self.array.into_bound(py)
+    }
 }
 
 /// A new array of vectors, its last extent 3, filled by `fill` without a copy.

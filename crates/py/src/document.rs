@@ -1,6 +1,6 @@
 //! A model with its text.
 
-use crate::arrays;
+use crate::arrays::{self, Unshared};
 use crate::blocks::PyBlocks;
 use crate::diagnostics::PyDiagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
@@ -20,14 +20,17 @@ use moldloft::lang::{CgnsBlocks, FacePart};
 use moldloft::model::Object;
 use moldloft::num::{Order, Vec3};
 use moldloft::rows::{CurveRef, SurfaceRef, Value};
-use numpy::{PyArray2, PyArray3, PyReadonlyArray1};
+use numpy::ndarray::{Dim, Dimension, IntoDimension};
+use numpy::{PyArray, PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 /// How many scattered points a thread evaluates at a time.
 const CHUNK: usize = 1 << 14;
@@ -129,23 +132,28 @@ impl PyDocument {
     }
 
     /// Many points in another thread, so that Ctrl-C is heard.
-    fn many<const K: usize>(
+    fn many<'py, const K: usize, const N: usize>(
         &self,
-        py: Python<'_>,
-        shape: [usize; 2],
+        py: Python<'py>,
+        shape: [usize; N],
         fill: impl FnOnce([&mut [Vec3]; K], &Budget) + Send + 'static,
-    ) -> PyResult<[Vec<Vec3>; K]> {
-        // NumPy's arrays are copies.
-        let count = arrays::room(shape, 2 * K * size_of::<Vec3>())?;
+    ) -> PyResult<[Bound<'py, PyArray<f64, Dim<[usize; N]>>>; K]>
+    where
+        [usize; N]: IntoDimension<Dim = Dim<[usize; N]>>,
+        Dim<[usize; N]>: Dimension,
+    {
+        // The last extent is that of a point.
+        arrays::room([shape[0], shape[1..N - 1].iter().product()], K * size_of::<Vec3>())?;
         let budget = self.budget.clone();
+        let mut made = [(); K].map(|()| Unshared::new(py, shape));
         let work = move || {
-            let mut made = [(); K].map(|()| vec![Vec3::zero(); count]);
-            fill(made.each_mut().map(|all| all.as_mut_slice()), &budget);
+            fill(made.each_mut().map(Unshared::vectors), &budget);
             // Points that are left out are not answered: the time is over, or Ctrl-C has come.
             budget.poll().map(|()| made)
         };
         let made = interruptible_shared(py, &self.budget, work)?;
-        made.map_err(|spent| plain_error(format!("{spent}\nhelp: {}", spent.help())))
+        let made = made.map_err(|spent| plain_error(format!("{spent}\nhelp: {}", spent.help())))?;
+        Ok(made.map(|array| array.shared(py)))
     }
 
     fn surface_of(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceRef<f64>> {
@@ -428,15 +436,10 @@ impl PyDocument {
             return Ok(arrays::filled(py, [ts.len(), 3], |out| py.detach(|| curve.grid(ts, out))).0);
         }
         let ts = ts.to_vec();
-        let [points] = self.many(py, [ts.len(), 1], move |[out], budget| {
-            for (ts, out) in ts.chunks(CHUNK).zip(out.chunks_mut(CHUNK)) {
-                if budget.is_spent() {
-                    return;
-                }
-                curve.grid(ts, out);
-            }
+        let [points] = self.many(py, [ts.len(), 3], move |[out], budget| {
+            in_runs(ts.len(), CHUNK, budget, |run| curve.grid(&ts[run.clone()], &mut out[run]));
         })?;
-        Ok(arrays::filled(py, [points.len(), 3], |out| out.copy_from_slice(&points)).0)
+        Ok(points)
     }
 
     fn surface<'py>(
@@ -457,7 +460,7 @@ impl PyDocument {
             return Ok(arrays::filled(py, [us.len(), 3], fill).0);
         }
         let (us, vs) = (us.to_vec(), vs.to_vec());
-        let [points] = self.many(py, [us.len(), 1], move |[out], budget| {
+        let [points] = self.many(py, [us.len(), 3], move |[out], budget| {
             let chunks = out.par_chunks_mut(CHUNK);
             let parameters = us.par_chunks(CHUNK).zip(vs.par_chunks(CHUNK));
             // What is left after a Ctrl-C is not looked at.
@@ -466,7 +469,7 @@ impl PyDocument {
                 budget.poll()
             });
         })?;
-        Ok(arrays::filled(py, [points.len(), 3], |out| out.copy_from_slice(&points)).0)
+        Ok(points)
     }
 
     fn grid<'py>(
@@ -482,15 +485,13 @@ impl PyDocument {
             let fill = |out: &mut [Vec3]| py.detach(|| surface.grid(&us, &vs, out, None));
             return Ok(arrays::filled(py, [nu, nv, 3], fill).0);
         }
-        let [points] = self.many(py, [nu, nv], move |[out], budget| {
-            for (us, out) in rows(&us, nv).zip(out.chunks_mut(nv * rows_at_once(nv))) {
-                if budget.is_spent() {
-                    return;
-                }
-                surface.grid(us, &vs, out, None);
-            }
+        let [points] = self.many(py, [nu, nv, 3], move |[out], budget| {
+            in_runs(nu, (CHUNK / nv).max(1), budget, |run| {
+                let out = &mut out[run.start * nv..run.end * nv];
+                surface.grid(&us[run], &vs, out, None);
+            });
         })?;
-        Ok(arrays::filled(py, [nu, nv, 3], |out| out.copy_from_slice(&points)).0)
+        Ok(points)
     }
 
     fn grid_with_normals<'py>(
@@ -503,19 +504,15 @@ impl PyDocument {
         let [us, vs] = parameters(nu, nv)?;
         let surface = self.surface_of(py, name)?;
         if nu * nv > LARGE {
-            let [points, normals] = self.many(py, [nu, nv], move |[points, normals], budget| {
-                let step = nv * rows_at_once(nv);
-                let parts = points.chunks_mut(step).zip(normals.chunks_mut(step));
-                for (us, (points, normals)) in rows(&us, nv).zip(parts) {
-                    if budget.is_spent() {
-                        return;
-                    }
-                    surface.grid(us, &vs, points, Some(normals));
-                }
-            })?;
-            let copied =
-                |all: &[Vec3]| arrays::filled(py, [nu, nv, 3], |out| out.copy_from_slice(all)).0;
-            return Ok((copied(&points), copied(&normals)));
+            let [points, normals] =
+                self.many(py, [nu, nv, 3], move |[points, normals], budget| {
+                    in_runs(nu, (CHUNK / nv).max(1), budget, |run| {
+                        let place = run.start * nv..run.end * nv;
+                        let normals = Some(&mut normals[place.clone()]);
+                        surface.grid(&us[run], &vs, &mut points[place], normals);
+                    });
+                })?;
+            return Ok((points, normals));
         }
         let (points, normals) = arrays::filled(py, [nu, nv, 3], |points| {
             let fill = |normals: &mut [Vec3]| {
@@ -849,17 +846,25 @@ pub(crate) fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr 
     plain_error(format!("{takes}, but `{name}` is {}", found.class().with_article()))
 }
 
+/// The shortest time between two looks at the budget that is worth beginning anew.
+const RUN: Duration = Duration::from_millis(20);
+
+/// Work on items in runs, the budget looked at in between. The first run is of so many; they grow while they are short,
+/// for what a run prepares for itself is prepared anew in the next.
+fn in_runs(count: usize, first: usize, budget: &Budget, mut work: impl FnMut(Range<usize>)) {
+    let (mut at, mut step) = (0, first);
+    while at < count && !budget.is_spent() {
+        let end = count.min(at + step);
+        let began = Instant::now();
+        work(at..end);
+        if began.elapsed() < RUN {
+            step *= 2;
+        }
+        at = end;
+    }
+}
+
 /// Even parameters along both sides of a grid.
-/// How many rows of a grid are made between two looks at the budget.
-fn rows_at_once(nv: usize) -> usize {
-    (CHUNK / nv).max(1)
-}
-
-/// The parameters of so many rows at a time.
-fn rows(us: &[f64], nv: usize) -> impl Iterator<Item = &[f64]> {
-    us.chunks(rows_at_once(nv))
-}
-
 fn parameters(nu: usize, nv: usize) -> PyResult<[Vec<f64>; 2]> {
     if nu < 2 || nv < 2 {
         let message = format!("a grid has at least 2 points along each side, not {nu} x {nv}");

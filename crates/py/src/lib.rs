@@ -22,6 +22,7 @@ mod implicit;
 mod language_server;
 mod limits;
 mod mesh;
+mod mesh_files;
 mod nurbs;
 mod reference;
 mod search;
@@ -72,6 +73,8 @@ mod _core {
     use crate::limits::{held_memory, limits, set_limits};
     #[pymodule_export]
     use crate::mesh::PyMesh;
+    #[pymodule_export]
+    use crate::mesh_files::read_mesh;
     #[pymodule_export]
     use crate::nurbs::{brep, length_unit, nurbs};
     #[pymodule_export]

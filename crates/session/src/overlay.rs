@@ -28,7 +28,7 @@ pub struct Overlays {
 }
 
 impl Overlays {
-    /// Takes a file: an STL, OBJ or GDF mesh, or a table of points by any other name.
+    /// Takes a file: an STL, OBJ, PLY, OFF or GDF mesh, or a table of points by any other name.
     ///
     /// # Errors
     /// What is wrong with it.
@@ -37,8 +37,10 @@ impl Overlays {
         let said = |e: moldloft_io::ReadError| format!("{name}: {e}");
         let ending = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         let overlay = match &*ending {
-            "stl" => of_mesh(name, &moldloft_io::stl::read(&bytes).map_err(said)?),
-            "obj" => of_mesh(name, &moldloft_io::obj::read(&bytes).map_err(said)?),
+            "stl" => of_mesh(name, &moldloft_io::stl::read(&bytes).map_err(said)?.mesh),
+            "obj" => of_mesh(name, &moldloft_io::obj::read(&bytes).map_err(said)?.mesh),
+            "ply" => of_mesh(name, &moldloft_io::ply::read(&bytes).map_err(said)?.mesh),
+            "off" => of_mesh(name, &moldloft_io::off::read(&bytes).map_err(said)?.mesh),
             "gdf" => of_mesh(name, &moldloft_io::gdf::read(&bytes).map_err(said)?.1),
             _ => of_points(name, &moldloft_io::points::read(&bytes).map_err(said)?),
         };

@@ -59,6 +59,7 @@ class IgesText:
             if n not in lost
         }
 
+        _check_numbers(path, listed, fields)
         faces = [n for n, (kind, _, _) in listed.items() if kind == 144]
         hurt = [n for n in faces if not _there(n, listed, fields)]
         if not whole:
@@ -129,6 +130,30 @@ def _directory(lines: list[str]) -> dict[int, tuple[int, int, int]]:
         count = max(_whole_number(other[24:32]), 1)
         found[k + 1] = _whole_number(one[:8]), _whole_number(one[8:16]), count
     return found
+
+
+_EXPONENT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[EeDd]\+?\d{2,}")
+"""Numbers that may be too large."""
+_LARGEST = 1e50
+"""As of coordinates in models."""
+
+
+def _check_numbers(
+    path: object, listed: dict[int, tuple[int, int, int]], fields: dict[int, list[str]]
+) -> None:
+    """Refuses numbers beyond those of models."""
+    for number, own in fields.items():
+        for word in own:
+            if _EXPONENT.fullmatch(word) and abs(float(_e(word))) > _LARGEST:
+                raise FileError(
+                    f"cannot read `{path}`: D{number} (entity {listed[number][0]}): expected "
+                    f"numbers of at most {_LARGEST:g}, found {word}"
+                )
+
+
+def _e(number: str) -> str:
+    """A number with the exponent of Fortran's double precision as Python reads it."""
+    return number.upper().replace("D", "E")
 
 
 def _fields(lines: list[str]) -> list[str]:

@@ -42,7 +42,8 @@ def add(parser: argparse.ArgumentParser) -> None:
     from moldloft.files import FORMATS
 
     add_model(parser, several=True)
-    parser.add_argument(
+    files = parser.add_argument_group("Files")
+    files.add_argument(
         "--to",
         metavar="FORMAT",
         nargs="+",
@@ -51,49 +52,62 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="files to write: " + ", ".join(FORMATS) + "; `moldloft formats` describes them",
     )
-    parser.add_argument(
+    files.add_argument(
         "-o",
         "--output",
         metavar="DIR",
         default=".",
         help="folder for the files; default: the current one; - is standard output, for one file",
     )
-    add_name(parser)
-    parser.add_argument(
+    add_name(files)
+    files.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="write what can be written: the other formats, and the model without the objects that "
+        "could not be made, which are named; the status is still 1",
+    )
+    add_force(files)
+    figures = parser.add_argument_group("Figures")
+    figures.add_argument(
         "--level", metavar="Z", type=float, default=0.0, help="height of the water, by default 0"
     )
-    parser.add_argument(
+    figures.add_argument(
         "--density",
         metavar="WATER",
         type=water,
         help="of the water: salt, fresh, or mass per volume in the model's units",
     )
-    parser.add_argument(
+    figures.add_argument(
         "-v", "--verbose", action="store_true", help="all measured figures, not the main ones only"
     )
-    parser.add_argument(
+    figures.add_argument(
         "--sides",
         choices=["both", "one"],
         default="both",
         help="count a mirrored model with its image (the default), or one side alone",
     )
-    parser.add_argument(
+    figures.add_argument(
+        "--quality", action="store_true", help="the worst panels of each patch, with their indices"
+    )
+    figures.add_argument("--json", action="store_true", help="one object instead of the table")
+    panels = parser.add_argument_group("Panels in files")
+    panels.add_argument(
         "--lids", action="store_true", help="include lids in the files of panel codes"
     )
-    parser.add_argument(
+    panels.add_argument(
         "--immersed",
         action="store_true",
         help="cut at z = 0 and write only the part below, in the files of panel codes",
     )
-    parser.add_argument(
+    panels.add_argument(
         "--whole",
         action="store_true",
         help="both sides of a symmetric model, joined, in files of plain panels (STL, OBJ, ...)",
     )
-    parser.add_argument(
+    panels.add_argument(
         "--triangles", action="store_true", help="triangles only, in files of plain panels"
     )
-    parser.add_argument(
+    panels.add_argument(
         "--tag",
         metavar="TAG",
         nargs="+",
@@ -101,17 +115,6 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="only patches with one of these tags, in the table and in the files",
     )
-    parser.add_argument(
-        "--quality", action="store_true", help="the worst panels of each patch, with their indices"
-    )
-    parser.add_argument("--json", action="store_true", help="one object instead of the table")
-    parser.add_argument(
-        "--keep-going",
-        action="store_true",
-        help="write what can be written: the other formats, and the model without the objects that "
-        "could not be made, which are named; the status is still 1",
-    )
-    add_force(parser)
     add_quiet(parser)
     parser.add_argument(
         "--watch", action="store_true", help="rebuild on save, with a picture; Ctrl-C ends"

@@ -107,7 +107,7 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_force(parser: argparse.ArgumentParser) -> None:
+def add_force(parser: argparse._ActionsContainer) -> None:
     """The option that overwrites what is not known to be ours."""
     parser.add_argument(
         "--force",
@@ -179,7 +179,7 @@ def each_model(
     return worst
 
 
-def add_name(parser: argparse.ArgumentParser) -> None:
+def add_name(parser: argparse._ActionsContainer) -> None:
     """The option that names the files of a model."""
     parser.add_argument(
         "--name", metavar="STEM", help="names of files without ending; default: the model's"

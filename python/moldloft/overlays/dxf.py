@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.budget import limits
 from moldloft.cad import identifier, needed
 from moldloft.errors import FileError
 from moldloft.nurbs import Nurbs
@@ -60,7 +61,9 @@ def parse(name: str, data: bytes) -> tuple[Overlay, float | None]:
     points: list[Any] = []
     faces: list[list[int]] = []
     left: Counter[str] = Counter()
-    for entity in _entities(document.modelspace(), left):
+    space = document.modelspace()
+    _check_count(document, space)
+    for entity in _entities(space, left):
         kind = entity.dxftype()
         if kind == "POINT":
             points.append(tuple(entity.dxf.location))
@@ -97,16 +100,52 @@ def parse(name: str, data: bytes) -> tuple[Overlay, float | None]:
     return found, unit
 
 
+_DEEPEST = 16
+"""Blocks within blocks."""
+
+
+def _check_count(document: Any, space: Any) -> None:
+    """Refuses a drawing whose blocks, once inserted, hold more entities than a model may hold."""
+    counts: dict[str, int] = {}
+
+    def count(entities: Any, depth: int) -> int:
+        found = 0
+        for entity in entities:
+            if entity.dxftype() != "INSERT":
+                found += 1
+                continue
+            name = str(entity.dxf.name)
+            if name not in counts:
+                if depth == _DEEPEST:
+                    continue
+                # Until its own entities are counted.
+                counts[name] = -1
+                block = document.blocks.get(name)
+                counts[name] = count(block, depth + 1) if block is not None else 0
+            if counts[name] < 0:
+                raise FileError(f"block `{name}` is inserted in itself")
+            found += counts[name] * max(1, int(entity.mcount))
+        return found
+
+    found, most = count(space, 0), limits().objects
+    if found > most:
+        raise FileError(
+            f"it holds {found} entities once its blocks are inserted, {most} are allowed\n"
+            "help: allow more: `--limit objects=N`, `moldloft.limits(objects=...)`"
+        )
+
+
 def _entities(space: Any, left: Counter[str], depth: int = 0) -> Iterator[Any]:
     """The entities, those of inserted blocks in their places, polygon meshes as faces."""
-    deepest = 16
     for entity in space:
         kind = entity.dxftype()
         if kind == "INSERT":
-            if depth == deepest:
+            if depth == _DEEPEST:
                 left["INSERT (blocks within blocks)"] += 1
                 continue
-            yield from _entities(entity.virtual_entities(), left, depth + 1)
+            # Blocks in rows and columns, one after the other.
+            for single in entity.multi_insert() if entity.mcount > 1 else (entity,):
+                yield from _entities(single.virtual_entities(), left, depth + 1)
         elif kind == "POLYLINE" and (entity.is_poly_face_mesh or entity.is_polygon_mesh):
             yield from entity.virtual_entities()
         elif kind == "MESH":

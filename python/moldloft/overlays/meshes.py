@@ -1,4 +1,4 @@
-"""Meshes by meshio (MIT), imported when it is needed, and panel files of flow solvers."""
+"""Meshes: STL, OBJ, PLY and OFF by our own readers, others by meshio (MIT); panel files."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft import _core
 from moldloft.errors import Error, FileError
 from moldloft.overlays.overlay import Overlay
 from moldloft.overlays.panel_files import read_panels
@@ -18,17 +19,33 @@ from moldloft.storage import read_bytes
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["mesh", "panels"]
+__all__ = ["mesh", "panels", "surface"]
 
 _CORNERS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
 """Corners of surface elements by meshio's names: nodes on edges are left out."""
 
-_MARKS = {"ply": (b"end_header",), "msh": (b"$EndNodes", b"$EndElements")}
+_MARKS = {"msh": (b"$EndNodes", b"$EndElements")}
 """What a whole file has: meshio waits for some of it without end."""
 
 
+def surface(name: str, ending: str, data: bytes) -> Overlay:
+    """Points and faces of an STL, OBJ, PLY or OFF file.
+
+    Parameters
+    ----------
+    name
+        The name of the file, for the overlay.
+    ending
+        Its ending.
+    data
+        Its bytes.
+    """
+    points, faces, groups, remarks = _core.read_mesh(data, ending)
+    return Overlay(name, points, faces, tuple(groups), remarks=tuple(remarks))
+
+
 def mesh(path: Path, ending: str) -> Overlay:
-    """Points and surface elements of a mesh file.
+    """Points and surface elements of a mesh file, by meshio.
 
     Parameters
     ----------

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from moldloft import _core
 from moldloft.arguments import explain
+from moldloft.budget import within_limits
 from moldloft.errors import Error, FileError, FormatError
 from moldloft.overlays.overlay import Overlay
 from moldloft.storage import read_bytes
@@ -22,10 +23,15 @@ __all__ = ["ENDINGS", "METRES", "program", "read"]
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Units of length in metres."""
 
-_MESHES = {
+_SURFACES = {
     "stl": "triangles, text or binary",
     "obj": "vertices and faces",
     "ply": "points and faces, text or binary",
+    "off": "vertices and faces",
+}
+"""By our own readers."""
+
+_MESHES = {
     "msh": "nodes and surface elements of Gmsh",
     "vtk": "points and surface elements of VTK's old format",
     "vtu": "points and surface elements of VTK's XML",
@@ -52,7 +58,7 @@ _DRAWINGS = {
     "svg": "paths and basic shapes",
 }
 
-ENDINGS = {**_MESHES, **_PANELS, **_POINTS, **_DRAWINGS}
+ENDINGS = {**_SURFACES, **_MESHES, **_PANELS, **_POINTS, **_DRAWINGS}
 """The endings of the files that are read, and what of them."""
 
 
@@ -85,18 +91,10 @@ def read(path: str | os.PathLike[str], *, units: str = "", file_units: str = "")
         where.
     """
     path = Path(path)
-    ending = path.suffix.lower().lstrip(".")
-    if ending not in ENDINGS:
-        known = ", ".join(ENDINGS)
-        raise Error(f"`{path.name}` is not an overlay by its ending; expected one of: {known}")
     for unit in (units, file_units):
         if unit and unit not in METRES:
             raise Error(f"unknown unit `{unit}`; expected one of: {', '.join(METRES)}")
-    data = read_bytes(path)
-    try:
-        found, stated = _read(path, ending, data)
-    except (FileError, FormatError) as error:
-        raise FileError(f"cannot read `{path}`: {error}") from error
+    found, stated = _located(path)
     if not len(found.points) and not found.curves:
         raise FileError(f"cannot read `{path}`: it holds no points, faces or curves")
     if not units:
@@ -127,9 +125,8 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
         When the file cannot be read or holds no curve.
     """
     path = Path(path)
-    found = read(path)
+    found, metres = _located(path)
     remarks = list(found.remarks)
-    _, metres = _read(path, path.suffix.lower().lstrip("."), read_bytes(path))
     if metres is None:
         remarks.append(f"the file names no unit of length; its numbers are taken as {units}")
     else:
@@ -137,6 +134,20 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
     if not found.curves:
         raise FileError(f"`{path}` holds no curve; points and faces are overlays only")
     return f'# {path.name}\nModel info(units = "{units}");\n{found.to_sdl()}', remarks
+
+
+def _located(path: Path) -> tuple[Overlay, float | None]:
+    """As :func:`_read`, within the limits of the process; errors name the file."""
+    ending = path.suffix.lower().lstrip(".")
+    if ending not in ENDINGS:
+        known = ", ".join(ENDINGS)
+        raise Error(f"`{path.name}` is not an overlay by its ending; expected one of: {known}")
+    data = read_bytes(path)
+    try:
+        with within_limits():
+            return _read(path, ending, data)
+    except (FileError, FormatError) as error:
+        raise FileError(f"cannot read `{path}`: {error}") from error
 
 
 def _read(path: Path, ending: str, data: bytes) -> tuple[Overlay, float | None]:
@@ -151,8 +162,10 @@ def _read(path: Path, ending: str, data: bytes) -> tuple[Overlay, float | None]:
         return parse_svg(path.name, data)
     if ending in _POINTS:
         return _points(path.name, ending, data), None
-    from moldloft.overlays.meshes import mesh, panels
+    from moldloft.overlays.meshes import mesh, panels, surface
 
+    if ending in _SURFACES:
+        return surface(path.name, ending, data), None
     return (mesh if ending in _MESHES else panels)(path, ending), None
 
 

@@ -91,7 +91,10 @@ def parse(name: str, data: bytes) -> tuple[Overlay, float | None]:
         for child in element:
             walk(child, place)
 
-    walk(root, up)
+    try:
+        walk(root, up)
+    except RecursionError:
+        raise FileError("its elements are nested too deep") from None
     remarks = tuple(f"{count} elements {tag} are left out" for tag, count in left.items())
     return Overlay(name, curves=curves, remarks=remarks), _unit(root)
 

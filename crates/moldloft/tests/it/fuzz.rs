@@ -108,7 +108,15 @@ fn readers_seeds() -> Vec<Vec<u8>> {
     let mut binary = vec![0u8; 80];
     binary.extend(1u32.to_le_bytes());
     binary.extend([0u8; 50]);
-    let plain: [(u8, &[u8]); 9] = [
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let mut binary_ply =
+        ply.split("0 0 0").next().unwrap().replace("ascii", "binary_little_endian").into_bytes();
+    binary_ply
+        .extend([0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_le_bytes).concat());
+    binary_ply.push(3);
+    binary_ply.extend([0u32, 1, 2].map(u32::to_le_bytes).concat());
+    let plain: [(u8, &[u8]); 12] = [
         (0, b"hull\n1.0 9.81\n0 1\n1\n0 0 0 1 0 0 1 0 -1 0 0 -1\n"),
         (1, b"o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2//1 4//1 3//1\nf -1 -2 -3 -4\n"),
         (2, triangle.as_bytes()),
@@ -116,8 +124,11 @@ fn readers_seeds() -> Vec<Vec<u8>> {
         (3, b"x,y,z\n0,0,0\n1,0.5,2\n"),
         (3, b"# stations\n0 0 0\n\n1.5e0 2 -3\n"),
         (4, b"NACA 0012\n1.0 0.0013\n0.5 0.0529\n0.0 0.0\n0.5 -0.0529\n1.0 -0.0013\n"),
-        (5, b"1\n2 2 1\n0 1 0 1\n0 0 1 1\n0 0 0 0\n"),
-        (5, b"2 2\n0 1 0 1 0 0 1 1 0 0 0 0\n"),
+        (6, ply.as_bytes()),
+        (6, &binary_ply),
+        (7, b"OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n4 0 1 3 2 0.5 0.5 0.5\n"),
+        (8, b"1\n2 2 1\n0 1 0 1\n0 0 1 1\n0 0 0 0\n"),
+        (8, b"2 2\n0 1 0 1 0 0 1 1 0 0 0 0\n"),
     ];
     plain.iter().map(|(which, bytes)| [&[*which], *bytes].concat()).collect()
 }
@@ -269,8 +280,10 @@ fn meshes_that_are_read_are_whole() {
         let Some((_, rest)) = bytes.split_first() else { continue };
         let read = [
             moldloft::io::gdf::read(rest).ok().map(|(_, mesh)| mesh),
-            moldloft::io::obj::read(rest).ok(),
-            moldloft::io::stl::read(rest).ok(),
+            moldloft::io::obj::read(rest).ok().map(|found| found.mesh),
+            moldloft::io::stl::read(rest).ok().map(|found| found.mesh),
+            moldloft::io::ply::read(rest).ok().map(|found| found.mesh),
+            moldloft::io::off::read(rest).ok().map(|found| found.mesh),
         ];
         assert!(read.iter().flatten().all(whole), "{:?}", String::from_utf8_lossy(rest));
     }
