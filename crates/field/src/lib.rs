@@ -52,6 +52,7 @@ pub use query::nearest::{CertifiedNearest, SetContour, nearest};
 pub use query::ray::{Caster, Hit, Ray, roots};
 pub use query::ray_trace::{Light, RayTrace, ray_trace};
 pub use set::{Leaf, Membership, Set, SetAttributes};
+pub use set::body::SurfacedSet;
 pub use shapes::faces::{Round, RoundProfile, Sides, faced};
 pub use shapes::{Beside, Inside, Near, NotClosed, Tube};
 pub use text::{TextError, read_fidget, read_libfive};
