@@ -441,7 +441,7 @@ impl PySet {
             moldloft::field::mass(set, &over, &measure).map(Some)
         })?;
         let doubt = found.as_ref().and_then(|mass| mass.doubt(None));
-        let Some(BracketedMass { bracket, best, uncertain }) = found else {
+        let Some(BracketedMass { bracket, best, uncertain, estimate }) = found else {
             let dict = PyDict::new(py);
             dict.set_item("doubt", None::<String>)?;
             dict.set_item("volume", 0.0)?;
@@ -451,6 +451,7 @@ impl PySet {
                 dict.set_item(name, None::<f64>)?;
             }
             let all = (f64::NEG_INFINITY, f64::INFINITY);
+            dict.set_item("estimate", 0.0)?;
             dict.set_item("centroid_bracket", [all; 3])?;
             dict.set_item("inertia_bracket", [[all; 3]; 3])?;
             return Ok(dict);
@@ -463,6 +464,7 @@ impl PySet {
         dict.set_item("doubt", doubt)?;
         dict.set_item("volume_bracket", (v.low.max(0.0), v.high))?;
         let empty = best.volume() <= 0.0;
+        dict.set_item("estimate", estimate)?;
         dict.set_item("centroid", (!empty).then(|| best.centroid().to_array()))?;
         let centroid = bracket.centroid().map(|i| (i.low, i.high));
         dict.set_item("centroid_bracket", centroid)?;
