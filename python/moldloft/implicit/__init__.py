@@ -57,6 +57,7 @@ from moldloft.implicit.fields import (
     twist,
 )
 from moldloft.implicit.hulls import convex_hull, intersection, minkowski_sum, union
+from moldloft.implicit.smooth import smooth_difference, smooth_intersection, smooth_union
 from moldloft.implicit.primitives import cuboid, everything, nothing, point, segment, tetrahedron
 from moldloft.implicit.sets import Set, load, loads
 
@@ -108,6 +109,9 @@ __all__ = [
     "read_libfive",
     "rounded",
     "s_sqrt",
+    "smooth_difference",
+    "smooth_intersection",
+    "smooth_union",
     "segment",
     "setback",
     "sign",

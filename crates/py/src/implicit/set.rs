@@ -165,6 +165,10 @@ impl PySet {
         self.inner.offset(distance).map(|s| self.from(s)).map_err(plain_error)
     }
 
+    fn as_field(&self) -> PyField {
+        PyField { inner: self.inner.as_primitive(), slots: self.slots.clone() }
+    }
+
     fn shell(&self, thickness: f64) -> PyResult<Self> {
         self.inner.shell(thickness).map(|s| self.from(s)).map_err(plain_error)
     }
@@ -447,11 +451,11 @@ impl PySet {
             dict.set_item("volume", 0.0)?;
             dict.set_item("volume_bracket", (0.0, 0.0))?;
             dict.set_item("uncertain", 0.0)?;
+            dict.set_item("estimate", 0.0)?;
             for name in ["centroid", "inertia"] {
                 dict.set_item(name, None::<f64>)?;
             }
             let all = (f64::NEG_INFINITY, f64::INFINITY);
-            dict.set_item("estimate", 0.0)?;
             dict.set_item("centroid_bracket", [all; 3])?;
             dict.set_item("inertia_bracket", [[all; 3]; 3])?;
             return Ok(dict);
@@ -460,11 +464,11 @@ impl PySet {
         dict.set_item("volume", best.volume())?;
         let v = bracket.volume();
         dict.set_item("uncertain", uncertain)?;
+        dict.set_item("estimate", estimate)?;
         let doubt = doubt.map(|d| format!("note[{}]: {}", d.id, d.message));
         dict.set_item("doubt", doubt)?;
         dict.set_item("volume_bracket", (v.low.max(0.0), v.high))?;
         let empty = best.volume() <= 0.0;
-        dict.set_item("estimate", estimate)?;
         dict.set_item("centroid", (!empty).then(|| best.centroid().to_array()))?;
         let centroid = bracket.centroid().map(|i| (i.low, i.high));
         dict.set_item("centroid_bracket", centroid)?;
