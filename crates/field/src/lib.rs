@@ -34,6 +34,7 @@ pub use expr::oracle::{Affine, Constant, Oracle};
 pub use expr::primitive::{Binary, Primitive};
 pub use expr::quadric::{QuadricAxes, QuadricClass};
 pub use expr::remap::twist;
+pub use expr::smooth::{SmoothShape, smooth_minimum};
 pub use facet::memo::FacetMemo;
 pub use facet::sheets::{
     BehindSheet, Mixed, Sheet, TriplePoint, behind_sheets, facet_mixed, solid_part,
@@ -51,6 +52,7 @@ pub use query::distance::{SetDistance, distance};
 pub use query::nearest::{CertifiedNearest, SetContour, nearest};
 pub use query::ray::{Caster, Hit, Ray, roots};
 pub use query::ray_trace::{Light, RayTrace, ray_trace};
+pub use set::body::SurfacedSet;
 pub use set::{Leaf, Membership, Set, SetAttributes};
 pub use shapes::faces::{Round, RoundProfile, Sides, faced};
 pub use shapes::{Beside, Inside, Near, NotClosed, Tube};

@@ -20,8 +20,6 @@ True
 from moldloft.implicit.answers import Attributes, Distance, Hit, Lamp, Leaf, Mass, Nearest, Sun
 from moldloft.implicit.blends import (
     Blend,
-    check_rail,
-    check_rails,
     fillet,
     liming,
     rounded,
@@ -59,6 +57,7 @@ from moldloft.implicit.fields import (
 from moldloft.implicit.hulls import convex_hull, intersection, minkowski_sum, union
 from moldloft.implicit.primitives import cuboid, everything, nothing, point, segment, tetrahedron
 from moldloft.implicit.sets import Set, load, loads
+from moldloft.implicit.smooth import smooth_difference, smooth_intersection, smooth_union
 
 __all__ = [
     "Attributes",
@@ -81,8 +80,6 @@ __all__ = [
     "Unresolved",
     "atan2",
     "axes",
-    "check_rail",
-    "check_rails",
     "cone",
     "convex_hull",
     "cos",
@@ -112,6 +109,9 @@ __all__ = [
     "setback",
     "sign",
     "sin",
+    "smooth_difference",
+    "smooth_intersection",
+    "smooth_union",
     "sphere",
     "sqrt",
     "tan",

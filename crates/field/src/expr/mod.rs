@@ -5,6 +5,7 @@
 
 pub(crate) mod algebra;
 pub(crate) mod blend;
+pub(crate) mod branches;
 pub(crate) mod form;
 pub(crate) mod interval;
 pub(crate) mod oracle;
@@ -12,5 +13,6 @@ pub(crate) mod primitive;
 pub(crate) mod quadric;
 pub(crate) mod remap;
 pub(crate) mod second_order;
+pub(crate) mod smooth;
 pub(crate) mod tape;
 mod transform;

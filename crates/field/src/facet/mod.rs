@@ -21,6 +21,7 @@ mod lost;
 pub(crate) mod memo;
 mod padded_bounds;
 mod place_vertices;
+mod planes;
 mod rebuild;
 mod refine;
 mod remove_intersections;
@@ -177,6 +178,9 @@ pub(crate) fn facet_within(
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
     let (over, sized) = (solid_box(*over)?, solid_box(*sized)?);
+    if let Some(facets) = planes::facets(set, &over, options)? {
+        return Ok(facets);
+    }
     let size = (0..3).map(|k| sized.high[k] - sized.low[k]).fold(0.0, f64::max);
     // A surface across the whole box passes through about this many cells.
     let crossed = |step: f64| (size / step).powi(2);
@@ -205,7 +209,8 @@ pub(crate) fn facet_within(
             if options.sharp {
                 return Ok(facets);
             }
-            Ok(whole(set, &over, facets, USUAL_CELLS.min(options.limit), options)?.facets)
+            let found = whole(set, &over, facets, USUAL_CELLS.min(options.limit), options)?;
+            found.checked(size)
         }
         Resolution::Depth(depth) => {
             let step = step_of(depth);
@@ -313,6 +318,27 @@ impl CompleteFacets {
 fn whole(
     set: &Set,
     over: &Box3,
+/// Facets that miss more than this part of their body are none of it.
+const REFUSED: f64 = 1e-3;
+
+impl CompleteFacets {
+    /// The facets, unless they miss so much that they are another body.
+    fn checked(self, size: f64) -> Result<Facets, FieldError> {
+        let missed = || self.facets.unresolved.iter().filter(|u| u.missed);
+        let volume: f64 = missed().map(|u| u.volume).sum();
+        let body = moldloft_mesh::measure(&self.facets.mesh).volume.abs();
+        let worst = missed().max_by(|a, b| a.volume.total_cmp(&b.volume));
+        match worst {
+            Some(u) if !self.all && volume > REFUSED * body => {
+                let step = self.facets.step;
+                let depth = halvings(size, thickness(u).min(0.5 * step)) + 1;
+                Err(FieldError::Thin { place: u.place, step, depth })
+            }
+            _ => Ok(self.facets),
+        }
+    }
+}
+
     facets: Facets,
     most: f64,
     options: &FacetOptions,
@@ -547,6 +573,11 @@ impl Facets {
     pub fn form(&self, patch: usize) -> &Form<f64> {
         self.leaves[self.patch_leaves[patch]].primitive.form()
     }
+    /// The unresolved places, neighbours joined: at most 100, the largest first.
+    pub fn open_places(&self) -> Vec<Unresolved> {
+        unresolved::gathered(&self.unresolved, self.step)
+    }
+
 
     /// Distances of the triangles' centres from their surfaces, |f| / |f'|, in the order of faces.
     pub fn centre_distances(&self) -> Vec<f64> {

@@ -165,6 +165,10 @@ impl PySet {
         self.inner.offset(distance).map(|s| self.from(s)).map_err(plain_error)
     }
 
+    fn as_field(&self) -> PyField {
+        PyField { inner: self.inner.as_primitive(), slots: self.slots.clone() }
+    }
+
     fn shell(&self, thickness: f64) -> PyResult<Self> {
         self.inner.shell(thickness).map(|s| self.from(s)).map_err(plain_error)
     }
@@ -344,8 +348,8 @@ impl PySet {
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let points = points(&at)?;
         let known: Vec<_> = known.iter().map(|f| f.inner.clone()).collect();
-        let (inner, many) = (self.inner.clone(), self.slots.is_empty());
-        let one = move |p: &Vec3| match inner.member_knowing(*p, tolerance, &known) {
+        let (body, many) = (self.inner.as_body(), self.slots.is_empty());
+        let one = move |p: &Vec3| match body.member(*p, tolerance, &known) {
             Membership::Solid => -1i8,
             Membership::Surface => 0,
             Membership::Air => 1,
@@ -441,12 +445,13 @@ impl PySet {
             moldloft::field::mass(set, &over, &measure).map(Some)
         })?;
         let doubt = found.as_ref().and_then(|mass| mass.doubt(None));
-        let Some(BracketedMass { bracket, best, uncertain }) = found else {
+        let Some(BracketedMass { bracket, best, uncertain, estimate }) = found else {
             let dict = PyDict::new(py);
             dict.set_item("doubt", None::<String>)?;
             dict.set_item("volume", 0.0)?;
             dict.set_item("volume_bracket", (0.0, 0.0))?;
             dict.set_item("uncertain", 0.0)?;
+            dict.set_item("estimate", 0.0)?;
             for name in ["centroid", "inertia"] {
                 dict.set_item(name, None::<f64>)?;
             }
@@ -459,6 +464,7 @@ impl PySet {
         dict.set_item("volume", best.volume())?;
         let v = bracket.volume();
         dict.set_item("uncertain", uncertain)?;
+        dict.set_item("estimate", estimate)?;
         let doubt = doubt.map(|d| format!("note[{}]: {}", d.id, d.message));
         dict.set_item("doubt", doubt)?;
         dict.set_item("volume_bracket", (v.low.max(0.0), v.high))?;
