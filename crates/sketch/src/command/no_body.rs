@@ -120,6 +120,12 @@ fn combine_error(name: &str, e: &CombineError) -> CommandError {
             )
             .about(ReplySubject::of("nearly-meeting-surfaces").place(p))
         }
+        CombineError::Unbalanced(p) => CommandError::new(
+            701,
+            format!("{name}: its faces do not close to rounding near {}", place_text(*p)),
+            "change a dimension there a little; CHECK the bodies that it is made of",
+        )
+        .about(ReplySubject::of("open-body").place(*p)),
         CombineError::TooLarge => CommandError::new(
             200,
             format!("{name}: there are too many pieces"),

@@ -152,9 +152,10 @@ impl NoBody {
     fn facet_error(&self) -> Option<&CombineError> {
         match self {
             NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => match e {
-                CombineError::Coarse(_) | CombineError::Touching(_) | CombineError::Open(_) => {
-                    Some(e)
-                }
+                CombineError::Coarse(_)
+                | CombineError::Touching(_)
+                | CombineError::Unbalanced(_)
+                | CombineError::Open(_) => Some(e),
                 CombineError::TooLarge | CombineError::Empty => None,
             },
             NoBody::Operand { why, .. } => why.facet_error(),
@@ -177,7 +178,9 @@ impl NoBody {
     fn unclear(&self) -> Option<(Vec<usize>, Vec<Vec3>)> {
         let places = match self.facet_error()? {
             CombineError::Coarse(all) => all.clone(),
-            CombineError::Touching(p) | CombineError::Open(p) => vec![*p],
+            CombineError::Touching(p) | CombineError::Unbalanced(p) | CombineError::Open(p) => {
+                vec![*p]
+            }
             CombineError::TooLarge | CombineError::Empty => return None,
         };
         let (mut way, mut at) = (Vec::new(), self);
@@ -195,15 +198,20 @@ pub(super) fn body_at<T: Real>(
     layout: &DimensionLayout<T>,
     plan: &FacetPlan,
 ) -> Result<SketchSolid<T>, NoBody> {
-    match &object.feature {
-        Some(feature) => feature.body(layout, plan),
+    let made = match &object.feature {
+        // A moved body closes as it did.
+        Some(feature) if matches!(feature.kind, FeatureKind::Place(_)) => {
+            return feature.body(layout, plan);
+        }
+        Some(feature) => feature.body(layout, plan)?,
         None => {
             let mut body = unchecked(object, planes, layout).ok_or(NoBody::Unfinished)?;
             body.name_faces(object);
             body.density = plan.density();
-            valid(body).map_err(NoBody::Flaw)
+            valid(body).map_err(NoBody::Flaw)?
         }
-    }
+    };
+    made.balanced().map_err(NoBody::Combine)
 }
 
 impl Feature {

@@ -19,6 +19,7 @@ mod projection;
 mod session;
 mod solids;
 mod svg_shapes;
+mod tangent;
 mod treatments;
 mod typed;
 mod verbs;
