@@ -323,9 +323,13 @@ impl SketchSession {
             }
             _ => {}
         }
-        let metres = object.units.as_deref().and_then(|unit| {
-            super::words::UNITS.iter().find(|u| u.0 == unit).map(|u| u.1 / 10_000.0)
-        });
+        let unit = object.units.as_deref().unwrap_or("MM");
+        let metres = super::words::UNITS.iter().find(|u| u.0 == unit).map_or(1e-3, |u| u.1 / 10_000.0);
+        if object.units.is_none() && matches!(format.as_str(), "STEP" | "3MF" | "GLTF" | "GLB") {
+            let mut reply = CommandReply::warning(format!("{file} is in millimetres: {} has no unit", object.name));
+            reply.next = Some("SET UNITS states one".to_owned());
+            self.out.push(reply);
+        }
         let data = self.data(&object);
         let bytes = match format.as_str() {
             "JSON" => (data.to_json().to_string() + "\n").into_bytes(),
@@ -380,7 +384,7 @@ impl SketchSession {
         &self,
         object: &SketchObject,
         solid: &SketchSolid<f64>,
-        metres: Option<f64>,
+        metres: f64,
     ) -> Result<Vec<u8>, CommandError> {
         let refused = |why: String| {
             let next = "EXPORT STL, OBJ, 3MF or GLTF for meshes, DXF for edges and facets";
@@ -414,8 +418,7 @@ impl SketchSession {
         for shell in inner {
             brep.parts[0].shells.push(moldloft_brep::Shell { cavity: true, ..shell });
         }
-        // As in a model: metres when there is no unit.
-        self.files.step(&brep, &object.name, metres.unwrap_or(1.0)).map_err(refused)
+        self.files.step(&brep, &object.name, metres).map_err(refused)
     }
 }
 

@@ -639,6 +639,23 @@ impl SketchSession {
         Ok(())
     }
 
+    pub(super) fn keep(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        let mut names = vec![args.name("the name of an object")?];
+        while args.len() > 0 && !args.at("OFF") {
+            names.push(args.name("the name of an object, or OFF")?);
+        }
+        let keep = !args.take("OFF");
+        args.end()?;
+        for name in &names {
+            self.known(name)?;
+        }
+        for name in names {
+            let object = self.state.objects.get_mut(&name.to_lowercase());
+            object.into_iter().for_each(|o| std::sync::Arc::make_mut(o).keep = keep);
+        }
+        Ok(())
+    }
+
     pub(super) fn show(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if args.at("FACE") && args.number_at(1) {
             args.skip();

@@ -508,6 +508,7 @@ impl SketchSession {
             "GIVE" => self.give(args),
             "DECLARE" => self.declare(args),
             "DISPLAY" | "ERASE" => self.display(args, verb == "DISPLAY"),
+            "KEEP" => self.keep(args),
             "SHOW" => self.show(args),
             "ZOOM" => self.zoom(args),
             "PAN" => self.pan(args),

@@ -175,6 +175,7 @@ pub fn to_json(object: &SketchObject) -> Json {
         ("version", Json::from(1.0)),
         ("name", object.name.as_str().into()),
         ("display", object.display.into()),
+        ("keep", object.keep.into()),
         ("units", object.units.as_deref().into()),
         ("axes", Json::list(d.projection.angle_deg.map(Json::from))),
         ("scale", Json::list(d.projection.scale.map(Json::from))),

@@ -150,6 +150,9 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
         writeln!(out, "SET UNITS {units}")?;
     }
     writeln!(out, "LEAVE")?;
+    if object.keep {
+        writeln!(out, "KEEP {name}")?;
+    }
     if !object.display {
         writeln!(out, "ERASE {name}")?;
     }
@@ -225,6 +228,9 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
     }
     for c in object.curves.values() {
         writeln!(out, "{}", curve_text(c))?;
+    }
+    if object.keep {
+        writeln!(out, "KEEP {}", quoted(&object.name))?;
     }
     if !object.display {
         writeln!(out, "ERASE {}", quoted(&object.name))?;
