@@ -785,7 +785,9 @@ impl Document {
     pub fn units(&self) -> String {
         match &self.source {
             ObjectSource::ModelFile(source) => source.units(),
-            ObjectSource::Sketch(sketch) => sketch.unit().unwrap_or_else(|| ASSUMED_UNIT.to_owned()),
+            ObjectSource::Sketch(sketch) => {
+                sketch.unit().unwrap_or_else(|| ASSUMED_UNIT.to_owned())
+            }
             _ => self.units_of_program(),
         }
     }
@@ -793,7 +795,8 @@ impl Document {
     /// The warning of a sketch that states no unit of length, for files that state one.
     pub fn assumed_unit(&self) -> Option<Diagnostic> {
         let ObjectSource::Sketch(sketch) = &self.source else { return None };
-        let message = format!("the sketch states no unit of length; millimetres are taken ({})", sketch.path);
+        let message =
+            format!("the sketch states no unit of length; millimetres are taken ({})", sketch.path);
         let warning = Diagnostic::warning("assumed-unit", message);
         sketch.unit().is_none().then(|| warning.help("SET UNITS in the sketch states one"))
     }

@@ -80,7 +80,8 @@ pub fn results(objects: &[&SketchObject]) -> Vec<bool> {
     };
     let used: Vec<(String, Vec<String>)> =
         objects.iter().map(|o| (o.name.to_lowercase(), operands(o))).collect();
-    let consumed = |name: &String| used.iter().any(|(other, of)| other != name && of.contains(name));
+    let consumed =
+        |name: &String| used.iter().any(|(other, of)| other != name && of.contains(name));
     objects.iter().zip(&used).map(|(object, (name, _))| object.keep || !consumed(name)).collect()
 }
 

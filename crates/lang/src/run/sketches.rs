@@ -251,8 +251,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 diagnostic.at(site.span).help("CONVERT in the sketch names the free points"),
             );
         }
-        let mut names =
-            SketchDeclarations { prefix, site, shown: drawn.result, members: Vec::new(), points: BTreeMap::new() };
+        let mut names = SketchDeclarations {
+            prefix,
+            site,
+            shown: drawn.result,
+            members: Vec::new(),
+            points: BTreeMap::new(),
+        };
         for &id in drawn.planes.ids() {
             if let Some(at) = layout.point(&drawn.planes, id) {
                 self.sketch_point(&mut names, id, at);

@@ -783,6 +783,9 @@ pub(super) fn suggestions(
     layout: &DimensionLayout<f64>,
 ) -> Vec<Option<Suggestion>> {
     let planes = &view.planes;
+    if object.drawing.exact {
+        return layout.loose.iter().map(|loose| as_drawn(object, planes, layout, loose)).collect();
+    }
     let estimate = view.estimate();
     let scale = estimate.map(|e| crate::scale(object, planes, layout, e));
     let one = |loose: &crate::Loose| {
@@ -798,4 +801,20 @@ pub(super) fn suggestions(
         Some(Suggestion { axis, p, q, value: rounded(gap(k).abs()), open })
     };
     layout.loose.iter().map(one).collect()
+}
+
+/// The dimension of an exact drawing that connects planes to those that are known.
+fn as_drawn(
+    object: &SketchObject,
+    planes: &crate::Planes,
+    layout: &DimensionLayout<f64>,
+    loose: &crate::Loose,
+) -> Option<Suggestion> {
+    let (axis, own) = (loose.axis, *loose.planes.first()?);
+    let known = layout.coordinates[axis.index()].iter().position(Option::is_some)?;
+    let (p, q) = (*planes.members(axis, known).first()?, *planes.members(axis, own).first()?);
+    let at = |p| object.drawing.drawn_coordinate(axis, p);
+    let gap = at(q)? - at(p)?;
+    let (p, q) = if gap < 0.0 { (q, p) } else { (p, q) };
+    Some(Suggestion { axis, p, q, value: gap.abs(), open: false })
 }

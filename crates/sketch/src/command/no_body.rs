@@ -5,7 +5,7 @@ use super::digits::place_text;
 use super::subject::ReplySubject;
 use crate::SketchObject;
 use crate::solid::combine::CombineError;
-use crate::solid::feature::NoBody;
+use crate::solid::feature::{MAX_COPIES, NoBody};
 use crate::solid::validity::SolidDefect;
 
 /// The reason why an object has no body, with the place and the next step.
@@ -78,6 +78,12 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             format!("VARIABLE {reads} defines it"),
         )
         .about(ReplySubject::of("no-value").names([name, reads])),
+        NoBody::Copies(n) => CommandError::new(
+            200,
+            format!("{name} has {} copies", moldloft_syntax::number::plain(*n)),
+            format!("give a whole number from 1 to {MAX_COPIES}"),
+        )
+        .about(ReplySubject::of("count").names([name]).value(*n)),
         NoBody::Treatment(fault) => {
             let place = fault.at.map(|p| format!(" at {}", place_text(p))).unwrap_or_default();
             let mut about = ReplySubject::of("treatment");

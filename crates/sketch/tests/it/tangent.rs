@@ -63,7 +63,8 @@ fn check(what: &str, part: &Part) -> Result<f64, String> {
 }
 
 fn all(what: &str, part: impl Fn(&mut Random) -> Part) {
-    let mut random = Random::new(what.bytes().fold(7, |seed, b| seed.wrapping_mul(31) + u64::from(b)));
+    let mut random =
+        Random::new(what.bytes().fold(7, |seed, b| seed.wrapping_mul(31) + u64::from(b)));
     let mut worst = 0.0f64;
     let (mut refused, mut first) = (0, None);
     let count = rounds(4, 1000);
