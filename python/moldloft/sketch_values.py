@@ -401,11 +401,18 @@ class SketchLine:
         Its ends.
     type
         What changes along it: ``"X"``, ``"XY"``, ``"O"``, ...; empty while it is unknown.
+    source
+        Who typed it: ``"user"``, ``"auto"`` by its slope or all strokes together, ``"inferred"``
+        from the planes of the others.
+    certainty
+        How sure the type is, from 0 to 1; 1 when the user typed it.
     """
 
     id: int
     points: tuple[int, int]
     type: str
+    source: str
+    certainty: float
 
 
 @dataclass(frozen=True)
@@ -486,7 +493,13 @@ class SketchObject:
 
         points = [point(row) for row in data["points"]]
         lines = [
-            SketchLine(row["id"], (row["points"][0], row["points"][1]), row["type"] or "")
+            SketchLine(
+                row["id"],
+                (row["points"][0], row["points"][1]),
+                row["type"] or "",
+                row["source"],
+                row["certainty"],
+            )
             for row in data["lines"]
         ]
         faces = [

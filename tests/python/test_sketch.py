@@ -467,6 +467,29 @@ def test_a_sketch_is_a_model(tmp_path):
         m["dam.p4.z"] = 3
 
 
+PLATE_AND_DRILL = """SKETCH B 2D XY
+POINT 1 0 0; POINT 2 90 0; POINT 3 90 90; POINT 4 0 90; POLYLINE 1 2 3 4 CLOSE
+DIM X 1 2 60; DIM Y 1 4 40; EXTRUDE 8
+SKETCH H 2D XY
+POINT 1 0 0; POINT 2 90 0; POINT 3 90 90; POINT 4 0 90; POLYLINE 1 2 3 4 CLOSE
+DIM X 1 2 10; DIM Y 1 4 10; EXTRUDE 12
+MOVE H 25 15 -2
+CUT B H INTO P
+"""
+
+
+def test_a_model_shows_results_and_no_tools(tmp_path):
+    path = tmp_path / "part.skt"
+    path.write_text(PLATE_AND_DRILL)
+    m = moldloft.load(path)
+    assert m.mesh().summary["volume"] == pytest.approx(60 * 40 * 8 - 10 * 10 * 8)
+    # The tool keeps its names.
+    assert m.eval("H.volume") == pytest.approx(1200.0)
+    path.write_text(PLATE_AND_DRILL + "KEEP H\n")
+    kept = moldloft.load(path).mesh().summary["volume"]
+    assert kept == pytest.approx(60 * 40 * 8 - 10 * 10 * 8 + 1200)
+
+
 def test_sweeps_over_dimensions():
     m = moldloft.load(EXAMPLES / "dam.skt")
     found = []

@@ -61,6 +61,9 @@ pub struct Document {
     tolerant: bool,
 }
 
+/// The unit of length of a sketch that states none.
+const ASSUMED_UNIT: &str = "mm";
+
 /// Where the objects come from.
 pub(crate) enum ObjectSource {
     /// A program; its text is module 0.
@@ -782,9 +785,20 @@ impl Document {
     pub fn units(&self) -> String {
         match &self.source {
             ObjectSource::ModelFile(source) => source.units(),
-            ObjectSource::Sketch(sketch) => sketch.unit().unwrap_or_default(),
+            ObjectSource::Sketch(sketch) => {
+                sketch.unit().unwrap_or_else(|| ASSUMED_UNIT.to_owned())
+            }
             _ => self.units_of_program(),
         }
+    }
+
+    /// The warning of a sketch that states no unit of length, for files that state one.
+    pub fn assumed_unit(&self) -> Option<Diagnostic> {
+        let ObjectSource::Sketch(sketch) = &self.source else { return None };
+        let message =
+            format!("the sketch states no unit of length; millimetres are taken ({})", sketch.path);
+        let warning = Diagnostic::warning("assumed-unit", message);
+        sketch.unit().is_none().then(|| warning.help("SET UNITS in the sketch states one"))
     }
 
     /// The units that a program states; its length is in the unit of the sketches that it loads when it states none.

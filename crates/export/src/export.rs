@@ -83,8 +83,18 @@ pub fn write(
     let main = FileName(main);
     document.set_export_remarks(Vec::new());
     let mut export = Export { document, format, main, options: options.clone() };
-    (format.write)(&mut export).map_err(|failure| failure.diagnostics(format.name))
+    let files = (format.write)(&mut export).map_err(|failure| failure.diagnostics(format.name))?;
+    if STATE_UNIT.contains(&format.name)
+        && let Some(warning) = document.assumed_unit()
+    {
+        let remarks = document.export_remarks().iter().cloned().chain([warning]).collect();
+        document.set_export_remarks(remarks);
+    }
+    Ok(files)
 }
+
+/// Formats that state a unit of length.
+const STATE_UNIT: [&str; 4] = ["step", "iges", "3mf", "glb"];
 
 /// Refuses what the format has no use for, rather than leaving it out.
 fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnostic> {

@@ -109,7 +109,7 @@ pub enum FeatureKind {
         /// From one copy to the next.
         step: Placement,
         /// How many there are.
-        count: u32,
+        count: DimensionExpr,
     },
     /// Edges bevelled or rounded.
     Blend {
@@ -136,6 +136,44 @@ pub enum FeatureKind {
         /// The faces; those parallel to the axis when there are none.
         faces: Vec<FaceChoice>,
     },
+}
+
+impl Placement {
+    fn numbers_mut(&mut self) -> Vec<&mut DimensionExpr> {
+        match self {
+            Placement::Move(by) => by.iter_mut().collect(),
+            Placement::Rotate { through, angle, .. } => through.iter_mut().chain([angle]).collect(),
+            Placement::Mirror { at, .. } => vec![at],
+            Placement::Scale(factor) => vec![factor],
+        }
+    }
+}
+
+impl FeatureKind {
+    /// The expressions that it reads, to change them.
+    pub fn numbers_mut(&mut self) -> Vec<&mut DimensionExpr> {
+        match self {
+            FeatureKind::Boolean(_) => vec![],
+            FeatureKind::Revolve { angle, .. } => vec![angle],
+            FeatureKind::Place(place) => place.numbers_mut(),
+            FeatureKind::Pattern { step, count } => {
+                let mut all = step.numbers_mut();
+                all.push(count);
+                all
+            }
+            FeatureKind::Blend { blend: EdgeBlend::Chamfer(sizes), .. } => {
+                sizes.iter_mut().collect()
+            }
+            FeatureKind::Blend { blend: EdgeBlend::Fillet(radius), .. } => vec![radius],
+            FeatureKind::Shell { thickness, .. } => vec![thickness],
+            FeatureKind::Draft { angle, at, .. } => vec![angle, at],
+        }
+    }
+
+    /// The expressions that it reads.
+    pub fn numbers(&self) -> Vec<DimensionExpr> {
+        self.clone().numbers_mut().into_iter().map(|e| e.clone()).collect()
+    }
 }
 
 /// An object that a feature is made of.

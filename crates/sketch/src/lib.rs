@@ -96,7 +96,7 @@ pub use format::dimension_marks::DimensionMark;
 pub use format::script::script;
 pub use format::{dxf, export, json, json_format};
 pub use moldloft_mesh::triangulate;
-pub use object::{Reference, SketchFace, SketchObject};
+pub use object::{Reference, SketchFace, SketchObject, results};
 pub use solid::body_tree::{BodyTree, body_tree};
 pub use solid::coincidence::Kink;
 pub use solid::feature::{NoBody, TreatmentFault, body};

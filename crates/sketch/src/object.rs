@@ -52,6 +52,8 @@ pub struct SketchObject {
     pub name: String,
     /// Whether it is shown.
     pub display: bool,
+    /// Whether it is a result though others are made of it.
+    pub keep: bool,
     /// The unit of its lengths, as a tag (`FT`, `M`, …).
     pub units: Option<String>,
     /// The picture; shared, so that what follows from it is computed once.
@@ -68,6 +70,19 @@ pub struct SketchObject {
     pub curves: IndexMap<String, SketchCurve>,
     /// What it is made of, when it is not a drawing.
     pub feature: Option<Arc<Feature>>,
+}
+
+/// Which of several objects are results: those that no other one is made of, and those that are kept.
+pub fn results(objects: &[&SketchObject]) -> Vec<bool> {
+    let operands = |object: &SketchObject| -> Vec<String> {
+        let all = object.feature.iter().flat_map(|f| &f.operands);
+        all.map(|o| o.object.name.to_lowercase()).collect()
+    };
+    let used: Vec<(String, Vec<String>)> =
+        objects.iter().map(|o| (o.name.to_lowercase(), operands(o))).collect();
+    let consumed =
+        |name: &String| used.iter().any(|(other, of)| other != name && of.contains(name));
+    objects.iter().zip(&used).map(|(object, (name, _))| object.keep || !consumed(name)).collect()
 }
 
 impl SketchObject {

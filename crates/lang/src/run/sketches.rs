@@ -251,8 +251,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 diagnostic.at(site.span).help("CONVERT in the sketch names the free points"),
             );
         }
-        let mut names =
-            SketchDeclarations { prefix, site, members: Vec::new(), points: BTreeMap::new() };
+        let mut names = SketchDeclarations {
+            prefix,
+            site,
+            shown: drawn.result,
+            members: Vec::new(),
+            points: BTreeMap::new(),
+        };
         for &id in drawn.planes.ids() {
             if let Some(at) = layout.point(&drawn.planes, id) {
                 self.sketch_point(&mut names, id, at);
@@ -428,7 +433,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let declared =
             bind_arguments(&row, given, |key| self.run.class_of(key)).and_then(|filled| {
                 let (args, mut head) = filled;
-                head.visible = i32::from(shown);
+                head.visible = i32::from(shown && names.shown);
                 if !shown {
                     // One panel: its corners are the face's.
                     (head.divisions, head.divided) = ([1, 1], true);
@@ -524,6 +529,8 @@ fn face_arguments<T: Scalar>(body: &SketchSolid<T>, mesh: &Mesh<T>, key: Key) ->
 struct SketchDeclarations<'a, T: Scalar> {
     prefix: &'a str,
     site: Site,
+    /// Whether it is shown: a tool that another body is made with is not.
+    shown: bool,
     members: Vec<(String, Value<T>)>,
     points: BTreeMap<PointId, Key>,
 }

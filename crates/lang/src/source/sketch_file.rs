@@ -38,6 +38,8 @@ pub struct Drawn {
     pub object: SketchObject,
     /// Its dimensioning planes.
     pub planes: Planes,
+    /// Whether it is a result of the file, and not only what others are made of.
+    pub result: bool,
     estimate: OnceLock<Option<Estimate>>,
 }
 
@@ -138,11 +140,14 @@ impl SketchFile {
                     let text = format!("{beyond} more replies of the sketch are not listed");
                     faults.push(Diagnostic::warning("too-many-errors", text).at(whole));
                 }
-                let objects: Vec<Drawn> = (session.names().iter())
-                    .filter_map(|name| session.object(name))
-                    .map(|object| Drawn {
+                let names = session.names();
+                let all: Vec<&SketchObject> =
+                    names.iter().filter_map(|name| session.object(name)).collect();
+                let objects: Vec<Drawn> = (all.iter().zip(moldloft_sketch::results(&all)))
+                    .map(|(&object, result)| Drawn {
                         planes: Planes::of(&object.drawing),
                         object: object.clone(),
+                        result,
                         estimate: OnceLock::new(),
                     })
                     .collect();

@@ -211,6 +211,8 @@ impl SketchSession {
 
     fn add_curve(&mut self, curve: SketchCurve) -> Result<(), CommandError> {
         let mut object: SketchObject = self.active()?.clone();
+        let name = curve.name.clone();
+        object.curves.insert(name.to_ascii_lowercase(), curve.clone());
         let (view, layout) = self.laid_out(&object);
         let at = |p: PointId| layout.point(&view.planes, p);
         match trace(&curve, &at, &layout.values) {
@@ -227,8 +229,6 @@ impl SketchSession {
             Err(CurveFault::Undetermined) => {}
             Err(fault) => return Err(curve_fault(&curve.name, &fault)),
         }
-        let name = curve.name.clone();
-        object.curves.insert(name.to_ascii_lowercase(), curve);
         if let Some(solid) = self.solid_of(&object)
             && let Some(unbuilt) = solid.unbuilt.iter().find(|t| t.curve == name)
         {

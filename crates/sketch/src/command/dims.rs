@@ -7,7 +7,7 @@ use super::draw::{require_line, require_point, set_letters};
 use super::question::Question;
 use super::session::{CommandReply, SketchSession};
 use super::subject::{ReplySubject, all_missing};
-use super::words::UNITS;
+use super::words::{Command, CommandToken, CommandTokenKind, UNITS};
 use crate::dimension::layout::agree;
 use crate::{
     CoordinateAxis, Dimension, DimensionExpr, DimensionFault, DimensionRole, MeasuredQuantity,
@@ -247,6 +247,26 @@ impl SketchSession {
         Ok(())
     }
 
+    /// Whether a command that begins with this word is the value that an open question asks for: a number, or an
+    /// expression in quotes.
+    pub(super) fn is_value(&self, first: &CommandToken) -> bool {
+        let asked = matches!(self.question, Some(Question::Dimension { .. }));
+        asked && matches!(first.kind, CommandTokenKind::Number(..) | CommandTokenKind::Text)
+    }
+
+    /// Takes the value that answers a question.
+    pub(super) fn answer_value(&mut self, command: &Command) -> Result<(), CommandError> {
+        let units = self.active()?.units.clone();
+        let args = &mut Args::new(&command.tokens, "the value, or YES or NO");
+        let value = args.value(units.as_deref())?;
+        let range = args.range()?;
+        args.end()?;
+        let Some(Question::Dimension { name, axis, p, q, .. }) = self.question.take() else {
+            return Err(args.wants("a question"));
+        };
+        self.add_along(name, axis, p, q, value, range)
+    }
+
     /// Asks whether the estimated value is right (a dimension without a value).
     fn suggest(
         &mut self,
@@ -446,6 +466,13 @@ impl SketchSession {
             self.active_mut()?.units = Some(unit);
             return Ok(());
         }
+        if args.at("EXACT") && (args.tokens_at(1, "ON") || args.tokens_at(1, "OFF")) {
+            args.skip();
+            let on = args.take_short("ON");
+            args.take_short("OFF");
+            args.end()?;
+            return self.set_exact(on);
+        }
         if args.take_short("SKETCH83") {
             let on = args.take_short("ON");
             if !on && !args.take_short("OFF") {
@@ -456,6 +483,44 @@ impl SketchSession {
             return Ok(());
         }
         let name = args.name("the name of a dimension or variable, or a setting")?;
+        // A number of another object, as expressions name it.
+        let own = self.active()?.has_name(&name);
+        let of = name.split_once('.').filter(|_| !own).and_then(|(of, number)| {
+            let other = self.state.called(&of.to_ascii_lowercase())?;
+            Some((other.name.to_lowercase(), number.to_owned()))
+        });
+        if let Some((of, number)) = of.filter(|o| self.state.objects.contains_key(&o.0)) {
+            let active = self.state.active.replace(of);
+            let done = self.set_number(&number, args);
+            self.state.active = active;
+            return done;
+        }
+        self.set_number(&name, args)
+    }
+
+    /// Takes places on the page of a section for its coordinates, or not.
+    pub(super) fn set_exact(&mut self, on: bool) -> Result<(), CommandError> {
+        let drawing = &self.active()?.drawing;
+        let plain =
+            drawing.section.is_some_and(|s| drawing.projection == crate::Projection::section(s));
+        if on && !plain {
+            return Err(CommandError::new(
+                113,
+                "only a cross section with its own axes is exact as it is drawn",
+                "SKETCH name 2D starts one",
+            ));
+        }
+        let drawing = self.active_mut()?.draw();
+        drawing.exact = on;
+        let by_slope = |l: &crate::DrawnLine| l.source == crate::LineTypeSource::Auto;
+        let lines: Vec<_> =
+            drawing.lines.iter().filter(|(_, l)| by_slope(l)).map(|(id, _)| *id).collect();
+        lines.into_iter().for_each(|id| drawing.type_by_slope(id));
+        Ok(())
+    }
+
+    /// Gives a dimension or variable of the active object another value.
+    fn set_number(&mut self, name: &str, args: &mut Args) -> Result<(), CommandError> {
         let object = self.active()?.clone();
         let key = name.to_ascii_lowercase();
         let value = args.value(object.units.as_deref())?;
@@ -476,7 +541,7 @@ impl SketchSession {
         }
         let names = object.dimensions.values().map(|d| d.name.as_str());
         let names = names.chain(object.variables.values().map(|v| v.name.as_str()));
-        let next = match moldloft_diag::nearest(&name, names) {
+        let next = match moldloft_diag::nearest(name, names) {
             Some(near) => format!("did you mean {near}?"),
             None => "LIST DIMENSIONS and LIST VARIABLES list them".to_owned(),
         };

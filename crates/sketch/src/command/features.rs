@@ -13,9 +13,6 @@ use crate::solid::feature::{NoBody, body};
 use crate::solid::operation::Operation;
 use moldloft_syntax::number::plain;
 
-/// More copies than this are refused.
-const MAX_COPIES: u32 = 400;
-
 impl SketchSession {
     /// Combines two bodies. The result is made of both and computed again with every change of theirs.
     pub(super) fn combine(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
@@ -193,12 +190,12 @@ impl SketchSession {
         let object = self.known(&name)?.clone();
         let units = object.units.clone();
         let (step, count) = if args.take("LINEAR") {
-            let count = args.count("how many copies")?;
+            let count = args.value(None)?;
             let by = [args.value(units.as_deref())?, args.value(units.as_deref())?];
             let [x, y] = by;
             (Placement::Move([x, y, args.value(units.as_deref())?]), count)
         } else if args.take("POLAR") {
-            let count = args.count("how many copies")?;
+            let count = args.value(None)?;
             let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
             let angle = args.value(None)?;
             (
@@ -209,19 +206,12 @@ impl SketchSession {
             let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
             let given = args.len() > 0 && !args.tokens_at(0, "INTO");
             let at = if given { args.value(units.as_deref())? } else { DimensionExpr::number(0.0) };
-            (Placement::Mirror { axis, at }, 2)
+            (Placement::Mirror { axis, at }, DimensionExpr::number(2.0))
         } else {
             return Err(args.wants("LINEAR, POLAR or MIRROR"));
         };
         let target = self.target(args, &name)?;
         args.end()?;
-        if count > MAX_COPIES {
-            return Err(CommandError::new(
-                200,
-                format!("{count} copies are too many"),
-                format!("at most {MAX_COPIES}"),
-            ));
-        }
         self.require_body(&object)?;
         let operands = vec![FeatureOperand { object: object.into(), prefix: String::new() }];
         self.make(Feature { kind: FeatureKind::Pattern { step, count }, operands }, &target, |_| {

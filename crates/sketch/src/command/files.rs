@@ -6,10 +6,12 @@ use super::session::{CommandReply, SketchSession};
 use super::words::CommandTokenKind;
 use crate::format::json::Json;
 use crate::format::json_format::{ObjectData, from_json, object_data, to_json};
+use crate::format::page_shapes::PageShapes;
 pub(super) use crate::format::script::measure_text;
 use crate::format::script::script;
 use crate::{
-    Dimension, DimensionRole, MeasuredQuantity, SketchObject, SketchSolid, Variable, export,
+    CoordinateAxis, Dimension, DimensionRole, MeasuredQuantity, SketchObject, SketchSolid,
+    Variable, export,
 };
 use moldloft_syntax::number::plain;
 use std::sync::Arc;
@@ -137,7 +139,7 @@ impl SketchSession {
         } else {
             crate::format::svg_shapes::svg_shapes(&text)
         };
-        let shapes = read.map_err(|why| {
+        let mut shapes = read.map_err(|why| {
             let next = format!("EXPORT {kind} writes one");
             CommandError::new(399, format!("{file} is not a {kind} drawing: {why}"), next)
         })?;
@@ -151,12 +153,15 @@ impl SketchSession {
         if self.active_object().is_none() {
             let stem = std::path::Path::new(&file).file_stem().map(|s| s.to_string_lossy());
             let name: String = stem.map_or("NONAME".into(), |s| s.chars().take(32).collect());
-            self.nested(&format!("SKETCH \"{}\"", name.replace('"', "_")))?;
+            // A flat drawing is a section; for a picture of a solid, SKETCH comes first.
+            self.nested(&format!("SKETCH \"{}\" 2D XY", name.replace('"', "_")))?;
         }
-        self.check_page(shapes.size(), shapes.line_count())?;
         let before = self.active()?.clone();
+        self.begin_exact(&mut shapes)?;
+        self.check_page(shapes.size(), shapes.line_count())?;
         let size = shapes.size();
         let (points, lines, curves) = shapes.draw(self.active_mut()?, 1e-6 * size);
+        self.refer_to_page()?;
         let mut said = format!("{points} points and {lines} lines");
         if !curves.is_empty() {
             let radii: Vec<&str> = (self.active()?.variables.values())
@@ -175,6 +180,39 @@ impl SketchSession {
             self.out.push(CommandReply::warning(format!("not drawn: {}", all.join(", "))));
         }
         self.recorded = Some(drawn_since(&before, self.active()?));
+        Ok(())
+    }
+
+    /// An empty section takes a drawing as it is: its places are coordinates, lines end where they cross.
+    fn begin_exact(&mut self, shapes: &mut PageShapes) -> Result<(), CommandError> {
+        let object = self.active()?;
+        let drawing = &object.drawing;
+        let plain =
+            drawing.section.is_some_and(|s| drawing.projection == crate::Projection::section(s));
+        if !plain || (!drawing.points.is_empty() && !drawing.exact) {
+            return Ok(());
+        }
+        let (first, unit) = (drawing.points.is_empty(), object.units.is_none());
+        if first {
+            self.set_exact(true)?;
+        }
+        if let Some(word) = shapes.unit.filter(|_| unit) {
+            self.active_mut()?.units = Some(word.to_owned());
+        }
+        shapes.split(1e-9 * shapes.size());
+        Ok(())
+    }
+
+    /// The reference of an exact drawing: where its first point is drawn.
+    fn refer_to_page(&mut self) -> Result<(), CommandError> {
+        let object = self.active()?;
+        let (drawing, none) = (&object.drawing, object.reference.is_none());
+        let Some((&point, _)) = drawing.points.first_key_value().filter(|_| drawing.exact && none)
+        else {
+            return Ok(());
+        };
+        let at = CoordinateAxis::ALL.map(|a| drawing.drawn_coordinate(a, point).unwrap_or(0.0));
+        self.active_mut()?.reference = Some(crate::Reference { point, at });
         Ok(())
     }
 
@@ -323,9 +361,17 @@ impl SketchSession {
             }
             _ => {}
         }
-        let metres = object.units.as_deref().and_then(|unit| {
-            super::words::UNITS.iter().find(|u| u.0 == unit).map(|u| u.1 / 10_000.0)
-        });
+        let unit = object.units.as_deref().unwrap_or("MM");
+        let metres =
+            super::words::UNITS.iter().find(|u| u.0 == unit).map_or(1e-3, |u| u.1 / 10_000.0);
+        if object.units.is_none() && matches!(format.as_str(), "STEP" | "3MF" | "GLTF" | "GLB") {
+            let mut reply = CommandReply::warning(format!(
+                "{file} is in millimetres: {} has no unit",
+                object.name
+            ));
+            reply.next = Some("SET UNITS states one".to_owned());
+            self.out.push(reply);
+        }
         let data = self.data(&object);
         let bytes = match format.as_str() {
             "JSON" => (data.to_json().to_string() + "\n").into_bytes(),
@@ -380,7 +426,7 @@ impl SketchSession {
         &self,
         object: &SketchObject,
         solid: &SketchSolid<f64>,
-        metres: Option<f64>,
+        metres: f64,
     ) -> Result<Vec<u8>, CommandError> {
         let refused = |why: String| {
             let next = "EXPORT STL, OBJ, 3MF or GLTF for meshes, DXF for edges and facets";
@@ -414,8 +460,7 @@ impl SketchSession {
         for shell in inner {
             brep.parts[0].shells.push(moldloft_brep::Shell { cavity: true, ..shell });
         }
-        // As in a model: metres when there is no unit.
-        self.files.step(&brep, &object.name, metres.unwrap_or(1.0)).map_err(refused)
+        self.files.step(&brep, &object.name, metres).map_err(refused)
     }
 }
 
@@ -423,11 +468,20 @@ impl SketchSession {
 fn drawn_since(before: &SketchObject, now: &SketchObject) -> String {
     let mut out = Vec::new();
     let (a, b) = (&before.drawing, &now.drawing);
+    if b.exact != a.exact {
+        out.push("SET EXACT ON".to_owned());
+    }
+    if let Some(unit) = now.units.as_ref().filter(|_| before.units.is_none()) {
+        out.push(format!("SET UNITS {unit}"));
+    }
     for (id, p) in b.points.iter().filter(|(id, _)| !a.points.contains_key(id)) {
         out.push(format!("POINT {id} AT {} {}", plain(p.u), plain(p.v)));
     }
     for (id, l) in b.lines.iter().filter(|(id, _)| !a.lines.contains_key(id)) {
         out.push(format!("LINE {id} FROM {} TO {}", l.p, l.q));
+    }
+    if let Some(r) = now.reference.filter(|r| before.reference != Some(*r)) {
+        out.push(format!("REFERENCE {} {}", r.point, r.at.map(plain).join(" ")));
     }
     for v in now.variables.values().filter(|v| !before.has_name(&v.name)) {
         out.push(format!("VARIABLE {} {}", v.name, v.value.text()));

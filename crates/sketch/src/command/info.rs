@@ -639,6 +639,23 @@ impl SketchSession {
         Ok(())
     }
 
+    pub(super) fn keep(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        let mut names = vec![args.name("the name of an object")?];
+        while args.len() > 0 && !args.at("OFF") {
+            names.push(args.name("the name of an object, or OFF")?);
+        }
+        let keep = !args.take("OFF");
+        args.end()?;
+        for name in &names {
+            self.known(name)?;
+        }
+        for name in names {
+            let object = self.state.objects.get_mut(&name.to_lowercase());
+            object.into_iter().for_each(|o| std::sync::Arc::make_mut(o).keep = keep);
+        }
+        Ok(())
+    }
+
     pub(super) fn show(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if args.at("FACE") && args.number_at(1) {
             args.skip();
@@ -766,6 +783,9 @@ pub(super) fn suggestions(
     layout: &DimensionLayout<f64>,
 ) -> Vec<Option<Suggestion>> {
     let planes = &view.planes;
+    if object.drawing.exact {
+        return layout.loose.iter().map(|loose| as_drawn(object, planes, layout, loose)).collect();
+    }
     let estimate = view.estimate();
     let scale = estimate.map(|e| crate::scale(object, planes, layout, e));
     let one = |loose: &crate::Loose| {
@@ -781,4 +801,20 @@ pub(super) fn suggestions(
         Some(Suggestion { axis, p, q, value: rounded(gap(k).abs()), open })
     };
     layout.loose.iter().map(one).collect()
+}
+
+/// The dimension of an exact drawing that connects planes to those that are known.
+fn as_drawn(
+    object: &SketchObject,
+    planes: &crate::Planes,
+    layout: &DimensionLayout<f64>,
+    loose: &crate::Loose,
+) -> Option<Suggestion> {
+    let (axis, own) = (loose.axis, *loose.planes.first()?);
+    let known = layout.coordinates[axis.index()].iter().position(Option::is_some)?;
+    let (p, q) = (*planes.members(axis, known).first()?, *planes.members(axis, own).first()?);
+    let at = |p| object.drawing.drawn_coordinate(axis, p);
+    let gap = at(q)? - at(p)?;
+    let (p, q) = if gap < 0.0 { (q, p) } else { (p, q) };
+    Some(Suggestion { axis, p, q, value: gap.abs(), open: false })
 }

@@ -5,7 +5,7 @@ use super::digits::place_text;
 use super::subject::ReplySubject;
 use crate::SketchObject;
 use crate::solid::combine::CombineError;
-use crate::solid::feature::NoBody;
+use crate::solid::feature::{MAX_COPIES, NoBody};
 use crate::solid::validity::SolidDefect;
 
 /// The reason why an object has no body, with the place and the next step.
@@ -78,6 +78,12 @@ pub fn no_body(object: &SketchObject, why: &NoBody) -> CommandError {
             format!("VARIABLE {reads} defines it"),
         )
         .about(ReplySubject::of("no-value").names([name, reads])),
+        NoBody::Copies(n) => CommandError::new(
+            200,
+            format!("{name} has {} copies", moldloft_syntax::number::plain(*n)),
+            format!("give a whole number from 1 to {MAX_COPIES}"),
+        )
+        .about(ReplySubject::of("count").names([name]).value(*n)),
         NoBody::Treatment(fault) => {
             let place = fault.at.map(|p| format!(" at {}", place_text(p))).unwrap_or_default();
             let mut about = ReplySubject::of("treatment");
@@ -120,6 +126,12 @@ fn combine_error(name: &str, e: &CombineError) -> CommandError {
             )
             .about(ReplySubject::of("nearly-meeting-surfaces").place(p))
         }
+        CombineError::Unbalanced(p) => CommandError::new(
+            701,
+            format!("{name}: its faces do not close to rounding near {}", place_text(*p)),
+            "change a dimension there a little; CHECK the bodies that it is made of",
+        )
+        .about(ReplySubject::of("open-body").place(*p)),
         CombineError::TooLarge => CommandError::new(
             200,
             format!("{name}: there are too many pieces"),

@@ -39,7 +39,7 @@ impl SessionState {
     }
 
     /// The object of a name in an expression, one around the feature that is being read if there is no other.
-    fn called(&self, name: &str) -> Option<&SketchObject> {
+    pub fn called(&self, name: &str) -> Option<&SketchObject> {
         let around = self.outside.iter().rev().map(|o| &o.0);
         let mut all = std::iter::once(&self.objects).chain(around).flat_map(|o| o.values());
         all.find(|o| key(o) == name).map(|o| &**o)
@@ -88,16 +88,21 @@ pub fn foreign(object: &SketchObject) -> BTreeSet<String> {
     let values = object.variables.values().map(|v| &v.value);
     let values = values.chain(object.dimensions.values().filter_map(|d| d.value.as_ref()));
     let sizes = object.curves.values().flat_map(|c| c.radius.iter().chain(c.semi.iter().flatten()));
-    (values.chain(sizes).flat_map(DimensionExpr::names))
-        .filter(|n| n.contains('.') && !object.has_name(n))
-        .map(str::to_owned)
-        .collect()
+    let feature = object.feature.iter();
+    let kinds: Vec<DimensionExpr> = feature.clone().flat_map(|f| f.kind.numbers()).collect();
+    let names = |e: &DimensionExpr| e.names().map(str::to_owned).collect::<Vec<_>>();
+    let own = values.chain(sizes).flat_map(names).chain(kinds.iter().flat_map(names));
+    // What its operands read is read by it.
+    let inner = feature.flat_map(|f| &f.operands).flat_map(|o| foreign(&o.object));
+    own.chain(inner).filter(|n| n.contains('.') && !object.has_name(n)).collect()
 }
 
 /// All expressions of an object.
 fn expressions_of(object: &mut SketchObject) -> impl Iterator<Item = &mut DimensionExpr> {
     let values = object.variables.values_mut().map(|v| &mut v.value);
     let values = values.chain(object.dimensions.values_mut().filter_map(|d| d.value.as_mut()));
+    let feature = object.feature.iter_mut().map(Arc::make_mut);
+    let values = values.chain(feature.flat_map(|f| f.kind.numbers_mut()));
     let sizes = object
         .curves
         .values_mut()

@@ -351,11 +351,12 @@ impl SketchSession {
         let before = self.state.clone();
         let marks = (self.undo.len() + self.forgotten, self.journal.len());
         let outer = std::mem::take(&mut self.out);
-        let found = verbs::find(&command.tokens[0].text);
+        let value = self.is_value(&command.tokens[0]);
+        let found = if value { Ok(("ACCEPT", None)) } else { verbs::find(&command.tokens[0].text) };
         let verb = found.as_ref().map_or("", |f| f.0);
         let result = found.and_then(|(verb, note)| {
             self.out.extend(note.map(CommandReply::note));
-            self.dispatch(verb, command)
+            if value { self.answer_value(command) } else { self.dispatch(verb, command) }
         });
         if result.is_ok() && LOSES.contains(&verb) {
             self.report_lost(&before);
@@ -508,6 +509,7 @@ impl SketchSession {
             "GIVE" => self.give(args),
             "DECLARE" => self.declare(args),
             "DISPLAY" | "ERASE" => self.display(args, verb == "DISPLAY"),
+            "KEEP" => self.keep(args),
             "SHOW" => self.show(args),
             "ZOOM" => self.zoom(args),
             "PAN" => self.pan(args),

@@ -310,18 +310,24 @@ impl SketchSession {
         let mut taken = Vec::new();
         loop {
             let (view, layout) = self.laid_out(&out);
-            let Some(s) = suggestions(&out, &view, &layout).into_iter().flatten().next() else {
+            let found = suggestions(&out, &view, &layout).into_iter().flatten();
+            // What a picture says of the next one changes with each; a drawing that is exact says all at once.
+            let many = if out.drawing.exact { usize::MAX } else { 1 };
+            let found: Vec<Suggestion> = found.take(many).collect();
+            if found.is_empty() {
                 return (out, taken);
-            };
-            let name = out.fresh_name("E");
-            out.add_dimension(crate::Dimension {
-                name: name.clone(),
-                measure: crate::MeasuredQuantity::Along { axis: s.axis, p: s.p, q: s.q },
-                value: Some(DimensionExpr::number(s.value)),
-                role: crate::DimensionRole::Driving,
-                range: None,
-            });
-            taken.push((name, s));
+            }
+            for s in found {
+                let name = out.fresh_name("E");
+                out.add_dimension(crate::Dimension {
+                    name: name.clone(),
+                    measure: crate::MeasuredQuantity::Along { axis: s.axis, p: s.p, q: s.q },
+                    value: Some(DimensionExpr::number(s.value)),
+                    role: crate::DimensionRole::Driving,
+                    range: None,
+                });
+                taken.push((name, s));
+            }
         }
     }
 

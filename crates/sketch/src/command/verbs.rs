@@ -104,11 +104,17 @@ pub fn find(word: &str) -> Result<(&'static str, Option<String>), CommandError> 
     if head.chars().count() == 3 {
         let like: Vec<&str> = names().filter(|v| v.starts_with(head.as_str())).collect();
         match like[..] {
-            [verb] => return Ok((verb, Some(format!("read {upper} as {verb}")))),
-            [] => {}
+            // A longer form, or a slip of one letter: other words are no misspellings.
+            [verb]
+                if upper.starts_with(verb) || moldloft_diag::edit_distance(&upper, verb) <= 1 =>
+            {
+                return Ok((verb, Some(format!("read {upper} as {verb}"))));
+            }
+            [_] | [] => {}
             _ => {
                 // Several begin alike (EXTRUDE, EXTENSIONS): the nearest spelling decides.
-                if let Some(verb) = moldloft_diag::nearest(&upper, like.iter().copied()) {
+                let near = moldloft_diag::nearest(&upper, like.iter().copied());
+                if let Some(verb) = near.filter(|v| moldloft_diag::edit_distance(&upper, v) <= 1) {
                     let verb = like.iter().find(|v| **v == verb).copied().unwrap_or(like[0]);
                     return Ok((verb, Some(format!("read {upper} as {verb}"))));
                 }

@@ -10,6 +10,9 @@ use std::collections::BTreeMap;
 /// How far a line may lean off an axis and still be named after it: 5 % of the slope (manual, p. 10).
 pub const NAMING_TOLERANCE: f64 = 0.05;
 
+/// Coordinates of an exact drawing are the same within this share of them.
+const AS_DRAWN: f64 = 1e-12;
+
 /// Below this a type is worth a look: of lines drawn within ±1, ±2 and ±4 on 400, 0.6, 1.6 and 4 % fall below, and
 /// with them half of those that are wrong.
 pub const DOUBTFUL: f64 = 0.97;
@@ -26,6 +29,11 @@ const FELLOW: f64 = 1.7;
 /// What it costs that a line is not parallel to those that it seemed parallel to.
 const LEAVES: f64 = 1.0;
 
+/// A line is drawn once more where another one leans off it by less than this sine, and is at least this part as long, or it
+/// is of the other: what hands leave of copies within 5 on 400.
+const COPY_LEAN: f64 = 0.12;
+const COPY_SIZE: f64 = 0.7;
+
 /// Groups of which pairs are tried as well.
 const MOST_PAIRED: usize = 12;
 
@@ -39,6 +47,15 @@ impl Drawing {
     /// inclined; in a pictorial nothing is said about it.
     pub fn slope_type(&self, line: &DrawnLine) -> Option<(Free, f64)> {
         let stroke = self.stroke(line);
+        if let (Some(normal), true) = (self.section, self.exact) {
+            let ends = [line.p, line.q].map(|p| self.points.get(&p).copied().unwrap_or_default());
+            let size = ends.iter().fold(0.0, |s: f64, p| s.max(p.u.abs()).max(p.v.abs()));
+            let plane = CoordinateAxis::ALL.into_iter().filter(|a| *a != normal);
+            // Along the first axis v does not change, along the second one u.
+            let still = [stroke[1], stroke[0]].map(|x| x.abs() <= AS_DRAWN * size);
+            let along = plane.zip(still).find(|(_, still)| *still).map(|(axis, _)| axis);
+            return Some((along.map_or(Free::across(normal), Free::along), 1.0));
+        }
         let axes = CoordinateAxis::ALL.into_iter().filter(|&a| self.section != Some(a));
         let best = axes
             .map(|axis| (axis, self.projection.lean(stroke, axis)))
@@ -102,30 +119,15 @@ impl Drawing {
                 .insert(id, DrawnLine { free, confidence, source: LineTypeSource::Auto, ..line });
         }
         self.mend(&verdicts);
-        loop {
-            let planes = Planes::of(self);
-            let mut changed = false;
-            for id in &ids {
-                let line = self.lines[id];
-                if line.free.is_some() {
-                    continue;
-                }
-                let free = Free::those(|a| !planes.same(a, line.p, line.q));
-                if let Some(free) = free.filter(|&f| f != Free::OBLIQUE) {
-                    let inferred = DrawnLine {
-                        free: Some(free),
-                        source: LineTypeSource::Inferred,
-                        confidence: share(id),
-                        ..line
-                    };
-                    self.lines.insert(*id, inferred);
-                    changed = true;
-                }
-            }
-            if !changed {
-                break;
+        self.infer(&share);
+        for (id, axis) in self.across_by_copies() {
+            if let Some(line) = self.lines.get_mut(&id) {
+                line.free = Some(Free::across(axis));
+                line.source = LineTypeSource::Inferred;
+                line.confidence = share(&id);
             }
         }
+        self.infer(&share);
         let left: Vec<LineId> = ids.into_iter().filter(|i| self.lines[i].free.is_none()).collect();
         for id in &left {
             if let Some(line) = self.lines.get_mut(id) {
@@ -135,6 +137,71 @@ impl Drawing {
             }
         }
         left
+    }
+
+    /// Types lines by the planes that their ends share, as long as that types any.
+    fn infer(&mut self, share: &dyn Fn(&LineId) -> f64) {
+        loop {
+            let planes = Planes::of(self);
+            let mut changed = false;
+            for (id, line) in &mut self.lines {
+                let free = Free::those(|a| !planes.same(a, line.p, line.q));
+                if let Some(free) = free.filter(|&f| line.free.is_none() && f != Free::OBLIQUE) {
+                    line.free = Some(free);
+                    line.source = LineTypeSource::Inferred;
+                    line.confidence = share(id);
+                    changed = true;
+                }
+            }
+            if !changed {
+                return;
+            }
+        }
+    }
+
+    /// Lines without a type that are drawn once more at the other ends of two lines along one axis, with that axis: they
+    /// are sides of a prism along it, and lie across it. Lines whose copies say different axes are left.
+    fn across_by_copies(&self) -> BTreeMap<LineId, CoordinateAxis> {
+        if self.section.is_some() {
+            return BTreeMap::new();
+        }
+        let mut along: BTreeMap<PointId, Vec<(PointId, CoordinateAxis)>> = BTreeMap::new();
+        let mut between: BTreeMap<(PointId, PointId), LineId> = BTreeMap::new();
+        for (&id, line) in &self.lines {
+            between.insert((line.p.min(line.q), line.p.max(line.q)), id);
+            if let Some(axis) = line.free.and_then(Free::single) {
+                along.entry(line.p).or_default().push((line.q, axis));
+                along.entry(line.q).or_default().push((line.p, axis));
+            }
+        }
+        let way = |p: PointId, q: PointId| {
+            let [p, q] = [p, q].map(|p| self.points.get(&p).copied().unwrap_or_default());
+            [q.u - p.u, q.v - p.v]
+        };
+        let copied = |a: [f64; 2], b: [f64; 2]| {
+            let [m, n] = [a, b].map(|w| Real::sqrt(w[0] * w[0] + w[1] * w[1]));
+            let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+            dot > 0.0 && cross.abs() < COPY_LEAN * m * n && m.min(n) > COPY_SIZE * m.max(n)
+        };
+        let ends = |p: &PointId| along.get(p).map_or(&[][..], Vec::as_slice);
+        let mut found = BTreeMap::new();
+        for (&id, line) in self.lines.iter().filter(|l| l.1.free.is_none()) {
+            let own = way(line.p, line.q);
+            let pairs =
+                ends(&line.p).iter().flat_map(|a| ends(&line.q).iter().map(move |b| (a, b)));
+            let mut axes: Vec<CoordinateAxis> = pairs
+                .filter(|((r, a), (s, b))| {
+                    let other = between.get(&(*r.min(s), *r.max(s)));
+                    a == b && other.is_some_and(|o| *o != id) && copied(own, way(*r, *s))
+                })
+                .map(|(a, _)| a.1)
+                .collect();
+            axes.dedup();
+            if let [axis] = axes[..] {
+                found.insert(id, axis);
+            }
+        }
+        found
     }
 
     /// Inclined lines that happen to be drawn along an axis make planes of different places one, so that other

@@ -40,7 +40,7 @@ numbered!(
 );
 
 /// A point as drawn. Where it is in space follows from its planes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DrawnPoint {
     /// Screen right.
     pub u: f64,
@@ -133,6 +133,8 @@ pub struct Snap {
 pub struct Drawing {
     /// For a cross section, the axis it is perpendicular to.
     pub section: Option<CoordinateAxis>,
+    /// Whether places on the page of a section are its coordinates: types and suggested dimensions are then as drawn.
+    pub exact: bool,
     /// How the axes were drawn.
     pub projection: Projection,
     /// What H, P and F mean.
@@ -167,6 +169,13 @@ impl Drawing {
         let at = |id| self.points.get(&id).map_or([0.0; 2], |p| [p.u, p.v]);
         let (a, b) = (at(line.p), at(line.q));
         [b[0] - a[0], b[1] - a[1]]
+    }
+
+    /// The coordinate of a point of a section along one of its axes, as drawn.
+    pub fn drawn_coordinate(&self, axis: CoordinateAxis, p: PointId) -> Option<f64> {
+        let first = CoordinateAxis::ALL.into_iter().find(|a| self.section != Some(*a));
+        let at = self.points.get(&p).filter(|_| self.section != Some(axis))?;
+        Some(if first == Some(axis) { at.u } else { at.v })
     }
 
     /// `3-7 (X)`: a line for people.

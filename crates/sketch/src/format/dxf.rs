@@ -1,23 +1,27 @@
 //! Drawings of other programs as sketches.
 
 use crate::format::page_shapes::PageShapes;
+use crate::format::svg_transform::SvgTransform;
 use crate::{Drawing, DrawnLine, DrawnPoint, LineTypeSource, PointId};
 use std::collections::BTreeMap;
 
 /// A straight stroke on the page.
 pub type Stroke = [[f64; 2]; 2];
 
+/// Blocks inserted in one another deeper than this are left out.
+const MAX_DEPTH: usize = 16;
+
 /// The lines, arcs, circles and ellipses of a DXF text: LINE, LWPOLYLINE and POLYLINE with their bulges, ARC, CIRCLE,
-/// full ELLIPSE, seen from above; what else there is is counted.
+/// full ELLIPSE, seen from above, and INSERT of blocks of them; what else there is is counted.
 ///
 /// # Errors
 /// Says where the text is not a DXF.
 pub fn dxf_shapes(text: &str) -> Result<PageShapes, String> {
     let mut lines = text.lines();
-    let mut shapes = PageShapes::default();
+    let mut file = DxfFile::default();
     let mut entity = Entity::default();
     let mut number = 0;
-    let (mut known, mut section, mut entities) = (false, false, true);
+    let (mut known, mut begins, mut section, mut variable) = (false, false, "ENTITIES", "");
     while let Some(code) = lines.next() {
         number += 1;
         let code = code.trim();
@@ -27,62 +31,108 @@ pub fn dxf_shapes(text: &str) -> Result<PageShapes, String> {
         let code: i32 = code.parse().map_err(|_| format!("line {number} is not a group code"))?;
         let value = lines.next().ok_or("the last group has no value")?.trim();
         number += 1;
-        let coordinate = || {
-            let x: f64 = value.parse().map_err(|_| format!("line {number} is not a number"))?;
-            if x.is_finite() { Ok(x) } else { Err(format!("line {number} is not finite")) }
-        };
         match code {
             0 => {
                 known |= value == "SECTION";
-                section = value == "SECTION";
+                begins = value == "SECTION";
                 // The vertices of a POLYLINE are entities of their own.
                 if value == "VERTEX" && entity.kind == "POLYLINE" {
                     continue;
                 }
-                entity.finish(entities, &mut shapes);
-                entity = Entity { kind: value.to_owned(), ..Entity::default() };
+                file.add(std::mem::take(&mut entity), section);
+                entity.kind = value.to_owned();
             }
-            2 if section => {
-                // Blocks are drawn where they are inserted only.
-                entities = value == "ENTITIES";
-                section = false;
+            2 if begins => {
+                section = value;
+                begins = false;
             }
-            10 => entity.vertices.push(([coordinate()?, 0.0], 0.0)),
-            11 if entity.kind == "LINE" => entity.vertices.push(([coordinate()?, 0.0], 0.0)),
-            11 if entity.kind == "ELLIPSE" => entity.vertices.push(([coordinate()?, 0.0], 0.0)),
-            20 | 21 if code == 20 || matches!(entity.kind.as_str(), "LINE" | "ELLIPSE") => {
-                if let Some(last) = entity.vertices.last_mut() {
-                    last.0[1] = coordinate()?;
-                }
+            2 => entity.name = value.to_owned(),
+            9 => variable = value,
+            70 if section == "HEADER" && variable == "$INSUNITS" => file.unit = unit(value),
+            _ => entity.read(code, value).map_err(|why| format!("line {number} is not {why}"))?,
+        }
+    }
+    file.add(entity, section);
+    if !known {
+        return Err("it has no section".into());
+    }
+    let mut shapes = PageShapes { unit: file.unit, ..PageShapes::default() };
+    file.draw(&file.entities, SvgTransform::NONE, 0, &mut shapes);
+    Ok(shapes)
+}
+
+/// The unit of length of a value of $INSUNITS.
+fn unit(code: &str) -> Option<&'static str> {
+    match code {
+        "1" => Some("IN"),
+        "2" => Some("FT"),
+        "4" => Some("MM"),
+        "5" => Some("CM"),
+        "6" => Some("M"),
+        _ => None,
+    }
+}
+
+/// What is read of a file.
+#[derive(Default)]
+struct DxfFile {
+    entities: Vec<Entity>,
+    /// Base point and entities by name.
+    blocks: BTreeMap<String, ([f64; 2], Vec<Entity>)>,
+    /// The block under way.
+    block: Option<String>,
+    unit: Option<&'static str>,
+}
+
+impl DxfFile {
+    fn add(&mut self, entity: Entity, section: &str) {
+        match (section, entity.kind.as_str()) {
+            ("BLOCKS", "BLOCK") => {
+                let base = entity.vertices.first().map_or([0.0; 2], |v| v.0);
+                self.blocks.insert(entity.name.clone(), (base, Vec::new()));
+                self.block = Some(entity.name);
             }
-            40 | 41 | 50 | 51 if matches!(entity.kind.as_str(), "ARC" | "CIRCLE" | "ELLIPSE") => {
-                entity.numbers.insert(code, coordinate()?);
+            ("BLOCKS", "ENDBLK") => self.block = None,
+            ("BLOCKS", _) => {
+                let block = self.block.as_ref().and_then(|name| self.blocks.get_mut(name));
+                block.into_iter().for_each(|b| b.1.push(entity.clone()));
             }
-            42 if entity.kind == "ELLIPSE" => {
-                entity.numbers.insert(code, coordinate()?);
-            }
-            42 if entity.kind.ends_with("POLYLINE") => {
-                if let Some(last) = entity.vertices.last_mut() {
-                    last.1 = coordinate()?;
-                }
-            }
-            70 if entity.kind.ends_with("POLYLINE") => {
-                // Vertices of a POLYLINE have flags of their own.
-                let own = entity.kind == "LWPOLYLINE" || entity.vertices.len() < 2;
-                entity.closed |= own && value.parse::<i32>().unwrap_or(0) & 1 == 1;
-            }
-            230 => entity.mirrored = coordinate()? < 0.0,
+            ("ENTITIES", _) => self.entities.push(entity),
             _ => {}
         }
     }
-    entity.finish(entities, &mut shapes);
-    if known { Ok(shapes) } else { Err("it has no section".into()) }
+
+    fn draw(
+        &self,
+        entities: &[Entity],
+        place: SvgTransform,
+        depth: usize,
+        shapes: &mut PageShapes,
+    ) {
+        for entity in entities {
+            if entity.kind == "INSERT" {
+                match self.blocks.get(&entity.name).zip(entity.placement()) {
+                    Some(((base, inner), own)) if depth < MAX_DEPTH => {
+                        let from_base = SvgTransform([1.0, 0.0, 0.0, 1.0, -base[0], base[1]]);
+                        self.draw(inner, place.after(own).after(from_base), depth + 1, shapes);
+                    }
+                    _ => shapes.leave_out("INSERT"),
+                }
+                continue;
+            }
+            let mut own = PageShapes::default();
+            entity.draw(&mut own);
+            place.put(own, shapes);
+        }
+    }
 }
 
-/// The entity under way.
-#[derive(Default)]
+/// An entity.
+#[derive(Clone, Default)]
 struct Entity {
     kind: String,
+    /// Of a block, or the block that is inserted.
+    name: String,
     /// Places, each with its bulge.
     vertices: Vec<([f64; 2], f64)>,
     numbers: BTreeMap<i32, f64>,
@@ -92,13 +142,64 @@ struct Entity {
 }
 
 impl Entity {
-    fn finish(&self, drawn: bool, shapes: &mut PageShapes) {
+    /// Takes a group; the error says what its value is not.
+    fn read(&mut self, code: i32, value: &str) -> Result<(), &'static str> {
+        let coordinate = || {
+            let x: f64 = value.parse().map_err(|_| "a number")?;
+            if x.is_finite() { Ok(x) } else { Err("finite") }
+        };
+        let polyline = self.kind.ends_with("POLYLINE");
+        match (code, self.kind.as_str()) {
+            (10, _) | (11, "LINE" | "ELLIPSE") => self.vertices.push(([coordinate()?, 0.0], 0.0)),
+            (20, _) | (21, "LINE" | "ELLIPSE") => {
+                if let Some(last) = self.vertices.last_mut() {
+                    last.0[1] = coordinate()?;
+                }
+            }
+            (40 | 41 | 50 | 51, "ARC" | "CIRCLE" | "ELLIPSE")
+            | (42, "ELLIPSE")
+            | (41 | 42 | 50 | 70 | 71, "INSERT") => {
+                self.numbers.insert(code, coordinate()?);
+            }
+            (42, _) if polyline => {
+                if let Some(last) = self.vertices.last_mut() {
+                    last.1 = coordinate()?;
+                }
+            }
+            (70, _) if polyline => {
+                // Vertices of a POLYLINE have flags of their own.
+                let own = self.kind == "LWPOLYLINE" || self.vertices.len() < 2;
+                self.closed |= own && value.parse::<i32>().unwrap_or(0) & 1 == 1;
+            }
+            (230, _) => self.mirrored = coordinate()? < 0.0,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Where an INSERT puts its block, once.
+    fn placement(&self) -> Option<SvgTransform> {
+        let number = |code: i32, other: f64| self.numbers.get(&code).copied().unwrap_or(other);
+        if self.mirrored || number(70, 1.0) > 1.0 || number(71, 1.0) > 1.0 {
+            return None;
+        }
+        let [x, y] = self.vertices.first()?.0;
+        let (sx, sy, angle) = (number(41, 1.0), number(42, 1.0), number(50, 0.0));
+        let [c, s] = match angle.rem_euclid(360.0) {
+            a if a == 0.0 => [1.0, 0.0],
+            a if a == 90.0 => [0.0, 1.0],
+            a if a == 180.0 => [-1.0, 0.0],
+            a if a == 270.0 => [0.0, -1.0],
+            a => [libm::cos(a.to_radians()), libm::sin(a.to_radians())],
+        };
+        // As of SVG, where y runs down.
+        Some(SvgTransform([sx * c, -sx * s, sy * s, sy * c, x, -y]))
+    }
+
+    fn draw(&self, shapes: &mut PageShapes) {
         let number = |code: i32| self.numbers.get(&code).copied();
         let turn = crate::format::page_shapes::TURN;
         let first = self.vertices.first().map(|v| v.0);
-        if !drawn {
-            return;
-        }
         let round = ["ARC", "CIRCLE", "ELLIPSE"].contains(&self.kind.as_str());
         if self.mirrored && (round || self.vertices.iter().any(|v| v.1 != 0.0)) {
             shapes.leave_out(&format!("{} seen from behind", self.kind));

@@ -76,9 +76,9 @@ pub fn obj(mesh: &IndexedTriangles, name: &str) -> String {
     out
 }
 
-/// glTF 2.0 with its buffer inside, in metres where the object has a unit; y is up there, so (x, y, z) becomes
+/// glTF 2.0 with its buffer inside, in metres, of which the unit is `metres` long; y is up there, so (x, y, z) becomes
 /// (x, z, -y).
-pub fn gltf(mesh: &IndexedTriangles, name: &str, metres: Option<f64>) -> String {
+pub fn gltf(mesh: &IndexedTriangles, name: &str, metres: f64) -> String {
     let bytes = buffer(mesh);
     let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
     gltf_text(
@@ -90,7 +90,7 @@ pub fn gltf(mesh: &IndexedTriangles, name: &str, metres: Option<f64>) -> String 
 }
 
 /// The same in the binary form: a header, the text, the buffer (glTF 2.0, section 4.4).
-pub fn glb(mesh: &IndexedTriangles, name: &str, metres: Option<f64>) -> Vec<u8> {
+pub fn glb(mesh: &IndexedTriangles, name: &str, metres: f64) -> Vec<u8> {
     let bytes = buffer(mesh);
     let length = Json::map([("byteLength", Json::from(bytes.len()))]);
     let mut text = gltf_text(mesh, name, metres, length).into_bytes();
@@ -123,7 +123,7 @@ fn buffer(mesh: &IndexedTriangles) -> Vec<u8> {
     bytes
 }
 
-fn gltf_text(mesh: &IndexedTriangles, name: &str, metres: Option<f64>, buffer: Json) -> String {
+fn gltf_text(mesh: &IndexedTriangles, name: &str, metres: f64, buffer: Json) -> String {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for p in &mesh.vertices {
         for (k, x) in [p.x as f32, p.z as f32, -p.y as f32].into_iter().enumerate() {
@@ -145,10 +145,8 @@ fn gltf_text(mesh: &IndexedTriangles, name: &str, metres: Option<f64>, buffer: J
     let attributes = Json::map([("POSITION", number(0))]);
     let primitive = Json::map([("attributes", attributes), ("indices", number(1))]);
     let one = |x: Json| Json::list([x]);
-    let mut node = vec![("mesh", number(0)), ("name", Json::from(name))];
-    if let Some(m) = metres {
-        node.push(("scale", Json::list([m; 3].map(Json::from))));
-    }
+    let scale = Json::list([metres; 3].map(Json::from));
+    let node = [("mesh", number(0)), ("name", Json::from(name)), ("scale", scale)];
     Json::map([
         ("asset", Json::map([("version", Json::from("2.0"))])),
         ("scene", number(0)),

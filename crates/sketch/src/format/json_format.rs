@@ -3,10 +3,25 @@
 use crate::format::json::Json;
 use crate::format::script::measure_text;
 use crate::{
-    CoordinateAxis, DimensionLayout, DimensionRole, FaceId, LineId, Loose, Mass, Planes, PointId,
-    SketchFace, SketchObject, SketchSolid,
+    CoordinateAxis, DimensionLayout, DimensionRole, FaceId, LineId, LineTypeSource, Loose, Mass,
+    Planes, PointId, SketchFace, SketchObject, SketchSolid,
 };
 use moldloft_num::Vec3;
+
+/// A line with its type, and how that is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineData {
+    /// Its label.
+    pub id: LineId,
+    /// Its ends.
+    pub ends: [PointId; 2],
+    /// `X`, `XY`, `O`, or empty while unknown.
+    pub free: &'static str,
+    /// Who typed it.
+    pub source: LineTypeSource,
+    /// How sure the type is, from 0 to 1.
+    pub certainty: f64,
+}
 
 /// What a finished (or unfinished) object is, for hosts.
 #[derive(Clone, Debug)]
@@ -19,8 +34,8 @@ pub struct ObjectData {
     pub points: Vec<(PointId, [Option<f64>; 3])>,
     /// Where points are drawn.
     pub page: Vec<(PointId, [f64; 2])>,
-    /// Lines: label, ends, type (`X`, `XY`, `O`, or empty while unknown).
-    pub lines: Vec<(LineId, PointId, PointId, &'static str)>,
+    /// Its lines.
+    pub lines: Vec<LineData>,
     /// Faces before curves are built in.
     pub faces: Vec<(FaceId, SketchFace)>,
     /// Enclosed volume, of a solid.
@@ -56,8 +71,13 @@ pub fn object_data(
         points.extend(new.map(|v| (v.id, v.at.to_array().map(Some))));
         points.sort_by_key(|p| p.0);
     }
-    let lines = (object.drawing.lines.iter())
-        .map(|(id, l)| (*id, l.p, l.q, l.free.map_or("", crate::Free::spelling)));
+    let lines = object.drawing.lines.iter().map(|(id, l)| LineData {
+        id: *id,
+        ends: [l.p, l.q],
+        free: l.free.map_or("", crate::Free::spelling),
+        source: l.source,
+        certainty: if l.source == LineTypeSource::User { 1.0 } else { l.confidence },
+    });
     let mass = solid.as_ref().map(SketchSolid::mass);
     let flat = object.drawing.section.is_some();
     ObjectData {
@@ -105,11 +125,13 @@ impl ObjectData {
                 ("page", page.map_or(Json::Null, |k| numbers(&self.page[k].1))),
             ])
         });
-        let lines = self.lines.iter().map(|(id, p, q, free)| {
+        let lines = self.lines.iter().map(|line| {
             Json::map([
-                ("id", id.0.into()),
-                ("points", labels(&[*p, *q])),
-                ("type", (*free).into()),
+                ("id", line.id.0.into()),
+                ("points", labels(&line.ends)),
+                ("type", line.free.into()),
+                ("source", line.source.word().into()),
+                ("certainty", line.certainty.into()),
             ])
         });
         let faces = self.faces.iter().map(|(id, f)| {
@@ -175,6 +197,7 @@ pub fn to_json(object: &SketchObject) -> Json {
         ("version", Json::from(1.0)),
         ("name", object.name.as_str().into()),
         ("display", object.display.into()),
+        ("keep", object.keep.into()),
         ("units", object.units.as_deref().into()),
         ("axes", Json::list(d.projection.angle_deg.map(Json::from))),
         ("scale", Json::list(d.projection.scale.map(Json::from))),

@@ -20,6 +20,8 @@ pub struct PageShapes {
     pub arcs: Vec<([[f64; 2]; 3], f64)>,
     /// Circles and ellipses: the centre and two conjugate half-diameters.
     pub rounds: Vec<[[f64; 2]; 3]>,
+    /// The unit of length that the drawing states.
+    pub unit: Option<&'static str>,
     /// What is not drawn, by kind.
     pub left_out: BTreeMap<String, usize>,
 }
@@ -58,6 +60,57 @@ impl PageShapes {
             [0.5 * (p[0] + q[0]) - offset * chord[1], 0.5 * (p[1] + q[1]) + offset * chord[0]];
         let start = libm::atan2(p[1] - centre[1], p[0] - centre[0]);
         self.arc(centre, radius, start, sweep);
+    }
+
+    /// Divides straight lines where they cross, and where an end of one is on another one within `tolerance`.
+    pub fn split(&mut self, tolerance: f64) {
+        let mut cuts: Vec<Vec<(f64, [f64; 2])>> = vec![Vec::new(); self.strokes.len()];
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let way = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
+        for i in 0..self.strokes.len() {
+            for j in 0..i {
+                let ([a, b], [c, d]) = (self.strokes[i], self.strokes[j]);
+                let apart = (0..2).any(|k| {
+                    a[k].max(b[k]) < c[k].min(d[k]) - tolerance
+                        || c[k].max(d[k]) < a[k].min(b[k]) - tolerance
+                });
+                if apart {
+                    continue;
+                }
+                let mut touched = false;
+                for (one, [p, q], ends) in [(i, [a, b], [c, d]), (j, [c, d], [a, b])] {
+                    let (line, length) = (way(p, q), libm::hypot(q[0] - p[0], q[1] - p[1]));
+                    for end in ends {
+                        let to = way(p, end);
+                        let s = (line[0] * to[0] + line[1] * to[1]) / length;
+                        let on = cross(line, to).abs() <= tolerance * length;
+                        touched |= on && (-tolerance..=length + tolerance).contains(&s);
+                        if on && s > tolerance && s < length - tolerance {
+                            cuts[one].push((s / length, end));
+                        }
+                    }
+                }
+                let (u, v) = (way(a, b), way(c, d));
+                let det = cross(u, v);
+                if touched || det == 0.0 {
+                    continue;
+                }
+                let (s, t) = (cross(way(a, c), v) / det, cross(way(a, c), u) / det);
+                if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
+                    let at = [a[0] + s * u[0], a[1] + s * u[1]];
+                    cuts[i].push((s, at));
+                    cuts[j].push((t, at));
+                }
+            }
+        }
+        let pieces = |([p, q], mut own): (Stroke, Vec<(f64, [f64; 2])>)| {
+            own.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let way: Vec<[f64; 2]> =
+                std::iter::once(p).chain(own.into_iter().map(|c| c.1)).chain([q]).collect();
+            way.windows(2).map(|w| [w[0], w[1]]).collect::<Vec<Stroke>>()
+        };
+        let strokes = std::mem::take(&mut self.strokes);
+        self.strokes = strokes.into_iter().zip(cuts).flat_map(pieces).collect();
     }
 
     /// How far the shapes reach.

@@ -110,8 +110,8 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
         }
         FeatureKind::Pattern { step, count } => {
             let word = match step {
-                Placement::Move(_) => format!("LINEAR {count}"),
-                Placement::Rotate { axis, .. } => format!("POLAR {count} {axis}"),
+                Placement::Move(_) => format!("LINEAR {}", value(count)),
+                Placement::Rotate { axis, .. } => format!("POLAR {} {axis}", value(count)),
                 Placement::Mirror { .. } => "MIRROR".to_owned(),
                 Placement::Scale(_) => "LINEAR".to_owned(),
             };
@@ -150,6 +150,9 @@ fn write_feature(object: &SketchObject, feature: &Feature, out: &mut String) -> 
         writeln!(out, "SET UNITS {units}")?;
     }
     writeln!(out, "LEAVE")?;
+    if object.keep {
+        writeln!(out, "KEEP {name}")?;
+    }
     if !object.display {
         writeln!(out, "ERASE {name}")?;
     }
@@ -176,6 +179,9 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
     }
     if let Some(units) = &object.units {
         writeln!(out, "SET UNITS {units}")?;
+    }
+    if drawing.exact {
+        writeln!(out, "SET EXACT ON")?;
     }
     let p = &drawing.projection;
     let [a, b, c] = p.angle_deg.map(plain);
@@ -225,6 +231,9 @@ fn write(object: &SketchObject, out: &mut String) -> std::fmt::Result {
     }
     for c in object.curves.values() {
         writeln!(out, "{}", curve_text(c))?;
+    }
+    if object.keep {
+        writeln!(out, "KEEP {}", quoted(&object.name))?;
     }
     if !object.display {
         writeln!(out, "ERASE {}", quoted(&object.name))?;

@@ -4,14 +4,14 @@ use crate::format::page_shapes::PageShapes;
 
 /// The matrix (a c e; b d f) of an element's coordinates, whose y runs down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SvgTransform([f64; 6]);
+pub struct SvgTransform(pub [f64; 6]);
 
 impl SvgTransform {
     /// The transform that changes nothing.
     pub const NONE: SvgTransform = SvgTransform([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
 
     /// First `inner`, then this.
-    fn after(self, inner: SvgTransform) -> SvgTransform {
+    pub fn after(self, inner: SvgTransform) -> SvgTransform {
         let ([a, b, c, d, e, f], [p, q, r, s, t, u]) = (self.0, inner.0);
         SvgTransform([
             a * p + c * q,
@@ -83,6 +83,7 @@ impl SvgTransform {
         }
         let rounds = shapes.rounds.into_iter().map(|[m, p, q]| [at(m), way(p), way(q)]);
         into.rounds.extend(rounds);
+        into.unit = into.unit.or(shapes.unit);
         for (kind, count) in shapes.left_out {
             *into.left_out.entry(kind).or_default() += count;
         }

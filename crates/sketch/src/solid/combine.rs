@@ -8,7 +8,9 @@
 
 use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
 use super::coincidence::{self, Kink, part, rates};
+use super::curve::SmoothPiece;
 use super::facet_source::{FacetSource, ON_SURFACE, along, moves, settled};
+use super::meeting::{EqualCylinders, closed_form};
 use super::near_misses::NearMissSearch;
 use super::nearness::Nearness;
 use super::surface::{Carrier, FaceSurface, Jet, Met, meet};
@@ -30,6 +32,8 @@ pub enum CombineError {
     Touching(Vec3),
     /// Facets do not tell which of several surfaces that nearly meet come first, at these places: one or more.
     Coarse(Vec<Vec3>),
+    /// The faces of the body do not close to rounding; worst at this place.
+    Unbalanced(Vec3),
     /// There are too many pieces.
     TooLarge,
     /// Nothing is left.
@@ -179,6 +183,7 @@ fn facetted<T: Real>(bodies: &[&SketchSolid<T>], operand_of: &[usize]) -> Facett
                 borders: Vec::new(),
                 ranges: Vec::new(),
                 traced: Vec::new(),
+                ends: Vec::new(),
                 warped: Vec::new(),
             });
         }
@@ -220,10 +225,14 @@ fn add_facets<T: Real>(
             Some(trace) => trace.carrier,
             None => Some(body.piece((k, true))),
         };
-        let ends = edge.trace.as_ref().zip(piece.as_ref()).and_then(|(trace, piece)| {
+        let outer = edge.trace.as_ref().and_then(|trace| {
             let (first, last) = (trace.points.first()?, trace.points.last()?);
-            Some([along(piece, first.re()), along(piece, last.re())])
+            Some([first.re(), last.re()])
         });
+        // A closed edge is all of its curve.
+        let open = outer.filter(|[first, last]| first != last);
+        let ends = open.zip(piece.as_ref()).map(|(ends, piece)| ends.map(|p| along(piece, p)));
+        source.ends.push(outer.unwrap_or_else(|| edge.ends.map(|v| body.vertices[v].at.re())));
         source.ranges.push(ends.unwrap_or([0.0, 1.0]));
         let nodes = edge.trace.iter().filter(|_| piece.is_none()).flat_map(|t| &t.nodes);
         source.traced.push(nodes.map(|n| (n.0.re(), n.1.re())).collect());
@@ -410,6 +419,10 @@ const MOST_HALVINGS: u32 = 16;
 
 /// How exactly points are known, as a share of the bodies: what chords miss by less is not resolved by halving.
 const ROUNDED: f64 = 1e-14;
+
+/// Faces are tangent where the sine between their normals is less: surfaces that the arrangement takes for one line cross at
+/// no greater angle beside it, √(2·1e-9).
+const TANGENT: f64 = 4.5e-5;
 
 /// More facets than this are refused before they are looked at: they would take minutes.
 const MOST_FACETS: usize = 200_000;
@@ -710,18 +723,53 @@ impl<'a, T: Real> Placing<'a, T> {
         kind: Kind,
         ends: Option<[Vec3<T>; 2]>,
     ) -> Result<IntersectionEdge<T>, CombineError> {
-        let Some((operand, tag)) = kind.2 else { return self.trace_on(chain, kind, ends) };
-        let beside = &self.all.sources[operand].edges[tag as usize].1;
+        let Some((operand, tag)) = kind.2 else { return self.crossing(chain, kind, ends) };
+        let (curve, beside) = &self.all.sources[operand].edges[tag as usize];
+        let curve = curve.as_ref();
         let own = |f: usize| {
             let mut sources = self.arranged.faces[f].sources.iter();
             sources.any(|s| s.0 == operand && beside.contains(&s.1))
         };
-        if (self.fitted && operand == 1) || (own(kind.0) && own(kind.1)) {
-            return self.trace_on(chain, kind, ends);
+        let fixed = (self.fitted && operand == 1) || (own(kind.0) && own(kind.1));
+        if fixed || self.tangent_along(chain, kind) {
+            return self.trace_on(chain, kind, ends, curve);
         }
         // A surface of the other body happens to run through an edge: the new edge moves with both surfaces.
-        let crossing = self.trace_on(chain, (kind.0, kind.1, None), ends);
-        crossing.or_else(|_| self.trace_on(chain, kind, ends))
+        self.crossing(chain, kind, ends).or_else(|_| self.trace_on(chain, kind, ends, curve))
+    }
+
+    /// An edge that two surfaces alone make.
+    fn crossing(
+        &self,
+        chain: &[u32],
+        kind: Kind,
+        ends: Option<[Vec3<T>; 2]>,
+    ) -> Result<IntersectionEdge<T>, CombineError> {
+        let pair = [self.surface(kind.0), self.surface(kind.1)];
+        // Beside the points where they touch, surfaces do not tell where they meet; the curves that cross there do.
+        let middle = self.arranged.points[chain[chain.len() / 2] as usize];
+        let ellipse = EqualCylinders::of(pair, self.scale)
+            .and_then(|cylinders| cylinders.ellipse(pair[0], middle));
+        let mut edge = self.trace_on(chain, kind, ends, ellipse.as_ref())?;
+        edge.carrier = ellipse.or_else(|| closed_form(pair, &edge.points, self.scale));
+        Ok(edge)
+    }
+
+    /// Whether the faces beside a chain are tangent all along it: then they do not fix it.
+    fn tangent_along(&self, chain: &[u32], kind: Kind) -> bool {
+        let normal = |f: usize, p: Vec3| match self.surface(f) {
+            FaceSurface::Plane { normal, .. } => normal.re().normalized(),
+            surface => {
+                let [u, v] = surface.parameters(p);
+                let [_, du, dv] = surface.jet(T::from(u), T::from(v)).map(Vec3::re);
+                du.cross(dv).normalized()
+            }
+        };
+        chain.iter().all(|&v| {
+            let p = self.arranged.points[v as usize];
+            let both = normal(kind.0, p).zip(normal(kind.1, p));
+            both.is_some_and(|(m, n)| m.cross(n).norm() < TANGENT)
+        })
     }
 
     fn trace_on(
@@ -729,9 +777,9 @@ impl<'a, T: Real> Placing<'a, T> {
         chain: &[u32],
         kind: Kind,
         ends: Option<[Vec3<T>; 2]>,
+        curve: Option<&SmoothPiece<T>>,
     ) -> Result<IntersectionEdge<T>, CombineError> {
         let rough: Vec<Vec3> = chain.iter().map(|&v| self.arranged.points[v as usize]).collect();
-        let curve = kind.2.and_then(|(o, t)| self.all.sources[o].edges[t as usize].0.as_ref());
         let pair = [self.surface(kind.0), self.surface(kind.1)];
         let fixed: Vec<Carrier<'_, T>> = match curve {
             Some(piece) => vec![Carrier::Curve(piece)],

@@ -3,9 +3,13 @@
 use super::coincidence::{Kink, StrayPart, Tangent, part, rates};
 use super::combine::{CombineError, Kind, Placing, triangles_of};
 use super::facet_source::{ON_SURFACE, along, moves};
+use super::meeting::EqualCylinders;
 use super::surface::{Carrier, FaceSurface, meet};
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeSet;
+
+/// Farther off one of its surfaces than this share of the bodies, a point does not stand for where they touch.
+const ON_ALL: f64 = 1e-11;
 
 impl<T: Real> Placing<'_, T> {
     /// The place of a corner; `None` when the points of its closed edge say.
@@ -106,8 +110,24 @@ impl<T: Real> Placing<'_, T> {
             }
             // The vertex of a closed edge.
             _ if faces.len() == 2 => Ok(None),
-            _ => Err(CombineError::Touching(guess)),
+            _ => self.tangent_corner(guess, faces).map(Some).ok_or(CombineError::Touching(guess)),
         }
+    }
+
+    /// A corner at which all faces touch: that of crossing cylinders of one radius, or a point that is on all of them.
+    fn tangent_corner(&self, guess: Vec3, faces: &BTreeSet<usize>) -> Option<Vec3<T>> {
+        let round: Vec<usize> =
+            faces.iter().copied().filter(|&f| !self.arranged.faces[f].plane).collect();
+        let pairs = || (0..round.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
+        let crossing = pairs().find_map(|pair| {
+            let pair = pair.map(|k| self.surface(round[k]));
+            EqualCylinders::of(pair, self.scale)?.vertex(guess, self.scale)
+        });
+        let on = |&f: &usize| {
+            let tangent = Tangent::of(self.surface(f), Vec3::lifted(guess), ON_SURFACE);
+            tangent.is_some_and(|t: Tangent<T>| t.off.re().abs() <= ON_ALL * self.scale)
+        };
+        crossing.or_else(|| faces.iter().all(on).then(|| Vec3::lifted(guess)))
     }
 
     /// A corner whose derivatives are none where its faces part: more of them than fix a point meet there by chance, and

@@ -34,6 +34,8 @@ pub(super) struct FacetSource<T> {
     pub(super) ranges: Vec<[f64; 2]>,
     /// By edge: points along it with directions, where it has no closed form.
     pub(super) traced: Vec<Vec<(Vec3, Vec3)>>,
+    /// By edge: where it begins and ends.
+    pub(super) ends: Vec<[Vec3; 2]>,
     /// Plane faces, by surface, that do not stay plane.
     pub(super) warped: Vec<(u32, Kink)>,
 }

@@ -13,6 +13,7 @@ use super::place::Similarity;
 use super::turn::turned;
 use super::validity::{SolidDefect, valid};
 use super::{SketchSolid, unchecked};
+use crate::command::foreign;
 use crate::feature::{EdgeBlend, Feature, FeatureKind, FeatureOperand, Placement};
 use crate::{DimensionExpr, DimensionLayout, Estimate, Planes, SketchObject, Variable, solve};
 use moldloft_num::{Real, Vec3};
@@ -39,11 +40,16 @@ pub enum NoBody {
     },
     /// A number of the feature has no value.
     NoValue(String),
+    /// A number of copies that is not whole, or out of range.
+    Copies(f64),
     /// Edges or faces cannot be treated as asked.
     Treatment(TreatmentFault),
     /// The section lies on both sides of the line it is turned about, or the line has no length.
     Axis,
 }
+
+/// More copies than this are refused.
+pub(crate) const MAX_COPIES: u32 = 400;
 
 /// How often chords are cut in three near places where facets do not tell which surfaces meet, and then everywhere.
 const FINEST: u32 = 4;
@@ -152,9 +158,10 @@ impl NoBody {
     fn facet_error(&self) -> Option<&CombineError> {
         match self {
             NoBody::Combine(e) | NoBody::Flaw(SolidDefect::Unresolved(e)) => match e {
-                CombineError::Coarse(_) | CombineError::Touching(_) | CombineError::Open(_) => {
-                    Some(e)
-                }
+                CombineError::Coarse(_)
+                | CombineError::Touching(_)
+                | CombineError::Unbalanced(_)
+                | CombineError::Open(_) => Some(e),
                 CombineError::TooLarge | CombineError::Empty => None,
             },
             NoBody::Operand { why, .. } => why.facet_error(),
@@ -177,7 +184,9 @@ impl NoBody {
     fn unclear(&self) -> Option<(Vec<usize>, Vec<Vec3>)> {
         let places = match self.facet_error()? {
             CombineError::Coarse(all) => all.clone(),
-            CombineError::Touching(p) | CombineError::Open(p) => vec![*p],
+            CombineError::Touching(p) | CombineError::Unbalanced(p) | CombineError::Open(p) => {
+                vec![*p]
+            }
             CombineError::TooLarge | CombineError::Empty => return None,
         };
         let (mut way, mut at) = (Vec::new(), self);
@@ -195,15 +204,20 @@ pub(super) fn body_at<T: Real>(
     layout: &DimensionLayout<T>,
     plan: &FacetPlan,
 ) -> Result<SketchSolid<T>, NoBody> {
-    match &object.feature {
-        Some(feature) => feature.body(layout, plan),
+    let made = match &object.feature {
+        // A moved body closes as it did.
+        Some(feature) if matches!(feature.kind, FeatureKind::Place(_)) => {
+            return feature.body(layout, plan);
+        }
+        Some(feature) => feature.body(layout, plan)?,
         None => {
             let mut body = unchecked(object, planes, layout).ok_or(NoBody::Unfinished)?;
             body.name_faces(object);
             body.density = plan.density();
-            valid(body).map_err(NoBody::Flaw)
+            valid(body).map_err(NoBody::Flaw)?
         }
-    }
+    };
+    made.balanced().map_err(NoBody::Combine)
 }
 
 impl Feature {
@@ -265,9 +279,15 @@ impl Feature {
         let of = |operand: &FeatureOperand| {
             let inner = &operand.object;
             let prefix = operand.prefix.to_ascii_lowercase();
-            let own: BTreeMap<String, T> = (layout.values.iter())
+            let mut own: BTreeMap<String, T> = (layout.values.iter())
                 .filter_map(|(k, v)| Some((k.strip_prefix(&prefix)?.to_owned(), *v)))
                 .collect();
+            // Numbers of other objects have the same names everywhere.
+            for name in foreign(inner) {
+                if let Some(value) = layout.values.get(&name) {
+                    own.entry(name).or_insert(*value);
+                }
+            }
             let planes = Planes::of(&inner.drawing);
             let estimate =
                 || Estimate::of(&inner.drawing, &planes, inner.reference().map(|r| r.point)?);
@@ -287,7 +307,7 @@ impl Feature {
             FeatureKind::Pattern { step, count } => {
                 let step = step.similarity(&|e| number(layout, e))?;
                 let mut images = vec![Similarity::identity()];
-                for k in 1..*count as usize {
+                for k in 1..copies(layout, count)? {
                     images.push(images[k - 1].then(&step));
                 }
                 Ok(images)
@@ -501,6 +521,13 @@ fn repeated<T: Real>(
 fn number<T: Real>(layout: &DimensionLayout<T>, e: &DimensionExpr) -> Result<T, NoBody> {
     let x = e.eval(&|n| layout.values.get(n).copied());
     x.map_err(|no| NoBody::NoValue(no.name))
+}
+
+/// How many copies there are.
+fn copies<T: Real>(layout: &DimensionLayout<T>, count: &DimensionExpr) -> Result<usize, NoBody> {
+    let n = number(layout, count)?.re();
+    let whole = n.fract() == 0.0 && (1.0..=f64::from(MAX_COPIES)).contains(&n);
+    if whole { Ok(n as usize) } else { Err(NoBody::Copies(n)) }
 }
 
 /// The name of the face that an edge of a section becomes when it is turned: its curve's, or `L` and the number

@@ -36,6 +36,8 @@ pub(crate) struct MassIntegrals<T> {
     moment: Vec3<T>,
     /// ∫ xx, yy, zz, yz, zx, xy dV.
     second: [T; 6],
+    /// What tells that the surface closes: ∫ dA, and ∫ x dA_x, ∫ y dA_y, ∫ z dA_z, each of which is the volume.
+    closure: [Vec3; 2],
     /// Area and moment of the patch under way, whose sign is that of its border's direction.
     patch: (T, Vec3<T>),
 }
@@ -50,6 +52,7 @@ impl<T: Real> MassIntegrals<T> {
             volume: t,
             moment: v,
             second: [t; 6],
+            closure: [Vec3::zero(); 2],
             patch: (t, v),
         }
     }
@@ -62,6 +65,7 @@ impl<T: Real> MassIntegrals<T> {
     /// p, x p, x y p of divergence 3, 4 x, 5 x y.
     fn element(&mut self, p: Vec3<T>, da: Vec3<T>) {
         let flux = p.dot(da);
+        self.close(p, da);
         self.volume += flux / 3.0;
         self.moment += p * (flux / 4.0);
         for (sum, x) in self.second.iter_mut().zip(Self::products(p)) {
@@ -69,11 +73,29 @@ impl<T: Real> MassIntegrals<T> {
         }
     }
 
+    /// Counts an element of a plane through `p`, its centre, with the vector area.
+    fn close(&mut self, p: Vec3<T>, da: Vec3<T>) {
+        let (p, da) = (p.re(), da.re());
+        self.closure[0] += da;
+        self.closure[1] += Vec3::new(p.x * da.x, p.y * da.y, p.z * da.z);
+    }
+
+    /// By how much the surface does not close, as a share of its area, and by how much volumes along x, y and z differ, as
+    /// a share of the area times `extent`.
+    pub fn gap(&self, extent: f64) -> f64 {
+        let [vector, volumes] = self.closure;
+        let [x, y, z] = volumes.to_array();
+        let spread = x.max(y).max(z) - x.min(y).min(z);
+        let area = self.area.re().max(f64::MIN_POSITIVE);
+        (vector.norm() / area).max(spread / (area * extent.max(f64::MIN_POSITIVE)))
+    }
+
     /// Adds the tetrahedron from the origin over a straight triangle.
     fn triangle(&mut self, a: Vec3<T>, b: Vec3<T>, c: Vec3<T>) {
         let (a, b, c) = (a - self.origin, b - self.origin, c - self.origin);
         let volume = a.dot(b.cross(c)) / 6.0;
         let sum = a + b + c;
+        self.close(sum / T::from(3.0), (b - a).cross(c - a) * T::from(0.5));
         self.volume += volume;
         self.moment += sum * (volume / 4.0);
         // ∫ x y over a tetrahedron with a corner at the origin: V/20 (Σ Σ + Σ x_i y_i).

@@ -6,6 +6,7 @@
 //! its other end has the same arc, a cone when it has none).
 
 pub mod arrangement;
+mod balance;
 mod blend;
 mod blend_order;
 mod blend_tool;
@@ -21,6 +22,7 @@ pub mod feature;
 mod finer_mesh;
 pub(crate) mod gradient;
 pub(crate) mod mass;
+mod meeting;
 pub mod merge;
 mod meshing;
 mod near_misses;
@@ -805,8 +807,18 @@ impl<T: Real> SketchSolid<T> {
 
     /// Area, volume, centroid, inertia.
     pub fn mass(&self) -> Mass<T> {
+        one_sided::settled(self.integrals().finish(self.flat), self)
+    }
+
+    /// The middle of the vertices.
+    pub(crate) fn middle(&self) -> Vec3 {
         let n = self.vertices.len().max(1) as f64;
-        let centre = self.vertices.iter().fold(Vec3::<f64>::zero(), |s, v| s + v.at.re()) / n;
+        self.vertices.iter().fold(Vec3::<f64>::zero(), |s, v| s + v.at.re()) / n
+    }
+
+    /// The integrals over all faces, from the middle.
+    pub(crate) fn integrals(&self) -> MassIntegrals<T> {
+        let centre = self.middle();
         let mut sums = MassIntegrals::new(Vec3::lifted(centre));
         for (f, face) in self.faces.iter().enumerate() {
             if face.ruled {
@@ -846,7 +858,7 @@ impl<T: Real> SketchSolid<T> {
             sums.plane(&edges);
         }
         self.strays.iter().for_each(|s| sums.moved(s.corners, s.ahead));
-        one_sided::settled(sums.finish(self.flat), self)
+        sums
     }
 
     /// Where a directed edge begins and ends.
@@ -864,7 +876,7 @@ impl<T: Real> SketchSolid<T> {
     }
 
     /// Gauss's nodes of a cycle of a round face, and the ways between edges whose ends move apart.
-    fn cycle_places(
+    pub(crate) fn cycle_places(
         &self,
         face: usize,
         surface: &FaceSurface<T>,

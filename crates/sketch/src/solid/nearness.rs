@@ -3,6 +3,7 @@
 //! Facets are off their surfaces by up to their chords, so an edge may seem to end in one face where it ends in
 //! the next. The exact corner is then outside of the face that it was taken to be in.
 
+use super::curve::SmoothPiece;
 use super::facet_source::{FacetSource, along};
 use super::surface::FaceSurface;
 use moldloft_num::{Real, Vec3};
@@ -92,16 +93,44 @@ impl<T: Real> Nearness<'_, T> {
                 exact: true,
             });
         }
-        let nodes = &source.traced[e as usize];
-        let best = nodes.iter().min_by(|a, b| a.0.distance(at).total_cmp(&b.0.distance(at)))?;
-        // The circle through neighbouring nodes is the edge to the third order; its tangent is enough here.
-        let way = best.1.normalized()?;
-        let p = best.0 + way * way.dot(at - best.0);
-        Some(NearestOfBorder {
-            distance: p.distance(at),
-            left: left(p, best.1),
-            end: None,
-            exact: false,
-        })
+        let (p, way, end) =
+            nearest_of_nodes(at, &source.traced[e as usize], source.ends[e as usize])?;
+        let end = end.then_some(p);
+        Some(NearestOfBorder { distance: p.distance(at), left: left(p, way), end, exact: false })
     }
+}
+
+/// The point of an edge nearest to a place, its direction there, and whether it is an end. The edge is known by nodes with
+/// directions and by its ends: between neighbours it is a cubic.
+fn nearest_of_nodes(
+    at: Vec3,
+    nodes: &[(Vec3, Vec3)],
+    [first, last]: [Vec3; 2],
+) -> Option<(Vec3, Vec3, bool)> {
+    // At an end the direction of a circle through the end and the node beside it.
+    let mirrored = |p: Vec3, q: Vec3, way: Vec3| {
+        let (chord, way) = ((q - p).normalized()?, way.normalized()?);
+        Some(chord * (2.0 * chord.dot(way)) - way)
+    };
+    let (head, tail) = (nodes.first()?, nodes.last()?);
+    let mut all = vec![(first, mirrored(first, head.0, head.1).unwrap_or(head.1))];
+    all.extend_from_slice(nodes);
+    all.push((last, mirrored(tail.0, last, tail.1).unwrap_or(tail.1)));
+    let share = |p: Vec3, q: Vec3| {
+        let d = q - p;
+        (d.dot(at - p) / d.norm_sq().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    };
+    let off = |w: &[(Vec3, Vec3)]| w[0].0.lerp(w[1].0, share(w[0].0, w[1].0)).distance(at);
+    let k = (0..all.len() - 1).min_by(|&i, &j| off(&all[i..]).total_cmp(&off(&all[j..])))?;
+    let [p, q] = [all[k].0, all[k + 1].0];
+    let third = p.distance(q) / 3.0;
+    let [m, n] = [all[k].1, all[k + 1].1].map(|d| d.normalized().unwrap_or_default() * third);
+    let piece = SmoothPiece::Cubic([p, p + m, q - n, q]);
+    let mut s = share(p, q);
+    for _ in 0..4 {
+        let way = piece.velocity(s);
+        s = (s + way.dot(at - piece.at(s)) / way.norm_sq().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    }
+    let end = first != last && ((k == 0 && s == 0.0) || (k + 2 == all.len() && s == 1.0));
+    Some((piece.at(s), piece.velocity(s), end))
 }
