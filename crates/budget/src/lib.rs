@@ -58,9 +58,10 @@ pub fn limits() -> Limits {
     }
 }
 
-/// Sets the limits of the process.
+/// Sets the limits of the process; no more memory than the system's limit of address space leaves, so that work ends
+/// before the system refuses.
 pub fn set_limits(limits: Limits) {
-    MEMORY.store(limits.memory, Ordering::Relaxed);
+    MEMORY.store(limits.memory.min(machine::room(held())), Ordering::Relaxed);
     STEPS.store(limits.steps, Ordering::Relaxed);
     OBJECTS.store(limits.objects, Ordering::Relaxed);
     SECONDS.store(limits.seconds.to_bits(), Ordering::Relaxed);

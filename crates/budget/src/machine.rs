@@ -5,13 +5,14 @@ use crate::Limits;
 /// The most memory that a program takes unasked.
 const MOST: u64 = 8 << 30;
 
-/// Half of the memory that the process may have, as far as the system says it.
+/// A quarter of the memory that the process may have, as far as the system says it: the rest is for what the budget does
+/// not see, and for other programs.
 ///
 /// On Linux that is the least of the machine's memory, the control group's and the address space; elsewhere
 /// [`Limits::USUAL`] is all that is known.
 pub fn usual_memory() -> u64 {
     let known = [machine(), control_group(), address_space()];
-    known.into_iter().flatten().min().map_or(Limits::USUAL.memory, |bytes| (bytes / 2).min(MOST))
+    known.into_iter().flatten().min().map_or(Limits::USUAL.memory, |bytes| (bytes / 4).min(MOST))
 }
 
 fn machine() -> Option<u64> {
@@ -28,7 +29,37 @@ fn address_space() -> Option<u64> {
     number_after(&std::fs::read_to_string("/proc/self/limits").ok()?, "Max address space")
 }
 
+/// Bytes that the heap may have under the system's limit of address space, beside `held` that it has: three quarters of
+/// what is left, for stacks and what allocators keep are address space, too. [`u64::MAX`] without such a limit.
+pub(crate) fn room(held: u64) -> u64 {
+    let read = |name| std::fs::read_to_string(name).unwrap_or_default();
+    room_of(&read("/proc/self/limits"), &read("/proc/self/status"), held)
+}
+
+fn room_of(limits: &str, status: &str, held: u64) -> u64 {
+    let Some(space) = number_after(limits, "Max address space") else { return u64::MAX };
+    let taken = number_after(status, "VmSize:").unwrap_or(0) << 10;
+    held.saturating_add(space.saturating_sub(taken) / 4 * 3)
+}
+
 /// The number that follows a word; `None` for "unlimited".
 fn number_after(text: &str, word: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(word))?.split_whitespace().next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_heap_keeps_below_the_address_space() {
+        let limits = |space| {
+            format!("Max cpu time  unlimited\nMax address space  {space}  {space}  bytes\n")
+        };
+        let status = "VmPeak:  600 kB\nVmSize:  500 kB\n";
+        assert_eq!(room_of(&limits("unlimited"), status, 7), u64::MAX);
+        assert_eq!(room_of("", "", 7), u64::MAX);
+        assert_eq!(room_of(&limits("912000"), status, 7), 7 + 300_000);
+        assert_eq!(room_of(&limits("100000"), status, 7), 7);
+    }
 }

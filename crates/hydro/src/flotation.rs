@@ -8,6 +8,9 @@ use moldloft_num::{Real, Vec3};
 /// Within this heel, in radians, a body is upright: rounding leaves less, and no table shows it.
 const UPRIGHT: f64 = 1e-6;
 
+/// A body whose vertical has a smaller share, its cosine, of that of the water lies on its side.
+const ON_ITS_SIDE: f64 = 1e-6;
+
 /// How a body lies in the water: first heeled about its own x axis, then trimmed about the level
 /// axis across it, both through its origin; then the water stands at `level` above the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,7 +153,10 @@ impl<T: Real> Flotation<T> {
         let Attitude { level, trim, heel } = self.attitude;
         let mut rows = vec![("level", level), ("trim", trim), ("heel", heel)];
         let names = ["draft_low_x", "draft_mid", "draft_high_x"];
-        rows.extend(names.into_iter().zip(self.drafts));
+        // Draughts are measured along the body's own vertical: on its side it has none.
+        if (heel.cos() * trim.cos()).re().abs() > ON_ITS_SIDE {
+            rows.extend(names.into_iter().zip(self.drafts));
+        }
         rows.extend(self.freeboard.map(|x| ("freeboard", x)));
         let centres = [
             ("lcb", self.buoyancy_centre.map(|c| c.x)),
