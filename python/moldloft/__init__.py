@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         FairingError,
         FileError,
         FormatError,
+        MissingPackageError,
         ModelError,
         UnknownNameError,
     )
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from moldloft.implicit import Field, Set
     from moldloft.loading import load, loads
     from moldloft.mesh import Mesh, Patch
+    from moldloft.mesh_files import read_mesh
     from moldloft.models import Model, Param
     from moldloft.nurbs import Nurbs
     from moldloft.objects import (
@@ -82,6 +84,7 @@ __all__ = [
     "Intersection",
     "Magnet",
     "Mesh",
+    "MissingPackageError",
     "Model",
     "ModelError",
     "NearestPoints",
@@ -109,6 +112,7 @@ __all__ = [
     "loads",
     "model",
     "param",
+    "read_mesh",
 ]
 
 _HOMES = {
@@ -122,6 +126,7 @@ _HOMES = {
     "FairingError": "moldloft.errors",
     "FileError": "moldloft.errors",
     "FormatError": "moldloft.errors",
+    "MissingPackageError": "moldloft.errors",
     "ModelError": "moldloft.errors",
     "UnknownNameError": "moldloft.errors",
     "HydrostaticTable": "moldloft.hydrostatics",
@@ -135,6 +140,7 @@ _HOMES = {
     "Param": "moldloft.models",
     "load": "moldloft.loading",
     "loads": "moldloft.loading",
+    "read_mesh": "moldloft.mesh_files",
     "model": "moldloft.builder",
     "param": "moldloft.builder",
     "Nurbs": "moldloft.nurbs",

@@ -16,13 +16,26 @@ __all__ = ["Adapted"]
 class Adapted:
     """What :mod:`moldloft.adapters` does, as methods; packages are imported on first use."""
 
-    def to_pyvista(self, *, tags: str | Sequence[str] = ()) -> Any:
+    def to_pyvista(
+        self,
+        *,
+        tags: str | Sequence[str] = (),
+        whole: bool = False,
+        tolerance: float | None = None,
+        angle: float | None = None,
+    ) -> Any:
         """The panels as ``pyvista.PolyData``; see :func:`moldloft.adapters.to_pyvista`.
 
         Parameters
         ----------
         tags
             Only patches with one of these tags; by default all.
+        whole
+            Both sides of a symmetric model; by default one.
+        tolerance
+            The largest distance of panels from their surfaces; by default the model's divisions.
+        angle
+            The largest turn of a surface along a panel, in radians.
 
         Returns
         -------
@@ -38,15 +51,30 @@ class Adapted:
         """
         from moldloft.adapters import to_pyvista
 
-        return to_pyvista(cast("Model", self), tags=tags)
+        return to_pyvista(
+            cast("Model", self), tags=tags, whole=whole, tolerance=tolerance, angle=angle
+        )
 
-    def to_trimesh(self, *, tags: str | Sequence[str] = ()) -> Any:
+    def to_trimesh(
+        self,
+        *,
+        tags: str | Sequence[str] = (),
+        whole: bool = False,
+        tolerance: float | None = None,
+        angle: float | None = None,
+    ) -> Any:
         """The panels as ``trimesh.Trimesh``; see :func:`moldloft.adapters.to_trimesh`.
 
         Parameters
         ----------
         tags
             Only patches with one of these tags; by default all.
+        whole
+            Both sides of a symmetric model; by default one.
+        tolerance
+            The largest distance of panels from their surfaces; by default the model's divisions.
+        angle
+            The largest turn of a surface along a panel, in radians.
 
         Returns
         -------
@@ -62,15 +90,30 @@ class Adapted:
         """
         from moldloft.adapters import to_trimesh
 
-        return to_trimesh(cast("Model", self), tags=tags)
+        return to_trimesh(
+            cast("Model", self), tags=tags, whole=whole, tolerance=tolerance, angle=angle
+        )
 
-    def to_meshio(self, *, tags: str | Sequence[str] = ()) -> Any:
+    def to_meshio(
+        self,
+        *,
+        tags: str | Sequence[str] = (),
+        whole: bool = False,
+        tolerance: float | None = None,
+        angle: float | None = None,
+    ) -> Any:
         """The panels as ``meshio.Mesh``; see :func:`moldloft.adapters.to_meshio`.
 
         Parameters
         ----------
         tags
             Only patches with one of these tags; by default all.
+        whole
+            Both sides of a symmetric model; by default one.
+        tolerance
+            The largest distance of panels from their surfaces; by default the model's divisions.
+        angle
+            The largest turn of a surface along a panel, in radians.
 
         Returns
         -------
@@ -86,10 +129,21 @@ class Adapted:
         """
         from moldloft.adapters import to_meshio
 
-        return to_meshio(cast("Model", self), tags=tags)
+        return to_meshio(
+            cast("Model", self), tags=tags, whole=whole, tolerance=tolerance, angle=angle
+        )
 
-    def to_capytaine(self, *, lids: bool = False, name: str = "model") -> Any:
-        """The wetted panels for Capytaine; see :func:`moldloft.adapters.to_capytaine`.
+    def to_capytaine(
+        self,
+        *,
+        lids: bool = False,
+        name: str = "model",
+        tags: str | Sequence[str] = (),
+        centre: Sequence[float] | None = None,
+        mass: float | None = None,
+        dofs: bool = True,
+    ) -> Any:
+        """The wetted panels for Capytaine, in SI; see :func:`moldloft.adapters.to_capytaine`.
 
         Parameters
         ----------
@@ -97,20 +151,36 @@ class Adapted:
             Include lids.
         name
             What Capytaine calls the body.
+        tags
+            Only patches with one of these tags; by default all.
+        centre
+            The centre of gravity in the model's unit; by default that of the model's weights.
+        mass
+            In kilograms; by default that of the model's weights.
+        dofs
+            Add the six degrees of freedom of a rigid body.
 
         Returns
         -------
         capytaine.FloatingBody
-            With the wetted panels as its mesh.
+            With the wetted panels as its mesh, in metres.
 
         Raises
         ------
         Error
-            Without Capytaine.
+            Without Capytaine, or when no panel is below z = 0.
         """
         from moldloft.adapters import to_capytaine
 
-        return to_capytaine(cast("Model", self), lids=lids, name=name)
+        return to_capytaine(
+            cast("Model", self),
+            lids=lids,
+            name=name,
+            tags=tags,
+            centre=centre,
+            mass=mass,
+            dofs=dofs,
+        )
 
     def to_ocp(self, *, accuracy: float | None = None) -> Any:
         """The exact surfaces as an OCCT shape; see :func:`moldloft.adapters.to_ocp`.

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from moldloft.errors import Error
+from moldloft.errors import Error, MissingPackageError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -44,17 +44,23 @@ def _module(name: str, install: str) -> Any:
     try:
         return import_module(name)
     except ImportError as error:
-        raise Error(f"this needs {name}: pip install {install} ({error})") from error
+        raise MissingPackageError(f"this needs {name}: pip install {install} ({error})") from error
 
 
-def _panels(source: Model | Mesh, tags: str | Sequence[str]) -> Mesh:
+def _panels(
+    source: Model | Mesh,
+    tags: str | Sequence[str],
+    whole: bool,
+    tolerance: float | None,
+    angle: float | None,
+) -> Mesh:
     from moldloft.mesh import Mesh
 
     if isinstance(source, Mesh):
-        if tags:
-            raise Error("tags choose patches of a model; this is a mesh already")
+        if tags or whole or tolerance is not None or angle is not None:
+            raise Error("tags, whole, tolerance and angle are for a model; this is a mesh already")
         return source
-    return source.mesh(tags=tags)
+    return source.mesh(tags=tags, whole=whole, tolerance=tolerance, angle=angle)
 
 
 def _patch_numbers(mesh: Mesh) -> NDArray[np.int64]:
@@ -71,7 +77,14 @@ def _split(mesh: Mesh) -> tuple[NDArray[np.bool_], NDArray[np.int64], NDArray[np
     return triangle, faces[triangle][:, :3], faces[~triangle]
 
 
-def to_pyvista(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
+def to_pyvista(
+    source: Model | Mesh,
+    *,
+    tags: str | Sequence[str] = (),
+    whole: bool = False,
+    tolerance: float | None = None,
+    angle: float | None = None,
+) -> Any:
     """The panels as ``pyvista.PolyData``, with the number of the patch of each in ``patch``.
 
     The names of the patches are in the field data ``patches``.
@@ -82,6 +95,8 @@ def to_pyvista(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
         A model, or the mesh of one.
     tags
         Of a model: only the patches with one of these tags.
+    whole, tolerance, angle
+        Of a model: both sides, and how near panels are to their surfaces; see :meth:`Model.mesh`.
 
     Returns
     -------
@@ -98,7 +113,7 @@ def to_pyvista(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
     >>> to_pyvista(m).area
     2.0
     """
-    mesh = _panels(source, tags)
+    mesh = _panels(source, tags, whole, tolerance, angle)
     data = polydata(mesh.vertices, mesh.faces)
     triangle, _, _ = _split(mesh)
     numbers = _patch_numbers(mesh)
@@ -127,14 +142,21 @@ def polydata(points: NDArray[np.float64], faces: NDArray[np.uint32]) -> Any:
     return pyvista.PolyData(points, np.concatenate([threes, fours]))
 
 
-def to_trimesh(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
+def to_trimesh(
+    source: Model | Mesh,
+    *,
+    tags: str | Sequence[str] = (),
+    whole: bool = False,
+    tolerance: float | None = None,
+    angle: float | None = None,
+) -> Any:
     """The panels as ``trimesh.Trimesh``, quadrilaterals halved, with ``patch`` of each face.
 
     Vertices are not merged nor moved: shared ones are shared by identity already.
 
     Parameters
     ----------
-    source, tags
+    source, tags, whole, tolerance, angle
         As for :func:`to_pyvista`.
 
     Returns
@@ -143,7 +165,7 @@ def to_trimesh(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
         Vertices ``(n, 3)`` in the model's unit.
     """
     trimesh = _module("trimesh", "trimesh")
-    mesh = _panels(source, tags)
+    mesh = _panels(source, tags, whole, tolerance, angle)
     triangle, triangles, quads = _split(mesh)
     numbers = _patch_numbers(mesh)
     halves = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
@@ -157,12 +179,19 @@ def to_trimesh(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
     )
 
 
-def to_meshio(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
+def to_meshio(
+    source: Model | Mesh,
+    *,
+    tags: str | Sequence[str] = (),
+    whole: bool = False,
+    tolerance: float | None = None,
+    angle: float | None = None,
+) -> Any:
     """The panels as ``meshio.Mesh``: blocks ``triangle`` and ``quad``, patches as cell sets.
 
     Parameters
     ----------
-    source, tags
+    source, tags, whole, tolerance, angle
         As for :func:`to_pyvista`.
 
     Returns
@@ -171,7 +200,7 @@ def to_meshio(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
         Points ``(n, 3)`` in the model's unit.
     """
     meshio = _module("meshio", "meshio")
-    mesh = _panels(source, tags)
+    mesh = _panels(source, tags, whole, tolerance, angle)
     triangle, triangles, quads = _split(mesh)
     numbers = _patch_numbers(mesh)
     cells, data = [], []
@@ -189,12 +218,20 @@ def to_meshio(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
 
 
 def to_capytaine(
-    model: Model, *, lids: bool = False, name: str = "model", tags: str | Sequence[str] = ()
+    model: Model,
+    *,
+    lids: bool = False,
+    name: str = "model",
+    tags: str | Sequence[str] = (),
+    centre: Sequence[float] | None = None,
+    mass: float | None = None,
+    dofs: bool = True,
 ) -> Any:
-    """A ``capytaine.FloatingBody`` of the panels below z = 0, without degrees of freedom.
+    """A ``capytaine.FloatingBody`` of the panels below z = 0, in metres and kilograms.
 
     What is handed over is the GDF of panel codes, cut at z = 0: normals point into the water,
-    planes of symmetry stay such.
+    planes of symmetry stay such. Lengths are converted into metres, the unit of Capytaine's
+    defaults of gravity and density.
 
     Parameters
     ----------
@@ -206,25 +243,62 @@ def to_capytaine(
         The body's name.
     tags
         Only patches with one of these tags.
+    centre
+        The centre of gravity, in the model's axes and unit; by default that of the model's weights.
+    mass
+        The mass in kilograms; by default that of the model's weights. Without either Capytaine
+        takes the displaced mass.
+    dofs
+        The six degrees of freedom of a rigid body, rotations about the centre of gravity, or about
+        the origin where none is known.
 
     Returns
     -------
     capytaine.FloatingBody
         With the panels below the water as its mesh, and the model's planes of symmetry.
+
+    Raises
+    ------
+    Error
+        When no panel is below z = 0.
     """
+    from moldloft import _core
+
     capytaine = _module("capytaine", "'moldloft[hydro]'")
+    metres = _core.length_unit(model._document)[1] / 1000
+    weights = model.weights()
+    if len(weights.rows) and centre is None:
+        centre = list(weights.centre)
+    if len(weights.rows) and mass is None:
+        kilograms = dict(model._document.units()).get(weights.units.of("mass"), 1.0)
+        mass = weights.mass * kilograms
     with TemporaryDirectory() as folder:
-        path = Path(folder) / "body.gdf"
         names = [tags] if isinstance(tags, str) else list(tags)
-        model.write(path, format="gdf", immersed=True, tags=names)
-        mesh = capytaine.load_mesh(str(path), file_format="gdf")
-        lid = None
-        if lids:
-            both = Path(folder) / "lid.gdf"
-            lid_names = names or ["lid"]
-            model.write(both, format="gdf", lids=True, tags=lid_names)
-            lid = capytaine.load_mesh(str(both), file_format="gdf")
-    return capytaine.FloatingBody(mesh=mesh, lid_mesh=lid, name=name)
+
+        def loaded(stem: str, **options: Any) -> Any:
+            path = Path(folder) / f"{stem}.gdf"
+            (data,) = model.encoded("gdf", path.name, **options).values()
+            path.write_text(_scaled_gdf(data.decode(), metres))
+            return capytaine.load_mesh(str(path), file_format="gdf")
+
+        mesh = loaded("body", immersed=True, tags=names)
+        lid = loaded("lid", lids=True, tags=names or ["lid"]) if lids else None
+    place = None if centre is None else np.asarray(centre, dtype=np.float64) * metres
+    body = capytaine.FloatingBody(
+        mesh=mesh, lid_mesh=lid, center_of_mass=place, mass=mass, name=name
+    )
+    if dofs:
+        body.add_all_rigid_body_dofs(rotation_center=np.zeros(3) if place is None else place)
+    return body
+
+
+def _scaled_gdf(text: str, factor: float) -> str:
+    """A GDF with its vertices times a factor; the four lines before them stay."""
+    if factor == 1:
+        return text
+    lines = text.splitlines()
+    rows = (" ".join(repr(float(x) * factor) for x in line.split()) for line in lines[4:])
+    return "\n".join([*lines[:4], *rows]) + "\n"
 
 
 def to_ocp(model: Model, *, accuracy: float | None = None) -> Any:

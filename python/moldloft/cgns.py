@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft.arguments import explain
-from moldloft.errors import Error
+from moldloft.errors import FormatError, MissingPackageError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -117,7 +117,7 @@ def zones(model: Model) -> list[Zone]:
     if lost or not blocks:
         names = "`, `".join(lost)
         what = f"no structured grid in patch `{names}`" if lost else "no structured grid"
-        raise Error(f"cannot write cgns: {what}")
+        raise FormatError(f"cannot write cgns: {what}")
     out: list[Zone] = []
     taken: set[str] = set()
     for _, name, tag, _, vertices in blocks:
@@ -215,12 +215,12 @@ def write(model: Model, title: str) -> bytes:
     try:
         import h5py  # type: ignore[import-untyped]
     except ImportError as error:
-        raise Error("CGNS needs h5py\nhelp: pip install 'moldloft[grids]'") from error
+        raise MissingPackageError("CGNS needs h5py\nhelp: pip install 'moldloft[grids]'") from error
     patches = zones(model)
     positions = model.mesh().vertices
     used = np.concatenate([zone.vertices.ravel() for zone in patches])
     if not np.isfinite(positions[used]).all():
-        raise Error("cannot write cgns: a position is not a finite number")
+        raise FormatError("cannot write cgns: a position is not a finite number")
     joints = interfaces(patches)
     memory = io.BytesIO()
     with h5py.File(memory, "w", track_order=True) as file:
@@ -297,17 +297,17 @@ def write_grids(
     try:
         import h5py
     except ImportError as error:
-        raise Error("CGNS needs h5py\nhelp: pip install 'moldloft[grids]'") from error
+        raise MissingPackageError("CGNS needs h5py\nhelp: pip install 'moldloft[grids]'") from error
     if not grids:
-        raise Error("cannot write cgns: there is no grid")
+        raise FormatError("cannot write cgns: there is no grid")
     for number, grid in enumerate(grids, 1):
         if grid.ndim != 3 or grid.shape[-1] != 3 or min(grid.shape[:2]) < 2:
-            raise Error(
+            raise FormatError(
                 f"grid {number} has the shape {grid.shape}; CGNS takes (ni, nj, 3) with "
                 "two lines and more each way"
             )
         if not np.isfinite(grid).all():
-            raise Error("cannot write cgns: a position is not a finite number")
+            raise FormatError("cannot write cgns: a position is not a finite number")
     positions = np.concatenate([np.asarray(grid, float).reshape(-1, 3) for grid in grids]) + 0.0
     numbers = np.arange(len(positions), dtype=np.uint32)
     patches: list[Zone] = []

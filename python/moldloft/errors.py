@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic
 
-__all__ = ["Error", "FairingError", "FileError", "FormatError", "ModelError", "UnknownNameError"]
+__all__ = [
+    "Error",
+    "FairingError",
+    "FileError",
+    "FormatError",
+    "MissingPackageError",
+    "ModelError",
+    "UnknownNameError",
+]
 
 
 class Error(Exception):
@@ -160,15 +168,23 @@ class FileError(Error, OSError):
         Error.__init__(self, message, diagnostics)
 
 
+class MissingPackageError(Error, ImportError):
+    """A package of an extra is not installed, or another one is in its place."""
+
+    def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
+        Error.__init__(self, message, diagnostics)
+
+
 class FormatError(Error, ValueError):
-    """Bytes are not a file of a format.
+    """Bytes are not a file of a format, a format is unknown, or it cannot hold what it is to hold.
 
     Attributes
     ----------
     format : str
         The format.
     place : str
-        What ``number`` counts: ``line`` and ``block`` from 1, ``byte`` from 0.
+        Of a file that is read, what ``number`` counts: ``line`` and ``block`` from 1, ``byte`` from
+        0; else empty.
     number : int
         Where.
     expected, found : str
@@ -176,9 +192,16 @@ class FormatError(Error, ValueError):
     """
 
     def __init__(
-        self, message: str, format: str, place: str, number: int, expected: str, found: str
+        self,
+        message: str,
+        format: str = "",
+        place: str = "",
+        number: int = 0,
+        expected: str = "",
+        found: str = "",
+        diagnostics: Sequence[Diagnostic] = (),
     ) -> None:
-        super().__init__(message)
+        super().__init__(message, diagnostics)
         self.format = format
         self.place = place
         self.number = number

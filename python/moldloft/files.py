@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from moldloft.arguments import explain
-from moldloft.errors import Error
+from moldloft.errors import FormatError
 from moldloft.formats import format_named as _row
 from moldloft.formats import formats
 from moldloft.storage import Output, commit, read_set
@@ -97,14 +97,15 @@ def produce(
     immersed: bool = False,
     tags: Sequence[str] = (),
     tolerance: float | None = None,
+    angle: float | None = None,
     whole: bool = False,
     triangles: bool = False,
 ) -> list[Output]:
     """The files of a model in one format; ``path`` gives their names.
 
     ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`; ``tags``
-    names the patches to write, ``tolerance`` is how far fitted patches may be off, ``whole`` asks
-    for both sides of a symmetric model, ``triangles`` for triangles only.
+    names the patches to write, ``tolerance`` is how far fitted patches and panels may be off,
+    ``whole`` asks for both sides of a symmetric model, ``triangles`` for triangles only.
 
     Parameters
     ----------
@@ -121,7 +122,9 @@ def produce(
     tags
         Only patches with one of these tags; by default all.
     tolerance
-        The largest error of fitted surfaces.
+        The largest error of fitted surfaces, or distance of panels from their surfaces.
+    angle
+        The largest turn along a panel, in radians.
     whole
         Both sides of a symmetric model, in files of plain panels.
     triangles
@@ -136,17 +139,19 @@ def produce(
             immersed=immersed,
             tags=tags,
             tolerance=tolerance,
+            angle=angle,
             whole=whole,
             triangles=triangles,
         )
         return [Output(name, data) for name, data in found.items()]
     given = {"lids": lids, "immersed": immersed, "tags": bool(tags), "tolerance": tolerance}
+    given["angle"] = angle
     if row.holds == "surfaces":
         del given["tolerance"]
     given |= {"whole": whole, "triangles": triangles}
     for option, value in given.items():
         if value is not None and value is not False:
-            raise Error(f"`{option}` is not for {row.name}, which takes whole surfaces")
+            raise FormatError(f"`{option}` is not for {row.name}, which takes whole surfaces")
     source = model.blocks() if row.volume else model
     return [Output(path.name, row.encode(source, path.stem, tolerance=tolerance))]
 

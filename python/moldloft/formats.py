@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from moldloft import _core
 from moldloft.arguments import explain
-from moldloft.errors import Error
+from moldloft.errors import FormatError
 from moldloft.spelling import nearest
 
 if TYPE_CHECKING:
@@ -199,6 +199,11 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     among
         Only one of these; by default any.
 
+    Raises
+    ------
+    FormatError
+        When there is none of that name, or several.
+
     Examples
     --------
     >>> format_named("Plot3D").name
@@ -212,15 +217,17 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     ends = [f"`{row.name}`" for row in rows if wanted in (row.suffix, row.other_suffix) and wanted]
     if ends:
         files = f"files that end in `.{wanted}` may be of several formats"
-        raise Error(f"{files}; say which format: {' or '.join(ends)}")
+        raise FormatError(f"{files}; say which format: {' or '.join(ends)}")
     known = [word for row in rows for word in (row.name, *row.aliases)]
     near = nearest(wanted, known)
     if near:
-        raise Error(f"unknown format `{name}`; did you mean `{near}`?")
+        raise FormatError(f"unknown format `{name}`; did you mean `{near}`?")
     names = ", ".join(row.name for row in rows)
     if not name:
-        raise Error(f"no format is stated, and the file's name has no ending; one of: {names}")
-    raise Error(f"unknown format `{name}`; expected one of: {names}")
+        raise FormatError(
+            f"no format is stated, and the file's name has no ending; one of: {names}"
+        )
+    raise FormatError(f"unknown format `{name}`; expected one of: {names}")
 
 
 def markdown() -> str:
@@ -238,6 +245,8 @@ def markdown() -> str:
         options = [word for word in ("lids", "immersed") if getattr(row, word)]
         if row.plain_panels:
             options += ["whole", "triangles"]
+        if row.holds.startswith("panels"):
+            options += ["tolerance", "angle"]
         if row.holds == "surfaces":
             options.append("tolerance")
         planes = row.symmetry or "–"

@@ -481,7 +481,14 @@ class Model(Floating, Writable, Adapted):
             warnings.warn(str(remark), stacklevel=3)
         return value
 
-    def mesh(self, *, tags: str | Sequence[str] = ()) -> Mesh:
+    def mesh(
+        self,
+        *,
+        tags: str | Sequence[str] = (),
+        whole: bool = False,
+        tolerance: float | None = None,
+        angle: float | None = None,
+    ) -> Mesh:
         """Panels of all shown surfaces, for the current model; remembered until it changes.
 
         Parameters
@@ -489,6 +496,14 @@ class Model(Floating, Writable, Adapted):
         tags
             Only the patches that carry one of these tags, such as ``"lid"`` or a name of your
             own; by default all patches.
+        whole
+            Both sides of a symmetric model, joined in its planes; by default one side.
+        tolerance
+            The largest distance of panels from their surfaces, in the model's unit: divisions are
+            as many as it takes, and stated ones the least. By default the model's divisions.
+        angle
+            The largest turn of a surface along a panel, in radians; 0.5 where only ``tolerance``
+            is given.
 
         Returns
         -------
@@ -498,7 +513,7 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When no patch has such a tag.
+            When no patch has such a tag, or a tolerance or angle is not positive.
 
         Examples
         --------
@@ -510,11 +525,14 @@ class Model(Floating, Writable, Adapted):
         ... ''')
         >>> m.mesh().vertices.shape, m.mesh().faces.shape
         ((9, 3), (4, 4))
+        >>> len(m.mesh(tolerance=0.01).faces)
+        4
         """
         from moldloft.mesh import Mesh
 
         wanted = [tags] if isinstance(tags, str) else list(tags)
-        return Mesh(self._document.mesh(wanted), symmetry=self.symmetry)
+        made = self._document.mesh(wanted, whole, tolerance, angle)
+        return Mesh(made, symmetry="" if whole else self.symmetry)
 
     def junctions(self) -> list[_core.Diagnostic]:
         """Edges of patches in one place, and corners on edges of others, that are not joined.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import Error
 
@@ -93,15 +94,11 @@ class Nurbs:
         if len(parameters) != self.dimension:
             raise TypeError(f"{self.dimension} parameters are needed, {len(parameters)} were given")
         at = np.broadcast_arrays(*(np.asarray(p, dtype=np.float64) for p in parameters))
-        weights = np.ones(self.points.shape[:-1]) if self.weights is None else self.weights
-        values = np.concatenate([self.points * weights[..., None], weights[..., None]], axis=-1)
-        rows = [
-            _basis(self.knots[d], self.degrees[d], at[d].ravel()) for d in range(self.dimension)
-        ]
-        letters = "abc"[: self.dimension]
-        terms = ",".join(f"n{letter}" for letter in letters)
-        out = np.einsum(f"{letters}z,{terms}->nz", values, *rows, optimize=True)
-        points: Floats = (out[:, :3] / out[:, 3:]).reshape(*at[0].shape, 3)
+        places = np.stack([each.ravel() for each in at], axis=-1)
+        weights = None if self.weights is None else np.ascontiguousarray(self.weights.ravel())
+        net = np.ascontiguousarray(self.points.reshape(-1, 3), dtype=np.float64)
+        found = _core.nurbs_points(self.degrees, self.knots, net, weights, places)
+        points: Floats = found.reshape(*at[0].shape, 3)
         return points
 
     def parameters(self, *parameters: ArrayLike) -> tuple[Floats, ...]:
@@ -217,29 +214,6 @@ def _wrapped(text: str) -> str:
         lines.append(text[:cut])
         text = "    " + text[cut + 1 :]
     return "\n".join([*lines, text])
-
-
-def _basis(knots: Floats, degree: int, at: Floats) -> Floats:
-    """All basis functions at parameters, ``(len(at), count)`` (Piegl and Tiller 1997, A2.2)."""
-    count = len(knots) - degree - 1
-    inside = np.clip(at, knots[degree], knots[count])
-    span = np.clip(np.searchsorted(knots, inside, side="right") - 1, degree, count - 1)
-    while np.any(empty := knots[span] == knots[span + 1]):
-        span = np.where(empty, span - 1, span)
-    values = [np.ones_like(at)]
-    for p in range(1, degree + 1):
-        saved = np.zeros_like(at)
-        row = []
-        for r in range(p):
-            left, right = knots[span + 1 + r - p], knots[span + r + 1]
-            share = values[r] / (right - left)
-            row.append(saved + (right - at) * share)
-            saved = (at - left) * share
-        values = [*row, saved]
-    out = np.zeros((len(at), count))
-    for r, value in enumerate(values):
-        out[np.arange(len(at)), span - degree + r] = value
-    return out
 
 
 explain(globals())

@@ -9,6 +9,7 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.arguments import explain
+from moldloft.calculus import CurveCalculus, SurfaceCalculus, broadcast, parameter
 from moldloft.errors import Error, ModelError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -284,11 +285,6 @@ class Ring(Bead, Magnet):
     """A point on a snake."""
 
 
-def _check_finite(name: str, values: Floats) -> None:
-    if not np.isfinite(values).all():
-        raise ModelError(f"{name} is not finite: found {values[~np.isfinite(values)].flat[0]}")
-
-
 class _Located(Object):
     """What searches go to: curves and surfaces."""
 
@@ -407,26 +403,31 @@ class _Located(Object):
         return Nurbs._of(_core.nurbs(self._document, self.name, accuracy, degree))
 
 
-class Curve(_Located):
+class Curve(CurveCalculus, _Located):
     """A curve; calling it gives its points."""
 
     length: float
 
     if TYPE_CHECKING:
 
-        def __call__(self, t: ArrayLike, /) -> Floats:
-            """Positions at ``t`` in [0, 1]: shape ``(…, 3)`` for parameters of shape ``(…)``."""
+        def __call__(self, t: ArrayLike, /, *, beyond: bool = False) -> Floats:
+            """Positions at ``t`` in [0, 1]: shape ``(…, 3)`` for parameters of shape ``(…)``.
+
+            With ``beyond`` also outside, where the formula is continued.
+            """
             ...
     else:
 
-        def __call__(self, *parameters: ArrayLike) -> Floats:
-            """Positions at ``t`` in [0, 1]: shape ``(…, 3)`` for parameters of shape ``(…)``."""
+        def __call__(self, *parameters: ArrayLike, beyond: bool = False) -> Floats:
+            """Positions at ``t`` in [0, 1]: shape ``(…, 3)`` for parameters of shape ``(…)``.
+
+            With ``beyond`` also outside, where the formula is continued.
+            """
             if len(parameters) != 1:
                 raise ModelError(
                     f"a curve takes t, and a surface u, v; {len(parameters)} parameters given"
                 )
-            t = np.asarray(parameters[0], dtype=np.float64)
-            _check_finite("t", t)
+            t = parameter("t", parameters[0], beyond)
             flat = self._document.curve(self.name, np.ascontiguousarray(t.ravel()))
             return flat.reshape(*t.shape, 3)
 
@@ -435,7 +436,7 @@ class Snake(Curve):
     """A curve on a surface."""
 
 
-class Surface(_Located):
+class Surface(SurfaceCalculus, _Located):
     """A surface; calling it gives its points."""
 
     area: float
@@ -444,25 +445,25 @@ class Surface(_Located):
 
     if TYPE_CHECKING:
 
-        def __call__(self, u: ArrayLike, v: ArrayLike, /) -> Floats:
-            """Positions at ``u, v`` in [0, 1], which are broadcast; of shape ``(…, 3)``."""
+        def __call__(self, u: ArrayLike, v: ArrayLike, /, *, beyond: bool = False) -> Floats:
+            """Positions at ``u, v`` in [0, 1], which are broadcast; of shape ``(…, 3)``.
+
+            With ``beyond`` also outside, where the formula is continued.
+            """
             ...
     else:
 
-        def __call__(self, *parameters: ArrayLike) -> Floats:
-            """Positions at ``u, v`` in [0, 1], which are broadcast; of shape ``(…, 3)``."""
+        def __call__(self, *parameters: ArrayLike, beyond: bool = False) -> Floats:
+            """Positions at ``u, v`` in [0, 1], which are broadcast; of shape ``(…, 3)``.
+
+            With ``beyond`` also outside, where the formula is continued.
+            """
             if len(parameters) != 2:
                 count = f"{len(parameters)} parameter{'s' * (len(parameters) != 1)}"
                 raise ModelError(f"a surface takes u, v, and a curve t; {count} given")
-            u, v = (np.asarray(p, dtype=np.float64) for p in parameters)
-            try:
-                u, v = np.broadcast_arrays(u, v)
-            except ValueError:
-                raise ModelError(
-                    f"u of shape {u.shape} and v of shape {v.shape} do not broadcast to one shape"
-                ) from None
-            _check_finite("u", u)
-            _check_finite("v", v)
+            u, v = broadcast(
+                *(parameter(n, p, beyond) for n, p in zip("uv", parameters, strict=True))
+            )
             flat = self._document.surface(
                 self.name, np.ascontiguousarray(u.ravel()), np.ascontiguousarray(v.ravel())
             )
@@ -711,6 +712,10 @@ _METHODS = {
     "to_nurbs": "curves, snakes, surfaces and solids",
     "grid": "surfaces",
     "look": "surfaces",
+    "derivative": "curves, snakes and surfaces",
+    "tangent": "curves and snakes",
+    "curvature": "curves, snakes and surfaces",
+    "normal": "surfaces",
 }
 
 
@@ -741,7 +746,9 @@ if TYPE_CHECKING:
         volume: float
         centroid: Floats
 
-        def __call__(self, *parameters: ArrayLike) -> Floats: ...
+        def __call__(self, *parameters: ArrayLike, beyond: bool = False) -> Floats: ...
+        def derivative(self, *args: Any, **kwargs: Any) -> Floats: ...
+        def curvature(self, *args: Any, **kwargs: Any) -> Any: ...
 
 
 explain(globals())

@@ -9,13 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from moldloft.arguments import explain
-from moldloft.errors import FileError, UnknownNameError
+from moldloft.errors import FileError, FormatError, ModelError, UnknownNameError
 
 if TYPE_CHECKING:
     from moldloft import _core
     from moldloft.models import Model
 
 __all__ = ["Writable"]
+
+_OF_FORMATS = {"cannot-write", "unused-option"}
+"""The diagnostics of formats that cannot hold what they are to hold."""
 
 
 class Writable:
@@ -35,6 +38,7 @@ class Writable:
         immersed: bool = False,
         tags: str | Sequence[str] = (),
         tolerance: float | None = None,
+        angle: float | None = None,
         whole: bool = False,
         triangles: bool = False,
     ) -> list[Path]:
@@ -57,7 +61,11 @@ class Writable:
         tolerance
             For ``gdf-high``, ``step``, ``iges``, ``3dm`` and ``dxf``: the largest error of fits,
             by default 1e-6 of the model's diagonal (``gdf-high``: 1e-5). Surfaces that are
-            B-splines are exact.
+            B-splines are exact. For files of panels: the largest distance of panels from their
+            surfaces, by as many divisions as it takes; by default those of the model.
+        angle
+            For files of panels: the largest turn of a surface along a panel, in radians; 0.5 where
+            only ``tolerance`` is given.
         whole
             Both sides of a symmetric model, joined in its planes, in files of plain panels; by
             default these hold one side. Files of panel codes name the planes instead.
@@ -74,7 +82,9 @@ class Writable:
         FileError
             When there is no such folder, or it cannot be written to.
         FormatError
-            When the format is unknown or cannot hold the model.
+            When the format is unknown, cannot hold the model, or there is nothing for it to hold.
+        ModelError
+            When the model has errors, or no patch has such a tag.
 
         Examples
         --------
@@ -103,6 +113,7 @@ class Writable:
             lids=lids,
             immersed=immersed,
             tolerance=tolerance,
+            angle=angle,
             tags=names,
             whole=whole,
             triangles=triangles,
@@ -118,6 +129,7 @@ class Writable:
         immersed: bool = False,
         tags: Sequence[str] = (),
         tolerance: float | None = None,
+        angle: float | None = None,
         whole: bool = False,
         triangles: bool = False,
     ) -> dict[str, bytes]:
@@ -139,7 +151,9 @@ class Writable:
         tags
             Only patches with one of these tags; by default all.
         tolerance
-            The largest error of fitted surfaces.
+            The largest error of fitted surfaces, or distance of panels from their surfaces.
+        angle
+            The largest turn along a panel, in radians.
         whole
             Both sides of a symmetric model, in files of plain panels.
         triangles
@@ -152,8 +166,8 @@ class Writable:
 
         Raises
         ------
-        Error
-            When the format is unknown or cannot hold the model.
+        FormatError
+            When the format is unknown, cannot hold the model, or there is nothing for it to hold.
 
         Examples
         --------
@@ -166,9 +180,15 @@ class Writable:
         >>> sorted(m.encoded("off", "plate.off"))
         ['plate.off']
         """
-        files = self._document.write(
-            format, name, lids, immersed, list(tags), tolerance, whole, triangles
-        )
+        try:
+            files = self._document.write(
+                format, name, lids, immersed, list(tags), tolerance, angle, whole, triangles
+            )
+        except ModelError as error:
+            # The format is at fault, or what is asked of it, and not the model.
+            if not {d.id for d in error.diagnostics} <= _OF_FORMATS:
+                raise
+            raise FormatError(str(error), format, diagnostics=error.diagnostics) from None
         self._warn_of_export()
         return dict(files)
 

@@ -291,8 +291,47 @@ impl Brep {
         self.faceted.extend(other.faceted);
     }
 
+    /// The same shape with every normal that of the surface, for formats whose faces have no sense: surfaces of reversed
+    /// faces run backwards along u, as NURBS unless they are planes.
+    pub fn facing(mut self) -> Self {
+        for k in 0..self.faces.len() {
+            if !self.faces[k].reversed {
+                continue;
+            }
+            let made = self.nurbs(&self.faces[k]);
+            let face = &mut self.faces[k];
+            let known = matches!(face.surface, SurfaceShape::Nurbs(_));
+            match (&mut face.surface, made) {
+                (SurfaceShape::Plane { normal, .. }, _) => *normal = -*normal,
+                (surface, Some(made)) => *surface = SurfaceShape::Nurbs(Box::new(backwards(made))),
+                (_, None) => continue,
+            }
+            face.reversed = false;
+            for side in face.loops.iter_mut().flatten() {
+                // Of other surfaces the parameters are not those of the NURBS.
+                side.trace = side.trace.take().filter(|_| known);
+                for p in side.trace.iter_mut().flat_map(|trace| &mut trace.points) {
+                    p.x = 1.0 - p.x;
+                }
+            }
+        }
+        self
+    }
+
     /// True when all faces are exact but for rounding.
     pub fn exact(&self) -> bool {
         self.faces.iter().all(|f| f.exact)
     }
+}
+
+/// A surface run backwards along u.
+fn backwards(mut surface: Nurbs<2>) -> Nurbs<2> {
+    let [nu, nv] = surface.counts();
+    let order: Vec<usize> = (0..nu).rev().flat_map(|i| (0..nv).map(move |j| i * nv + j)).collect();
+    surface.points = order.iter().map(|&k| surface.points[k]).collect();
+    if let Some(weights) = &mut surface.weights {
+        *weights = order.iter().map(|&k| weights[k]).collect();
+    }
+    surface.knots[0] = surface.knots[0].iter().rev().map(|k| 1.0 - k).collect();
+    surface
 }

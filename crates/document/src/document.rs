@@ -17,7 +17,7 @@ use moldloft_lang::source::scope::Binding;
 use moldloft_lang::source::sketch_file::{self, SketchFile};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph};
-use moldloft_num::Dual4;
+use moldloft_num::{Dual4, Fineness};
 use moldloft_panel::{Nominal, Panelling};
 use moldloft_registry::{CallError, Kept, Registry, Role, Row, Scalar, Value};
 use moldloft_sketch::SketchSolid;
@@ -811,6 +811,21 @@ impl Document {
             Some((_, unit, _)) => format!("{unit} {stated}"),
             None => stated,
         }
+    }
+
+    /// The panels with as many divisions as bring them as near to their surfaces as this; see [`Panelling::within`].
+    ///
+    /// # Errors
+    /// When there would be too many panels, or none.
+    pub fn panelled_within(&mut self, fineness: &Fineness) -> Result<Arc<Panelled>, Diagnostic> {
+        self.complete().map_err(|mut faults| faults.swap_remove(0))?;
+        let graph = &self.plain.graph;
+        let panelling = Panelling::within(graph, fineness).map_err(|f| unplaced(&f))?;
+        let mesh = panelling.own_mesh().ok_or_else(|| {
+            let none = Diagnostic::error("no-mesh", "the model has no panels");
+            self.or_spent(none.help("show a surface"))
+        })?;
+        Ok(Arc::new(Panelled { panelling, mesh }))
     }
 
     /// The panels of all shown surfaces, remembered until something changes.

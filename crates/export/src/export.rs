@@ -8,6 +8,7 @@ use moldloft_document::{Document, Panelled, PatchAnalysis};
 use moldloft_io::vtk::{self, NamedFile};
 use moldloft_io::{LinesAndPoints, StructuredGrid, WriteError};
 use moldloft_mesh::{Blocks, Mesh};
+use moldloft_num::Fineness;
 use moldloft_registry::Value;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -25,8 +26,34 @@ pub struct WriteOptions {
     pub whole: bool,
     /// Triangles only.
     pub triangles: bool,
-    /// How far fitted spline patches may be off; 1e-5 of the model's diagonal by default.
+    /// How far fitted spline patches may be off, 1e-5 of the model's diagonal by default; in files of panels, how far
+    /// panels may be from their surfaces, by default whatever their divisions make of it.
     pub tolerance: Option<f64>,
+    /// In files of panels, the greatest turn of a surface along a panel, in radians.
+    pub angle: Option<f64>,
+}
+
+/// The greatest turn along a panel, in radians, where a distance alone is asked for: holes smaller than it stay round.
+const USUAL_TURN: f64 = 0.5;
+
+impl WriteOptions {
+    /// How near panels are to be to their surfaces, where that is asked for.
+    ///
+    /// # Errors
+    /// A number that is not positive.
+    pub fn fineness(&self) -> Result<Option<Fineness>, Diagnostic> {
+        for (name, value) in [("tolerance", self.tolerance), ("angle", self.angle)] {
+            if value.is_some_and(|x| !x.is_finite() || x <= 0.0) {
+                let message = format!("`{name}` has to be positive");
+                return Err(Diagnostic::error("out-of-range", message));
+            }
+        }
+        Ok((self.tolerance.is_some() || self.angle.is_some()).then(|| Fineness {
+            angle: self.angle.unwrap_or(USUAL_TURN),
+            chord: self.tolerance.unwrap_or(f64::INFINITY),
+            side: f64::INFINITY,
+        }))
+    }
 }
 
 /// Why a model could not be written.
@@ -104,11 +131,13 @@ fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnos
         let all: Vec<&str> = crate::FORMATS.iter().filter(|f| takes(f)).map(|f| f.name).collect();
         all.join(", ")
     };
-    if options.tolerance.is_some() && format.holds != Holds::Surfaces {
-        let takers = names(|f| f.holds == Holds::Surfaces);
-        return error(format!("a tolerance is for fitted patches, {takers}"));
-    }
     let of_panels = matches!(format.holds, Holds::Panels | Holds::PanelsAndLines);
+    if options.tolerance.is_some() && format.holds != Holds::Surfaces && !of_panels {
+        return error(format!("a tolerance is for fitted patches and panels, not for {name}"));
+    }
+    if options.angle.is_some() && !of_panels {
+        return error(format!("an angle is for panels, not for {name}"));
+    }
     if (options.whole || options.triangles)
         && !(of_panels && format.symmetry == SymmetryPlanes::None)
     {
@@ -257,23 +286,20 @@ impl Export<'_> {
     /// Panels that cannot be made; unknown tags; wires and points, when the format has no place for
     /// them.
     pub fn panels(&mut self) -> Result<Panels, ExportFailure> {
-        let whole = self.document.panelled()?;
-        let mut part = tagged(&whole.mesh, &self.options.tags)?;
-        if self.options.whole {
-            let letters = self.document.symmetry();
-            for axis in (0..3).filter(|&k| letters.contains(['x', 'y', 'z'][k])) {
-                let suffix = [".mirror_x", ".mirror_y", ".mirror_z"][axis];
-                let both = part.as_ref().unwrap_or(&whole.mesh).with_mirror_image(axis, suffix);
-                part = Some(both.map_err(|e| Diagnostic::error("too-large", e.to_string()))?);
-            }
+        let lines = self.lines_and_points();
+        let takes_lines = self.format.holds == Holds::PanelsAndLines;
+        if !takes_lines {
+            lines.refused(self.format.name)?;
         }
+        // The spline patches of a solver have a tolerance of their own.
+        let mut panels = panels(self.document, &self.options)?;
         if self.options.triangles {
-            part = Some(part.as_ref().unwrap_or(&whole.mesh).triangulated());
+            panels.part = Some(panels.triangulated());
         }
-        if self.format.holds != Holds::PanelsAndLines {
-            self.lines_and_points().refused(self.format.name)?;
+        if panels.faces().is_empty() && !(takes_lines && !lines.is_empty()) {
+            return Err(nothing_shown(self.format.name).into());
         }
-        Ok(Panels { whole, part })
+        Ok(panels)
     }
 
     /// The polylines and points of the shown bodies.
@@ -297,6 +323,45 @@ impl Export<'_> {
         };
         Ok(self.document.patch_fields()?.into_iter().map(patch).collect())
     }
+}
+
+/// The panels that some options ask for: of these tags, of both sides, as near to their surfaces.
+///
+/// # Errors
+/// Panels that cannot be made; unknown tags; numbers that are not positive.
+pub fn panels(document: &mut Document, options: &WriteOptions) -> Result<Panels, Vec<Diagnostic>> {
+    let whole = match options.fineness().map_err(|d| vec![d])? {
+        Some(fineness) => document.panelled_within(&fineness),
+        None => document.panelled(),
+    };
+    let whole = whole.map_err(|d| vec![d])?;
+    let mut part = tagged(&whole.mesh, &options.tags)?;
+    if options.whole {
+        let letters = document.symmetry();
+        for axis in (0..3).filter(|&k| letters.contains(['x', 'y', 'z'][k])) {
+            let suffix = [".mirror_x", ".mirror_y", ".mirror_z"][axis];
+            let both = part.as_ref().unwrap_or(&whole.mesh).with_mirror_image(axis, suffix);
+            part = Some(both.map_err(|e| vec![Diagnostic::error("too-large", e.to_string())])?);
+        }
+    }
+    Ok(Panels { whole, part })
+}
+
+impl Panels {
+    /// All panels of the model, and those that are written where they are others.
+    pub fn into_parts(self) -> (Arc<Panelled>, Option<Mesh>) {
+        (self.whole, self.part)
+    }
+}
+
+/// The fault of a file that would hold nothing.
+pub(crate) fn nothing_shown(format: &str) -> Diagnostic {
+    Diagnostic::error(
+        "cannot-write",
+        format!("cannot write {format}: there are no panels to write"),
+    )
+    .expected("a surface or body that is shown")
+    .help("remove `visible = 0`; curves go to step, iges, 3dm, dxf and svg")
 }
 
 /// The polylines and points of the shown bodies.

@@ -36,7 +36,8 @@ mod units;
 
 pub use brep::brep;
 pub use export::{
-    Export, ExportFailure, FileName, WriteOptions, tagged, write, write_blocks, write_grids,
+    Export, ExportFailure, FileName, Panels, WriteOptions, panels, tagged, write, write_blocks,
+    write_grids,
 };
 pub use format::{Encoder, Format, Holds, Lids, SymmetryPlanes};
 pub use formats::{FORMATS, format_named};

@@ -2,6 +2,7 @@
 //! code has no flag for written out, the image with its original.
 
 use crate::{Export, ExportFailure};
+use moldloft_diag::Diagnostic;
 use moldloft_io::{PanelFileOptions, WriteError};
 use moldloft_mesh::{Mesh, MeshError};
 
@@ -18,6 +19,11 @@ impl Export<'_> {
         let large = |_: MeshError| WriteError::TooLarge { what: "vertices", count };
         if self.options.immersed {
             mesh = mesh.immersed(0.0).map_err(large)?;
+            if mesh.faces().is_empty() {
+                let name = self.format.name;
+                let message = format!("cannot write {name}: no panel is below z = 0");
+                return Err(Diagnostic::error("cannot-write", message).into());
+            }
         }
         let flag_x = self.format.symmetry.names_x(mirror_y);
         if mirror_x && !flag_x {

@@ -7,9 +7,8 @@
 //! coarser, is its estimate. Cells are halved, the worst first, until the sum of the estimates is small.
 
 use crate::cell::PolynomialCell;
-use crate::gauss::gauss;
 use crate::strip::{CoordinatePlane, Strip, StripLine, Wet, strips};
-use moldloft_num::{Real, Vec3};
+use moldloft_num::{Real, Vec3, gauss_rule};
 use moldloft_parallel::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -351,7 +350,7 @@ fn integrated<T: Real>(
     let length = strip.to - strip.from;
     let sign = strip.sign();
     let mut line = StripLine::default();
-    for &(s, weight) in gauss(outer) {
+    for &(s, weight) in gauss_rule(outer) {
         let (share, slope) = if strip.is_cut() {
             let half = std::f64::consts::FRAC_PI_2;
             let (sine, cosine) = (libm::sin(half * s), libm::cos(half * s));
@@ -373,7 +372,7 @@ fn integrated<T: Real>(
             (T::zero(), T::one())
         };
         let reach = high - low;
-        for &(s, weight) in gauss(across) {
+        for &(s, weight) in gauss_rule(across) {
             let t = low + reach * s;
             let (basis, slopes) = crate::bernstein::basis(line.at.len() - 1, t);
             let (mut p, mut inner, mut outer) = (Vec3::zero(), Vec3::zero(), Vec3::zero());

@@ -17,7 +17,6 @@ mod descent;
 mod equilibrium;
 mod figures;
 mod flotation;
-mod gauss;
 mod integrals;
 mod measures;
 mod section;

@@ -1,7 +1,6 @@
 //! Lengths and volumes with their centres, by quadrature on the shapes themselves.
 
-use crate::gauss::gauss;
-use moldloft_num::{Curve, Order, Real, Solid, Vec3, gauss_legendre};
+use moldloft_num::{Curve, Order, Real, Solid, Vec3, gauss_legendre, gauss_rule};
 use moldloft_spline::curve_integral;
 
 /// Relative differences below this count as none.
@@ -66,9 +65,9 @@ const KINKED: u32 = 20;
 /// times the sides of the parts about them.
 fn rounding<T: Real>(solid: &dyn Solid<T>) -> f64 {
     let mut sum = 0.0;
-    for (u, a) in gauss(8) {
-        for (v, b) in gauss(8) {
-            for (w, c) in gauss(8) {
+    for (u, a) in gauss_rule(8) {
+        for (v, b) in gauss_rule(8) {
+            for (w, c) in gauss_rule(8) {
                 let jet = solid.jet((*u).into(), (*v).into(), (*w).into());
                 let [x, y, z] = [jet.u, jet.v, jet.w].map(|d| d.re().norm());
                 sum += a * b * c * jet.p.re().norm() * (x * y + y * z + z * x);
@@ -89,7 +88,7 @@ pub fn solid_measures<T: Real>(solid: &dyn Solid<T>) -> Option<(T, Vec3<T>, f64)
         let (mut volume, mut moment) = (T::zero(), Vec3::zero());
         let rule = |k: usize| {
             let (low, step) = (low[k], high[k] - low[k]);
-            gauss(8).iter().map(move |(s, w)| (low + step * s, w * step))
+            gauss_rule(8).iter().map(move |(s, w)| (low + step * s, w * step))
         };
         for (u, a) in rule(0) {
             for (v, b) in rule(1) {

@@ -1,9 +1,8 @@
 //! Plane sections of a body: the immersed area of a station, and the extent of the waterline.
 
 use crate::body::Body;
-use crate::gauss::gauss;
 use crate::strip::{CoordinatePlane, Strip, StripLine, strips};
-use moldloft_num::{Real, Vec3};
+use moldloft_num::{Real, Vec3, gauss_rule};
 
 /// Points at which a function along a cut is looked at before its extreme or root is sought.
 const LOOKS: usize = 16;
@@ -31,7 +30,7 @@ pub fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
             let turn = if before { strip.sign() } else { -strip.sign() };
             for [a, b] in under_water(strip, cut, level) {
                 let (length, mut line) = (b - a, StripLine::default());
-                for &(s, weight) in gauss(POINTS) {
+                for &(s, weight) in gauss_rule(POINTS) {
                     let half = std::f64::consts::FRAC_PI_2;
                     let (sine, cosine) = (libm::sin(half * s), libm::cos(half * s));
                     let w = a + length * (sine * sine);

@@ -27,6 +27,8 @@ pub struct IgesHeader<'a> {
 /// As [`crate::step::write`].
 pub fn write(brep: &Brep, header: &IgesHeader<'_>) -> Result<Vec<u8>, WriteError> {
     crate::step::check(brep, "iges")?;
+    // Faces of IGES have no sense.
+    let brep = &brep.clone().facing();
     let mut file = File::default();
     for part in &brep.parts {
         for &f in part.shells.iter().flat_map(|s| &s.faces) {

@@ -1,19 +1,32 @@
 //! Triangles of a region of the plane with points inside it: Delaunay's, as far as the rim allows.
 
-use crate::triangulate;
-use moldloft_num::Vec3;
-use std::collections::{HashMap, HashSet};
+use spade::handles::{FixedFaceHandle, InnerTag};
+use spade::{
+    ConstrainedDelaunayTriangulation, HasPosition, Point2, PositionInTriangulation, Triangulation,
+};
+use std::collections::HashMap;
 
-/// Points with less than this share of the area to an edge lie on it.
-const ON_EDGE: f64 = 1e-9;
+/// A vertex and its number.
+struct Corner {
+    at: [f64; 2],
+    number: usize,
+}
 
-/// Triangles of less than this share of the region's box have three corners in one line.
-const FLAT: f64 = 1e-13;
+impl HasPosition for Corner {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        // The triangulation takes no numbers below 1e-42.
+        let [x, y] = self.at.map(|x| if x.abs() < spade::MIN_ALLOWED_VALUE { 0.0 } else { x });
+        Point2::new(x, y)
+    }
+}
 
 /// Triangles, counter-clockwise, of the region between `loops` (the first counter-clockwise round the
 /// others, which are clockwise), with the points `inner` inside it as vertices. Every edge of the loops
-/// is an edge of a triangle; within them edges are flipped until no vertex lies in the circumcircle of a
-/// neighbouring triangle (Lawson 1977). A point of `inner` that lies in no triangle is left out.
+/// is an edge of a triangle; within them no vertex lies in the circumcircle of a triangle unless an edge of a loop is
+/// between them (Chew 1989). A point of `inner` that lies on an edge of a loop or outside of all is left out. There are
+/// none when edges of the loops cross or a coordinate is not finite.
 ///
 /// # Example
 /// ```
@@ -26,67 +39,106 @@ pub fn planar_triangles(
     loops: &[Vec<usize>],
     inner: &[usize],
 ) -> Vec<[usize; 3]> {
-    let lifted: Vec<Vec3> = points.iter().map(|&[x, y]| Vec3::of(x, y, 0.0)).collect();
-    // The plane's own axes would be turned, which changes nothing here.
-    let ears = triangulate(&lifted, loops, Vec3::of(0.0, 0.0, 1.0));
-    let rim = loops.iter().flat_map(|l| (0..l.len()).map(|k| key(l[k], l[(k + 1) % l.len()])));
-    let mut net = PlanarTriangulation {
-        points,
-        rim: rim.collect(),
-        triangles: Vec::new(),
-        sides: HashMap::new(),
+    // Vertices in one place are one.
+    let mut placed: HashMap<[u64; 2], usize> = HashMap::new();
+    let mut corners: Vec<Corner> = Vec::new();
+    let mut corner_of = |number: usize| {
+        let at = points[number];
+        *placed.entry(at.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
+            corners.push(Corner { at, number });
+            corners.len() - 1
+        })
     };
-    let extent = |k: usize| {
-        let all = loops.iter().flatten().map(|&p| points[p][k]);
-        let (low, high) =
-            all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-        high - low
-    };
-    let flat = FLAT * extent(0) * extent(1);
-    for t in ears {
-        if net.turn(t[0], t[1], t[2]) > -flat {
-            net.add(t);
+    // An edge that loops run along an even number of times parts nothing.
+    let mut uses: HashMap<(usize, usize), u32> = HashMap::new();
+    let mut edges = Vec::new();
+    for l in loops {
+        for k in 0..l.len() {
+            let (a, b) = (corner_of(l[k]), corner_of(l[(k + 1) % l.len()]));
+            if a == b {
+                continue;
+            }
+            let count = uses.entry((a.min(b), a.max(b))).or_default();
+            *count += 1;
+            if *count == 1 {
+                edges.push([a, b]);
+            }
         }
     }
-    net.open_flat(flat);
-    let mut edges: Vec<(usize, usize)> = Vec::new();
-    for t in net.triangles.clone() {
-        edges.extend([(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
+    let mut crossed = false;
+    let made =
+        ConstrainedDelaunayTriangulation::<Corner>::try_bulk_load_cdt(corners, edges, |_| {
+            crossed = true
+        });
+    let Ok(mut net) = made else { return Vec::new() };
+    if crossed {
+        return Vec::new();
     }
-    net.settle(edges);
-    for &point in inner {
-        net.insert(point);
+    for &number in inner {
+        let corner = Corner { at: points[number], number };
+        let free = match net.locate(corner.position()) {
+            PositionInTriangulation::OnFace(_) => true,
+            PositionInTriangulation::OnEdge(e) => !net.is_constraint_edge(e.as_undirected()),
+            _ => false,
+        };
+        if free && net.insert(corner).is_err() {
+            return Vec::new();
+        }
     }
-    net.triangles
+    within(&net, &uses)
 }
 
-fn key(a: usize, b: usize) -> (usize, usize) {
-    (a.min(b), a.max(b))
+/// The triangles that an odd number of loop edges part from the outside.
+fn within(
+    net: &ConstrainedDelaunayTriangulation<Corner>,
+    uses: &HashMap<(usize, usize), u32>,
+) -> Vec<[usize; 3]> {
+    let mut inside: Vec<Option<bool>> = vec![None; net.num_inner_faces() + 1];
+    let mut reached: Vec<(FixedFaceHandle<InnerTag>, bool)> = Vec::new();
+    let parts = |a: usize, b: usize| uses.get(&(a.min(b), a.max(b))).is_some_and(|n| n % 2 == 1);
+    for edge in net.convex_hull() {
+        // Hull edges have the outside on their left.
+        let edge = edge.rev();
+        if let Some(face) = edge.face().as_inner() {
+            let [a, b] = edge.vertices().map(|v| v.index());
+            reached.push((face.fix(), parts(a, b)));
+        }
+    }
+    while let Some((face, state)) = reached.pop() {
+        if inside[face.index()].is_some() {
+            continue;
+        }
+        inside[face.index()] = Some(state);
+        for edge in net.face(face).adjacent_edges() {
+            if let Some(other) = edge.rev().face().as_inner() {
+                let [a, b] = edge.vertices().map(|v| v.index());
+                reached.push((other.fix(), state != parts(a, b)));
+            }
+        }
+    }
+    let kept = net.inner_faces().filter(|f| inside[f.fix().index()] == Some(true));
+    kept.map(|f| f.vertices().map(|v| v.data().number)).collect()
 }
 
-struct PlanarTriangulation<'p> {
-    points: &'p [[f64; 2]],
-    /// Edges that stay.
-    rim: HashSet<(usize, usize)>,
-    triangles: Vec<[usize; 3]>,
-    /// The triangle on the left of each directed edge.
-    sides: HashMap<(usize, usize), usize>,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl PlanarTriangulation<'_> {
+    fn key(a: usize, b: usize) -> (usize, usize) {
+        (a.min(b), a.max(b))
+    }
+
     /// Twice the area of a triangle.
-    fn turn(&self, a: usize, b: usize, c: usize) -> f64 {
-        let [a, b, c] = [a, b, c].map(|k| self.points[k]);
+    fn turn(points: &[[f64; 2]], [a, b, c]: [usize; 3]) -> f64 {
+        let [a, b, c] = [a, b, c].map(|k| points[k]);
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     }
 
-    /// Positive when `d` lies in the circumcircle of the triangle a, b, c; and by how much rounding may
-    /// change it.
-    fn in_circle(&self, a: usize, b: usize, c: usize, d: usize) -> (f64, f64) {
-        let o = self.points[d];
-        let [a, b, c] = [a, b, c].map(|k| {
-            let p = self.points[k];
-            let (x, y) = (p[0] - o[0], p[1] - o[1]);
+    /// Positive when `d` is in the circumcircle of a triangle; and by how much rounding may change it.
+    fn in_circle(points: &[[f64; 2]], corners: [usize; 3], d: usize) -> (f64, f64) {
+        let o = points[d];
+        let [a, b, c] = corners.map(|k| {
+            let (x, y) = (points[k][0] - o[0], points[k][1] - o[1]);
             [x, y, x * x + y * y]
         });
         let part = |p: [f64; 3], q: [f64; 3], r: [f64; 3]| (p[0] * q[1] - p[1] * q[0]) * r[2];
@@ -94,134 +146,6 @@ impl PlanarTriangulation<'_> {
         let size = parts.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         (parts.iter().sum(), 32.0 * f64::EPSILON * size)
     }
-
-    fn set(&mut self, at: usize, t: [usize; 3]) {
-        self.triangles[at] = t;
-        for k in 0..3 {
-            self.sides.insert((t[k], t[(k + 1) % 3]), at);
-        }
-    }
-
-    fn add(&mut self, t: [usize; 3]) -> usize {
-        self.triangles.push(t);
-        let at = self.triangles.len() - 1;
-        self.set(at, t);
-        at
-    }
-
-    /// The triangle on the left of an edge, and its third corner.
-    fn left(&self, a: usize, b: usize) -> Option<(usize, usize)> {
-        let at = *self.sides.get(&(a, b))?;
-        let third = self.triangles[at].into_iter().find(|&c| c != a && c != b)?;
-        Some((at, third))
-    }
-
-    /// Gives triangles with three corners in one line, which vertices of the rim in one line make, the third corner of
-    /// the neighbour along their longest side; those without such a neighbour are left out.
-    fn open_flat(&mut self, flat: f64) {
-        let is_flat = |net: &Self, t: [usize; 3]| net.turn(t[0], t[1], t[2]) <= flat;
-        loop {
-            let mut flipped = false;
-            for at in 0..self.triangles.len() {
-                let t = self.triangles[at];
-                if !is_flat(self, t) {
-                    continue;
-                }
-                let length = |k: &usize| {
-                    let [p, q] = [t[*k], t[(k + 1) % 3]].map(|v| self.points[v]);
-                    (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)
-                };
-                let Some(k) = (0..3).max_by(|i, j| length(i).total_cmp(&length(j))) else {
-                    continue;
-                };
-                let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
-                let Some((other, d)) = self.left(b, a) else { continue };
-                let new = [[c, a, d], [c, d, b]];
-                if self.rim.contains(&key(a, b)) || new.iter().any(|n| is_flat(self, *n)) {
-                    continue;
-                }
-                self.sides.remove(&(a, b));
-                self.sides.remove(&(b, a));
-                self.set(at, new[0]);
-                self.set(other, new[1]);
-                flipped = true;
-            }
-            if !flipped {
-                break;
-            }
-        }
-        let kept: Vec<[usize; 3]> =
-            self.triangles.iter().copied().filter(|t| !is_flat(self, *t)).collect();
-        if kept.len() < self.triangles.len() {
-            self.triangles.clear();
-            self.sides.clear();
-            for t in kept {
-                self.add(t);
-            }
-        }
-    }
-
-    /// Flips edges until each is Delaunay's.
-    fn settle(&mut self, mut edges: Vec<(usize, usize)>) {
-        // Each flip makes the smallest angles larger; the bound is for rounding only.
-        let mut most = 64 * (self.triangles.len() + 16);
-        while let Some((a, b)) = edges.pop() {
-            if most == 0 || self.rim.contains(&key(a, b)) {
-                continue;
-            }
-            let (Some((one, c)), Some((other, d))) = (self.left(a, b), self.left(b, a)) else {
-                continue;
-            };
-            let (inside, rounding) = self.in_circle(a, b, c, d);
-            if inside <= rounding || self.turn(c, a, d) <= 0.0 || self.turn(c, d, b) <= 0.0 {
-                continue;
-            }
-            most -= 1;
-            self.sides.remove(&(a, b));
-            self.sides.remove(&(b, a));
-            self.set(one, [c, a, d]);
-            self.set(other, [c, d, b]);
-            edges.extend([(a, d), (d, b), (b, c), (c, a)]);
-        }
-    }
-
-    /// Puts a point in the triangle that it lies in.
-    fn insert(&mut self, p: usize) {
-        let inside =
-            |net: &Self, t: &[usize; 3]| (0..3).all(|k| net.turn(t[k], t[(k + 1) % 3], p) >= 0.0);
-        let Some(at) = (0..self.triangles.len()).find(|&k| inside(self, &self.triangles[k])) else {
-            return;
-        };
-        let t = self.triangles[at];
-        let size = self.turn(t[0], t[1], t[2]);
-        // On an edge, the triangles of both sides are split.
-        let on = (0..3).find(|&k| self.turn(t[k], t[(k + 1) % 3], p) <= ON_EDGE * size);
-        if let Some(k) = on {
-            let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
-            let Some((other, d)) = self.left(b, a) else { return };
-            if self.rim.contains(&key(a, b)) {
-                return;
-            }
-            self.sides.remove(&(a, b));
-            self.sides.remove(&(b, a));
-            self.set(at, [a, p, c]);
-            self.add([p, b, c]);
-            self.set(other, [b, p, d]);
-            self.add([p, a, d]);
-            self.settle(vec![(b, c), (c, a), (a, d), (d, b)]);
-            return;
-        }
-        let [a, b, c] = t;
-        self.set(at, [a, b, p]);
-        self.add([b, c, p]);
-        self.add([c, a, p]);
-        self.settle(vec![(a, b), (b, c), (c, a)]);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
 
     #[test]
     fn a_plate_with_a_slot_and_points_inside() {
@@ -339,13 +263,7 @@ mod tests {
         let triangles = planar_triangles(&points, &loops, &inner);
         // Euler's formula: 2 n - rim - 2 + 2 holes.
         assert_eq!(triangles.len(), 2 * points.len() - 36);
-        let net = PlanarTriangulation {
-            points: &points,
-            rim: HashSet::new(),
-            triangles: vec![],
-            sides: HashMap::new(),
-        };
-        let areas: Vec<f64> = triangles.iter().map(|t| net.turn(t[0], t[1], t[2])).collect();
+        let areas: Vec<f64> = triangles.iter().map(|t| turn(&points, *t)).collect();
         assert!(areas.iter().all(|a| *a > 0.0));
         let polygon = |n: f64, r: f64| n * r * r * (std::f64::consts::TAU / n).sin();
         assert!(
@@ -354,7 +272,7 @@ mod tests {
         // No vertex in another's circle.
         for t in &triangles {
             for p in 0..points.len() {
-                let (inside, rounding) = net.in_circle(t[0], t[1], t[2], p);
+                let (inside, rounding) = in_circle(&points, *t, p);
                 assert!(t.contains(&p) || inside <= 1e3 * rounding.max(1e-13), "{t:?} {p}");
             }
         }

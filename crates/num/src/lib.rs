@@ -16,6 +16,7 @@
 mod boxes;
 mod division;
 mod dual;
+mod fineness;
 mod frame;
 mod jet;
 mod linear;
@@ -35,12 +36,14 @@ mod vec3;
 pub use boxes::Box3;
 pub use division::{modulo, remainder, whole_quotient};
 pub use dual::{Dual, Dual4};
+pub use fineness::{Fineness, unit_normal};
 pub use frame::{Axis, Frame, Plane};
 pub use jet::{Bi1, Bi2, Jet, Tri1, Uni1, Uni2, lift_curve, lift_surface};
 pub use linear::{Banded, SingularMatrix, determinant, solve_dense, solve_pivoting_fully};
 pub use logarithm::log10;
 pub use quadrature::{
-    GAUSS_2_UNIT, GAUSS_4, GAUSS_8_UNIT, gauss_legendre, gauss_points, integrate,
+    GAUSS_2_UNIT, GAUSS_4, GAUSS_8_UNIT, MAX_GAUSS_POINTS, gauss_legendre, gauss_points,
+    gauss_rule, integrate,
 };
 pub use rational::{Pace, Rational, Weight};
 pub use real::Real;

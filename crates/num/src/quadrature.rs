@@ -1,6 +1,7 @@
-//! Gauss-Legendre quadrature: rules of 2, 4 and 8 points, and adaptive use to an accuracy.
+//! Gauss-Legendre quadrature: rules of any small number of points, and adaptive use to an accuracy.
 
 use crate::Real;
+use std::sync::OnceLock;
 
 /// Nodes and weights on [-1, 1] of the Gauss-Legendre rule with 8 points, exact for polynomials
 /// of degree 15 (Abramowitz and Stegun 1964, table 25.4).
@@ -33,6 +34,36 @@ pub const GAUSS_8_UNIT: [(f64, f64); 8] = [
     (0.898_333_238_706_813_4, 0.111_190_517_226_687_24),
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_13),
 ];
+
+/// The most points of a rule.
+pub const MAX_GAUSS_POINTS: usize = 24;
+
+/// The places and weights of the rule of `n` points on [0, 1], `1 <= n <= MAX_GAUSS_POINTS`.
+pub fn gauss_rule(n: usize) -> &'static [(f64, f64)] {
+    static RULES: OnceLock<Vec<Vec<(f64, f64)>>> = OnceLock::new();
+    let rules = RULES.get_or_init(|| (0..=MAX_GAUSS_POINTS).map(rule).collect());
+    &rules[n]
+}
+
+/// The roots of the Legendre polynomial of degree `n` by Newton steps from Chebyshev's (Abramowitz and Stegun
+/// 1964, 25.4.29 and 22.7.10).
+fn rule(n: usize) -> Vec<(f64, f64)> {
+    let place = |k: usize| {
+        let mut x = libm::cos(std::f64::consts::PI * (k as f64 + 0.75) / (n as f64 + 0.5));
+        let mut slope = 1.0;
+        for _ in 0..8 {
+            let (mut p, mut q) = (1.0, 0.0);
+            for m in 0..n {
+                let m = m as f64;
+                (p, q) = (((2.0 * m + 1.0) * x * p - m * q) / (m + 1.0), p);
+            }
+            slope = n as f64 * (x * p - q) / (x * x - 1.0);
+            x -= p / slope;
+        }
+        (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(place).collect()
+}
 
 /// The integral of `f` over [`a`, `b`] by the 8-point Gauss-Legendre rule.
 pub fn gauss_legendre<T: Real>(a: T, b: T, mut f: impl FnMut(T) -> T) -> T {
@@ -112,5 +143,15 @@ mod tests {
         assert!((i.eps[0] + 0.4).abs() < 1e-10, "{}", i.eps[0]);
         let root = integrate(0.0, 1.0, 1e-12, |x: f64| x.sqrt());
         assert!((root - 2.0 / 3.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn rules_are_exact_to_twice_their_points() {
+        for n in 1..=MAX_GAUSS_POINTS {
+            for power in 0..2 * n as i32 {
+                let sum: f64 = gauss_rule(n).iter().map(|(x, w)| w * x.powi(power)).sum();
+                assert!((sum - 1.0 / f64::from(power + 1)).abs() < 1e-15, "{n} {power} {sum}");
+            }
+        }
     }
 }

@@ -7,11 +7,13 @@
 use moldloft_model::Object;
 use moldloft_num::trace::{Edge, Edges, Trace};
 use moldloft_num::{CurveJet, Order, Real, SurfJet, Surface};
-use moldloft_registry::{BorderCurve, CurveRef, Scalar, SurfaceRef, TriangulatedBorder, Value};
+use moldloft_registry::{
+    BorderCurve, CurveRef, DivisionDensity, Scalar, SurfaceRef, TriangulatedBorder, Value,
+};
 use std::sync::Arc;
 
 /// A hem among the drafts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct BorderCounts {
     /// Which of its sheet's.
     pub index: u32,
@@ -19,6 +21,8 @@ pub(crate) struct BorderCounts {
     pub stated: Option<u32>,
     /// Divisions when nothing else determines them.
     pub usual: u32,
+    /// How they are spaced where nothing else says.
+    pub density: Option<Arc<DivisionDensity>>,
 }
 
 /// The border of an object that has one.

@@ -4,6 +4,7 @@ use crate::border_curves::{self, BorderCounts};
 use crate::knuckles::knuckles;
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::{Edges, Key};
+use moldloft_num::{Fineness, Order, SurfJet};
 use moldloft_registry::{Scalar, SurfaceRef, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -89,12 +90,17 @@ pub(crate) struct Draft<'g> {
     /// False for a hidden surface of which a shown one is the image.
     pub meshed: bool,
     pub reversed: bool,
+    /// The least divisions along u and v where panels are to be near to surfaces, in place of stated ones.
+    pub fine: Option<[u32; 2]>,
 }
 
 impl Draft<'_> {
     /// The divisions that are stated along u and v.
     pub fn stated(&self) -> [Option<u32>; 2] {
-        match self.border_curve {
+        if self.fine.is_some() {
+            return [None; 2];
+        }
+        match &self.border_curve {
             Some(border_curve) => [border_curve.stated, None],
             None => self.object.head.stated_divisions(),
         }
@@ -102,7 +108,10 @@ impl Draft<'_> {
 
     /// The divisions when nothing else determines them.
     pub fn usual(&self) -> [u32; 2] {
-        match self.border_curve {
+        if let Some(fine) = self.fine {
+            return fine;
+        }
+        match &self.border_curve {
             Some(border_curve) => [border_curve.usual, 1],
             None => self.object.head.own_divisions(),
         }
@@ -110,16 +119,18 @@ impl Draft<'_> {
 
     /// Its identity, in any graph.
     pub fn identity(&self) -> (Arc<str>, Option<u32>) {
-        (self.object.name.clone(), self.border_curve.map(|h| h.index))
+        (self.object.name.clone(), self.border_curve.as_ref().map(|h| h.index))
     }
 }
 
 /// The surfaces that take part, in the order of declaration, hidden ones after them, and the hems of
 /// sheets last.
-/// `before`: the knuckles of an earlier state of the graph, and what it called its last change then.
+/// `before`: the knuckles of an earlier state of the graph, and what it called its last change then. `fineness`: how near
+/// panels are to be to their surfaces, where that is asked for.
 pub(crate) fn drafts<'g>(
     graph: &'g Graph<f64>,
     before: Option<(&'g HashMap<Key, Knuckles>, u64)>,
+    fineness: Option<&Fineness>,
 ) -> Vec<Draft<'g>> {
     let mut drafts: Vec<Draft> = Vec::new();
     let mut finder = KnuckleFinder { graph, before, found: HashMap::new() };
@@ -132,6 +143,11 @@ pub(crate) fn drafts<'g>(
         }
         let knuckles = finder.of(object, &surface);
         let border_curve = None;
+        let fine = fineness.map(|f| {
+            let asked = fine_divisions(&surface, f);
+            let stated = object.head.stated_divisions();
+            [0, 1].map(|k| asked[k].max(stated[k].unwrap_or(1)))
+        });
         Some(Draft {
             object,
             surface,
@@ -141,6 +157,7 @@ pub(crate) fn drafts<'g>(
             image: None,
             meshed,
             reversed,
+            fine,
         })
     };
     let mut by_key = HashMap::new();
@@ -171,12 +188,15 @@ pub(crate) fn drafts<'g>(
     }
     for object in graph.objects().filter(|o| o.head.shown()) {
         let Some(border) = border_curves::border(object) else { continue };
-        for (index, border_curve) in border.curves().iter().enumerate() {
+        let finer = fineness.map(|f| border.within(f));
+        let curves = finer.as_ref().map_or(border.curves(), |finer| finer.0.curves());
+        for (index, border_curve) in curves.iter().enumerate() {
             let Some(surface) = border_curves::line(border_curve) else { continue };
             let counts = BorderCounts {
                 index: index as u32,
                 stated: border_curve.stated,
                 usual: border_curve.usual,
+                density: border_curve.density.clone(),
             };
             drafts.push(Draft {
                 object,
@@ -187,6 +207,7 @@ pub(crate) fn drafts<'g>(
                 image: None,
                 meshed: false,
                 reversed: false,
+                fine: finer.is_some().then_some([border_curve.usual, 1]),
             });
         }
     }
@@ -216,4 +237,34 @@ fn map_identity(object: &Object<f64>, original: Key) -> String {
         .filter(|arg| !matches!(arg, Value::Object(key) if *key == original))
         .collect();
     format!("{}{rest:?}", object.row.name)
+}
+
+/// Places along u and along v at which the divisions of a surface are asked for, about.
+const FINE_PLACES: usize = 24;
+
+/// The most divisions of a surface along u or v that a fineness asks for.
+const MAX_FINE: f64 = 20_000.0;
+
+/// The even divisions along u and v that bring panels as near to a surface as this.
+fn fine_divisions(surface: &SurfaceRef<f64>, fineness: &Fineness) -> [u32; 2] {
+    let breaks = surface.breaks();
+    let places = |k: usize| -> Vec<f64> {
+        let mut ends = vec![0.0];
+        ends.extend(breaks[k].iter().copied().filter(|b| *b > 0.0 && *b < 1.0));
+        ends.push(1.0);
+        let parts = (FINE_PLACES / (ends.len() - 1)).max(2);
+        let middle = |i: usize| (i as f64 + 0.5) / parts as f64;
+        ends.windows(2)
+            .flat_map(|w| (0..parts).map(move |i| w[0] + (w[1] - w[0]) * middle(i)))
+            .collect()
+    };
+    let (us, vs) = (places(0), places(1));
+    let mut most = [0.0f64; 2];
+    for &u in &us {
+        let line: Vec<SurfJet<f64>> = surface.line(u, &vs, Order::Second);
+        for [a, b] in line.iter().filter_map(|jet| fineness.metric(jet)) {
+            most = [most[0].max(a), most[1].max(b)];
+        }
+    }
+    most.map(|m| m.sqrt().min(MAX_FINE).ceil().max(1.0) as u32)
 }

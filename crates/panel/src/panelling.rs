@@ -22,7 +22,7 @@ use moldloft_budget::Spent;
 use moldloft_mesh::{Mesh, Topology};
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::Key;
-use moldloft_num::{Box3, Real, Vec3};
+use moldloft_num::{Box3, Fineness, Real, Vec3};
 use moldloft_registry::{CallError, Scalar, SurfaceRef};
 use std::cell::LazyCell;
 use std::collections::HashMap;
@@ -30,6 +30,9 @@ use std::sync::Arc;
 
 /// Bytes that a panel takes while it is made and joined.
 const BYTES: u64 = 200;
+
+/// How often divisions are made more until panels are near enough.
+const MAX_ROUNDS: usize = 4;
 
 /// The most panels of a model.
 pub const MOST_PANELS: u64 = 20_000_000;
@@ -93,7 +96,52 @@ impl Panelling {
     /// # Errors
     /// A [`CallError`] when there would be too many panels.
     pub fn new(graph: &Graph<f64>) -> Result<Self, CallError> {
-        Self::renewed(graph, None, None)
+        Self::made(graph, None, None, None)
+    }
+
+    /// The panelling with as many divisions as bring panels as near to their surfaces as this; stated divisions are the
+    /// least. Bodies that have no border are as they are.
+    ///
+    /// # Errors
+    /// A [`CallError`] when there would be too many panels.
+    pub fn within(graph: &Graph<f64>, fineness: &Fineness) -> Result<Self, CallError> {
+        let mut asked = *fineness;
+        for _ in 1..MAX_ROUNDS {
+            let made = Self::made(graph, None, None, Some(&asked))?;
+            let off = made.off(graph);
+            if off <= fineness.chord {
+                return Ok(made);
+            }
+            asked.chord *= (0.8 * fineness.chord / off).max(0.1);
+        }
+        Self::made(graph, None, None, Some(&asked))
+    }
+
+    /// How far the middles of panels of patches are from their surfaces, with half of what they are warped.
+    fn off(&self, graph: &Graph<f64>) -> f64 {
+        let Some(parameters) = self.parameters(graph) else { return 0.0 };
+        let meshed =
+            (0..self.structure.patches.len()).filter(|&k| self.structure.patches[k].meshed);
+        let mut most = 0.0f64;
+        for ((surface, uv), patch) in parameters.into_iter().zip(meshed) {
+            let [nu, nv] = self.structure.patches[patch].divisions;
+            let points = &self.points[patch];
+            let corners = (0..nu).flat_map(|i| (0..nv).map(move |j| i * (nv + 1) + j));
+            let corners = corners.map(|k| [k, k + nv + 1, k + nv + 2, k + 1]);
+            let middles: Vec<[f64; 2]> = corners
+                .clone()
+                .map(|c| [0, 1].map(|axis| c.map(|k| uv[k][axis]).iter().sum::<f64>() / 4.0))
+                .collect();
+            let mut places = vec![Vec3::zero(); middles.len()];
+            surface.scattered(&middles, &mut places);
+            for (corners, place) in corners.zip(places) {
+                let [a, b, c, d] = corners.map(|k| points[k]);
+                let Some(normal) = (c - a).cross(d - b).normalized() else { continue };
+                let warp = (a + c - b - d).dot(normal).abs() / 4.0;
+                most = most.max((place - (a + b + c + d) / 4.0).dot(normal).abs() + warp);
+            }
+        }
+        most
     }
 
     /// The same with the counts of `nominal` where lengths would decide them. Of `before`, a
@@ -107,7 +155,16 @@ impl Panelling {
         nominal: Option<&Nominal>,
         before: Option<&Panelling>,
     ) -> Result<Self, CallError> {
-        let mut drafts = drafts(graph, before.map(|b| (&b.knuckles, b.clock)));
+        Self::made(graph, nominal, before, None)
+    }
+
+    fn made(
+        graph: &Graph<f64>,
+        nominal: Option<&Nominal>,
+        before: Option<&Panelling>,
+        fineness: Option<&Fineness>,
+    ) -> Result<Self, CallError> {
+        let mut drafts = drafts(graph, before.map(|b| (&b.knuckles, b.clock)), fineness);
         let identities = Identities::new(graph, &drafts);
         identities.collapse(&mut drafts);
         let roots = RootTable::new(graph, &drafts, identities);
@@ -115,7 +172,7 @@ impl Panelling {
         let knuckles = drafts.iter().filter(|d| d.border_curve.is_none());
         let knuckles = knuckles.map(|d| (d.object.key, d.knuckles.clone())).collect();
         let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
-        let mut bodies = triangle_bodies::bodies(graph);
+        let mut bodies = triangle_bodies::bodies(graph, fineness);
         let total = made.structure.patches.iter().map(count).sum::<u64>()
             + bodies.iter().map(MeshedBody::panels).sum::<u64>();
         if total > MOST_PANELS {

@@ -261,6 +261,9 @@ impl TopologySolver<'_, '_> {
     fn is_measured(&self) -> bool {
         !self.summed.is_empty()
             || self.drafts.iter().enumerate().any(|(patch, draft)| {
+                if let Some(border_curve) = &draft.border_curve {
+                    return border_curve.density.is_some() && border_curve.stated.is_none();
+                }
                 let Some(panels) = &draft.object.head.panels else { return false };
                 (0..2).any(|direction| {
                     let stated = self.divider.stated[side(patch, direction)];
@@ -373,7 +376,7 @@ impl TopologySolver<'_, '_> {
 
     /// Counts that follow from sizes.
     fn wish(&mut self) {
-        for (patch, draft) in self.drafts.iter().enumerate() {
+        for (patch, draft) in self.drafts.iter().enumerate().filter(|(_, d)| d.fine.is_none()) {
             let Some(panels) = &draft.object.head.panels else { continue };
             for direction in 0..2 {
                 let Some(size) = panels.size[direction] else { continue };
@@ -543,10 +546,7 @@ impl TopologySolver<'_, '_> {
                         (EdgeRun::Pole(point), EdgePlan::Whole(n, None))
                     }
                     Edge::SameAs(other) => (EdgeRun::Same(*other), EdgePlan::As(*other)),
-                    _ => {
-                        let spans = self.spans[patch][k].as_deref().unwrap_or_default();
-                        self.edge(spans, n, law, counts, &mut settled)
-                    }
+                    _ => self.edge((patch, k), n, law, counts, &mut settled),
                 };
             }
             for k in 0..4 {
@@ -589,7 +589,7 @@ impl TopologySolver<'_, '_> {
                 image: draft.image,
                 reversed: draft.reversed,
                 meshed: draft.meshed,
-                border_curve: draft.border_curve.map(|h| h.index),
+                border_curve: draft.border_curve.as_ref().map(|h| h.index),
             });
         }
         let points = self.roots.places().iter().map(|p| p.points.to_vec()).collect();
@@ -604,12 +604,17 @@ impl TopologySolver<'_, '_> {
 
     fn edge(
         &self,
-        spans: &[EdgeInterval],
+        (patch, k): (usize, usize),
         n: u32,
         law: &Spacing,
         counts: &[u32],
         settled: &mut IntervalShares,
     ) -> (EdgeRun, EdgePlan) {
+        let spans = self.spans[patch][k].as_deref().unwrap_or_default();
+        let border_curve = self.drafts[patch].border_curve.as_ref();
+        // A border that curvature divides is spaced by it, unless a neighbour has a law of its own.
+        let density = border_curve.and_then(|b| b.density.as_ref()).filter(|_| law.is_even());
+        let stops = density.map(|_| self.stops(patch, k));
         let along = spans.iter().filter(|s| s.interval.is_some()).count();
         let count = |span: &EdgeInterval| match span.interval {
             None => 0,
@@ -629,10 +634,18 @@ impl TopologySolver<'_, '_> {
         }
         let mut begin = 0;
         let mut segments = Vec::with_capacity(along);
-        for span in spans {
+        for (at, span) in spans.iter().enumerate() {
             let Some(interval) = span.interval else { continue };
             let count = count(span);
-            let own = || (span.backwards, shares_of(law, begin, begin + count, n));
+            let own = || {
+                let shares = match (density, &stops) {
+                    (Some(density), Some(stops)) if count > 1 => {
+                        Some(density.shares(stops[at], stops[at + 1], count).into())
+                    }
+                    _ => shares_of(law, begin, begin + count, n),
+                };
+                (span.backwards, shares)
+            };
             let (backwards, shares) = settled.entry((interval, count)).or_insert_with(own);
             let same_way = *backwards == span.backwards;
             let shares = if same_way { shares.clone() } else { reversed(shares) };

@@ -8,8 +8,8 @@ use crate::notes::PanelNote;
 use crate::patch_values::PatchValues;
 use moldloft_mesh::{MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_model::{Graph, Object};
-use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Scalar, TriangleBody, Value};
+use moldloft_num::{Fineness, Real, Vec3};
+use moldloft_registry::{Border, BorderCurve, Scalar, TriangleBody, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -26,6 +26,8 @@ pub(crate) struct MeshedBody {
     pub divided: Vec<Vec<f64>>,
     /// The patch without panels that stands for each curve of its border, where there is one.
     border_curves: Vec<Option<usize>>,
+    /// Its border where its triangles are to be as near to the surface as is asked for.
+    finer: Option<Border<f64>>,
     /// Which of its vertices are those of each curve.
     pub border_vertices: Vec<Vec<u32>>,
     /// The number of each of its vertices in the mesh, and which are its own.
@@ -34,7 +36,8 @@ pub(crate) struct MeshedBody {
 }
 
 /// The shown bodies in the order of declaration, as they are by themselves.
-pub(crate) fn bodies(graph: &Graph<f64>) -> Vec<MeshedBody> {
+/// `fineness`: how near sheets are to be to their surfaces, where that is asked for.
+pub(crate) fn bodies(graph: &Graph<f64>, fineness: Option<&Fineness>) -> Vec<MeshedBody> {
     let shown = graph.objects().filter(|o| o.head.shown());
     shown
         .filter_map(|object| {
@@ -48,6 +51,7 @@ pub(crate) fn bodies(graph: &Graph<f64>) -> Vec<MeshedBody> {
                 facets: facets.clone(),
                 divided: Vec::new(),
                 border_curves: Vec::new(),
+                finer: fineness.and_then(|f| Some(border(object)?.within(f))),
                 border_vertices: Vec::new(),
                 vertices: Vec::new(),
                 own: Vec::new(),
@@ -156,7 +160,7 @@ impl MeshedBody {
 
     /// How many panels it has.
     pub fn panels(&self) -> u64 {
-        self.facets.triangles.len() as u64
+        (self.facets.triangles.len() - self.facets.quads) as u64
     }
 
     /// True when it may join neighbours.
@@ -173,11 +177,14 @@ impl MeshedBody {
         known: &PatchValues<f64>,
         same: Option<&MeshedBody>,
     ) -> Option<Vec<usize>> {
-        let border = border(object?)?;
+        let border = match &self.finer {
+            Some(finer) => &finer.0,
+            None => border(object?)?,
+        };
         let count = border.curves().len() as u32;
         let patches: Vec<_> =
             (0..count).map(|k| border_curves.get(&(self.name.clone(), k)).copied()).collect();
-        let at = parameters(&patches, known, border.curves().iter().map(|h| h.usual))?;
+        let at = parameters(&patches, known, border.curves())?;
         let alike = |a: &[Vec<f64>], b: &[Vec<f64>]| {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b)
         };
@@ -210,7 +217,20 @@ impl MeshedBody {
 
     /// Its panels in the numbers of the mesh; those that joins have made lines are left out.
     fn faces(&self) -> impl Iterator<Item = [u32; 4]> {
-        self.facets.triangles.iter().filter_map(|t| self.face(t))
+        let (halves, triangles) = self.facets.triangles.split_at(2 * self.facets.quads);
+        let quads = halves.chunks_exact(2).flat_map(|pair| match self.quad(pair[0], pair[1][2]) {
+            Some(quad) => [Some(quad), None],
+            None => [self.face(&pair[0]), self.face(&pair[1])],
+        });
+        quads.flatten().chain(triangles.iter().filter_map(|t| self.face(t)))
+    }
+
+    /// A panel of four corners; none where joins have made it less.
+    fn quad(&self, [a, b, c]: [u32; 3], d: u32) -> Option<[u32; 4]> {
+        let at = [a, b, c, d].map(|v| self.vertices[v as usize]);
+        let apart = (0..4).all(|i| (0..i).all(|k| at[i] != at[k]));
+        let [a, b, c, d] = at;
+        apart.then_some(if self.reversed { [d, c, b, a] } else { at })
     }
 
     fn face(&self, t: &[u32; 3]) -> Option<[u32; 4]> {
@@ -258,8 +278,7 @@ impl MeshedBody {
         let facets = match border(object).filter(|_| !self.border_curves.is_empty()) {
             None => facets.clone(),
             Some(border) => {
-                let usual = border.curves().iter().map(|h| h.usual);
-                let at = parameters(&self.border_curves, known(), usual)?;
+                let at = parameters(&self.border_curves, known(), border.curves())?;
                 Arc::new(border.divided(&at)?.0)
             }
         };
@@ -283,16 +302,15 @@ impl MeshedBody {
     }
 }
 
-/// The parameters at which the curves of a border are divided; evenly where no patch says.
+/// The parameters at which the curves of a border are divided; as each is by itself where no patch says.
 fn parameters<T: Scalar>(
     patches: &[Option<usize>],
     known: &PatchValues<T>,
-    usual: impl Iterator<Item = u32>,
+    curves: &[BorderCurve<T>],
 ) -> Option<Vec<Vec<T>>> {
-    let even = |n: u32| (0..=n).map(|k| T::from(f64::from(k) / f64::from(n))).collect();
-    let of = |(patch, n): (&Option<usize>, u32)| match patch {
+    let of = |(patch, curve): (&Option<usize>, &BorderCurve<T>)| match patch {
         Some(patch) => along_edge(0, *patch as u32, known),
-        None => Some(even(n)),
+        None => Some(curve.divisions().into_iter().map(T::from).collect()),
     };
-    patches.iter().zip(usual).map(of).collect()
+    patches.iter().zip(curves).map(of).collect()
 }

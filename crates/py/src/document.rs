@@ -552,14 +552,46 @@ impl PyDocument {
         Ok((part(1), part(2), curve.breaks()))
     }
 
-    /// The panels; of the patches with one of the tags when any are given.
-    fn mesh(&self, py: Python<'_>, tags: Vec<String>) -> PyResult<PyMesh> {
-        let (panelled, part) = self.long_checked(py, move |d| {
-            let panelled = d.panelled().map_err(|e| vec![e])?;
-            let part = moldloft::export::tagged(&panelled.mesh, &tags)?;
-            Ok((panelled, part))
-        })?;
+    /// The panels; of the patches with one of the tags when any are given, of both sides, and as near to the surfaces as
+    /// tolerance and angle say.
+    fn mesh(
+        &self,
+        py: Python<'_>,
+        tags: Vec<String>,
+        whole: bool,
+        tolerance: Option<f64>,
+        angle: Option<f64>,
+    ) -> PyResult<PyMesh> {
+        let options = WriteOptions { tags, whole, tolerance, angle, ..WriteOptions::default() };
+        let (panelled, part) = self
+            .long_checked(py, move |d| Ok(moldloft::export::panels(d, &options)?.into_parts()))?;
         Ok(PyMesh::new(panelled, part))
+    }
+
+    /// Position, S_u, S_v, S_uu, S_uv, S_vv of a surface at parameters.
+    fn surface_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        u: PyReadonlyArray1<'py, f64>,
+        v: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+        let surface = self.surface_of(py, name)?;
+        let (us, vs) = (u.as_slice()?, v.as_slice()?);
+        let at = || us.iter().zip(vs).map(|(&u, &v)| surface.jet(u, v, Order::Second)).collect();
+        let jets: Vec<moldloft::num::SurfJet<f64>> = py.detach(at);
+        let part = |of: fn(&moldloft::num::SurfJet<f64>) -> Vec3| {
+            let fill = |out: &mut [Vec3]| out.iter_mut().zip(&jets).for_each(|(o, j)| *o = of(j));
+            arrays::filled(py, [jets.len(), 3], fill).0
+        };
+        Ok(vec![
+            part(|j| j.p),
+            part(|j| j.u),
+            part(|j| j.v),
+            part(|j| j.uu),
+            part(|j| j.uv),
+            part(|j| j.vv),
+        ])
     }
 
     /// Corners that lie on edges of other patches without being joined to them.
@@ -724,11 +756,12 @@ impl PyDocument {
         immersed: bool,
         tags: Vec<String>,
         tolerance: Option<f64>,
+        angle: Option<f64>,
         whole: bool,
         triangles: bool,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
         let format = format_named(format).map_err(|d| plain_error(&d.message))?;
-        let options = WriteOptions { lids, immersed, tags, whole, triangles, tolerance };
+        let options = WriteOptions { lids, immersed, tags, whole, triangles, tolerance, angle };
         let files =
             self.long_checked(py, move |d| moldloft::export::write(d, format, &main, &options))?;
         Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())

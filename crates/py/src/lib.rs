@@ -76,7 +76,7 @@ mod _core {
     #[pymodule_export]
     use crate::mesh_files::read_mesh;
     #[pymodule_export]
-    use crate::nurbs::{brep, length_unit, nurbs};
+    use crate::nurbs::{brep, length_unit, nurbs, nurbs_points};
     #[pymodule_export]
     use crate::reference::{keywords, libraries, reference, statements};
     #[pymodule_export]

@@ -8,7 +8,7 @@ use moldloft::brep::{Brep, SurfaceShape};
 use moldloft::num::Vec3;
 use moldloft::rows::Value;
 use moldloft::spline::nurbs::{FitOptions, NotFitted, Nurbs, of_curve, of_solid, of_surface};
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -96,21 +96,75 @@ pub fn nurbs<'py>(
     }
 }
 
+/// The points of a NURBS at places of its parameters, `(n, dimension)`; see [`moldloft::spline::nurbs::Nurbs`].
+#[pyfunction]
+pub fn nurbs_points<'py>(
+    py: Python<'py>,
+    degrees: Vec<usize>,
+    knots: Vec<Vec<f64>>,
+    points: PyReadonlyArray2<'py, f64>,
+    weights: Option<PyReadonlyArray1<'py, f64>>,
+    places: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn at<const D: usize>(
+        degrees: &[usize],
+        knots: Vec<Vec<f64>>,
+        points: Vec<Vec3>,
+        weights: Option<Vec<f64>>,
+        places: &[f64],
+    ) -> Vec<Vec3> {
+        let shape = Nurbs::<D> {
+            degrees: std::array::from_fn(|d| degrees[d]),
+            knots: knots.try_into().expect("as many rows of knots as parameters"),
+            points,
+            weights,
+            error: 0.0,
+            exact: true,
+            paces: [moldloft::num::Pace::Even; D],
+        };
+        let places: Vec<[f64; D]> =
+            places.chunks_exact(D).map(|p| std::array::from_fn(|d| p[d])).collect();
+        shape.scattered(&places)
+    }
+    let net: Vec<Vec3> =
+        points.as_slice()?.chunks_exact(3).map(|p| Vec3::of(p[0], p[1], p[2])).collect();
+    let weights = weights.map(|w| w.as_slice().map(<[f64]>::to_vec)).transpose()?;
+    let at_all = places.as_slice()?;
+    let count: usize =
+        knots.iter().zip(&degrees).map(|(k, p)| (k.len()).saturating_sub(p + 1)).product();
+    let fits = net.len() == count
+        && weights.as_ref().is_none_or(|w| w.len() == count)
+        && knots
+            .iter()
+            .zip(&degrees)
+            .all(|(k, &p)| moldloft::spline::KnotVector::new(p, k.clone()).is_ok());
+    let found = match degrees.len() {
+        _ if !fits => return Err(plain_error("the knots do not fit the control points")),
+        1 => at::<1>(&degrees, knots, net, weights, at_all),
+        2 => at::<2>(&degrees, knots, net, weights, at_all),
+        3 => at::<3>(&degrees, knots, net, weights, at_all),
+        n => return Err(plain_error(format!("a NURBS has 1 to 3 parameters, not {n}"))),
+    };
+    Ok(arrays::filled(py, [found.len(), 3], |out| out.copy_from_slice(&found)).0)
+}
+
 /// The name of the model's unit of length, and its millimetres.
 #[pyfunction]
 pub fn length_unit(py: Python<'_>, document: &PyDocument) -> (String, f64) {
     document.unit(py)
 }
 
-/// The model's boundary representation.
+/// The model's boundary representation; with `facing`, every face's normal is that of its surface.
 #[pyfunction]
 pub fn brep<'py>(
     py: Python<'py>,
     document: &PyDocument,
     accuracy: Option<f64>,
     stem: String,
+    facing: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let brep = document.with_brep(py, accuracy, stem)?;
+    let brep = if facing { brep.facing() } else { brep };
     let dict = PyDict::new(py);
     let fill = |out: &mut [Vec3]| out.copy_from_slice(&brep.vertices);
     dict.set_item("vertices", arrays::filled(py, [brep.vertices.len(), 3], fill).0)?;

@@ -1,7 +1,7 @@
 //! Bodies bounded by triangles and open sheets of them, with borders that can be divided anew, and their measures.
 
-use crate::{CurveRef, SurfaceRef};
-use moldloft_num::{Real, Vec3};
+use crate::{CurveRef, DivisionDensity, SurfaceRef};
+use moldloft_num::{Fineness, Real, Vec3};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -46,6 +46,19 @@ pub struct BorderCurve<T: Real> {
     pub stated: Option<u32>,
     /// Its divisions when nothing else determines them.
     pub usual: u32,
+    /// How divisions are spaced along it; none for equal steps of its parameter.
+    pub density: Option<Arc<DivisionDensity>>,
+}
+
+impl<T: Real> BorderCurve<T> {
+    /// The parameters of its divisions when nothing else determines them, from 0 to 1.
+    pub fn divisions(&self) -> Vec<f64> {
+        let even = || (0..=self.usual).map(|k| f64::from(k) / f64::from(self.usual)).collect();
+        self.density.as_ref().map_or_else(even, |density| {
+            let shares = density.shares(0.0, 1.0, self.usual);
+            std::iter::once(0.0).chain(shares).chain([1.0]).collect()
+        })
+    }
 }
 
 /// A sheet of triangles whose border runs along curves, so that it can be made anew with the
@@ -66,6 +79,9 @@ pub trait TriangulatedBorder<T: Real>: Send + Sync {
 
     /// The measures of the part of the surface itself, which its triangles only come near.
     fn measures(&self) -> Option<SheetMeasures<T>>;
+
+    /// The same with triangles as near to the surface as this, in place of stated divisions.
+    fn within(&self, fineness: &Fineness) -> Border<T>;
 }
 
 /// Measures of a body, or of a part of a surface.
@@ -104,6 +120,8 @@ pub struct TriangleBody<T: Real> {
     pub points: Vec<Vec3<T>>,
     /// Corners of the triangles, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// How many panels of four corners there are: their halves a b c and a c d are the first triangles.
+    pub quads: usize,
     /// The triangles by what they are pieces of, in order and without gaps; none when the body is one.
     pub groups: Vec<Group>,
     /// Polylines that belong to the body without being surface.
@@ -151,7 +169,8 @@ impl<T: Real> TriangleBody<T> {
         let (groups, wires, dots) = Default::default();
         let (border, flaws) = (None, Vec::new());
         let of_triangles = SheetMeasures { area, centroid, volume };
-        Self { points, triangles, groups, wires, dots, of_triangles, border, flaws }
+        let quads = 0;
+        Self { points, triangles, quads, groups, wires, dots, of_triangles, border, flaws }
     }
 
     /// Area, centroid and volume: of the part of a surface that a sheet with a border stands for, else of
@@ -180,6 +199,7 @@ impl<T: Real> TriangleBody<T> {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.bits_eq(*b))
         };
         self.triangles == o.triangles
+            && self.quads == o.quads
             && self.groups == o.groups
             && self.flaws == o.flaws
             && all(&self.dots, &o.dots)

@@ -6,10 +6,13 @@ DXF and 3DM need packages of the extra ``cad``: ``pip install 'moldloft[cad]'``.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 from types import ModuleType
 
-from moldloft.errors import Error
+from moldloft.errors import MissingPackageError
 
 __all__ = ["identifier", "needed"]
 
@@ -25,13 +28,35 @@ def needed(module: str, package: str, purpose: str) -> ModuleType:
         What installs it.
     purpose
         What it is for.
+
+    Raises
+    ------
+    MissingPackageError
+        Where it is not installed, or OCP is that of another package.
     """
     try:
-        return import_module(module)
+        found = import_module(module)
     except ImportError as error:
-        raise Error(
+        raise MissingPackageError(
             f"{purpose} needs the package {package}: pip install 'moldloft[cad]' ({error})"
         ) from error
+    if module == "OCP" and find_spec("OCP.collections") is None:
+        raise MissingPackageError(_clash(purpose, package))
+    return found
+
+
+def _clash(purpose: str, package: str) -> str:
+    """What to do where another package has installed the same module."""
+    installed = []
+    for name in ("cadquery-ocp", "cadquery-ocp-proxy", package):
+        with suppress(PackageNotFoundError):
+            installed.append(f"{name} {version(name)}")
+    return (
+        f"{purpose} needs OCCT 8, but the module OCP is that of an older release: the packages "
+        f"{', '.join(installed)} install the same folder, and the last one installed replaces the "
+        f"files of the others\nhelp: install moldloft[cad] in an environment without CadQuery, or "
+        f"put OCCT 8 back: pip install --force-reinstall --no-deps {package}"
+    )
 
 
 def identifier(label: str, taken: set[str]) -> str:

@@ -7,6 +7,7 @@ parameters is fitted anew, to run as the other does. It stays on the old path.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -30,22 +31,24 @@ _PARTED = 1e-4
 """Sides farther apart as curves, as a share of their length, are not one."""
 
 _PLACES = 1025
-_BISECTIONS = 50
-_PARTS = (1, 2, 4, 8, 16, 32)
+_STEPS = 14
+"""Steps towards a place of the other curve: Newton's, kept between the bounds that are known."""
 
-_NODES = np.array([0, 1, 2, 3]) / 3
+_PARTS = (1, 2, 4, 8, 16, 32)
+_DEGREE = 7
+"""The degree of the fitted path."""
+
+_NODES = (1 - np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE)) / 2
 _BEZIER = np.linalg.inv(
     np.stack(
         [
-            (1 - _NODES) ** 3,
-            3 * _NODES * (1 - _NODES) ** 2,
-            3 * _NODES**2 * (1 - _NODES),
-            _NODES**3,
+            math.comb(_DEGREE, k) * _NODES**k * (1 - _NODES) ** (_DEGREE - k)
+            for k in range(_DEGREE + 1)
         ],
         axis=1,
     )
 )
-"""Control points of the cubic through places at thirds."""
+"""Control points of the polynomial through places at the nodes."""
 
 
 def align(faces: list[ImportedFace]) -> None:
@@ -144,14 +147,18 @@ def _rerun(
         goals = wanted(t)
         nearest = np.array([int(np.argmin(((known - p) ** 2).sum(axis=1))) for p in goals])
         low, high = fine[np.maximum(nearest - 1, 0)], fine[np.minimum(nearest + 1, _PLACES - 1)]
+        found: Floats = fine[nearest]
         step = 1e-6
-        for _ in range(_BISECTIONS):
-            middle = (low + high) / 2
-            a, b = np.clip(middle - step, 0, 1), np.clip(middle + step, 0, 1)
-            p, q = _on(surface, own(a)), _on(surface, own(b))
-            ahead = ((goals - (p + q) / 2) * (q - p)).sum(axis=1) > 0
-            low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
-        found: Floats = (low + high) / 2
+        for _ in range(_STEPS):
+            a, b = np.clip(found - step, 0, 1), np.clip(found + step, 0, 1)
+            p, q = np.split(_on(surface, own(np.concatenate([a, b]))), 2)
+            along = q - p
+            ahead = ((goals - (p + q) / 2) * along).sum(axis=1)
+            low, high = np.where(ahead > 0, found, low), np.where(ahead > 0, high, found)
+            speed = (along * along).sum(axis=1) / (b - a)
+            moved = (a + b) / 2 + ahead / np.where(speed > 0, speed, 1)
+            inside = (speed > 0) & (moved >= low) & (moved <= high)
+            found = np.where(inside, moved, (low + high) / 2)
         return found
 
     # Both may change their pace at their knots.
@@ -168,17 +175,18 @@ def _rerun(
         ends = np.concatenate(
             [np.linspace(a, b, parts, endpoint=False) for a, b in pairwise(breaks)] + [[1.0]]
         )
-        t = np.append((ends[:-1, None] + np.diff(ends)[:, None] * _NODES[:3]).ravel(), 1.0)
+        n = _DEGREE
+        t = np.append((ends[:-1, None] + np.diff(ends)[:, None] * _NODES[:n]).ravel(), 1.0)
         s = parameters(t)
         s[0], s[-1] = 0, 1
         if np.any(np.diff(s) <= 0):
             return None
         through = own(s)
-        spans = [through[3 * i : 3 * i + 4] for i in range(len(ends) - 1)]
-        points = np.concatenate([(_BEZIER @ span)[:3] for span in spans] + [through[-1:]])
-        points[::3] = through[::3]
-        knots = np.concatenate([[0.0], np.repeat(ends, 3), [1.0]])
-        made = Nurbs((3,), (knots,), points, None)
+        spans = [through[n * i : n * i + n + 1] for i in range(len(ends) - 1)]
+        points = np.concatenate([(_BEZIER @ span)[:n] for span in spans] + [through[-1:]])
+        points[::n] = through[::n]
+        knots = np.concatenate([[0.0], np.repeat(ends, n), [1.0]])
+        made = Nurbs((n,), (knots,), points, None)
         apart = float(np.linalg.norm(_on(surface, made(probe)) - wanted(probe), axis=1).max())
         if apart <= _NEAR * length:
             return made

@@ -24,12 +24,11 @@ import numpy as np
 
 from moldloft.budget import limits
 from moldloft.cad import needed
-from moldloft.cad.occt import Imported, ImportedFace, of_part
+from moldloft.cad.occt import Imported, ImportedFace, cad_bytes, of_part
 from moldloft.cad.part21 import StepText
 from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs
 from moldloft.pipes import broken_pipes_raise
-from moldloft.storage import read_bytes
 
 __all__ = ["read"]
 
@@ -73,8 +72,8 @@ def read(path: Path, metres: float) -> Imported:
     if isinstance(answer, Imported):
         return answer
     numbers: list[int] = []
-    if path.suffix.lower() in (".step", ".stp"):
-        numbers = StepText.of(path, read_bytes(path).decode("latin-1")).whole_faces
+    if path.suffix.lower() in (".step", ".stp", ".stpz"):
+        numbers = StepText.of(path, cad_bytes(path).decode("latin-1")).whole_faces
     parts, lost, _ = _by_halves(path, metres, numbers, _TRIES, spending)
     if not parts:
         more = "" if spending.left > 0 else f"\n{_MORE}"
@@ -288,6 +287,8 @@ def _imported(answer: dict[str, Any], metres: float) -> Imported:
             [[(n, back, _nurbs(t)) for n, back, t in cycle] for cycle in face["loops"]],
             face["natural"],
             face["reversed"],
+            tuple(face["tags"]),
+            None if face["colour"] is None else tuple(face["colour"]),
         )
         for face in answer["faces"]
     ]
@@ -313,6 +314,8 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
             "loops": [[(n, bool(b), _sent(t)) for n, b, t in cycle] for cycle in face.loops],
             "natural": bool(face.natural),
             "reversed": bool(face.reversed),
+            "tags": list(face.tags),
+            "colour": face.colour,
         }
         for face in found.faces
     ]

@@ -113,7 +113,9 @@ class Boundary:
     """A bound of the distances between edges, vertices and surfaces."""
 
 
-def boundary(model: Model, *, accuracy: float | None = None, name: str = "model") -> Boundary:
+def boundary(
+    model: Model, *, accuracy: float | None = None, name: str = "model", facing: bool = False
+) -> Boundary:
     """The shown surfaces of a model, with their images in its planes of symmetry, sewn.
 
     Parameters
@@ -124,6 +126,8 @@ def boundary(model: Model, *, accuracy: float | None = None, name: str = "model"
         The largest error of fits, by default 1e-6 of the model's diagonal.
     name
         The name of parts of many objects.
+    facing
+        Whether surfaces of reversed faces are turned, so that every normal is that of the surface.
 
     Examples
     --------
@@ -135,7 +139,7 @@ def boundary(model: Model, *, accuracy: float | None = None, name: str = "model"
     >>> len(b.faces), len(b.edges), b.faces[0].surface
     (1, 4, <Nurbs: surface of degree 1, 1, 2 x 2 control points, exact>)
     """
-    data = _core.brep(model._document, accuracy, name)
+    data = _core.brep(model._document, accuracy, name, facing)
     edges = tuple(Edge(a, b, Nurbs._of(curve)) for a, b, curve in data["edges"])
     parts = tuple(
         Part(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from moldloft import _core
 from moldloft.cad import needed
 from moldloft.cad.boundary import boundary
-from moldloft.errors import Error
+from moldloft.errors import FormatError
 
 if TYPE_CHECKING:
     from moldloft.models import Model
@@ -55,7 +55,7 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
         for name, colour, at in part.points:
             space.add_point(at, dxfattribs={"layer": _layer(document, name, colour)})
     if not len(space):
-        raise Error("cannot write dxf: the model shows no surface and no curve")
+        raise FormatError("cannot write dxf: the model shows no surface and no curve")
     return saved(document)
 
 

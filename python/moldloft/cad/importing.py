@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
+import re
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from moldloft.arguments import explain
 from moldloft.cad.aligning import align
 from moldloft.cad.apart import read
+from moldloft.cad.divisions import divisions
 from moldloft.cad.joining import joins
 from moldloft.cad.occt import Imported, ImportedFace
-from moldloft.errors import Error
+from moldloft.errors import Error, FileError
 from moldloft.nurbs import Nurbs, _braced, _plain, _wrapped
 
 if TYPE_CHECKING:
@@ -25,7 +28,7 @@ __all__ = ["UNITS", "load_cad", "program"]
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Units of length in metres."""
 
-ENDINGS = (".step", ".stp", ".iges", ".igs")
+ENDINGS = (".step", ".stp", ".stpz", ".iges", ".igs", ".brep", ".brp")
 """The endings of the files that are read."""
 
 
@@ -55,9 +58,70 @@ def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, lis
         raise Error(f"`{path}` is no CAD file by its ending; expected one of: {', '.join(ENDINGS)}")
     found = read(path, UNITS[units])
     align(found.faces)
+    if any(face.colour is not None for face in found.faces):
+        found.remarks.append("colours become the nearest of the sixteen of a model")
     # Joins may add remarks.
-    text = _text(found, path.name, units)
-    return text, found.remarks
+    return _loadable(found, path.name, units), found.remarks
+
+
+_MOST_TRIES = 8
+"""How often what does not load is left out before a program is given up."""
+
+
+def _loadable(found: Imported, name: str, units: str) -> str:
+    """A program that loads: what the language refuses of it is left out, with remarks."""
+    from moldloft.loading import loads
+
+    apart: set[str] = set()
+    said = list(found.remarks)
+    for _ in range(_MOST_TRIES):
+        found.remarks[:] = said
+        text = _text(found, name, units, frozenset(apart))
+        model = loads(text, name=f"{Path(name).stem}.sdl", strict=False)
+        # Some of what does not join is noticed when panels are made.
+        with contextlib.suppress(Error):
+            model.mesh()
+        faults = [d for d in model.diagnostics if d.is_error]
+        if not faults:
+            return text
+        words = set().union(*(_blamed(d, text) for d in faults))
+        joined = {word for word in words if re.fullmatch(r"join\d+_*", word)} - apart
+        lost = [face for face in found.faces if _own_names(face) & words]
+        if joined:
+            apart |= joined
+            said.append(
+                f"{len(joined)} shared edges are not joined: their faces are not one along them "
+                f"({faults[0].message})"
+            )
+        elif lost:
+            gone = {face.name for face in lost}
+            found.faces[:] = [face for face in found.faces if face.name not in gone]
+            said += [f"face `{name}` is left out: {faults[0].message}" for name in sorted(gone)]
+        else:
+            break
+    raise FileError(f"cannot read `{name}`: what was read of it makes no model: {faults[0]}")
+
+
+def _blamed(fault: Any, text: str) -> set[str]:
+    """The objects that a fault may be of: those that it names, and that of its statement."""
+    words = set(re.findall(r"`(\w+)`", str(fault.message)))
+    if fault.object:
+        words.add(fault.object)
+    if fault.primary is not None:
+        for line in reversed(text.splitlines()[: fault.primary.line]):
+            # Statements begin at the margin.
+            if begun := re.match(r"\w+ (\w+)\(", line):
+                words.add(begun[1])
+                break
+    return words
+
+
+def _own_names(face: ImportedFace) -> set[str]:
+    """The names of the objects that a face becomes."""
+    sides = {
+        f"{face.name}_s{c}_{k}" for c, cycle in enumerate(face.loops) for k in range(len(cycle))
+    }
+    return {face.name, f"{face.name}_surface", *sides}
 
 
 def load_cad(path: str | os.PathLike[str], *, units: str = "m") -> Model:
@@ -72,32 +136,59 @@ def load_cad(path: str | os.PathLike[str], *, units: str = "m") -> Model:
     return loads(text, name=f"{Path(path).stem}.sdl")
 
 
-def _text(found: Imported, name: str, units: str) -> str:
+def _text(found: Imported, name: str, units: str, apart: frozenset[str]) -> str:
     lines = [f"# {name}", f'Model info(units = "{units}");']
-    trimmed = sum(not face.natural for face in found.faces)
-    most = min(_FINEST, int(np.sqrt(_CELLS / max(trimmed, 1))))
-    goal = _NEAR * _size(found) if found.faces else 1.0
     taken = {face.name for face in found.faces} | set(found.curves)
+    counts = divisions(found.faces)
     for face in found.faces:
         if face.natural:
-            lines += _whole(face, taken)
+            lines += _whole(face, taken, counts[face.name])
         else:
-            lines += _trimmed(face, taken, _finer(face, goal, most))
-    lines += joins(found, taken)
+            lines += _trimmed(face, taken)
+    lines += joins(found, taken, apart)
     lines += [curve.to_sdl(label) for label, curve in found.curves.items()]
     return "\n".join(lines) + "\n"
 
 
-def _size(found: Imported) -> float:
-    points = np.concatenate([face.surface.points.reshape(-1, 3) for face in found.faces])
-    return float(np.linalg.norm(np.ptp(points, axis=0)))
+def _attributes(face: ImportedFace) -> str:
+    """What a face has besides its shape, as the end of its statement."""
+    text = ", orientation = 1" if face.reversed else ""
+    if face.colour is not None:
+        text += f", colour = {nearest_colour(face.colour)}"
+    if face.tags:
+        named = ", ".join(f'"{tag}"' for tag in face.tags)
+        text += f", tags = {{{named}}}" if len(face.tags) > 1 else f", tags = {named}"
+    return text + ");"
+
+
+_EGA = np.array(
+    [[85 * (k >> 3) + 170 * (k >> channel & 1) for channel in (2, 1, 0)] for k in range(16)]
+)
+_EGA[6, 1] = 85
+"""The sixteen colours of models, sRGB."""
+
+
+def nearest_colour(rgb: tuple[float, float, float]) -> int:
+    """The number of the model's colour that is nearest to one of a file.
+
+    Parameters
+    ----------
+    rgb
+        sRGB, 0 to 1.
+
+    Examples
+    --------
+    >>> nearest_colour((1.0, 0.1, 0.0)), nearest_colour((0.0, 0.0, 0.6))
+    (4, 1)
+    """
+    return int(np.argmin(((_EGA - np.array(rgb) * 255) ** 2).sum(axis=1)))
 
 
 _POLE = 1e-9
 """Control points of an edge within this share of the size are one point."""
 
 
-def _whole(face: ImportedFace, taken: set[str]) -> list[str]:
+def _whole(face: ImportedFace, taken: set[str], counts: tuple[int, int]) -> list[str]:
     """A surface; an edge that is one point has one point object, by which panels know the pole."""
     points = face.surface.points
     near = _POLE * float(np.ptp(points.reshape(-1, 3), axis=0).max())
@@ -115,38 +206,12 @@ def _whole(face: ImportedFace, taken: set[str]) -> list[str]:
         at = ", ".join(map(_plain, places.mean(axis=0)))
         lines.append(f"AbsPoint {pole}({at}, visible = 0);")
         named |= dict.fromkeys(edge.tolist(), pole)
-    text = face.surface._statement(face.name, named)
-    return [*lines, text.removesuffix(");") + ", orientation = 1);" if face.reversed else text]
+    text = face.surface._statement(face.name, named).removesuffix(");")
+    text += f", divisions = {{{counts[0]}, {counts[1]}}}{_attributes(face)}"
+    return [*lines, text]
 
 
-_USUAL, _FINEST = 12, 40
-"""Divisions of a trimmed surface: where none are stated, and at most."""
-
-_CELLS = 50_000
-"""Divisions of all trimmed surfaces, about at most."""
-
-_NEAR = 2e-5
-"""Triangles are to be within this share of the body's size from their surface."""
-
-
-def _finer(face: ImportedFace, goal: float, most: int) -> dict[str, int]:
-    """The divisions that a trimmed face needs for triangles near its surface, beyond the usual."""
-    t = np.linspace(0, 1, 2 * _USUAL + 1)
-    sides = [np.clip(trace(t), 0, 1) for cycle in face.loops for _, _, trace in cycle]
-    low, high = np.min(np.concatenate(sides), axis=0), np.max(np.concatenate(sides), axis=0)
-    # The divisions are those of the whole surface.
-    u, v = np.meshgrid(t, t, indexing="ij")
-    net = face.surface(u.ravel(), v.ravel()).reshape(len(t), len(t), 3)
-    counts = {}
-    for name, chords, axis in (("nu", net, 1), ("nv", net.swapaxes(0, 1), 0)):
-        kept = (t >= low[axis]) & (t <= high[axis])
-        apart = chords[1::2] - (chords[:-1:2] + chords[2::2]) / 2
-        off = float(np.linalg.norm(apart[:, kept], axis=-1).max(initial=0))
-        counts[name] = min(int(np.ceil(_USUAL * np.sqrt(off / goal))), most)
-    return {name: count for name, count in counts.items() if count > _USUAL}
-
-
-def _trimmed(face: ImportedFace, taken: set[str], finer: dict[str, int]) -> list[str]:
+def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
     base = f"{face.name}_surface"
     while base in taken:
         base += "_"
@@ -164,23 +229,16 @@ def _trimmed(face: ImportedFace, taken: set[str], finer: dict[str, int]) -> list
         for k, (_, backwards, trace) in enumerate(cycle):
             own = trace if not backwards else _turned(trace)
             label = f"{face.name}_s{c}_{k}"
-            inner = []
-            for i, p in enumerate(own.points[1:-1]):
-                magnet = f"{label}_{i}"
-                lines.append(
-                    f"AbsMagnet {magnet}({base}, {_plain(p[0])}, {_plain(p[1])}, visible = 0);"
-                )
-                inner.append(magnet)
-            control = [ends[k], *inner, ends[(k + 1) % len(cycle)]]
+            control = [ends[k], ends[(k + 1) % len(cycle)]]
             text = f"NURBSnake {label}({_braced(control)}, {own.degrees[0]}, "
             text += _braced(map(_plain, own.knots[0]))
             if own.weights is not None:
                 text += f", weights = {_braced(map(_plain, own.weights))}"
+            if len(own.points) > 2:
+                text += f", places = {_braced(map(_plain, own.points[1:-1, :2].ravel()))}"
             lines.append(_wrapped(text + ", visible = 0);"))
             names.append(label)
-    turned = "".join(f", {name} = {count}" for name, count in finer.items())
-    turned += ", orientation = 1" if face.reversed else ""
-    lines.append(_wrapped(f"TrimSurf {face.name}({base}, {_braced(names)}{turned});"))
+    lines.append(_wrapped(f"TrimSurf {face.name}({base}, {_braced(names)}{_attributes(face)}"))
     return lines
 
 

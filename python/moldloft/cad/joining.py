@@ -41,7 +41,7 @@ class _Side:
     """Places along it at even parameters."""
 
 
-def joins(found: Imported, taken: set[str]) -> list[str]:
+def joins(found: Imported, taken: set[str], left_out: frozenset[str]) -> list[str]:
     """Statements that join the sides along each shared edge; what is not joined is a remark.
 
     Parameters
@@ -50,6 +50,8 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
         What the file holds.
     taken
         The names in use.
+    left_out
+        Joins, by name, that are not to be made.
     """
     shared: dict[int, list[_Side | None]] = {}
     for face in found.faces:
@@ -58,6 +60,17 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
                 shared.setdefault(number, []).append(_side(face, c, k))
     lost = [sides for sides in shared.values() if len(sides) > 1 and None in sides]
     lines: list[str] = []
+    count = 0
+
+    def joined(first: str, second: str, tolerance: str) -> None:
+        nonlocal count
+        count += 1
+        name = f"join{count}"
+        while name in taken:
+            name += "_"
+        if name not in left_out:
+            lines.append(f"Join {name}({first}, {second}, tolerance = {tolerance});")
+
     nets = [face.surface.points.reshape(-1, 3) for face in found.faces]
     size = float(np.ptp(np.concatenate(nets), axis=0).max()) if nets else 0.0
     apart = 0.0
@@ -79,18 +92,10 @@ def joins(found: Imported, taken: set[str]) -> list[str]:
                 left += 1
                 apart = max(apart, gap)
                 continue
-            name = f"join{len(lines) + 1}"
-            while name in taken:
-                name += "_"
-            tolerance = _rounded_up(max(2 * gap, _ROUNDING * size))
-            lines.append(f"Join {name}({one.name}, {other.name}, tolerance = {tolerance});")
+            joined(one.name, other.name, _rounded_up(max(2 * gap, _ROUNDING * size)))
     poles, alone = _poles(found, _ROUNDING * size)
     for first, second in poles:
-        name = f"join{len(lines) + 1}"
-        while name in taken:
-            name += "_"
-        tolerance = _rounded_up(_ROUNDING * size)
-        lines.append(f"Join {name}({first}, {second}, tolerance = {tolerance});")
+        joined(first, second, _rounded_up(_ROUNDING * size))
     if alone:
         found.remarks.append(
             f"trimmed faces that end in one point are open there by a line of no length: "

@@ -8,6 +8,8 @@ import os
 import re
 import sys
 import tempfile
+import zipfile
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -16,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft.budget import limits
 from moldloft.cad import identifier, needed
 from moldloft.cad.iges_text import IgesText
 from moldloft.cad.part21 import StepText
@@ -119,6 +122,10 @@ class ImportedFace:
     """Whether its loops are the edges of the surface's parameters."""
     reversed: bool
     """Whether its normal is opposite to that of the surface."""
+    tags: tuple[str, ...] = ()
+    """The products that it is in, from the outermost one, and its body."""
+    colour: tuple[float, float, float] | None = None
+    """sRGB, 0 to 1, of the face or of what it is in."""
 
 
 @dataclass
@@ -135,8 +142,66 @@ class Imported:
     """What was left out or is doubtful."""
 
 
+def cad_bytes(path: Path) -> bytes:
+    """What a file holds: without a byte-order mark, and unpacked if it is a packed STEP file.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Raises
+    ------
+    FileError
+        When it cannot be read, or a packed file holds no STEP file or too large a one.
+    """
+    data = read_bytes(path)
+    if data[:2] == b"PK":
+        try:
+            with zipfile.ZipFile(io.BytesIO(data)) as packed:
+                ends = (".stp", ".step")
+                parts = [i for i in packed.infolist() if i.filename.lower().endswith(ends)]
+                if not parts:
+                    raise FileError(f"cannot read `{path}`: no STEP file is packed in it")
+                if parts[0].file_size > limits().memory // 8:
+                    raise FileError(
+                        f"cannot read `{path}`: {parts[0].file_size} bytes are packed in it, more "
+                        "than the limit of memory allows"
+                    )
+                data = packed.read(parts[0])
+        except (zipfile.BadZipFile, NotImplementedError, RuntimeError, zlib.error) as error:
+            raise FileError(f"cannot read `{path}`: it cannot be unpacked ({error})") from error
+    return data.removeprefix(b"\xef\xbb\xbf")
+
+
+def _of_brep(path: Path, data: bytes, metres: float) -> Imported:
+    """The faces and curves of a shape as OCCT writes it, which is taken to be in millimetres."""
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+    from OCP.BRepTools import BRepTools
+    from OCP.gp import gp_Pnt, gp_Trsf
+    from OCP.TopoDS import TopoDS_Shape
+    from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+    shape = TopoDS_Shape()
+    BRepTools.Read_s(shape, io.BytesIO(data), BRep_Builder())
+    if shape.IsNull():
+        raise FileError(f"cannot read `{path}`: not a BREP file that OCCT takes")
+    scale = gp_Trsf()
+    scale.SetScale(gp_Pnt(0, 0, 0), 1e-3 / metres)
+    shape = BRepBuilderAPI_Transform(shape, scale, True).Shape()
+    document = _document(metres)
+    XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).AddShape(shape)
+    found = Imported(metres=metres)
+    found.remarks.append("a BREP file states no unit: its numbers are taken as millimetres")
+    _collect(document, [Sewn(shape)], found, {})
+    if not found.faces and not found.curves:
+        raise FileError(f"cannot read `{path}`: it holds no face and no curve")
+    return found
+
+
 def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
-    """The faces and curves of a STEP or IGES file, in units of so many metres, in this process.
+    """The faces and curves of a CAD file, in units of so many metres, in this process.
 
     Of a file that is cut short the faces that are whole are read, with remarks.
 
@@ -154,8 +219,10 @@ def of_part(path: Path, metres: float, numbers: list[int] | None) -> Imported:
     FileError
         When the file is not of its format, or holds no shape.
     """
-    needed("OCP", "cadquery-ocp-novtk", "reading STEP and IGES")
-    data = read_bytes(path)
+    needed("OCP", "cadquery-ocp-novtk", "reading STEP, IGES and BREP")
+    data = cad_bytes(path)
+    if path.suffix.lower() in (".brep", ".brp"):
+        return _of_brep(path, data, metres)
     if not data.strip():
         raise FileError(f"cannot read `{path}`: the file is empty")
     iges = path.suffix.lower() in (".igs", ".iges")
@@ -246,13 +313,21 @@ def _collect(document: Any, shapes: list[Sewn], found: Imported, numbered: dict[
     seen: set[int] = set()
     known = 0
     originals = 0
+    bodies: set[str] = set()
+    several = sum(len(_solids(shape.shape)) for shape in shapes) > 1
     for shape in shapes:
+        places = _Places(shape, named, bodies, several)
         labels = _Labels(named, numbered, taken.copy(), seen, len(found.faces))
-        faces, count, left_out = _shape_faces(shape, labels, False)
+        faces, count, left_out = _shape_faces(shape, labels, places, False)
         if any(not face.natural and _own_seam(face) for face in faces):
             # Trimmed faces cannot be joined to themselves.
-            labels = _Labels(named, numbered, taken.copy(), seen, len(found.faces))
-            faces, count, left_out = _shape_faces(shape, labels, True)
+            again = _Labels(named, numbered, taken.copy(), seen, len(found.faces))
+            try:
+                faces, count, left_out = _shape_faces(shape, again, places, True)
+                labels = again
+            except Exception as error:
+                # OCCT's own exceptions have no common class here.
+                left_out.append(f"closed faces are not halved: {_said(error)}")
         taken |= labels.taken
         originals += labels.count - len(found.faces)
         found.remarks += left_out
@@ -301,14 +376,129 @@ class _Labels:
         return label, f"face #{number} (`{label}`)" if known else f"face `{label}`"
 
 
+def _said(error: Exception) -> str:
+    """An exception of OCCT in one line."""
+    return f"{type(error).__name__}: {error}".splitlines()[0][:200]
+
+
+def _solids(shape: Any) -> list[Any]:
+    from OCP.TopAbs import TopAbs_SOLID
+
+    return faces_of(shape, TopAbs_SOLID)
+
+
+_UNNAMED = {"", "NONE", "SOLID", "SHELL", "COMPOUND", "ASSEMBLY"}
+"""Names that programs give to what has none."""
+
+
+class _Places:
+    """Where the faces of a shape are: the products that they are in, and their colours."""
+
+    def __init__(self, sewn: Sewn, named: _Names, bodies: set[str], several: bool) -> None:
+        from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
+        from OCP.TopoDS import TopoDS_Iterator
+
+        self._faces = map_of(sewn.shape, TopAbs_FACE)
+        self._found: dict[int, tuple[tuple[str, ...], tuple[float, float, float] | None]] = {}
+
+        def walk(shape: Any, path: tuple[str, ...], colour: Any, body: bool) -> None:
+            colour = named.colour(shape) or colour
+            kind = shape.ShapeType()
+            if kind == TopAbs_FACE:
+                self._found.setdefault(self._faces.FindIndex(shape), (path, colour))
+                return
+            label = named.of(shape)
+            plain = label in _UNNAMED or label.startswith("Open CASCADE")
+            known = "" if plain else identifier(label, set())
+            if known and known not in path:
+                path = (*path, known)
+            if several and not body and kind in (TopAbs_SOLID, TopAbs_SHELL):
+                # The same product may be placed many times.
+                taken = bodies | set(path[:-1])
+                name = identifier(path[-1] if path else "body", taken)
+                bodies.add(name)
+                path, body = (*path, name) if name not in path else path, True
+            parts = TopoDS_Iterator(shape)
+            while parts.More():
+                walk(parts.Value(), path, colour, body)
+                parts.Next()
+
+        walk(sewn.shape, (), None, False)
+
+    def of(self, face: Any) -> tuple[tuple[str, ...], tuple[float, float, float] | None]:
+        """The products and the body of a face, and its colour."""
+        return self._found.get(self._faces.FindIndex(face), ((), None))
+
+
+class _Converted:
+    """A shape as NURBS: all of it, or face by face where OCCT cannot convert it in one."""
+
+    def __init__(self, shape: Any) -> None:
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+        from OCP.TopAbs import TopAbs_EDGE
+
+        self._whole = None
+        try:
+            self._whole = BRepBuilderAPI_NurbsConvert(shape, True)
+            self.edges = map_of(self._whole.Shape(), TopAbs_EDGE)
+        except Exception:
+            self.edges = map_of(shape, TopAbs_EDGE)
+
+    def takes(self, part: Any) -> bool:
+        """Whether OCCT can convert a face."""
+        if self._whole is not None:
+            return True
+        try:
+            self.face(part)
+        except Exception:
+            # OCCT's own exceptions have no common class here.
+            return False
+        return True
+
+    def face(self, part: Any) -> tuple[Any, Any]:
+        """A face as NURBS, and what numbers its edges."""
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+        from OCP.TopAbs import TopAbs_EDGE
+        from OCP.TopoDS import TopoDS
+
+        if self._whole is not None:
+            return TopoDS.Face(self._whole.ModifiedShape(part)), self.edges
+        convert = BRepBuilderAPI_NurbsConvert(part, True)
+        own = _Renumbered()
+        for edge in faces_of(part, TopAbs_EDGE):
+            # An edge that is not of the whole gets a number of its own.
+            number = self.edges.FindIndex(edge) or self.edges.Add(edge)
+            own.add(convert.ModifiedShape(edge), number)
+        return TopoDS.Face(convert.ModifiedShape(part)), own
+
+
+class _Renumbered:
+    """Edges of one face with the numbers that they have in all of the shape."""
+
+    def __init__(self) -> None:
+        from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
+
+        self._shapes = Shapes()
+        self._numbers: list[int] = []
+
+    def add(self, edge: Any, number: int) -> None:
+        if self._shapes.Add(edge) > len(self._numbers):
+            self._numbers.append(number)
+
+    def FindIndex(self, edge: Any) -> int:  # noqa: N802 (as OCCT's maps)
+        index = self._shapes.FindIndex(edge)
+        return self._numbers[index - 1] if index else 0
+
+    def FindKey(self, number: int) -> Any:  # noqa: N802
+        return self._shapes.FindKey(self._numbers.index(number) + 1)
+
+
 def _shape_faces(
-    sewn: Sewn, labels: _Labels, divided: bool
+    sewn: Sewn, labels: _Labels, places: _Places, divided: bool
 ) -> tuple[list[ImportedFace], int, list[str]]:
     """The faces of a shape, how many edges they have, and remarks; closed faces may be halved."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
     from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideClosed
-    from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED
-    from OCP.TopoDS import TopoDS
+    from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
 
     originals = faces_of(sewn.shape, TopAbs_FACE)
     held = [sewn.face(original) for original in originals]
@@ -321,21 +511,29 @@ def _shape_faces(
         whole = divide.Result()
         context = divide.GetContext()
         parts = {k: faces_of(context.Apply(f), TopAbs_FACE) for k, f in enumerate(held)}
-    convert = BRepBuilderAPI_NurbsConvert(whole, True)
-    edges = map_of(convert.Shape(), TopAbs_EDGE)
+    converted = _Converted(whole)
     faces: list[ImportedFace] = []
     remarks = []
     for k, original in enumerate(originals):
         label, where = labels.of(original)
-        for part in parts[k]:
-            face = TopoDS.Face(convert.ModifiedShape(part))
+        pieces = parts[k]
+        if divided and not all(converted.takes(part) for part in pieces):
+            # As it was read: its halves may be what OCCT cannot convert.
+            pieces = [held[k]]
+        for part in pieces:
             try:
+                face, edges = converted.face(part)
                 made = _face(face, edges, identifier(label, labels.taken))
             except Error as error:
                 remarks.append(f"{where} is left out: {error}")
                 continue
+            except Exception as error:
+                # OCCT's own exceptions have no common class here.
+                remarks.append(f"{where} is left out: OCCT cannot convert it ({_said(error)})")
+                continue
             # The converted face has lost its sense.
             made.reversed = part.Orientation() == TopAbs_REVERSED
+            made.tags, made.colour = places.of(original)
             faces.append(made)
     uses: dict[int, int] = {}
     for face in faces:
@@ -346,7 +544,7 @@ def _shape_faces(
         sides = [side for cycle in face.loops for side in cycle]
         if any(uses[n] > 1 and border(t) and not is_whole(t) for n, _, t in sides):
             face.natural = False
-    return faces, edges.Extent(), remarks
+    return faces, converted.edges.Extent(), remarks
 
 
 def _own_seam(face: ImportedFace) -> bool:
@@ -368,7 +566,7 @@ def _loose_edges(shape: Any) -> list[Any]:
 
 
 class _Names:
-    """The names of a document's shapes."""
+    """The names and colours of a document's shapes."""
 
     def __init__(self, document: Any) -> None:
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
@@ -381,8 +579,13 @@ class _Names:
         self._nowhere = TopLoc_Location()
         self._shapes = Shapes()
         self._names: dict[int, str] = {}
+        self._colours: dict[int, tuple[float, float, float]] = {}
 
         def walk(label: Any) -> None:
+            shape = tool.GetShape_s(label)
+            colour = None if shape.IsNull() else _colour(label)
+            if colour is not None:
+                self._colours.setdefault(self._shapes.Add(shape.Located(self._nowhere)), colour)
             if label.IsAttribute(TDataStd_Name.GetID_s()):
                 name = TDataStd_Name()
                 label.FindAttribute(TDataStd_Name.GetID_s(), name)
@@ -403,6 +606,24 @@ class _Names:
     def of(self, shape: Any) -> str:
         """The name of a shape, wherever it is; empty when it has none."""
         return self._names.get(self._shapes.FindIndex(shape.Located(self._nowhere)), "")
+
+    def colour(self, shape: Any) -> tuple[float, float, float] | None:
+        """The colour of a shape, wherever it is, sRGB."""
+        return self._colours.get(self._shapes.FindIndex(shape.Located(self._nowhere)))
+
+
+def _colour(label: Any) -> tuple[float, float, float] | None:
+    """The colour of a label of a document, sRGB."""
+    from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
+    from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool
+
+    colour = Quantity_Color()
+    for kind in (XCAFDoc_ColorSurf, XCAFDoc_ColorGen):
+        if XCAFDoc_ColorTool.GetColor_s(label, kind, colour):
+            values = colour.Values(Quantity_TOC_sRGB)
+            red, green, blue = (float(x) for x in values)
+            return red, green, blue
+    return None
 
 
 def _clamped(curve: Any, low: float, high: float, flat: bool) -> Nurbs:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from moldloft import _core
 from moldloft.cad import needed
 from moldloft.cad.boundary import Boundary, Face, boundary
-from moldloft.errors import Error
+from moldloft.errors import FormatError
 
 if TYPE_CHECKING:
     from moldloft.models import Model
@@ -36,9 +36,9 @@ def encode(model: Model, stem: str, *, accuracy: float | None = None) -> bytes:
         The largest error of fits.
     """
     rhino: Any = needed("rhino3dm", "rhino3dm", "writing 3DM")
-    shape = boundary(model, accuracy=accuracy, name=stem)
+    shape = boundary(model, accuracy=accuracy, name=stem, facing=True)
     if not shape.faces and not shape.parts:
-        raise Error("cannot write 3dm: the model shows no surface and no curve")
+        raise FormatError("cannot write 3dm: the model shows no surface and no curve")
     file = rhino.File3dm()
     file.Settings.ModelUnitSystem = getattr(
         rhino.UnitSystem, _UNITS[_core.length_unit(model._document)[0]]
@@ -65,7 +65,7 @@ def _bytes(file: Any) -> bytes:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "model.3dm"
         if not file.Write(str(path), 8):
-            raise Error("cannot write 3dm: rhino3dm refuses")
+            raise FormatError("cannot write 3dm: rhino3dm refuses")
         return path.read_bytes()
 
 

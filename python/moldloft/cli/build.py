@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from pathlib import Path
@@ -108,6 +109,19 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--triangles", action="store_true", help="triangles only, in files of plain panels"
     )
     panels.add_argument(
+        "--tolerance",
+        metavar="LENGTH",
+        type=float,
+        help="in files of panels, how far panels may be from their surfaces; in those of surfaces, "
+        "how far fits may be off",
+    )
+    panels.add_argument(
+        "--angle",
+        metavar="DEGREES",
+        type=float,
+        help="in files of panels, the largest turn of a surface along a panel",
+    )
+    panels.add_argument(
         "--tag",
         metavar="TAG",
         nargs="+",
@@ -191,7 +205,13 @@ def _build(
             row = formats()[name]
             lids = options.lids and row.lids
             immersed = options.immersed and row.immersed
+            near: dict[str, Any] = {}
             plain = {"whole": options.whole, "triangles": options.triangles}
+            of_panels = row.holds.startswith("panels")
+            if of_panels and options.angle is not None:
+                near["angle"] = math.radians(options.angle)
+            if (of_panels or row.holds == "surfaces") and options.tolerance is not None:
+                near["tolerance"] = options.tolerance
             try:
                 outputs += produce(
                     model,
@@ -200,6 +220,7 @@ def _build(
                     lids=lids,
                     immersed=immersed,
                     tags=options.tag,
+                    **near,
                     **(plain if row.plain_panels else {}),
                 )
             except Error as error:

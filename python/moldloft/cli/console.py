@@ -253,6 +253,26 @@ def _from_standard_input(options: argparse.Namespace) -> Model:
     return loads(text, name=f"stdin.{kind}", library=folders, strict=False)
 
 
+def _foreign(options: argparse.Namespace) -> Model | None:
+    """The model of a mesh or CAD file; None for other files."""
+    from moldloft.cad.importing import ENDINGS, program
+    from moldloft.loading import loads
+    from moldloft.mesh_files import holds_mesh, mesh_program
+
+    place = Path(options.model)
+    cad = place.suffix.lower() in ENDINGS
+    if not (cad or holds_mesh(place)) or not place.is_file():
+        return None
+    units = getattr(options, "units", None)
+    if cad:
+        text, remarks = program(place, units=units or "m")
+    else:
+        text, remarks = mesh_program(place)
+    for remark in remarks:
+        print(f"warning: {options.model}: {remark}", file=sys.stderr)
+    return loads(text, name=f"{place.stem}.sdl")
+
+
 def open_model(options: argparse.Namespace) -> Model:
     """The model of the arguments, with the values of ``--set``."""
     from moldloft.errors import Error
@@ -260,6 +280,9 @@ def open_model(options: argparse.Namespace) -> Model:
     from moldloft.formats import formats
     from moldloft.loading import load
 
+    foreign = _foreign(options)
+    if foreign is not None:
+        return foreign
     named = ending(Path(options.model))
     written = [row for row in formats().values() if named in (row.name, row.suffix) and named]
     if written and named not in ("sdl", "ms2"):

@@ -58,7 +58,9 @@ def run(options: argparse.Namespace) -> int:
     if target is not None:
         check_not_source(target, [options.model])
     named = ending(target) if target else ""
-    if options.model.lower().endswith((".step", ".stp", ".iges", ".igs", ".dxf", ".svg")):
+    from moldloft.cad.importing import ENDINGS
+
+    if options.model.lower().endswith((*ENDINGS, ".dxf", ".svg")):
         return _from_cad(options, target, format_named(options.to or named or "sdl"))
     if options.model.lower().endswith(".csv"):
         return _from_offsets(options, target, format_named(options.to or named or "sdl"))

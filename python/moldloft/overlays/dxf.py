@@ -149,7 +149,10 @@ def _entities(space: Any, left: Counter[str], depth: int = 0) -> Iterator[Any]:
         elif kind == "POLYLINE" and (entity.is_poly_face_mesh or entity.is_polygon_mesh):
             yield from entity.virtual_entities()
         elif kind == "MESH":
-            yield from _mesh_faces(entity)
+            try:
+                yield from _mesh_faces(entity)
+            except (AttributeError, IndexError, TypeError, ValueError) as error:
+                left[f"MESH ({error})"] += 1
         else:
             yield entity
 
@@ -157,8 +160,9 @@ def _entities(space: Any, left: Counter[str], depth: int = 0) -> Iterator[Any]:
 def _mesh_faces(mesh: Any) -> Iterator[Any]:
     entities: Any = import_module("ezdxf.entities")
 
-    for corners in mesh.faces_as_vertices():
-        at = list(corners)
+    vertices = list(mesh.vertices)
+    for face in mesh.faces:
+        at = [vertices[k] for k in face]
         for k in range(1, len(at) - 1):
             yield entities.Face3d.new(
                 dxfattribs={"vtx0": at[0], "vtx1": at[k], "vtx2": at[k + 1], "vtx3": at[k + 1]}

@@ -387,6 +387,7 @@ impl<T: Real> Oracle<T> for Inside<T> {
         let body = TriangleBody {
             points: self.plain.to_vec(),
             triangles: self.body.triangles.clone(),
+            quads: self.body.quads,
             groups: Vec::new(),
             wires: Vec::new(),
             dots: Vec::new(),

@@ -131,7 +131,8 @@ impl<T: Real> Build<T> for CSnake<T> {
     example = "AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); \
                AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
                AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.5, 0.3); AbsMagnet r(S, 0.8, 0.2); \
-               NURBSnake s({p, q, r}, 2, weights = {1, 0.7, 1});"
+               NURBSnake s({p, q, r}, 2, weights = {1, 0.7, 1}); \
+               NURBSnake w({p, r}, 2, places = {0.5, 0.3});"
 )]
 pub struct NURBSnake<T: Real> {
     /// Magnets of one surface, two or more.
@@ -142,14 +143,27 @@ pub struct NURBSnake<T: Real> {
     degree: usize,
     /// Knots, end knots included, ascending.
     knots: Option<Vec<T>>,
-    /// Weights of the magnets, positive.
+    /// Weights of the magnets, positive; of `places` too, between those of the two magnets.
     weights: Option<Vec<T>>,
+    /// Control points that are no objects, as u, v, u, v, ...: they are between the first magnet and the second, and there
+    /// are no other magnets.
+    places: Option<Vec<T>>,
 }
 
 impl<T: Real> Build<T> for NURBSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let (surface, places) = places(&self.magnets, Self::MAGNETS)?;
+        let (surface, mut places) = places(&self.magnets, Self::MAGNETS)?;
         let names = [0, places.len() - 1].map(|k| self.magnets[k].key);
+        if let Some(between) = &self.places {
+            if places.len() != 2 || between.len() % 2 != 0 {
+                return Err(CallError::new("out-of-range", "control points between two magnets")
+                    .expected("two magnets, and u and v of each place")
+                    .found(format!("{} magnets, {} numbers", places.len(), between.len()))
+                    .in_field(Self::PLACES));
+            }
+            let inner = between.chunks_exact(2).map(|p| Vec3::new(p[0], p[1], T::zero()));
+            places.splice(1..1, inner);
+        }
         let fields = [Self::MAGNETS, Self::DEGREE, Self::KNOTS, Self::WEIGHTS];
         let path = spline(places, self.degree, self.knots, self.weights, fields)?;
         let clamped = path.clamped_ends();

@@ -35,7 +35,9 @@ mod swept;
 mod tangent_patch;
 mod translated;
 mod trim;
+mod trim_density;
 mod trim_measures;
+mod trim_region;
 
 pub use arcloft::ArcLoftSurf;
 pub use blister::Blister;

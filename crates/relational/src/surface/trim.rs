@@ -3,22 +3,25 @@
 use crate::arguments::{Snake, common_surface};
 use crate::curve::Segment;
 use crate::snake::{OnSurface, edge_trace};
-use crate::surface::trim_measures::{BorderLens, measured};
-use moldloft_mesh::planar_triangles;
-use moldloft_num::{Order, Real, Vec3};
+use crate::surface::trim_density::rim_density;
+use crate::surface::trim_measures::{LoopCurve, measured};
+use crate::surface::trim_region::{Place, TrimPlane, TrimRegion};
+use moldloft_num::{Fineness, Order, Real, Vec3};
 use moldloft_registry::{
     Border, BorderCurve, Build, CallError, Context, CurveRef, Kind, SheetMeasures, SurfaceRef,
     TriangleBody, TriangulatedBorder, Value,
 };
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The part of a surface within loops of snakes on it, as triangles.
 ///
 /// Snakes that follow one another make a loop; one may run backwards, and a closed snake is a loop by
 /// itself. The first loop is the outer one and the others are holes in it; with `whole = 1` the outer
-/// one is the boundary of the surface and all loops are holes. The interior contains points of the surface's
-/// own nu x nv divisions that are not too near the border; the triangles between are Delaunay's (in
-/// parameters scaled to lengths). All vertices are on the surface.
+/// one is the boundary of the surface and all loops are holes. All vertices are on the surface. Where no divisions are
+/// stated, the border is divided by its own curvature and the interior by the surface's, until the area of the triangles
+/// is within 1e-3 of that of the surface; what they miss by more is a warning. With `nu` or `nv` the interior contains
+/// points of the surface's own nu x nv divisions that are not too near the border. The triangles are Delaunay's, in
+/// parameters stretched to lengths or by curvature.
 ///
 /// Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours: patches,
 /// fillets and other trimmed surfaces whose edges run along the same snakes have its vertices there,
@@ -47,22 +50,39 @@ pub struct TrimSurf<T: Real> {
     /// 1 when the whole surface is kept but for holes.
     #[field(default = 0, min = 0, max = 1)]
     whole: u32,
-    /// Divisions of each snake. Not given: as its neighbours have them, or 12.
+    /// Divisions of each snake. Not given: as many as its curvature and that of the surface ask for, and at least as its
+    /// neighbours have them.
     #[field(min = 1, max = 10_000)]
     rim: Option<usize>,
-    /// Divisions along u of the surface's grid inside the border.
-    #[field(default = 12, min = 1, max = 1000)]
-    nu: usize,
+    /// Divisions along u of the surface's grid inside the border. Not given: as the curvature of the surface asks for.
+    #[field(min = 1, max = 1000)]
+    nu: Option<usize>,
     /// Divisions of the surface along v.
-    #[field(default = 12, min = 1, max = 1000)]
-    nv: usize,
+    #[field(min = 1, max = 1000)]
+    nv: Option<usize>,
 }
 
 /// How far apart, in u or v, ends that should meet may be.
 const MEETING: f64 = 1e-6;
 
-/// Points inside keep this share of the smallest step of the net from the rim.
-const MARGIN: f64 = 0.35;
+/// The area of the triangles is within this share of that of the surface, unless divisions are stated.
+const AREA_PROMISE: f64 = 1e-3;
+
+/// The turn along a panel, in radians, at first. A panel of turn h loses h^2 / 24 of an area and, on a tube, h^2 / 6 of
+/// its volume: both are below 1e-3.
+const TURN: f64 = 0.07;
+
+/// The longest side of a panel is this part of the part's greater extent.
+const SIDES: f64 = 12.0;
+
+/// Divisions of the surface along u or v where only the others are stated.
+const DIVISIONS: usize = 12;
+
+/// How often the turn is made smaller until the area is right.
+const MAX_ROUNDS: usize = 6;
+
+/// The most triangles of a part that is to be made finer.
+const MAX_TRIANGLES: usize = 400_000;
 
 impl<T: Real> Build<T> for TrimSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, CallError> {
@@ -72,34 +92,128 @@ impl<T: Real> Build<T> for TrimSurf<T> {
         common_surface(&items, |fault, k| {
             fault.in_item(k.saturating_sub(1)).in_field(Self::LOOPS)
         })?;
-        let mut hems = Vec::new();
+        let inside = (nu.is_some() || nv.is_some())
+            .then(|| [nu.unwrap_or(DIVISIONS), nv.unwrap_or(DIVISIONS)]);
+        // The surface's own edges, then the snakes: each with its divisions where they are stated.
+        let mut curves: Vec<(CurveRef<T>, Option<usize>, Option<usize>)> = Vec::new();
         let mut cycles = Vec::new();
         if whole == 1 {
-            let hem = |k: usize, n: usize| {
-                let snake = edge(&surface, k, context.nesting);
-                BorderCurve { curve: snake, stated: None, usual: n as u32 }
-            };
-            hems.extend([hem(0, nu), hem(1, nv), hem(2, nu), hem(3, nv)]);
+            let own = |k: usize| inside.map(|n| n[k % 2]);
+            curves.extend((0..4).map(|k| (edge(&surface, k, context.nesting), None, own(k))));
             cycles.push(vec![(0, false), (1, false), (2, true), (3, true)]);
         }
-        let before = hems.len();
+        let before = curves.len();
         for cycle in chained(&loops)? {
             cycles.push(cycle.into_iter().map(|(k, back)| (k + before, back)).collect());
         }
-        let usual = rim.unwrap_or(DEFAULT_DIVISIONS) as u32;
-        let stated = rim.map(|n| n as u32);
-        hems.extend(loops.into_iter().map(|s| BorderCurve { curve: s.curve, stated, usual }));
-        let trimmed = Trimmed { scale: scale(&surface), surface, hems, cycles, inside: [nu, nv] };
-        let even = |n: u32| (0..=n).map(|k| T::from(f64::from(k) / f64::from(n))).collect();
-        let at: Vec<Vec<T>> = trimmed.hems.iter().map(|hem| even(hem.usual)).collect();
-        let (mut facets, _) = trimmed.facets(&at)?;
-        facets.border = Some(Border(Arc::new(trimmed)));
-        Ok(Value::Body(Arc::new(facets)))
+        curves.extend(loops.into_iter().map(|s| (s.curve, rim, rim)));
+        let free = inside.is_none() && rim.is_none();
+        let mut fineness = fineness(&surface, &curves);
+        let mut exact = None;
+        for round in 0.. {
+            let hems = curves
+                .iter()
+                .map(|(curve, stated, usual)| hem(&surface, curve, *stated, *usual, fineness));
+            let mut trimmed = Trimmed {
+                surface: surface.clone(),
+                hems: hems.collect(),
+                cycles: cycles.clone(),
+                inside,
+                fineness,
+                exact: exact.clone().unwrap_or_default(),
+            };
+            trimmed.close_loops();
+            let at: Vec<Vec<T>> = trimmed.hems.iter().map(divisions).collect();
+            let last = !free || round + 1 == MAX_ROUNDS;
+            let mut facets = match trimmed.facets(&at) {
+                Ok((facets, _)) => facets,
+                // Coarse rims may cross where the curves do not.
+                Err(fault) if last => return Err(fault),
+                Err(_) => {
+                    fineness.angle *= 0.5;
+                    continue;
+                }
+            };
+            if free && let Some((measures, _)) = trimmed.exact() {
+                let area = measures.area.re();
+                let missed = (facets.of_triangles.area.re() - area).abs() / area;
+                if missed > AREA_PROMISE && !last && facets.triangles.len() < MAX_TRIANGLES {
+                    fineness.angle *= (0.8 * AREA_PROMISE / missed).sqrt().clamp(0.25, 0.8);
+                    exact = Some(trimmed.exact.clone());
+                    continue;
+                }
+                if missed > AREA_PROMISE {
+                    coarse(context, facets.of_triangles.area.re(), area);
+                }
+            }
+            facets.border = Some(Border(Arc::new(trimmed)));
+            return Ok(Value::Body(Arc::new(facets)));
+        }
+        unreachable!("the last round returns")
     }
 }
 
-/// Divisions of a snake when nothing else determines them.
-const DEFAULT_DIVISIONS: usize = 12;
+fn coarse(context: &Context, panels: f64, area: f64) {
+    let share = (panels - area) / area;
+    context.remark(
+        "coarse-panels",
+        format!("the triangles have an area of {panels:.6e}, {share:+.1e} of that of the surface, {area:.6e}"),
+        "state `rim`, `nu` and `nv`, or look for loops that nearly touch; `.area` is that of the surface",
+    );
+}
+
+/// How near panels are to be to the part within some curves.
+fn fineness<T: Real>(
+    surface: &SurfaceRef<T>,
+    curves: &[(CurveRef<T>, Option<usize>, Option<usize>)],
+) -> Fineness {
+    let (mut low, mut high) =
+        (Vec3::of(1.0, 1.0, 0.0) * f64::INFINITY, Vec3::of(-1.0, -1.0, 0.0) * f64::INFINITY);
+    for (curve, ..) in curves {
+        for i in 0..=16 {
+            let path = curve.on_surface(T::from(f64::from(i) / 16.0), Order::Zero);
+            let [w, ..] = path.expect("a snake knows its place on its surface");
+            let w = w.re();
+            low = Vec3::of(low.x.min(w.x), low.y.min(w.y), 0.0);
+            high = Vec3::of(high.x.max(w.x), high.y.max(w.y), 0.0);
+        }
+    }
+    let (mut along_u, mut along_v) = (0.0f64, 0.0f64);
+    let shares = [0.1, 0.3, 0.5, 0.7, 0.9];
+    for (a, b) in shares.into_iter().flat_map(|a| shares.map(|b| (a, b))) {
+        let at = [low.x + (high.x - low.x) * a, low.y + (high.y - low.y) * b].map(T::from);
+        let jet = surface.jet(at[0], at[1], Order::First);
+        along_u = along_u.max(jet.u.re().norm() * (high.x - low.x));
+        along_v = along_v.max(jet.v.re().norm() * (high.y - low.y));
+    }
+    let reach = along_u.max(along_v);
+    let side = if reach > 0.0 && reach.is_finite() { reach / SIDES } else { f64::INFINITY };
+    Fineness { angle: TURN, chord: f64::INFINITY, side }
+}
+
+/// A curve of the border and its divisions: those that are stated, else those that it usually has, else by curvature.
+fn hem<T: Real>(
+    surface: &SurfaceRef<T>,
+    curve: &CurveRef<T>,
+    stated: Option<usize>,
+    usual: Option<usize>,
+    fineness: Fineness,
+) -> BorderCurve<T> {
+    let stated = stated.map(|n| n as u32);
+    let curve = curve.clone();
+    match usual {
+        Some(n) => BorderCurve { curve, stated, usual: n as u32, density: None },
+        None => {
+            let density = Arc::new(rim_density(&fineness, surface, &curve));
+            BorderCurve { curve, stated, usual: density.count(), density: Some(density) }
+        }
+    }
+}
+
+/// The parameters of the divisions of a curve of the border by itself.
+fn divisions<T: Real>(hem: &BorderCurve<T>) -> Vec<T> {
+    hem.divisions().into_iter().map(T::from).collect()
+}
 
 /// Edge `k` of a surface as a snake without a name.
 fn edge<T: Real>(surface: &SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef<T> {
@@ -121,9 +235,11 @@ struct Trimmed<T: Real> {
     hems: Vec<BorderCurve<T>>,
     /// The hems of each loop in order, and whether each runs against it.
     cycles: Vec<Vec<(usize, bool)>>,
-    scale: [f64; 2],
-    /// The net whose points stand inside.
-    inside: [usize; 2],
+    /// The net of the surface whose points are inside; none where curvature says.
+    inside: Option<[usize; 2]>,
+    fineness: Fineness,
+    /// Its measures and an estimate of their error, once they have been asked for.
+    exact: OnceLock<Option<(SheetMeasures<T>, f64)>>,
 }
 
 impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
@@ -144,29 +260,61 @@ impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
     }
 
     fn measures(&self) -> Option<SheetMeasures<T>> {
-        let even = |n: u32| (0..=n).map(|k| T::from(f64::from(k) / f64::from(n))).collect();
-        let at: Vec<Vec<T>> = self.hems.iter().map(|hem| even(hem.usual)).collect();
-        let (region, turned, _) = self.region(&at).ok()?;
-        let (places, triangles) = region.net(self.inside);
-        let triangles: Vec<[Place<T>; 3]> =
-            triangles.into_iter().map(|t| t.map(|k| places[k])).collect();
-        let mut lenses = Vec::new();
-        for (cycle, turned) in self.cycles.iter().zip(turned) {
-            for &(hem, backwards) in cycle {
-                for w in at[hem].windows(2) {
-                    let [from, to] = if backwards != turned { [w[1], w[0]] } else { [w[0], w[1]] };
-                    lenses.push(BorderLens { snake: &self.hems[hem].curve, from, to });
-                }
-            }
-        }
-        Some(measured(&self.surface, &triangles, &lenses))
+        Some(self.exact()?.0)
+    }
+
+    fn within(&self, fineness: &Fineness) -> Border<T> {
+        let hems = self.hems.iter().map(|h| hem(&self.surface, &h.curve, None, None, *fineness));
+        let mut finer = Self {
+            surface: self.surface.clone(),
+            hems: hems.collect(),
+            cycles: self.cycles.clone(),
+            inside: None,
+            fineness: *fineness,
+            exact: self.exact.clone(),
+        };
+        finer.close_loops();
+        Border(Arc::new(finer))
     }
 }
 
 impl<T: Real> Trimmed<T> {
+    /// Gives a loop of few divisions as many as make it a loop.
+    fn close_loops(&mut self) {
+        for cycle in &self.cycles {
+            let total: u32 = cycle.iter().map(|&(hem, _)| self.hems[hem].usual).sum();
+            for &(hem, _) in cycle.iter().filter(|_| total < 3) {
+                let hem = &mut self.hems[hem];
+                if hem.density.is_some() {
+                    hem.usual = 3;
+                }
+            }
+        }
+    }
+
+    /// Its measures, and an estimate of the share of the area by which they are wrong.
+    fn exact(&self) -> Option<(SheetMeasures<T>, f64)> {
+        *self.exact.get_or_init(|| {
+            let at: Vec<Vec<T>> = self.hems.iter().map(divisions).collect();
+            let (_, turned, _) = self.loops(&at).ok()?;
+            let cycles = self.cycles.iter().zip(turned);
+            let loops: Vec<LoopCurve<T>> = cycles
+                .flat_map(|(cycle, turned)| {
+                    let of = move |&(hem, backwards): &(usize, bool)| LoopCurve {
+                        curve: &self.hems[hem].curve,
+                        backwards: backwards != turned,
+                    };
+                    cycle.iter().map(of)
+                })
+                .collect();
+            let (measures, error) = measured(&self.surface, &loops);
+            measures.area.is_finite().then_some((measures, error))
+        })
+    }
+
     /// The triangles with vertices at these parameters of the hems, and which these vertices are.
     fn facets(&self, at: &[Vec<T>]) -> Result<(TriangleBody<T>, Vec<Vec<u32>>), CallError> {
-        let (region, turned, mut rims) = self.region(at)?;
+        let (cycles, turned, mut rims) = self.loops(at)?;
         // What was turned round is counted from its other end.
         let mut first = 0;
         for (cycle, turned) in self.cycles.iter().zip(turned) {
@@ -178,12 +326,31 @@ impl<T: Real> Trimmed<T> {
             }
             first += total;
         }
-        Ok((region.facets(&self.surface, self.inside), rims))
+        let plane = match self.inside {
+            Some(net) => TrimPlane::of_net(&self.surface, net),
+            None => TrimPlane::by_curvature(&self.surface, &cycles, &self.fineness),
+        };
+        let region = match TrimRegion::new(&cycles, plane) {
+            Ok(region) => region,
+            // Sides of few vertices may cross only where they are stretched.
+            Err(fault) => {
+                let plain = TrimPlane::of_net(&self.surface, [DIVISIONS; 2]);
+                TrimRegion::new(&cycles, plain).map_err(|_| fault)?
+            }
+        };
+        let (inner, triangles) = region.net();
+        if triangles.is_empty() {
+            return Err(region.crossed("loops touch".into(), "no triangles between them".into()));
+        }
+        let places = cycles.into_iter().flatten();
+        let places = places.chain(inner.into_iter().map(|p| p.map(T::from)));
+        let xyz = places.map(|[u, v]| self.surface.jet(u, v, Order::Zero).p).collect();
+        Ok((sheet(xyz, triangles), rims))
     }
 
-    /// The region within these vertices of the hems, which of its loops were turned round for it, and the numbers of
-    /// the vertices.
-    fn region(&self, at: &[Vec<T>]) -> Result<DividedRegion<T>, CallError> {
+    /// The places of the vertices of each loop, the outer one counter-clockwise and the holes clockwise, which loops were
+    /// turned round for it, and the numbers of the vertices of each hem.
+    fn loops(&self, at: &[Vec<T>]) -> Result<DividedLoops<T>, CallError> {
         let mut rims: Vec<Vec<u32>> = at.iter().map(|ts| vec![0; ts.len()]).collect();
         let mut first = 0;
         let mut cycles = Vec::with_capacity(self.cycles.len());
@@ -214,28 +381,44 @@ impl<T: Real> Trimmed<T> {
             first += total;
             cycles.push(places);
         }
-        let (region, turned) = TrimRegion::new(cycles, self.scale)?;
-        Ok((region, turned, rims))
+        let mut turned = Vec::with_capacity(cycles.len());
+        for (k, cycle) in cycles.iter_mut().enumerate() {
+            let turn = (area(cycle) < 0.0) == (k == 0);
+            if turn {
+                cycle.reverse();
+            }
+            turned.push(turn);
+        }
+        Ok((cycles, turned, rims))
     }
 }
 
-/// A region, which of its loops were turned round, and the vertices of each hem.
-type DividedRegion<T> = (TrimRegion<T>, Vec<bool>, Vec<Vec<u32>>);
+/// The places of each loop, which loops were turned round, and the vertices of each hem.
+type DividedLoops<T> = (Vec<Vec<Place<T>>>, Vec<bool>, Vec<Vec<u32>>);
 
-/// A place of the parameter plane.
-type Place<T> = [T; 2];
+/// Twice the area of a polygon of parameters.
+fn area<T: Real>(polygon: &[Place<T>]) -> f64 {
+    let at = |k: usize| polygon[k % polygon.len()].map(T::re);
+    (0..polygon.len()).map(|k| at(k)[0] * at(k + 1)[1] - at(k)[1] * at(k + 1)[0]).sum()
+}
 
-/// The mean lengths of S_u and S_v.
-fn scale<T: Real>(surface: &SurfaceRef<T>) -> [f64; 2] {
-    let at = [0.1, 0.3, 0.5, 0.7, 0.9];
-    let mut sums = [0.0f64; 2];
-    for (u, v) in at.into_iter().flat_map(|u| at.map(|v| (u, v))) {
-        let jet = surface.jet(T::from(u), T::from(v), Order::First);
-        sums[0] += jet.u.re().norm();
-        sums[1] += jet.v.re().norm();
+/// Triangles as a sheet: its middle is that of its area, its volume that of the cone from the origin.
+fn sheet<T: Real>(points: Vec<Vec3<T>>, triangles: Vec<[u32; 3]>) -> TriangleBody<T> {
+    let mut facets = TriangleBody::new(points, triangles);
+    let (mut moment, mut size) = (Vec3::zero(), T::zero());
+    let mut volume = T::zero();
+    for t in &facets.triangles {
+        let [a, b, c] = t.map(|k| facets.points[k as usize]);
+        let share = (b - a).cross(c - a).norm();
+        moment += (a + b + c) * (share / 3.0);
+        size += share;
+        volume += a.cross(b).dot(c) / 6.0;
     }
-    // A surface without extent in one direction is not stretched.
-    sums.map(|s| if s > 0.0 && s.is_finite() { s / 25.0 } else { 1.0 })
+    facets.of_triangles.volume = volume;
+    if size.re() > 0.0 {
+        facets.of_triangles.centroid = moment / size;
+    }
+    facets
 }
 
 /// The snakes of each loop in order, and whether each runs against it.
@@ -295,160 +478,5 @@ fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Call
         Some((_, start, at)) => {
             gap(snakes.len() - 1, "the last loop does not close".into(), at, start)
         }
-    }
-}
-
-/// A region of the parameter plane.
-struct TrimRegion<T> {
-    /// The outer loop counter-clockwise, the holes clockwise.
-    cycles: Vec<Vec<Place<T>>>,
-    scale: [f64; 2],
-}
-
-/// A place in lengths.
-fn flat<T: Real>(p: &Place<T>, scale: [f64; 2]) -> [f64; 2] {
-    [p[0].re() * scale[0], p[1].re() * scale[1]]
-}
-
-fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-/// Twice the area of a polygon.
-fn area(polygon: &[[f64; 2]]) -> f64 {
-    let next = |k: usize| polygon[(k + 1) % polygon.len()];
-    (0..polygon.len()).map(|k| polygon[k][0] * next(k)[1] - polygon[k][1] * next(k)[0]).sum()
-}
-
-/// True for a place within a polygon (by the rule of odd crossings).
-fn within(polygon: &[[f64; 2]], p: [f64; 2]) -> bool {
-    let mut inside = false;
-    for k in 0..polygon.len() {
-        let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
-        if (a[1] > p[1]) != (b[1] > p[1]) {
-            let x = a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-            inside ^= p[0] < x;
-        }
-    }
-    inside
-}
-
-/// The distance of a place from a segment.
-fn distance(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
-    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-    let size = dx * dx + dy * dy;
-    let along = (p[0] - a[0]) * dx + (p[1] - a[1]) * dy;
-    let t = if size > 0.0 { (along / size).clamp(0.0, 1.0) } else { 0.0 };
-    let (x, y) = (p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
-    (x * x + y * y).sqrt()
-}
-
-impl<T: Real> TrimRegion<T> {
-    /// The region within loops, and which of them were turned round for it.
-    fn new(
-        mut cycles: Vec<Vec<Place<T>>>,
-        scale: [f64; 2],
-    ) -> Result<(Self, Vec<bool>), CallError> {
-        let mut reversed = Vec::with_capacity(cycles.len());
-        let flat_of = |cycle: &[Place<T>]| -> Vec<[f64; 2]> {
-            cycle.iter().map(|p| flat(p, scale)).collect()
-        };
-        for (k, cycle) in cycles.iter_mut().enumerate() {
-            let turned = area(&flat_of(cycle)) < 0.0;
-            let turn = turned == (k == 0);
-            if turn {
-                cycle.reverse();
-            }
-            reversed.push(turn);
-        }
-        let polygons: Vec<Vec<[f64; 2]>> = cycles.iter().map(|c| flat_of(c)).collect();
-        let fault = |message: String, found: String| {
-            Err(CallError::new("crossed-loops", message)
-                .expected("loops that neither cross themselves nor others, all inside the first")
-                .found(found)
-                .help(
-                    "move the snakes apart; give the outer loop first, or whole = 1 for holes only",
-                )
-                .in_field(TrimSurf::<T>::LOOPS))
-        };
-        for (k, polygon) in polygons.iter().enumerate().skip(1) {
-            if let Some(p) = polygon.iter().find(|p| !within(&polygons[0], **p)) {
-                let at = format!("(u, v) = ({}, {})", p[0] / scale[0], p[1] / scale[1]);
-                return fault(format!("loop {} is not inside the outer one", k + 1), at);
-            }
-        }
-        let sides: Vec<(usize, [f64; 2], [f64; 2])> = polygons
-            .iter()
-            .enumerate()
-            .flat_map(|(c, p)| (0..p.len()).map(move |k| (c, p[k], p[(k + 1) % p.len()])))
-            .collect();
-        for (i, &(c, a, b)) in sides.iter().enumerate() {
-            for &(d, p, q) in &sides[i + 1..] {
-                let crosses =
-                    cross(a, b, p) * cross(a, b, q) < 0.0 && cross(p, q, a) * cross(p, q, b) < 0.0;
-                if crosses {
-                    let at = format!("(u, v) = ({}, {})", a[0] / scale[0], a[1] / scale[1]);
-                    let what = if c == d { "itself".into() } else { format!("loop {}", d + 1) };
-                    return fault(format!("loop {} crosses {what}", c + 1), format!("near {at}"));
-                }
-            }
-        }
-        Ok((Self { cycles, scale }, reversed))
-    }
-
-    /// Places of the region and triangles between them, the border's first.
-    fn net(&self, [nu, nv]: [usize; 2]) -> (Vec<Place<T>>, Vec<[usize; 3]>) {
-        let mut places: Vec<Place<T>> = Vec::new();
-        let mut loops: Vec<Vec<usize>> = Vec::new();
-        for cycle in &self.cycles {
-            loops.push((places.len()..places.len() + cycle.len()).collect());
-            places.extend(cycle);
-        }
-        let mut points: Vec<[f64; 2]> = places.iter().map(|p| flat(p, self.scale)).collect();
-        let margin = MARGIN * (self.scale[0] / nu as f64).min(self.scale[1] / nv as f64);
-        let side = |l: &Vec<usize>, k: usize| (points[l[k]], points[l[(k + 1) % l.len()]]);
-        let sides: Vec<_> =
-            loops.iter().flat_map(|l| (0..l.len()).map(move |k| side(l, k))).collect();
-        let polygons: Vec<Vec<[f64; 2]>> =
-            loops.iter().map(|l| l.iter().map(|&k| points[k]).collect()).collect();
-        let rim = points.len();
-        let mut inner = Vec::new();
-        for (i, j) in (0..=nu).flat_map(|i| (0..=nv).map(move |j| (i, j))) {
-            let (u, v) = (i as f64 / nu as f64, j as f64 / nv as f64);
-            let p = [u * self.scale[0], v * self.scale[1]];
-            let kept = within(&polygons[0], p)
-                && !polygons[1..].iter().any(|hole| within(hole, p))
-                && sides.iter().all(|&(a, b)| distance(a, b, p) >= margin);
-            if kept {
-                places.push([T::from(u), T::from(v)]);
-                inner.push(p);
-            }
-        }
-        points.extend(inner);
-        let triangles = planar_triangles(&points, &loops, &(rim..points.len()).collect::<Vec<_>>());
-        (places, triangles)
-    }
-
-    fn facets(&self, surface: &SurfaceRef<T>, inside: [usize; 2]) -> TriangleBody<T> {
-        let (places, triangles) = self.net(inside);
-        let xyz: Vec<Vec3<T>> =
-            places.iter().map(|&[u, v]| surface.jet(u, v, Order::Zero).p).collect();
-        let triangles = triangles.into_iter().map(|t| t.map(|k| k as u32)).collect();
-        let mut facets = TriangleBody::new(xyz, triangles);
-        // It is a sheet: its middle is that of its area, its volume that of the cone from the origin.
-        let (mut moment, mut size) = (Vec3::zero(), T::zero());
-        let mut volume = T::zero();
-        for t in &facets.triangles {
-            let [a, b, c] = t.map(|k| facets.points[k as usize]);
-            let share = (b - a).cross(c - a).norm();
-            moment += (a + b + c) * (share / 3.0);
-            size += share;
-            volume += a.cross(b).dot(c) / 6.0;
-        }
-        facets.of_triangles.volume = volume;
-        if size.re() > 0.0 {
-            facets.of_triangles.centroid = moment / size;
-        }
-        facets
     }
 }

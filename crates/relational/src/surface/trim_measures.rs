@@ -1,23 +1,29 @@
-//! Area, middle and cone volume of a part of a surface, by integrals over the part itself.
+//! Area, middle and cone volume of a part of a surface, by integrals over the part itself: Green's theorem along the
+//! loops, Gauss' rules across them. There are no triangles in it.
 //!
-//! Triangles of the parameter plane fill the polygon of the border's vertices; between each side of it and its snake
-//! lies a lens, which is added with its sign. Cells are divided until two rules agree.
+//! The integral of f over a region is the loop integral of F dv, F the integral of f by u from a line u = const to the
+//! loop (or of -G du, with u and v exchanged). Loops are cut at their breaks and where they cross lines on which the
+//! surface may bend, and so is the way across; each piece is a polynomial or analytic. Rules along and across a piece are
+//! raised apart, and where they end the piece is halved (Sommariva, Vianello 2009, for the rule of one piece).
 
-use moldloft_num::{Order, Real, Vec3};
+use crate::surface::trim_density::crossings;
+use moldloft_num::{Order, Real, Vec3, gauss_rule};
 use moldloft_registry::{CurveRef, SheetMeasures, SurfaceRef};
 
 /// Rules may differ by this share of the whole.
 const ACCURACY: f64 = 1e-10;
 
-/// How often a cell is halved in each direction.
-const DEPTH: u32 = 9;
+/// Points of the rules along a piece and across it, one after another.
+const RULES: [usize; 5] = [4, 6, 9, 13, 19];
 
-/// A side of the polygon and the snake that it is a chord of.
-pub struct BorderLens<'a, T: Real> {
-    pub snake: &'a CurveRef<T>,
-    /// Where it begins and ends, as the loop runs.
-    pub from: T,
-    pub to: T,
+/// The most evaluations of the surface for one part.
+const MAX_EVALUATIONS: usize = 3_000_000;
+
+/// A curve of a loop, and whether the loop runs against it.
+#[derive(Clone, Copy)]
+pub(crate) struct LoopCurve<'a, T: Real> {
+    pub curve: &'a CurveRef<T>,
+    pub backwards: bool,
 }
 
 /// Area, first moments of it, and three times the volume of the cone from the origin.
@@ -49,163 +55,242 @@ impl<T: Real> SurfaceSums<T> {
     }
 }
 
-type Place<T> = [T; 2];
+/// Where the way across a piece ends.
+#[derive(Clone, Copy)]
+enum Far {
+    Line(f64),
+    Loop,
+}
 
-fn blend<T: Real>(parts: &[(T, Place<T>)]) -> Place<T> {
-    parts.iter().fold([T::zero(); 2], |s, (w, p)| [s[0] + *w * p[0], s[1] + *w * p[1]])
+/// A part of a loop's curve, and a part of the way from the base line to it.
+#[derive(Clone, Copy)]
+struct Piece<'a, T: Real> {
+    of: LoopCurve<'a, T>,
+    along: [T; 2],
+    near: f64,
+    far: Far,
+    /// Halvings of the way across, of which this is part `part`.
+    halvings: u32,
+    part: u32,
+    rules: [usize; 2],
+    sums: SurfaceSums<T>,
+    /// What the rules before leave, along and across.
+    errors: [f64; 2],
 }
 
 struct SurfaceIntegral<'a, T: Real> {
     surface: &'a SurfaceRef<T>,
+    /// The parameter that runs across: 0 for u.
+    across: usize,
     size: f64,
-    /// The error that a cell of one triangle's share may have.
-    allowed: f64,
+    evaluations: usize,
 }
 
-impl<T: Real> SurfaceIntegral<'_, T> {
+impl<'a, T: Real> SurfaceIntegral<'a, T> {
     /// The integrand per parameter area.
-    fn at(&self, p: Place<T>) -> SurfaceSums<T> {
-        let jet = self.surface.jet(p[0], p[1], Order::First);
+    fn at(&self, u: T, v: T) -> SurfaceSums<T> {
+        let jet = self.surface.jet(u, v, Order::First);
         let normal = jet.u.cross(jet.v);
         let area = if normal.re().norm() > 0.0 { normal.norm() } else { T::zero() };
         SurfaceSums { area, moment: jet.p * area, cone: jet.p.dot(normal) }
     }
 
-    /// A triangle by the rule of seven points (Dunavant 1985, degree 5).
-    fn rule(&self, [a, b, c]: [Place<T>; 3]) -> SurfaceSums<T> {
-        const RULE: [(f64, f64, f64); 3] = [
-            (0.225, 1.0 / 3.0, 1.0 / 3.0),
-            (0.132_394_152_788_506_2, 0.059_715_871_789_769_82, 0.470_142_064_105_115_1),
-            (0.125_939_180_544_827_15, 0.797_426_985_353_087_3, 0.101_286_507_323_456_34),
-        ];
-        let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    fn rule(&mut self, piece: &Piece<'a, T>, rules: [usize; 2]) -> SurfaceSums<T> {
+        let [along, across] = rules.map(|k| gauss_rule(RULES[k]));
+        self.evaluations += along.len() * across.len();
+        let reach = piece.along[1] - piece.along[0];
+        let parts = f64::from(1u32 << piece.halvings);
         let mut sums = SurfaceSums::zero();
-        for (k, (weight, one, other)) in RULE.into_iter().enumerate() {
-            for turn in 0..if k == 0 { 1 } else { 3 } {
-                let corners = [[a, b, c], [b, c, a], [c, a, b]][turn];
-                let w = [one, other, other].map(T::from);
-                let p = blend(&[(w[0], corners[0]), (w[1], corners[1]), (w[2], corners[2])]);
-                sums = sums.plus(self.at(p), twice * T::from(0.5 * weight));
+        for &(x, weight) in along {
+            let t = piece.along[0] + reach * T::from(x);
+            let Some([p, d, ..]) = piece.of.curve.on_surface(t, Order::First) else { continue };
+            let (place, speed) = ([p.x, p.y], [d.x, d.y]);
+            let near = T::from(piece.near);
+            let far = match piece.far {
+                Far::Line(x) => T::from(x),
+                Far::Loop => place[self.across],
+            };
+            let step = (far - near) / parts;
+            let near = near + step * f64::from(piece.part);
+            let mut inner = SurfaceSums::zero();
+            for &(y, share) in across {
+                let at = near + step * T::from(y);
+                let [u, v] = if self.across == 0 { [at, place[1]] } else { [place[0], at] };
+                inner = inner.plus(self.at(u, v), T::from(share));
             }
+            // F dv, or -G du.
+            let sense = if (self.across == 1) != piece.of.backwards { -1.0 } else { 1.0 };
+            let by = step * speed[1 - self.across] * reach * T::from(sense * weight);
+            sums = sums.plus(inner, by);
         }
         sums
     }
 
-    fn triangle(&self, corners: [Place<T>; 3], once: SurfaceSums<T>, depth: u32) -> SurfaceSums<T> {
-        let [a, b, c] = corners;
-        let half = |p: Place<T>, q: Place<T>| blend(&[(T::from(0.5), p), (T::from(0.5), q)]);
-        let (ab, bc, ca) = (half(a, b), half(b, c), half(c, a));
-        let parts = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
-        let rules = parts.map(|part| self.rule(part));
-        let fine = rules.iter().fold(SurfaceSums::zero(), |s, r| s.plus(*r, T::one()));
-        if depth == 0 || once.apart(&fine, self.size) <= self.allowed {
-            return fine;
-        }
-        let parts = parts.into_iter().zip(rules);
-        parts.fold(SurfaceSums::zero(), |s, (part, rule)| {
-            s.plus(self.triangle(part, rule, depth - 1), T::one())
-        })
+    /// The piece by these rules, and what rules of fewer points leave.
+    fn ruled(&mut self, mut piece: Piece<'a, T>, rules: [usize; 2]) -> Piece<'a, T> {
+        piece.rules = rules;
+        piece.sums = self.rule(&piece, rules);
+        piece.errors = [0, 1].map(|k| {
+            let mut lower = rules;
+            lower[k] -= 1;
+            self.rule(&piece, lower).apart(&piece.sums, self.size)
+        });
+        piece
     }
 
-    /// Between a part of a snake and the chord from `ends`, by Gauss' rules of five and three points.
-    fn lens_rule(
-        &self,
-        lens: &BorderLens<'_, T>,
-        ends: [Place<T>; 2],
-        [s0, s1]: [f64; 2],
-    ) -> SurfaceSums<T> {
-        const ALONG: [(f64, f64); 5] = [
-            (0.046_910_077_030_668_0, 0.118_463_442_528_094_54),
-            (0.230_765_344_947_158_45, 0.239_314_335_249_683_24),
-            (0.5, 0.284_444_444_444_444_44),
-            (0.769_234_655_052_841_5, 0.239_314_335_249_683_24),
-            (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-        ];
-        const ACROSS: [(f64, f64); 3] = [
-            (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
-            (0.5, 0.444_444_444_444_444_4),
-            (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
-        ];
-        let mut sums = SurfaceSums::zero();
-        for (x, weight) in ALONG {
-            let s = s0 + (s1 - s0) * x;
-            let t = lens.from + (lens.to - lens.from) * T::from(s);
-            let Some([p, d, ..]) = lens.snake.on_surface(t, Order::First) else { continue };
-            let speed = lens.to - lens.from;
-            let (curve, along) = ([p.x, p.y], [d.x * speed, d.y * speed]);
-            let chord = blend(&[(T::from(1.0 - s), ends[0]), (T::from(s), ends[1])]);
-            let straight = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
-            let across = [chord[0] - curve[0], chord[1] - curve[1]];
-            for (r, share) in ACROSS {
-                let [near, far] = [T::from(1.0 - r), T::from(r)];
-                let place = blend(&[(near, curve), (far, chord)]);
-                let run = blend(&[(near, along), (far, straight)]);
-                let jacobian = run[0] * across[1] - run[1] * across[0];
-                let by = jacobian * T::from(weight * share * (s1 - s0));
-                sums = sums.plus(self.at(place), by);
+    /// The piece with the worse of its rules raised, or its halves.
+    fn refined(&mut self, piece: Piece<'a, T>) -> Vec<Piece<'a, T>> {
+        let k = usize::from(piece.errors[1] > piece.errors[0]);
+        if piece.rules[k] + 1 < RULES.len() {
+            let mut rules = piece.rules;
+            rules[k] += 1;
+            return vec![self.ruled(piece, rules)];
+        }
+        let mut rules = piece.rules;
+        rules[k] = 1;
+        let mut halves = [piece; 2];
+        if k == 0 {
+            let middle = (piece.along[0] + piece.along[1]) * T::from(0.5);
+            halves[0].along[1] = middle;
+            halves[1].along[0] = middle;
+        } else {
+            for (i, half) in halves.iter_mut().enumerate() {
+                half.halvings += 1;
+                half.part = 2 * piece.part + i as u32;
             }
         }
-        sums
-    }
-
-    fn lens(
-        &self,
-        lens: &BorderLens<'_, T>,
-        ends: [Place<T>; 2],
-        span: [f64; 2],
-        once: SurfaceSums<T>,
-        depth: u32,
-    ) -> SurfaceSums<T> {
-        let middle = 0.5 * (span[0] + span[1]);
-        let halves = [[span[0], middle], [middle, span[1]]];
-        let rules = halves.map(|half| self.lens_rule(lens, ends, half));
-        let fine = rules[0].plus(rules[1], T::one());
-        if depth == 0 || once.apart(&fine, self.size) <= self.allowed {
-            return fine;
-        }
-        let [a, b] = [0, 1].map(|k| self.lens(lens, ends, halves[k], rules[k], depth - 1));
-        a.plus(b, T::one())
+        halves.into_iter().map(|half| self.ruled(half, rules)).collect()
     }
 }
 
-/// The measures of the part: triangles fill a polygon of places, of which each side is the chord of a lens.
-pub fn measured<T: Real>(
-    surface: &SurfaceRef<T>,
-    triangles: &[[Place<T>; 3]],
-    lenses: &[BorderLens<'_, T>],
-) -> SheetMeasures<T> {
-    let mut integral = SurfaceIntegral { surface, size: 1.0, allowed: f64::INFINITY };
-    let first: Vec<SurfaceSums<T>> = triangles.iter().map(|t| integral.rule(*t)).collect();
-    let rough = first.iter().fold(SurfaceSums::zero(), |s, r| s.plus(*r, T::one()));
-    integral.size = rough.area.re().abs().sqrt().max(f64::MIN_POSITIVE);
-    // Moments are about the origin: what is far from it has larger ones.
-    let far = first.iter().map(|r| {
-        let area = r.area.re();
-        if area == 0.0 { 0.0 } else { (r.moment.re() / area).norm() }
-    });
-    integral.size = far.fold(integral.size, f64::max);
-    let cells = (triangles.len() + lenses.len()).max(1) as f64;
-    integral.allowed = ACCURACY * rough.area.re().abs() / cells.sqrt();
-    let mut sums = SurfaceSums::zero();
-    for (corners, once) in triangles.iter().zip(first) {
-        sums = sums.plus(integral.triangle(*corners, once, DEPTH), T::one());
+/// Where a path crosses a line, as a number of the model's scalar: moved with the path.
+fn moved<T: Real>(curve: &CurveRef<T>, t: f64, axis: usize, line: f64) -> T {
+    let at = T::from(t);
+    if T::PARTS == 1 {
+        return at;
     }
-    for lens in lenses {
-        let place = |t: T| lens.snake.on_surface(t, Order::Zero).map(|[p, ..]| [p.x, p.y]);
-        let (Some(a), Some(b)) = (place(lens.from), place(lens.to)) else { continue };
-        // A snake has corners at its breaks.
-        let [low, high] = [lens.from.re(), lens.to.re()];
-        let mut cuts: Vec<f64> = vec![0.0, 1.0];
-        let inside = lens.snake.breaks().into_iter().map(|t| (t - low) / (high - low));
-        cuts.extend(inside.filter(|s| *s > 0.0 && *s < 1.0));
-        cuts.sort_by(f64::total_cmp);
-        for w in cuts.windows(2) {
-            let span = [w[0], w[1]];
-            let once = integral.lens_rule(lens, [a, b], span);
-            sums = sums.plus(integral.lens(lens, [a, b], span, once, DEPTH), T::one());
+    let Some([p, d, ..]) = curve.on_surface(at, Order::First) else { return at };
+    let (place, speed) = if axis == 0 { (p.x, d.x) } else { (p.y, d.y) };
+    if speed.re() == 0.0 {
+        return at;
+    }
+    let step = (place - T::from(line)) / speed.re();
+    at - (step - step.re())
+}
+
+/// The measures of the part within loops, the outer one counter-clockwise and the holes clockwise; and an estimate of the
+/// share of its area by which they are wrong.
+pub(crate) fn measured<'a, T: Real>(
+    surface: &'a SurfaceRef<T>,
+    loops: &[LoopCurve<'a, T>],
+) -> (SheetMeasures<T>, f64) {
+    let place = |c: &CurveRef<T>, t: f64| {
+        c.on_surface(T::from(t), Order::Zero).map(|[w, ..]| [w.x.re(), w.y.re()])
+    };
+    let lines = surface.breaks();
+    // Across in the direction in which the part is short; from the loop's lowest place.
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for c in loops {
+        for p in (0..=32).filter_map(|i| place(c.curve, f64::from(i) / 32.0)) {
+            for k in 0..2 {
+                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
+            }
         }
     }
+    let middle = [0, 1].map(|k| T::from(0.5 * (low[k] + high[k])));
+    let jet = surface.jet(middle[0], middle[1], Order::First);
+    let reach = [jet.u.re().norm() * (high[0] - low[0]), jet.v.re().norm() * (high[1] - low[1])];
+    let across = usize::from(!(reach[0] < reach[1]));
+    let mut integral = SurfaceIntegral { surface, across, size: 1.0, evaluations: 0 };
+    integral.size =
+        [[0, 0], [1, 0], [0, 1], [1, 1]].into_iter().fold(f64::MIN_POSITIVE, |size, [i, j]| {
+            let corner = [[low, high][i][0], [low, high][j][1]];
+            let p = surface.jet(T::from(corner[0]), T::from(corner[1]), Order::Zero).p;
+            size.max(p.re().norm())
+        });
+    let mut pieces = Vec::new();
+    for of in loops {
+        for piece in pieces_of(*of, &lines, across, low[across], place) {
+            pieces.push(integral.ruled(piece, [1, 1]));
+        }
+    }
+    settle(&mut integral, &mut pieces);
+    let sums = pieces.iter().fold(SurfaceSums::zero(), |s, p| s.plus(p.sums, T::one()));
+    let error = pieces.iter().map(|p| p.errors[0] + p.errors[1]).sum::<f64>();
     let empty = sums.area.re() <= 0.0;
     let centroid = if empty { Vec3::zero() } else { sums.moment / sums.area };
-    SheetMeasures { area: sums.area, centroid, volume: sums.cone / T::from(3.0) }
+    let measures = SheetMeasures { area: sums.area, centroid, volume: sums.cone / T::from(3.0) };
+    (measures, if empty { 1.0 } else { error / sums.area.re() })
+}
+
+/// A loop's curve cut at its breaks and at the lines of the surface, with the way to it from the base line.
+fn pieces_of<'a, T: Real>(
+    of: LoopCurve<'a, T>,
+    lines: &[Vec<f64>; 2],
+    across: usize,
+    base: f64,
+    place: impl Fn(&CurveRef<T>, f64) -> Option<[f64; 2]>,
+) -> Vec<Piece<'a, T>> {
+    let breaks = of.curve.breaks();
+    let mut cuts: Vec<(f64, T)> = breaks.iter().map(|&t| (t, T::from(t))).collect();
+    for (t, axis, line) in crossings(lines, &breaks, |t| place(of.curve, t)) {
+        cuts.push((t, moved(of.curve, t, axis, line)));
+    }
+    cuts.retain(|c| c.0 > 0.0 && c.0 < 1.0);
+    cuts.extend([(0.0, T::zero()), (1.0, T::one())]);
+    cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    cuts.dedup_by(|a, b| (a.0 - b.0).abs() < 1e-13);
+    let mut pieces = Vec::new();
+    for w in cuts.windows(2) {
+        let along = [w[0].1, w[1].1];
+        let Some(p) = place(of.curve, 0.5 * (w[0].0 + w[1].0)) else { continue };
+        let end = p[across];
+        let (from, to) = (base.min(end), base.max(end));
+        let mut stops = vec![base];
+        let mut between: Vec<f64> =
+            lines[across].iter().copied().filter(|x| *x > from && *x < to).collect();
+        if end < base {
+            between.reverse();
+        }
+        stops.extend(between);
+        for (k, &near) in stops.iter().enumerate() {
+            let far = stops.get(k + 1).map_or(Far::Loop, |&x| Far::Line(x));
+            let sums = SurfaceSums::zero();
+            pieces.push(Piece {
+                of,
+                along,
+                near,
+                far,
+                halvings: 0,
+                part: 0,
+                rules: [1; 2],
+                sums,
+                errors: [0.0; 2],
+            });
+        }
+    }
+    pieces
+}
+
+/// Refines the worst pieces until their errors are small together.
+fn settle<'a, T: Real>(integral: &mut SurfaceIntegral<'a, T>, pieces: &mut Vec<Piece<'a, T>>) {
+    loop {
+        let area = pieces.iter().map(|p| p.sums.area.re()).sum::<f64>().abs();
+        let goal = ACCURACY * area;
+        let total: f64 = pieces.iter().map(|p| p.errors[0] + p.errors[1]).sum();
+        if total <= goal || integral.evaluations > MAX_EVALUATIONS || !total.is_finite() {
+            return;
+        }
+        // All that are worse than their share, in their order.
+        let share = 0.5 * goal / pieces.len() as f64;
+        let mut next = Vec::with_capacity(pieces.len());
+        for piece in pieces.drain(..) {
+            if piece.errors[0] + piece.errors[1] <= share || piece.halvings > 20 {
+                next.push(piece);
+            } else {
+                next.extend(integral.refined(piece));
+            }
+        }
+        *pieces = next;
+    }
 }

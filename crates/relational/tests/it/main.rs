@@ -12,3 +12,4 @@ mod search;
 mod surfaces;
 mod table;
 mod third_derivatives;
+mod trimmed;

@@ -11,15 +11,16 @@ use std::sync::Arc;
 #[derive(Kind)]
 #[kind(
     class = Mesh,
-    example = "MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4});"
+    example = "MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}); \
+               MeshBody plate({{0,0,0}, {1,0,0}, {1,1,0}, {0,1,0}}, quads = {1,2,3,4});"
 )]
 pub struct MeshBody<T: Real> {
     /// The vertices.
     #[field(min_items = 3)]
     points: Vec<Vec3<T>>,
     /// Corners of the triangles as numbers of vertices from 1, counter-clockwise from outside.
-    #[field(min_items = 3)]
-    triangles: Vec<u32>,
+    #[field(default)]
+    triangles: Option<Vec<u32>>,
     /// The exact volume, where it is known.
     #[field(default)]
     volume: Option<T>,
@@ -29,32 +30,45 @@ pub struct MeshBody<T: Real> {
     /// The exact centroid, where it is known.
     #[field(default)]
     centroid: Option<Vec3<T>>,
+    /// Corners of panels of four corners, as those of the triangles.
+    #[field(default)]
+    quads: Option<Vec<u32>>,
 }
 
 impl<T: Real> Build<T> for MeshBody<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let (n, count) = (self.points.len(), self.triangles.len());
-        if count % 3 != 0 {
-            return Err(CallError::new(
-                "wrong-count",
-                format!("{count} corners make no triangles"),
-            )
-            .expected("three corners for each triangle")
-            .found(format!("{count} corners"))
-            .in_field(Self::TRIANGLES));
+        let n = self.points.len();
+        let (threes, fours) = (self.triangles.unwrap_or_default(), self.quads.unwrap_or_default());
+        if threes.is_empty() && fours.is_empty() {
+            return Err(CallError::new("wrong-count", "a body needs triangles or quads")
+                .expected("three corners or more")
+                .found("none")
+                .in_field(Self::TRIANGLES));
         }
-        let wrong = |v: &u32| *v == 0 || *v as usize > n;
-        if let Some(at) = self.triangles.iter().position(wrong) {
-            let v = self.triangles[at];
-            return Err(CallError::new("out-of-range", format!("there is no vertex {v}"))
-                .expected(format!("a whole number from 1 to {n}"))
-                .found(v.to_string())
-                .in_field(Self::TRIANGLES)
-                .in_item(at));
+        let lists = [(&threes, 3, Self::TRIANGLES), (&fours, 4, Self::QUADS)];
+        for (corners, each, field) in lists {
+            if corners.len() % each != 0 {
+                let what = if each == 3 { "triangles" } else { "quads" };
+                let message = format!("{} corners make no {what}", corners.len());
+                return Err(CallError::new("wrong-count", message)
+                    .expected(format!("{each} corners for each"))
+                    .found(format!("{} corners", corners.len()))
+                    .in_field(field));
+            }
+            if let Some(at) = corners.iter().position(|v| *v == 0 || *v as usize > n) {
+                let v = corners[at];
+                return Err(CallError::new("out-of-range", format!("there is no vertex {v}"))
+                    .expected(format!("a whole number from 1 to {n}"))
+                    .found(v.to_string())
+                    .in_field(field)
+                    .in_item(at));
+            }
         }
-        let triangles: Vec<[u32; 3]> =
-            self.triangles.chunks(3).map(|t| [t[0] - 1, t[1] - 1, t[2] - 1]).collect();
+        let halves = |q: &[u32]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]].map(|t| t.map(|v| v - 1));
+        let mut triangles: Vec<[u32; 3]> = fours.chunks(4).flat_map(halves).collect();
+        triangles.extend(threes.chunks(3).map(|t| [t[0] - 1, t[1] - 1, t[2] - 1]));
         let mut body = TriangleBody::new(self.points, triangles);
+        body.quads = fours.len() / 4;
         let own = &mut body.of_triangles;
         own.volume = self.volume.unwrap_or(own.volume);
         own.area = self.area.unwrap_or(own.area);

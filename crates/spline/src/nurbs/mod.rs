@@ -65,6 +65,36 @@ impl<const D: usize> Nurbs<D> {
         data.values.into_iter().map(data::point).collect()
     }
 
+    /// The points at places of its parameters.
+    pub fn scattered(&self, places: &[[f64; D]]) -> Vec<Vec3> {
+        let counts = self.counts();
+        let rows: [Vec<axis::BasisRow>; D] = std::array::from_fn(|d| {
+            let at: Vec<f64> = places.iter().map(|s| s[d]).collect();
+            axis::basis_rows(self.degrees[d], &self.knots[d], &at)
+        });
+        let values = self.homogeneous();
+        let one = |k: usize| {
+            // Index and weight of each control point that has a part in the place.
+            let mut terms = vec![(0, 1.0)];
+            for d in 0..D {
+                let (first, row) = &rows[d][k];
+                let more = |&(at, w): &(usize, f64)| {
+                    let each = move |(i, b): (usize, &f64)| (at * counts[d] + first + i, w * b);
+                    row.iter().enumerate().map(each).collect::<Vec<_>>()
+                };
+                terms = terms.iter().flat_map(more).collect();
+            }
+            let mut sum = [0.0; 4];
+            for (at, w) in terms {
+                for (s, x) in sum.iter_mut().zip(values[at]) {
+                    *s += w * x;
+                }
+            }
+            data::point(sum)
+        };
+        (0..places.len()).map(one).collect()
+    }
+
     /// The point at parameters of the NURBS.
     pub fn at(&self, s: [f64; D]) -> Vec3 {
         self.grid(&s.map(|x| vec![x]))[0]

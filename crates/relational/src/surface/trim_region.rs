@@ -1,0 +1,254 @@
+//! A region of the parameter plane within polygons, and triangles in it.
+
+use crate::surface::trim::TrimSurf;
+use crate::surface::trim_density::{Stretch, stretched};
+use moldloft_mesh::planar_triangles;
+use moldloft_num::{Fineness, Order, Real};
+use moldloft_registry::{CallError, SurfaceRef};
+use std::collections::HashMap;
+
+/// A place of the parameter plane.
+pub(crate) type Place<T> = [T; 2];
+
+/// Points inside keep this share of the smallest step of the net from the rim.
+const NET_MARGIN: f64 = 0.35;
+
+/// Points inside keep this distance from the rim where the plane is stretched by curvature.
+const MARGIN: f64 = 0.55;
+
+/// The most lines of points along u or along v.
+const MAX_LINES: usize = 4000;
+
+/// The parameter plane as it is triangulated, and the lines on which points of the interior are.
+pub(crate) struct TrimPlane {
+    stretch: Stretching,
+    lines: [Vec<f64>; 2],
+    margin: f64,
+}
+
+enum Stretching {
+    Scaled([f64; 2]),
+    ByCurvature(Stretch),
+}
+
+impl TrimPlane {
+    /// Parameters scaled to lengths, with the points of the surface's net.
+    pub fn of_net<T: Real>(surface: &SurfaceRef<T>, net: [usize; 2]) -> Self {
+        let scale = scale(surface);
+        let line = |n: usize| (0..=n).map(|i| i as f64 / n as f64).collect();
+        let margin = NET_MARGIN * (scale[0] / net[0] as f64).min(scale[1] / net[1] as f64);
+        Self { stretch: Stretching::Scaled(scale), lines: net.map(line), margin }
+    }
+
+    /// Parameters stretched by curvature.
+    pub fn by_curvature<T: Real>(
+        surface: &SurfaceRef<T>,
+        cycles: &[Vec<Place<T>>],
+        fineness: &Fineness,
+    ) -> Self {
+        let polygons: Vec<Vec<[f64; 2]>> =
+            cycles.iter().map(|c| c.iter().map(|p| p.map(T::re)).collect()).collect();
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for p in polygons.iter().flatten() {
+            for k in 0..2 {
+                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
+            }
+        }
+        let stretch = stretched(fineness, surface, [low, high], |us, v| rows(&polygons, us, v));
+        let lines = [0, 1].map(|k| stretch.lines(k, MAX_LINES));
+        Self { stretch: Stretching::ByCurvature(stretch), lines, margin: MARGIN }
+    }
+
+    fn forward(&self, p: [f64; 2]) -> [f64; 2] {
+        match &self.stretch {
+            Stretching::Scaled(s) => [p[0] * s[0], p[1] * s[1]],
+            Stretching::ByCurvature(stretch) => stretch.forward(p),
+        }
+    }
+}
+
+/// Which of some ascending places on a line v = const are within polygons, by the rule of odd crossings.
+fn rows(polygons: &[Vec<[f64; 2]>], us: &[f64], v: f64) -> Vec<bool> {
+    let mut at = Vec::new();
+    for polygon in polygons {
+        for k in 0..polygon.len() {
+            let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
+            if (a[1] > v) != (b[1] > v) {
+                at.push(a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+            }
+        }
+    }
+    at.sort_by(f64::total_cmp);
+    us.iter().map(|u| at.partition_point(|x| x < u) % 2 == 1).collect()
+}
+
+/// The mean lengths of S_u and S_v.
+fn scale<T: Real>(surface: &SurfaceRef<T>) -> [f64; 2] {
+    let at = [0.1, 0.3, 0.5, 0.7, 0.9];
+    let mut sums = [0.0f64; 2];
+    for (u, v) in at.into_iter().flat_map(|u| at.map(|v| (u, v))) {
+        let jet = surface.jet(T::from(u), T::from(v), Order::First);
+        sums[0] += jet.u.re().norm();
+        sums[1] += jet.v.re().norm();
+    }
+    // A surface without extent in one direction is not stretched.
+    sums.map(|s| if s > 0.0 && s.is_finite() { s / 25.0 } else { 1.0 })
+}
+
+/// Twice the area of a triangle.
+fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// The distance of a place from a segment.
+fn distance(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
+    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+    let size = dx * dx + dy * dy;
+    let along = (p[0] - a[0]) * dx + (p[1] - a[1]) * dy;
+    let t = if size > 0.0 { (along / size).clamp(0.0, 1.0) } else { 0.0 };
+    let (x, y) = (p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
+    (x * x + y * y).sqrt()
+}
+
+/// A side of a polygon: its loop and its ends.
+type Side = (usize, [f64; 2], [f64; 2]);
+
+/// Sides by the cells of a square grid that they pass.
+struct SideGrid {
+    sides: Vec<Side>,
+    cell: f64,
+    cells: HashMap<(i64, i64), Vec<u32>>,
+}
+
+impl SideGrid {
+    fn new(polygons: &[Vec<[f64; 2]>], margin: f64) -> Self {
+        let sides: Vec<Side> = polygons
+            .iter()
+            .enumerate()
+            .flat_map(|(c, p)| (0..p.len()).map(move |k| (c, p[k], p[(k + 1) % p.len()])))
+            .collect();
+        let length: f64 = sides.iter().map(|(_, a, b)| (b[0] - a[0]).hypot(b[1] - a[1])).sum();
+        let cell = (length / sides.len() as f64).max(margin).max(f64::MIN_POSITIVE);
+        let mut cells: HashMap<(i64, i64), Vec<u32>> = HashMap::new();
+        for (k, &(_, a, b)) in sides.iter().enumerate() {
+            // In steps of a cell along the side, with a cell on each side.
+            let steps =
+                ((b[0] - a[0]).abs().max((b[1] - a[1]).abs()) / cell).ceil().max(1.0) as usize;
+            for i in 0..steps {
+                let end = |s: f64| [a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s];
+                let (p, q) = (end(i as f64 / steps as f64), end((i + 1) as f64 / steps as f64));
+                let index = |x: f64| (x / cell).floor() as i64;
+                for x in index(p[0].min(q[0]))..=index(p[0].max(q[0])) {
+                    for y in index(p[1].min(q[1]))..=index(p[1].max(q[1])) {
+                        let slot = cells.entry((x, y)).or_default();
+                        if slot.last() != Some(&(k as u32)) {
+                            slot.push(k as u32);
+                        }
+                    }
+                }
+            }
+        }
+        Self { sides, cell, cells }
+    }
+
+    /// The first two sides that cross.
+    fn crossing(&self) -> Option<(Side, Side)> {
+        let mut found: Option<(u32, u32)> = None;
+        for slot in self.cells.values() {
+            for (i, &k) in slot.iter().enumerate() {
+                for &l in &slot[i + 1..] {
+                    let ((_, a, b), (_, p, q)) = (self.sides[k as usize], self.sides[l as usize]);
+                    let crosses = cross(a, b, p) * cross(a, b, q) < 0.0
+                        && cross(p, q, a) * cross(p, q, b) < 0.0;
+                    if crosses && found.is_none_or(|f| (k, l) < f) {
+                        found = Some((k, l));
+                    }
+                }
+            }
+        }
+        found.map(|(k, l)| (self.sides[k as usize], self.sides[l as usize]))
+    }
+
+    /// Whether all sides are at least `margin`, at most a cell, away.
+    fn far(&self, p: [f64; 2], margin: f64) -> bool {
+        let [x, y] = p.map(|x| (x / self.cell).floor() as i64);
+        let near = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j)));
+        near.filter_map(|key| self.cells.get(&key)).flatten().all(|&k| {
+            let (_, a, b) = self.sides[k as usize];
+            distance(a, b, p) >= margin
+        })
+    }
+}
+
+/// A region of the parameter plane within polygons.
+pub(crate) struct TrimRegion {
+    plane: TrimPlane,
+    /// The outer polygon counter-clockwise, the holes clockwise, in the stretched plane.
+    polygons: Vec<Vec<[f64; 2]>>,
+    grid: SideGrid,
+}
+
+impl TrimRegion {
+    /// The region within loops, the outer one counter-clockwise and the holes clockwise.
+    pub fn new<T: Real>(cycles: &[Vec<Place<T>>], plane: TrimPlane) -> Result<Self, CallError> {
+        let polygons: Vec<Vec<[f64; 2]>> = cycles
+            .iter()
+            .map(|c| c.iter().map(|p| plane.forward(p.map(T::re))).collect())
+            .collect();
+        let grid = SideGrid::new(&polygons, plane.margin);
+        let region = Self { plane, polygons, grid };
+        for (k, polygon) in region.polygons.iter().enumerate().skip(1) {
+            let [x, y] = polygon[0];
+            if !rows(&region.polygons[..1], &[x], y)[0] {
+                let [u, v] = cycles[k][0].map(T::re);
+                let what = format!("loop {} is not inside the outer one", k + 1);
+                return Err(region.crossed(what, format!("(u, v) = ({u}, {v})")));
+            }
+        }
+        if let Some(((c, a, _), (d, ..))) = region.grid.crossing() {
+            let place = cycles[c].iter().find(|p| region.plane.forward(p.map(T::re)) == a);
+            let [u, v] = place.map_or([f64::NAN; 2], |p| p.map(T::re));
+            let what = if c == d { "itself".into() } else { format!("loop {}", d + 1) };
+            let what = format!("loop {} crosses {what}", c + 1);
+            return Err(region.crossed(what, format!("near (u, v) = ({u}, {v})")));
+        }
+        Ok(region)
+    }
+
+    /// The fault of loops that cross.
+    pub fn crossed(&self, message: String, found: String) -> CallError {
+        CallError::new("crossed-loops", message)
+            .expected("loops that neither cross themselves nor others, all inside the first")
+            .found(found)
+            .help("move the snakes apart; give the outer loop first, or whole = 1 for holes only")
+            .in_field(TrimSurf::<f64>::LOOPS)
+    }
+
+    /// Places inside, in parameters, and triangles between the vertices of the loops and them.
+    pub fn net(&self) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
+        let mut points: Vec<[f64; 2]> = self.polygons.iter().flatten().copied().collect();
+        let rim = points.len();
+        let mut loops: Vec<Vec<usize>> = Vec::new();
+        let mut first = 0;
+        for polygon in &self.polygons {
+            loops.push((first..first + polygon.len()).collect());
+            first += polygon.len();
+        }
+        let mut places = Vec::new();
+        let [us, vs] = &self.plane.lines;
+        let xs: Vec<f64> = us.iter().map(|&u| self.plane.forward([u, vs[0]])[0]).collect();
+        for &v in vs {
+            let y = self.plane.forward([us[0], v])[1];
+            for (i, inside) in rows(&self.polygons, &xs, y).into_iter().enumerate() {
+                let p = [xs[i], y];
+                if inside && self.grid.far(p, self.plane.margin) {
+                    places.push([us[i], v]);
+                    points.push(p);
+                }
+            }
+        }
+        let inner: Vec<usize> = (rim..points.len()).collect();
+        let triangles = planar_triangles(&points, &loops, &inner);
+        (places, triangles.into_iter().map(|t| t.map(|k| k as u32)).collect())
+    }
+}

@@ -1,0 +1,84 @@
+"""Panels of whole faces of CAD files: as many as the curvature of their surfaces asks for."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from moldloft.cad.occt import ImportedFace, border
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from moldloft.nurbs import Nurbs
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["divisions"]
+
+_TURN = 0.07
+"""The largest turn along a panel, in radians: that of trimmed faces."""
+
+_LEAST, _MOST = 8, 500
+"""Divisions along u or v, at least and at most."""
+
+_PLACES, _LINES = 97, 5
+"""Places along a line of the surface, and lines, at which the turn is measured."""
+
+_KINK = 0.5
+"""A larger turn between two places, in radians, is a kink."""
+
+
+def divisions(faces: list[ImportedFace]) -> dict[str, tuple[int, int]]:
+    """The divisions along u and v of the faces that are whole surfaces, by name.
+
+    Those of two faces are equal along an edge that both have.
+
+    Parameters
+    ----------
+    faces
+        The faces.
+    """
+    whole = [face for face in faces if face.natural]
+    root = list(range(2 * len(whole)))
+
+    def first(k: int) -> int:
+        while root[k] != k:
+            root[k] = root[root[k]]
+            k = root[k]
+        return k
+
+    edges: dict[int, list[int]] = {}
+    for k, face in enumerate(whole):
+        for number, _, trace in (side for cycle in face.loops for side in cycle):
+            # An edge at one u runs along v.
+            edges.setdefault(number, []).append(2 * k + (border(trace)[:1] == "u"))
+    for sides in edges.values():
+        for one, other in pairwise(sides):
+            root[first(one)] = first(other)
+    counts = [0] * len(root)
+    for k, face in enumerate(whole):
+        for along in (0, 1):
+            at = first(2 * k + along)
+            counts[at] = max(counts[at], _count(face.surface, along))
+    return {
+        face.name: (counts[first(2 * k)], counts[first(2 * k + 1)]) for k, face in enumerate(whole)
+    }
+
+
+def _count(surface: Nurbs, along: int) -> int:
+    """How many even divisions along u (0) or v (1) turn by no more than allowed."""
+    t, held = np.meshgrid(np.linspace(0, 1, _PLACES), np.linspace(0, 1, _LINES), indexing="ij")
+    points = surface(t, held) if along == 0 else surface(held, t)
+    chords = np.diff(points, axis=0)
+    length = np.linalg.norm(chords, axis=-1)
+    size = float(length.sum(axis=0).max())
+    if size == 0:
+        return _LEAST
+    cross = np.linalg.norm(np.cross(chords[:-1], chords[1:]), axis=-1)
+    turn = np.arctan2(cross, (chords[:-1] * chords[1:]).sum(axis=-1))
+    seen = (turn < _KINK) & (np.minimum(length[:-1], length[1:]) > 1e-9 * size)
+    most = float(np.where(seen, turn, 0).max())
+    return int(np.clip(np.ceil(most * (_PLACES - 1) / _TURN), _LEAST, _MOST))
