@@ -50,8 +50,8 @@ class Limits(NamedTuple):
 def limits(
     *,
     memory: int | str | None = None,
-    steps: int | None = None,
-    objects: int | None = None,
+    steps: float | None = None,
+    objects: float | None = None,
     seconds: float | None = None,
 ) -> Limits:
     """The limits of everything that this process runs; what is given is set.
@@ -61,7 +61,7 @@ def limits(
     memory
         Bytes, or a text such as ``"2G"`` or ``"500M"``; at least 16 MiB.
     steps, objects
-        At least 1.
+        Whole numbers of at least 1; ``1e9`` is one.
     seconds
         Above 0; ``math.inf`` for no limit.
 
@@ -81,6 +81,8 @@ def limits(
     >>> before = moldloft.limits()
     >>> moldloft.limits(memory="2G", seconds=10).memory
     2147483648
+    >>> moldloft.limits(steps=1e9).steps
+    1000000000
     >>> moldloft.limits(steps=0)
     Traceback (most recent call last):
       ...
@@ -120,7 +122,7 @@ def parsed(text: str) -> dict[str, str | int | float]:
         raise ModelError(f"`{name}` is a number, found `{value}`") from None
     if name == "seconds":
         return {name: _seconds(number)}
-    return {name: _count(name, int(number) if number.is_integer() else number)}
+    return {name: _count(name, number)}
 
 
 @contextmanager
@@ -230,6 +232,8 @@ def _bytes(memory: int | str) -> int:
 
 
 def _count(name: str, value: object) -> int:
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= _MOST_COUNT:
         raise ModelError(f"`{name}` is a whole number of at least 1, found {value!r}")
     return value

@@ -14,6 +14,7 @@ from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FileError, record_raised
 from moldloft.models import Model
+from moldloft.storage import utf8_path
 
 if TYPE_CHECKING:
     from moldloft.implicit import Field, Set
@@ -119,11 +120,11 @@ def load(
     ...     load(path)["P"].z
     3.0
     """
-    folders = [os.fspath(folder) for folder in library]
-    place = Path(path)
+    folders = [utf8_path(folder) for folder in library]
+    place = Path(utf8_path(path))
     origin = Origin(
         place.name,
-        os.fspath(place.parent.absolute()),
+        utf8_path(place.parent.absolute()),
         _absolute(folders),
         dict(functions or {}),
         edited,
@@ -184,7 +185,7 @@ def loads(
     >>> m["P"].z, m.derivative("P.z", "a")
     (3.0, 0.25)
     """
-    folders = [os.fspath(folder) for folder in library]
+    folders = [utf8_path(folder) for folder in library]
     origin = Origin(name, None, _absolute(folders), dict(functions or {}), edited)
     model = Model(_core.Document.from_text(name, text, None, folders, edited), origin)
     _add_functions(model, functions)

@@ -29,7 +29,7 @@ from moldloft.sketch_values import (
     SketchSnap,
     SketchSuggestion,
 )
-from moldloft.storage import read_text
+from moldloft.storage import read_text, utf8_path
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -104,7 +104,7 @@ class Sketch:
         # `os.path` answers for names that no system takes, too.
         if folder is not None and not os.path.isdir(os.fspath(folder)):  # noqa: PTH112
             raise FileError(f"`{folder}` is not a folder; `Sketch.load(path)` reads a file")
-        self._session = _core.SketchSession(None if folder is None else os.fspath(folder))
+        self._session = _core.SketchSession(None if folder is None else utf8_path(folder))
 
     @property
     def session(self) -> _core.SketchSession:
@@ -134,7 +134,7 @@ class Sketch:
         SketchError
             When a command was refused and ``strict`` is true.
         """
-        path = Path(path)
+        path = Path(utf8_path(path))
         text = read_text(path)
         sketch = cls(path.parent)
         # Its lines are somebody else's: they read inside of the file's folder.

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
+import moldloft
 from conftest import SAILBOAT
+from moldloft.fairing.files import read_points
 
 HULL = SAILBOAT / "hull.sdl"
 POINTS = "AbsPoint A(0, 0, 0);\nAbsPoint B(1, 0, 0);\nAbsPoint C(1, 1, 0);\nAbsPoint D(0, 1, 0);\n"
@@ -211,3 +213,24 @@ def test_a_disk_that_fills_up(cli, tmp_path):
     done = cli("build", HULL, "--to", "stl", "gdf", "-o", "out", status=1, preexec_fn=small_files)
     assert "cannot write" in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the system keeps names in UTF-8")
+def test_names_of_files_in_other_encodings(tmp_path, cli):
+    folder = tmp_path / os.fsdecode(b"entw\xfcrfe")
+    folder.mkdir()
+    for name, text in (("hull.sdl", POINTS), (os.fsdecode(b"mod\xe8le.sdl"), POINTS)):
+        place = folder if name == "hull.sdl" else tmp_path
+        path = place / name
+        path.write_text(text)
+        for read in (moldloft.load, moldloft.Sketch.load):
+            with pytest.raises(moldloft.FileError, match="its name is not UTF-8") as refused:
+                read(path)
+            assert "\\x" in str(refused.value)
+        for command in ("check", "build", "eval", "view", "sketch"):
+            more = ["1"] if command == "eval" else []
+            assert "not UTF-8" in cli(command, path, *more, status=1).stderr, command
+    # What reads points takes any name.
+    table = tmp_path / os.fsdecode(b"punkte-\xe4.csv")
+    table.write_text("0,0,0\n1,0.1,0\n2,0,0\n3,0.1,0\n4,0,0\n")
+    assert len(read_points(table).points) == 5

@@ -23,8 +23,8 @@ use moldloft_diag::render_all;
 use moldloft_document::{Document, registry};
 use moldloft_host::FileWorld;
 use moldloft_num::{Order, Vec3};
+use moldloft_parallel::prelude::*;
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
-use rayon::prelude::*;
 
 /// The call succeeded.
 pub const MLF_OK: i32 = 0;

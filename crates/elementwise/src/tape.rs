@@ -87,7 +87,7 @@ impl<T: Real> NumberSource<T> {
 }
 
 /// A value that a recorded expression finds before its tape is run: the result of one of its entries
-/// (see [`moldloft_lang::array::cache`]).
+/// (see `array::cache` of the crate `lang`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell(pub u16);
 

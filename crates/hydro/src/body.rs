@@ -17,6 +17,9 @@ const SHARE: f64 = 1e-2;
 /// Below this relative error rounding hides what finer rules gain.
 const FINEST: f64 = 1e-11;
 
+/// Within this share of its size rims lie in a plane: far above rounding, far below any panel.
+const SAME_PLACE: f64 = 1e-9;
+
 /// A surface that bounds a body.
 #[derive(Clone, Copy)]
 pub struct HullSide<'a, T: Real> {
@@ -291,10 +294,12 @@ impl<T: Real> Body<T> {
         best
     }
 
-    /// The number of rims that reach below the level.
-    pub(crate) fn open_below(&self, level: f64) -> usize {
-        let low = |r: &&Vec<Vec3<T>>| r.iter().any(|p| p.z.re() < level - 1e-9 * self.size);
-        self.rims.iter().filter(low).count()
+    /// The number of rims that reach below the level; of a body that shows one side, those in the plane y = 0 are closed.
+    pub(crate) fn open_below(&self, level: f64, half: bool) -> usize {
+        let near = SAME_PLACE * self.size;
+        let low = |r: &&Vec<Vec3<T>>| r.iter().any(|p| p.z.re() < level - near);
+        let aside = |r: &&Vec<Vec3<T>>| !half || r.iter().any(|p| p.y.re().abs() > near);
+        self.rims.iter().filter(low).filter(aside).count()
     }
 
     /// The lowest z of the open rims.

@@ -2,8 +2,8 @@
 
 use crate::body::Body;
 use crate::figures::displaced;
+use crate::hydrostatics::Symmetry;
 use crate::{Attitude, Flotation, Water, flotation};
-use moldloft_mesh::Symmetry;
 use moldloft_num::{Real, Vec3, solve_dense};
 use std::fmt;
 

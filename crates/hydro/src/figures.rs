@@ -1,10 +1,10 @@
 //! The hydrostatic figures of a body below a water plane z = level.
 
 use crate::body::Body;
+use crate::hydrostatics::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
 use crate::integrals::Wanted;
 use crate::section::{section_area, waterline_extent};
 use crate::strip::CoordinatePlane;
-use moldloft_mesh::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
 use moldloft_num::{Real, Vec3};
 
 /// Figures with what stability needs besides.
@@ -111,7 +111,7 @@ pub(crate) fn floating<T: Real>(
         forms: VolumeForms { x, y, z },
         closure_error: relative(largest, volume.re()),
         waterplane_error: relative((sums.plane[0].re().abs() - green).abs(), sums.plane[0].re()),
-        open_edges: body.open_below(level.re()),
+        open_edges: body.open_below(level.re(), half),
         outward,
     };
     Floating { figures, product_moment, errors }

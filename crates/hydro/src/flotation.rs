@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::figures::{Floating, floating};
-use moldloft_mesh::{Hydrostatics, Symmetry, Waterplane};
+use crate::hydrostatics::{Hydrostatics, Symmetry, Waterplane};
 use moldloft_num::{Real, Vec3};
 
 /// Within this heel, in radians, a body is upright: rounding leaves less, and no table shows it.

@@ -17,6 +17,7 @@ mod descent;
 mod equilibrium;
 mod figures;
 mod flotation;
+mod hydrostatics;
 mod integrals;
 mod measures;
 mod section;
@@ -27,8 +28,11 @@ pub use cell::PolynomialCell;
 pub use equilibrium::{Equilibrium, FloatError, Loading, Status, equilibrium};
 pub use figures::hydrostatics;
 pub use flotation::{Attitude, Flotation, Water, bottom, bounds, flotation};
+pub use hydrostatics::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
 pub use measures::{curve_measures, solid_measures};
 pub use section::section_area;
 
+#[cfg(test)]
+mod mesh_tests;
 #[cfg(test)]
 mod tests;

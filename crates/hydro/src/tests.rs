@@ -23,6 +23,8 @@ impl<T: Real> SurfaceFormula for Ellipsoid<T> {
             (-a.cos()).scaled(z) + J::fixed(self.at.z),
         )
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 pub(crate) fn ellipsoid<T: Real>(axes: [T; 3], at: Vec3<T>, accuracy: f64) -> Body<T> {
@@ -105,6 +107,8 @@ impl SurfaceFormula for Lumpy {
             (a.sin() * 3.0).sin() * (b * 3.0).cos() * 0.2 + (a * 2.0).sin() * b.sin() * 0.15 + 1.0;
         Vec3::new(a.sin() * b.cos() * r, a.sin() * b.sin() * r, -a.cos() * r)
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 #[test]
@@ -141,6 +145,8 @@ impl SurfaceFormula for Torus {
         let r = a.cos() * self.0[1] + self.0[0];
         Vec3::new(r * b.cos(), r * b.sin(), a.sin() * self.0[1])
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 #[test]
@@ -173,6 +179,8 @@ impl SurfaceFormula for Bowl {
         let a = u * (2.0 * PI);
         Vec3::new(r * a.cos(), r * a.sin(), v - 1.0)
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 #[test]
@@ -222,6 +230,8 @@ impl SurfaceFormula for Revolved {
         let a = v * self.angle;
         Vec3::new(r * a.cos(), r * a.sin(), u * (z1 - z0) + J::fixed(z0))
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 /// Walls, discs, cones and tubes have no volume of their own: their areas take a few cells all the same.

@@ -580,6 +580,9 @@ impl Surface<f64> for Polynomials {
     fn breaks(&self) -> [Vec<f64>; 2] {
         self.ends.each_ref().map(|ends| ends[1..ends.len() - 1].to_vec())
     }
+
+    moldloft_num::surface_facts!(broken, open, not_rational);
+    moldloft_num::surface_one_by_one!(f64: grid, line, scattered);
 }
 
 /// The tree with the boxes of both children side by side; its leaves have one item.

@@ -19,18 +19,7 @@ impl<T: Real> Curve<f64> for PlainCurve<'_, T> {
             *x = p.re();
         }
     }
-
-    fn breaks(&self) -> Vec<f64> {
-        self.0.breaks()
-    }
-
-    fn joints(&self) -> Vec<f64> {
-        self.0.joints()
-    }
-
-    fn closed(&self) -> bool {
-        self.0.closed()
-    }
+    moldloft_num::curve_facts!(breaks of [self.0], closed of [self.0], rational of [self.0]);
 }
 
 /// A surface of any scalar seen through its real parts; see [`PlainCurve`].
@@ -39,15 +28,7 @@ pub struct PlainSurface<'a, T: Real>(pub &'a dyn Surface<T>);
 impl<T: Real> Surface<f64> for PlainSurface<'_, T> {
     #[inline]
     fn jet(&self, u: f64, v: f64, order: Order) -> SurfJet<f64> {
-        let j = self.0.jet(T::from(u), T::from(v), order);
-        SurfJet {
-            p: j.p.re(),
-            u: j.u.re(),
-            v: j.v.re(),
-            uu: j.uu.re(),
-            uv: j.uv.re(),
-            vv: j.vv.re(),
-        }
+        plain(&self.0.jet(T::from(u), T::from(v), order))
     }
 
     fn grid(&self, us: &[f64], vs: &[f64], points: &mut [Vec3], normals: Option<&mut [Vec3]>) {
@@ -66,15 +47,29 @@ impl<T: Real> Surface<f64> for PlainSurface<'_, T> {
         }
     }
 
-    fn breaks(&self) -> [Vec<f64>; 2] {
-        self.0.breaks()
+    fn line(&self, u: f64, vs: &[f64], order: Order) -> Vec<SurfJet<f64>> {
+        self.0.line(T::from(u), vs, order).iter().map(plain).collect()
     }
 
-    fn joints(&self) -> [Vec<f64>; 2] {
-        self.0.joints()
+    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3]) {
+        let mut full = vec![Vec3::zero(); uv.len()];
+        self.0.scattered(uv, &mut full);
+        for (x, p) in out.iter_mut().zip(full) {
+            *x = p.re();
+        }
     }
 
-    fn closed(&self) -> [bool; 2] {
-        self.0.closed()
+    moldloft_num::surface_facts!(breaks of [self.0], closed of [self.0], rational of [self.0]);
+}
+
+#[inline]
+fn plain<T: Real>(jet: &SurfJet<T>) -> SurfJet<f64> {
+    SurfJet {
+        p: jet.p.re(),
+        u: jet.u.re(),
+        v: jet.v.re(),
+        uu: jet.uu.re(),
+        uv: jet.uv.re(),
+        vv: jet.vv.re(),
     }
 }

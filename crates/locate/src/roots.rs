@@ -90,6 +90,9 @@ impl Curve<f64> for LevelProfile<'_> {
     fn closed(&self) -> bool {
         self.curve.closed()
     }
+
+    moldloft_num::curve_facts!(kinks_at_breaks, not_rational);
+    moldloft_num::curve_one_by_one!(f64);
 }
 
 fn size_of_curve(curve: &dyn Curve<f64>) -> f64 {
@@ -657,4 +660,7 @@ impl Curve<f64> for LineSegment {
     fn jet(&self, t: f64, _: Order) -> CurveJet<f64> {
         [self.from * (1.0 - t) + self.to * t, self.to - self.from, Vec3::zero()]
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
+    moldloft_num::curve_one_by_one!(f64);
 }

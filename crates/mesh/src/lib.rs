@@ -1,6 +1,6 @@
-//! Panel meshes: what they are, how large, how good, and how they float.
+//! Panel meshes: what they are, how large and how good.
 //!
-//! `vertices and blocks -> Topology (+ positions) = Mesh -> report, measures, quality, hydrostatics`
+//! `vertices and blocks -> Topology (+ positions) = Mesh -> report, measures, quality, sections`
 //!
 //! The connectivity ([`Topology`]) stands apart from the positions, so the same panels are measured
 //! with plain numbers or with dual numbers. Everything that measures is generic over
@@ -33,7 +33,6 @@ mod clip;
 mod closure;
 mod error;
 mod half_edge;
-mod hydrostatics;
 mod measure;
 mod mesh;
 mod panel;
@@ -42,6 +41,7 @@ mod quality;
 mod report;
 mod section;
 mod select;
+mod skin;
 mod sum;
 mod topology;
 mod triangulate;
@@ -49,9 +49,6 @@ mod volume;
 
 pub use closure::{Closes, Closure, EdgeName, OpenEdge, closure};
 pub use error::MeshError;
-pub use hydrostatics::{
-    FloatOptions, FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane, hydrostatics,
-};
 pub use measure::{Measures, measure, measure_patch};
 pub use mesh::Mesh;
 pub use panel::Panel;

@@ -16,6 +16,7 @@
 mod boxes;
 mod division;
 mod dual;
+mod facts;
 mod fineness;
 mod frame;
 mod jet;
@@ -53,8 +54,8 @@ pub use reparametrization::{
 };
 pub use roots::{NoRoot, find_root};
 pub use shape::{
-    Curve, CurveFormula, CurveJet, Field, Order, SurfJet, Surface, SurfaceFormula, line_crossings,
-    slope_scale,
+    Curve, CurveFormula, CurveJet, Field, Order, SurfJet, Surface, SurfaceFormula,
+    field_differences, line_crossings, slope_scale,
 };
 pub use solid::{Solid, SolidFormula, SolidJet};
 pub use vec3::{Vec2, Vec3};

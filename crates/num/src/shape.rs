@@ -46,33 +46,29 @@ impl<T: Real> SurfJet<T> {
 }
 
 /// A curve C(t) for t in [0, 1]; outside that range the natural continuation of its formula.
+///
+/// What concerns speed and correctness has no default: each curve states it, a curve made of another one forwards or changes
+/// it. [`curve_facts!`](crate::curve_facts) and [`curve_one_by_one!`](crate::curve_one_by_one) are the usual statements.
 pub trait Curve<T: Real>: Send + Sync {
     /// Position and derivatives by t at `t`, to `order`.
     fn jet(&self, t: T, order: Order) -> CurveJet<T>;
 
     /// Positions at many parameters. `out` has the length of `ts`.
-    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
-        for (x, &t) in out.iter_mut().zip(ts) {
-            *x = self.jet(T::from(t), Order::Zero)[0];
-        }
-    }
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]);
 
     /// Interior parameters at which a derivative up to the second may jump, ascending.
-    fn breaks(&self) -> Vec<f64> {
-        Vec::new()
-    }
+    fn breaks(&self) -> Vec<f64>;
 
     /// Interior parameters at which one formula ends and another begins, ascending: the breaks, and
     /// those at which only higher derivatives jump. Between them a spline is a polynomial.
-    fn joints(&self) -> Vec<f64> {
-        self.breaks()
-    }
+    fn joints(&self) -> Vec<f64>;
 
     /// Interior parameters at which the first derivative may jump, ascending; the breaks, where nothing less
     /// is known.
-    fn kinks(&self) -> Vec<f64> {
-        self.breaks()
-    }
+    fn kinks(&self) -> Vec<f64>;
+
+    /// What makes the curve rational, where something does that is known.
+    fn rational(&self) -> Rational<1>;
 
     /// The curve to which this one is parallel, sideways in the plane of that normal, and the distance: a parallel
     /// of a parallel is one of the first curve, of which no derivative is lost.
@@ -82,9 +78,7 @@ pub trait Curve<T: Real>: Send + Sync {
 
     /// True when the curve ends where it begins: it is periodic then, and `jet` beyond 0 .. 1 gives what it
     /// gives whole turns before. Objects of a model find that out by themselves; see [`crate::period`].
-    fn closed(&self) -> bool {
-        false
-    }
+    fn closed(&self) -> bool;
 
     /// What the curve runs along, for joins: itself, or a part of other curves.
     fn trace(&self) -> Trace<T> {
@@ -107,87 +101,54 @@ pub trait Curve<T: Real>: Send + Sync {
     fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         None
     }
-
-    /// What makes the curve rational, where something does that is known.
-    fn rational(&self) -> Rational<1> {
-        Rational::none()
-    }
 }
 
 /// A surface S(u, v) for u, v in [0, 1]; its natural normal is S_u x S_v.
+///
+/// As for [`Curve`], each surface states what concerns speed and correctness:
+/// [`surface_facts!`](crate::surface_facts), [`surface_one_by_one!`](crate::surface_one_by_one).
 pub trait Surface<T: Real>: Send + Sync {
     /// Position and derivatives at (`u`, `v`), to `order`.
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T>;
 
     /// Positions, and unit normals if asked, on the tensor grid `us` x `vs`, in the order
     /// `[i * vs.len() + j]`. Normals are zero where the surface is singular.
-    fn grid(
-        &self,
-        us: &[f64],
-        vs: &[f64],
-        points: &mut [Vec3<T>],
-        mut normals: Option<&mut [Vec3<T>]>,
-    ) {
-        for (i, &u) in us.iter().enumerate() {
-            for (j, &v) in vs.iter().enumerate() {
-                let k = i * vs.len() + j;
-                let order = if normals.is_some() { Order::First } else { Order::Zero };
-                let jet = self.jet(T::from(u), T::from(v), order);
-                points[k] = jet.p;
-                if let Some(normals) = normals.as_deref_mut() {
-                    normals[k] = jet.normal();
-                }
-            }
-        }
-    }
+    fn grid(&self, us: &[f64], vs: &[f64], points: &mut [Vec3<T>], normals: Option<&mut [Vec3<T>]>);
 
     /// What [`Surface::jet`] gives along the line at one `u`, at each of `vs`: for surfaces that do much at a `u` before they
     /// look at v.
-    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>> {
-        vs.iter().map(|&v| self.jet(u, T::from(v), order)).collect()
-    }
+    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>>;
 
     /// Positions at many parameter pairs in any order. `out` has the length of `uv`.
-    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
-        for (x, &[u, v]) in out.iter_mut().zip(uv) {
-            *x = self.jet(T::from(u), T::from(v), Order::Zero).p;
-        }
-    }
+    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]);
 
     /// Interior parameters u and v at which a derivative up to the second may jump, ascending.
-    fn breaks(&self) -> [Vec<f64>; 2] {
-        [Vec::new(), Vec::new()]
-    }
+    fn breaks(&self) -> [Vec<f64>; 2];
 
     /// Interior parameters u and v at which one formula ends and another begins; see
     /// [`Curve::joints`].
-    fn joints(&self) -> [Vec<f64>; 2] {
-        self.breaks()
-    }
+    fn joints(&self) -> [Vec<f64>; 2];
 
     /// Interior parameters u and v at which a first derivative may jump; see [`Curve::kinks`].
-    fn kinks(&self) -> [Vec<f64>; 2] {
-        self.breaks()
-    }
-
-    /// The surface to which this one is parallel, along the natural normal, and the distance: a parallel of a parallel
-    /// is one of the first surface, of which no derivative is lost.
-    fn parallel_to(&self) -> Option<(&dyn Surface<T>, T)> {
-        None
-    }
-
-    /// Which of u and v run round, since the two sides of the surface are one line; see [`Curve::closed`].
-    fn closed(&self) -> [bool; 2] {
-        [false; 2]
-    }
+    fn kinks(&self) -> [Vec<f64>; 2];
 
     /// The parameters in (0, 1), in any order, at which a path (u, v) in the parameter plane meets a
     /// line on which a derivative up to the second may jump. `spans` are the ascending ends of the
     /// stretches, from 0 to 1, on which the path itself is smooth.
     ///
     /// A surface that is made from another one's parameter plane hands the path on.
-    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
-        line_crossings(&self.breaks(), path, spans)
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64>;
+
+    /// What makes the surface rational, where something does that is known.
+    fn rational(&self) -> Rational<2>;
+
+    /// Which of u and v run round, since the two sides of the surface are one line; see [`Curve::closed`].
+    fn closed(&self) -> [bool; 2];
+
+    /// The surface to which this one is parallel, along the natural normal, and the distance: a parallel of a parallel
+    /// is one of the first surface, of which no derivative is lost.
+    fn parallel_to(&self) -> Option<(&dyn Surface<T>, T)> {
+        None
     }
 
     /// What the four edges run along, for joins: v = 0, u = 1, v = 1, u = 0, each in the
@@ -214,11 +175,6 @@ pub trait Surface<T: Real>: Send + Sync {
     /// The solid object of which this is face 0..6, at equal parameters. For joins of blocks.
     fn face_of(&self) -> Option<(Key, u8)> {
         None
-    }
-
-    /// What makes the surface rational, where something does that is known.
-    fn rational(&self) -> Rational<2> {
-        Rational::none()
     }
 }
 
@@ -262,30 +218,34 @@ pub trait Field<T: Real>: Send + Sync {
     fn value_and_gradient(&self, p: Vec3<T>) -> (T, Vec3<T>);
 
     /// The value at `p`.
-    fn value(&self, p: Vec3<T>) -> T {
-        self.value_and_gradient(p).0
-    }
+    fn value(&self, p: Vec3<T>) -> T;
 
-    /// Value, gradient and rows of second derivatives at `p`; these by differences of the gradient, to
-    /// some ten digits, where the function does not know them.
-    fn second_order(&self, p: Vec3<T>) -> (T, Vec3<T>, [Vec3<T>; 3]) {
-        let (value, gradient) = self.value_and_gradient(p);
-        let h = 1e-5 * (1.0 + p.re().norm());
-        let along = |k: usize| {
-            let mut step = [0.0; 3];
-            step[k] = h;
-            let step = Vec3::lifted(step.into());
-            let (high, low) =
-                (self.value_and_gradient(p + step).1, self.value_and_gradient(p - step).1);
-            (high - low) / T::from(2.0 * h)
-        };
-        (value, gradient, [along(0), along(1), along(2)])
-    }
+    /// Value, gradient and rows of second derivatives at `p`; [`field_differences`] where the function does not know them.
+    fn second_order(&self, p: Vec3<T>) -> (T, Vec3<T>, [Vec3<T>; 3]);
 
     /// Bounds of the real values over a box, where they are known.
-    fn bounds(&self, _over: &crate::Box3) -> Option<[f64; 2]> {
-        None
-    }
+    fn bounds(&self, over: &crate::Box3) -> Option<[f64; 2]>;
+}
+
+/// The step of differences of a gradient, as a share of the distance from the origin, or of 1 nearby.
+const GRADIENT_STEP: f64 = 1e-5;
+
+/// [`Field::second_order`] by differences of the gradient, to some ten digits.
+pub fn field_differences<T: Real>(
+    field: &(impl Field<T> + ?Sized),
+    p: Vec3<T>,
+) -> (T, Vec3<T>, [Vec3<T>; 3]) {
+    let (value, gradient) = field.value_and_gradient(p);
+    let h = GRADIENT_STEP * (1.0 + p.re().norm());
+    let along = |k: usize| {
+        let mut step = [0.0; 3];
+        step[k] = h;
+        let step = Vec3::lifted(step.into());
+        let (high, low) =
+            (field.value_and_gradient(p + step).1, field.value_and_gradient(p - step).1);
+        (high - low) / T::from(2.0 * h)
+    };
+    (value, gradient, [along(0), along(1), along(2)])
 }
 
 impl<T: Real> dyn Field<T> + '_ {
@@ -347,18 +307,23 @@ pub trait CurveFormula: Send + Sync {
     fn at<J: Jet<Self::Scalar>>(&self, t: J) -> Vec3<J>;
 
     /// See [`Curve::breaks`].
-    fn breaks(&self) -> Vec<f64> {
-        Vec::new()
-    }
+    fn breaks(&self) -> Vec<f64>;
 
     /// See [`Curve::joints`].
-    fn joints(&self) -> Vec<f64> {
-        self.breaks()
-    }
+    fn joints(&self) -> Vec<f64>;
 
     /// See [`Curve::kinks`].
-    fn kinks(&self) -> Vec<f64> {
-        self.breaks()
+    fn kinks(&self) -> Vec<f64>;
+
+    /// See [`Curve::closed`].
+    fn closed(&self) -> bool;
+
+    /// See [`Curve::rational`].
+    fn rational(&self) -> Rational<1>;
+
+    /// See [`Curve::parallel_to`].
+    fn parallel_to(&self) -> Option<(&dyn Curve<Self::Scalar>, Vec3<Self::Scalar>, Self::Scalar)> {
+        None
     }
 
     /// See [`Curve::trace`].
@@ -370,17 +335,13 @@ pub trait CurveFormula: Send + Sync {
     fn image_of(&self) -> Option<Key> {
         None
     }
-
-    /// See [`Curve::rational`].
-    fn rational(&self) -> Rational<1> {
-        Rational::none()
-    }
 }
 
 impl<F: CurveFormula> Curve<F::Scalar> for F {
     fn jet(&self, t: F::Scalar, order: Order) -> CurveJet<F::Scalar> {
         crate::curve_jet_of!(self, F::at, t, order)
     }
+    crate::curve_one_by_one!(F::Scalar);
     fn breaks(&self) -> Vec<f64> {
         CurveFormula::breaks(self)
     }
@@ -389,6 +350,12 @@ impl<F: CurveFormula> Curve<F::Scalar> for F {
     }
     fn kinks(&self) -> Vec<f64> {
         CurveFormula::kinks(self)
+    }
+    fn closed(&self) -> bool {
+        CurveFormula::closed(self)
+    }
+    fn parallel_to(&self) -> Option<(&dyn Curve<F::Scalar>, Vec3<F::Scalar>, F::Scalar)> {
+        CurveFormula::parallel_to(self)
     }
     fn trace(&self) -> Trace<F::Scalar> {
         CurveFormula::trace(self)
@@ -411,14 +378,22 @@ pub trait SurfaceFormula: Send + Sync {
     fn at<J: Jet<Self::Scalar>>(&self, u: J, v: J) -> Vec3<J>;
 
     /// See [`Surface::breaks`].
-    fn breaks(&self) -> [Vec<f64>; 2] {
-        [Vec::new(), Vec::new()]
-    }
+    fn breaks(&self) -> [Vec<f64>; 2];
+
+    /// See [`Surface::joints`].
+    fn joints(&self) -> [Vec<f64>; 2];
+
+    /// See [`Surface::kinks`].
+    fn kinks(&self) -> [Vec<f64>; 2];
 
     /// See [`Surface::crossings`].
-    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
-        line_crossings(&SurfaceFormula::breaks(self), path, spans)
-    }
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64>;
+
+    /// See [`Surface::closed`].
+    fn closed(&self) -> [bool; 2];
+
+    /// See [`Surface::rational`].
+    fn rational(&self) -> Rational<2>;
 
     /// See [`Surface::edges`].
     fn edges(&self) -> Edges<Self::Scalar> {
@@ -430,11 +405,6 @@ pub trait SurfaceFormula: Send + Sync {
         Vec::new()
     }
 
-    /// See [`Surface::joints`].
-    fn joints(&self) -> [Vec<f64>; 2] {
-        self.breaks()
-    }
-
     /// See [`Surface::parallel_to`].
     fn parallel_to(&self) -> Option<(&dyn Surface<Self::Scalar>, Self::Scalar)> {
         None
@@ -444,17 +414,13 @@ pub trait SurfaceFormula: Send + Sync {
     fn image_of(&self) -> Option<(Key, bool)> {
         None
     }
-
-    /// See [`Surface::rational`].
-    fn rational(&self) -> Rational<2> {
-        Rational::none()
-    }
 }
 
 impl<F: SurfaceFormula> Surface<F::Scalar> for F {
     fn jet(&self, u: F::Scalar, v: F::Scalar, order: Order) -> SurfJet<F::Scalar> {
         crate::surface_jet_of!(self, F::at, u, v, order)
     }
+    crate::surface_one_by_one!(F::Scalar: grid, line, scattered);
     fn breaks(&self) -> [Vec<f64>; 2] {
         SurfaceFormula::breaks(self)
     }
@@ -470,6 +436,12 @@ impl<F: SurfaceFormula> Surface<F::Scalar> for F {
 
     fn joints(&self) -> [Vec<f64>; 2] {
         SurfaceFormula::joints(self)
+    }
+    fn kinks(&self) -> [Vec<f64>; 2] {
+        SurfaceFormula::kinks(self)
+    }
+    fn closed(&self) -> [bool; 2] {
+        SurfaceFormula::closed(self)
     }
     fn parallel_to(&self) -> Option<(&dyn Surface<F::Scalar>, F::Scalar)> {
         SurfaceFormula::parallel_to(self)

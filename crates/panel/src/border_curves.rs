@@ -59,4 +59,7 @@ impl<T: Real> Surface<T> for DegeneratePatch<T> {
             corners: [from, to, to, from],
         }
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
+    moldloft_num::surface_one_by_one!(T: grid, line, scattered);
 }

@@ -1,7 +1,11 @@
-//! Work on all threads: Rayon's, or in a page, which has one thread, plain iterators of the same names.
+//! Work on all threads: Rayon's, on a pool that belongs to this process; or in a page, which has one thread, plain
+//! iterators of the same names.
+//!
+//! Threads do not survive `fork`, which is how `multiprocessing` starts processes on Linux up to Python 3.13: a child that
+//! waited for its parent's pool would wait for ever. So every loop ends in [`pool::in_pool`], and no other crate calls Rayon.
 //!
 //! Rayon without threads is right as well, but its plumbing, made anew for each closure, is a fortieth of the page's engine.
-//! What a crate uses of Rayon must stand in `single` too.
+//! What a crate uses of Rayon must stand in `many` and in `single`.
 //!
 //! ```
 //! use moldloft_parallel::prelude::*;
@@ -11,96 +15,16 @@
 //! ```
 
 #[cfg(not(target_family = "wasm"))]
-pub use rayon::prelude;
+pub mod many;
+#[cfg(not(target_family = "wasm"))]
+mod pool;
+#[cfg(any(target_family = "wasm", test))]
+pub mod single;
 
+#[cfg(not(target_family = "wasm"))]
+pub use many as prelude;
 #[cfg(target_family = "wasm")]
 pub use single as prelude;
-
-/// The traits, for one thread.
-#[cfg(any(target_family = "wasm", test))]
-pub mod single {
-    /// `into_par_iter`.
-    pub trait IntoParallelIterator: IntoIterator + Sized {
-        /// Its iterator.
-        fn into_par_iter(self) -> Self::IntoIter {
-            self.into_iter()
-        }
-    }
-
-    impl<I: IntoIterator> IntoParallelIterator for I {}
-
-    /// Methods of slices.
-    pub trait ParallelSlice<T> {
-        /// `iter`.
-        fn par_iter(&self) -> std::slice::Iter<'_, T>;
-        /// `chunks`.
-        fn par_chunks(&self, size: usize) -> std::slice::Chunks<'_, T>;
-    }
-
-    impl<T> ParallelSlice<T> for [T] {
-        fn par_iter(&self) -> std::slice::Iter<'_, T> {
-            self.iter()
-        }
-        fn par_chunks(&self, size: usize) -> std::slice::Chunks<'_, T> {
-            self.chunks(size)
-        }
-    }
-
-    /// Methods of slices that change.
-    pub trait ParallelSliceMut<T> {
-        /// `iter_mut`.
-        fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T>;
-        /// `chunks_mut`.
-        fn par_chunks_mut(&mut self, size: usize) -> std::slice::ChunksMut<'_, T>;
-        /// `sort_unstable`.
-        fn par_sort_unstable(&mut self)
-        where
-            T: Ord;
-    }
-
-    impl<T> ParallelSliceMut<T> for [T] {
-        fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T> {
-            self.iter_mut()
-        }
-        fn par_chunks_mut(&mut self, size: usize) -> std::slice::ChunksMut<'_, T> {
-            self.chunks_mut(size)
-        }
-        fn par_sort_unstable(&mut self)
-        where
-            T: Ord,
-        {
-            self.sort_unstable();
-        }
-    }
-
-    /// Methods that iterators have not.
-    pub trait ParallelIterator: Iterator + Sized {
-        /// `map`, with something that a thread makes once.
-        fn map_init<R, S>(
-            self,
-            init: impl Fn() -> R,
-            mut each: impl FnMut(&mut R, Self::Item) -> S,
-        ) -> impl Iterator<Item = S> {
-            let mut room = init();
-            self.map(move |item| each(&mut room, item))
-        }
-
-        /// `flat_map`.
-        fn flat_map_iter<I: IntoIterator>(
-            self,
-            each: impl FnMut(Self::Item) -> I,
-        ) -> impl Iterator<Item = I::Item> {
-            self.flat_map(each)
-        }
-
-        /// Itself: one thread does not share.
-        fn with_min_len(self, _: usize) -> Self {
-            self
-        }
-    }
-
-    impl<I: Iterator> ParallelIterator for I {}
-}
 
 #[cfg(test)]
 mod tests {
@@ -112,7 +36,7 @@ mod tests {
                 $work
             };
             let many = {
-                use rayon::prelude::*;
+                use super::many::*;
                 $work
             };
             assert_eq!(one, many);

@@ -6,8 +6,8 @@ use crate::{
 };
 use moldloft_num::trace::{Edge, Edges, Mark, Piece, Trace};
 use moldloft_num::{
-    Composed, Curve, CurveJet, Order, Real, Reparametrization, SurfJet, Surface, Vec3,
-    inv_reparametrization, inv_reparametrization_in, line_crossings,
+    Composed, Curve, CurveJet, Order, Real, Reparametrization, ReparametrizationJet, SurfJet,
+    Surface, Vec3, inv_reparametrization, inv_reparametrization_in, line_crossings,
 };
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -210,6 +210,12 @@ impl<T: Real> Curve<T> for RelabelledCurve<T> {
             None => first,
         })
     }
+
+    fn kinks(&self) -> Vec<f64> {
+        breaks(&self.law, self.curve.kinks())
+    }
+
+    moldloft_num::curve_facts!(open, not_rational);
 }
 
 struct RelabelledSurface<T: Real> {
@@ -217,11 +223,16 @@ struct RelabelledSurface<T: Real> {
     law: ReparametrizationRef<T>,
 }
 
+impl<T: Real> RelabelledSurface<T> {
+    fn chained(s: SurfJet<T>, [_, r1, r2]: ReparametrizationJet<T>) -> SurfJet<T> {
+        SurfJet { v: s.v * r1, uv: s.uv * r1, vv: s.vv * (r1 * r1) + s.v * r2, ..s }
+    }
+}
+
 impl<T: Real> Surface<T> for RelabelledSurface<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
-        let [r, r1, r2] = self.law.jet(v, order);
-        let s = self.surface.jet(u, r, order);
-        SurfJet { v: s.v * r1, uv: s.uv * r1, vv: s.vv * (r1 * r1) + s.v * r2, ..s }
+        let law = self.law.jet(v, order);
+        Self::chained(self.surface.jet(u, law[0], order), law)
     }
 
     fn grid(
@@ -325,4 +336,21 @@ impl<T: Real> Surface<T> for RelabelledSurface<T> {
         }
         edges
     }
+
+    fn kinks(&self) -> [Vec<f64>; 2] {
+        let [u, v] = self.surface.kinks();
+        [u, breaks(&self.law, v)]
+    }
+
+    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>> {
+        let laws: Vec<_> = vs.iter().map(|&v| self.law.jet(T::from(v), order)).collect();
+        if !laws.iter().all(|law| law[0].is_constant()) {
+            return vs.iter().map(|&v| self.jet(u, T::from(v), order)).collect();
+        }
+        let plain: Vec<f64> = laws.iter().map(|law| law[0].re()).collect();
+        let line = self.surface.line(u, &plain, order).into_iter().zip(laws);
+        line.map(|(jet, law)| Self::chained(jet, law)).collect()
+    }
+
+    moldloft_num::surface_facts!(open, not_rational);
 }

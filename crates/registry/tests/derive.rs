@@ -29,6 +29,8 @@ impl<T: Real> moldloft_num::CurveFormula for Straight<T> {
         let [a, b] = self.0.map(|p| p.map(J::fixed));
         a.lerp(b, t)
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
 }
 
 impl<T: Real> Build<T> for Segment<T> {

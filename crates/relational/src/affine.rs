@@ -1,6 +1,6 @@
 //! Maps of space by which curves and points are copied and turned.
 
-use moldloft_num::{Axis, Curve, CurveJet, Order, Rational, Real, Vec3};
+use moldloft_num::{Axis, Curve, CurveJet, Order, Real, Vec3};
 use moldloft_registry::CurveRef;
 
 /// The map p -> to + M (p - from).
@@ -61,23 +61,8 @@ impl<T: Real> Curve<T> for Mapped<T> {
             *p = self.map.point(*p);
         }
     }
-
-    fn breaks(&self) -> Vec<f64> {
-        self.curve.breaks()
-    }
-
-    fn joints(&self) -> Vec<f64> {
-        self.curve.joints()
-    }
-    fn kinks(&self) -> Vec<f64> {
-        self.curve.kinks()
-    }
-
     fn image_of(&self) -> Option<moldloft_num::trace::Key> {
         self.curve.key
     }
-
-    fn rational(&self) -> Rational<1> {
-        self.curve.rational()
-    }
+    moldloft_num::curve_facts!(breaks of [self.curve], closed of [self.curve], rational of [self.curve]);
 }

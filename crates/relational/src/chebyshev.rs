@@ -92,4 +92,6 @@ impl<T: Real> CurveFormula for PiecewiseChebyshev<T> {
     fn breaks(&self) -> Vec<f64> {
         self.pieces[1..].iter().map(|piece| piece.from).collect()
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }

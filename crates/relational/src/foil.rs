@@ -141,6 +141,10 @@ fn either(word: &str, names: [&str; 2], field: FieldId) -> Result<bool, CallErro
     }
 }
 
+/// The share of their size within which the points of a section are one: more than the rounding of a chord, below which it
+/// has no direction.
+const ONE_PLACE: f64 = 64.0 * f64::EPSILON;
+
 impl<T: Real> FoilArguments<T> {
     /// The foil between `points`, whether its section is closed, and how deep shapes are nested in
     /// it.
@@ -172,8 +176,9 @@ impl<T: Real> FoilArguments<T> {
             metric: self.metric.map(fixed),
             fields: self.fields,
         };
-        let first = points.first().map(|p| p.re());
-        let layout = if points.iter().all(|p| Some(p.re()) == first) {
+        let size = points.iter().fold(0.0_f64, |size, p| size.max(p.re().norm()));
+        let first = points.first().map_or_else(Vec3::zero, |p| p.re());
+        let layout = if points.iter().all(|p| p.re().distance(first) <= ONE_PLACE * size) {
             Layout::vanishing(points)
         } else {
             Layout::new(points, Metric::Space)
@@ -234,9 +239,12 @@ impl<T: Real> Curve<T> for Shared<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         self.0.jet(t, order)
     }
-    fn breaks(&self) -> Vec<f64> {
-        self.0.breaks()
+
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        self.0.grid(ts, out);
     }
+
+    moldloft_num::curve_facts!(breaks of [self.0], closed of [self.0], rational of [self.0]);
 }
 
 /// A curve that does not depend on the parameter of a loft, in numbers that may.
@@ -254,9 +262,8 @@ impl<T: Real, J: Jet<T>> Curve<J> for Fixed<T> {
         // second one would pass on.
         [self.0.at(t), d, dd.map(J::fixed)]
     }
-    fn breaks(&self) -> Vec<f64> {
-        self.0.breaks()
-    }
+    moldloft_num::curve_facts!(breaks of [self.0], open, not_rational);
+    moldloft_num::curve_one_by_one!(J);
 }
 
 /// The fault of a foil.

@@ -6,7 +6,8 @@
 //! of their second derivatives: five points, fourth order, never across a break. Their error is
 //! about 1e-11 of the size of the seventh derivative; positions and panels never need them.
 
-use moldloft_num::{CurveJet, Jet, Order, Real, Surface, Vec3};
+use moldloft_num::{CurveJet, Jet, Order, Real, Surface, Vec3, find_root};
+use moldloft_registry::CurveRef;
 
 /// The step of the differences. The error of fourth order, h^4 / 30, is then 2e-12 and that of
 /// rounding, 1.5 epsilon / h, 2e-13.
@@ -75,6 +76,87 @@ pub fn tangent<T: Real, J: Jet<T>>(
         x += ddd.map(|a| half.scaled(a));
     }
     x
+}
+
+/// A derivative of less than this share of the next one is none: the curve stands still.
+const STILL: f64 = 1e-12;
+
+/// A vector along the tangent, at t = 0 and 1 its limit from inside: where an end is double or triple, so that the curve
+/// stands still there, its direction is that of the first derivative that does not vanish. Zero where there is none.
+///
+/// With C2 .. C5 the derivatives at t0, the first one is (t - t0) (C2 + C3 dt / 2 + C4 dt^2 / 6) at a double end, and
+/// (t - t0)^2 (C3 / 2 + C4 dt / 6 + C5 dt^2 / 24) at a triple one; the factor in brackets counts.
+pub fn direction<T: Real, J: Jet<T>>(
+    jet: impl Fn(T, Order) -> CurveJet<T>,
+    breaks: impl FnOnce() -> Vec<f64>,
+    t: J,
+) -> Vec3<J> {
+    let at = t.value();
+    let [_, d, dd] = jet(at, Order::Second);
+    let end = at.re() == 0.0 || at.re() == 1.0;
+    if !end || d.re().norm() > STILL * dd.re().norm() {
+        return tangent(jet, breaks, t);
+    }
+    let breaks = breaks();
+    let third = |t: T| slope(|t| [jet(t, Order::Second)[2]], t, &breaks);
+    let fourth = |t: T| slope(third, t, &breaks);
+    let [c3] = third(at);
+    let dt = t - J::fixed(at);
+    let sum = |parts: [(Vec3<T>, f64); 3]| {
+        let mut x = Vec3::zero();
+        for ((part, share), power) in parts.into_iter().zip([J::from(1.0), dt, dt * dt]) {
+            x += part.map(|a| power.scaled(a * share));
+        }
+        x
+    };
+    if dd.re().norm() > STILL * c3.re().norm() {
+        // Inside is before the far end.
+        let side = if at.re() == 0.0 { 1.0 } else { -1.0 };
+        let [c4] = if J::ORDER == Order::Second { fourth(at) } else { [Vec3::zero()] };
+        return sum([(dd, side), (c3, 0.5 * side), (c4, side / 6.0)]);
+    }
+    let [c4] = if J::ORDER == Order::Zero { [Vec3::zero()] } else { fourth(at) };
+    let [c5] = match J::ORDER {
+        Order::Second => slope(fourth, at, &breaks),
+        _ => [Vec3::zero()],
+    };
+    sum([(c3, 0.5), (c4, 1.0 / 6.0), (c5, 1.0 / 24.0)])
+}
+
+/// Each smooth stretch of a curve is looked at in so many parts for where it stands still.
+const STANDSTILL_TRIALS: usize = 32;
+
+/// An interior parameter at which a curve stands still, if there is one: its speed is at most `least`. `ends` are the
+/// ascending ends of its smooth stretches, from 0 to 1; those inside count.
+pub fn standstill<T: Real>(curve: &CurveRef<T>, ends: &[f64], least: f64) -> Option<f64> {
+    let jet = |t: f64| {
+        let [_, d, dd] = curve.jet(T::from(t), Order::Second);
+        [d.re(), dd.re()]
+    };
+    let still = |t: &f64| {
+        let speed = jet(*t)[0].norm();
+        speed.is_nan() || speed <= least
+    };
+    let gain = |t: f64| {
+        let [d, dd] = jet(t);
+        d.dot(dd)
+    };
+    for span in ends.windows(2) {
+        let at = |k: usize| {
+            let t = span[0] + (span[1] - span[0]) * k as f64 / STANDSTILL_TRIALS as f64;
+            t.clamp(span[0].next_up(), span[1].next_down())
+        };
+        // Between two places the speed has a least value where it falls at the first and rises at the second.
+        let slowest = (1..=STANDSTILL_TRIALS)
+            .filter(|&k| gain(at(k - 1)) < 0.0 && gain(at(k)) > 0.0)
+            .filter_map(|k| find_root(gain, at(k - 1), at(k)).ok());
+        let places = (1..STANDSTILL_TRIALS).map(at).chain(slowest);
+        let join = (span[1] < 1.0).then(|| [span[1].next_down(), span[1]]);
+        if let Some(t) = places.chain(join.into_iter().flatten()).find(still) {
+            return Some(t);
+        }
+    }
+    None
 }
 
 /// The derivatives (S_uuu, S_uuv, S_uvv, S_vvv).

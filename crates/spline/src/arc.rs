@@ -273,4 +273,7 @@ impl<T: Real> Curve<T> for CircularArc<T> {
     fn rational(&self) -> Rational<1> {
         Rational::paced([Pace::Angle(self.angle().re())])
     }
+
+    moldloft_num::curve_facts!(smooth, open);
+    moldloft_num::curve_one_by_one!(T);
 }

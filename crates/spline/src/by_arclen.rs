@@ -183,4 +183,7 @@ impl<T: Real> Curve<T> for ByArclen<T> {
     fn breaks(&self) -> Vec<f64> {
         self.breaks.clone()
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
+    moldloft_num::curve_one_by_one!(T);
 }

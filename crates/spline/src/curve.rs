@@ -245,6 +245,8 @@ impl<T: Real> Curve<T> for BSplineCurve<T> {
         };
         Rational { weight: Some(Box::new(weight)), ..Rational::none() }
     }
+
+    moldloft_num::curve_facts!(kinks_at_breaks, open);
 }
 
 #[cfg(test)]

@@ -259,6 +259,8 @@ impl<T: Real> Curve<T> for InterpolatingSpline<T> {
         let knots = self.curve.knots();
         knots[1..knots.len() - 1].iter().map(|k| k.re()).collect()
     }
+
+    moldloft_num::curve_facts!(kinks_at_breaks, open, not_rational);
 }
 
 fn parabolic<T>(end: End<T>) -> bool {

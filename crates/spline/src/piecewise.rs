@@ -193,4 +193,6 @@ impl<T: Real> Curve<T> for PiecewiseCubic<T> {
         // Between pieces that are the same polynomial nothing jumps, but rounding hides which.
         self.knots[1..self.knots.len() - 1].iter().map(|k| k.re()).collect()
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }

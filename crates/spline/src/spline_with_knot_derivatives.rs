@@ -210,6 +210,8 @@ impl<T: Real> CurveFormula for SplineWithKnotDerivatives<T> {
         };
         Rational { weight: Some(Box::new(weight)), ..Rational::none() }
     }
+
+    moldloft_num::curve_facts!(broken, open);
 }
 
 #[cfg(test)]

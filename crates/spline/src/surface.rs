@@ -155,4 +155,7 @@ impl<T: Real> Surface<T> for BSplineSurface<T> {
         };
         Rational { weight: Some(Box::new(weight)), ..Rational::none() }
     }
+
+    moldloft_num::surface_facts!(kinks_at_breaks, breaks_along_lines, open);
+    moldloft_num::surface_one_by_one!(T: line, scattered);
 }

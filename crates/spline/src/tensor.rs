@@ -267,6 +267,9 @@ impl<T: Real> Surface<T> for GridSpline<T> {
     fn breaks(&self) -> [Vec<f64>; 2] {
         [&self.u, &self.v].map(|knots| knots[1..knots.len() - 1].iter().map(|k| k.re()).collect())
     }
+
+    moldloft_num::surface_facts!(broken, open, not_rational);
+    moldloft_num::surface_one_by_one!(T: line, scattered);
 }
 
 #[cfg(test)]

@@ -109,8 +109,9 @@ class Host:
 
     def run_file(self, path: Path) -> None:
         """Runs all lines of a file."""
-        from moldloft.storage import digest, read_bytes
+        from moldloft.storage import digest, read_bytes, utf8_path
 
+        utf8_path(path)
         data = read_bytes(path)
         self.present = digest(data)
         try:

@@ -5,7 +5,14 @@
 
 from moldloft.storage.folders import make_folders
 from moldloft.storage.locks import BusyError, Lock, Owner
-from moldloft.storage.reading import LARGEST, digest, digest_of, read_bytes, read_text
+from moldloft.storage.reading import (
+    LARGEST,
+    digest,
+    digest_of,
+    read_bytes,
+    read_text,
+    utf8_path,
+)
 from moldloft.storage.replacing import ChangedError, put
 from moldloft.storage.sets import Output, commit, read_set, recover
 from moldloft.storage.system import remove
@@ -29,4 +36,5 @@ __all__ = [
     "read_text",
     "recover",
     "remove",
+    "utf8_path",
 ]

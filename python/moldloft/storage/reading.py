@@ -11,7 +11,7 @@ from pathlib import Path
 from moldloft.errors import FileError
 from moldloft.storage.system import reason
 
-__all__ = ["LARGEST", "digest", "digest_of", "read_bytes", "read_text"]
+__all__ = ["LARGEST", "digest", "digest_of", "read_bytes", "read_text", "utf8_path"]
 
 LARGEST = 256 << 20
 """The most bytes of one file."""
@@ -82,6 +82,41 @@ def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
     except UnicodeDecodeError as error:
         raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def utf8_path(path: str | os.PathLike[str]) -> str:
+    r"""The path as text that is UTF-8, as models, sketches and the workbench name files.
+
+    A name from elsewhere may hold other bytes: such a file is read by what takes it as points,
+    drawing or table, and refused as a model.
+
+    Raises
+    ------
+    FileError
+        When it is not UTF-8.
+
+    Examples
+    --------
+    >>> utf8_path("boats/modèle.sdl")
+    'boats/modèle.sdl'
+    >>> utf8_path(os.fsdecode(b"mod\xe8le.sdl"))
+    Traceback (most recent call last):
+      ...
+    moldloft.errors.FileError: cannot read `mod\xe8le.sdl`: its name is not UTF-8 text
+    help: give the file, or the folder, a name in UTF-8
+    """
+    text = os.fspath(path)
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError as error:
+        # Python keeps a byte that is not UTF-8 as a surrogate.
+        letters = (f"\\x{ord(c) & 0xFF:02x}" if "\udc80" <= c <= "\udcff" else c for c in text)
+        shown = "".join(letters).encode("utf-8", "backslashreplace").decode()
+        raise FileError(
+            f"cannot read `{shown}`: its name is not UTF-8 text\n"
+            "help: give the file, or the folder, a name in UTF-8"
+        ) from error
+    return text
 
 
 def digest_of(path: str | os.PathLike[str]) -> str | None:

@@ -20,7 +20,7 @@ from typing import Any
 
 from moldloft.errors import Error, FileError
 from moldloft.language import check_language
-from moldloft.storage import ChangedError, digest, put
+from moldloft.storage import ChangedError, digest, put, utf8_path
 from moldloft.workbench.draft import Draft
 from moldloft.workbench.engine import Engine, EngineLostError
 from moldloft.workbench.outbox import Outbox, Send
@@ -94,6 +94,7 @@ class Hub:
     tabs: dict[int, Tab] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        utf8_path(self.path)
         self.stored = read(self.path)
         check_language(self.stored.text, str(self.path))
         self.draft = Draft(self.path)

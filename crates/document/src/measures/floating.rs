@@ -4,13 +4,12 @@ use crate::Document;
 use moldloft_budget::{Budget, Spent};
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::{
-    Attitude, Body, Equilibrium, FloatError, Flotation, Loading, Status, Water, bottom, bounds,
-    equilibrium, flotation, section_area,
+    Attitude, Body, Equilibrium, FloatError, Flotation, Loading, Status, Symmetry, USUAL_ACCURACY,
+    Water, bottom, bounds, equilibrium, flotation, section_area,
 };
 use moldloft_lang::run::weight::mass_and_centre;
 use moldloft_lang::run::whole::not_finite;
 use moldloft_lang::source::fault_location::unplaced;
-use moldloft_mesh::{FloatOptions, Symmetry};
 use moldloft_model::Graph;
 use moldloft_num::{Dual4, Real, Vec3};
 use moldloft_parallel::prelude::*;
@@ -86,9 +85,9 @@ pub struct FloatAnswer {
     pub lolls: bool,
     /// Open edges below the water.
     pub open_edges: usize,
-    /// See [`moldloft_mesh::Hydrostatics::closure_error`].
+    /// See [`moldloft_hydro::Hydrostatics::closure_error`].
     pub closure_error: f64,
-    /// See [`moldloft_mesh::Hydrostatics::waterplane_error`].
+    /// See [`moldloft_hydro::Hydrostatics::waterplane_error`].
     pub waterplane_error: f64,
     /// Whether panels face outward.
     pub outward: bool,
@@ -358,8 +357,8 @@ impl Document {
         let mesh = lengthwise.flatten();
         let mesh = mesh.as_ref().unwrap_or(&panelled.mesh);
         let shown = if symmetry.contains('y') { Symmetry::MirroredTwice } else { Symmetry::None };
-        let options = FloatOptions { level, symmetry: shown, density: 1.0 };
-        let h = moldloft_mesh::hydrostatics(mesh, options);
+        let body = Body::of_mesh(mesh, USUAL_ACCURACY);
+        let h = moldloft_hydro::hydrostatics(&body, level, shown, 1.0);
         Ok([h.volume, h.wetted_area, h.waterplane.map_or(0.0, |w| w.area)])
     }
 }

@@ -3,9 +3,9 @@
 use crate::Document;
 use crate::measures::bodied::Bodied;
 use moldloft_diag::Diagnostic;
-use moldloft_hydro::{USUAL_ACCURACY, hydrostatics};
+use moldloft_hydro::{Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};
 use moldloft_lang::run::whole::not_finite;
-use moldloft_mesh::{Hydrostatics, Mesh, Symmetry};
+use moldloft_mesh::Mesh;
 use moldloft_panel::Skin;
 use std::sync::Arc;
 

@@ -66,6 +66,8 @@ impl<T: Real> Curve<T> for FairedCurve<T> {
             Self::Still(curve) => curve.breaks(),
         }
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }
 
 /// The modes of curves.

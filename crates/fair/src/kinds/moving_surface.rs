@@ -59,6 +59,9 @@ impl<T: Real> Surface<T> for MovingSurface<T> {
     fn joints(&self) -> [Vec<f64>; 2] {
         self.plain.joints()
     }
+
+    moldloft_num::surface_facts!(kinks_at_breaks, breaks_along_lines, open, not_rational);
+    moldloft_num::surface_one_by_one!(T: grid, line, scattered);
 }
 
 struct Tensor<T> {
@@ -107,4 +110,6 @@ impl<T: Real> SurfaceFormula for Tensor<T> {
         };
         self.blossom(0, ku, u, (ku - pu..=ku).map(row).collect())
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }

@@ -45,6 +45,8 @@ impl<T: Real, C: Curve<T>> Curve<T> for AnchoredSpline<C> {
     fn trace(&self) -> Trace<T> {
         Trace::Own(self.ends)
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }
 
 /// The curve X(t) = S(w(t)) of a spline path w(t) = (u, v, 0) in the parameters of a surface.
@@ -71,4 +73,7 @@ impl<T: Real, P: Curve<T>> Curve<T> for SplineOnSurface<T, P> {
     fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
         Some(self.path.jet(t, order))
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
+    moldloft_num::curve_one_by_one!(T);
 }

@@ -169,6 +169,8 @@ fn closed_curves_breaks_and_snakes() {
         fn at<J: moldloft_num::Jet<f64>>(&self, u: J, v: J) -> Vec3<J> {
             Vec3::new(u * 4.0, v * 3.0, u * v)
         }
+
+        moldloft_num::surface_facts!(smooth, open, not_rational);
     }
     let surface = SurfaceRef::new(Flat, 0);
     let magnets = Value::list(points.iter().map(|p| {

@@ -169,6 +169,8 @@ impl SurfaceFormula for Torus {
         let r = v.cos() + 3.0;
         Vec3::new(r * u.cos(), r * u.sin(), v.sin())
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 #[test]

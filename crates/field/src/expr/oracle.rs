@@ -73,6 +73,8 @@ impl<T: Real> Field<T> for Constant {
         );
         (along(gradient, value), slope)
     }
+
+    moldloft_num::field_facts!(T: second_by_differences, no_bounds);
 }
 
 impl<T: Real> Oracle<T> for Constant {

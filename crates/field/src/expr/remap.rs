@@ -84,6 +84,8 @@ impl<T: Real> Field<T> for RemappedOracle<T> {
         let g = self.map.pull_back(g);
         (value, x * g.x + y * g.y + z * g.z)
     }
+
+    moldloft_num::field_facts!(T: second_by_differences, no_bounds);
 }
 
 impl<T: Real> Oracle<T> for RemappedOracle<T> {

@@ -27,6 +27,8 @@ impl<T: Real> Field<T> for Set<T> {
     fn value(&self, p: Vec3<T>) -> T {
         Set::value(self, p)
     }
+
+    moldloft_num::field_facts!(T: second_by_differences, no_bounds);
 }
 
 impl<T: Real> ImplicitFunction<T> for Set<T> {

@@ -27,18 +27,30 @@ impl<T: Real> Curve<f64> for Shown<CurveRef<T>> {
     fn jet(&self, t: f64, order: Order) -> CurveJet<f64> {
         PlainCurve(&*self.0).jet(t, order)
     }
-    fn breaks(&self) -> Vec<f64> {
-        self.0.breaks()
+
+    fn grid(&self, ts: &[f64], out: &mut [Vec3]) {
+        PlainCurve(&*self.0).grid(ts, out);
     }
+
+    moldloft_num::curve_facts!(breaks of [self.0], closed of [self.0], rational of [self.0]);
 }
 
 impl<T: Real> Surface<f64> for Shown<SurfaceRef<T>> {
     fn jet(&self, u: f64, v: f64, order: Order) -> SurfJet<f64> {
         PlainSurface(&*self.0).jet(u, v, order)
     }
-    fn breaks(&self) -> [Vec<f64>; 2] {
-        self.0.breaks()
+
+    fn grid(&self, us: &[f64], vs: &[f64], points: &mut [Vec3], normals: Option<&mut [Vec3]>) {
+        PlainSurface(&*self.0).grid(us, vs, points, normals);
     }
+    fn line(&self, u: f64, vs: &[f64], order: Order) -> Vec<SurfJet<f64>> {
+        PlainSurface(&*self.0).line(u, vs, order)
+    }
+    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3]) {
+        PlainSurface(&*self.0).scattered(uv, out);
+    }
+
+    moldloft_num::surface_facts!(breaks of [self.0], closed of [self.0], rational of [self.0]);
 }
 
 /// The distance from a curve less a radius.
@@ -68,6 +80,8 @@ impl<T: Real> Field<T> for Tube<T> {
         }
         (-self.radius, d.normalized().map_or_else(Vec3::zero, Vec3::perpendicular))
     }
+
+    moldloft_num::field_facts!(T: value_with_gradient, second_by_differences, no_bounds);
 }
 
 impl<T: Real> Oracle<T> for Tube<T> {
@@ -136,6 +150,8 @@ impl<T: Real> Field<T> for Near<T> {
             }
         }
     }
+
+    moldloft_num::field_facts!(T: value_with_gradient, second_by_differences, no_bounds);
 }
 
 impl<T: Real> Oracle<T> for Near<T> {
@@ -374,6 +390,8 @@ impl<T: Real> Field<T> for Inside<T> {
         let n = n.normalized().unwrap_or_default();
         (away.dot(n), n)
     }
+
+    moldloft_num::field_facts!(T: value_with_gradient, second_by_differences, no_bounds);
 }
 
 impl<T: Real> Oracle<T> for Inside<T> {

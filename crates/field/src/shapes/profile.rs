@@ -386,6 +386,8 @@ impl<T: Real> Field<T> for ProfileField<T> {
             }
         }
     }
+
+    moldloft_num::field_facts!(T: value_with_gradient, second_by_differences, no_bounds);
 }
 
 /// Where the tangent of a closed curve turns, at breaks from 0 to 1.

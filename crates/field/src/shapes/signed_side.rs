@@ -158,6 +158,9 @@ mod tests {
                 vv: Vec3::of(0.0, 0.0, -0.8 * 4.0),
             }
         }
+
+        moldloft_num::surface_facts!(smooth, open, not_rational);
+        moldloft_num::surface_one_by_one!(f64: grid, line, scattered);
     }
 
     #[test]

@@ -270,6 +270,8 @@ impl<T: Real> Field<T> for Foreign {
     fn value_and_gradient(&self, p: Vec3<T>) -> (T, Vec3<T>) {
         (p.norm() - 1.0, p.normalized().unwrap_or_default())
     }
+
+    moldloft_num::field_facts!(T: value_with_gradient, second_by_differences, no_bounds);
 }
 
 impl<T: Real> Oracle<T> for Foreign {

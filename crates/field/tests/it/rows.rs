@@ -14,6 +14,9 @@ impl<T: Real> Curve<T> for Up {
         let along = |z: T| Vec3::new(T::zero(), T::zero(), z);
         [along(t), along(T::one()), Vec3::zero()]
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
+    moldloft_num::curve_one_by_one!(T);
 }
 
 /// Arguments for a row by the names of its fields.

@@ -350,6 +350,9 @@ impl<T: Real> Surface<T> for Ball {
             ..SurfJet::default()
         }
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
+    moldloft_num::surface_one_by_one!(T: grid, line, scattered);
 }
 
 #[test]

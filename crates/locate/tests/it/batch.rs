@@ -350,6 +350,8 @@ impl SurfaceFormula for Roof {
             Vec3::new(x, share * 2.0 + 2.0, -share + 1.0)
         }
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 #[test]

@@ -26,6 +26,8 @@ impl SurfaceFormula for Waves {
         let w = self.n * std::f64::consts::PI;
         Vec3::new(u, v, (u * w).sin() * (v * w).sin() * self.height)
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 struct Torus {
@@ -40,6 +42,8 @@ impl SurfaceFormula for Torus {
         let r = b.cos() * self.small + self.large;
         Vec3::new(r * a.cos(), r * a.sin(), b.sin() * self.small)
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 /// The parallelogram with a corner and two sides.

@@ -19,6 +19,8 @@ impl SurfaceFormula for Sphere {
         let local = Vec3::new(b.cos() * a.cos(), b.cos() * a.sin(), b.sin());
         c + local.map(|x| x * r)
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 /// A cylinder of radius r round the line through c along axis 0, 1 or 2, from -h to h.
@@ -41,6 +43,8 @@ impl SurfaceFormula for Cylinder {
         };
         self.centre.map(J::fixed) + local
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 /// A circle of radius r about c in the plane z = c.z.
@@ -56,6 +60,8 @@ impl CurveFormula for Circle {
         let local = Vec3::new(a.cos() * self.radius, a.sin() * self.radius, J::fixed(0.0));
         self.centre.map(J::fixed) + local
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
 }
 
 pub struct Line(pub Vec3, pub Vec3);
@@ -65,6 +71,8 @@ impl CurveFormula for Line {
     fn at<J: Jet<f64>>(&self, t: J) -> Vec3<J> {
         self.0.map(J::fixed) + (self.1 - self.0).map(|x| t * x)
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
 }
 
 /// The 20 x 20 bicubic surface of the comparisons: an even net with random heights in [0, 1].

@@ -5,10 +5,10 @@ use crate::arrays;
 use crate::work::unlocked_if;
 use moldloft::fair::surface::{self, SurfaceAnalysis as One};
 use moldloft::num::{Surface, Vec3};
+use moldloft_parallel::prelude::*;
 use numpy::ndarray::Array2;
 use numpy::{PyArray2, PyArray3, ToPyArray};
 use pyo3::prelude::*;
-use rayon::prelude::*;
 
 /// A surface at a grid of parameters: normals, curvatures, and how light plays on it. Where it is
 /// singular all numbers are NaN.

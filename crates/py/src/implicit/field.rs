@@ -10,10 +10,10 @@ use moldloft::field::{
     Affine, FieldError, Form, Primitive, SmoothShape, check_rail, check_rails,
 };
 use moldloft::num::{Axis, Vec3};
+use moldloft_parallel::prelude::*;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// So many points are worth another thread.

@@ -179,6 +179,8 @@ impl Field<f64> for PythonOracle {
         self.all_values(&[p], &mut out);
         out[0]
     }
+
+    moldloft::num::field_facts!(f64: second_by_differences, no_bounds);
 }
 
 impl Oracle<f64> for PythonOracle {

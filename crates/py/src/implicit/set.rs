@@ -12,10 +12,10 @@ use moldloft::field::{
     Pieces, Ray, RayTrace, Resolution, Set, SetAttributes, facet_mixed,
 };
 use moldloft::num::{Box3, Vec3};
+use moldloft_parallel::prelude::*;
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A set of points.

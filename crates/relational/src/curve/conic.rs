@@ -99,4 +99,6 @@ impl<T: Real> CurveFormula for Oblique<T> {
             _ => Rational::none(),
         }
     }
+
+    moldloft_num::curve_facts!(smooth, open);
 }

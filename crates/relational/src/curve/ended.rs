@@ -1,7 +1,7 @@
 //! Curves of their own between point objects: what joins them to their neighbours.
 
 use moldloft_num::trace::{Key, Piece, Trace};
-use moldloft_num::{Curve, CurveJet, Order, Rational, Real, Vec3};
+use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use moldloft_registry::Point;
 
 /// A curve with what it runs along: most are roots of their own between point objects.
@@ -37,16 +37,8 @@ impl<T: Real, C: Curve<T>> Curve<T> for Ended<T, C> {
     fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
         self.curve.grid(ts, out);
     }
-    fn breaks(&self) -> Vec<f64> {
-        self.curve.breaks()
-    }
-    fn joints(&self) -> Vec<f64> {
-        self.curve.joints()
-    }
     fn trace(&self) -> Trace<T> {
         self.trace.clone()
     }
-    fn rational(&self) -> Rational<1> {
-        self.curve.rational()
-    }
+    moldloft_num::curve_facts!(breaks of [self.curve], closed of [self.curve], rational of [self.curve]);
 }

@@ -63,4 +63,6 @@ impl<T: Real> CurveFormula for Turning<T> {
             + self.side.map(|x| sine.scaled(x))
             + self.advance.map(|x| t.scaled(x))
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
 }

@@ -111,15 +111,6 @@ impl<T: Real> Curve<T> for JoinedEdge<T> {
     fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
         self.first.grid(ts, out);
     }
-
-    fn breaks(&self) -> Vec<f64> {
-        self.first.breaks()
-    }
-
-    fn joints(&self) -> Vec<f64> {
-        self.first.joints()
-    }
-
     fn trace(&self) -> Trace<T> {
         Trace::Pieces(self.first.pieces())
     }
@@ -127,4 +118,6 @@ impl<T: Real> Curve<T> for JoinedEdge<T> {
     fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
         self.first.on_surface(t, order)
     }
+
+    moldloft_num::curve_facts!(breaks of [self.first], closed of [self.first], rational of [self.first]);
 }

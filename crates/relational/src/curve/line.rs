@@ -43,6 +43,8 @@ impl<T: Real> CurveFormula for Straight<T> {
     fn trace(&self) -> Trace<T> {
         Trace::straight(self.ends)
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
 }
 
 /// The line between two positions, linear in t.
@@ -61,4 +63,6 @@ impl<T: Real> CurveFormula for Segment<T> {
         let s = -t + 1.0;
         self.from.map(|a| s.scaled(a)) + self.to.map(|b| t.scaled(b))
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
 }

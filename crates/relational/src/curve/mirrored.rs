@@ -1,6 +1,6 @@
 //! Mirror images of curves, which know their originals.
 
-use moldloft_num::{Curve, CurveJet, Order, Rational, Real, Reparametrization, Vec3};
+use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
 use moldloft_registry::{CurveRef, Kind, MirrorArgument};
 use std::sync::Arc;
 
@@ -34,17 +34,6 @@ impl<T: Real> Curve<T> for MirrCurve<T> {
             *p = self.mirror.image(*p);
         }
     }
-
-    fn breaks(&self) -> Vec<f64> {
-        self.curve.breaks()
-    }
-    fn joints(&self) -> Vec<f64> {
-        self.curve.joints()
-    }
-    fn kinks(&self) -> Vec<f64> {
-        self.curve.kinks()
-    }
-
     fn image_of(&self) -> Option<moldloft_num::trace::Key> {
         self.curve.key
     }
@@ -52,8 +41,5 @@ impl<T: Real> Curve<T> for MirrCurve<T> {
     fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         self.curve.law()
     }
-
-    fn rational(&self) -> Rational<1> {
-        self.curve.rational()
-    }
+    moldloft_num::curve_facts!(breaks of [self.curve], closed of [self.curve], rational of [self.curve]);
 }

@@ -1,14 +1,17 @@
 //! Curves at a distance from others in a plane.
 
-use moldloft_num::{Curve, CurveJet, Order, Plane, Real, Vec3};
+use crate::faults::{digits, parameter};
+use crate::third_derivatives::{direction, standstill};
+use moldloft_num::{Curve, CurveFormula, Jet, Order, Plane, Real, Uni1, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
 
 /// A curve at a distance from another, sideways in a plane: C(t) = c(t) + d T x n / |T x n|, with T
 /// the tangent and n the normal of the plane; to the right of the direction of travel, seen from the
 /// positive side, if d is positive.
 ///
-/// It is refused where the distance exceeds the radius of curvature on that side, since the offset
-/// has a cusp there.
+/// At an end without speed, such as a double control point, T is the limit from inside. It is refused
+/// where the curve stands still inside, and where the distance exceeds the radius of curvature on that
+/// side, since the offset has a cusp there.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -26,47 +29,18 @@ pub struct OffsetCurve<T: Real> {
 }
 
 /// Each span of the curve is tried at so many places for cusps.
-const TRIALS: usize = 32;
+const CUSP_TRIALS: usize = 32;
+
+/// The sine of the angle between the tangent and the normal of the plane below which there is no sideways direction, and the
+/// share of the greatest speed below which there is no tangent.
+const NO_TANGENT: f64 = 1e-9;
 
 impl<T: Real> Build<T> for OffsetCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, distance, plane } = self;
-        let (nesting, key) = (curve.depth, curve.key);
-        let mut ends = vec![0.0];
-        ends.extend(curve.breaks());
-        ends.push(1.0);
-        let shape = ParallelCurve { curve, distance, normal: plane.normal, ends };
-        // How fast the offset moves on, in units of the curve's own speed: at most 0 at a cusp.
-        let mut worst = (f64::INFINITY, 0.0);
-        for span in shape.ends.windows(2) {
-            let at = |k: f64| span[0] + (span[1] - span[0]) * k / TRIALS as f64;
-            for k in 0..=TRIALS {
-                let t = at(k as f64).clamp(span[0].next_up(), span[1].next_down());
-                let Some(progress) = shape.progress(t) else {
-                    return Err(CallError::new(
-                        "no-tangent",
-                        "the curve has no sideways direction",
-                    )
-                    .expected("a tangent that is not along the normal of the plane")
-                    .found(format!("none at t = {t}"))
-                    .related(key, "is the curve")
-                    .in_field(Self::CURVE));
-                };
-                if progress < worst.0 {
-                    worst = (progress, t);
-                }
-            }
-        }
-        if worst.0 <= 0.0 {
-            let (d, t) = (distance.re(), worst.1);
-            let radius = d.abs() / (1.0 - worst.0);
-            return Err(CallError::new("cusp", "the offset exceeds the radius of curvature")
-                .expected(format!("a distance less than {radius} on that side"))
-                .found(format!("{} where t = {t}", d.abs()))
-                .help("offset by less, or to the other side, or only a part of the curve")
-                .related(key, "is bent too much there")
-                .in_field(Self::DISTANCE));
-        }
+        let nesting = curve.depth;
+        let shape = ParallelCurve { curve, distance, normal: plane.normal };
+        shape.check()?;
         Ok(Value::Curve(CurveRef::new(shape, nesting)))
     }
 }
@@ -75,8 +49,6 @@ struct ParallelCurve<T: Real> {
     curve: CurveRef<T>,
     distance: T,
     normal: Vec3<T>,
-    /// The breaks of the curve, with 0 and 1.
-    ends: Vec<f64>,
 }
 
 impl<T: Real> ParallelCurve<T> {
@@ -90,81 +62,111 @@ impl<T: Real> ParallelCurve<T> {
         }
     }
 
-    /// The unit vector sideways of a direction, and its derivative along the rate of that.
-    fn sideways(&self, d: Vec3<T>, rate: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
-        let (a, b) = (d.cross(self.normal), rate.cross(self.normal));
-        let size = a.norm();
-        let e = a / size;
-        (e, (b - e * e.dot(b)) / size)
+    /// Refuses a curve without a tangent somewhere, and a distance beyond a radius of curvature.
+    fn check(&self) -> Result<(), CallError> {
+        let mut ends = vec![0.0];
+        ends.extend(self.curve.breaks());
+        ends.push(1.0);
+        let mut places = Vec::with_capacity(ends.len() * (CUSP_TRIALS + 1));
+        for span in ends.windows(2) {
+            let at = |k: usize| span[0] + (span[1] - span[0]) * k as f64 / CUSP_TRIALS as f64;
+            // Breaks are looked at from both sides, both ends from inside.
+            let inside = |t: f64| match t {
+                0.0 | 1.0 => t,
+                _ => t.clamp(span[0].next_up(), span[1].next_down()),
+            };
+            places.extend((0..=CUSP_TRIALS).map(at).map(inside));
+        }
+        let speed = |t: &f64| self.curve.jet(T::from(*t), Order::First)[1].re().norm();
+        let fastest = places.iter().map(speed).fold(0.0, f64::max);
+        if let Some(t) = standstill(&self.curve, &ends, NO_TANGENT * fastest) {
+            return Err(self.no_tangent(t));
+        }
+        // How fast the offset moves on, in units of the curve's own speed: at most 0 at a cusp.
+        let mut worst = (f64::INFINITY, 0.0);
+        for t in places {
+            let progress = self.progress(t).ok_or_else(|| self.no_tangent(t))?;
+            if progress < worst.0 {
+                worst = (progress, t);
+            }
+        }
+        if worst.0 > 0.0 {
+            return Ok(());
+        }
+        let (d, t) = (self.distance.re(), worst.1);
+        let radius = d.abs() / (1.0 - worst.0);
+        Err(CallError::new("cusp", "the offset exceeds the radius of curvature")
+            .expected(format!("a distance less than {} on that side", digits(radius)))
+            .found(format!("{} where t = {}", d.abs(), parameter(t)))
+            .help("offset by less, or to the other side, or only a part of the curve")
+            .related(self.curve.key, "is bent too much there")
+            .in_field(OffsetCurve::<T>::DISTANCE))
     }
 
-    /// The component of the offset's velocity along the curve's, in units of the latter.
+    fn no_tangent(&self, t: f64) -> CallError {
+        CallError::new("no-tangent", "the curve has no sideways direction")
+            .expected("a tangent that is not along the normal of the plane")
+            .found(format!("none at t = {}", parameter(t)))
+            .related(self.curve.key, "is the curve")
+            .in_field(OffsetCurve::<T>::CURVE)
+    }
+
+    /// A vector along the curve at a parameter that may be a jet.
+    fn direction<J: Jet<T>>(curve: &dyn Curve<T>, t: J) -> Vec3<J> {
+        direction(|t, order| curve.jet(t, order), || curve.joints(), t)
+    }
+
+    /// The component of the offset's velocity along the curve's, in units of the latter; where the curve stands still, a
+    /// number of the same sign as just inside.
     fn progress(&self, t: f64) -> Option<f64> {
-        let [_, d, dd] = self.curve.jet(T::from(t), Order::Second);
-        let across = d.re().cross(self.normal.re()).norm();
-        let speed = d.re().norm();
+        let along = Self::direction(&*self.curve, Uni1::parameter(T::from(t)));
+        let (d, rate) = (along.map(|a| a.f.re()), along.map(|a| a.t.re()));
+        let normal = self.normal.re();
+        let across = d.cross(normal);
+        let (size, square) = (across.norm(), d.norm_sq());
         // Written so that NaN is refused.
-        if !(across > 1e-9 * speed && speed > 0.0) {
+        if !(size > NO_TANGENT * square.sqrt() && square > 0.0) {
             return None;
         }
-        let (_, turning) = self.sideways(d, dd);
-        Some(((d + turning * self.distance).dot(d) / d.norm_sq()).re())
-    }
-
-    /// The third derivative of the curve at `t`, from second derivatives beside it in its span:
-    /// curves give two derivatives only, and this one counts in the offset's second alone. The
-    /// rule is exact for polynomials of degree 6.
-    fn third(&self, curve: &dyn Curve<T>, t: T) -> Vec3<T> {
-        let k = self.ends[1..self.ends.len() - 1].partition_point(|end| *end <= t.re());
-        let (low, high) = (self.ends[k], self.ends[k + 1]);
-        let h = (high - low).min(1.0) * 2e-3;
-        // Slopes at `t` of the polynomial through five values; near an end all on one side.
-        let near_low = t.re() - low < 2.0 * h;
-        let near_high = high - t.re() < 2.0 * h;
-        let (steps, weights): ([f64; 5], [f64; 5]) = if near_low {
-            ([0.0, 1.0, 2.0, 3.0, 4.0], [-25.0, 48.0, -36.0, 16.0, -3.0])
-        } else if near_high {
-            ([0.0, -1.0, -2.0, -3.0, -4.0], [25.0, -48.0, 36.0, -16.0, 3.0])
-        } else {
-            ([-2.0, -1.0, 0.0, 1.0, 2.0], [1.0, -8.0, 0.0, 8.0, -1.0])
-        };
-        let mut sum = Vec3::zero();
-        for (step, weight) in steps.into_iter().zip(weights).filter(|(_, w)| *w != 0.0) {
-            let second = curve.jet(t + step * h, Order::Second)[2];
-            sum += second * T::from(weight / (12.0 * h));
+        let e = across / size;
+        let b = rate.cross(normal);
+        let turning = (b - e * e.dot(b)) / size * self.distance.re();
+        let velocity = self.curve.jet(T::from(t), Order::First)[1].re();
+        if velocity.norm_sq() > 0.0 {
+            return Some((velocity + turning).dot(velocity) / velocity.norm_sq());
         }
-        sum
+        // Curvature is infinite there unless the curve is straight.
+        let gain = turning.dot(d);
+        Some(if gain.abs() <= NO_TANGENT * square { 1.0 } else { gain / square })
     }
 }
 
-impl<T: Real> Curve<T> for ParallelCurve<T> {
-    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        let of_curve = if order == Order::Zero { Order::First } else { Order::Second };
+impl<T: Real> CurveFormula for ParallelCurve<T> {
+    type Scalar = T;
+
+    fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
         let (curve, distance) = self.base();
-        let [p, d, dd] = curve.jet(t, of_curve);
-        let (e, turning) = self.sideways(d, dd);
-        let mut jet = [p + e * distance, Vec3::zero(), Vec3::zero()];
-        if order >= Order::First {
-            jet[1] = d + turning * distance;
-        }
-        if order == Order::Second {
-            // With a = T x n and e = a / |a|: e'' from a'' by the quotient rule.
-            let (b, c) = (dd.cross(self.normal), self.third(curve, t).cross(self.normal));
-            let size = d.cross(self.normal).norm();
-            let rate = e.dot(b);
-            let bend = turning.dot(b) + e.dot(c);
-            let second = (c - turning * rate - e * bend - turning * rate) / size;
-            jet[2] = dd + second * distance;
-        }
-        jet
+        let sideways = Self::direction(curve, t).cross(self.normal.map(J::fixed));
+        curve.at(t) + sideways * (J::fixed(distance) / sideways.norm())
     }
 
+    /// Its derivatives take one of the curve more.
     fn breaks(&self) -> Vec<f64> {
-        self.ends[1..self.ends.len() - 1].to_vec()
+        self.curve.joints()
+    }
+
+    fn joints(&self) -> Vec<f64> {
+        self.curve.joints()
+    }
+
+    fn kinks(&self) -> Vec<f64> {
+        self.curve.breaks()
     }
 
     fn parallel_to(&self) -> Option<(&dyn Curve<T>, Vec3<T>, T)> {
         let (curve, distance) = self.base();
         Some((curve, self.normal, distance))
     }
+
+    moldloft_num::curve_facts!(open, not_rational);
 }

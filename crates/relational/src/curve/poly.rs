@@ -266,4 +266,11 @@ impl<T: Real> Curve<T> for CompositeCurve<T> {
         let (curve, s, rate) = self.local(t);
         Some(sped(curve.on_surface(s, order)?, rate))
     }
+
+    fn joints(&self) -> Vec<f64> {
+        self.with_joints(|curve| curve.joints())
+    }
+
+    moldloft_num::curve_facts!(open, not_rational);
+    moldloft_num::curve_one_by_one!(T);
 }

@@ -71,18 +71,26 @@ impl<T: Real> Curve<T> for Moved<T> {
             dd,
         ]
     }
-
-    fn breaks(&self) -> Vec<f64> {
-        self.curve.breaks()
-    }
-
-    fn joints(&self) -> Vec<f64> {
-        self.curve.joints()
-    }
-
     fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         self.curve.law()
     }
+
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        if self.path {
+            for (x, &t) in out.iter_mut().zip(ts) {
+                *x = self.jet(T::from(t), Order::Zero)[0];
+            }
+            return;
+        }
+        self.curve.grid(ts, out);
+        let [from, to] = [0, 1].map(|k| self.ends[k] - self.old[k]);
+        for (x, &t) in out.iter_mut().zip(ts) {
+            let t = T::from(t);
+            *x = *x + from * (-t + 1.0) + to * t;
+        }
+    }
+
+    moldloft_num::curve_facts!(breaks of [self.curve], open, not_rational);
 }
 
 /// A curve copied from one place to another, scaled along the axes: C(t) = to + (sx, sy, sz)

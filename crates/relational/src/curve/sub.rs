@@ -277,4 +277,11 @@ impl<T: Real> Curve<T> for GovernedCurve<T> {
         let law = self.law.at(t, order);
         Some(self.chained(law, self.curve.on_surface(law[0], order)?))
     }
+
+    fn joints(&self) -> Vec<f64> {
+        self.passed(&self.curve.joints())
+    }
+
+    moldloft_num::curve_facts!(open, not_rational);
+    moldloft_num::curve_one_by_one!(T);
 }

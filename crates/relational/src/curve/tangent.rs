@@ -1,6 +1,6 @@
 //! Curves beside another one, along its tangents.
 
-use crate::third_derivatives::tangent;
+use crate::third_derivatives::{standstill, tangent};
 use moldloft_num::{Curve, CurveFormula, Jet, Order, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
 
@@ -45,6 +45,8 @@ impl<T: Real> Build<T> for TanCurve<T> {
         let speeds: Vec<f64> = places.iter().map(|&t| velocity(t).norm()).collect();
         let most = speeds.iter().copied().fold(0.0, f64::max);
         let still = speeds.iter().position(|s| s.is_nan() || *s <= TOLERANCE * most);
+        let least = TOLERANCE * most;
+        let still = still.map(|k| places[k]).or_else(|| standstill(&curve, &ends, least));
         let fault = |message: &str, t: f64, help: &str| {
             CallError::new("no-tangent", message)
                 .expected("a curve with one tangent everywhere")
@@ -53,9 +55,9 @@ impl<T: Real> Build<T> for TanCurve<T> {
                 .related(curve.key, "is the curve")
                 .in_field(Self::CURVE)
         };
-        if let Some(k) = still {
+        if let Some(t) = still {
             let help = "leave the place out: take a part of the curve";
-            return Err(fault("the curve has a zero tangent", places[k], help));
+            return Err(fault("the curve has a zero tangent", t, help));
         }
         for &t in &ends[1..ends.len() - 1] {
             let [a, b] = [velocity(t.next_down()), velocity(t.next_up())];
@@ -79,12 +81,23 @@ impl<T: Real> CurveFormula for AlongTangents<T> {
     type Scalar = T;
 
     fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
-        let direction = tangent(|t, order| self.curve.jet(t, order), || self.curve.breaks(), t);
+        let direction = tangent(|t, order| self.curve.jet(t, order), || self.curve.joints(), t);
         let size = direction.norm();
         self.curve.at(t) + direction * (J::fixed(self.distance) / size)
     }
 
+    /// Its derivatives take one of the curve more.
     fn breaks(&self) -> Vec<f64> {
+        self.curve.joints()
+    }
+
+    fn joints(&self) -> Vec<f64> {
+        self.curve.joints()
+    }
+
+    fn kinks(&self) -> Vec<f64> {
         self.curve.breaks()
     }
+
+    moldloft_num::curve_facts!(open, not_rational);
 }

@@ -1,5 +1,7 @@
 //! Reparametrizations from others: by arc length, copied, inverted.
 
+use crate::faults::parameter;
+use crate::third_derivatives::standstill;
 use moldloft_num::{
     Composed, Order, Real, Reparametrization, ReparametrizationJet, inv_reparametrization_in,
 };
@@ -14,7 +16,7 @@ const NO_SLOPE: f64 = 1e-9;
 /// all of it, so that equal steps of t are equal lengths.
 ///
 /// It is meant as the relabel of a curve of the same shape: of a copy, a neighbour, or a curve on the
-/// same points. The curve must move at both ends.
+/// same points. The curve must move everywhere.
 #[derive(Kind)]
 #[kind(
     class = Relabel,
@@ -46,10 +48,19 @@ impl<T: Real> Build<T> for ArcLenRelabel<T> {
                 .help("take the curve without a relabel that is dense at its ends")
                 .in_field(Self::CURVE));
         }
-        let mut places = vec![0.0];
-        let mut ends = curve.breaks();
+        let mut ends = vec![0.0];
+        ends.extend(curve.breaks());
         ends.push(1.0);
-        for end in ends {
+        if let Some(t) = standstill(&curve, &ends, NO_SLOPE * rough) {
+            return Err(CallError::new("zero-slope", "the curve stands still inside")
+                .expected("a curve that moves everywhere")
+                .found(format!("no speed at t = {}", parameter(t)))
+                .related(curve.key, "is the curve")
+                .help("leave the place out: take a part of the curve")
+                .in_field(Self::CURVE));
+        }
+        let mut places = vec![0.0];
+        for &end in &ends[1..] {
             let begin = places[places.len() - 1];
             places.extend((1..PLACES).map(|k| begin + (end - begin) * k as f64 / PLACES as f64));
             places.push(end);

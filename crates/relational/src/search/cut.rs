@@ -404,4 +404,6 @@ impl<T: Real> Curve<T> for Cut<T> {
     fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
         Some(self.place(t, order))
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }

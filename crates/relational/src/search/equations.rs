@@ -30,6 +30,10 @@ impl<T: Real> Field<f64> for PlainField<'_, T> {
         let (value, gradient) = self.0.value_and_gradient(Vec3::lifted(p));
         (value.re(), gradient.re())
     }
+    fn value(&self, p: Vec3) -> f64 {
+        self.0.value(Vec3::lifted(p)).re()
+    }
+
     fn second_order(&self, p: Vec3) -> (f64, Vec3, [Vec3; 3]) {
         let (value, gradient, second) = self.0.second_order(Vec3::lifted(p));
         (value.re(), gradient.re(), second.map(|row| row.re()))

@@ -508,4 +508,6 @@ impl<T: Real> CurveFormula for GeodesicPath<T> {
         }
         Vec3::new(u, v, J::zero())
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
 }

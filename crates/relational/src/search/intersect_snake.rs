@@ -124,6 +124,8 @@ impl<T: Real> Curve<T> for InSpace<T> {
     fn trace(&self) -> Trace<T> {
         self.0.trace()
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }
 
 /// The cut of a surface, from the arguments of both kinds.

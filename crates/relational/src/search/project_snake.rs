@@ -146,6 +146,9 @@ impl<T: Real> Curve<T> for OntoField<T> {
     fn breaks(&self) -> Vec<f64> {
         self.curve.breaks()
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
+    moldloft_num::curve_one_by_one!(T);
 }
 
 struct OntoMirror<T: Real> {
@@ -163,9 +166,14 @@ impl<T: Real> Curve<T> for OntoMirror<T> {
         self.curve.key
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        self.curve.breaks()
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        self.curve.grid(ts, out);
+        for p in out {
+            *p = self.mirror.foot(*p);
+        }
     }
+
+    moldloft_num::curve_facts!(breaks of [self.curve], closed of [self.curve], rational of [self.curve]);
 }
 
 /// The keys of magnets that stand at the ends of a path.
@@ -514,4 +522,6 @@ impl<T: Real> Curve<T> for Projected<T> {
     fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
         Some(self.path.place(t, order))
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }

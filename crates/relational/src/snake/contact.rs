@@ -65,13 +65,12 @@ impl<T: Real> Curve<T> for ContactCurve<T> {
     fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
         self.curve.grid(ts, out);
     }
-    fn breaks(&self) -> Vec<f64> {
-        self.curve.breaks()
-    }
     fn trace(&self) -> Trace<T> {
         self.trace.clone()
     }
     fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
         self.curve.on_surface(t, order)
     }
+
+    moldloft_num::curve_facts!(breaks of [self.curve], closed of [self.curve], rational of [self.curve]);
 }

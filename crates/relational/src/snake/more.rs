@@ -274,11 +274,6 @@ impl<T: Real> Curve<T> for Path<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         self.0.on_surface(t, order).unwrap_or_default()
     }
-
-    fn breaks(&self) -> Vec<f64> {
-        self.0.breaks()
-    }
-
     fn trace(&self) -> Trace<T> {
         Trace::own()
     }
@@ -286,4 +281,7 @@ impl<T: Real> Curve<T> for Path<T> {
     fn law(&self) -> Option<std::sync::Arc<dyn Reparametrization<T>>> {
         self.0.law()
     }
+
+    moldloft_num::curve_facts!(breaks of [self.0], open, not_rational);
+    moldloft_num::curve_one_by_one!(T);
 }

@@ -65,4 +65,7 @@ impl<T: Real, P: Curve<T>> Curve<T> for OnSurface<T, P> {
     fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
         Some(self.path.jet(t, order))
     }
+
+    moldloft_num::curve_facts!(joints_at_breaks, open, not_rational);
+    moldloft_num::curve_one_by_one!(T);
 }

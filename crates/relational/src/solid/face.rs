@@ -117,4 +117,7 @@ impl<T: Real> Surface<T> for OfSolid<T> {
     fn face_of(&self) -> Option<(Key, u8)> {
         Some((self.solid.key?, self.face as u8))
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
+    moldloft_num::surface_one_by_one!(T: line, scattered);
 }

@@ -160,4 +160,6 @@ impl<T: Real> SurfaceFormula for Bump<T> {
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
         if k == 0 { self.patch.edge_made_of(0) } else { Vec::new() }
     }
+
+    moldloft_num::surface_facts!(joints_at_breaks, kinks_at_breaks, open, not_rational);
 }

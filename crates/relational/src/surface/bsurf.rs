@@ -3,7 +3,7 @@
 use super::free_knots::{FreeKnots, FreeNet};
 use crate::faults;
 use moldloft_num::trace::{Edges, Key};
-use moldloft_num::{Order, Rational, Real, SurfJet, Surface, Vec3};
+use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
     Build, CallError, Context, FieldId, Kind, Point, Scalar, SurfaceRef, Value,
 };
@@ -180,19 +180,6 @@ impl<T: Real> Surface<T> for KeyedBSpline<T> {
     fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
         self.surface.scattered(uv, out);
     }
-
-    fn breaks(&self) -> [Vec<f64>; 2] {
-        self.surface.breaks()
-    }
-
-    fn joints(&self) -> [Vec<f64>; 2] {
-        self.surface.joints()
-    }
-
-    fn rational(&self) -> Rational<2> {
-        self.surface.rational()
-    }
-
     fn edges(&self) -> Edges<T> {
         Edges { corners: self.corners, ..Edges::own() }
     }
@@ -200,6 +187,12 @@ impl<T: Real> Surface<T> for KeyedBSpline<T> {
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
         self.rows[k].to_vec()
     }
+
+    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>> {
+        self.surface.line(u, vs, order)
+    }
+
+    moldloft_num::surface_facts!(breaks of [self.surface], closed of [self.surface], rational of [self.surface]);
 }
 
 /// The fields of a net.

@@ -440,6 +440,9 @@ impl<T: Real> Surface<T> for Loft<T> {
     fn edges(&self) -> Edges<T> {
         self.masters.edges()
     }
+
+    moldloft_num::surface_facts!(joints_at_breaks, breaks_along_lines, open, not_rational);
+    moldloft_num::surface_one_by_one!(T: scattered);
 }
 
 /// A cubic in s = v - base, with plain `base`: its knot's derivatives are in the coefficients.

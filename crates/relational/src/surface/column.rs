@@ -34,24 +34,38 @@ fn jet_of<S: Real>(curve: Option<&impl Curve<S>>, v: S, order: Order) -> CurveJe
     }
 }
 
+/// First derivatives, from a curve over numbers with a derivative by u.
+fn first<T: Real>([p, d, _]: CurveJet<Uni1<T>>) -> SurfJet<T> {
+    SurfJet { p: p.map(|a| a.f), u: p.map(|a| a.t), v: d.map(|a| a.f), ..SurfJet::default() }
+}
+
+/// First and second derivatives, likewise.
+fn second<T: Real>([p, d, dd]: CurveJet<Uni2<T>>) -> SurfJet<T> {
+    SurfJet {
+        p: p.map(|a| a.f),
+        u: p.map(|a| a.t),
+        v: d.map(|a| a.f),
+        uu: p.map(|a| a.tt),
+        uv: d.map(|a| a.t),
+        vv: dd.map(|a| a.f),
+    }
+}
+
 impl<C: Column> Surface<C::Scalar> for Columns<C> {
     fn jet(&self, u: C::Scalar, v: C::Scalar, order: Order) -> SurfJet<C::Scalar> {
-        let mut jet = SurfJet::default();
         match order {
-            Order::Zero => jet.p = jet_of(self.0.across(u).as_ref(), v, order)[0],
+            Order::Zero => {
+                SurfJet { p: jet_of(self.0.across(u).as_ref(), v, order)[0], ..SurfJet::default() }
+            }
             Order::First => {
                 let curve: Option<Across<C, Uni1<C::Scalar>>> = self.0.across(Uni1::parameter(u));
-                let [p, d, _] = jet_of(curve.as_ref(), Uni1::fixed(v), order);
-                (jet.p, jet.u, jet.v) = (p.map(|a| a.f), p.map(|a| a.t), d.map(|a| a.f));
+                first(jet_of(curve.as_ref(), Uni1::fixed(v), order))
             }
             Order::Second => {
                 let curve: Option<Across<C, Uni2<C::Scalar>>> = self.0.across(Uni2::parameter(u));
-                let [p, d, dd] = jet_of(curve.as_ref(), Uni2::fixed(v), order);
-                (jet.p, jet.u, jet.v) = (p.map(|a| a.f), p.map(|a| a.t), d.map(|a| a.f));
-                (jet.uu, jet.uv, jet.vv) = (p.map(|a| a.tt), d.map(|a| a.t), dd.map(|a| a.f));
+                second(jet_of(curve.as_ref(), Uni2::fixed(v), order))
             }
         }
-        jet
     }
 
     fn grid(
@@ -93,6 +107,30 @@ impl<C: Column> Surface<C::Scalar> for Columns<C> {
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
         self.0.edge_made_of(k)
     }
+
+    /// The curve at `u` is made once.
+    fn line(&self, u: C::Scalar, vs: &[f64], order: Order) -> Vec<SurfJet<C::Scalar>> {
+        let vs = vs.iter().map(|&v| C::Scalar::from(v));
+        match order {
+            Order::Zero => {
+                let curve: Option<Across<C, C::Scalar>> = self.0.across(u);
+                let at =
+                    |v| SurfJet { p: jet_of(curve.as_ref(), v, order)[0], ..SurfJet::default() };
+                vs.map(at).collect()
+            }
+            Order::First => {
+                let curve: Option<Across<C, Uni1<C::Scalar>>> = self.0.across(Uni1::parameter(u));
+                vs.map(|v| first(jet_of(curve.as_ref(), Uni1::fixed(v), order))).collect()
+            }
+            Order::Second => {
+                let curve: Option<Across<C, Uni2<C::Scalar>>> = self.0.across(Uni2::parameter(u));
+                vs.map(|v| second(jet_of(curve.as_ref(), Uni2::fixed(v), order))).collect()
+            }
+        }
+    }
+
+    moldloft_num::surface_facts!(broken, open, not_rational);
+    moldloft_num::surface_one_by_one!(C::Scalar: scattered);
 }
 
 /// A Bézier curve; of degree 5 at most without allocation.
@@ -121,4 +159,7 @@ impl<S: Real> Curve<S> for Bezier<S> {
         jet[0] = row[0];
         jet
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
+    moldloft_num::curve_one_by_one!(S);
 }

@@ -176,4 +176,6 @@ impl<T: Real> SurfaceFormula for CoonsPatch<T> {
     fn edges(&self) -> Edges<T> {
         self.boundary.edges()
     }
+
+    moldloft_num::surface_facts!(kinks_at_breaks, breaks_along_lines, open, not_rational);
 }

@@ -61,6 +61,7 @@ impl<T: Real> Build<T> for ExpandedSurf<T> {
             }
             plate.stations.push(at);
         }
+        plate.check_stations()?;
         let surface = plate.surface.clone();
         let shape = Columns(plate);
         let edges = inherited::edges(&*surface, &shape);
@@ -127,6 +128,22 @@ struct Plate<T: Real> {
 }
 
 impl<T: Real> Plate<T> {
+    /// Refuses a surface whose rulings have no length, or no tangent plane, somewhere.
+    fn check_stations(&self) -> Result<(), CallError> {
+        let laid = |at: &&RulingStation<T>| {
+            let numbers = [at.angle, at.place[0], at.place[1], self.turning(T::from(at.u))];
+            numbers.iter().all(|x| x.re().is_finite())
+        };
+        let Some(at) = self.stations.iter().find(|at| !laid(at)) else { return Ok(()) };
+        let message = format!("the surface has no tangent plane along the line u = {}", at.u);
+        Err(CallError::new("no-normal", message)
+            .expected("lines u = const with a length and one tangent plane along each")
+            .found("a line without a length, or at which the surface stands still")
+            .help("expand a part of the surface that leaves this line out")
+            .related(self.surface.key, "is singular there")
+            .in_field(ExpandedSurf::<T>::SURFACE))
+    }
+
     /// S_u and S_v in the middle of the ruling at `u`.
     fn middle<J: Jet<T>>(&self, u: J) -> [Vec3<J>; 2] {
         tangents(&*self.surface, u, J::from(0.5))

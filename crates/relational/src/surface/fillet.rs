@@ -196,9 +196,19 @@ impl<T: Real> Fillet<T> {
                         .in_field([FilletSurf::<T>::SNAKE1, FilletSurf::<T>::SNAKE2][k]));
                 }
             }
-            // The curve itself must not go back either: its control polygon is short enough.
             let points: Vec<Vec3<f64>> =
                 self.column(T::from(u)).iter().map(|p: &Vec3<T>| p.re()).collect();
+            if !points.iter().all(|p| p.is_finite()) {
+                // Only the quintic takes curvatures.
+                let k = usize::from(points[..3].iter().all(|p| p.is_finite()));
+                let message = format!("no curvature at u = {u} of snake {}", k + 1);
+                return Err(CallError::new("no-curvature", message)
+                    .expected("surfaces with a curvature along both snakes")
+                    .found("a pole, or a line of no length, there")
+                    .help("use `continuity = 1`, or move the snake off the pole")
+                    .in_field([FilletSurf::<T>::SNAKE1, FilletSurf::<T>::SNAKE2][k]));
+            }
+            // The curve itself must not go back either: its control polygon is short enough.
             for j in 0..=8 {
                 let v = f64::from(j) / 8.0;
                 let speed = slope(&points, v).dot(chord) / length;

@@ -116,4 +116,6 @@ impl<T: Real> SurfaceFormula for FreeNet<T> {
         };
         Rational { weight: Some(Box::new(weight)), ..Rational::none() }
     }
+
+    moldloft_num::surface_facts!(broken, open);
 }

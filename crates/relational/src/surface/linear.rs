@@ -167,4 +167,7 @@ impl<T: Real> Surface<T> for LinearLoft<T> {
     fn edges(&self) -> Edges<T> {
         if self.knots.degree() == 1 { self.masters.straight_edges() } else { self.masters.edges() }
     }
+
+    moldloft_num::surface_facts!(breaks_along_lines, open);
+    moldloft_num::surface_one_by_one!(T: line, scattered);
 }

@@ -1,7 +1,7 @@
 //! Images of surfaces, point by point, under maps of space.
 
 use moldloft_num::trace::Key;
-use moldloft_num::{Axis, Order, Rational, Real, SurfJet, Surface, Vec3};
+use moldloft_num::{Axis, Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
     Build, CallError, Context, Kind, MirrorArgument, Point, SurfaceRef, Value,
 };
@@ -37,6 +37,18 @@ impl<T: Real> AffineTransform<T> {
         }
     }
 
+    fn jet(&self, jet: SurfJet<T>) -> SurfJet<T> {
+        let turned = |d| self.direction(d);
+        SurfJet {
+            p: self.point(jet.p),
+            u: turned(jet.u),
+            v: turned(jet.v),
+            uu: turned(jet.uu),
+            uv: turned(jet.uv),
+            vv: turned(jet.vv),
+        }
+    }
+
     /// The image of a unit normal: A n x A m = det(A) A^-T (n x m).
     fn normal(&self, n: Vec3<T>) -> Vec3<T> {
         match self {
@@ -69,16 +81,7 @@ struct Image<T: Real> {
 
 impl<T: Real> Surface<T> for Image<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
-        let jet = self.surface.jet(u, v, order);
-        let turned = |d| self.map.direction(d);
-        SurfJet {
-            p: self.map.point(jet.p),
-            u: turned(jet.u),
-            v: turned(jet.v),
-            uu: turned(jet.uu),
-            uv: turned(jet.uv),
-            vv: turned(jet.vv),
-        }
+        self.map.jet(self.surface.jet(u, v, order))
     }
 
     fn grid(
@@ -96,26 +99,22 @@ impl<T: Real> Surface<T> for Image<T> {
             *n = self.map.normal(*n);
         }
     }
-
-    fn breaks(&self) -> [Vec<f64>; 2] {
-        self.surface.breaks()
-    }
-
-    fn joints(&self) -> [Vec<f64>; 2] {
-        self.surface.joints()
-    }
-
-    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
-        self.surface.crossings(path, spans)
-    }
-
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, self.map.reverses()))
     }
 
-    fn rational(&self) -> Rational<2> {
-        self.surface.rational()
+    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>> {
+        self.surface.line(u, vs, order).into_iter().map(|jet| self.map.jet(jet)).collect()
     }
+
+    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
+        self.surface.scattered(uv, out);
+        for p in out {
+            *p = self.map.point(*p);
+        }
+    }
+
+    moldloft_num::surface_facts!(breaks of [self.surface], closed of [self.surface], rational of [self.surface]);
 }
 
 /// The mirror image of a surface in a plane, line or point, point by point.
@@ -259,9 +258,8 @@ struct ProjectedSurface<T: Real> {
     mirror: MirrorArgument<T>,
 }
 
-impl<T: Real> Surface<T> for ProjectedSurface<T> {
-    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
-        let jet = self.surface.jet(u, v, order);
+impl<T: Real> ProjectedSurface<T> {
+    fn projected(&self, jet: SurfJet<T>) -> SurfJet<T> {
         let flat = |d| self.mirror.direction(d, true);
         SurfJet {
             p: self.mirror.foot(jet.p),
@@ -272,26 +270,52 @@ impl<T: Real> Surface<T> for ProjectedSurface<T> {
             vv: flat(jet.vv),
         }
     }
+}
 
-    fn breaks(&self) -> [Vec<f64>; 2] {
-        self.surface.breaks()
+impl<T: Real> Surface<T> for ProjectedSurface<T> {
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+        self.projected(self.surface.jet(u, v, order))
     }
-
-    fn joints(&self) -> [Vec<f64>; 2] {
-        self.surface.joints()
-    }
-
-    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
-        self.surface.crossings(path, spans)
-    }
-
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, false))
     }
 
-    fn rational(&self) -> Rational<2> {
-        self.surface.rational()
+    fn grid(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        normals: Option<&mut [Vec3<T>]>,
+    ) {
+        let Some(normals) = normals else {
+            self.surface.grid(us, vs, points, None);
+            for p in points {
+                *p = self.mirror.foot(*p);
+            }
+            return;
+        };
+        // A normal of the image takes both tangents.
+        let out = points.chunks_mut(vs.len().max(1)).zip(normals.chunks_mut(vs.len().max(1)));
+        for ((points, normals), &u) in out.zip(us) {
+            let line = self.line(T::from(u), vs, Order::First);
+            for ((p, n), jet) in points.iter_mut().zip(normals).zip(line) {
+                (*p, *n) = (jet.p, jet.normal());
+            }
+        }
     }
+
+    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>> {
+        self.surface.line(u, vs, order).into_iter().map(|jet| self.projected(jet)).collect()
+    }
+
+    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
+        self.surface.scattered(uv, out);
+        for p in out {
+            *p = self.mirror.foot(*p);
+        }
+    }
+
+    moldloft_num::surface_facts!(breaks of [self.surface], closed of [self.surface], rational of [self.surface]);
 }
 
 /// A surface whose four corners are moved to given points: S plus the bilinear blend of the corners'
@@ -343,10 +367,16 @@ struct ShiftedSurface<T: Real> {
 }
 
 impl<T: Real> ShiftedSurface<T> {
+    fn shift(&self, u: T, v: T) -> Vec3<T> {
+        let [a, b, c, d] = self.shifts;
+        let (p, q) = (-u + 1.0, -v + 1.0);
+        (a * p + b * u) * q + (d * p + c * u) * v
+    }
+
     fn added(&self, mut jet: SurfJet<T>, u: T, v: T, order: Order) -> SurfJet<T> {
         let [a, b, c, d] = self.shifts;
         let (p, q) = (-u + 1.0, -v + 1.0);
-        jet.p += (a * p + b * u) * q + (d * p + c * u) * v;
+        jet.p += self.shift(u, v);
         if order >= Order::First {
             jet.u += (b - a) * q + (c - d) * v;
             jet.v += (d - a) * p + (c - b) * u;
@@ -362,19 +392,6 @@ impl<T: Real> Surface<T> for ShiftedSurface<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
         self.added(self.surface.jet(u, v, order), u, v, order)
     }
-
-    fn breaks(&self) -> [Vec<f64>; 2] {
-        self.surface.breaks()
-    }
-
-    fn joints(&self) -> [Vec<f64>; 2] {
-        self.surface.joints()
-    }
-
-    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
-        self.surface.crossings(path, spans)
-    }
-
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
         let [a, b] = moldloft_num::trace::EDGE_CORNERS[k].map(|c| self.corners[c]);
         let edge = self.surface.key.and_then(|s| s.edge(k));
@@ -384,4 +401,44 @@ impl<T: Real> Surface<T> for ShiftedSurface<T> {
     fn edges(&self) -> moldloft_num::trace::Edges<T> {
         moldloft_num::trace::Edges { corners: self.corners, ..moldloft_num::trace::Edges::own() }
     }
+
+    fn grid(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        normals: Option<&mut [Vec3<T>]>,
+    ) {
+        let Some(normals) = normals else {
+            self.surface.grid(us, vs, points, None);
+            for (row, &u) in points.chunks_mut(vs.len().max(1)).zip(us) {
+                for (p, &v) in row.iter_mut().zip(vs) {
+                    *p += self.shift(T::from(u), T::from(v));
+                }
+            }
+            return;
+        };
+        // A normal of the image takes both tangents.
+        let out = points.chunks_mut(vs.len().max(1)).zip(normals.chunks_mut(vs.len().max(1)));
+        for ((points, normals), &u) in out.zip(us) {
+            let line = self.line(T::from(u), vs, Order::First);
+            for ((p, n), jet) in points.iter_mut().zip(normals).zip(line) {
+                (*p, *n) = (jet.p, jet.normal());
+            }
+        }
+    }
+
+    fn line(&self, u: T, vs: &[f64], order: Order) -> Vec<SurfJet<T>> {
+        let line = self.surface.line(u, vs, order).into_iter().zip(vs);
+        line.map(|(jet, &v)| self.added(jet, u, T::from(v), order)).collect()
+    }
+
+    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
+        self.surface.scattered(uv, out);
+        for (p, &[u, v]) in out.iter_mut().zip(uv) {
+            *p += self.shift(T::from(u), T::from(v));
+        }
+    }
+
+    moldloft_num::surface_facts!(breaks of [self.surface], open, not_rational);
 }

@@ -5,7 +5,7 @@ use super::ribbon::unit;
 use crate::faults::{digits, parameter};
 use crate::third_derivatives::{bends, tangents};
 use moldloft_num::trace::Edges;
-use moldloft_num::{Jet, Order, Real, Surface, SurfaceFormula, Vec3};
+use moldloft_num::{Jet, Order, Real, Surface, SurfaceFormula, Vec3, line_crossings};
 use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 
 /// A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with
@@ -154,15 +154,6 @@ impl<T: Real> SurfaceFormula for Parallel<T> {
     fn parallel_to(&self) -> Option<(&dyn Surface<T>, T)> {
         Some(self.base())
     }
-
-    fn breaks(&self) -> [Vec<f64>; 2] {
-        self.surface.breaks()
-    }
-
-    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
-        self.surface.crossings(path, spans)
-    }
-
     fn edges(&self) -> Edges<T> {
         self.edges.clone()
     }
@@ -171,6 +162,27 @@ impl<T: Real> SurfaceFormula for Parallel<T> {
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
         self.surface.key.and_then(|s| s.edge(k)).into_iter().collect()
     }
+
+    /// Its derivatives take one of the surface more.
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        self.surface.joints()
+    }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.surface.joints()
+    }
+
+    fn kinks(&self) -> [Vec<f64>; 2] {
+        self.surface.breaks()
+    }
+
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        let mut all = line_crossings(&self.surface.joints(), path, spans);
+        all.extend(self.surface.crossings(path, spans));
+        all
+    }
+
+    moldloft_num::surface_facts!(open, not_rational);
 }
 
 /// S + d n at parameters and a distance that may be jets.

@@ -192,6 +192,23 @@ impl<T: Real> CompositeSurface<T> {
         let width = self.ends[k + 1] - self.ends[k];
         (k, (t - self.ends[k]) / width, T::one() / width)
     }
+
+    /// Lines of the parts, and those at which they join.
+    fn with_joints(&self, of: impl Fn(&SurfaceRef<T>) -> [Vec<f64>; 2]) -> [Vec<f64>; 2] {
+        let (mut along, mut across) = (Vec::new(), Vec::new());
+        for (k, surface) in self.sides.surfaces.iter().enumerate() {
+            let (from, to) = (self.ends[k].re(), self.ends[k + 1].re());
+            let [u, v] = of(surface);
+            let (own, other) = if self.sides.by_u { (u, v) } else { (v, u) };
+            along.extend(own.into_iter().map(|b| from + (to - from) * b));
+            along.push(to);
+            across.extend(other);
+        }
+        along.pop();
+        across.sort_by(f64::total_cmp);
+        across.dedup();
+        if self.sides.by_u { [along, across] } else { [across, along] }
+    }
 }
 
 impl<T: Real> Surface<T> for CompositeSurface<T> {
@@ -208,22 +225,21 @@ impl<T: Real> Surface<T> for CompositeSurface<T> {
     }
 
     fn breaks(&self) -> [Vec<f64>; 2] {
-        let (mut along, mut across) = (Vec::new(), Vec::new());
-        for (k, surface) in self.sides.surfaces.iter().enumerate() {
-            let (from, to) = (self.ends[k].re(), self.ends[k + 1].re());
-            let [u, v] = surface.breaks();
-            let (own, other) = if self.sides.by_u { (u, v) } else { (v, u) };
-            along.extend(own.into_iter().map(|b| from + (to - from) * b));
-            along.push(to);
-            across.extend(other);
-        }
-        along.pop();
-        across.sort_by(f64::total_cmp);
-        across.dedup();
-        if self.sides.by_u { [along, across] } else { [across, along] }
+        self.with_joints(|surface| surface.breaks())
+    }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.with_joints(|surface| surface.joints())
+    }
+
+    fn kinks(&self) -> [Vec<f64>; 2] {
+        self.with_joints(|surface| surface.kinks())
     }
 
     fn edges(&self) -> Edges<T> {
         self.edges.clone()
     }
+
+    moldloft_num::surface_facts!(breaks_along_lines, open, not_rational);
+    moldloft_num::surface_one_by_one!(T: grid, line, scattered);
 }

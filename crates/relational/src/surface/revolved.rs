@@ -126,4 +126,6 @@ impl<T: Real> SurfaceFormula for Revolved<T> {
         }
         edges
     }
+
+    moldloft_num::surface_facts!(kinks_at_breaks, breaks_along_lines, open);
 }

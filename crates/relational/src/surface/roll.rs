@@ -238,6 +238,8 @@ impl<T: Real> SurfaceFormula for BallCentreSurface<'_, T> {
     fn breaks(&self) -> [Vec<f64>; 2] {
         self.ball.surfaces[self.k].breaks()
     }
+
+    moldloft_num::surface_facts!(broken, open, not_rational);
 }
 
 /// Both centres are one, in the plane across the spine.
@@ -455,4 +457,6 @@ impl<T: Real> CurveFormula for Contact<T> {
     fn breaks(&self) -> Vec<f64> {
         self.fillet.breaks()
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }

@@ -379,6 +379,13 @@ impl<T: Real> Surface<T> for SubPatch<T> {
             }
         }
     }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.merged(|curve| curve.joints())
+    }
+
+    moldloft_num::surface_facts!(open, not_rational);
+    moldloft_num::surface_one_by_one!(T: line);
 }
 
 impl<T: Real> SubPatch<T> {

@@ -419,4 +419,7 @@ impl<T: Real> Surface<T> for SweptSurface<T> {
         }
         edges
     }
+
+    moldloft_num::surface_facts!(broken, open, not_rational);
+    moldloft_num::surface_one_by_one!(T: line, scattered);
 }

@@ -251,4 +251,6 @@ impl<T: Real> SurfaceFormula for TangentPatch<T> {
     fn edges(&self) -> Edges<T> {
         self.boundary.edges()
     }
+
+    moldloft_num::surface_facts!(broken, open, not_rational);
 }

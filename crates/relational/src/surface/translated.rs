@@ -71,4 +71,6 @@ impl<T: Real> SurfaceFormula for TranSurf<T> {
         }
         edges
     }
+
+    moldloft_num::surface_facts!(kinks_at_breaks, breaks_along_lines, open);
 }

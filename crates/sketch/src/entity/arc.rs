@@ -63,4 +63,6 @@ impl<T: Real> CurveFormula for EllipticArc<T> {
     fn trace(&self) -> Trace<T> {
         Trace::Own(self.ends)
     }
+
+    moldloft_num::curve_facts!(smooth, open, not_rational);
 }

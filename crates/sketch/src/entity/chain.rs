@@ -62,4 +62,6 @@ impl<T: Real> CurveFormula for PiecewiseBezier<T> {
     fn trace(&self) -> Trace<T> {
         Trace::Own(self.ends)
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }

@@ -82,4 +82,6 @@ impl<T: Real> SurfaceFormula for Bilinear<T> {
         }
         edges
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }

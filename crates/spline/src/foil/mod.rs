@@ -271,4 +271,6 @@ impl<T: Real> CurveFormula for Profile<T> {
     fn kinks(&self) -> Vec<f64> {
         self.second_order_breaks()
     }
+
+    moldloft_num::curve_facts!(joints_at_breaks, open, not_rational);
 }

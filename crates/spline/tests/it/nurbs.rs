@@ -151,6 +151,8 @@ impl CurveFormula for Bent {
     fn breaks(&self) -> Vec<f64> {
         vec![0.5]
     }
+
+    moldloft_num::curve_facts!(broken, open, not_rational);
 }
 
 struct Wave;
@@ -160,6 +162,8 @@ impl SurfaceFormula for Wave {
     fn at<J: Jet<f64>>(&self, u: J, v: J) -> Vec3<J> {
         Vec3::new(u * 4.0, v * 2.0, (u * 3.0).sin() * (v * 2.0 + 0.3).cos() * (u * v).exp())
     }
+
+    moldloft_num::surface_facts!(smooth, open, not_rational);
 }
 
 #[test]
@@ -189,6 +193,9 @@ fn what_cannot_be_fitted_is_an_error_with_its_place() {
         fn jet(&self, t: f64, _: Order) -> [Vec3; 3] {
             [Vec3::of(t, if t < 0.37 { 0.0 } else { 1.0 }, 0.0), Vec3::zero(), Vec3::zero()]
         }
+
+        moldloft_num::curve_facts!(smooth, open, not_rational);
+        moldloft_num::curve_one_by_one!(f64);
     }
     match of_curve(&Jump, &FitOptions::within(1e-6)) {
         Err(NotFitted::Error { reached, at }) => {
@@ -201,6 +208,9 @@ fn what_cannot_be_fitted_is_an_error_with_its_place() {
         fn jet(&self, t: f64, _: Order) -> [Vec3; 3] {
             [Vec3::of(t, f64::NAN, 0.0), Vec3::zero(), Vec3::zero()]
         }
+
+        moldloft_num::curve_facts!(smooth, open, not_rational);
+        moldloft_num::curve_one_by_one!(f64);
     }
     assert_eq!(of_curve(&Nothing, &FitOptions::within(1e-6)), Err(NotFitted::NotFinite));
     let line =

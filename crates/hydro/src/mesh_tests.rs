@@ -1,13 +1,82 @@
-//! Closed forms of floating boxes, spheres and the Wigley hull, with their rates of convergence.
+//! Closed forms of floating meshes: boxes, spheres and the Wigley hull, with their rates of convergence.
 
-use super::*;
-use crate::report::fixtures::{grid, open_half_box, sphere};
-use crate::{PatchInfo, Tag, TopologyBuilder};
-use moldloft_num::{Dual, Dual4};
+use crate::{Body, Hydrostatics, Symmetry};
+use moldloft_mesh::{Mesh, PatchInfo, Tag, TopologyBuilder};
+use moldloft_num::{Dual, Dual4, Real, Vec3};
 use std::f64::consts::PI;
 
-fn floats<T: Real>(level: f64, symmetry: Symmetry) -> FloatOptions<T> {
-    FloatOptions { level: T::from(level), symmetry, density: 1.025 }
+/// The accuracy of the figures of panels that the water cuts.
+const FINE: f64 = 1e-11;
+
+fn floats<T: Real>(level: f64, symmetry: Symmetry) -> (T, Symmetry, f64) {
+    (T::from(level), symmetry, 1.025)
+}
+
+fn hydrostatics<T: Real>(
+    mesh: &Mesh<T>,
+    (level, symmetry, density): (T, Symmetry, f64),
+) -> Hydrostatics<T> {
+    crate::hydrostatics(&Body::of_mesh(mesh, FINE), level, symmetry, density)
+}
+
+/// The box 0..2 x 0..1 x 0..3 without its side y = 0; patches bottom, top, side, aft, fore.
+fn open_half_box() -> Mesh {
+    let mut b = TopologyBuilder::new();
+    b.add_vertices(8).unwrap();
+    // Vertex bits: x, y, z.
+    for (name, face) in [
+        ("bottom", [0, 2, 3, 1]),
+        ("top", [4, 5, 7, 6]),
+        ("side", [2, 6, 7, 3]),
+        ("aft", [0, 4, 6, 2]),
+        ("fore", [1, 3, 7, 5]),
+    ] {
+        b.add_faces(PatchInfo::new(name), [face]).unwrap();
+    }
+    let corner = |k: u32| {
+        let bit = |n: u32| f64::from((k >> n) & 1);
+        Vec3::of(2.0 * bit(0), bit(1), 3.0 * bit(2))
+    };
+    Mesh::new(b.build().into(), (0..8).map(corner).collect()).unwrap()
+}
+
+/// A surface over the parameter square, (nu - 1) x (nv - 1) panels, every vertex its own, but
+/// for the rows that `same` calls equal.
+fn grid<T: Real>(nu: usize, nv: usize, at: impl Fn(f64, f64) -> Vec3<T>) -> Mesh<T> {
+    let mut b = TopologyBuilder::new();
+    b.add_vertices(nu * nv).unwrap();
+    b.add_block(PatchInfo::new("grid"), nu, nv, (0..(nu * nv) as u32).collect(), false).unwrap();
+    let part = |k: usize, n: usize| k as f64 / (n - 1) as f64;
+    let positions =
+        (0..nu * nv).map(|k| at(part(k / nv, nu), part(k % nv, nv))).collect::<Vec<_>>();
+    Mesh::new(b.build().into(), positions).unwrap()
+}
+
+/// A sphere of radius `r` about `c`, `n` panels from pole to pole and `2 n` around, closed by
+/// identity.
+fn sphere<T: Real>(n: usize, r: T, c: Vec3<T>) -> Mesh<T> {
+    let (nu, nv) = (2 * n + 1, n + 1);
+    let id = |i: usize, j: usize| match j {
+        0 => 0,
+        j if j == n => 1,
+        _ => (2 + (i % (2 * n)) * (n - 1) + j - 1) as u32,
+    };
+    let mut b = TopologyBuilder::new();
+    let count = 2 + 2 * n * (n - 1);
+    b.add_vertices(count).unwrap();
+    let ids = (0..nu * nv).map(|k| id(k / nv, k % nv)).collect();
+    b.add_block(PatchInfo::new("sphere"), nu, nv, ids, false).unwrap();
+    let mut positions = vec![Vec3::zero(); count];
+    for k in 0..nu * nv {
+        let (i, j) = (k / nv % (2 * n), k % nv);
+        let (phi, theta) = (
+            std::f64::consts::PI * i as f64 / n as f64,
+            std::f64::consts::PI * j as f64 / n as f64,
+        );
+        let d = Vec3::of(theta.sin() * phi.cos(), theta.sin() * phi.sin(), -theta.cos());
+        positions[id(i, j) as usize] = c + d * r;
+    }
+    Mesh::new(b.build().into(), positions).unwrap()
 }
 
 /// The starboard half of the Wigley hull (Wigley 1942): y = (B/2) (1 - (2x/L)^2) (1 - (z/T)^2).
@@ -169,7 +238,7 @@ fn lids_are_not_skin() {
 fn derivatives_equal_central_differences() {
     let at = |p: [f64; 4]| {
         let [l, b, d, c] = [0, 1, 2, 3].map(|k| Dual4::seeded(p[k], k));
-        let options = FloatOptions { level: c, symmetry: Symmetry::MirroredTwice, density: 1.0 };
+        let options = (c, Symmetry::MirroredTwice, 1.0);
         hydrostatics(&wigley(12, l, b, d), options).figures()
     };
     let p = [10.0, 1.0, 0.625, -0.1037];
@@ -197,7 +266,7 @@ fn derivatives_equal_central_differences() {
 #[test]
 fn the_derivative_of_the_volume_by_the_level_is_the_waterplane() {
     let level = Dual::<1>::seeded(0.13, 0);
-    let options = FloatOptions { level, symmetry: Symmetry::None, density: 1.0 };
+    let options = (level, Symmetry::None, 1.0);
     let h = hydrostatics(&sphere(10, Dual::from(1.0), Vec3::zero()), options);
     let area = h.waterplane.unwrap().area.re;
     // Cut warped panels change their shape a little with the cut.
