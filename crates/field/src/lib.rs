@@ -51,6 +51,7 @@ pub use query::distance::{SetDistance, distance};
 pub use query::nearest::{CertifiedNearest, SetContour, nearest};
 pub use query::ray::{Caster, Hit, Ray, roots};
 pub use query::ray_trace::{Light, RayTrace, ray_trace};
+pub use set::body::SurfacedSet;
 pub use set::{Leaf, Membership, Set, SetAttributes};
 pub use shapes::faces::{Round, RoundProfile, Sides, faced};
 pub use shapes::{Beside, Inside, Near, NotClosed, Tube};

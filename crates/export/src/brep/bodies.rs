@@ -479,6 +479,7 @@ fn elsewhere(
     }
     let mut values = vec![0.0; places.len()];
     set.values(&places, &mut values);
+    let body = set.as_body();
     let on = |(p, value): (&Vec3, &f64)| {
         let above = |k: usize| (p[k] - over.high[k]).max(over.low[k] - p[k]);
         let outside = (0..3).map(above).fold(f64::NEG_INFINITY, f64::max);
@@ -488,7 +489,7 @@ fn elsewhere(
         if value.abs() <= 1e-12 * size.min(size * size) {
             return outside <= tolerance;
         }
-        match set.member(*p, tolerance) {
+        match body.member(*p, tolerance, &[]) {
             Membership::Surface => true,
             Membership::Solid => outside >= -tolerance,
             Membership::Air => false,

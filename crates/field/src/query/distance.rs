@@ -4,6 +4,8 @@ use super::foot;
 use super::separation::{Gauge, proved as separation, suggested};
 use crate::expr::interval::{Interval, sides};
 use crate::expr::tape::{ExprTape, NO_LEAF, RangeRoom};
+use crate::set::Membership;
+use crate::set::body::SurfacedSet;
 use crate::{FieldError, Set};
 use moldloft_num::{Box3, Vec3};
 use std::cmp::Ordering;
@@ -172,13 +174,18 @@ pub fn distance(
     let near = 1e-9 * over.diagonal();
     let sets = [a, b];
     let mut room = RangeRoom::default();
-    let mut part = |sides: Sides, tape: &Arc<ExprTape<f64>>| {
+    let bodies = sets.map(Set::as_body);
+    let mut part = |k: usize, sides: Sides, tape: &Arc<ExprTape<f64>>| {
         let range = tape.range(&sides, &mut room.ranges);
         if range.low > 0.0 {
             return None;
         }
         let tape = tape.pruned(&room.ranges).map_or_else(|| tape.clone(), Arc::new);
-        let solid = range.high < 0.0;
+        let state = bodies[k].one_state(&tape);
+        if state == Some(Membership::Air) {
+            return None;
+        }
+        let solid = range.high < 0.0 || state == Some(Membership::Solid);
         let within = (0..3).all(|k| sides[k].low > over.low[k] && sides[k].high < over.high[k]);
         let alone = !solid && tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
         // Points that are nearest are on the surface, or in a face of the whole box.
@@ -191,7 +198,7 @@ pub fn distance(
         Some(Arc::new(part))
     };
     let whole = sides(&over);
-    let starts = [a, b].map(|s| part(whole, &s.compiled().tape));
+    let starts = [0, 1].map(|k| part(k, whole, &bodies[k].compiled.tape));
     let [Some(first), Some(second)] = starts else { return Ok(None) };
     let mut heap = BinaryHeap::from([Pair { distance: 0.0, depth: 0, parts: [first, second] }]);
     let mut best: Option<(f64, [Vec3; 2])> = None;
@@ -203,14 +210,14 @@ pub fn distance(
         if let Some((found, [p, q])) = best
             && (distance >= found - accuracy || seen >= MOST)
         {
-            return Ok(Some(result(sets, (found, [p, q]), distance, near)));
+            return Ok(Some(result(&bodies, (found, [p, q]), distance, near)));
         }
         seen += 1;
         if seen > 10 * MOST {
             return Err(FieldError::TooFine { boxes: seen as f64, limit: 10.0 * MOST as f64 });
         }
         let (_, [p, q]) = apart(&parts[0].sides, &parts[1].sides);
-        if let Some(pair) = tried(sets, &parts, [p, q], near) {
+        if let Some(pair) = tried(&bodies, &parts, [p, q], near) {
             let found = pair[0].distance(pair[1]);
             if best.is_none_or(|b| found < b.0) {
                 best = Some((found, pair));
@@ -239,7 +246,7 @@ pub fn distance(
                     Interval::new(middle, side.high)
                 }
             });
-            let Some(new) = part(half, &old.tape) else { continue };
+            let Some(new) = part(k, half, &old.tape) else { continue };
             let mut pair = parts.clone();
             pair[k] = new;
             let distance = apart(&pair[0].sides, &pair[1].sides).0;
@@ -252,12 +259,12 @@ pub fn distance(
         }
     }
     let at_least = |distance: f64| (distance - accuracy).max(proved);
-    Ok(best.map(|best| result(sets, best, at_least(best.0), near)))
+    Ok(best.map(|best| result(&bodies, best, at_least(best.0), near)))
 }
 
 /// The best pair, as near as points of the surfaces there are: nearest ones of each by turns, until neither moves.
 fn result(
-    sets: [&Set; 2],
+    bodies: &[SurfacedSet; 2],
     (found, pair): (f64, [Vec3; 2]),
     at_least: f64,
     near: f64,
@@ -266,9 +273,9 @@ fn result(
     for _ in 0..TURNS {
         let before = distance;
         for k in 0..2 {
-            let foot = foot::polished(sets[k], points[1 - k], points[k], near);
+            let foot = foot::polished(&bodies[k], points[1 - k], points[k], near);
             let now = foot.distance(points[1 - k]);
-            if now < distance && sets[k].member(foot, near) != crate::Membership::Air {
+            if now < distance && bodies[k].member(foot, near, &[]) != Membership::Air {
                 (points[k], distance) = (foot, now);
             }
         }
@@ -283,27 +290,27 @@ fn result(
 /// Points of both sets near the given ones: the points themselves where they are in the sets, else
 /// nearest ones of the surfaces there, by turns.
 fn tried(
-    sets: [&Set; 2],
+    bodies: &[SurfacedSet; 2],
     parts: &[Arc<DistanceBox>; 2],
     at: [Vec3; 2],
     near: f64,
 ) -> Option<[Vec3; 2]> {
-    let inside = |set: &Set, p: Vec3| set.member(p, near) != crate::Membership::Air;
+    let inside = |k: usize, p: Vec3| bodies[k].member(p, near, &[]) != Membership::Air;
     let mut pair = at;
     for turn in 0..6 {
         for k in 0..2 {
             let (goal, from) = (pair[1 - k], pair[k]);
             if turn == 0 {
                 // Down to the surface from the box.
-                pair[k] = match inside(sets[k], from) {
+                pair[k] = match inside(k, from) {
                     true => from,
-                    false => onto(sets[k], from, near)?,
+                    false => onto(&bodies[k], from, near)?,
                 };
             }
-            if inside(sets[k], goal) {
+            if inside(k, goal) {
                 pair[k] = goal;
             } else {
-                let foot = foot::polished(sets[k], goal, pair[k], near);
+                let foot = foot::polished(&bodies[k], goal, pair[k], near);
                 if foot.distance(goal) < pair[k].distance(goal) {
                     pair[k] = foot;
                 }
@@ -314,16 +321,16 @@ fn tried(
         let widest = parts[k].sides.iter().map(|s| s.width()).fold(0.0, f64::max);
         pair[k].distance(at[k]) <= 1e3 * (widest + near)
     };
-    let both = (0..2).all(|k| inside(sets[k], pair[k]) && reach(k));
+    let both = (0..2).all(|k| inside(k, pair[k]) && reach(k));
     both.then_some(pair)
 }
 
 /// A point of the set's surface down the primitive that decides at `p`.
-fn onto(set: &Set, p: Vec3, near: f64) -> Option<Vec3> {
-    let leaves = set.leaves();
+fn onto(body: &SurfacedSet, p: Vec3, near: f64) -> Option<Vec3> {
+    let leaves = &body.compiled.leaves;
     let mut q = p;
     for _ in 0..30 {
-        let (value, leaf) = set.winner(q);
+        let (value, leaf) = body.winner(q);
         if value <= 0.0 {
             return Some(q);
         }
@@ -334,7 +341,7 @@ fn onto(set: &Set, p: Vec3, near: f64) -> Option<Vec3> {
         }
         q -= g.slope * (g.value / size);
         if g.value.abs() <= 1e-3 * near * size.sqrt() {
-            return (set.member(q, near) != crate::Membership::Air).then_some(q);
+            return (body.member(q, near, &[]) != Membership::Air).then_some(q);
         }
     }
     None

@@ -1,14 +1,21 @@
 //! Derivatives of points that a search found: one Newton step in numbers that carry them.
 
 use crate::measure::moved::moved_by;
-use crate::{Primitive, Ray, Set, ValueGradient};
+use crate::set::body::{SurfacedSet, is_one_surface};
+use crate::{Leaf, Primitive, Ray, Set, ValueGradient};
 use moldloft_num::solve_dense;
 use moldloft_num::{Real, Vec3};
 
-/// The primitives of the set that are zero at a point, three at most, as they are without a sheet.
-fn active<T: Real>(set: &Set<T>, at: Vec3, tolerance: f64) -> Vec<Primitive<T>> {
+/// The primitives among `leaves` on whose zero sets the body ends at a point, three at most, as they are without a sheet.
+fn active<T: Real>(
+    leaves: &[Leaf<T>],
+    body: &SurfacedSet,
+    at: Vec3,
+    tolerance: f64,
+) -> Vec<Primitive<T>> {
     let mut found: Vec<Primitive<T>> = Vec::new();
-    for leaf in set.leaves() {
+    let shown = body.shown_at(at, tolerance);
+    for leaf in leaves {
         let f = leaf.primitive.of_sheet();
         let ValueGradient { value, slope } = f.gradient(Vec3::lifted(at));
         let near = value.re().abs() <= tolerance * slope.re().norm();
@@ -20,7 +27,11 @@ fn active<T: Real>(set: &Set<T>, at: Vec3, tolerance: f64) -> Vec<Primitive<T>> 
                 n.cross(m).norm() > 1e-9
             })
         };
-        if near && found.len() < 3 && new() {
+        let shows = || {
+            let plain = f.re();
+            shown.iter().any(|s| is_one_surface(s, &plain))
+        };
+        if near && found.len() < 3 && new() && shows() {
             found.push(f.clone());
         }
     }
@@ -30,7 +41,8 @@ fn active<T: Real>(set: &Set<T>, at: Vec3, tolerance: f64) -> Vec<Primitive<T>> 
 /// The point `at` of a set's surface nearest to `p`, with its derivatives: the stationary point of
 /// |x - p|^2 / 2 + sum of l_k f_k.
 pub fn nearest<T: Real>(set: &Set<T>, p: Vec3<T>, at: Vec3, tolerance: f64) -> Vec3<T> {
-    match step(&active(set, at, tolerance), p, at) {
+    let body = set.re().as_body();
+    match step(&active(&set.leaves(), &body, at, tolerance), p, at) {
         Some(step) => moved_by(at, step),
         None => Vec3::lifted(at),
     }
@@ -38,8 +50,8 @@ pub fn nearest<T: Real>(set: &Set<T>, p: Vec3<T>, at: Vec3, tolerance: f64) -> V
 
 /// The point near `at` on the same primitives that is nearest to `p` to rounding; `at` itself when Newton's
 /// method does not lead to a nearer one at once.
-pub fn polished(set: &Set, p: Vec3, at: Vec3, tolerance: f64) -> Vec3 {
-    let surfaces = active(set, at, tolerance);
+pub fn polished(body: &SurfacedSet, p: Vec3, at: Vec3, tolerance: f64) -> Vec3 {
+    let surfaces = active(&body.compiled.leaves, body, at, tolerance);
     let mut x = at;
     for _ in 0..20 {
         let Some(step) = step(&surfaces, p, x) else { return at };
@@ -51,10 +63,7 @@ pub fn polished(set: &Set, p: Vec3, at: Vec3, tolerance: f64) -> Vec3 {
     let size = 1.0 + x.norm();
     let near = x.distance(at) <= 0.1 * (p.distance(at) + tolerance)
         && x.distance(p) <= at.distance(p) + 1e-12 * size;
-    let shown = || {
-        let known: Vec<Primitive> = surfaces.iter().flat_map(|f| [f.clone(), f.abs()]).collect();
-        set.member_knowing(x, 1e-12 * size, &known) == crate::Membership::Surface
-    };
+    let shown = || body.member(x, 1e-12 * size, &surfaces) == crate::Membership::Surface;
     if x.is_finite() && near && shown() { x } else { at }
 }
 

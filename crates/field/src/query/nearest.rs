@@ -4,6 +4,7 @@ use crate::expr::interval::{Interval, sides};
 use crate::expr::tape::{ExprTape, NO_LEAF, RangeRoom};
 use crate::facet::Facets;
 use crate::facet::vertex::Solver;
+use crate::set::body::SurfacedSet;
 use crate::{FieldError, Primitive, Set, ValueGradient};
 use moldloft_num::{Box3, Plane, Vec3};
 use std::cmp::Ordering;
@@ -84,7 +85,8 @@ pub fn nearest(
 ) -> Result<Option<CertifiedNearest>, FieldError> {
     crate::error::positive("accuracy", accuracy)?;
     let over = crate::error::solid_box(*over)?;
-    let compiled = set.compiled();
+    let body = set.as_body();
+    let compiled = &body.compiled;
     let mut best: Option<(Vec3, f64)> = None;
     let mut heap = BinaryHeap::new();
     let mut room = Vec::new();
@@ -101,7 +103,7 @@ pub fn nearest(
             && (distance >= found - accuracy || seen >= MOST)
         {
             // Near a minimum of the distance the place is known by its root only: Newton's method settles it.
-            let point = crate::query::foot::polished(set, p, point, 1e-9 * over.diagonal());
+            let point = crate::query::foot::polished(&body, p, point, 1e-9 * over.diagonal());
             let found = point.distance(p).min(found);
             return Ok(Some(CertifiedNearest {
                 point,
@@ -118,8 +120,12 @@ pub fn nearest(
             continue;
         }
         let tape = tape.pruned(&room).map_or(tape, Arc::new);
-        let smooth = surface_point(set, &compiled.leaves, &tape, &sides, p);
-        let sharp = edge_point(set, &compiled.leaves, &tape, &sides, p, &mut solver);
+        if body.one_state(&tape).is_some() {
+            // What surfaces are left are no surface of the body.
+            continue;
+        }
+        let smooth = surface_point(&body, &tape, &sides, p);
+        let sharp = edge_point(&body, &tape, &sides, p, &mut solver);
         for point in [smooth, sharp].into_iter().flatten() {
             let found = point.distance(p);
             if best.is_none_or(|b| found < b.1) && inside(point, &over) {
@@ -189,8 +195,7 @@ fn reach(sides: &[Interval; 3], p: Vec3) -> f64 {
 /// A point of the set's surface near the point of a box that is nearest to `p`: on the primitive that
 /// decides there, the foot of the normal from `p`, if the set shows it.
 fn surface_point(
-    set: &Set,
-    leaves: &[crate::Leaf],
+    body: &SurfacedSet,
     tape: &ExprTape<f64>,
     sides: &[Interval; 3],
     p: Vec3,
@@ -206,7 +211,7 @@ fn surface_point(
     if leaf == NO_LEAF {
         return None;
     }
-    let f = leaves[leaf as usize].primitive.of_sheet();
+    let f = body.compiled.leaves[leaf as usize].primitive.of_sheet();
     let mut q = start;
     // First onto the surface, then alternately along it towards p and back.
     for _ in 0..40 {
@@ -229,19 +234,19 @@ fn surface_point(
         q -= slope * (value / slope.norm_sq());
     }
     let size = 1.0 + q.norm();
-    let shown = set.member_knowing(q, 1e-12 * size, &[f.clone(), f.abs()]);
+    let shown = body.member(q, 1e-12 * size, std::slice::from_ref(f));
     (q.is_finite() && shown == crate::Membership::Surface).then_some(q)
 }
 
 /// A point of an edge or a corner in a box where two or three primitives meet.
 fn edge_point(
-    set: &Set,
-    leaves: &[crate::Leaf],
+    body: &SurfacedSet,
     tape: &ExprTape<f64>,
     sides: &[Interval; 3],
     p: Vec3,
     solver: &mut Solver,
 ) -> Option<Vec3> {
+    let leaves = &body.compiled.leaves;
     let surfaces: Vec<u32> = tape.leaf.iter().copied().filter(|l| *l != NO_LEAF).collect();
     if !(2..=3).contains(&surfaces.len()) {
         return None;
@@ -255,7 +260,7 @@ fn edge_point(
     let known: Vec<Primitive> =
         surfaces.iter().map(|&k| leaves[k as usize].primitive.clone()).collect();
     let shown = placed.residual <= goal
-        && set.member_knowing(placed.point, goal, &known) == crate::Membership::Surface;
+        && body.member(placed.point, goal, &known) == crate::Membership::Surface;
     shown.then_some(placed.point)
 }
 

@@ -7,10 +7,11 @@
 
 use crate::expr::interval::Interval;
 use crate::expr::tape::{ExprInstruction, ExprTape, NO_LEAF};
+use crate::set::Compiled;
+use crate::set::body::SurfacedSet;
 use crate::{Leaf, Membership, Primitive, Set};
 use moldloft_num::{Real, Vec3, find_root};
 use smallvec::SmallVec;
-use std::sync::Arc;
 
 /// A half-line or a piece of a line: start + t direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -227,22 +228,19 @@ pub fn roots(f: &Primitive, ray: &Ray) -> Vec<f64> {
 }
 
 /// A set made ready for many rays.
-pub struct Caster<'a> {
-    set: &'a Set,
-    leaves: Vec<Leaf>,
-    tape: Arc<ExprTape<f64>>,
+pub struct Caster {
+    body: SurfacedSet,
 }
 
-impl<'a> Caster<'a> {
+impl Caster {
     /// Makes a set ready.
-    pub fn new(set: &'a Set) -> Self {
-        let compiled = set.compiled();
-        Self { set, leaves: compiled.leaves, tape: compiled.tape }
+    pub fn new(set: &Set) -> Self {
+        Self { body: set.as_body() }
     }
 
     /// The primitives, as [`Set::leaves`].
     pub fn leaves(&self) -> &[Leaf] {
-        &self.leaves
+        &self.body.compiled.leaves
     }
 
     /// As [`Set::hits`].
@@ -257,7 +255,7 @@ impl<'a> Caster<'a> {
 
     /// The first hits, `most` at most.
     fn until(&self, ray: &Ray, most: usize) -> Vec<Hit> {
-        let leaves = &self.leaves;
+        let Compiled { leaves, tape, .. } = &self.body.compiled;
         let mut candidates: Vec<(f64, usize)> = Vec::new();
         for (k, leaf) in leaves.iter().enumerate() {
             // A sheet is where its inside is zero.
@@ -266,7 +264,7 @@ impl<'a> Caster<'a> {
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut values = Vec::new();
         let mut inside =
-            |a: f64, b: f64| self.tape.eval::<f64>(&ray.at(0.5 * (a + b)), &mut values) < 0.0;
+            |a: f64, b: f64| tape.eval::<f64>(&ray.at(0.5 * (a + b)), &mut values) < 0.0;
         let mut hits = Vec::new();
         let mut from = 0.0;
         for (k, &(t, leaf)) in candidates.iter().enumerate() {
@@ -283,7 +281,7 @@ impl<'a> Caster<'a> {
             let on_surface = || {
                 let here = candidates.iter().filter(|c| group(c.0));
                 let known: Vec<Primitive> = here.map(|c| leaves[c.1].primitive.clone()).collect();
-                self.set.member_knowing(point, 0.0, &known) == Membership::Surface
+                self.body.member(point, 0.0, &known) == Membership::Surface
             };
             let shows =
                 before != after || (!before && leaves[leaf].primitive.is_sheet() && on_surface());

@@ -1,7 +1,8 @@
 //! Pictures of sets by ray casting: exact surfaces, lights, shadows, highlights.
 
 use crate::facet::FacetOptions;
-use crate::query::ray::{Caster, Hit, Ray};
+use crate::query::ray::{Hit, Ray};
+use crate::query::ray_index::RayIndex;
 use crate::{FieldError, Set};
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_parallel::prelude::*;
@@ -59,6 +60,11 @@ fn stored(x: f64) -> u8 {
     (Real::powf(x.clamp(0.0, 1.0), 1.0 / 2.2) * 255.0 + 0.5) as u8
 }
 
+/// How far before the box rays begin, as a share of it.
+const MARGIN: f64 = 1e-6;
+/// A view at a smaller angle to what is up is straight up or down.
+const STRAIGHT: f64 = 1e-9;
+
 /// Where a ray is within a box, as parameters.
 fn clipped(start: Vec3, direction: Vec3, over: &Box3) -> Option<[f64; 2]> {
     let (mut near, mut far) = (0.0f64, f64::INFINITY);
@@ -88,14 +94,21 @@ pub fn ray_trace(
 ) -> Result<Vec<u8>, FieldError> {
     let over = crate::error::solid_box(*over)?;
     let ahead = crate::error::unit("direction of the view", view.centre - view.eye)?;
-    let right = crate::error::unit("direction that is up", ahead.cross(view.up))?;
+    // Straight up or down, the second axis is up in the picture.
+    let up = match ahead.cross(view.up).norm() > STRAIGHT * view.up.norm() {
+        true => view.up,
+        false => Vec3::of(0.0, 1.0, 0.0),
+    };
+    let right = crate::error::unit("direction that is up", ahead.cross(up))?;
     let upward = right.cross(ahead);
     let cut = set.clone() & Set::cuboid(over.low, over.high)?;
-    let caster = Caster::new(&cut);
+    let margin = MARGIN * over.diagonal();
+    let more = Vec3::of(margin, margin, margin);
+    let index = RayIndex::new(&cut, &Box3 { low: over.low - more, high: over.high + more });
     let [width, height] = view.size;
     let reach = Real::tan(0.5 * view.angle);
     let n = view.samples.max(1);
-    let scene = RayScene { caster: &caster, over: &over, view };
+    let scene = RayScene { index: &index, over: &over, view };
     let rows: Vec<Vec<u8>> = (0..height)
         .into_par_iter()
         .map(|row| {
@@ -135,7 +148,7 @@ impl RayTrace {
 }
 
 struct RayScene<'a> {
-    caster: &'a Caster<'a>,
+    index: &'a RayIndex,
     over: &'a Box3,
     view: &'a RayTrace,
 }
@@ -144,10 +157,10 @@ impl RayScene<'_> {
     fn first(&self, start: Vec3, direction: Vec3) -> Option<Hit> {
         let [near, far] = clipped(start, direction, self.over)?;
         // A little before the box, so that its faces are crossed and not begun on.
-        let margin = 1e-6 * self.over.diagonal();
+        let margin = MARGIN * self.over.diagonal();
         let begin = start + direction * (near - margin).max(0.0);
         let ray = Ray { start: begin, direction, length: far - near + 2.0 * margin };
-        self.caster.first(&ray)
+        self.index.first(&ray)
     }
 
     /// The light that comes from where the ray ends.

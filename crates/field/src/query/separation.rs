@@ -140,8 +140,8 @@ fn leaf_range(gauge: &Gauge, f: &Primitive) -> [f64; 2] {
     }
 }
 
-/// Bounds of a gauge over the part of a set in a box; `None` when there is no such part.
-fn set_range(gauge: &Gauge, set: &Set, over: &Box3) -> Option<[f64; 2]> {
+/// Bounds of a gauge over a set; the lower one is not below the upper where they prove that it is empty.
+fn range_in_space(gauge: &Gauge, set: &Set) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let every = [f64::NEG_INFINITY, f64::INFINITY];
     let leaf = |f: &Primitive| leaf_range(gauge, f);
@@ -149,7 +149,21 @@ fn set_range(gauge: &Gauge, set: &Set, over: &Box3) -> Option<[f64; 2]> {
         true => [a.min(c), b.max(d)],
         false => [a.max(c), b.min(d)],
     };
-    let [low, high] = set.folded(&leaf, every, none, &join);
+    set.folded(&leaf, every, none, &join)
+}
+
+/// True when a gauge proves that a set has no inside: that it is empty, or at most a part of a surface.
+pub(crate) fn is_void(set: &Set) -> bool {
+    suggested([set, set]).iter().any(|gauge| {
+        let [low, high] = range_in_space(gauge, set);
+        let size = 1.0 + if low.is_finite() { low.abs() } else { 0.0 };
+        low >= high - 8.0 * PARALLEL * size
+    })
+}
+
+/// Bounds of a gauge over the part of a set in a box; `None` when there is no such part.
+fn set_range(gauge: &Gauge, set: &Set, over: &Box3) -> Option<[f64; 2]> {
+    let [low, high] = range_in_space(gauge, set);
     let all = match gauge {
         Gauge::Along(n) => Primitive::linear(*n, 0.0).range(over),
         Gauge::Point(c) => {

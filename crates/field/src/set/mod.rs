@@ -1,5 +1,7 @@
 //! Sets: what primitives leave solid, combined.
 
+pub(crate) mod body;
+
 use crate::expr::algebra::Unary;
 use crate::expr::interval::Interval;
 use crate::expr::primitive::{Binary, Op};
@@ -131,6 +133,16 @@ pub(crate) struct Compiled<T: Real> {
     pub(crate) leaves: Vec<Leaf<T>>,
     /// The number of the leaf at every place of the tree, in order; those of a part that occurs many times once.
     pub(crate) places: Vec<u32>,
+}
+
+impl<T: Real> Compiled<T> {
+    /// The value that decides at a point, and the number of its leaf.
+    pub(crate) fn winner(&self, p: Vec3<T>) -> (T, Option<usize>) {
+        let mut values = Vec::new();
+        let value = self.tape.eval::<T>(&p, &mut values);
+        let leaf = self.tape.leaf[self.tape.winner(&values, T::re)];
+        (value, (leaf != NO_LEAF).then_some(leaf as usize))
+    }
 }
 
 /// Neighbours joined two and two until one is left.
@@ -683,11 +695,7 @@ impl<T: Real> Set<T> {
     /// The value that decides at a point, and the number of its leaf among [`Set::leaves`]; `None` for
     /// everything and nothing.
     pub fn winner(&self, p: Vec3<T>) -> (T, Option<usize>) {
-        let compiled = self.compiled();
-        let mut values = Vec::new();
-        let value = compiled.tape.eval::<T>(&p, &mut values);
-        let leaf = compiled.tape.leaf[compiled.tape.winner(&values, T::re)];
-        (value, (leaf != NO_LEAF).then_some(leaf as usize))
+        self.compiled().winner(p)
     }
 
     /// The value at a point: minima over unions, maxima over intersections.
@@ -695,29 +703,10 @@ impl<T: Real> Set<T> {
         self.winner(p).0
     }
 
-    /// Where a point lies. A primitive counts as zero where it is at most `tolerance` from its
-    /// surface, measured by |f| / |f'|.
+    /// Where a point lies. A surface passes through it where it is at most `tolerance` away, measured by |f| / |f'|; faces
+    /// with the same on both sides are none of the body.
     pub fn member(&self, p: Vec3<T>, tolerance: f64) -> Membership {
-        self.member_knowing(p, tolerance, &[])
-    }
-
-    /// As [`Set::member`] for a point that is known to lie on the surfaces of some primitives,
-    /// whatever rounding says.
-    pub fn member_knowing(&self, p: Vec3<T>, tolerance: f64, known: &[Primitive<T>]) -> Membership {
-        let leaf = |f: &Primitive<T>| {
-            let g = f.gradient(p);
-            let near = g.value.re().abs() <= tolerance * g.slope.re().norm();
-            let given = || known.iter().any(|k| k.same(f) || (-k).same(f));
-            if g.value.re() == 0.0 || near || given() {
-                Membership::Surface
-            } else if g.value.re() < 0.0 {
-                Membership::Solid
-            } else {
-                Membership::Air
-            }
-        };
-        let join = |union: bool, a: Membership, b| if union { a.min(b) } else { a.max(b) };
-        self.folded(&leaf, Membership::Solid, Membership::Air, &join)
+        self.re().as_body().member(p.re(), tolerance, &[])
     }
 }
 

@@ -44,7 +44,7 @@ fn membership_has_three_values_and_takes_hints() {
     let off = v(p.x, p.y, p.z * (1.0 + 1e-9));
     assert_eq!(s.member(off, 0.0), Membership::Air);
     let sphere = Primitive::sphere(Vec3::zero(), 1.0).unwrap();
-    assert_eq!(s.member_knowing(off, 0.0, &[sphere]), Membership::Surface);
+    assert_eq!(s.as_body().member(off, 0.0, &[sphere]), Membership::Surface);
 }
 
 #[test]

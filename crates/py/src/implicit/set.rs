@@ -344,8 +344,8 @@ impl PySet {
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let points = points(&at)?;
         let known: Vec<_> = known.iter().map(|f| f.inner.clone()).collect();
-        let (inner, many) = (self.inner.clone(), self.slots.is_empty());
-        let one = move |p: &Vec3| match inner.member_knowing(*p, tolerance, &known) {
+        let (body, many) = (self.inner.as_body(), self.slots.is_empty());
+        let one = move |p: &Vec3| match body.member(*p, tolerance, &known) {
             Membership::Solid => -1i8,
             Membership::Surface => 0,
             Membership::Air => 1,
