@@ -236,7 +236,10 @@ class Facets:
 
     @cached_property
     def unresolved(self) -> list[Unresolved]:
-        """Places of which the cells say nothing, or that they miss; elsewhere nothing is missed."""
+        """Places of which the cells say nothing, or that they miss; elsewhere nothing is missed.
+
+        Neighbours are one place: there are at most 100, the largest first.
+        """
         return [
             Unresolved(np.array(low), np.array(high), volume, missed)
             for (low, high), volume, missed in self._core.unresolved()

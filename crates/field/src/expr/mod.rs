@@ -5,6 +5,7 @@
 
 pub(crate) mod algebra;
 pub(crate) mod blend;
+pub(crate) mod branches;
 pub(crate) mod form;
 pub(crate) mod interval;
 pub(crate) mod oracle;

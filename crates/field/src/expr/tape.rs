@@ -232,7 +232,7 @@ impl<T> ExprInstruction<T> {
         }
     }
 
-    fn renumbered(mut self, of: impl Fn(u32) -> u32) -> Self {
+    pub(crate) fn renumbered(mut self, of: impl Fn(u32) -> u32) -> Self {
         match &mut self {
             ExprInstruction::Real(_) | ExprInstruction::Plane(..) | ExprInstruction::User(_) => {}
             ExprInstruction::Unary(_, a)
@@ -312,6 +312,11 @@ impl<T: Real> ExprTape<T> {
             }
         }
         Self { code, leaf, register, registers: registers as usize, users }
+    }
+
+    /// A tape of other instructions, the last of which is its value.
+    pub(crate) fn with_code(&self, code: Vec<ExprInstruction<T>>, leaf: Vec<u32>) -> Self {
+        Self::with(code, leaf, self.users.clone())
     }
 
     /// The tape of what `root` needs, where `decide(position, a, b)` may name the operand that a

@@ -205,7 +205,8 @@ pub(crate) fn facet_within(
             if options.sharp {
                 return Ok(facets);
             }
-            Ok(whole(set, &over, facets, USUAL_CELLS.min(options.limit), options)?.facets)
+            let found = whole(set, &over, facets, USUAL_CELLS.min(options.limit), options)?;
+            found.checked(size)
         }
         Resolution::Depth(depth) => {
             let step = step_of(depth);
@@ -305,6 +306,27 @@ impl CompleteFacets {
                 None => at_step(set, over, step, accuracy, options, before),
             },
             None => at_step(set, over, step, accuracy, options, before),
+        }
+    }
+}
+
+/// Facets that miss more than this part of their body are none of it.
+const REFUSED: f64 = 1e-3;
+
+impl CompleteFacets {
+    /// The facets, unless they miss so much that they are another body.
+    fn checked(self, size: f64) -> Result<Facets, FieldError> {
+        let missed = || self.facets.unresolved.iter().filter(|u| u.missed);
+        let volume: f64 = missed().map(|u| u.volume).sum();
+        let body = moldloft_mesh::measure(&self.facets.mesh).volume.abs();
+        let worst = missed().max_by(|a, b| a.volume.total_cmp(&b.volume));
+        match worst {
+            Some(u) if !self.all && volume > REFUSED * body => {
+                let step = self.facets.step;
+                let depth = halvings(size, thickness(u).min(0.5 * step)) + 1;
+                Err(FieldError::Thin { place: u.place, step, depth })
+            }
+            _ => Ok(self.facets),
         }
     }
 }
@@ -543,6 +565,11 @@ pub(crate) fn info(leaf: &Leaf) -> PatchInfo {
 }
 
 impl Facets {
+    /// The unresolved places, neighbours joined: at most 100, the largest first.
+    pub fn open_places(&self) -> Vec<Unresolved> {
+        unresolved::gathered(&self.unresolved, self.step)
+    }
+
     /// The form of a patch's primitive.
     pub fn form(&self, patch: usize) -> &Form<f64> {
         self.leaves[self.patch_leaves[patch]].primitive.form()

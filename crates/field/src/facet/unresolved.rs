@@ -12,12 +12,15 @@ use crate::expr::tape::{ExprInstruction, ExprTape, NO_LEAF};
 use crate::measure::taylor::{self, Combination, TaylorRoom};
 use moldloft_num::{Box3, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A cell is halved this often to prove it.
 const DEPTH: u32 = 4;
 /// The most parts of cells of a block that are looked at.
 const MOST: usize = 3000;
+/// Jumps of one cell that are taken apart.
+const MOST_JUMPS: usize = 3;
 /// What is missed for sure is at least this part of a cell.
 const SEEN: f64 = 1e-9;
 /// What is full or empty to rounding.
@@ -148,7 +151,15 @@ impl UnresolvedSearch<'_> {
             }
             return;
         }
-        let tape = tape.pruned(&self.room.ranges.ranges).map_or_else(|| tape.clone(), Arc::new);
+        let mut tape = tape.pruned(&self.room.ranges.ranges).map_or_else(|| tape.clone(), Arc::new);
+        if tape.has_jumps() {
+            // What jumps without being a face is looked at on both sides.
+            for _ in 0..MOST_JUMPS {
+                tape.range(sides, &mut self.room.ranges.ranges);
+                let Some(parted) = tape.parted(&self.room.ranges.ranges) else { break };
+                tape = Arc::new(parted);
+            }
+        }
         let full = volume(sides);
         let parts =
             Combination::of(&tape).map(|c| taylor::bounds(&tape, &c, sides, true, self.room));
@@ -203,6 +214,36 @@ impl UnresolvedSearch<'_> {
 
 fn volume(sides: &[Interval; 3]) -> f64 {
     sides.iter().map(|s| s.width()).product()
+}
+
+/// The most places that are reported.
+const MOST_PLACES: usize = 100;
+
+/// Open places joined with their neighbours, by cubes of a size at which they are few: each with all the volume that it may
+/// hold. The largest come first.
+pub(super) fn gathered(open: &[Unresolved], step: f64) -> Vec<Unresolved> {
+    let mut all = open.to_vec();
+    let mut size = 2.0 * step;
+    while all.len() > MOST_PLACES {
+        let mut by_cube: BTreeMap<[i64; 3], Unresolved> = BTreeMap::new();
+        for u in all {
+            let cube = u.place.centre().to_array().map(|x| (x / size).floor() as i64);
+            let joined = match by_cube.remove(&cube) {
+                None => u,
+                Some(v) => {
+                    let corners = [u.place.low, u.place.high, v.place.low, v.place.high];
+                    let first = if u.missed && !v.missed { u } else { v };
+                    let place = Box3::around(corners);
+                    Unresolved { place, volume: u.volume + v.volume, ..first }
+                }
+            };
+            by_cube.insert(cube, joined);
+        }
+        all = by_cube.into_values().collect();
+        size *= 2.0;
+    }
+    all.sort_by(|a, b| b.volume.total_cmp(&a.volume));
+    all
 }
 
 /// What is within this part of a cell of the surface, or on the side of it where it should be, is not missed.

@@ -6,7 +6,12 @@ use moldloft_registry::{Flaw, Remark};
 
 /// "in n of 900 cells of side 0.1, the first about (x, y, z)".
 fn counted(places: &[Vec3], facets: &Facets) -> String {
-    let (n, p) = (places.len(), places[0]);
+    counted_of(places.len(), places, facets)
+}
+
+/// As [`counted`], of `n` cells of which only some places are given.
+fn counted_of(n: usize, places: &[Vec3], facets: &Facets) -> String {
+    let p = places[0];
     let Facets { cells, step, .. } = facets;
     let first = if n == 1 { "about" } else { "the first about" };
     // Cells without surface are not among those that are counted.
@@ -17,7 +22,7 @@ fn counted(places: &[Vec3], facets: &Facets) -> String {
 /// The places where facets are not the set's surface, or may not be; none of the four is usual.
 pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
     let centres = |boxes: &[moldloft_num::Box3]| boxes.iter().map(|b| b.centre()).collect();
-    let open = facets.unresolved.iter().map(|u| u.place.centre()).collect();
+    let open = facets.open_places().iter().map(|u| u.place.centre()).collect();
     let may_hold: f64 = facets.unresolved.iter().map(|u| u.volume).sum();
     let missed = facets.unresolved.iter().any(|u| u.missed);
     let lists: [(&'static str, Vec<Vec3>); 4] = [
@@ -38,7 +43,7 @@ pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
                 "unresolved-cells",
                 format!(
                     "{} {}, up to {may_hold:.3e} of volume",
-                    counted(&places, facets),
+                    counted_of(facets.unresolved.len(), &places, facets),
                     match missed {
                         true => "a part or a gap thinner than the cell is missing",
                         false => "it is not proved that no part thinner than the cell is missing",

@@ -5,7 +5,7 @@
 //! more, than it is: both are parted by planes, and integrated exactly.
 
 use super::polytope::{CellPolytope, CuttingPlane, SECOND};
-use crate::expr::algebra::GradientRange;
+use crate::expr::algebra::{GradientRange, Unary};
 use crate::expr::interval::Interval;
 use crate::expr::second_order::{HessianRange, PAIRS};
 use crate::expr::tape::{ExprInstruction, ExprTape, NO_LEAF, RangeRoom};
@@ -19,9 +19,32 @@ pub(crate) const MOST_LEAVES: usize = 6;
 /// How leaves are combined.
 #[derive(Clone, Copy, Debug)]
 enum CombinationNode {
-    Leaf(u8),
+    /// A leaf, or its complement.
+    Leaf(u8, bool),
     Or(u8, u8),
     And(u8, u8),
+}
+
+/// What an instruction is the negative of, if it is one.
+fn unsigned(tape: &ExprTape<f64>, at: u32) -> (u32, bool) {
+    match tape.code[at as usize] {
+        ExprInstruction::Unary(Unary::Neg, inner) => (inner, true),
+        _ => (at, false),
+    }
+}
+
+/// Whether two leaves are one function, or one the other's negative.
+fn alike(tape: &ExprTape<f64>, a: u32, b: u32) -> Option<bool> {
+    let ((p, m), (q, n)) = (unsigned(tape, a), unsigned(tape, b));
+    if p == q {
+        return Some(m != n);
+    }
+    match (tape.code[p as usize], tape.code[q as usize]) {
+        (ExprInstruction::Plane(u, d), ExprInstruction::Plane(v, e)) if u == -v && d == -e => {
+            Some(m == n)
+        }
+        _ => None,
+    }
 }
 
 /// A combination of few leaves.
@@ -49,11 +72,17 @@ impl Combination {
             }
             let node = match tape.code[k] {
                 _ if tape.leaf[k] != NO_LEAF => {
-                    if out.leaves.len() == MOST_LEAVES {
-                        return None;
+                    // A face with the same on both sides is one leaf, not two that know nothing of each other.
+                    let mut known = out.leaves.iter().enumerate();
+                    let known = known.find_map(|(j, l)| Some((j, alike(tape, l.0, at)?)));
+                    match known {
+                        Some((j, turned)) => CombinationNode::Leaf(j as u8, turned),
+                        None if out.leaves.len() == MOST_LEAVES => return None,
+                        None => {
+                            out.leaves.push((at, tape.leaf[k]));
+                            CombinationNode::Leaf(out.leaves.len() as u8 - 1, false)
+                        }
                     }
-                    out.leaves.push((at, tape.leaf[k]));
-                    CombinationNode::Leaf(out.leaves.len() as u8 - 1)
                 }
                 ExprInstruction::Union(a, b) | ExprInstruction::Common(a, b) if !ready => {
                     stack.push((at, true));
@@ -81,7 +110,8 @@ impl Combination {
         let mut values: SmallVec<[i8; 12]> = SmallVec::new();
         for node in &self.nodes {
             values.push(match *node {
-                CombinationNode::Leaf(k) => signs[k as usize],
+                CombinationNode::Leaf(k, false) => signs[k as usize],
+                CombinationNode::Leaf(k, true) => -signs[k as usize],
                 CombinationNode::Or(a, b) => values[a as usize].min(values[b as usize]),
                 CombinationNode::And(a, b) => values[a as usize].max(values[b as usize]),
             });

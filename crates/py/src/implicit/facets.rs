@@ -190,7 +190,7 @@ impl PyFacets {
         let row = |u: &moldloft::field::Unresolved| {
             ((u.place.low.to_array(), u.place.high.to_array()), u.volume, u.missed)
         };
-        solid.unresolved.iter().map(row).collect()
+        solid.open_places().iter().map(row).collect()
     }
 
     /// The boxes with an edge or corner that is cut off.
