@@ -37,7 +37,7 @@ def test_plates_have_one_volume_in_python_and_in_the_language(thickness):
 
 
 def test_what_is_too_thin_is_listed_or_refused():
-    plate = im.cuboid((0, 0, 0), (1, 1, 1e-4))
+    plate = im.cuboid((-1, -1, 0), (1, 1, 1e-4)) & im.Set(im.sphere((0, 0, 0), 0.8))
     facets = plate.facets(depth=5)
     assert facets.unresolved and all(u.missed for u in facets.unresolved)
     with pytest.raises(moldloft.Error, match="depth = "):

@@ -21,6 +21,7 @@ mod lost;
 pub(crate) mod memo;
 mod padded_bounds;
 mod place_vertices;
+mod planes;
 mod rebuild;
 mod refine;
 mod remove_intersections;
@@ -177,6 +178,9 @@ pub(crate) fn facet_within(
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
     let (over, sized) = (solid_box(*over)?, solid_box(*sized)?);
+    if let Some(facets) = planes::facets(set, &over, options)? {
+        return Ok(facets);
+    }
     let size = (0..3).map(|k| sized.high[k] - sized.low[k]).fold(0.0, f64::max);
     // A surface across the whole box passes through about this many cells.
     let crossed = |step: f64| (size / step).powi(2);
