@@ -132,6 +132,11 @@ pub enum FieldError {
     },
     /// Round sides of a body touch, or cross, so that no plane beside them parts them.
     RoundSides,
+    /// An edge inside of a body, or in one of its faces, whose mitre would stand out of the grown body.
+    HiddenEdge {
+        /// A point of it.
+        place: Vec3,
+    },
     /// A primitive of which no distance is known in closed form.
     NoDistance {
         /// What it was made as.
@@ -231,6 +236,12 @@ impl fmt::Display for FieldError {
             Self::RoundSides => {
                 write!(f, "round sides touch each other and cannot be distinguished")
             }
+            Self::HiddenEdge { place } => write!(
+                f,
+                "at ({:.6}, {:.6}, {:.6}) two parts of the set meet in an edge that the body does not show, and whose mitre \
+                 would stand out of it",
+                place.x, place.y, place.z
+            ),
             Self::NoDistance { kind } => write!(
                 f,
                 "the distance from a {kind} has no closed form; planes, balls, cylinders, cones and tori have one"

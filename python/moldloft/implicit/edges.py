@@ -24,7 +24,10 @@ class Edged:
         raise NotImplementedError
 
     def offset(self, distance: float) -> Self:
-        """The set grown by a distance, or shrunk by a negative one; edges stay sharp.
+        """The body grown by a distance, or shrunk by a negative one; edges that open stay sharp.
+
+        Faces of the formula on which the body does not end, such as those between parts face to
+        face, do not count. :func:`minkowski_sum` with a ball grows it with round edges.
 
         Parameters
         ----------
@@ -39,8 +42,8 @@ class Edged:
         Raises
         ------
         Error
-            When a primitive is not a plane, ball, cylinder, cone or torus: the distance from
-            others has no closed form.
+            When a face is not one of a plane, ball, cylinder, cone or torus: the distance from
+            others has no closed form. When an edge inside of the body would stand out of it.
 
         Examples
         --------
@@ -106,18 +109,18 @@ class Edged:
         return type(self)(self._core.rounded(float(width), None, _pairs(edges)))
 
     def rounded(
-        self, width: float, *, lam: float = 2 / 3, edges: Sequence[Sequence[str]] | None = None
+        self, width: float, *, lambda_: float = 2 / 3, edges: Sequence[Sequence[str]] | None = None
     ) -> Self:
         """The set with its convex edges rounded, of setback ``width`` on both faces.
 
-        ``edges`` are pairs of the names of faces, by default all; ``lam`` shapes the round between
-        0 (a chamfer) and 1 (the edge), 2/3 is an arc between perpendicular planes.
+        ``edges`` are pairs of the names of faces, by default all; ``lambda_`` shapes the round
+        between 0 (a chamfer) and 1 (the edge), 2/3 is an arc between perpendicular planes.
 
         Parameters
         ----------
         width
             Setback on both faces, in model units.
-        lam
+        lambda_
             Shape of the blend, between 0 and 1.
         edges
             Pairs of names of faces; by default all edges.
@@ -138,7 +141,7 @@ class Edged:
         >>> round(im.cuboid((0, 0, 0), (10, 6, 4)).rounded(1).mass().volume) < 240
         True
         """
-        return type(self)(self._core.rounded(float(width), float(lam), _pairs(edges)))
+        return type(self)(self._core.rounded(float(width), float(lambda_), _pairs(edges)))
 
     def filleted(
         self,
@@ -146,7 +149,7 @@ class Edged:
         width: float,
         other_width: float | None = None,
         *,
-        lam: float = 2 / 3,
+        lambda_: float = 2 / 3,
         edges: Sequence[Sequence[str]] | None = None,
     ) -> Self:
         """The union with another set, with fillets of setback ``width`` where their faces meet.
@@ -162,7 +165,7 @@ class Edged:
             Setback on the other set, from this one's face, in model units; on both by default.
         other_width
             Setback on this set, from the other's face, where it differs.
-        lam
+        lambda_
             Shape of the blend, between 0 and 1.
         edges
             Pairs of a face of this set and one of the other; by default all.
@@ -186,7 +189,7 @@ class Edged:
         """
         o = type(self)(other) if isinstance(other, Field) else other
         widths = [float(width), float(width if other_width is None else other_width)]
-        return type(self)(self._core.filleted(o._core, widths, float(lam), _pairs(edges)))
+        return type(self)(self._core.filleted(o._core, widths, float(lambda_), _pairs(edges)))
 
 
 def _pairs(edges: Sequence[Sequence[str]] | None) -> list[list[str]] | None:

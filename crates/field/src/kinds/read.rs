@@ -139,7 +139,9 @@ pub fn fault(error: &FieldError) -> CallError {
         FieldError::Thin { .. } => "thin-part",
         FieldError::NotReached { .. } => "accuracy-not-reached",
         FieldError::NotClosed { .. } => "not-closed",
-        FieldError::ManyFaces { .. } | FieldError::RoundSides => "faces-tangled",
+        FieldError::ManyFaces { .. } | FieldError::RoundSides | FieldError::HiddenEdge { .. } => {
+            "faces-tangled"
+        }
         FieldError::NoDistance { .. } => "no-distance",
         FieldError::NoHull { .. } => "no-hull",
         FieldError::NoEdge { .. } => "no-edge",
@@ -177,6 +179,9 @@ pub fn fault(error: &FieldError) -> CallError {
         FieldError::NotClosed { .. } => fault.expected("a closed, oriented body"),
         FieldError::ManyFaces { .. } | FieldError::RoundSides => {
             fault.help("take set(inside(body)), the set by distances from its triangles")
+        }
+        FieldError::HiddenEdge { .. } => {
+            fault.help("cut the edge off, or take `minkowski_sum` with a ball: its edges are round")
         }
         FieldError::NoHull { .. } => fault.expected(
             "bounded polyhedra and balls, or cylinders and right prisms of one axis between the same two planes",

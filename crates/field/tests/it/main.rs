@@ -1,6 +1,7 @@
 //! What the crate promises, as one program: a module for each subject.
 
 mod blends;
+mod bodies;
 mod certified;
 mod common;
 mod contacts;
