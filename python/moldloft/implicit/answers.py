@@ -67,7 +67,9 @@ class Mass:
     volume_bracket: tuple[float, float]
     """Its bounds."""
     uncertain: float
-    """How far the volume may be off where edges are thinner than the cells; 0 where it is known."""
+    """Proved: the right volume is no further from ``volume``."""
+    estimate: float
+    """How much two levels of facets differ, 0 if they agree: an estimate of the error, no bound."""
     centroid: Floats | None
     """Centre of mass ``(3,)``; None where there is no volume."""
     centroid_bracket: Floats

@@ -597,8 +597,9 @@ class Set(Moving, Edged, Pictured):
         -------
         Mass
             ``volume``, ``centroid`` ``(3,)`` and ``inertia`` ``(3, 3)`` for density 1, each with
-            its bracket. ``uncertain`` is 0, or how far the volume may be off where edges are
-            thinner than cells; more than a millionth of the volume is warned of.
+            its bracket. ``uncertain`` is how far the volume may be off, proved by the bracket;
+            ``estimate`` is by how much facets of two levels differ where edges are thinner than
+            cells, and is warned of when it is more than a millionth of the volume.
 
         Raises
         ------
@@ -623,6 +624,7 @@ class Set(Moving, Edged, Pictured):
             volume=facts["volume"],
             volume_bracket=facts["volume_bracket"],
             uncertain=facts["uncertain"],
+            estimate=facts["estimate"],
             centroid=None if facts["centroid"] is None else np.array(facts["centroid"]),
             centroid_bracket=np.array(facts["centroid_bracket"]),
             inertia=None if facts["inertia"] is None else np.array(facts["inertia"]),

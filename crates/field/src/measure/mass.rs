@@ -98,16 +98,25 @@ pub struct BracketedMass<T: Real = f64> {
     pub bracket: Moments<Interval>,
     /// Within the bracket.
     pub best: Moments<T>,
-    /// How far the best volume may be off when it is not known to the agreement that was asked for; else 0.
+    /// Proved: the right volume is no further from the best one.
     pub uncertain: f64,
+    /// By how much the best volumes of two levels of facets differ, with what these may lack: an estimate of the error, no
+    /// bound. 0 where they agree as well as was asked.
+    pub estimate: f64,
 }
 
 impl<T: Real> BracketedMass<T> {
+    fn of(bracket: Moments<Interval>, best: Moments<T>, estimate: f64) -> Self {
+        let (range, volume) = (bracket.volume(), best.volume().re());
+        let uncertain = (range.high - volume).max(volume - range.low).max(0.0);
+        Self { bracket, best, uncertain, estimate: estimate.min(uncertain) }
+    }
+
     /// What there is to say of a volume, and of all that follows from it, that is not known as well as asked: without an accuracy, to
     /// six digits.
     pub fn doubt(&self, accuracy: Option<f64>) -> Option<Remark> {
         let enough = accuracy.unwrap_or(1e-6 * self.best.volume().re().abs());
-        (self.uncertain > enough).then(|| Remark {
+        (self.estimate > enough).then(|| Remark {
             id: "volume-uncertain",
             message: format!("the volume is known to {:.1e} only", self.uncertain),
             advice: "edges thinner than its cells are in the way; `volume_bracket` with a greater depth is narrower, \
@@ -174,11 +183,11 @@ pub fn mass_of<T: Real>(
     let size = (0..3).map(|k| over.high[k] - over.low[k]).product::<f64>();
     let exact = width <= 1e-3 * measure.agreement.unwrap_or(USUAL * size);
     if exact && corners.is_none() {
-        return Ok(BracketedMass { bracket, best: from_cells(&checked, &bracket), uncertain: 0.0 });
+        return Ok(BracketedMass::of(bracket, from_cells(&checked, &bracket), 0.0));
     }
     let faceted = by_facets(&solid, over, &lifter, measure, memo, &bracket)?;
     if let Some(Faceted { moments, settled: true, .. }) = faceted {
-        return Ok(BracketedMass { bracket, best: within(moments, &bracket), uncertain: 0.0 });
+        return Ok(BracketedMass::of(bracket, within(moments, &bracket), 0.0));
     }
     // What facets do not show, or not as well as was asked.
     let thin = match checked.cells >= THIN {
@@ -193,11 +202,11 @@ pub fn mass_of<T: Real>(
         && range.contains(moments.volume().re())
         && change < half
     {
-        let uncertain = if change <= agreement { 0.0 } else { 2.0 * change };
-        return Ok(BracketedMass { bracket, best: within(moments, &bracket), uncertain });
+        let estimate = if change <= agreement { 0.0 } else { change };
+        return Ok(BracketedMass::of(bracket, within(moments, &bracket), estimate));
     }
-    let uncertain = if half <= agreement { 0.0 } else { half };
-    Ok(BracketedMass { bracket, best: from_cells(&thin, &bracket), uncertain })
+    let estimate = if half <= agreement { 0.0 } else { half };
+    Ok(BracketedMass::of(bracket, from_cells(&thin, &bracket), estimate))
 }
 
 /// The numbers of both brackets.

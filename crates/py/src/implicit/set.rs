@@ -441,12 +441,13 @@ impl PySet {
             moldloft::field::mass(set, &over, &measure).map(Some)
         })?;
         let doubt = found.as_ref().and_then(|mass| mass.doubt(None));
-        let Some(BracketedMass { bracket, best, uncertain }) = found else {
+        let Some(BracketedMass { bracket, best, uncertain, estimate }) = found else {
             let dict = PyDict::new(py);
             dict.set_item("doubt", None::<String>)?;
             dict.set_item("volume", 0.0)?;
             dict.set_item("volume_bracket", (0.0, 0.0))?;
             dict.set_item("uncertain", 0.0)?;
+            dict.set_item("estimate", 0.0)?;
             for name in ["centroid", "inertia"] {
                 dict.set_item(name, None::<f64>)?;
             }
@@ -459,6 +460,7 @@ impl PySet {
         dict.set_item("volume", best.volume())?;
         let v = bracket.volume();
         dict.set_item("uncertain", uncertain)?;
+        dict.set_item("estimate", estimate)?;
         let doubt = doubt.map(|d| format!("note[{}]: {}", d.id, d.message));
         dict.set_item("doubt", doubt)?;
         dict.set_item("volume_bracket", (v.low.max(0.0), v.high))?;
