@@ -34,6 +34,7 @@ pub use expr::oracle::{Affine, Constant, Oracle};
 pub use expr::primitive::{Binary, Primitive};
 pub use expr::quadric::{QuadricAxes, QuadricClass};
 pub use expr::remap::twist;
+pub use expr::smooth::{SmoothShape, smooth_minimum};
 pub use facet::memo::FacetMemo;
 pub use facet::sheets::{
     BehindSheet, Mixed, Sheet, TriplePoint, behind_sheets, facet_mixed, solid_part,

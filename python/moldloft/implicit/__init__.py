@@ -59,6 +59,7 @@ from moldloft.implicit.fields import (
 from moldloft.implicit.hulls import convex_hull, intersection, minkowski_sum, union
 from moldloft.implicit.primitives import cuboid, everything, nothing, point, segment, tetrahedron
 from moldloft.implicit.sets import Set, load, loads
+from moldloft.implicit.smooth import smooth_difference, smooth_intersection, smooth_union
 
 __all__ = [
     "Attributes",
@@ -112,6 +113,9 @@ __all__ = [
     "setback",
     "sign",
     "sin",
+    "smooth_difference",
+    "smooth_intersection",
+    "smooth_union",
     "sphere",
     "sqrt",
     "tan",

@@ -13,5 +13,6 @@ pub(crate) mod primitive;
 pub(crate) mod quadric;
 pub(crate) mod remap;
 pub(crate) mod second_order;
+pub(crate) mod smooth;
 pub(crate) mod tape;
 mod transform;

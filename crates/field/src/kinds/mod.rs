@@ -12,6 +12,7 @@ pub mod read;
 pub mod region;
 mod sets;
 mod shapes;
+mod smooth;
 mod transforms;
 
 use moldloft_registry::Row;
@@ -59,10 +60,14 @@ pub fn rows() -> Vec<Row> {
         blends::Fillet,
         blends::Rounded,
         blends::Transition,
+        smooth::SmoothUnion,
+        smooth::SmoothIntersection,
+        smooth::SmoothDifference,
         design::Remapped,
         design::Twisted,
         design::Remainder,
         design::Repeated,
+        smooth::CircularArray,
         design::UnionOf,
         design::IntersectionOf,
         design::SetOffset,

@@ -90,3 +90,36 @@ pub fn around(set: &Set<f64>) -> Result<Option<Box3>, crate::FieldError> {
         over
     }))
 }
+
+/// Where coordinates are compared to see whether they only turn, and how well they agree, of their size.
+const TURNED_AT: [[f64; 3]; 6] = [
+    [0.31, -0.42, 0.17],
+    [-1.73, 0.55, 2.61],
+    [3.14, 2.21, -5.3],
+    [-0.07, -9.2, 0.93],
+    [12.7, 4.4, 31.1],
+    [0.61, 0.27, -77.0],
+];
+const TURNED: f64 = 1e-9;
+
+/// The box about the z axis in which a set stays when its coordinates are replaced by ones that keep heights and distances from
+/// the axis; `None` for others, and for a set without end.
+pub(crate) fn box_of_turns<T: Real>(
+    set: &Set<T>,
+    coordinates: &[crate::Primitive<T>; 3],
+) -> Option<Set<f64>> {
+    let [x, y, z] = [0, 1, 2].map(|k| coordinates[k].re());
+    let turns = TURNED_AT.into_iter().all(|at| {
+        let p = Vec3::from(at);
+        let (a, b) = (x.value(p).hypot(y.value(p)), p.x.hypot(p.y));
+        (a - b).abs() <= TURNED * (1.0 + b) && z.value(p) == p.z
+    });
+    if !turns {
+        return None;
+    }
+    let over = around(&set.re()).ok().flatten()?;
+    let far = |k: usize| over.low[k].abs().max(over.high[k].abs());
+    let reach = far(0).hypot(far(1));
+    let low = Vec3::of(-reach, -reach, over.low.z);
+    Set::cuboid(low, Vec3::of(reach, reach, over.high.z)).ok()
+}

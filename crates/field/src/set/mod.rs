@@ -555,10 +555,25 @@ impl<T: Real> Set<T> {
         self.rebuilt(&|p| Set::of(SetNodeKind::Leaf(p.re()), Vec::new()), false, &Set::combined)
     }
 
-    /// The set with its coordinates replaced; see [`Primitive::remapped`].
+    /// The set with its coordinates replaced; see [`Primitive::remapped`]. What only turns about the z axis, as a twist does, is
+    /// cut by the box in which it lies whatever the angle: its ends are known without a search.
     pub fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Self {
         let leaf = |p: &Primitive<T>| Self::of_leaf(&p.remapped(coordinates));
-        self.rebuilt(&leaf, false, &Self::combined)
+        let made = self.rebuilt(&leaf, false, &Self::combined);
+        match crate::kinds::region::box_of_turns(self, coordinates) {
+            Some(within) => made & within.constant(),
+            None => made,
+        }
+    }
+
+    /// The function of the set as one primitive: minima over unions, maxima over intersections.
+    pub fn as_primitive(&self) -> Primitive<T> {
+        let [full, empty] = [-1.0, 1.0].map(|x| Primitive::real(T::from(x)));
+        let join = |union: bool, a: Primitive<T>, b: Primitive<T>| match union {
+            true => a.min(&b),
+            false => a.max(&b),
+        };
+        self.folded(&Primitive::clone, full, empty, &join)
     }
 
     /// The set moved by an affine map.

@@ -6,7 +6,9 @@ use super::oracle::{PythonOracle, Slots};
 use crate::arrays;
 use crate::error::plain_error;
 use crate::work::unlocked_if;
-use moldloft::field::{Affine, FieldError, Form, Primitive, check_rail, check_rails};
+use moldloft::field::{
+    Affine, FieldError, Form, Primitive, SmoothShape, check_rail, check_rails,
+};
 use moldloft::num::{Axis, Vec3};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -223,6 +225,16 @@ impl PyField {
 
     fn setback(&self, o: &Self, a: f64, b: f64) -> PyResult<Self> {
         let made = moldloft::field::setback_rail([&self.inner, &o.inner], [a, b]);
+        made.map(|p| self.both(o, p)).map_err(plain_error)
+    }
+
+    /// The smooth minimum of two.
+    fn smooth(&self, o: &Self, width: f64, shape: &str) -> PyResult<Self> {
+        let Some(shape) = SmoothShape::of_name(shape) else {
+            let names = SmoothShape::NAMES.join(", ");
+            return Err(plain_error(format!("`{shape}` is no shape of a blend: one of {names}")));
+        };
+        let made = moldloft::field::smooth_minimum([&self.inner, &o.inner], width, shape);
         made.map(|p| self.both(o, p)).map_err(plain_error)
     }
 

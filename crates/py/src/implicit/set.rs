@@ -165,6 +165,10 @@ impl PySet {
         self.inner.offset(distance).map(|s| self.from(s)).map_err(plain_error)
     }
 
+    fn as_field(&self) -> PyField {
+        PyField { inner: self.inner.as_primitive(), slots: self.slots.clone() }
+    }
+
     fn shell(&self, thickness: f64) -> PyResult<Self> {
         self.inner.shell(thickness).map(|s| self.from(s)).map_err(plain_error)
     }
