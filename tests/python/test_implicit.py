@@ -315,12 +315,11 @@ def test_python_functions_that_fail():
         (lambda: im.axes()[0] ** -1, "whole number"),
         (lambda: im.cone((0, 0, 0), (0, 0, 1), math.pi), "angle"),
         (lambda: im.cyclide((0,) * 3, (0, 0, 1), (1, 0, 0), 1, 0.5, 2), "change"),
-        (lambda: im.liming(*im.axes(), lam=1), "between 0 and 1"),
-        (lambda: im.liming(*im.axes(), lam=-0.1), "between 0 and 1"),
+        (lambda: im.liming(*im.axes(), lambda_=1), "between 0 and 1"),
+        (lambda: im.liming(*im.axes(), lambda_=-0.1), "between 0 and 1"),
         (lambda: im.fillet(*im.axes()[:2], 0), "setback must be above 0"),
         (lambda: im.cuboid((0, 0, 0), (1, 0, 1)), "no volume"),
-        (lambda: im.tetrahedron([(0, 0, 0)] * 4), "degenerate"),
-        (lambda: im.tetrahedron([(0, 0, 0)] * 3), "four corners"),
+        (lambda: im.tetrahedron(*[(0, 0, 0)] * 4), "degenerate"),
         (lambda: im.Set(im.cylinder((0,) * 3, (0, 0, 1), 1)).facets(), "no end towards"),
         (lambda: im.Set(im.cylinder((0,) * 3, (0, 0, 1), 1)).mass(), "no end towards"),
         (lambda: im.everything().facets(), "no end towards"),
@@ -348,14 +347,16 @@ def test_bad_input(call, match):
 
 def test_rails_are_checked():
     a, b = im.sphere((0, 0, 0), 1), im.sphere((1, 0, 0), 1)
-    box = ((-3, -3, -3), (3, 3, 3))
+    box = {"low": (-3, -3, -3), "high": (3, 3, 3)}
     with pytest.raises(moldloft.Error, match=r"inside body .* near \("):
-        im.check_rail(a, b, im.sphere((0.5, 0, 0), 0.7), box)
+        im.liming(a, b, im.sphere((0.5, 0, 0), 0.7), **box)
     with pytest.raises(moldloft.Error, match="rails meet near"):
-        im.check_rails(a, b, im.axes()[0], im.axes()[1], box)
+        im.zhang(a, b, im.axes()[0], im.axes()[1], **box)
+    with pytest.raises(ValueError, match="two corners"):
+        im.liming(a, b, im.sphere((0.5, 0, 0), 0.7), low=(-3, -3, -3))
     x, _, z = im.axes()
-    im.check_rail(x, z, im.setback(x, z, 0.5), box)
-    corner = im.fillet(x, z, 0.5)
+    im.liming(x, z, im.setback(x, z, 0.5), **box)
+    corner = im.fillet(x, z, 0.5, **box)
     assert corner.degree == 2
     t = 0.5 * (1 - math.sqrt(0.5))
     assert abs(corner.field((t, 0, t))) < 1e-15

@@ -20,8 +20,6 @@ True
 from moldloft.implicit.answers import Attributes, Distance, Hit, Lamp, Leaf, Mass, Nearest, Sun
 from moldloft.implicit.blends import (
     Blend,
-    check_rail,
-    check_rails,
     fillet,
     liming,
     rounded,
@@ -82,8 +80,6 @@ __all__ = [
     "Unresolved",
     "atan2",
     "axes",
-    "check_rail",
-    "check_rails",
     "cone",
     "convex_hull",
     "cos",

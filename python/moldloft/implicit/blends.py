@@ -35,8 +35,13 @@ class Blend:
         return self.field.degree
 
 
-def _box(box: tuple[Sequence[float], Sequence[float]]) -> tuple[list[float], list[float]]:
-    low, high = box
+def _box(
+    low: Sequence[float] | None, high: Sequence[float] | None
+) -> tuple[list[float], list[float]] | None:
+    if low is None and high is None:
+        return None
+    if low is None or high is None:
+        raise ValueError("a box has two corners, and one is missing: give low and high, or neither")
     return triple(low, "low corner"), triple(high, "high corner")
 
 
@@ -46,13 +51,15 @@ def liming(
     l3: Field,
     l4: Field | None = None,
     *,
-    lam: float = 0.5,
+    lambda_: float = 0.5,
     contact: int = 1,
+    low: Sequence[float] | None = None,
+    high: Sequence[float] | None = None,
 ) -> Field:
     """The surface through the four curves in which ``l1`` and ``l2`` meet ``l3`` and ``l4``.
 
-    ``lam l1 l2 - (1 - lam) l3 l4``. Without ``l4``, ``l3`` is a rail: the blend touches both
-    bodies where the rail does, with contact G^n.
+    ``lambda_ l1 l2 - (1 - lambda_) l3 l4``. Without ``l4``, ``l3`` is a rail: the blend touches
+    both bodies where the rail does, with contact G^n.
 
     Parameters
     ----------
@@ -64,10 +71,14 @@ def liming(
         The rail of the first body, or of both.
     l4
         The rail of the second body.
-    lam
+    lambda_
         Shape of the blend, between 0 and 1.
     contact
         Order of contact: 1 for tangent planes, 2 for curvature too.
+    low
+        Low corner of a box over which the contact is proved, ``(3,)``.
+    high
+        Its high corner.
 
     Returns
     -------
@@ -78,15 +89,25 @@ def liming(
     --------
     >>> from moldloft import implicit as im
     >>> x, y, z = im.axes()
-    >>> im.liming(x, y, x + y - 1, lam=2 / 3)((1, 0, 0))
+    >>> im.liming(x, y, x + y - 1, lambda_=2 / 3)((1, 0, 0))
     0.0
     """
+    if l4 is None and (box := _box(low, high)) is not None:
+        l1._core.check_rail(l2._core, l3._core, *box)
     other = None if l4 is None else l4._core
-    return Field(l1._core.liming(l2._core, l3._core, other, float(lam), int(contact)))
+    return Field(l1._core.liming(l2._core, l3._core, other, float(lambda_), int(contact)))
 
 
 def zhang(
-    l1: Field, l2: Field, l3: Field, l4: Field, *, lam: float = 0.5, contact: int = 1
+    l1: Field,
+    l2: Field,
+    l3: Field,
+    l4: Field,
+    *,
+    lambda_: float = 0.5,
+    contact: int = 1,
+    low: Sequence[float] | None = None,
+    high: Sequence[float] | None = None,
 ) -> Field:
     """The transition from ``l1``, touched at the rail ``l3``, to ``l2``, touched at ``l4``.
 
@@ -100,17 +121,23 @@ def zhang(
         The rail of the first body, or of both.
     l4
         The rail of the second body.
-    lam
+    lambda_
         Shape of the blend, between 0 and 1.
     contact
         Order of contact: 1 for tangent planes, 2 for curvature too.
+    low
+        Low corner of a box over which the contact is proved, ``(3,)``.
+    high
+        Its high corner.
 
     Returns
     -------
     Field
         Zero on the transition.
     """
-    return Field(l1._core.zhang(l2._core, l3._core, l4._core, float(lam), int(contact)))
+    if (box := _box(low, high)) is not None:
+        l1._core.check_rails(l2._core, l3._core, l4._core, *box)
+    return Field(l1._core.zhang(l2._core, l3._core, l4._core, float(lambda_), int(contact)))
 
 
 def setback(l1: Field, l2: Field, a: float, b: float | None = None) -> Field:
@@ -137,73 +164,45 @@ def setback(l1: Field, l2: Field, a: float, b: float | None = None) -> Field:
     return Field(l1._core.setback(l2._core, float(a), float(a if b is None else b)))
 
 
-def check_rail(
-    l1: Field, l2: Field, rail: Field, box: tuple[Sequence[float], Sequence[float]]
-) -> None:
-    """Prove over a box that a blend on the rail touches both bodies with their own orientation.
-
-    Parameters
-    ----------
-    l1
-        The first body.
-    l2
-        The second body.
-    rail
-        The rail.
-    box
-        Low and high corner.
-
-    Raises
-    ------
-    Error
-        With the place where it does not, or where that could not be proved.
-    """
-    l1._core.check_rail(l2._core, rail._core, *_box(box))
-
-
-def check_rails(
-    l1: Field, l2: Field, l3: Field, l4: Field, box: tuple[Sequence[float], Sequence[float]]
-) -> None:
-    """Prove over a box that a transition touches both bodies: its rails keep apart.
-
-    Parameters
-    ----------
-    l1
-        The first body.
-    l2
-        The second body.
-    l3
-        The rail of the first body, or of both.
-    l4
-        The rail of the second body.
-    box
-        Low and high corner.
-
-    Raises
-    ------
-    Error
-        With the place where that fails.
-    """
-    l1._core.check_rails(l2._core, l3._core, l4._core, *_box(box))
-
-
 def _blended(
-    kind: str, l1: Field, l2: Field, width: float, other: float | None, lam: float
+    kind: str,
+    l1: Field,
+    l2: Field,
+    setbacks: tuple[float, float],
+    lambda_: float,
+    box: tuple[list[float], list[float]] | None,
 ) -> Blend:
     from moldloft.implicit.sets import Set
 
-    setbacks = [float(width), float(width if other is None else other)]
-    core, field = _core.Set.blended(kind, l1._core, l2._core, setbacks, float(lam))
+    if box is not None:
+        # The round of an edge is the fillet of the complements.
+        bodies = (-l1, -l2) if kind == "round" else (l1, l2)
+        bodies[0]._core.check_rail(bodies[1]._core, setback(*bodies, *setbacks)._core, *box)
+    core, field = _core.Set.blended(kind, l1._core, l2._core, list(setbacks), float(lambda_))
     return Blend(Set(core), Field(field))
 
 
 @overload
 def fillet(
-    l1: Field, l2: Field, width: float, other: float | None = None, *, lam: float = CIRCULAR
+    l1: Field,
+    l2: Field,
+    width: float,
+    other: float | None = None,
+    *,
+    lambda_: float = CIRCULAR,
+    low: Sequence[float] | None = None,
+    high: Sequence[float] | None = None,
 ) -> Blend: ...
 @overload
 def fillet(
-    l1: Set, l2: Set | Field, width: float, other: float | None = None, *, lam: float = CIRCULAR
+    l1: Set,
+    l2: Set | Field,
+    width: float,
+    other: float | None = None,
+    *,
+    lambda_: float = CIRCULAR,
+    low: None = None,
+    high: None = None,
 ) -> Set: ...
 def fillet(
     l1: Field | Set,
@@ -211,12 +210,14 @@ def fillet(
     width: float,
     other: float | None = None,
     *,
-    lam: float = CIRCULAR,
+    lambda_: float = CIRCULAR,
+    low: Sequence[float] | None = None,
+    high: Sequence[float] | None = None,
 ) -> Blend | Set:
     """The union of two bodies with a fillet in their corner, of setback ``width`` on both.
 
-    ``lam`` shapes it between 0 (a chamfer) and 1 (the corner). With true distances the widths are
-    lengths. Of sets see :meth:`Set.filleted`.
+    ``lambda_`` shapes it between 0 (a chamfer) and 1 (the corner). With true distances the widths
+    are lengths. Of sets see :meth:`Set.filleted`.
 
     Parameters
     ----------
@@ -228,8 +229,12 @@ def fillet(
         Setback on the second body, in model units; on both by default.
     other
         Setback on the first body, where it differs.
-    lam
+    lambda_
         Shape of the blend, between 0 and 1.
+    low
+        Low corner of a box over which the contact of two fields is proved, ``(3,)``.
+    high
+        Its high corner.
 
     Returns
     -------
@@ -238,14 +243,28 @@ def fillet(
     """
     from moldloft.implicit.sets import Set
 
+    box = _box(low, high)
     if isinstance(l1, Set) or isinstance(l2, Set):
+        if box is not None:
+            raise ValueError("low and high prove the contact of two fields, not of sets")
         a = l1 if isinstance(l1, Set) else Set(l1)
-        return a.filleted(l2, width, other, lam=lam)
-    return _blended("fillet", l1, l2, width, other, lam)
+        return a.filleted(l2, width, other, lambda_=lambda_)
+    return _blended("fillet", l1, l2, _setbacks(width, other), lambda_, box)
+
+
+def _setbacks(width: float, other: float | None) -> tuple[float, float]:
+    return float(width), float(width if other is None else other)
 
 
 def rounded(
-    l1: Field, l2: Field, width: float, other: float | None = None, *, lam: float = CIRCULAR
+    l1: Field,
+    l2: Field,
+    width: float,
+    other: float | None = None,
+    *,
+    lambda_: float = CIRCULAR,
+    low: Sequence[float] | None = None,
+    high: Sequence[float] | None = None,
 ) -> Blend:
     """The intersection of two bodies with its edge rounded, of setback ``width`` on both.
 
@@ -259,19 +278,31 @@ def rounded(
         Setback on the second body, in model units; on both by default.
     other
         Setback on the first body, where it differs.
-    lam
+    lambda_
         Shape of the blend, between 0 and 1.
+    low
+        Low corner of a box over which the contact is proved, ``(3,)``.
+    high
+        Its high corner.
 
     Returns
     -------
     Blend
         What can be combined further.
     """
-    return _blended("round", l1, l2, width, other, lam)
+    return _blended("round", l1, l2, _setbacks(width, other), lambda_, _box(low, high))
 
 
 def transition(
-    l1: Field, l2: Field, l3: Field, l4: Field, *, lam: float = 0.5, contact: int = 1
+    l1: Field,
+    l2: Field,
+    l3: Field,
+    l4: Field,
+    *,
+    lambda_: float = 0.5,
+    contact: int = 1,
+    low: Sequence[float] | None = None,
+    high: Sequence[float] | None = None,
 ) -> Blend:
     """The body ``l1`` up to its rail ``l3``, ``l2`` up to ``l4``, and Zhang's transition.
 
@@ -287,10 +318,14 @@ def transition(
         The rail of the first body, or of both.
     l4
         The rail of the second body.
-    lam
+    lambda_
         Shape of the blend, between 0 and 1.
     contact
         Order of contact: 1 for tangent planes, 2 for curvature too.
+    low
+        Low corner of a box over which the contact is proved, ``(3,)``.
+    high
+        Its high corner.
 
     Returns
     -------
@@ -299,8 +334,10 @@ def transition(
     """
     from moldloft.implicit.sets import Set
 
+    if (box := _box(low, high)) is not None:
+        l1._core.check_rails(l2._core, l3._core, l4._core, *box)
     cores = (l1._core, l2._core, l3._core, l4._core)
-    core, field = _core.Set.transition(*cores, float(lam), int(contact))
+    core, field = _core.Set.transition(*cores, float(lambda_), int(contact))
     return Blend(Set(core), Field(field))
 
 

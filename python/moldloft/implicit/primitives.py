@@ -103,23 +103,26 @@ def point(at: Triple) -> Set:
     return Set(_core.Set.point(triple(at, "point")))
 
 
-def tetrahedron(corners: Sequence[Triple]) -> Set:
+def tetrahedron(a: Triple, b: Triple, c: Triple, d: Triple) -> Set:
     """The tetrahedron of four points, in any order.
 
     Parameters
     ----------
-    corners
-        Four points, ``(4, 3)``.
+    a
+        A corner, ``(3,)``.
+    b
+        A corner.
+    c
+        A corner.
+    d
+        A corner.
 
     Returns
     -------
     Set
         A solid.
     """
-    points = [triple(p, "corner") for p in corners]
-    if len(points) != 4:
-        raise ValueError(f"a tetrahedron has four corners, found {len(points)}")
-    return Set(_core.Set.tetrahedron(points))
+    return Set(_core.Set.tetrahedron([triple(p, "corner") for p in (a, b, c, d)]))
 
 
 explain(globals())
