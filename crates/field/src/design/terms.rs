@@ -28,13 +28,13 @@ const DEEP: f64 = 1e-9;
 
 /// Intersections of literals; a literal is a surface with the side of it that is solid: 2 k for the negative side of
 /// surface k, 2 k + 1 for its positive one.
-type Term = Vec<u32>;
+type LiteralTerm = Vec<u32>;
 
 /// The terms of a body.
 pub(super) struct BodyTerms<T: Real> {
     /// Of every literal the half-space, with the attributes of the leaf that it comes from.
     literals: Vec<Option<Leaf<T>>>,
-    pub(super) terms: Vec<Term>,
+    pub(super) terms: Vec<LiteralTerm>,
     /// True when what is far outside of the box around the body may be missing.
     pub(super) near_only: bool,
     /// A box around the body.
@@ -72,7 +72,7 @@ impl<T: Real> BodyTerms<T> {
         }
         let codes: FxHashMap<usize, u32> =
             all.iter().enumerate().map(|(k, p)| (p.identity(), code(k))).collect();
-        let space = Space::of(&set.re(), &literals, outside)?;
+        let space = TermSpace::of(&set.re(), &literals, outside)?;
         let failed: RefCell<Option<FieldError>> = RefCell::new(None);
         let leaf = |p: &crate::Primitive<T>| match codes.get(&p.identity()) {
             Some(code) => vec![vec![code ^ u32::from(outside)]],
@@ -80,7 +80,7 @@ impl<T: Real> BodyTerms<T> {
         };
         let (every, none) = (vec![Vec::new()], Vec::new());
         let [everything, nothing] = if outside { [none, every] } else { [every, none] };
-        let join = |union: bool, a: Vec<Term>, b: Vec<Term>| {
+        let join = |union: bool, a: Vec<LiteralTerm>, b: Vec<LiteralTerm>| {
             if failed.borrow().is_some() {
                 return Vec::new();
             }
@@ -125,12 +125,13 @@ impl<T: Real> BodyTerms<T> {
 }
 
 /// Without terms that are part of others by their literals alone.
-fn absorbed(mut terms: Vec<Term>) -> Vec<Term> {
+fn absorbed(mut terms: Vec<LiteralTerm>) -> Vec<LiteralTerm> {
     terms.sort_by(|a, b| a.len().cmp(&b.len()).then_with(|| a.cmp(b)));
     terms.dedup();
-    let mut out: Vec<Term> = Vec::with_capacity(terms.len());
+    let mut out: Vec<LiteralTerm> = Vec::with_capacity(terms.len());
     for term in terms {
-        let within = |small: &Term| small.iter().all(|code| term.binary_search(code).is_ok());
+        let within =
+            |small: &LiteralTerm| small.iter().all(|code| term.binary_search(code).is_ok());
         if !out.iter().any(within) {
             out.push(term);
         }
@@ -138,9 +139,9 @@ fn absorbed(mut terms: Vec<Term>) -> Vec<Term> {
     out
 }
 
-type Bits = Vec<u64>;
+type SampleBits = Vec<u64>;
 
-fn bits(flags: impl Iterator<Item = bool>) -> Bits {
+fn bits(flags: impl Iterator<Item = bool>) -> SampleBits {
     let mut out = Vec::new();
     for (k, flag) in flags.enumerate() {
         if k % 64 == 0 {
@@ -154,7 +155,7 @@ fn bits(flags: impl Iterator<Item = bool>) -> Bits {
 }
 
 /// Where terms are looked for.
-struct Space {
+struct TermSpace {
     over: Box3,
     wide: Box3,
     /// The body, or its complement.
@@ -162,9 +163,9 @@ struct Space {
     /// The literals as sets.
     literals: Vec<Set>,
     /// Of every literal the sample points in it, strictly.
-    inside: Vec<Bits>,
+    inside: Vec<SampleBits>,
     /// The sample points strictly outside of the target.
-    missed: Bits,
+    missed: SampleBits,
     near_only: Cell<bool>,
 }
 
@@ -186,7 +187,7 @@ fn about(set: &Set) -> Box3 {
     if points.is_empty() {
         points.extend([Vec3::of(-1.0, -1.0, -1.0), Vec3::of(1.0, 1.0, 1.0)]);
     }
-    widened(&Box3::around(points.into_iter()), 1.0)
+    widened(&Box3::around(points), 1.0)
 }
 
 /// A box with that share of its diagonal more on every side.
@@ -209,7 +210,7 @@ fn spread(over: &Box3, count: usize) -> impl Iterator<Item = Vec3> + '_ {
     })
 }
 
-impl Space {
+impl TermSpace {
     fn of<T: Real>(
         set: &Set,
         literals: &[Option<Leaf<T>>],
@@ -239,7 +240,7 @@ impl Space {
     }
 
     /// True when a sample point is in a term and, where that is given, in `also`.
-    fn is_seen(&self, term: &[u32], also: Option<&Bits>) -> bool {
+    fn is_seen(&self, term: &[u32], also: Option<&SampleBits>) -> bool {
         let words = self.missed.len();
         (0..words).any(|w| {
             let start = also.map_or(u64::MAX, |bits| bits[w]);
@@ -268,10 +269,10 @@ impl Space {
     }
 
     /// What both unions of terms have in common.
-    fn product(&self, a: &[Term], b: &[Term]) -> Vec<Term> {
+    fn product(&self, a: &[LiteralTerm], b: &[LiteralTerm]) -> Vec<LiteralTerm> {
         let mut out = Vec::new();
         for (x, y) in a.iter().flat_map(|x| b.iter().map(move |y| (x, y))) {
-            let mut term: Term = x.iter().chain(y).copied().collect();
+            let mut term: LiteralTerm = x.iter().chain(y).copied().collect();
             term.sort_unstable();
             term.dedup();
             let contradicts = term.windows(2).any(|w| w[0] ^ 1 == w[1]);
@@ -298,7 +299,7 @@ impl Space {
     }
 
     /// The terms without faces that they can do without as parts of the target.
-    fn primes(&self, terms: Vec<Term>) -> Vec<Term> {
+    fn primes(&self, terms: Vec<LiteralTerm>) -> Vec<LiteralTerm> {
         let outside = self.target.complement();
         let mut out = Vec::with_capacity(terms.len());
         for mut term in terms {

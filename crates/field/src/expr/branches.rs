@@ -9,7 +9,7 @@ use crate::expr::tape::{ExprInstruction, ExprTape, NO_LEAF};
 use std::f64::consts::PI;
 
 /// A jump in a box: the instruction, and what takes its place on either side.
-enum Jump {
+enum FieldJump {
     /// The angle of (x, y) across y = 0, x < 0, from above and from below.
     Cut { y: u32, x: u32 },
     /// x - n y and x - (n + 1) y, which meet where the second is zero.
@@ -26,12 +26,12 @@ impl ExprTape<f64> {
     }
 
     /// The first jump inside of a leaf, with its place among the instructions.
-    fn jump(&self, ranges: &[Interval]) -> Option<(usize, Jump)> {
+    fn jump(&self, ranges: &[Interval]) -> Option<(usize, FieldJump)> {
         let of = |k: u32| ranges[k as usize];
         self.code.iter().enumerate().find_map(|(k, code)| match *code {
             ExprInstruction::Atan2(y, x) => {
                 let across = of(y).contains(0.0) && of(x).high < 0.0;
-                across.then_some((k, Jump::Cut { y, x }))
+                across.then_some((k, FieldJump::Cut { y, x }))
             }
             ExprInstruction::Mod(x, y) => {
                 if of(y).contains(0.0) || of(x).turns(of(y)).is_some() {
@@ -41,7 +41,7 @@ impl ExprTape<f64> {
                 let (low, high) = (ratio.low.floor(), ratio.high.floor());
                 let two = high - low == 1.0;
                 let falling = of(y).high < 0.0;
-                two.then_some((k, Jump::Step { x, y, turns: low, falling }))
+                two.then_some((k, FieldJump::Step { x, y, turns: low, falling }))
             }
             _ => None,
         })
@@ -66,7 +66,7 @@ impl ExprTape<f64> {
             let own = self.leaf[k];
             if k == at {
                 let both = match jump {
-                    Jump::Cut { y, x } => {
+                    FieldJump::Cut { y, x } => {
                         let [y, x] = [y, x].map(|k| places[k as usize][0]);
                         let minus =
                             [y, x].map(|k| push(ExprInstruction::Unary(Unary::Neg, k), NO_LEAF));
@@ -74,7 +74,7 @@ impl ExprTape<f64> {
                         (place, below) = (y, false);
                         [PI, -PI].map(|turn| push(ExprInstruction::PlusReal(angle, turn), NO_LEAF))
                     }
-                    Jump::Step { x, y, turns, falling } => {
+                    FieldJump::Step { x, y, turns, falling } => {
                         let [x, y] = [x, y].map(|k| places[k as usize][0]);
                         let rest = [turns, turns + 1.0].map(|n| {
                             let less = push(ExprInstruction::TimesReal(y, n), NO_LEAF);

@@ -314,6 +314,27 @@ impl CompleteFacets {
     }
 }
 
+/// Facets that miss more than this part of their body are none of it.
+const REFUSED: f64 = 1e-3;
+
+impl CompleteFacets {
+    /// The facets, unless they miss so much that they are another body.
+    fn checked(self, size: f64) -> Result<Facets, FieldError> {
+        let missed = || self.facets.unresolved.iter().filter(|u| u.missed);
+        let volume: f64 = missed().map(|u| u.volume).sum();
+        let body = moldloft_mesh::measure(&self.facets.mesh).volume.abs();
+        let worst = missed().max_by(|a, b| a.volume.total_cmp(&b.volume));
+        match worst {
+            Some(u) if !self.all && volume > REFUSED * body => {
+                let step = self.facets.step;
+                let depth = halvings(size, thickness(u).min(0.5 * step)) + 1;
+                Err(FieldError::Thin { place: u.place, step, depth })
+            }
+            _ => Ok(self.facets),
+        }
+    }
+}
+
 /// The facets with bodies that only touch apart, and with cells halved until nothing is missed.
 fn whole(
     set: &Set,
@@ -569,6 +590,11 @@ pub(crate) fn info(leaf: &Leaf) -> PatchInfo {
 }
 
 impl Facets {
+    /// The unresolved places, neighbours joined: at most 100, the largest first.
+    pub fn open_places(&self) -> Vec<Unresolved> {
+        unresolved::gathered(&self.unresolved, self.step)
+    }
+
     /// The form of a patch's primitive.
     pub fn form(&self, patch: usize) -> &Form<f64> {
         self.leaves[self.patch_leaves[patch]].primitive.form()

@@ -47,19 +47,19 @@ enum Pruned {
 }
 
 #[derive(Clone, Copy)]
-struct FacePlane {
+struct PlaneEquation {
     normal: Vec3,
     offset: f64,
 }
 
-impl FacePlane {
+impl PlaneEquation {
     fn at(&self, p: Vec3) -> f64 {
         self.normal.dot(p) + self.offset
     }
 }
 
 /// Corners, each with the plane along which the edge from it to the next one runs.
-type Outline = Vec<(Vec3, u32)>;
+type PlanePolygon = Vec<(Vec3, u32)>;
 
 /// The formula of a tape, whose leaves are planes.
 fn formula(body: &SurfacedSet, tape: &ExprTape<f64>) -> Option<Arc<PlaneFormula>> {
@@ -94,7 +94,7 @@ fn formula(body: &SurfacedSet, tape: &ExprTape<f64>) -> Option<Arc<PlaneFormula>
 
 /// Splits the planes of a body.
 struct PlaneSplitter {
-    planes: Vec<FacePlane>,
+    planes: Vec<PlaneEquation>,
     corners: FxHashMap<[u32; 3], Vec3>,
     on: f64,
     near: f64,
@@ -119,7 +119,7 @@ impl PlaneSplitter {
     }
 
     /// The formula as it is on a polygon of plane `own`, whose sides stay open.
-    fn prune(&mut self, formula: &Arc<PlaneFormula>, own: u32, outline: &Outline) -> Pruned {
+    fn prune(&mut self, formula: &Arc<PlaneFormula>, own: u32, outline: &PlanePolygon) -> Pruned {
         match &**formula {
             PlaneFormula::Side(k, flipped) => {
                 if *k == own {
@@ -160,7 +160,7 @@ impl PlaneSplitter {
     }
 
     /// Both parts of a polygon of plane `own`, behind plane `by` and before it.
-    fn split(&mut self, own: u32, outline: &Outline, by: u32) -> [Outline; 2] {
+    fn split(&mut self, own: u32, outline: &PlanePolygon, by: u32) -> [PlanePolygon; 2] {
         let plane = self.planes[by as usize];
         let values: Vec<f64> = outline.iter().map(|(p, _)| plane.at(*p)).collect();
         let mut out = [Vec::new(), Vec::new()];
@@ -246,13 +246,13 @@ fn line_ends(
         let v = plane.normal.cross(u);
         let middle = centre - plane.normal * away;
         splitter.planes.truncate(count);
-        let mut outline = Outline::new();
+        let mut outline = PlanePolygon::new();
         // A square that reaches beyond the box, with helping planes for its sides.
         let corners: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         for [i, j] in corners {
             let corner = middle + u * (i * reach) + v * (j * reach);
             let normal = if i * j > 0.0 { v * j } else { u * i };
-            splitter.planes.push(FacePlane { normal, offset: -normal.dot(corner) });
+            splitter.planes.push(PlaneEquation { normal, offset: -normal.dot(corner) });
             outline.push((corner, splitter.planes.len() as u32 - 1));
         }
         splitter.corners.retain(|key, _| (key[2] as usize) < count);
@@ -437,7 +437,7 @@ fn holds(line: &[usize], flat: &dyn Fn(usize) -> [f64; 2], [x, y]: [f64; 2]) -> 
 
 /// The triangles of a face, counter-clockwise about its plane's normal.
 fn triangles_of(
-    plane: &FacePlane,
+    plane: &PlaneEquation,
     edges: &[[usize; 2]],
     points: &[Vec3],
 ) -> Option<Vec<[usize; 3]>> {
@@ -564,7 +564,7 @@ pub(super) fn facets(
     let capped = capped(set, over)?;
     let body = capped.as_body();
     let plane_of = |p: &crate::Primitive| match p.form() {
-        Form::Plane(q) => Some(FacePlane { normal: q.normal, offset: -q.normal.dot(q.point) }),
+        Form::Plane(q) => Some(PlaneEquation { normal: q.normal, offset: -q.normal.dot(q.point) }),
         _ => None,
     };
     let Some(all) = body.surfaces.iter().map(plane_of).collect::<Option<Vec<_>>>() else {

@@ -4,8 +4,8 @@
 
 use crate::common::{axis, v};
 use moldloft_field::{
-    FieldError, IntegralOptions, Membership, Primitive, Set, around, chamfer_edges, fillet_sets, mass, nearest,
-    round_edges,
+    FieldError, IntegralOptions, Membership, Primitive, Set, around, chamfer_edges, fillet_sets,
+    mass, nearest, round_edges,
 };
 use moldloft_num::{Box3, Vec3};
 use moldloft_testing::{Random, rounds};
