@@ -186,10 +186,10 @@ impl Entity {
         let [x, y] = self.vertices.first()?.0;
         let (sx, sy, angle) = (number(41, 1.0), number(42, 1.0), number(50, 0.0));
         let [c, s] = match angle.rem_euclid(360.0) {
-            a if a == 0.0 => [1.0, 0.0],
-            a if a == 90.0 => [0.0, 1.0],
-            a if a == 180.0 => [-1.0, 0.0],
-            a if a == 270.0 => [0.0, -1.0],
+            0.0 => [1.0, 0.0],
+            90.0 => [0.0, 1.0],
+            180.0 => [-1.0, 0.0],
+            270.0 => [0.0, -1.0],
             a => [libm::cos(a.to_radians()), libm::sin(a.to_radians())],
         };
         // As of SVG, where y runs down.

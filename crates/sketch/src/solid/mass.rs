@@ -36,7 +36,7 @@ pub(crate) struct MassIntegrals<T> {
     moment: Vec3<T>,
     /// ∫ xx, yy, zz, yz, zx, xy dV.
     second: [T; 6],
-    /// What tells that the surface closes: ∫ dA, and ∫ x dA_x, ∫ y dA_y, ∫ z dA_z, each of which is the volume.
+    /// Sums of a closed surface: ∫ dA, nothing, and ∫ x dA_x, ∫ y dA_y, ∫ z dA_z, each of which is the volume.
     closure: [Vec3; 2],
     /// Area and moment of the patch under way, whose sign is that of its border's direction.
     patch: (T, Vec3<T>),
