@@ -13,6 +13,7 @@
 mod bernstein;
 mod body;
 mod cell;
+mod chart;
 mod descent;
 mod equilibrium;
 mod figures;
@@ -31,5 +32,7 @@ pub use flotation::{Attitude, Flotation, Water, bottom, bounds, flotation};
 pub use measures::{curve_measures, solid_measures};
 pub use section::section_area;
 
+#[cfg(test)]
+mod part_tests;
 #[cfg(test)]
 mod tests;

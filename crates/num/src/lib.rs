@@ -50,8 +50,8 @@ pub use reparametrization::{
 };
 pub use roots::{NoRoot, find_root};
 pub use shape::{
-    Curve, CurveFormula, CurveJet, Field, Order, SurfJet, Surface, SurfaceFormula, line_crossings,
-    slope_scale,
+    Curve, CurveFormula, CurveJet, Field, InnerPlane, Order, SurfJet, Surface, SurfaceFormula,
+    line_crossings, slope_scale,
 };
 pub use solid::{Solid, SolidFormula, SolidJet};
 pub use vec3::{Vec2, Vec3};

@@ -109,6 +109,10 @@ impl<T: Real> Surface<T> for Image<T> {
         self.surface.crossings(path, spans)
     }
 
+    fn inner_planes(&self) -> Vec<moldloft_num::InnerPlane<'_>> {
+        self.surface.inner_planes()
+    }
+
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, self.map.reverses()))
     }
@@ -285,6 +289,10 @@ impl<T: Real> Surface<T> for ProjectedSurface<T> {
         self.surface.crossings(path, spans)
     }
 
+    fn inner_planes(&self) -> Vec<moldloft_num::InnerPlane<'_>> {
+        self.surface.inner_planes()
+    }
+
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, false))
     }
@@ -373,6 +381,10 @@ impl<T: Real> Surface<T> for ShiftedSurface<T> {
 
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
         self.surface.crossings(path, spans)
+    }
+
+    fn inner_planes(&self) -> Vec<moldloft_num::InnerPlane<'_>> {
+        self.surface.inner_planes()
     }
 
     fn edge_made_of(&self, k: usize) -> Vec<Key> {

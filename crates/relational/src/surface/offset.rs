@@ -163,6 +163,10 @@ impl<T: Real> SurfaceFormula for Parallel<T> {
         self.surface.crossings(path, spans)
     }
 
+    fn inner_planes(&self) -> Vec<moldloft_num::InnerPlane<'_>> {
+        self.surface.inner_planes()
+    }
+
     fn edges(&self) -> Edges<T> {
         self.edges.clone()
     }
