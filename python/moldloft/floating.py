@@ -354,7 +354,11 @@ class Floating:
         names, off = triangles_off(cast("Model", self))
         images = 2 ** len(self._document.symmetry()) if sides == "both" else 1
         scales = {"volume": 1.0, "displacement": water or 1.0, "wetted_area": 1.0}
+        partial = self._document.partial() and not self._document.is_whole()
+        inner = [found.message for found in self._document.inner_skins()]
         for answer in answers:
+            answer["partial"] = partial
+            answer["inner_skins"] = inner
             if names:
                 answer["on_triangles"] = names
                 bounds = answer["bounds"]

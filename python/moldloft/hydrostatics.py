@@ -173,8 +173,8 @@ class Hydrostatics:
     residual: float = 0.0
     """What is left of the equations of rest: volume over volume, arms over the body's diagonal."""
     stable: bool | None = None
-    """Whether all small turns are righted, free or not, for a sought attitude with a centre of
-    gravity: the stiffness in heel and trim is positive."""
+    """Whether the stiffness in heel and trim is positive, with a centre of gravity: at rest all
+    small turns are righted then, free or not. Under water the centre of buoyancy is the metacentre."""
     lolls: bool = False
     """True when the attitude where the search began is at rest but unstable, and this is the stable
     one that the body finds beyond it: the angle of loll."""
@@ -188,6 +188,11 @@ class Hydrostatics:
     on_triangles: list[str] = field(default_factory=list)
     """Trimmed surfaces that are measured on the triangles of their panels. What these miss of
     volume and area is estimated in ``bounds``."""
+    inner_skins: list[str] = field(default_factory=list)
+    """Plates inside a body and bodies that overlap, as remarks; see ``Model.inner_skins``."""
+    partial: bool = False
+    """True for figures of a model of which objects failed, or whose panels contradict each other in
+    their counts; see ``Model.partial``."""
     derivatives: dict[str, dict[str, float]] = field(default_factory=dict)
     """Exact derivatives ``[figure][parameter]``, where parameters were asked for."""
 
@@ -198,11 +203,15 @@ class Hydrostatics:
 
     @property
     def remarks(self) -> list[str]:
-        """Openings under water, surfaces measured on triangles, figures that are not known well."""
+        """Openings under water, overlaps, surfaces measured on triangles, figures that are not known
+        well."""
         lines = []
+        if self.partial:
+            lines.append("the model is not whole: the figures are those of what was made")
         if self.open_edges:
             count = f"{self.open_edges} open edge{'s' * (self.open_edges > 1)}"
             lines.append(f"{count} of the skin below the water: results are unreliable")
+        lines += self.inner_skins
         if self.on_triangles:
             named = ", ".join(f"`{name}`" for name in self.on_triangles[:3])
             more = len(self.on_triangles) - 3
@@ -234,6 +243,10 @@ class Hydrostatics:
             del kept["derivatives"]
         if not self.on_triangles:
             del kept["on_triangles"]
+        if not self.inner_skins:
+            del kept["inner_skins"]
+        if not self.partial:
+            del kept["partial"]
         return kept
 
     def _repr_html_(self) -> str:

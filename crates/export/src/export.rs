@@ -247,7 +247,7 @@ impl Export<'_> {
     /// Panels that cannot be made; unknown tags; wires and points, when the format has no place for
     /// them.
     pub fn panels(&mut self) -> Result<Panels, ExportFailure> {
-        let whole = self.document.panelled()?;
+        let whole = self.document.entire_panels()?;
         let mut part = tagged(&whole.mesh, &self.options.tags)?;
         if self.options.whole {
             let letters = self.document.symmetry();

@@ -34,6 +34,7 @@ mod closure;
 mod error;
 mod half_edge;
 mod hydrostatics;
+mod inside;
 mod measure;
 mod mesh;
 mod panel;
@@ -52,6 +53,7 @@ pub use error::MeshError;
 pub use hydrostatics::{
     FloatOptions, FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane, hydrostatics,
 };
+pub use inside::{InnerSkin, inner_skins};
 pub use measure::{Measures, measure, measure_patch};
 pub use mesh::Mesh;
 pub use panel::Panel;
