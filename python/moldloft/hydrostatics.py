@@ -174,7 +174,8 @@ class Hydrostatics:
     """What is left of the equations of rest: volume over volume, arms over the body's diagonal."""
     stable: bool | None = None
     """Whether the stiffness in heel and trim is positive, with a centre of gravity: at rest all
-    small turns are righted then, free or not. Under water the centre of buoyancy is the metacentre."""
+    small turns are righted then, free or not. Under water the metacentre is the centre of
+    buoyancy."""
     lolls: bool = False
     """True when the attitude where the search began is at rest but unstable, and this is the stable
     one that the body finds beyond it: the angle of loll."""
@@ -203,8 +204,7 @@ class Hydrostatics:
 
     @property
     def remarks(self) -> list[str]:
-        """Openings under water, overlaps, surfaces measured on triangles, figures that are not known
-        well."""
+        """Openings under water, overlaps, surfaces on triangles, figures not known well."""
         lines = []
         if self.partial:
             lines.append("the model is not whole: the figures are those of what was made")

@@ -564,7 +564,7 @@ class Model(Floating, Writable, Adapted):
         --------
         >>> import moldloft
         >>> m = moldloft.loads('''
-        ... AbsPoint A(0, 0, -1); AbsPoint B(0, 0, 1); AbsPoint C(0.7, 0, -1); AbsPoint D(0.7, 0, 1);
+        ... AbsPoint A(0, 0, -1); AbsPoint B(0, 0, 1); AbsPoint C(0.7, 0, -1);
         ... Arc half(A, {1, 0, 0}, B, type = 1); Line axis(A, B); RevSurf ball(half, axis, 0, 2*PI);
         ... CopySurf other(ball, A, C, 1, 1, 1);
         ... ''')

@@ -107,9 +107,7 @@ class Offsets:
                 writer.writerow([repr(x), repr(z), repr(y)])
         return text.getvalue()
 
-    def program(
-        self, *, curves: str = "CCurve", units: str = "", closed: bool = False
-    ) -> str:
+    def program(self, *, curves: str = "CCurve", units: str = "", closed: bool = False) -> str:
         """A model of the half hull: a curve for each station and a loft through them.
 
         Parameters
