@@ -57,6 +57,13 @@ def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
     return names, {"volume": 2 * volume, "area": 2 * area}
 
 
+def faceted(model: Model) -> list[str]:
+    """Bodies of sets: they are measured on facets, at a distance from the set not known."""
+    names = {patch.name.split(".")[0]: None for patch in model.mesh().patches}
+    known = [name for name in names if name in model.objects]
+    return [name for name in known if model.facts(name)["kind"] == "SetBody"]
+
+
 @dataclass(frozen=True)
 class Hydrostatics:
     """The hydrostatics of a body; lengths in the model's unit, angles in radians.
@@ -189,6 +196,9 @@ class Hydrostatics:
     on_triangles: list[str] = field(default_factory=list)
     """Trimmed surfaces that are measured on the triangles of their panels. What these miss of
     volume and area is estimated in ``bounds``."""
+    faceted: list[str] = field(default_factory=list)
+    """Bodies of sets, which are measured on their facets. How far these are from the set is not
+    known, so there are no ``bounds``."""
     inner_skins: list[str] = field(default_factory=list)
     """Plates inside a body and bodies that overlap, as remarks; see ``Model.inner_skins``."""
     partial: bool = False
@@ -220,6 +230,12 @@ class Hydrostatics:
                 f"{named}: measured on the triangles of the panels, which more divisions (nu, nv, "
                 "rim) bring nearer to the surface"
             )
+        if self.faceted:
+            named = ", ".join(f"`{name}`" for name in self.faceted[:3])
+            lines.append(
+                f"{named}: measured on facets, which a finer size or greater depth brings nearer "
+                "to the set; there are no bounds"
+            )
         for name in _RELATIVE:
             value = getattr(self, name)
             if value and (share := self.bounds.get(name, 0.0) / abs(value)) > self.accuracy > 0:
@@ -243,6 +259,8 @@ class Hydrostatics:
             del kept["derivatives"]
         if not self.on_triangles:
             del kept["on_triangles"]
+        if not self.faceted:
+            del kept["faceted"]
         if not self.inner_skins:
             del kept["inner_skins"]
         if not self.partial:
