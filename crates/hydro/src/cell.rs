@@ -195,17 +195,17 @@ pub(crate) fn cells_of<T: Real>(
     let [ju, jv] = surface.joints();
     let (us, vs) = (ends(bu, ju), ends(bv, jv));
     let (us, vs) = (moving(surface, 0, &us), moving(surface, 1, &vs));
-    let mut frames: Vec<Frame<'_, T>> = Vec::new();
+    let mut frames: Vec<CellFrame<'_, T>> = Vec::new();
     let charts = charts(surface, &us, &vs);
     match &charts {
         Some(charts) => {
             let whole = [0.0, 1.0, 0.0, 1.0].map(T::from);
-            frames.extend(charts.iter().map(|chart| Frame { chart: Some(chart), ends: whole }));
+            frames.extend(charts.iter().map(|chart| CellFrame { chart: Some(chart), ends: whole }));
         }
         None => {
             for u in us.windows(2) {
                 for v in vs.windows(2) {
-                    frames.push(Frame { chart: None, ends: [u[0], u[1], v[0], v[1]] });
+                    frames.push(CellFrame { chart: None, ends: [u[0], u[1], v[0], v[1]] });
                 }
             }
         }
@@ -213,22 +213,31 @@ pub(crate) fn cells_of<T: Real>(
     // Where that takes too many cells, all of the surface is known less well.
     let mut limits = limits;
     loop {
-        match fitted_cells(surface, &frames, reversed, limits)? {
-            Some(cells) => return Some(cells),
-            None => limits = limits.coarser(),
+        match fitted_cells(surface, &frames, reversed, limits) {
+            CellFits::Cells(cells) => return Some(cells),
+            CellFits::TooMany => limits = limits.coarser(),
+            CellFits::NotFinite => return None,
         }
     }
 }
 
+/// What fitting a surface by cells comes to.
+enum CellFits<T> {
+    Cells(Vec<PolynomialCell<T>>),
+    TooMany,
+    /// It has a place that is not finite.
+    NotFinite,
+}
+
 /// A rectangle of parameters: of a chart, or of the surface.
 #[derive(Clone, Copy)]
-struct Frame<'a, T> {
+struct CellFrame<'a, T> {
     chart: Option<&'a Chart<T>>,
     /// From and to in u, from and to in v.
     ends: [T; 4],
 }
 
-impl<T: Real> Frame<'_, T> {
+impl<T: Real> CellFrame<'_, T> {
     /// The halves along u (0) or v (1).
     fn halves(&self, along: usize) -> [Self; 2] {
         let [u0, u1, v0, v1] = self.ends;
@@ -236,7 +245,7 @@ impl<T: Real> Frame<'_, T> {
             0 => [[u0, (u0 + u1) * 0.5, v0, v1], [(u0 + u1) * 0.5, u1, v0, v1]],
             _ => [[u0, u1, v0, (v0 + v1) * 0.5], [u0, u1, (v0 + v1) * 0.5, v1]],
         };
-        halves.map(|ends| Frame { chart: self.chart, ends })
+        halves.map(|ends| CellFrame { chart: self.chart, ends })
     }
 
     /// Whether it reaches the edge v = 0, u = 1, v = 1, u = 0 of the surface.
@@ -288,20 +297,21 @@ impl<T: Real> Frame<'_, T> {
     }
 }
 
-/// The cells of all frames; `Some(None)` when there would be too many.
-#[allow(clippy::type_complexity)]
+/// The cells of all frames.
 fn fitted_cells<T: Real>(
     surface: &dyn Surface<T>,
-    frames: &[Frame<'_, T>],
+    frames: &[CellFrame<'_, T>],
     reversed: bool,
     limits: FitLimits,
-) -> Option<Option<Vec<PolynomialCell<T>>>> {
-    let mut stack: Vec<(Frame<'_, T>, [u32; 2])> =
+) -> CellFits<T> {
+    let mut stack: Vec<(CellFrame<'_, T>, [u32; 2])> =
         frames.iter().rev().map(|frame| (*frame, [0, 0])).collect();
     let most = MOST_CELLS.max(2 * frames.len());
     let mut cells = Vec::new();
     while let Some((frame, depth)) = stack.pop() {
-        let (fitted, slopes) = fit(surface, &frame, reversed)?;
+        let Some((fitted, slopes)) = fit(surface, &frame, reversed) else {
+            return CellFits::NotFinite;
+        };
         let [length_u, length_v] = fitted.lengths();
         // Rounding of the places cannot be had smaller.
         let size = fitted.net.iter().fold(0.0f64, |m, p| m.max(p.re().norm()));
@@ -318,7 +328,7 @@ fn fitted_cells<T: Real>(
         let along = if rough[worse] { worse } else { 1 - worse };
         if rough[along] && depth[along] < DEEPEST {
             if cells.len() + stack.len() >= most {
-                return Some(None);
+                return CellFits::TooMany;
             }
             let mut deeper = depth;
             deeper[along] += 1;
@@ -329,7 +339,7 @@ fn fitted_cells<T: Real>(
             cells.push(fitted);
         }
     }
-    Some(Some(cells))
+    CellFits::Cells(cells)
 }
 
 /// How far beside a break a side of it is looked at, in shares of the cell.
@@ -416,7 +426,7 @@ const PROBES: [f64; 3] = [0.071, 0.457, 0.893];
 /// of derivatives along u and v, as a share of the greatest.
 fn fit<T: Real>(
     surface: &dyn Surface<T>,
-    frame: &Frame<'_, T>,
+    frame: &CellFrame<'_, T>,
     reversed: bool,
 ) -> Option<(PolynomialCell<T>, [f64; 2])> {
     const N: usize = MOST_DEGREE + 1;

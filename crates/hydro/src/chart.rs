@@ -11,25 +11,25 @@ use moldloft_num::{Bi1, InnerPlane, Jet, Order, Real, Surface, find_root};
 /// A map from the unit square to a piece of a surface's parameter square that no inner line crosses.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart<T> {
-    cuts: Vec<Cut<T>>,
+    cuts: Vec<ChartCut<T>>,
     /// Whether it reaches the surface's edge v = 0, u = 1, v = 1, u = 0.
     pub border: [bool; 4],
 }
 
 /// A step from the unit square into another one.
 #[derive(Clone, Debug)]
-struct Cut<T> {
+struct ChartCut<T> {
     /// The parameter, 0 or 1, that runs from one boundary to the other.
     along: usize,
     /// The range of the other parameter.
     range: [f64; 2],
     /// Both boundaries, of the other parameter's share of its range.
-    sides: [Boundary<T>; 2],
+    sides: [ChartBoundary<T>; 2],
 }
 
 /// A polynomial on [0, 1], by its Chebyshev coefficients.
 #[derive(Clone, Debug)]
-struct Boundary<T>(Vec<T>);
+struct ChartBoundary<T>(Vec<T>);
 
 /// A line of the plane `plane` at which its parameter `axis` is `at`.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +63,7 @@ const BESIDE: f64 = 1e-9;
 /// Where a boundary is compared with its line.
 const PROBES: [f64; 4] = [0.003, 0.31, 0.77, 0.997];
 
-impl<T: Real> Boundary<T> {
+impl<T: Real> ChartBoundary<T> {
     fn at<J: Jet<T>>(&self, t: J) -> J {
         let [first, rest @ ..] = &*self.0 else { return J::zero() };
         let x = t * 2.0 - 1.0;
@@ -103,10 +103,10 @@ fn nodes() -> [f64; NODES] {
 impl<T: Real> Chart<T> {
     /// The rectangle [u0, u1] x [v0, v1].
     fn rectangle([u0, u1, v0, v1]: [T; 4]) -> Self {
-        let cut = |along: usize, a: T, b: T| Cut {
+        let cut = |along: usize, a: T, b: T| ChartCut {
             along,
             range: [0.0, 1.0],
-            sides: [Boundary(vec![a]), Boundary(vec![b])],
+            sides: [ChartBoundary(vec![a]), ChartBoundary(vec![b])],
         };
         let border = [v0.re() == 0.0, u1.re() == 1.0, v1.re() == 1.0, u0.re() == 0.0];
         Self { cuts: vec![cut(0, u0, u1), cut(1, v0, v1)], border }
@@ -133,11 +133,11 @@ impl<T: Real> Chart<T> {
 
     /// Whether a parameter of the model moves it.
     pub fn moves(&self) -> bool {
-        T::PARTS > 1 && !self.cuts.iter().flat_map(|cut| &cut.sides).all(Boundary::is_constant)
+        T::PARTS > 1 && !self.cuts.iter().flat_map(|cut| &cut.sides).all(ChartBoundary::is_constant)
     }
 
     /// The part between two boundaries along a parameter, over a range of the other.
-    fn part(&self, along: usize, range: [f64; 2], sides: [Option<Boundary<T>>; 2]) -> Self {
+    fn part(&self, along: usize, range: [f64; 2], sides: [Option<ChartBoundary<T>>; 2]) -> Self {
         let reaches = [sides[0].is_none(), sides[1].is_none()];
         // The borders in the order of the sides 0 and 1 of each parameter.
         let of_sides = [[3, 1], [0, 2]];
@@ -147,11 +147,11 @@ impl<T: Real> Chart<T> {
             border[of_sides[1 - along][end]] &= range[end] == end as f64;
         }
         let [low, high] = sides;
-        let end = |side: Option<Boundary<T>>, at: f64| {
-            side.unwrap_or_else(|| Boundary(vec![T::from(at)]))
+        let end = |side: Option<ChartBoundary<T>>, at: f64| {
+            side.unwrap_or_else(|| ChartBoundary(vec![T::from(at)]))
         };
         let mut cuts = self.cuts.clone();
-        cuts.push(Cut { along, range, sides: [end(low, 0.0), end(high, 1.0)] });
+        cuts.push(ChartCut { along, range, sides: [end(low, 0.0), end(high, 1.0)] });
         Self { cuts, border }
     }
 }
@@ -321,8 +321,9 @@ impl<T: Real> Cutter<'_, T> {
             None if depth < DEEPEST => {
                 for along in [0.0, 0.5] {
                     for across in [0.0, 0.5] {
-                        let side =
-                            |at: f64| (at != 0.0 && at != 1.0).then(|| Boundary(vec![T::from(at)]));
+                        let side = |at: f64| {
+                            (at != 0.0 && at != 1.0).then(|| ChartBoundary(vec![T::from(at)]))
+                        };
                         let part =
                             chart.part(0, [across, across + 0.5], [side(along), side(along + 0.5)]);
                         self.cut(part, lines.clone(), depth + 1);
@@ -377,7 +378,7 @@ impl<T: Real> Cutter<'_, T> {
                 find_root(|s| beyond(self, s, t), 0.0, 1.0).unwrap_or(nearer)
             };
             let found = nodes().map(root);
-            let plain = Boundary::<f64>::through(&found);
+            let plain = ChartBoundary::<f64>::through(&found);
             let off = PROBES.iter().map(|&t| (plain.at(t) - root(t)).abs()).fold(0.0, f64::max);
             // At the ends of the range the line may end at once.
             if off > BOUNDARY_FIT && halvings < DEEPEST {
@@ -389,7 +390,7 @@ impl<T: Real> Cutter<'_, T> {
                 let t = range[0] + (range[1] - range[0]) * nodes()[k];
                 self.rate(chart, along, found[k], t) + found[k]
             };
-            let boundary = Boundary::through(&std::array::from_fn(rate));
+            let boundary = ChartBoundary::through(&std::array::from_fn(rate));
             for sides in [[None, Some(boundary.clone())], [Some(boundary.clone()), None]] {
                 self.cut(chart.part(along, range, sides), others.to_vec(), depth);
             }

@@ -1,9 +1,10 @@
 //! Where two curves meet, and where they come nearest: pairs of pieces with bounds of the distance and its slopes.
 //!
-//! A pair is dropped when it is farther apart than the nearest place known, or when the distance falls towards a side
-//! beyond which a neighbour goes on. Where the distance is convex all over a pair there is one least place, which a
-//! descent held in the pair finds. Other pairs are halved. So on curves whose pieces are exact (see
-//! [`crate::pieces`]) nothing is missed; contacts are resolved to [`SMALLEST`] of the size.
+//! A pair is dropped when it is too far apart for a meeting, or when the distance falls towards a side beyond which a
+//! neighbour goes on. Where the distance is convex all over a pair there is one least place, which a descent held in the
+//! pair finds. Other pairs are halved. So on curves whose pieces are exact (see [`crate::pieces`]) no meeting is missed;
+//! contacts are resolved to [`SMALLEST`] of the size. Where there is no meeting, the same search with the nearest place
+//! known as its bound finds where the curves come nearest; of curves that run side by side it finds one such place.
 
 use crate::newton::NewtonResult;
 use crate::pieces::{CurvePiece, ball, size_of};
@@ -22,6 +23,12 @@ const TOUCH: f64 = 1e-10;
 /// Pairs smaller than this share of the size are not halved.
 const SMALLEST: f64 = 1e-6;
 
+/// Pairs that are looked at for the nearest place of curves that do not meet.
+const MOST_NEAREST: usize = 20_000;
+
+/// A place that is nearer by less than this share is no other one.
+const NEARER: f64 = 1e-12;
+
 /// The most steps of a descent.
 const MOST_STEPS: u32 = 40;
 
@@ -34,7 +41,7 @@ struct LeastPlace {
 
 /// What is certain of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Verdict {
+enum PairVerdict {
     /// The least distance is that of a neighbouring pair.
     Elsewhere,
     /// There is one least place at most.
@@ -58,11 +65,25 @@ fn between_boxes(p: &Box3, q: &Box3) -> f64 {
     d.norm()
 }
 
+/// A distance that a pair is apart at least: of the boxes, or across the first piece towards the second.
+fn apart(p: &CurvePiece, q: &CurvePiece) -> f64 {
+    let boxes = between_boxes(&p.bounds(), &q.bounds());
+    let chord = p.net[3] - p.net[0];
+    let away = (q.net[0] + q.net[3] - p.net[0] - p.net[3]) * 0.5;
+    let along = chord.norm_sq();
+    let across = if along > 0.0 { away - chord * (away.dot(chord) / along) } else { away };
+    let Some(n) = across.normalized() else { return boxes };
+    let reach = |net: &[Vec3; 4], sign: f64| {
+        net.iter().map(|x| sign * n.dot(*x - p.net[0])).fold(f64::NEG_INFINITY, f64::max)
+    };
+    boxes.max(-reach(&q.net, -1.0) - reach(&p.net, 1.0) - p.slack - q.slack)
+}
+
 /// A set of vectors: its middle, and how far it reaches from there.
-type Ball = (Vec3, f64);
+type VectorBall = (Vec3, f64);
 
 /// The places, slopes and curvatures of a piece by its share of the way.
-fn balls(piece: &CurvePiece) -> [Ball; 3] {
+fn balls(piece: &CurvePiece) -> [VectorBall; 3] {
     let b = &piece.net;
     let first = [0, 1, 2].map(|k| (b[k + 1] - b[k]) * 3.0);
     let second = [0, 1].map(|k| (first[k + 1] - first[k]) * 2.0);
@@ -76,7 +97,7 @@ fn balls(piece: &CurvePiece) -> [Ball; 3] {
 }
 
 /// What the derivatives of the distance say over a whole pair.
-fn verdict(p: &CurvePiece, q: &CurvePiece) -> Verdict {
+fn verdict(p: &CurvePiece, q: &CurvePiece) -> PairVerdict {
     let ([x, d, dd], [y, e, ee]) = (balls(p), balls(q));
     let (away, reach) = (x.0 - y.0, x.1 + y.1);
     let far = away.norm();
@@ -85,12 +106,12 @@ fn verdict(p: &CurvePiece, q: &CurvePiece) -> Verdict {
         let by = sign * slope.dot(away);
         if by.abs() > slope.norm() * reach + turn * (far + reach) {
             if !piece.open[usize::from(by < 0.0)] {
-                return Verdict::Elsewhere;
+                return PairVerdict::Elsewhere;
             }
             held[k] = true;
         }
     }
-    let curvature = |slope: Ball, bend: Ball, sign: f64| {
+    let curvature = |slope: VectorBall, bend: VectorBall, sign: f64| {
         let change = 2.0 * slope.0.norm() * slope.1
             + slope.1 * slope.1
             + far * bend.1
@@ -107,7 +128,7 @@ fn verdict(p: &CurvePiece, q: &CurvePiece) -> Verdict {
             along_p > 0.0 && along_q > 0.0 && along_p * along_q > mixed * mixed
         }
     };
-    if one { Verdict::One } else { Verdict::Unknown }
+    if one { PairVerdict::One } else { PairVerdict::Unknown }
 }
 
 /// Half the square of the distance, its slopes and its second derivatives.
@@ -243,6 +264,8 @@ struct PairSearch<'a> {
     found: RootCollector<2>,
     /// A distance that the curves have somewhere.
     bound: f64,
+    /// The pairs that may still be looked at for the nearest place, when that is sought instead of meetings.
+    nearest: Option<usize>,
 }
 
 impl<'a> PairSearch<'a> {
@@ -250,11 +273,24 @@ impl<'a> PairSearch<'a> {
         let closed = [a.closed(), b.closed()];
         let found = RootCollector::new(size, &[0.5; 2], closed);
         let near = tolerance.max(JOINED * size);
-        Self { a, b, size, near, closed, found, bound: f64::INFINITY }
+        Self { a, b, size, near, closed, found, bound: f64::INFINITY, nearest: None }
     }
 
+    /// Pairs farther apart are of no interest.
     fn limit(&self) -> f64 {
-        self.bound.max(self.near)
+        if self.nearest.is_some() { self.bound * (1.0 - NEARER) } else { self.near }
+    }
+
+    /// Counts a pair; true when there were too many.
+    fn exhausted(&mut self) -> bool {
+        match &mut self.nearest {
+            Some(0) => true,
+            Some(left) => {
+                *left -= 1;
+                false
+            }
+            None => self.found.exhausted(),
+        }
     }
 
     fn run(mut self, ta: &CurveTree, tb: &CurveTree) -> Roots<2> {
@@ -262,16 +298,22 @@ impl<'a> PairSearch<'a> {
         for (i, p) in ta.pieces.iter().enumerate() {
             for (j, q) in tb.pieces.iter().enumerate() {
                 self.bound = self.bound.min(p.net[0].distance(q.net[0]) + p.slack + q.slack);
-                pairs.push((between_boxes(&p.bounds(), &q.bounds()), i, j));
+                pairs.push((apart(p, q), i, j));
             }
         }
-        pairs.retain(|pair| pair.0 <= self.limit());
+        pairs.retain(|pair| pair.0 <= self.bound.max(self.near));
         pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-        for (low, i, j) in pairs {
-            if low > self.limit() {
+        for nearest in [None, Some(MOST_NEAREST)] {
+            self.nearest = nearest;
+            for &(low, i, j) in &pairs {
+                if low > self.limit() {
+                    break;
+                }
+                self.search(ta.pieces[i], tb.pieces[j]);
+            }
+            if self.found.any() {
                 break;
             }
-            self.search(ta.pieces[i], tb.pieces[j]);
         }
         self.found.finish()
     }
@@ -279,23 +321,23 @@ impl<'a> PairSearch<'a> {
     fn search(&mut self, p: CurvePiece, q: CurvePiece) {
         let mut stack = vec![(p, q)];
         while let Some((p, q)) = stack.pop() {
-            if between_boxes(&p.bounds(), &q.bounds()) > self.limit() {
+            if apart(&p, &q) > self.limit() {
                 continue;
             }
-            if self.found.exhausted() {
+            if self.exhausted() {
                 return;
             }
             let [la, lb] = [&p, &q].map(|piece| Box3::around(piece.net).diagonal());
             let tiny = la.max(lb) < SMALLEST * self.size;
             let verdict = verdict(&p, &q);
-            if verdict == Verdict::Elsewhere {
+            if verdict == PairVerdict::Elsewhere {
                 continue;
             }
-            if verdict == Verdict::One || tiny {
+            if verdict == PairVerdict::One || tiny {
                 let cell = [p.t, q.t];
                 let middle = cell.map(|[a, b]| 0.5 * (a + b));
                 let least = descend(self.a, self.b, middle, cell);
-                self.take(least, verdict == Verdict::One);
+                self.take(least, verdict == PairVerdict::One);
                 continue;
             }
             if la >= lb {

@@ -245,6 +245,11 @@ impl<const N: usize> RootCollector<N> {
         self.pairs > MOST_PAIRS || self.roots.len() > 2_000
     }
 
+    /// Whether there is a root.
+    pub fn any(&self) -> bool {
+        !self.roots.is_empty()
+    }
+
     pub fn note(&mut self, at: [f64; N], residual: f64) {
         if residual.is_finite() && self.closest.is_none_or(|(_, best)| residual < best) {
             self.closest = Some((at, residual));

@@ -177,6 +177,20 @@ fn contacts_are_told_from_near_misses() {
 }
 
 #[test]
+fn curves_side_by_side_do_not_meet() {
+    let (from, along) = (Vec3::of(0.3, -0.2, 0.1), Vec3::of(2.0, 1.0, -0.7));
+    for away in [1e-6, 1e-3, 0.5, 3.0] {
+        let aside = Vec3::of(1.0, -2.0, 0.0).normalized().unwrap() * away;
+        let l = Line(from, from + along);
+        let m = Line(from + aside + along * 0.1, from + aside + along * 1.3);
+        let found = all_curve_curve(&l, &m, 0.0);
+        assert!(found.complete && found.roots.is_empty(), "{away} {found:?}");
+        let gap = found.closest.unwrap().1;
+        assert!((gap - away).abs() < 1e-12, "{away} {gap}");
+    }
+}
+
+#[test]
 fn a_search_that_ran_into_its_limit_says_so() {
     // Two halves of one curve share a third of it.
     let whole = Cubic([
