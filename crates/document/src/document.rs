@@ -325,6 +325,8 @@ impl Document {
     pub fn lacking(&mut self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
         let run = self.text_diagnostics.iter().chain(&self.run_diagnostics);
         let mut errors: Vec<Diagnostic> = run.filter(|d| d.is_error()).cloned().collect();
+        // Causes before what they block.
+        errors.sort_by_key(|d| d.id == "blocked");
         if errors.is_empty() {
             let panelled = self.panelled().map_err(|d| vec![d])?;
             let notes = panelled.panelling.remarks().iter().filter(|note| note.is_error());
