@@ -12,6 +12,7 @@ from moldloft.hydrostatics import (
     Hydrostatics,
     HydrostaticTable,
     RightingCurve,
+    faceted,
     triangles_off,
 )
 from moldloft.units import Units
@@ -352,15 +353,23 @@ class Floating:
         )
         massive = ("displacement", "weight", "tpc", "mtc", "righting_moment")
         names, off = triangles_off(cast("Model", self))
+        sets = faceted(cast("Model", self))
         images = 2 ** len(self._document.symmetry()) if sides == "both" else 1
         scales = {"volume": 1.0, "displacement": water or 1.0, "wetted_area": 1.0}
+        partial = self._document.partial() and not self._document.is_whole()
+        inner = [found.message for found in self._document.inner_skins()]
         for answer in answers:
+            answer["partial"] = partial
+            answer["inner_skins"] = inner
+            answer["faceted"] = sets
             if names:
                 answer["on_triangles"] = names
                 bounds = answer["bounds"]
                 for name, scale in scales.items():
                     more = off["area" if name == "wetted_area" else "volume"] * images * scale
                     bounds[name] = bounds.get(name, 0.0) + more
+            if sets:
+                answer["bounds"] = {}
             if water is None:
                 for name in massive:
                     answer.pop(name, None)

@@ -57,6 +57,13 @@ def triangles_off(model: Model) -> tuple[list[str], dict[str, float]]:
     return names, {"volume": 2 * volume, "area": 2 * area}
 
 
+def faceted(model: Model) -> list[str]:
+    """Bodies of sets: they are measured on facets, at a distance from the set not known."""
+    names = {patch.name.split(".")[0]: None for patch in model.mesh().patches}
+    known = [name for name in names if name in model.objects]
+    return [name for name in known if model.facts(name)["kind"] == "SetBody"]
+
+
 @dataclass(frozen=True)
 class Hydrostatics:
     """The hydrostatics of a body; lengths in the model's unit, angles in radians.
@@ -173,8 +180,9 @@ class Hydrostatics:
     residual: float = 0.0
     """What is left of the equations of rest: volume over volume, arms over the body's diagonal."""
     stable: bool | None = None
-    """Whether all small turns are righted, free or not, for a sought attitude with a centre of
-    gravity: the stiffness in heel and trim is positive."""
+    """Whether the stiffness in heel and trim is positive, with a centre of gravity: at rest all
+    small turns are righted then, free or not. Under water the metacentre is the centre of
+    buoyancy."""
     lolls: bool = False
     """True when the attitude where the search began is at rest but unstable, and this is the stable
     one that the body finds beyond it: the angle of loll."""
@@ -188,6 +196,14 @@ class Hydrostatics:
     on_triangles: list[str] = field(default_factory=list)
     """Trimmed surfaces that are measured on the triangles of their panels. What these miss of
     volume and area is estimated in ``bounds``."""
+    faceted: list[str] = field(default_factory=list)
+    """Bodies of sets, which are measured on their facets. How far these are from the set is not
+    known, so there are no ``bounds``."""
+    inner_skins: list[str] = field(default_factory=list)
+    """Plates inside a body and bodies that overlap, as remarks; see ``Model.inner_skins``."""
+    partial: bool = False
+    """True for figures of a model of which objects failed, or whose panels contradict each other in
+    their counts; see ``Model.partial``."""
     derivatives: dict[str, dict[str, float]] = field(default_factory=dict)
     """Exact derivatives ``[figure][parameter]``, where parameters were asked for."""
 
@@ -198,11 +214,14 @@ class Hydrostatics:
 
     @property
     def remarks(self) -> list[str]:
-        """Openings under water, surfaces measured on triangles, figures that are not known well."""
+        """Openings under water, overlaps, surfaces on triangles, figures not known well."""
         lines = []
+        if self.partial:
+            lines.append("the model is not whole: the figures are those of what was made")
         if self.open_edges:
             count = f"{self.open_edges} open edge{'s' * (self.open_edges > 1)}"
             lines.append(f"{count} of the skin below the water: results are unreliable")
+        lines += self.inner_skins
         if self.on_triangles:
             named = ", ".join(f"`{name}`" for name in self.on_triangles[:3])
             more = len(self.on_triangles) - 3
@@ -210,6 +229,12 @@ class Hydrostatics:
             lines.append(
                 f"{named}: measured on the triangles of the panels, which more divisions (nu, nv, "
                 "rim) bring nearer to the surface"
+            )
+        if self.faceted:
+            named = ", ".join(f"`{name}`" for name in self.faceted[:3])
+            lines.append(
+                f"{named}: measured on facets, which a finer size or greater depth brings nearer "
+                "to the set; there are no bounds"
             )
         for name in _RELATIVE:
             value = getattr(self, name)
@@ -234,6 +259,12 @@ class Hydrostatics:
             del kept["derivatives"]
         if not self.on_triangles:
             del kept["on_triangles"]
+        if not self.faceted:
+            del kept["faceted"]
+        if not self.inner_skins:
+            del kept["inner_skins"]
+        if not self.partial:
+            del kept["partial"]
         return kept
 
     def _repr_html_(self) -> str:

@@ -121,7 +121,9 @@ class Model(Floating, Writable, Adapted):
         """
         from moldloft.loading import restored
 
-        return restored(*self._state())
+        other = restored(*self._state())
+        other.partial = self.partial
+        return other
 
     def __copy__(self) -> Model:
         return self.copy()
@@ -159,6 +161,37 @@ class Model(Floating, Writable, Adapted):
     def has_errors(self) -> bool:
         """Whether one of the diagnostics is an error."""
         return self._document.has_errors()
+
+    @property
+    def partial(self) -> bool:
+        """Whether figures and files may be those of a part of the model.
+
+        ``False`` unless it is set: the mesh, hydrostatics, derivatives of whole figures and files
+        raise :class:`~moldloft.errors.ModelError` while an object has failed or panels contradict
+        each other in their counts. With ``True`` they are those of what was made, and the remarks
+        of hydrostatics say so.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(4, 1, 0);
+        ... Line low(A, B); Line high(C, D); RuledSurf plate(low, high, divisions = {2, 2});
+        ... XPlane p(9); IntBead b(low, p);
+        ... ''')
+        >>> m.mesh()
+        Traceback (most recent call last):
+            ...
+        moldloft.errors.ModelError: ...
+        >>> m.partial = True
+        >>> m.mesh().faces.shape
+        (4, 4)
+        """
+        return self._document.partial()
+
+    @partial.setter
+    def partial(self, allowed: bool) -> None:
+        self._document.allow_partial(bool(allowed))
 
     @property
     def sources(self) -> list[str]:
@@ -513,7 +546,8 @@ class Model(Floating, Writable, Adapted):
         Raises
         ------
         ModelError
-            When no patch has such a tag, or a tolerance or angle is not positive.
+            When no patch has such a tag, a tolerance or angle is not positive, or the model is not
+            whole; see :attr:`partial`.
 
         Examples
         --------
@@ -533,6 +567,30 @@ class Model(Floating, Writable, Adapted):
         wanted = [tags] if isinstance(tags, str) else list(tags)
         made = self._document.mesh(wanted, whole, tolerance, angle)
         return Mesh(made, symmetry="" if whole else self.symmetry)
+
+    def inner_skins(self) -> list[_core.Diagnostic]:
+        """Plates of the skin that lie inside a body, and bodies that overlap.
+
+        Each is a warning: a plate inside counts as skin, and what two bodies share counts twice.
+        Middles and corners of panels decide, by how often the other body winds round them.
+
+        Returns
+        -------
+        list of Diagnostic
+            Empty when no piece of the skin reaches into another one.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... AbsPoint A(0, 0, -1); AbsPoint B(0, 0, 1); AbsPoint C(0.7, 0, -1);
+        ... Arc half(A, {1, 0, 0}, B, type = 1); Line axis(A, B); RevSurf ball(half, axis, 0, 2*PI);
+        ... CopySurf other(ball, A, C, 1, 1, 1);
+        ... ''')
+        >>> [d.id for d in m.inner_skins()]
+        ['bodies-overlap']
+        """
+        return self._document.inner_skins()
 
     def junctions(self) -> list[_core.Diagnostic]:
         """Edges of patches in one place, and corners on edges of others, that are not joined.

@@ -2,7 +2,13 @@
 
 A table is comma-separated text with the columns ``station``, ``waterline`` and ``half_breadth``
 in any order, a row for each point: x, z and y >= 0 in the model's axes and unit. Other columns and
-lines that begin with ``#`` are skipped.
+lines that begin with ``#`` are skipped. Or it is a matrix of half-breadths: the header has
+``waterline`` and the stations, each row a waterline and its half-breadths; or ``station`` and the
+waterlines.
+
+A blank half-breadth says that there is no hull. A height may have several half-breadths: a flat of
+keel, a knuckle. Zeros below the hull, as a skeg or deadwood has them, and above it are no part of
+its sections.
 """
 
 from __future__ import annotations
@@ -11,7 +17,7 @@ import csv
 import io
 import math
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -61,6 +67,30 @@ class Offsets:
     stations: dict[float, tuple[tuple[float, float], ...]]
     """For each station x its points (waterline z, half-breadth y), from the keel up."""
 
+    def section(self, station: float) -> tuple[tuple[float, float], ...]:
+        """The points of a station's curve: without the zeros below and above the hull.
+
+        Parameters
+        ----------
+        station
+            The station x.
+
+        Returns
+        -------
+        tuple of (float, float)
+            Waterline z and half-breadth y, from the keel up.
+
+        Examples
+        --------
+        >>> Offsets({0.0: ((0.0, 0.0), (1.0, 0.0), (2.0, 0.5), (3.0, 0.8))}).section(0.0)
+        ((1.0, 0.0), (2.0, 0.5), (3.0, 0.8))
+        """
+        points = self.stations[station]
+        wide = [k for k, (_, y) in enumerate(points) if y > 0]
+        if not wide:
+            return points
+        return points[max(wide[0] - 1, 0) : wide[-1] + 2]
+
     def csv(self) -> str:
         """The table as text, a row for each point.
 
@@ -77,7 +107,7 @@ class Offsets:
                 writer.writerow([repr(x), repr(z), repr(y)])
         return text.getvalue()
 
-    def program(self, *, curves: str = "CCurve", units: str = "") -> str:
+    def program(self, *, curves: str = "CCurve", units: str = "", closed: bool = False) -> str:
         """A model of the half hull: a curve for each station and a loft through them.
 
         Parameters
@@ -86,11 +116,19 @@ class Offsets:
             ``"CCurve"`` passes through the points, ``"BCurve"`` has them as control points.
         units
             The unit of length, for the model's header.
+        closed
+            Closes the hull to the plane of symmetry: a deck, a transom or a blunt bow where an end
+            station has a breadth, and a flat keel.
 
         Returns
         -------
         str
             A program of the language.
+
+        Raises
+        ------
+        Error
+            For other curves, or fewer than two stations.
         """
         if curves not in ("CCurve", "BCurve"):
             raise Error(f"stations are CCurve or BCurve, not `{curves}`")
@@ -102,7 +140,8 @@ class Offsets:
             f'Model info(symmetry = "y"{unit});',
         ]
         names = []
-        for k, (x, points) in enumerate(self.stations.items()):
+        sections = [(x, self.section(x)) for x in self.stations]
+        for k, (x, points) in enumerate(sections):
             own = []
             for j, (z, y) in enumerate(points):
                 name = f"P{k}_{j}"
@@ -110,9 +149,23 @@ class Offsets:
                 lines.append(f"AbsPoint {name}({x!r}, {y!r}, {z!r});")
             names.append(f"station_{k}")
             lines.append(f"{curves} station_{k}({{{', '.join(own)}}});")
-        divisions = f"{{{max(8, 2 * len(max(self.stations.values(), key=len)))}, "
+        divisions = f"{{{max(8, 2 * max(len(points) for _, points in sections))}, "
         divisions += f"{max(8, 4 * (len(names) - 1))}}}"
         lines.append(f"CLoftSurf hull({{{', '.join(names)}}}, divisions = {divisions});")
+        if closed:
+            breadths = {
+                "deck": (2, [points[-1][1] for _, points in sections]),
+                "transom": (1, [y for _, y in sections[0][1]]),
+                "bow": (3, [y for _, y in sections[-1][1]]),
+                "keel": (4, [points[0][1] for _, points in sections]),
+            }
+            for name, (edge, widths) in breadths.items():
+                if any(y > 0 for y in widths):
+                    lines += [
+                        f"EdgeSnake {name}_edge({edge}, hull);",
+                        f'ProjCurve {name}_centre({name}_edge, "y=0");',
+                        f"RuledSurf {name}({name}_edge, {name}_centre, divisions = {{0, 4}});",
+                    ]
         return "\n".join(lines) + "\n"
 
 
@@ -171,15 +224,25 @@ def parse(text: str, name: str = "offsets") -> Offsets:
     number, header = rows[0]
     words = [word.strip().lower() for word in header]
     words = [_OTHER.get(word, word) for word in words]
-    missing = [column for column in _COLUMNS if column not in words]
-    if missing:
-        raise fault(number, "a column " + " and ".join(missing), ", ".join(header))
-    places = [words.index(column) for column in _COLUMNS]
-    stations: dict[float, dict[float, float]] = {}
-    for number, row in rows[1:]:
+    matrix = _matrix(words, rows, fault)
+    if matrix is None:
+        missing = [column for column in _COLUMNS if column not in words]
+        if missing:
+            raise fault(number, "a column " + " and ".join(missing), ", ".join(header))
+        places = [words.index(column) for column in _COLUMNS]
+        entries = [
+            (number, [row[place].strip() if place < len(row) else "" for place in places])
+            for number, row in rows[1:]
+        ]
+    else:
+        entries = matrix
+    stations: dict[float, list[tuple[float, float]]] = {}
+    for number, texts in entries:
+        if not texts[2] and texts[0] and texts[1]:
+            # No hull there.
+            continue
         values = []
-        for place, column in zip(places, _COLUMNS, strict=True):
-            word = row[place].strip() if place < len(row) else ""
+        for word, column in zip(texts, _COLUMNS, strict=True):
             try:
                 value = float(word)
             except ValueError:
@@ -190,14 +253,57 @@ def parse(text: str, name: str = "offsets") -> Offsets:
         x, z, y = values
         if y < 0:
             raise fault(number, "a half-breadth of 0 or more", repr(y))
-        points = stations.setdefault(x, {})
-        if z in points:
-            raise fault(number, f"one half-breadth at station {x!r}, waterline {z!r}", "another")
-        points[z] = y
+        points = stations.setdefault(x, [])
+        if (z, y) in points and matrix:
+            # The row repeats for the flat of another station.
+            continue
+        if (z, y) in points:
+            place = f"station {x!r}, waterline {z!r}"
+            raise fault(number, f"half-breadth {y!r} once at {place}", "it twice")
+        points.append((z, y))
+    if not stations:
+        raise fault(rows[0][0], "half-breadths", "none")
     for x, points in stations.items():
         if len(points) < 2:
             raise Error(f"{name}: station {x!r} has one point; it needs two or more")
-    return Offsets({x: tuple(sorted(stations[x].items())) for x in sorted(stations)})
+    return Offsets({x: _upwards(stations[x]) for x in sorted(stations)})
+
+
+def _matrix(
+    words: list[str],
+    rows: list[tuple[int, list[str]]],
+    fault: Callable[[int, str, str], Error],
+) -> list[tuple[int, list[str]]] | None:
+    """The entries (station, waterline, half-breadth) of a matrix; ``None`` for other tables."""
+    heads = [word for word in words[1:] if word]
+    if words[0] not in ("", "station", "waterline") or not heads:
+        return None
+    try:
+        [float(word) for word in heads]
+    except ValueError:
+        return None
+    entries = []
+    for number, row in rows[1:]:
+        if not row or not row[0].strip():
+            raise fault(number, "a station or waterline in the first column", "none")
+        if len(row) > len(words):
+            raise fault(number, f"{len(words)} fields", str(len(row)))
+        for head, word in zip(words[1:], row[1:], strict=False):
+            if head:
+                pair = [row[0].strip(), head] if words[0] == "station" else [head, row[0].strip()]
+                entries.append((number, [*pair, word.strip()]))
+    return entries
+
+
+def _upwards(points: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """The points from the keel up; those of one height begin with the nearest to what is below."""
+    ordered: list[tuple[float, float]] = []
+    for z in sorted({z for z, _ in points}):
+        flat = sorted(y for height, y in points if height == z)
+        if ordered and abs(ordered[-1][1] - flat[-1]) < abs(ordered[-1][1] - flat[0]):
+            flat.reverse()
+        ordered += [(z, y) for y in flat]
+    return tuple(ordered)
 
 
 def encode(model: Model, title: str = "") -> bytes:

@@ -110,7 +110,7 @@ def test_the_command_tells_all_of_it(tmp_path, capsys: pytest.CaptureFixture[str
     assert data["closure"]["closed_with_lids_and_mirror"]
     assert data["quality"]["side"]["quads"] == 16
     path.write_text(BOX.replace("{0, 2}", "{9, 2}"))
-    assert main(["check", str(path), "--quality"]) == 0
+    assert main(["check", str(path), "--quality"]) == 1
     reported = capsys.readouterr()
     assert "divisions-contradict" in reported.out + reported.err
 
@@ -120,8 +120,10 @@ def test_a_check_tells_what_contradicts_itself_in_panels_and_cells(
 ) -> None:
     path = tmp_path / "m.sdl"
     path.write_text(BOX.replace("{0, 2}", "{9, 2}"))
-    assert main(["check", str(path)]) == 0
-    assert "divisions-contradict" in capsys.readouterr().err
+    for command in (["check"], ["build", "--to", "gdf", "-o", str(tmp_path)], ["hydro"]):
+        assert main([command[0], str(path), *command[1:]]) == 1
+        assert "divisions-contradict" in capsys.readouterr().err
+    assert not (tmp_path / "m.gdf").exists()
     # Two floors that cross make a solid that is inside out at one end.
     path.write_text(
         "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0); AbsPoint D(4, 3, 0);"

@@ -3,7 +3,7 @@
 use crate::value::{Shaped, VectorArray, numbers, vectors};
 use moldloft_locate::march::{Branch, Crossing};
 use moldloft_locate::{
-    NearestCurve, NearestSurface, PlainCurve, PlainSurface, Roots, implicit, roots,
+    NearestCurve, NearestSurface, PlainCurve, PlainSurface, Roots, curve_pairs, implicit, roots,
 };
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
@@ -327,16 +327,14 @@ fn curves<T: Real>(
     b: &CurveRef<T>,
     field: FieldId,
 ) -> Result<Vec<Vec3<T>>, CallError> {
-    let found = roots::all_curve_curve(&PlainCurve(&**a), &PlainCurve(&**b));
-    let size = a.end(0.0).re().distance(a.end(1.0).re()).max(f64::MIN_POSITIVE);
-    let meets: Vec<_> = found.roots.iter().filter(|r| r.residual <= 1e-9 * size).collect();
-    if meets.is_empty() {
-        let nearest = found.roots.first().map(|r| r.residual);
-        let gap = nearest.or(found.closest.map(|(_, r)| r)).unwrap_or(f64::INFINITY);
+    let found = curve_pairs::all_curve_curve(&PlainCurve(&**a), &PlainCurve(&**b), 0.0);
+    if found.roots.is_empty() {
+        let gap = found.closest.map_or(f64::INFINITY, |(_, r)| r);
         return Err(none("the two curves", gap, field));
     }
-    Ok(meets
-        .into_iter()
+    Ok(found
+        .roots
+        .iter()
         .map(|root| {
             let [t, s] = root.at.map(T::from);
             let ([p, d, _], [q, e, _]) = (a.jet(t, Order::First), b.jet(s, Order::First));

@@ -339,7 +339,7 @@ pub extern "C" fn mlf_v1_panel_counts(
 ) -> i32 {
     called(|| {
         let document = document(model)?;
-        let panelled = document.panelled().map_err(|d| faults(document, &[d]))?;
+        let panelled = document.entire_panels().map_err(|d| faults(document, &[d]))?;
         array_mut(vertices, 1)?[0] = panelled.mesh.positions().len();
         array_mut(panels, 1)?[0] = panelled.mesh.faces().len();
         Ok(())
@@ -352,7 +352,7 @@ pub extern "C" fn mlf_v1_panel_counts(
 pub extern "C" fn mlf_v1_panels(model: *mut mlf_model, xyz: *mut f64, corners: *mut u32) -> i32 {
     called(|| {
         let document = document(model)?;
-        let panelled = document.panelled().map_err(|d| faults(document, &[d]))?;
+        let panelled = document.entire_panels().map_err(|d| faults(document, &[d]))?;
         let (positions, faces) = (panelled.mesh.positions(), panelled.mesh.faces());
         if !xyz.is_null() {
             let out: &mut [[f64; 3]] = array_mut(xyz.cast(), positions.len())?;

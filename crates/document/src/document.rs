@@ -59,6 +59,8 @@ pub struct Document {
     pub(crate) settings: Settings,
     /// True when what can be understood of a text with faults is run.
     tolerant: bool,
+    /// True when figures and files may be those of a part of the model.
+    partial: bool,
 }
 
 /// The unit of length of a sketch that states none.
@@ -184,6 +186,7 @@ impl Document {
             cut_short: false,
             kept: Kept::default(),
             settings: Settings::default(),
+            partial: false,
             tolerant: false,
         }
     }
@@ -292,6 +295,56 @@ impl Document {
             self.run();
         }
         self.finished()
+    }
+
+    /// Lets figures and files be those of what was made, although objects failed or panels do not join.
+    pub fn allow_partial(&mut self, partial: bool) {
+        self.partial = partial;
+    }
+
+    /// Whether figures and files may be those of what was made alone.
+    pub fn partial(&self) -> bool {
+        self.partial
+    }
+
+    /// Whether figures and files would be those of the whole model.
+    ///
+    /// # Errors
+    /// Why not: errors of objects, and counts of panels that contradict each other; unless a part is allowed.
+    pub fn entire(&mut self) -> Result<(), Vec<Diagnostic>> {
+        self.complete()?;
+        if self.partial {
+            return Ok(());
+        }
+        let errors = self.lacking()?;
+        if errors.is_empty() { Ok(()) } else { Err(errors) }
+    }
+
+    /// What makes figures those of a part of the model: errors of objects, and counts of panels that contradict each
+    /// other.
+    ///
+    /// # Errors
+    /// When panels cannot be made.
+    pub fn lacking(&mut self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        let run = self.text_diagnostics.iter().chain(&self.run_diagnostics);
+        let mut errors: Vec<Diagnostic> = run.filter(|d| d.is_error()).cloned().collect();
+        // Causes before what they block.
+        errors.sort_by_key(|d| d.id == "blocked");
+        if errors.is_empty() {
+            let panelled = self.panelled().map_err(|d| vec![d])?;
+            let notes = panelled.panelling.remarks().iter().filter(|note| note.is_error());
+            errors.extend(notes.map(|note| self.reported(note)));
+        }
+        Ok(errors)
+    }
+
+    /// The panels of the whole model; see [`Self::entire`].
+    ///
+    /// # Errors
+    /// The first reason why there are none.
+    pub fn entire_panels(&mut self) -> Result<Arc<Panelled>, Diagnostic> {
+        self.entire().map_err(|mut faults| faults.swap_remove(0))?;
+        self.panelled()
     }
 
     /// Why nothing was made: that fault, or that memory or time were used up meanwhile.

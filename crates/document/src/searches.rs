@@ -5,8 +5,9 @@
 
 use moldloft_budget::Budget;
 use moldloft_locate::branches::{Branches, CutSurface};
+use moldloft_locate::curve_pairs::all_curve_curve;
 use moldloft_locate::march::Crossing;
-use moldloft_locate::roots::{all_curve_curve, all_curve_surface, all_on_level};
+use moldloft_locate::roots::{all_curve_surface, all_on_level};
 use moldloft_locate::{FoundRoot, Level, Nearest, NearestCurve, NearestSurface, Roots, by_place};
 use moldloft_num::{Plane, Vec3};
 use moldloft_parallel::prelude::*;
@@ -19,9 +20,6 @@ const CHUNK: usize = 256;
 
 /// Prepared shapes that are kept.
 const KEPT: usize = 64;
-
-/// Distance over the size of the coordinates within which two curves meet.
-const MEETING: f64 = 1e-8;
 
 /// Shapes prepared for searches.
 #[derive(Default)]
@@ -153,12 +151,7 @@ impl Searches {
                 CommonPoints::of(&all_on_level(&**curve, &level), &[0], &[])
             }
             (Value::Curve(curve), With::Curve(other)) => {
-                let roots = all_curve_curve(&**curve, &**other);
-                let size = roots.roots.iter().map(|r| r.xyz.norm()).fold(1.0, f64::max);
-                // Where curves do not meet, the search gives the place where they come nearest.
-                let met = |r: &FoundRoot<2>| r.residual <= MEETING * size;
-                let kept = roots.roots.iter().copied().filter(met).collect();
-                CommonPoints::of(&Roots { roots: kept, ..roots }, &[0], &[1])
+                CommonPoints::of(&all_curve_curve(&**curve, &**other, 0.0), &[0], &[1])
             }
             (Value::Curve(curve), With::Surface(other, _)) => {
                 CommonPoints::of(&all_curve_surface(&**curve, &**other), &[0], &[1, 2])

@@ -330,6 +330,7 @@ impl Export<'_> {
 /// # Errors
 /// Panels that cannot be made; unknown tags; numbers that are not positive.
 pub fn panels(document: &mut Document, options: &WriteOptions) -> Result<Panels, Vec<Diagnostic>> {
+    document.entire()?;
     let whole = match options.fineness().map_err(|d| vec![d])? {
         Some(fineness) => document.panelled_within(&fineness),
         None => document.panelled(),

@@ -48,7 +48,7 @@ fn cut(
 ) -> Result<(Vec<drawing::PlaneCut>, drawing::DrawingOptions), ExportFailure> {
     let mut contours: Vec<drawing::PlaneCut> =
         document.sections().into_iter().map(contour).collect();
-    let panelled = document.panelled()?;
+    let panelled = document.entire_panels()?;
     let bounds = panelled.mesh.bounds();
     for axis in 0..3 {
         // What the model does not ask for is cut at round coordinates.

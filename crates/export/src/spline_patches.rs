@@ -49,7 +49,7 @@ pub fn spline_patches(
     tolerance: Option<f64>,
     lids: bool,
 ) -> Result<Vec<SplinePatch>, ExportFailure> {
-    let panelled = document.panelled()?;
+    let panelled = document.entire_panels()?;
     let mesh = &panelled.mesh;
     if !mesh.positions().iter().all(|p| p.is_finite()) {
         return cannot("a position is not a finite number");

@@ -87,6 +87,7 @@ impl<T: Real> Body<T> {
         let limits = FitLimits {
             distance: 1e-2 * SHARE * accuracy * size,
             area: 0.1 * SHARE * accuracy * size * size,
+            relative: (SHARE * accuracy).max(1e-11),
         };
         let mut body = Self { cells: Vec::new(), rims, size, accuracy };
         for side in sides {

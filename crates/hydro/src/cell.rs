@@ -4,6 +4,7 @@
 //! coefficients are not negligible is halved. What is left of them bounds the distance to the surface.
 
 use crate::bernstein::{MOST_DEGREE, basis, halves};
+use crate::chart::{Chart, charts};
 use moldloft_num::period::crease_rate;
 use moldloft_num::{Order, Real, Surface, Vec3};
 use std::sync::OnceLock;
@@ -28,6 +29,16 @@ pub(crate) struct FitLimits {
     pub distance: f64,
     /// A distance times the length across that is negligible: the area that a strip gains.
     pub area: f64,
+    /// A share of a derivative that is negligible.
+    pub relative: f64,
+}
+
+impl FitLimits {
+    /// For surfaces that take too many cells.
+    fn coarser(self) -> Self {
+        let Self { distance, area, relative } = self;
+        Self { distance: 30.0 * distance, area: 30.0 * area, relative: 30.0 * relative }
+    }
 }
 
 /// The most cells of a surface.
@@ -35,6 +46,9 @@ const MOST_CELLS: usize = 6000;
 
 /// A cell is halved this often at most in one direction.
 const DEEPEST: u32 = 40;
+
+/// The same where only its derivatives by parameters of the model are not yet known well enough: rounding may hide them.
+const DEEPEST_FOR_SLOPES: u32 = 8;
 
 impl<T: Real> PolynomialCell<T> {
     /// The bilinear cell of four corners, counter-clockwise seen from outside; a triangle repeats its last.
@@ -162,6 +176,8 @@ impl<T: Real> PolynomialCell<T> {
 }
 
 /// The cells of a surface, or `None` where it is not finite. `reversed` when its outward normal is against S_u x S_v.
+///
+/// A part of another surface is cut along the lines of that one, too.
 pub(crate) fn cells_of<T: Real>(
     surface: &dyn Surface<T>,
     reversed: bool,
@@ -179,42 +195,151 @@ pub(crate) fn cells_of<T: Real>(
     let [ju, jv] = surface.joints();
     let (us, vs) = (ends(bu, ju), ends(bv, jv));
     let (us, vs) = (moving(surface, 0, &us), moving(surface, 1, &vs));
-    let mut stack: Vec<([T; 4], [u32; 2])> = Vec::new();
-    for u in us.windows(2).rev() {
-        for v in vs.windows(2).rev() {
-            stack.push(([u[0], u[1], v[0], v[1]], [0, 0]));
+    let mut frames: Vec<CellFrame<'_, T>> = Vec::new();
+    let charts = charts(surface, &us, &vs);
+    match &charts {
+        Some(charts) => {
+            let whole = [0.0, 1.0, 0.0, 1.0].map(T::from);
+            frames.extend(charts.iter().map(|chart| CellFrame { chart: Some(chart), ends: whole }));
+        }
+        None => {
+            for u in us.windows(2) {
+                for v in vs.windows(2) {
+                    frames.push(CellFrame { chart: None, ends: [u[0], u[1], v[0], v[1]] });
+                }
+            }
         }
     }
+    // Where that takes too many cells, all of the surface is known less well.
+    let mut limits = limits;
+    loop {
+        match fitted_cells(surface, &frames, reversed, limits) {
+            CellFits::Cells(cells) => return Some(cells),
+            CellFits::TooMany => limits = limits.coarser(),
+            CellFits::NotFinite => return None,
+        }
+    }
+}
+
+/// What fitting a surface by cells comes to.
+enum CellFits<T> {
+    Cells(Vec<PolynomialCell<T>>),
+    TooMany,
+    /// It has a place that is not finite.
+    NotFinite,
+}
+
+/// A rectangle of parameters: of a chart, or of the surface.
+#[derive(Clone, Copy)]
+struct CellFrame<'a, T> {
+    chart: Option<&'a Chart<T>>,
+    /// From and to in u, from and to in v.
+    ends: [T; 4],
+}
+
+impl<T: Real> CellFrame<'_, T> {
+    /// The halves along u (0) or v (1).
+    fn halves(&self, along: usize) -> [Self; 2] {
+        let [u0, u1, v0, v1] = self.ends;
+        let halves = match along {
+            0 => [[u0, (u0 + u1) * 0.5, v0, v1], [(u0 + u1) * 0.5, u1, v0, v1]],
+            _ => [[u0, u1, v0, (v0 + v1) * 0.5], [u0, u1, (v0 + v1) * 0.5, v1]],
+        };
+        halves.map(|ends| CellFrame { chart: self.chart, ends })
+    }
+
+    /// Whether it reaches the edge v = 0, u = 1, v = 1, u = 0 of the surface.
+    fn border(&self) -> [bool; 4] {
+        let [u0, u1, v0, v1] = self.ends.map(|t| t.re());
+        let ends = [v0 == 0.0, u1 == 1.0, v1 == 1.0, u0 == 0.0];
+        match self.chart {
+            Some(chart) => std::array::from_fn(|k| ends[k] && chart.border[k]),
+            None => ends,
+        }
+    }
+
+    /// The places of the surface on a grid of shares of the frame.
+    fn places(&self, surface: &dyn Surface<T>, shares: &[f64]) -> Vec<Vec3<T>> {
+        let [u0, u1, v0, v1] = self.ends.map(|t| t.re());
+        let within = |a: f64, b: f64, s: f64| match s {
+            0.0 => a,
+            1.0 => b,
+            s => a + (b - a) * s,
+        };
+        let us: Vec<f64> = shares.iter().map(|&s| within(u0, u1, s)).collect();
+        let vs: Vec<f64> = shares.iter().map(|&s| within(v0, v1, s)).collect();
+        let mut points = vec![Vec3::zero(); us.len() * vs.len()];
+        match self.chart {
+            Some(chart) => {
+                let all = us.iter().flat_map(|&u| vs.iter().map(move |&v| [u, v]));
+                let uv: Vec<[f64; 2]> = all.map(|place| chart.real(place)).collect();
+                surface.scattered(&uv, &mut points);
+            }
+            None => surface.grid(&us, &vs, &mut points, None),
+        }
+        points
+    }
+
+    /// The same with the derivatives of moving boundaries.
+    fn moving_places(&self, surface: &dyn Surface<T>, shares: &[f64]) -> Vec<Vec3<T>> {
+        let [u0, u1, v0, v1] = self.ends;
+        let along = |a: T, b: T| shares.iter().map(|&s| a + (b - a) * s).collect::<Vec<T>>();
+        let (us, vs) = (along(u0, u1), along(v0, v1));
+        match self.chart {
+            None => moving_grid(surface, &us, &vs),
+            Some(chart) => moving_chart(surface, chart, &us, &vs),
+        }
+    }
+
+    /// Whether a parameter of the model moves it.
+    fn moves(&self) -> bool {
+        self.chart.is_some_and(Chart::moves) || !self.ends.iter().all(|t| t.is_constant())
+    }
+}
+
+/// The cells of all frames.
+fn fitted_cells<T: Real>(
+    surface: &dyn Surface<T>,
+    frames: &[CellFrame<'_, T>],
+    reversed: bool,
+    limits: FitLimits,
+) -> CellFits<T> {
+    let mut stack: Vec<(CellFrame<'_, T>, [u32; 2])> =
+        frames.iter().rev().map(|frame| (*frame, [0, 0])).collect();
+    let most = MOST_CELLS.max(2 * frames.len());
     let mut cells = Vec::new();
     while let Some((frame, depth)) = stack.pop() {
-        let fitted = fit(surface, frame, reversed)?;
-        let [tail_u, tail_v] = fitted.fit;
+        let Some((fitted, slopes)) = fit(surface, &frame, reversed) else {
+            return CellFits::NotFinite;
+        };
         let [length_u, length_v] = fitted.lengths();
         // Rounding of the places cannot be had smaller.
         let size = fitted.net.iter().fold(0.0f64, |m, p| m.max(p.re().norm()));
         let distance = limits.distance.max(4e-14 * size);
-        let negligible =
-            |tail: f64, across: f64| tail <= distance || tail * across.max(tail) <= limits.area;
-        let full = cells.len() + stack.len() >= MOST_CELLS;
-        let rough =
-            [!negligible(tail_u, length_v), !negligible(tail_v, length_u)].map(|r| r && !full);
-        let [u0, u1, v0, v1] = frame;
+        let negligible = |k: usize, across: f64| {
+            let tail = fitted.fit[k];
+            (tail <= distance || tail * across.max(tail) <= limits.area)
+                && (slopes[k] <= limits.relative || depth[k] >= DEEPEST_FOR_SLOPES)
+        };
+        let rough = [!negligible(0, length_v), !negligible(1, length_u)];
+        let [tail_u, tail_v] =
+            [0, 1].map(|k| fitted.fit[k] / distance + slopes[k] / limits.relative);
         let worse = usize::from(tail_v > tail_u);
         let along = if rough[worse] { worse } else { 1 - worse };
         if rough[along] && depth[along] < DEEPEST {
+            if cells.len() + stack.len() >= most {
+                return CellFits::TooMany;
+            }
             let mut deeper = depth;
             deeper[along] += 1;
-            let parts = match along {
-                0 => [[u0, (u0 + u1) * 0.5, v0, v1], [(u0 + u1) * 0.5, u1, v0, v1]],
-                _ => [[u0, u1, v0, (v0 + v1) * 0.5], [u0, u1, (v0 + v1) * 0.5, v1]],
-            };
-            stack.push((parts[1], deeper));
-            stack.push((parts[0], deeper));
+            let [low, high] = frame.halves(along);
+            stack.push((high, deeper));
+            stack.push((low, deeper));
         } else {
             cells.push(fitted);
         }
     }
-    Some(cells)
+    CellFits::Cells(cells)
 }
 
 /// How far beside a break a side of it is looked at, in shares of the cell.
@@ -264,32 +389,52 @@ fn moving_grid<T: Real>(surface: &dyn Surface<T>, us: &[T], vs: &[T]) -> Vec<Vec
     points
 }
 
+/// The places of a part whose boundaries may move, on a grid of its chart: beside them the side that the chart is on
+/// counts.
+fn moving_chart<T: Real>(
+    surface: &dyn Surface<T>,
+    chart: &Chart<T>,
+    us: &[T],
+    vs: &[T],
+) -> Vec<Vec3<T>> {
+    let inside = |t: f64| t.clamp(BESIDE, 1.0 - BESIDE);
+    let mut points = Vec::with_capacity(us.len() * vs.len());
+    let mut exact = Vec::with_capacity(us.len() * vs.len());
+    for &u in us {
+        for &v in vs {
+            let place = [u, v];
+            let at = chart.at(place);
+            let [x, y] = chart.real(place.map(|t| inside(t.re())));
+            // The derivatives beside the boundary; the place itself.
+            let jet = surface.jet(T::from(x), T::from(y), Order::First);
+            points.push(jet.p + jet.u * (at[0] - x) + jet.v * (at[1] - y));
+            exact.push(chart.real(place.map(|t| t.re())));
+        }
+    }
+    let mut places = vec![Vec3::zero(); exact.len()];
+    surface.scattered(&exact, &mut places);
+    for (p, place) in points.iter_mut().zip(places) {
+        *p = *p - Vec3::lifted(p.re()) + Vec3::lifted(place.re());
+    }
+    points
+}
+
 /// Places off the Chebyshev points at which an interpolation is compared.
 const PROBES: [f64; 3] = [0.071, 0.457, 0.893];
 
-/// The interpolation of a surface on [u0, u1] x [v0, v1] at Chebyshev points, of the lowest degree that keeps it.
+/// The interpolation of a surface on a frame at Chebyshev points, of the lowest degree that keeps it, and what it leaves
+/// of derivatives along u and v, as a share of the greatest.
 fn fit<T: Real>(
     surface: &dyn Surface<T>,
-    frame: [T; 4],
+    frame: &CellFrame<'_, T>,
     reversed: bool,
-) -> Option<PolynomialCell<T>> {
+) -> Option<(PolynomialCell<T>, [f64; 2])> {
     const N: usize = MOST_DEGREE + 1;
     let tables = tables();
-    let [u0, u1, v0, v1] = frame.map(|t| t.re());
-    let within = |a: f64, b: f64, s: f64| match s {
-        0.0 => a,
-        1.0 => b,
-        s => a + (b - a) * s,
-    };
-    let us: Vec<f64> = tables.nodes.iter().map(|&s| within(u0, u1, s)).collect();
-    let vs: Vec<f64> = tables.nodes.iter().map(|&s| within(v0, v1, s)).collect();
-    let points = if frame.iter().all(|t| t.is_constant()) {
-        let mut points = vec![Vec3::zero(); N * N];
-        surface.grid(&us, &vs, &mut points, None);
-        points
+    let points = if frame.moves() {
+        frame.moving_places(surface, &tables.nodes)
     } else {
-        let along = |a: T, b: T| tables.nodes.iter().map(|&s| a + (b - a) * s).collect::<Vec<T>>();
-        moving_grid(surface, &along(frame[0], frame[1]), &along(frame[2], frame[3]))
+        frame.places(surface, &tables.nodes)
     };
     if !points.iter().all(|p| p.is_finite()) {
         return None;
@@ -328,20 +473,17 @@ fn fit<T: Real>(
     }
     let to_bernstein = [&tables.synthesis[du], &tables.synthesis[dv]];
     let net = transformed(&kept, [du + 1, dv + 1], to_bernstein);
-    let border = [v0 == 0.0, u1 == 1.0, v1 == 1.0, u0 == 0.0];
+    let border = frame.border();
     let cell = PolynomialCell { degree: [du, dv], net, reversed, border, fit };
     // Between the points, where a kink that no joint declares would show.
     let mut off: f64 = 0.0;
     let (mut at, mut by) = (Vec::new(), Vec::new());
-    let us = PROBES.map(|s| within(u0, u1, s));
-    let vs = PROBES.map(|s| within(v0, v1, s));
-    let mut probes = [Vec3::zero(); 9];
-    surface.grid(&us, &vs, &mut probes, None);
+    let probes = frame.places(surface, &PROBES);
     for (j, &v) in PROBES.iter().enumerate() {
         cell.line(0, T::from(v), &mut at, &mut by);
         for (i, &u) in PROBES.iter().enumerate() {
             let p = crate::bernstein::place_and_tangent(&at, T::from(u)).0.re();
-            off = off.max(p.distance(probes[i * 3 + j].re()));
+            off = off.max(p.distance(probes[i * PROBES.len() + j].re()));
         }
     }
     if !off.is_finite() {
@@ -354,7 +496,30 @@ fn fit<T: Real>(
             fit = [off, off];
         }
     }
-    Some(PolynomialCell { fit, ..cell })
+    Some((PolynomialCell { fit, ..cell }, derivative_tails(&coefficients)))
+}
+
+/// The last coefficients of the derivatives along u and v, as shares of the greatest coefficient of their direction.
+fn derivative_tails<T: Real>(coefficients: &[Vec3<T>]) -> [f64; 2] {
+    const N: usize = MOST_DEGREE + 1;
+    let mut tails = [0.0f64; 2];
+    for part in 1..T::PARTS {
+        let size = |k: usize| {
+            let c = coefficients[k];
+            c.x.part(part).abs().max(c.y.part(part).abs()).max(c.z.part(part).abs())
+        };
+        let most = (0..N * N).map(size).fold(0.0, f64::max);
+        if most == 0.0 {
+            continue;
+        }
+        for last in N - 2..N {
+            let row = (0..N).map(|j| size(last * N + j)).fold(0.0, f64::max);
+            let column = (0..N).map(|i| size(i * N + last)).fold(0.0, f64::max);
+            tails[0] = tails[0].max(row / most);
+            tails[1] = tails[1].max(column / most);
+        }
+    }
+    tails
 }
 
 /// The Chebyshev points, and the matrices from values there to Chebyshev and on to Bernstein coefficients.

@@ -215,6 +215,9 @@ pub fn bounds<T: Real>(flotation: &Flotation<T>) -> Vec<(&'static str, f64)> {
             rows.extend([("gmt", t + centre), ("gml", l + centre)]);
         }
     }
+    if h.waterplane.is_none() && flotation.gm.is_some() {
+        rows.extend([("gmt", centre), ("gml", centre)]);
+    }
     if flotation.gz.is_some() {
         rows.extend([("gz", centre), ("trim_arm", centre)]);
     }
@@ -245,6 +248,10 @@ pub fn flotation<T: Real>(
     let gm = || {
         let (b, g) = (earth.buoyancy_centre?, gravity_earth?);
         let height = b.z - g.z;
+        if earth.waterplane.is_none() {
+            // Wholly under water the metacentres are the centre of buoyancy.
+            return Some([height; 2]);
+        }
         Some([earth.bm_transverse()? + height, earth.bm_longitudinal()? + height])
     };
     let arms = || Some(earth.buoyancy_centre? - gravity_earth?);
@@ -257,15 +264,10 @@ pub fn flotation<T: Real>(
             .flatten()
             .map(|gm| earth.displacement * gm * centimetre / p.length)
     };
-    let stable = match (gm, arms) {
-        (Some([t, l]), _) => {
-            let off = product_moment.re() / earth.volume.re();
-            Some(t.re() > 0.0 && l.re() > 0.0 && t.re() * l.re() > off * off)
-        }
-        // Wholly under water: buoyancy above gravity.
-        (None, Some(arms)) => Some(arms.z.re() > 0.0),
-        (None, None) => None,
-    };
+    let stable = gm.map(|[t, l]| {
+        let off = product_moment.re() / earth.volume.re();
+        t.re() > 0.0 && l.re() > 0.0 && t.re() * l.re() > off * off
+    });
     Flotation {
         attitude,
         buoyancy_centre: earth.buoyancy_centre.map(|c| attitude.body_from(c)),

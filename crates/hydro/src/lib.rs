@@ -13,6 +13,7 @@
 mod bernstein;
 mod body;
 mod cell;
+mod chart;
 mod descent;
 mod equilibrium;
 mod figures;
@@ -34,5 +35,7 @@ pub use section::section_area;
 
 #[cfg(test)]
 mod mesh_tests;
+#[cfg(test)]
+mod part_tests;
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,7 @@
 //! scalar so); derivatives follow from the solution by the implicit function theorem
 //! ([`implicit`]).
 //!
-//! What is claimed of completeness is stated in [`pieces`], [`roots`] and [`branches`].
+//! What is claimed of completeness is stated in [`pieces`], [`roots`], [`curve_pairs`] and [`branches`].
 //!
 //! Invariant: this crate knows no entity, no registry and no file.
 
@@ -21,6 +21,7 @@ mod batch;
 pub mod branches;
 mod cells;
 pub mod common;
+pub mod curve_pairs;
 pub mod implicit;
 pub mod march;
 mod nearest;

@@ -198,7 +198,7 @@ impl CurvePiece {
 }
 
 /// A middle of a set of points, and how far they reach from it.
-fn ball(all: &[Vec3]) -> (Vec3, f64) {
+pub(crate) fn ball(all: &[Vec3]) -> (Vec3, f64) {
     let c = Box3::around(all.iter().copied()).centre();
     (c, all.iter().map(|q| (*q - c).norm_sq()).fold(0.0, f64::max).sqrt())
 }

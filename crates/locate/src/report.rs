@@ -22,6 +22,8 @@ pub enum LocateStatus {
     Tangent,
     /// There is no solution; the parameters are those of the least residual that was met.
     NoSolution,
+    /// The search ran into its limit before it found a solution: there may be some.
+    Unfinished,
     /// There are several solutions, and nothing that says which is meant.
     Multiple {
         /// How many.
@@ -44,6 +46,7 @@ impl LocateStatus {
             LocateStatus::EdgeClamped => "edge-clamped",
             LocateStatus::Tangent => "tangent",
             LocateStatus::NoSolution => "no-solution",
+            LocateStatus::Unfinished => "unfinished",
             LocateStatus::Multiple { .. } => "multiple",
             LocateStatus::Diverged => "diverged",
         }
@@ -51,7 +54,10 @@ impl LocateStatus {
 
     /// True when there is a solution.
     pub fn is_solution(self) -> bool {
-        !matches!(self, LocateStatus::NoSolution | LocateStatus::Diverged)
+        !matches!(
+            self,
+            LocateStatus::NoSolution | LocateStatus::Unfinished | LocateStatus::Diverged
+        )
     }
 }
 
@@ -172,14 +178,16 @@ impl<const N: usize> Roots<N> {
         Solution { at: root.at, joint: [false; N], report }
     }
 
-    /// The report that there is no root.
+    /// The report that there is no root, or that none was found before the search ran into its limit.
     pub fn none(&self, start: &[f64]) -> LocateReport {
         let (last, residual) = match self.closest {
             Some((at, residual)) => (at.iter().copied().collect(), residual),
             None => (start.iter().copied().collect(), f64::INFINITY),
         };
+        let status =
+            if self.complete { LocateStatus::NoSolution } else { LocateStatus::Unfinished };
         LocateReport {
-            status: LocateStatus::NoSolution,
+            status,
             residual,
             iterations: 0,
             start: start.iter().copied().collect(),

@@ -248,7 +248,12 @@ impl<const N: usize> RootCollector<N> {
         self.pairs > MOST_PAIRS || self.roots.len() > 2_000
     }
 
-    fn note(&mut self, at: [f64; N], residual: f64) {
+    /// Whether there is a root.
+    pub fn any(&self) -> bool {
+        !self.roots.is_empty()
+    }
+
+    pub fn note(&mut self, at: [f64; N], residual: f64) {
         if residual.is_finite() && self.closest.is_none_or(|(_, best)| residual < best) {
             self.closest = Some((at, residual));
         }
@@ -287,7 +292,7 @@ impl<const N: usize> RootCollector<N> {
         }
     }
 
-    fn insert(&mut self, root: FoundRoot<N>) {
+    pub fn insert(&mut self, root: FoundRoot<N>) {
         let closed = self.closed;
         let near = |a: &FoundRoot<N>, reach: f64| {
             (0..N).all(|k| parameter_distance(a.at[k], root.at[k], closed[k]) <= reach)
@@ -429,152 +434,6 @@ pub fn meetings(
                 }
             }
         }
-    }
-    search.finish()
-}
-
-/// Half the gradient of |C1(t) - C2(s)|^2, over the speeds, and its derivatives.
-fn between_curves(
-    a: &dyn Curve<f64>,
-    b: &dyn Curve<f64>,
-    [t, s]: [f64; 2],
-) -> ([f64; 2], [[f64; 2]; 2]) {
-    let (x, y) = (a.jet(t, Order::Second), b.jet(s, Order::Second));
-    let r = x[0] - y[0];
-    let (p, q) = (x[1].norm().max(1e-300), y[1].norm().max(1e-300));
-    let f = [x[1].dot(r) / p, -y[1].dot(r) / q];
-    let cross = -x[1].dot(y[1]);
-    let j = [
-        [(x[1].norm_sq() + x[2].dot(r)) / p, cross / p],
-        [cross / q, (y[1].norm_sq() - y[2].dot(r)) / q],
-    ];
-    (f, j)
-}
-
-fn sine_between(a: &dyn Curve<f64>, b: &dyn Curve<f64>, [t, s]: [f64; 2]) -> f64 {
-    let (x, y) = (a.jet(t, Order::First)[1], b.jet(s, Order::First)[1]);
-    x.cross(y).norm() / (x.norm() * y.norm()).max(f64::MIN_POSITIVE)
-}
-
-/// Where two curves come nearest to each other, as (t, s): where they meet if they do. From a
-/// start it is the place where Newton's method leads to; without one the nearest of all.
-///
-/// The residual of the report is the distance between the two curves there.
-///
-/// # Errors
-/// The report when there is no such place inside both curves.
-pub fn curve_curve(
-    a: &dyn Curve<f64>,
-    b: &dyn Curve<f64>,
-    start: Option<[f64; 2]>,
-) -> Result<Solution<2>, LocateReport> {
-    let gap = |[t, s]: [f64; 2]| a.jet(t, Order::Zero)[0].distance(b.jet(s, Order::Zero)[0]);
-    if let Some(q) = start {
-        let size = size_of_curve(a).max(size_of_curve(b));
-        let closed = [a.closed(), b.closed()];
-        let ranges = closed.map(UnknownBounds::parameter);
-        let mut walk = newton(q, &ranges, size, |q| between_curves(a, b, q)).within(&closed);
-        let sine = sine_between(a, b, walk.at);
-        walk.residual = gap(walk.at);
-        if let Some(found) = taken(&walk, &q, sine) {
-            return Ok(found);
-        }
-    }
-    let all = all_curve_curve(a, b);
-    let from = start.unwrap_or([0.5; 2]);
-    from_all(all, start.as_ref().map(<[f64; 2]>::as_slice), |all| all.nearest_to(&from))
-}
-
-/// All meetings of two curves, as (t, s); when they do not meet, the place where they come
-/// nearest, with the distance as its residual.
-pub fn all_curve_curve(a: &dyn Curve<f64>, b: &dyn Curve<f64>) -> Roots<2> {
-    let (ta, tb) = (CurveTree::new(a), CurveTree::new(b));
-    let size = ta.size.min(tb.size);
-    // What counts as a meeting: curves in space that are made to meet do so to rounding only.
-    let joined = 1e-9 * size;
-    let gap = |[t, s]: [f64; 2]| a.jet(t, Order::Zero)[0].distance(b.jet(s, Order::Zero)[0]);
-    let closed = [a.closed(), b.closed()];
-    let ranges = closed.map(UnknownBounds::parameter);
-    let mut search = RootCollector::<2>::new(size, &[0.5; 2], closed);
-    let mut best: Option<FoundRoot<2>> = None;
-    let mut bound = f64::INFINITY;
-    let mut stack: Vec<(CurvePiece, CurvePiece)> = Vec::new();
-    let apart = |p: &Box3, q: &Box3| {
-        let out = |l: f64, h: f64, m: f64, n: f64| (l - n).max(m - h).max(0.0);
-        let d = Vec3::of(
-            out(p.low.x, p.high.x, q.low.x, q.high.x),
-            out(p.low.y, p.high.y, q.low.y, q.high.y),
-            out(p.low.z, p.high.z, q.low.z, q.high.z),
-        );
-        d.norm()
-    };
-    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
-    for (i, p) in ta.pieces.iter().enumerate() {
-        for (j, q) in tb.pieces.iter().enumerate() {
-            bound = bound.min(p.net[0].distance(q.net[0]) + p.slack + q.slack);
-            pairs.push((apart(&p.bounds(), &q.bounds()), i, j));
-        }
-    }
-    pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-    for (low, i, j) in pairs {
-        if low > bound.max(joined) {
-            break;
-        }
-        stack.push((ta.pieces[i], tb.pieces[j]));
-        while let Some((p, q)) = stack.pop() {
-            if search.exhausted() {
-                break;
-            }
-            if apart(&p.bounds(), &q.bounds()) > bound.max(joined) {
-                continue;
-            }
-            let (la, lb) = (p.net[0].distance(p.net[3]), q.net[0].distance(q.net[3]));
-            let cell = [p.t, q.t];
-            let flat = p.bend() <= FLAT * la && q.bend() <= FLAT * lb;
-            let tiny = la.max(lb) < 1e-6 * size;
-            if flat || tiny {
-                let middle = cell.map(|[a, b]| 0.5 * (a + b));
-                bound = bound.min(gap(middle));
-                let mut walk = newton(middle, &ranges, size, |x| between_curves(a, b, x));
-                walk.residual = gap(walk.at);
-                let inside = (0..2).all(|k| {
-                    let [a, b] = cell[k];
-                    walk.at[k] >= a - 0.5 * (b - a) && walk.at[k] <= b + 0.5 * (b - a)
-                });
-                if walk.found && inside {
-                    let walk = walk.within(&closed);
-                    bound = bound.min(walk.residual);
-                    let root = FoundRoot {
-                        at: walk.at,
-                        xyz: a.jet(walk.at[0], Order::Zero)[0],
-                        residual: walk.residual,
-                        iterations: walk.iterations,
-                        tangent: sine_between(a, b, walk.at) < TANGENT,
-                    };
-                    if walk.residual <= joined {
-                        search.insert(root);
-                    } else if best.is_none_or(|b| root.residual < b.residual) {
-                        best = Some(root);
-                    }
-                }
-                // Where the curves cross steeply, the distance has one minimum near the cell.
-                if walk.found && sine_between(a, b, middle) > 0.2 {
-                    continue;
-                }
-                if tiny {
-                    search.note(middle, gap(middle));
-                    continue;
-                }
-            }
-            if la >= lb {
-                stack.extend(p.halves().map(|half| (half, q)));
-            } else {
-                stack.extend(q.halves().map(|half| (p, half)));
-            }
-        }
-    }
-    if search.roots.is_empty() {
-        search.roots.extend(best);
     }
     search.finish()
 }

@@ -33,6 +33,7 @@ mod clip;
 mod closure;
 mod error;
 mod half_edge;
+mod inside;
 mod measure;
 mod mesh;
 mod panel;
@@ -49,6 +50,7 @@ mod volume;
 
 pub use closure::{Closes, Closure, EdgeName, OpenEdge, closure};
 pub use error::MeshError;
+pub use inside::{InnerSkin, inner_skins};
 pub use measure::{Measures, measure, measure_patch};
 pub use mesh::Mesh;
 pub use panel::Panel;

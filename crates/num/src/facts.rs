@@ -127,6 +127,9 @@ macro_rules! surface_facts {
         fn crossings(&$self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
             $self $($rest)+.crossings(path, spans)
         }
+        fn inner_planes(&$self) -> Vec<$crate::InnerPlane<'_>> {
+            $self $($rest)+.inner_planes()
+        }
     };
     (@ open) => {
         fn closed(&self) -> [bool; 2] {

@@ -54,7 +54,7 @@ pub use reparametrization::{
 };
 pub use roots::{NoRoot, find_root};
 pub use shape::{
-    Curve, CurveFormula, CurveJet, Field, Order, SurfJet, Surface, SurfaceFormula,
+    Curve, CurveFormula, CurveJet, Field, InnerPlane, Order, SurfJet, Surface, SurfaceFormula,
     field_differences, line_crossings, slope_scale,
 };
 pub use solid::{Solid, SolidFormula, SolidJet};

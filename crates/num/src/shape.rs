@@ -151,6 +151,11 @@ pub trait Surface<T: Real>: Send + Sync {
         None
     }
 
+    /// The parameter planes of the surfaces that this one is a part of: their lines run across it at any angle.
+    fn inner_planes(&self) -> Vec<InnerPlane<'_>> {
+        Vec::new()
+    }
+
     /// What the four edges run along, for joins: v = 0, u = 1, v = 1, u = 0, each in the
     /// direction of increasing parameter.
     fn edges(&self) -> Edges<T> {
@@ -175,6 +180,26 @@ pub trait Surface<T: Real>: Send + Sync {
     /// The solid object of which this is face 0..6, at equal parameters. For joins of blocks.
     fn face_of(&self) -> Option<(Key, u8)> {
         None
+    }
+}
+
+/// The parameter plane of a surface, in which another one is a part.
+pub struct InnerPlane<'a> {
+    /// The place in the plane of a place (u, v) of the part.
+    pub place: Box<dyn Fn([f64; 2]) -> [f64; 2] + Send + Sync + 'a>,
+    /// The lines of the plane at which one formula ends and another begins; see [`Surface::joints`].
+    pub joints: [Vec<f64>; 2],
+    /// The lines of the plane at which a first derivative may jump; see [`Surface::kinks`].
+    pub kinks: [Vec<f64>; 2],
+    /// Which of its parameters run round, so that the lines come back with each turn.
+    pub closed: [bool; 2],
+}
+
+impl<'a> InnerPlane<'a> {
+    /// The plane as it is seen through a map of parameters.
+    pub fn through(self, map: impl Fn([f64; 2]) -> [f64; 2] + Send + Sync + 'a) -> Self {
+        let place = self.place;
+        Self { place: Box::new(move |w| place(map(w))), ..self }
     }
 }
 
@@ -395,6 +420,11 @@ pub trait SurfaceFormula: Send + Sync {
     /// See [`Surface::rational`].
     fn rational(&self) -> Rational<2>;
 
+    /// See [`Surface::inner_planes`].
+    fn inner_planes(&self) -> Vec<InnerPlane<'_>> {
+        Vec::new()
+    }
+
     /// See [`Surface::edges`].
     fn edges(&self) -> Edges<Self::Scalar> {
         Edges::own()
@@ -426,6 +456,9 @@ impl<F: SurfaceFormula> Surface<F::Scalar> for F {
     }
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
         SurfaceFormula::crossings(self, path, spans)
+    }
+    fn inner_planes(&self) -> Vec<InnerPlane<'_>> {
+        SurfaceFormula::inner_planes(self)
     }
     fn edges(&self) -> Edges<F::Scalar> {
         SurfaceFormula::edges(self)

@@ -1,7 +1,8 @@
 //! Which roots, and which points, are one though they have several names.
 //!
 //! An edge of a loft has no name of its own, nor has a corner of a patch. They are known by what they are
-//! made of: the edge by the ends of the masters, the corner of an image by the corner of the original.
+//! made of: the edge by the ends of the masters, the corner of an image by the corner of the original, a bead by its
+//! curve and its numbers.
 //! Two of them are one when they are made of the same things *and* lie in one place: neither alone is
 //! enough, for the same point may be turned to several places, and equal numbers join nothing. What is
 //! one here has one root, so marks, divisions and vertices flow along it as along any curve.
@@ -270,9 +271,30 @@ impl<'g> IdentityFinder<'g> {
             seen.push(next);
             at = next;
         }
-        let make = hashed((0u8, at.0));
+        let make = self.placed_make(at).unwrap_or_else(|| hashed((0u8, at.0)));
         self.makes.insert(first, make);
         make
+    }
+
+    /// What a point on a curve or surface is made of: its kind, what it is on, and its numbers. Two such of one make are
+    /// one for all values of the model's parameters.
+    fn placed_make(&mut self, key: Key) -> Option<Make> {
+        let object = self.graph.get(key)?;
+        match object.value()? {
+            Value::Point(p) if p.on_curve.is_some() || p.on_surface.is_some() => {}
+            _ => return None,
+        }
+        let mut parts = vec![hashed((4u8, &object.row.name))];
+        for arg in &object.args {
+            parts.push(match arg {
+                Value::Object(key) => self.make(*key),
+                Value::Curve(curve) => self.make(curve.key?),
+                Value::Surface(surface) => self.make(surface.key?),
+                Value::Point(point) => self.make(point.key?),
+                other => hashed(format!("{other:?}")),
+            });
+        }
+        Some(hashed(parts))
     }
 
     /// What anything with a key is made of.

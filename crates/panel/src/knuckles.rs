@@ -4,7 +4,8 @@
 //! joint of a poly-curve, a knot of degree 1, a crease. It is a row of the patch, on all sides alike, so
 //! that no panel spans it.
 
-use moldloft_num::{Order, Surface, Vec3};
+use moldloft_num::period::breaks_between;
+use moldloft_num::{InnerPlane, Order, Surface, Vec3, find_root};
 
 /// Tangents that differ in direction by more than this, in radians, make a knuckle.
 const TURN: f64 = 1e-5;
@@ -39,4 +40,57 @@ fn turns(at: f64, tangents: impl Fn(f64) -> Vec<Vec3>) -> bool {
     };
     let inside = ASIDE < at && at < 1.0 - ASIDE;
     inside && tangents(at - ASIDE).into_iter().zip(tangents(at + ASIDE)).any(differ)
+}
+
+/// A part is looked at on so many steps in each direction.
+const STEPS: usize = 16;
+
+/// A place (u, v) of a part at which a knuckle of the surface that it is a part of runs across its panels: along none of
+/// its own knuckles.
+pub(crate) fn knuckle_across(surface: &dyn Surface<f64>, own: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
+    let planes = surface.inner_planes();
+    planes.iter().find_map(|plane| across_in(surface, own, plane))
+}
+
+fn across_in(
+    surface: &dyn Surface<f64>,
+    own: &[Vec<f64>; 2],
+    plane: &InnerPlane<'_>,
+) -> Option<[f64; 2]> {
+    if plane.kinks.iter().all(Vec::is_empty) && plane.closed == [false; 2] {
+        return None;
+    }
+    let step = |k: usize| k as f64 / STEPS as f64;
+    let place = |i: usize, j: usize| (plane.place)([step(i), step(j)]);
+    let grid: Vec<Vec<[f64; 2]>> =
+        (0..=STEPS).map(|i| (0..=STEPS).map(|j| place(i, j)).collect()).collect();
+    for axis in 0..2 {
+        let all = grid.iter().flatten().map(|w| w[axis]);
+        let (low, high) =
+            all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        for line in breaks_between(&plane.kinks[axis], plane.closed[axis], low, high) {
+            for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+                for (along, next) in [(0, [i + 1, j]), (1, [i, j + 1])] {
+                    let [a, b] = [grid[i][j], grid[next[0]][next[1]]].map(|w| w[axis] - line);
+                    if (a < 0.0) == (b < 0.0) {
+                        continue;
+                    }
+                    let at = |t: f64| if along == 0 { [t, step(j)] } else { [step(i), t] };
+                    let from = [i, j][along];
+                    let beyond = |t: f64| (plane.place)(at(t))[axis] - line;
+                    let Ok(t) = find_root(beyond, step(from), step(from + 1)) else { continue };
+                    let known = own[along].iter().any(|k| (k - t).abs() < 1e-6);
+                    let tangents = |t: f64| {
+                        let [u, v] = at(t);
+                        let jet = surface.jet(u, v, Order::First);
+                        vec![if along == 0 { jet.u } else { jet.v }]
+                    };
+                    if !known && turns(t, tangents) {
+                        return Some(at(t));
+                    }
+                }
+            }
+        }
+    }
+    None
 }

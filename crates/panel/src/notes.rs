@@ -82,6 +82,15 @@ pub enum PanelNote {
         /// The divisions of the curves that its border runs along.
         divisions: Vec<usize>,
     },
+    /// A knuckle of the surface that a patch is a part of runs across its panels, which cut it off.
+    Knuckle {
+        /// The patch.
+        patch: String,
+        /// (u, v) of a place on the knuckle.
+        uv: [f64; 2],
+        /// Where.
+        at: Vec3,
+    },
     /// Number of further contradictions.
     More(usize),
 }
@@ -97,12 +106,16 @@ impl PanelNote {
             PanelNote::Junction { .. } => "corner-not-joined",
             PanelNote::Unjoined { .. } => "edges-not-joined",
             PanelNote::Border { .. } => "border-not-joined",
+            PanelNote::Knuckle { .. } => "knuckle-across-panels",
         }
     }
 
     /// True for what opens the mesh where the shape is closed.
     pub fn is_error(&self) -> bool {
-        matches!(self, PanelNote::Junction { .. } | PanelNote::Unjoined { .. })
+        !matches!(
+            self,
+            PanelNote::Apart { .. } | PanelNote::Border { .. } | PanelNote::Knuckle { .. }
+        )
     }
 
     /// The remedy.
@@ -136,6 +149,9 @@ impl PanelNote {
                 "build both patches on the same point and the same curves: patches are joined by shared objects, not by coordinates"
             }
             PanelNote::Border { .. } => "give it, or its neighbours, more divisions",
+            PanelNote::Knuckle { .. } => {
+                "make two parts of it that meet at a snake along the knuckle, such as UVSnake or EdgeSnake"
+            }
             PanelNote::More(_) => "fix those that are reported first",
         };
         text.to_string()
@@ -145,7 +161,9 @@ impl PanelNote {
     pub fn object(&self) -> Option<&str> {
         match self {
             PanelNote::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
-            PanelNote::Pieces { patch, .. } | PanelNote::Border { patch, .. } => Some(patch),
+            PanelNote::Pieces { patch, .. }
+            | PanelNote::Border { patch, .. }
+            | PanelNote::Knuckle { patch, .. } => Some(patch),
             PanelNote::Apart { patches, .. } => Some(&patches[1]),
             PanelNote::Junction { patches, .. } | PanelNote::Unjoined { patches, .. } => {
                 Some(&patches[0])
@@ -238,6 +256,11 @@ impl std::fmt::Display for PanelNote {
                     counts.join(" + ")
                 )
             }
+            PanelNote::Knuckle { patch, uv: [u, v], at } => write!(
+                f,
+                "a knuckle runs across the panels of `{patch}` at (u, v) = ({u:.6}, {v:.6}), ({}, {}, {}): they cut it off",
+                at.x, at.y, at.z
+            ),
             PanelNote::More(n) => write!(f, "{n} more contradictions among divisions"),
         }
     }

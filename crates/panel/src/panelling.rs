@@ -9,10 +9,11 @@
 //! same stretch, or lie at the same point object ([`crate::join`]); never because they look close. The
 //! position of a shared vertex is computed once, by the first patch in the order of declaration.
 
-use crate::draft::{Knuckles, drafts, indices};
+use crate::draft::{Draft, Knuckles, drafts, indices};
 use crate::edges::{self, EdgePlan, along_edge};
 use crate::identity::Identities;
 use crate::joined_patches::JoinedPatches;
+use crate::knuckles::knuckle_across;
 use crate::notes::PanelNote;
 use crate::patch_values::{PatchValues, evaluated_all, names};
 use crate::roots::RootTable;
@@ -22,7 +23,7 @@ use moldloft_budget::Spent;
 use moldloft_mesh::{Mesh, Topology};
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::Key;
-use moldloft_num::{Box3, Fineness, Real, Vec3};
+use moldloft_num::{Box3, Fineness, Order, Real, Vec3};
 use moldloft_registry::{CallError, Scalar, SurfaceRef};
 use std::cell::LazyCell;
 use std::collections::HashMap;
@@ -169,6 +170,8 @@ impl Panelling {
         identities.collapse(&mut drafts);
         let roots = RootTable::new(graph, &drafts, identities);
         let made = topology::solve(graph, roots, &drafts, nominal);
+        let across = drafts.iter().filter(|d| d.meshed && d.border_curve.is_none());
+        let across: Vec<PanelNote> = across.filter_map(knuckle_note).collect();
         let knuckles = drafts.iter().filter(|d| d.border_curve.is_none());
         let knuckles = knuckles.map(|d| (d.object.key, d.knuckles.clone())).collect();
         let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
@@ -205,7 +208,7 @@ impl Panelling {
         let size = points.iter().flat_map(|p| p.iter()).fold(Box3::EMPTY, |b, &p| b.including(p));
         let zeros = zeros(&structure, &points, size.diagonal());
         set_zeros(&structure, &zeros, &mut points);
-        let fixed = fixed(&structure, &points);
+        let fixed = fixed(&structure, &points, &size);
         let joined = match before.filter(|b| b.joined.fixed == fixed) {
             Some(before)
                 if before.joined.turned == before.joined.orientation(&structure, &points) =>
@@ -218,6 +221,7 @@ impl Panelling {
             }
         };
         let mut remarks = made.remarks;
+        remarks.extend(across);
         remarks.extend(joined.apart(&structure, &points, size.diagonal()));
         {
             let known = if bodies.iter().any(MeshedBody::has_border) {
@@ -367,6 +371,13 @@ impl Panelling {
     }
 }
 
+/// What is said of a patch across whose panels a knuckle runs.
+fn knuckle_note(draft: &Draft<'_>) -> Option<PanelNote> {
+    let [u, v] = knuckle_across(&*draft.surface, &draft.knuckles)?;
+    let at = draft.surface.jet(u, v, Order::Zero).p;
+    Some(PanelNote::Knuckle { patch: draft.object.name.to_string(), uv: [u, v], at })
+}
+
 /// The parts of patches that lie in a coordinate plane but for rounding.
 fn zeros(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<(u32, u8, u8)> {
     let near = IN_PLANE * size;
@@ -409,16 +420,17 @@ fn set_zeros<T: Real>(
     }
 }
 
-/// For each patch that is an image, which points of its boundary are those of its original.
-fn fixed(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>]) -> Vec<Vec<bool>> {
+/// For each patch that is an image, which points of its boundary are those of its original, but for rounding.
+fn fixed(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>], all: &Box3) -> Vec<Vec<bool>> {
+    let far = all.low.norm().max(all.high.norm());
+    let near = IN_PLANE * all.diagonal() + 64.0 * f64::EPSILON * far;
     let of_patch = |(patch, frame): (usize, &PatchTopology)| {
         let Some((original, _)) = frame.image else { return Vec::new() };
         if structure.patches[original].divisions != frame.divisions {
             return Vec::new();
         }
         let boundary = (0..4).flat_map(|k| indices(frame.divisions, k));
-        // -0 and 0 are one place.
-        boundary.map(|k| points[patch][k] == points[original][k]).collect()
+        boundary.map(|k| points[patch][k].distance(points[original][k]) <= near).collect()
     };
     structure.patches.iter().enumerate().map(of_patch).collect()
 }

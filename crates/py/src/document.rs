@@ -226,6 +226,18 @@ impl PyDocument {
         self.lock(py).has_errors()
     }
 
+    fn allow_partial(&self, py: Python<'_>, partial: bool) {
+        self.lock(py).allow_partial(partial);
+    }
+
+    fn partial(&self, py: Python<'_>) -> bool {
+        self.lock(py).partial()
+    }
+
+    fn is_whole(&self, py: Python<'_>) -> bool {
+        self.lock(py).lacking().is_ok_and(|errors| errors.is_empty())
+    }
+
     fn text(&self, py: Python<'_>) -> String {
         self.lock(py).text()
     }
@@ -597,6 +609,14 @@ impl PyDocument {
     /// Corners that lie on edges of other patches without being joined to them.
     fn junctions(&self, py: Python<'_>) -> PyResult<Vec<PyDiagnostic>> {
         let found = self.long_checked(py, |d| d.junctions().map_err(|e| vec![e]))?;
+        let document = self.lock(py);
+        let sources = document.sources();
+        Ok(found.iter().map(|d| d.to_data(sources).into()).collect())
+    }
+
+    /// Plates inside a body, and bodies that overlap.
+    fn inner_skins(&self, py: Python<'_>) -> PyResult<Vec<PyDiagnostic>> {
+        let found = self.long_checked(py, |d| d.inner_skins().map_err(|e| vec![e]))?;
         let document = self.lock(py);
         let sources = document.sources();
         Ok(found.iter().map(|d| d.to_data(sources).into()).collect())

@@ -23,7 +23,7 @@ fn code(status: LocateStatus) -> u8 {
         LocateStatus::EdgeClamped => 1,
         LocateStatus::Multiple { .. } => 2,
         LocateStatus::Tangent => 3,
-        LocateStatus::NoSolution | LocateStatus::Diverged => 4,
+        LocateStatus::NoSolution | LocateStatus::Unfinished | LocateStatus::Diverged => 4,
     }
 }
 

@@ -4,7 +4,7 @@ use crate::{CurveRef, SurfaceRef};
 use moldloft_num::period::{closed_sides, closes, smooth_seams, turned_back};
 use moldloft_num::trace::{Edges, Key, Trace};
 use moldloft_num::{
-    Curve, CurveJet, Order, Rational, Real, Reparametrization, SurfJet, Surface, Vec3,
+    Curve, CurveJet, InnerPlane, Order, Rational, Real, Reparametrization, SurfJet, Surface, Vec3,
     line_crossings,
 };
 use std::sync::Arc;
@@ -206,6 +206,9 @@ impl<T: Real> Surface<T> for SurfaceRef<T> {
             );
         }
         all
+    }
+    fn inner_planes(&self) -> Vec<InnerPlane<'_>> {
+        self.shape.inner_planes()
     }
     fn edges(&self) -> Edges<T> {
         self.shape.edges()

@@ -292,15 +292,20 @@ impl<T: Real> CurveRef<T> {
     pub fn pieces(&self) -> SmallVec<[Piece<T>; 1]> {
         match (self.shape.trace(), self.key) {
             (Trace::Own(_), None) => SmallVec::new(),
+            // A ring begins and ends in one point.
+            (Trace::Own([None, None]), Some(key)) if self.shape.closed() => {
+                Trace::Own([key.end(0); 2]).pieces(Root::Curve(key))
+            }
             (trace, key) => trace.pieces(Root::Curve(key.unwrap_or(Key(u32::MAX)))),
         }
     }
 
     /// The points at its two ends: point objects where it ends at such, else the corner of the surface
-    /// or the end of the curve that it runs along, or its own end.
+    /// or the end of the curve that it runs along, or its own end; one point for a curve that its kind makes a ring.
     pub fn end_points(&self) -> [Option<Key>; 2] {
         let own = |k: usize| self.key.and_then(|key| key.end(k));
         match self.shape.trace() {
+            Trace::Own([None, None]) if self.shape.closed() => [own(0); 2],
             Trace::Own([from, to]) => [from.or_else(|| own(0)), to.or_else(|| own(1))],
             Trace::Point(point) => [point, point],
             Trace::Pieces(pieces) => {

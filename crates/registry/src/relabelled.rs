@@ -298,6 +298,11 @@ impl<T: Real> Surface<T> for RelabelledSurface<T> {
         all
     }
 
+    fn inner_planes(&self) -> Vec<moldloft_num::InnerPlane<'_>> {
+        let inside = |[u, v]: [f64; 2]| [u, self.law.jet(T::from(v), Order::Zero)[0].re()];
+        self.surface.inner_planes().into_iter().map(|plane| plane.through(inside)).collect()
+    }
+
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
         self.surface.edge_made_of(k)
     }

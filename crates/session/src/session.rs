@@ -499,7 +499,7 @@ impl Session {
     }
 
     fn section_areas(&mut self, count: usize, frame: &mut ReplyFrame) -> Answer {
-        let panelled = self.document.panelled()?;
+        let panelled = self.document.entire_panels()?;
         if panelled.mesh.faces().is_empty() {
             return Err("the model has no panels: show a surface".to_string().into());
         }

@@ -183,6 +183,7 @@ def _build(
         if model.has_errors and not (options.keep_going and _is_partly_made(model)):
             progress.stage("reporting")
             return _report_errors(model, options)
+        model.partial = options.keep_going
         progress.stage("making panels")
         mesh = model.mesh(tags=options.tag)
         progress.stage("measuring")

@@ -48,12 +48,15 @@ def _check(options: argparse.Namespace) -> tuple[int, Any]:
         if not any(d.is_error for d in model.diagnostics):
             # What contradicts itself in the joins is known when panels and cells are divided.
             progress.stage("dividing")
+            model.partial = True
             mesh = model.mesh()
             cells = block_problems(model)
         diagnostics = [*model.diagnostics, *cells]
         if mesh is not None and mesh.patches and not mesh.closed:
             progress.stage("looking for edges that are not joined")
             diagnostics += model.junctions()
+        if mesh is not None and mesh.patches:
+            diagnostics += model.inner_skins()
         if not options.quality:
             mesh = None
     errors = sum(d.is_error for d in diagnostics)

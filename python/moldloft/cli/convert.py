@@ -46,6 +46,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         default="CCurve",
         help="stations of a table of offsets: through the points (the default) or drawn by them",
     )
+    parser.add_argument(
+        "--closed",
+        action="store_true",
+        help="close the hull of a table of offsets by deck, transom and flat keel",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -122,7 +127,7 @@ def _from_offsets(options: argparse.Namespace, target: Path | None, form: str) -
     from moldloft.files import Output, commit, produce
     from moldloft.loading import loads
 
-    text = offsets.read(options.model).program(curves=options.curves)
+    text = offsets.read(options.model).program(curves=options.curves, closed=options.closed)
     if form == "sdl":
         if target is None:
             put_text(text)

@@ -52,7 +52,7 @@ impl Document {
             return Ok(known.numbers.clone());
         }
         let numbers = if group == "mesh" {
-            mesh_numbers(&self.panelled()?.mesh)
+            mesh_numbers(&self.entire_panels()?.mesh)
         } else {
             body_numbers(&self.bodied(USUAL_ACCURACY)?.body, &symmetry)
         };
@@ -133,7 +133,7 @@ impl Document {
             for (text, column) in expressions.iter().zip(&mut columns) {
                 let value = match document.whole_name(text) {
                     Some((group, number)) => {
-                        let panelled = document.panelled().map_err(|d| vec![d])?;
+                        let panelled = document.entire_panels().map_err(|d| vec![d])?;
                         let found = if group == "mesh" {
                             let mesh = panelled.panelling.mesh(&evaluation.graph);
                             mesh_numbers(&mesh.ok_or_else(|| vec![document.or_spent(no_mesh())])?)
@@ -179,7 +179,7 @@ impl Document {
     pub fn jacobian(&mut self, by: &[String]) -> Result<Vec<Vec<Vec3>>, Vec<Diagnostic>> {
         let mut columns = Vec::with_capacity(by.len());
         self.passes(by, |document, evaluation, count| {
-            let panelled = document.panelled().map_err(|d| vec![d])?;
+            let panelled = document.entire_panels().map_err(|d| vec![d])?;
             let positions = panelled.panelling.positions(&evaluation.graph);
             let positions = positions.ok_or_else(|| vec![document.or_spent(no_mesh())])?;
             for k in 0..count {

@@ -304,7 +304,7 @@ fn answer((solved, sought, sides): &(Equilibrium<f64>, bool, &'static str)) -> F
         iterations: solved.iterations,
         residual: solved.residual,
         bounds: bounds(&solved.flotation),
-        stable: if *sought { solved.flotation.stable } else { None },
+        stable: solved.flotation.stable,
         lolls: solved.lolls,
         open_edges: earth.open_edges,
         closure_error: earth.closure_error,
@@ -350,7 +350,7 @@ impl Document {
     /// # Errors
     /// When there are no panels.
     pub fn panel_figures(&mut self, level: f64) -> Result<[f64; 3], Diagnostic> {
-        let panelled = self.panelled()?;
+        let panelled = self.entire_panels()?;
         let symmetry = self.symmetry();
         let lengthwise =
             symmetry.contains('x').then(|| panelled.mesh.with_mirror_image(0, ".mirror").ok());

@@ -5,7 +5,7 @@ use crate::measures::bodied::Bodied;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::{Hydrostatics, Symmetry, USUAL_ACCURACY, hydrostatics};
 use moldloft_lang::run::whole::not_finite;
-use moldloft_mesh::Mesh;
+use moldloft_mesh::{InnerSkin, Mesh, inner_skins};
 use moldloft_panel::Skin;
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ impl Document {
     /// When there are too many panels, or a surface is not finite.
     pub(crate) fn bodied(&mut self, accuracy: f64) -> Result<Arc<Bodied>, Diagnostic> {
         // The skin of a part would look like that of the whole.
-        self.complete().map_err(|mut faults| faults.swap_remove(0))?;
+        self.entire().map_err(|mut faults| faults.swap_remove(0))?;
         let clock = self.plain.graph.last_change();
         if let Some(known) = &self.bodied
             && known.clock == clock
@@ -69,6 +69,41 @@ impl Document {
         let bodied = Arc::new(Bodied { clock, accuracy, skin, body });
         self.bodied = Some(bodied.clone());
         Ok(bodied)
+    }
+
+    /// Plates of the skin inside a body, and bodies that overlap: warnings, since they count where the body is.
+    ///
+    /// # Errors
+    /// When there would be too many panels.
+    pub fn inner_skins(&mut self) -> Result<Vec<Diagnostic>, Diagnostic> {
+        let panelled = self.panelled()?;
+        let mesh = &panelled.mesh;
+        let name = |patch: usize| mesh.patches()[patch].info.name.as_str();
+        let report = |inner: &InnerSkin| {
+            let (skin, around, at) = (name(inner.patch), name(inner.around), inner.at);
+            let place = format!("at ({}, {}, {})", at.x, at.y, at.z);
+            let (id, message, help) = match inner.open {
+                true => (
+                    "inner-plate",
+                    format!("`{skin}` lies inside the body of `{around}`, {place}"),
+                    "hide it (visible = 0), or tag it as what is no skin",
+                ),
+                false => (
+                    "bodies-overlap",
+                    format!(
+                        "the bodies of `{skin}` and `{around}` overlap, {place}: what they share counts twice"
+                    ),
+                    "cut both along their intersection (IntSnake), or move one of them",
+                ),
+            };
+            let mut fault = Diagnostic::warning(id, message).help(help).object(skin);
+            let object = self.graph().find(skin).and_then(|key| self.graph().get(key));
+            if let Some(span) = object.and_then(|o| self.declared_at(&self.plain, o)) {
+                fault = fault.at(span);
+            }
+            fault
+        };
+        Ok(inner_skins(mesh, &self.mirrors()).iter().map(report).collect())
     }
 
     /// Refuses a mirrored model that shows both sides of the plane: what lies on both would count twice.

@@ -56,7 +56,7 @@ pub fn brep_or_facets(
     accuracy: Option<f64>,
     stem: &str,
 ) -> Result<(Brep, Vec<Diagnostic>), ExportFailure> {
-    let panelled = document.panelled();
+    let panelled = document.entire_panels();
     let size = match &panelled {
         Ok(p) if p.mesh.bounds().diagonal() > 0.0 => p.mesh.bounds().diagonal(),
         _ => 1.0,

@@ -339,27 +339,6 @@ impl CompleteFacets {
 fn whole(
     set: &Set,
     over: &Box3,
-/// Facets that miss more than this part of their body are none of it.
-const REFUSED: f64 = 1e-3;
-
-impl CompleteFacets {
-    /// The facets, unless they miss so much that they are another body.
-    fn checked(self, size: f64) -> Result<Facets, FieldError> {
-        let missed = || self.facets.unresolved.iter().filter(|u| u.missed);
-        let volume: f64 = missed().map(|u| u.volume).sum();
-        let body = moldloft_mesh::measure(&self.facets.mesh).volume.abs();
-        let worst = missed().max_by(|a, b| a.volume.total_cmp(&b.volume));
-        match worst {
-            Some(u) if !self.all && volume > REFUSED * body => {
-                let step = self.facets.step;
-                let depth = halvings(size, thickness(u).min(0.5 * step)) + 1;
-                Err(FieldError::Thin { place: u.place, step, depth })
-            }
-            _ => Ok(self.facets),
-        }
-    }
-}
-
     facets: Facets,
     most: f64,
     options: &FacetOptions,
@@ -599,11 +578,6 @@ impl Facets {
     pub fn form(&self, patch: usize) -> &Form<f64> {
         self.leaves[self.patch_leaves[patch]].primitive.form()
     }
-    /// The unresolved places, neighbours joined: at most 100, the largest first.
-    pub fn open_places(&self) -> Vec<Unresolved> {
-        unresolved::gathered(&self.unresolved, self.step)
-    }
-
 
     /// Distances of the triangles' centres from their surfaces, |f| / |f'|, in the order of faces.
     pub fn centre_distances(&self) -> Vec<f64> {

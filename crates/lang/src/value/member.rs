@@ -74,7 +74,9 @@ const CORNERS: [(&str, [f64; 2]); 4] =
 /// An edge of a surface as a snake, or a corner as a magnet.
 fn part_of_surface<T: Real>(surface: &SurfaceRef<T>, name: &str) -> Option<Value<T>> {
     if let Some(k) = EDGES.iter().position(|edge| *edge == name) {
-        let edge = moldloft_relational::edge(surface.clone(), k, surface.depth);
+        let mut edge = moldloft_relational::edge(surface.clone(), k, surface.depth);
+        // One curve, however often it is named.
+        edge.key = surface.key.and_then(|key| key.edge(k));
         return Some(Value::Curve(edge));
     }
     let &(_, [u, v]) = CORNERS.iter().find(|corner| corner.0 == name)?;

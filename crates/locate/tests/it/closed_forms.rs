@@ -1,9 +1,9 @@
 //! Searches against what geometry knows.
 
 use crate::common::{Circle, Cylinder, Line, Random, Sphere, brute, bumpy};
+use moldloft_locate::curve_pairs::{all_curve_curve, curve_curve};
 use moldloft_locate::roots::{
-    all_curve_curve, all_curve_surface, all_on_level, curve_curve, curve_level, curve_surface,
-    line_surface,
+    all_curve_surface, all_on_level, curve_level, curve_surface, line_surface,
 };
 use moldloft_locate::{Level, LocateStatus, nearest_on_curve, nearest_on_surface};
 use moldloft_num::{Curve, Order, Surface, Vec3};
@@ -125,16 +125,17 @@ fn a_line_pierces_a_sphere_twice() {
 fn curves_meet_where_they_should() {
     let c = Circle { centre: v(0.0, 0.0, 0.0), radius: 1.0 };
     let l = Line(v(-2.0, 0.5, 0.0), v(2.0, 0.5, 0.0));
-    let all = all_curve_curve(&c, &l);
+    let all = all_curve_curve(&c, &l, 0.0);
     assert_eq!(all.roots.len(), 2, "{all:?}");
     let x = c.jet(all.roots[0].at[0], Order::Zero)[0];
     assert!((x.x - 0.75f64.sqrt()).abs() < 1e-12 && (x.y - 0.5).abs() < 1e-12);
-    let left = curve_curve(&c, &l, Some([0.4, 0.3])).unwrap();
+    let left = curve_curve(&c, &l, Some([0.4, 0.3]), 0.0).unwrap();
     assert!(left.report.residual < 1e-12 && left.at[1] < 0.5);
     // Skew: the nearest place, with its gap.
     let up = Line(v(-2.0, 0.5, 0.25), v(2.0, 0.5, 0.25));
-    let gap = curve_curve(&c, &up, None).unwrap();
-    assert!((gap.report.residual - 0.25).abs() < 1e-12, "{gap:?}");
+    let gap = curve_curve(&c, &up, None, 0.0).unwrap_err();
+    assert_eq!(gap.status, LocateStatus::NoSolution);
+    assert!((gap.residual - 0.25).abs() < 1e-12, "{gap:?}");
 }
 
 #[test]

@@ -4,4 +4,5 @@ mod batch;
 mod branches;
 mod closed_forms;
 mod common;
+mod curve_pairs;
 mod far;

@@ -4,8 +4,9 @@ use super::arguments::{Along, AlongSnake, Target};
 use super::equations::{Between, FootOnCurve, LevelOf, OnLevel, Pierced};
 use super::magnets::BESIDE;
 use super::outcome::{diverged, found, no_intersection, tangent};
+use moldloft_locate::curve_pairs::curve_curve;
 use moldloft_locate::implicit::refined;
-use moldloft_locate::roots::{curve_curve, curve_level, curve_surface};
+use moldloft_locate::roots::{curve_level, curve_surface};
 use moldloft_locate::{
     LocateStatus, PlainCurve, PlainSurface, nearest_on_curve, nearest_on_surface,
 };
@@ -82,12 +83,8 @@ pub(super) fn crossing<T: Real>(
                 (None, Some(s)) => Some([nearest_on_curve(&a, here(&b, s), None).at[0], s]),
                 (None, None) => None,
             };
-            let solution = curve_curve(&a, &b, start)
+            let solution = curve_curve(&a, &b, start, context.tolerance)
                 .map_err(|report| no_intersection(&report, "curve", "other curve"))?;
-            if solution.report.residual > context.tolerance {
-                return Err(no_intersection(&solution.report, "curve", "other curve")
-                    .help("for the place where the two come nearest, use ProxBead"));
-            }
             let system = Between { a: &along.curve, b: &other.curve };
             let [t, _] = refined(&system, solution.at, T::zero()).ok_or_else(tangent)?;
             Ok((t, found(&solution.report, ANOTHER)))

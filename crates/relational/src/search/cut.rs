@@ -36,6 +36,13 @@ impl<T: Real> Second<T> {
         }
     }
 
+    pub fn surface(&self) -> Option<&SurfaceRef<T>> {
+        match self {
+            Second::Surface(surface) => Some(surface),
+            Second::Plane(_) | Second::Field(_) => None,
+        }
+    }
+
     pub fn name(&self) -> &'static str {
         match self {
             Second::Plane(_) => "plane",
@@ -395,6 +402,10 @@ impl<T: Real> Curve<T> for Cut<T> {
     fn breaks(&self) -> Vec<f64> {
         let share = |p: &CutPiece<T>| p.begin.re() / self.total.re();
         self.pieces[1..].iter().filter(|p| p.joint).map(share).collect()
+    }
+
+    fn closed(&self) -> bool {
+        self.closed
     }
 
     fn trace(&self) -> Trace<T> {

@@ -19,10 +19,11 @@ use moldloft_registry::{
 /// parameter is the share of its length.
 ///
 /// From a magnet the branch through the place nearest to it is taken; from a bare surface the one
-/// that comes nearest to its middle, and others are reported. The snake runs along n1 x n2, the
+/// that comes nearest to its middle (that of the surface declared first), and others are reported. The snake runs along n1 x n2, the
 /// product of both normals, from edge to edge; or from the magnet `start` to the magnet `end`, which
 /// lie on the intersection and give it their identity there, so that patches join. A closed branch
-/// begins at the place nearest to the magnet, or to S(0.3, 0.4) without one. Each point of it lies on
+/// begins at the place nearest to the magnet or, without one, to S(0.3, 0.4) of the surface that is
+/// declared first: so cuts of two surfaces, each of the other, are one curve. Each point of it lies on
 /// both, to rounding. Across the seam of a closed surface it runs on: its place
 /// on the surface goes over from u = 1 to u = 0 there.
 ///
@@ -121,6 +122,9 @@ impl<T: Real> Curve<T> for InSpace<T> {
     fn breaks(&self) -> Vec<f64> {
         self.0.breaks()
     }
+    fn closed(&self) -> bool {
+        self.0.closed()
+    }
     fn trace(&self) -> Trace<T> {
         self.0.trace()
     }
@@ -143,7 +147,7 @@ fn cut<T: Real>(
             (Second::Plane(Plane { point, normal: plane.normal }), None)
         }
         Target::Surface(onto) => {
-            let start = onto.from();
+            let start = onto.start;
             (Second::Surface(onto.surface), start)
         }
         Target::Field(field) => (Second::Field(field), None),
@@ -259,12 +263,13 @@ fn lost(why: &str) -> CallError {
 fn traced<T: Real>(
     onto: &Onto<T>,
     second: Second<T>,
-    second_start: Option<[f64; 2]>,
+    second_start: Option<[T; 2]>,
     ends: [Option<Magnet<T>>; 2],
     fields: IntersectionFields,
     context: &Context,
 ) -> Result<(Cut<T>, SearchReport), CallError> {
     let first = &onto.surface;
+    let reference = BranchReference::new(onto, &second, second_start);
     let plain = PlainSurface(&**first);
     let plain_second = second.plain();
     let crossing = match plain_second.other() {
@@ -273,7 +278,12 @@ fn traced<T: Real>(
         Other::Level(field) => Crossing::with_level(&plain, field),
     };
     let given = onto.from().or_else(|| ends[0].as_ref().map(|m| m.uv.map(|x| x.re())));
-    let seed = given.and_then(|uv| crossing.near(uv, second_start));
+    let given = given.or_else(|| {
+        let place = second_start.map(|_| reference.place.re())?;
+        Some(moldloft_locate::nearest_on_surface(&plain, place, None).at)
+    });
+    let second_from = second_start.map(|uv| uv.map(|x| x.re()));
+    let seed = given.and_then(|uv| crossing.near(uv, second_from));
     let mut status = SearchStatus::Ok;
     let mut alternatives = Vec::new();
     let branch = match seed.and_then(|q| crossing.branch(q)) {
@@ -282,8 +292,10 @@ fn traced<T: Real>(
             let found = crossing.branches();
             let mut all = found.branches;
             let from = given.unwrap_or([0.5, 0.5]);
+            let side = if given.is_some() { 0 } else { 2 * reference.side };
             let away = |b: &Branch| {
-                let d = |q: &Unknowns| (q[0] - from[0]).powi(2) + (q[1] - from[1]).powi(2);
+                let d =
+                    |q: &Unknowns| (q[side] - from[0]).powi(2) + (q[side + 1] - from[1]).powi(2);
                 b.stations.iter().map(|s| d(&s.q)).fold(f64::INFINITY, f64::min)
             };
             let chosen = (0..all.len()).min_by(|&a, &b| away(&all[a]).total_cmp(&away(&all[b])));
@@ -336,7 +348,8 @@ fn traced<T: Real>(
         }
     };
     let begin = branch.stations[0].q;
-    let shape = set_up(first, second.clone(), &crossing, branch, onto, (&ends, fields), context)?;
+    let place = reference.place;
+    let shape = set_up(first, second.clone(), &crossing, branch, place, (&ends, fields), context)?;
     let found = SearchReport {
         status,
         residual: 0.0,
@@ -349,13 +362,41 @@ fn traced<T: Real>(
     Ok((shape, found))
 }
 
+/// What tells the branches of two shapes apart, and where a closed one begins: alike for both cuts of two surfaces,
+/// each by the other.
+struct BranchReference<T> {
+    /// The shape, 0 or 1, that decides: of two named surfaces the one declared first, unless the other alone is given by
+    /// a magnet.
+    side: usize,
+    /// The magnet, or a place beside the symmetries that surfaces have, so that as a rule one place of a closed branch is
+    /// the nearest.
+    place: Vec3<T>,
+}
+
+impl<T: Real> BranchReference<T> {
+    fn new(onto: &Onto<T>, second: &Second<T>, second_start: Option<[T; 2]>) -> Self {
+        let starts = [onto.start, second_start];
+        let surfaces = [Some(&onto.surface), second.surface()];
+        let keys = surfaces.map(|s| s.and_then(|s| s.key));
+        let earlier = usize::from(matches!(keys, [Some(a), Some(b)] if b < a));
+        let side = if starts[earlier].is_none() && starts[1 - earlier].is_some() {
+            1 - earlier
+        } else {
+            earlier
+        };
+        let [u, v] = starts[side].unwrap_or([0.3, 0.4].map(T::from));
+        let surface = surfaces[side].unwrap_or(&onto.surface);
+        Self { side, place: surface.jet(u, v, Order::Zero).p }
+    }
+}
+
 /// Cuts the branch to its ends, gives it its length as parameter, with derivatives.
 fn set_up<T: Real>(
     first: &SurfaceRef<T>,
     second: Second<T>,
     crossing: &Crossing<'_>,
     mut branch: Branch,
-    onto: &Onto<T>,
+    reference: Vec3<T>,
     (ends, fields): (&[Option<Magnet<T>>; 2], IntersectionFields),
     context: &Context,
 ) -> Result<Cut<T>, CallError> {
@@ -410,9 +451,9 @@ fn set_up<T: Real>(
     let whole = closed && places[1].is_none();
     if closed {
         branch.stations.pop();
-        let first_place = match (onto.start, &ends[0]) {
-            (None, None) => nearest_station(crossing, &branch.stations, middle(first).re()),
-            _ => places[0],
+        let first_place = match &ends[0] {
+            None => nearest_station(crossing, &branch.stations, reference.re()),
+            Some(_) => places[0],
         };
         if let Some((i, station)) = first_place {
             let count = branch.stations.len();
@@ -487,15 +528,11 @@ fn set_up<T: Real>(
         }
     };
     let places = [end_place(0), end_place(1)];
-    // A closed branch begins in the plane through the magnet across its own direction.
-    let shift = match (whole, &ends[0], onto.start) {
-        (true, None, Some(uv)) => closed_start(first, &second, uv, &stops[0].station),
-        (true, Some(magnet), _) => {
-            let x = first.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p;
-            Some((x, Vec3::lifted(stops[0].station.tangent)))
-        }
-        _ => None,
-    };
+    // A closed branch begins in the plane through its start across its own direction.
+    let shift = ends[0].as_ref().filter(|_| whole).map(|magnet| {
+        let x = first.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p;
+        (x, Vec3::lifted(stops[0].station.tangent))
+    });
     let failed = || lost("a place where they are nearly tangent").in_field(fields.target);
     let fits = fitted(crossing, &stops).ok_or_else(failed)?;
     let both = Both { first: first.clone(), second: second.clone() };
@@ -527,11 +564,11 @@ fn set_up<T: Real>(
         let level = d.dot(at_end(0, Order::First).ok_or_else(failed)?.x - x);
         let slope = d.re().dot(stops[0].station.tangent);
         offsets = [(level - level.re()) * (-1.0 / slope); 2];
-    } else if whole && ends[0].is_none() && onto.start.is_none() {
+    } else if whole {
         // The branch begins where (X - M) . T is zero, the derivative of which by the length is
         // 1 + (X - M) . k with the curvature k.
         let end = at_end(0, Order::Second).ok_or_else(failed)?;
-        let away = end.x - middle(first);
+        let away = end.x - reference;
         let slope = 1.0 + away.re().dot(end.curvature.re());
         if slope.abs() > 1e-9 {
             let level = away.dot(end.tangent);
@@ -624,12 +661,6 @@ fn with_joints<T: Real>(
     stops
 }
 
-/// The place that a closed branch begins nearest to when nothing else is said: one that is beside
-/// the symmetries that surfaces have, so that as a rule one place of the branch is the nearest.
-fn middle<T: Real>(first: &SurfaceRef<T>) -> Vec3<T> {
-    first.jet(T::from(0.3), T::from(0.4), Order::Zero).p
-}
-
 /// The place of a closed branch nearest to `m`, between which stations it is and itself; the last
 /// station is not the first again.
 fn nearest_station(
@@ -672,31 +703,6 @@ fn nearest_station(
         if h < 0.0 { (a, f) = (s, h) } else { (b, g) = (s, h) }
     }
     Some((i, a))
-}
-
-/// The plane in which a closed branch begins: through the magnet, across n1 x n2 there.
-fn closed_start<T: Real>(
-    first: &SurfaceRef<T>,
-    second: &Second<T>,
-    [u, v]: [T; 2],
-    station: &TracePoint,
-) -> Option<(Vec3<T>, Vec3<T>)> {
-    let j = first.jet(u, v, Order::First);
-    let normal = match second {
-        Second::Plane(plane) => plane.normal,
-        Second::Field(field) => {
-            let g = field.value_and_gradient(j.p).1;
-            g * T::from(slope_scale(g.re()))
-        }
-        Second::Surface(surface) => {
-            let onto = Onto { surface: surface.clone(), start: None };
-            let ([p, r], _) = super::magnets::foot(&onto, j.p, true).ok()?;
-            surface.jet(p, r, Order::First).normal()
-        }
-    };
-    let d = j.normal().cross(normal).normalized()?;
-    let d = if d.re().dot(station.tangent) < 0.0 { -d } else { d };
-    Some((j.p, d))
 }
 
 fn cut_after(branch: &mut Branch, station: &TracePoint) {

@@ -12,7 +12,10 @@ pub fn found(report: &LocateReport, advice: &'static str) -> SearchReport {
         LocateStatus::Multiple { count, chosen, next } => {
             SearchStatus::Multiple { count, chosen, next }
         }
-        LocateStatus::Ok | LocateStatus::NoSolution | LocateStatus::Diverged => SearchStatus::Ok,
+        LocateStatus::Ok
+        | LocateStatus::NoSolution
+        | LocateStatus::Unfinished
+        | LocateStatus::Diverged => SearchStatus::Ok,
     };
     SearchReport {
         status,
@@ -25,8 +28,17 @@ pub fn found(report: &LocateReport, advice: &'static str) -> SearchReport {
     }
 }
 
-/// The fault that two things do not meet; the names say which.
+/// The fault that two things do not meet, or that a search ended before it knew; the names say which.
 pub fn no_intersection(report: &LocateReport, one: &str, other: &str) -> CallError {
+    if report.status == LocateStatus::Unfinished {
+        return CallError::new(
+            "search-unfinished",
+            format!("the search for where the {one} meets the {other} ran into its limit"),
+        )
+        .expected(format!("a {one} and another shape that do not run along each other"))
+        .found(format!("a gap of {:.6e} at best, and parts not looked at", report.residual))
+        .help("start from a bead or a magnet near the place that is meant");
+    }
     let at: Vec<String> = report.last.iter().map(|x| format!("{x:.6}")).collect();
     let fault = CallError::new("no-intersection", format!("the {one} does not meet the {other}"))
         .expected(format!("a {one} that crosses the {other} within its parameter range"));

@@ -148,6 +148,10 @@ impl<T: Real> SurfaceFormula for Bump<T> {
         self.patch.crossings(path, spans)
     }
 
+    fn inner_planes(&self) -> Vec<moldloft_num::InnerPlane<'_>> {
+        self.patch.inner_planes()
+    }
+
     /// The snake, a seam in space, and a top of its own.
     fn edges(&self) -> Edges<T> {
         let Edges { edges: [foot, ..], corners: [start, ..] } = self.patch.edges();

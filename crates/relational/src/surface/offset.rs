@@ -154,6 +154,11 @@ impl<T: Real> SurfaceFormula for Parallel<T> {
     fn parallel_to(&self) -> Option<(&dyn Surface<T>, T)> {
         Some(self.base())
     }
+
+    fn inner_planes(&self) -> Vec<moldloft_num::InnerPlane<'_>> {
+        self.surface.inner_planes()
+    }
+
     fn edges(&self) -> Edges<T> {
         self.edges.clone()
     }

@@ -5,9 +5,11 @@ use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};
 use crate::seam;
 use crate::snake::edge_trace;
+use moldloft_num::period::within;
 use moldloft_num::trace::{Edge, Edges, Key, Mark, Root, Trace};
 use moldloft_num::{
-    Bi1, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings, surface_jet_of,
+    Bi1, InnerPlane, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings,
+    surface_jet_of,
 };
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 
@@ -339,6 +341,24 @@ impl<T: Real> Surface<T> for SubPatch<T> {
         let mut all = self.surface.crossings(&inside, &finer);
         all.extend(own);
         all
+    }
+
+    /// That of the surface, and what it is a part of.
+    fn inner_planes(&self) -> Vec<InnerPlane<'_>> {
+        let inside = |[u, v]: [f64; 2]| {
+            let w = self.inside(T::from(u), T::from(v));
+            [w.x.re(), w.y.re()]
+        };
+        let closed = self.surface.closed();
+        let own = InnerPlane {
+            place: Box::new(inside),
+            joints: self.surface.joints(),
+            kinks: self.surface.kinks(),
+            closed,
+        };
+        let through = move |w| within(closed, inside(w));
+        let outer = self.surface.inner_planes().into_iter().map(|plane| plane.through(through));
+        std::iter::once(own).chain(outer).collect()
     }
 
     /// A side that is not given: the surface and the points that it lies straight between.

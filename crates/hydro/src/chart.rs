@@ -1,0 +1,427 @@
+//! Charts: the pieces of a part of a surface between the lines at which the formula of the whole changes.
+//!
+//! A part shows the parameter plane of its surface through a map of its own, so these lines run at any angle to its
+//! parameters. A square of parameters is cut along one line after another. Where a line is a graph over one parameter,
+//! its place is a polynomial of the other, and the pieces on both sides are unit squares again, of which one side may
+//! have no length. Where it is no graph, as about a turning point, the square is quartered.
+
+use moldloft_num::period::breaks_between;
+use moldloft_num::{Bi1, InnerPlane, Jet, Order, Real, Surface, find_root};
+
+/// A map from the unit square to a piece of a surface's parameter square that no inner line crosses.
+#[derive(Clone, Debug)]
+pub(crate) struct Chart<T> {
+    cuts: Vec<ChartCut<T>>,
+    /// Whether it reaches the surface's edge v = 0, u = 1, v = 1, u = 0.
+    pub border: [bool; 4],
+}
+
+/// A step from the unit square into another one.
+#[derive(Clone, Debug)]
+struct ChartCut<T> {
+    /// The parameter, 0 or 1, that runs from one boundary to the other.
+    along: usize,
+    /// The range of the other parameter.
+    range: [f64; 2],
+    /// Both boundaries, of the other parameter's share of its range.
+    sides: [ChartBoundary<T>; 2],
+}
+
+/// A polynomial on [0, 1], by its Chebyshev coefficients.
+#[derive(Clone, Debug)]
+struct ChartBoundary<T>(Vec<T>);
+
+/// A line of the plane `plane` at which its parameter `axis` is `at`.
+#[derive(Clone, Copy, Debug)]
+struct InnerLine {
+    plane: usize,
+    axis: usize,
+    at: f64,
+}
+
+/// The coefficients of a boundary.
+const NODES: usize = 16;
+
+/// A square is looked at on so many steps in each direction.
+const STEPS: usize = 16;
+
+/// Places nearer to a line than this, in parameters, are on it.
+const ON_LINE: f64 = 1e-11;
+
+/// A line is a graph where it goes this many steps aside, at most, while it goes one along.
+const STEEPEST: f64 = 3.0;
+
+/// How far a boundary may be from its line, in shares of the square.
+const BOUNDARY_FIT: f64 = 1e-11;
+
+/// A square is quartered, and a boundary halved, this often at most.
+const DEEPEST: u32 = 14;
+
+/// How far beside a line a side of it is looked at, in shares of the square.
+const BESIDE: f64 = 1e-9;
+
+/// Where a boundary is compared with its line.
+const PROBES: [f64; 4] = [0.003, 0.31, 0.77, 0.997];
+
+impl<T: Real> ChartBoundary<T> {
+    fn at<J: Jet<T>>(&self, t: J) -> J {
+        let [first, rest @ ..] = &*self.0 else { return J::zero() };
+        let x = t * 2.0 - 1.0;
+        let (mut next, mut after) = (J::zero(), J::zero());
+        for &c in rest.iter().rev() {
+            (next, after) = (x * next * 2.0 - after + J::fixed(c), next);
+        }
+        x * next - after + J::fixed(*first)
+    }
+
+    /// The polynomial with these values at the roots of the Chebyshev polynomial of degree [`NODES`].
+    fn through(values: &[T; NODES]) -> Self {
+        let coefficient = |k: usize| {
+            let sum = (0..NODES).fold(T::zero(), |sum, j| {
+                let angle = std::f64::consts::PI * (k as f64) * (j as f64 + 0.5) / NODES as f64;
+                sum + values[j] * libm::cos(angle)
+            });
+            sum * (if k == 0 { 1.0 } else { 2.0 } / NODES as f64)
+        };
+        Self((0..NODES).map(coefficient).collect())
+    }
+
+    fn is_constant(&self) -> bool {
+        self.0.iter().all(|c| c.is_constant())
+    }
+}
+
+/// Those roots on [0, 1].
+fn nodes() -> [f64; NODES] {
+    std::array::from_fn(|j| {
+        let half = std::f64::consts::FRAC_PI_2 * (j as f64 + 0.5) / NODES as f64;
+        // From 1 down to 0, as the cosines of the coefficients want.
+        libm::pow(libm::cos(half), 2.0)
+    })
+}
+
+impl<T: Real> Chart<T> {
+    /// The rectangle [u0, u1] x [v0, v1].
+    fn rectangle([u0, u1, v0, v1]: [T; 4]) -> Self {
+        let cut = |along: usize, a: T, b: T| ChartCut {
+            along,
+            range: [0.0, 1.0],
+            sides: [ChartBoundary(vec![a]), ChartBoundary(vec![b])],
+        };
+        let border = [v0.re() == 0.0, u1.re() == 1.0, v1.re() == 1.0, u0.re() == 0.0];
+        Self { cuts: vec![cut(0, u0, u1), cut(1, v0, v1)], border }
+    }
+
+    /// The place in the surface's parameter square.
+    pub fn at<J: Jet<T>>(&self, place: [J; 2]) -> [J; 2] {
+        self.cuts.iter().rev().fold(place, |p, cut| {
+            let share = p[1 - cut.along];
+            let [low, high] = cut.sides.each_ref().map(|side| side.at(share));
+            let mut out = p;
+            out[cut.along] = low + (high - low) * p[cut.along];
+            let [from, to] = cut.range;
+            out[1 - cut.along] =
+                if [from, to] == [0.0, 1.0] { share } else { share * (to - from) + from };
+            out
+        })
+    }
+
+    /// The same, of real parts.
+    pub fn real(&self, place: [f64; 2]) -> [f64; 2] {
+        self.at(place.map(T::from)).map(|w| w.re().clamp(0.0, 1.0))
+    }
+
+    /// Whether a parameter of the model moves it.
+    pub fn moves(&self) -> bool {
+        T::PARTS > 1 && !self.cuts.iter().flat_map(|cut| &cut.sides).all(ChartBoundary::is_constant)
+    }
+
+    /// The part between two boundaries along a parameter, over a range of the other.
+    fn part(&self, along: usize, range: [f64; 2], sides: [Option<ChartBoundary<T>>; 2]) -> Self {
+        let reaches = [sides[0].is_none(), sides[1].is_none()];
+        // The borders in the order of the sides 0 and 1 of each parameter.
+        let of_sides = [[3, 1], [0, 2]];
+        let mut border = self.border;
+        for end in 0..2 {
+            border[of_sides[along][end]] &= reaches[end];
+            border[of_sides[1 - along][end]] &= range[end] == end as f64;
+        }
+        let [low, high] = sides;
+        let end = |side: Option<ChartBoundary<T>>, at: f64| {
+            side.unwrap_or_else(|| ChartBoundary(vec![T::from(at)]))
+        };
+        let mut cuts = self.cuts.clone();
+        cuts.push(ChartCut { along, range, sides: [end(low, 0.0), end(high, 1.0)] });
+        Self { cuts, border }
+    }
+}
+
+/// The charts of a part, or `None` of a surface that has no inner lines. `us` and `vs` are the ends of the cells
+/// between its own joints.
+pub(crate) fn charts<T: Real>(
+    surface: &dyn Surface<T>,
+    us: &[T],
+    vs: &[T],
+) -> Option<Vec<Chart<T>>> {
+    let planes = surface.inner_planes();
+    let none = |plane: &InnerPlane<'_>| {
+        plane.joints.iter().all(Vec::is_empty) && plane.closed == [false; 2]
+    };
+    if planes.iter().all(none) {
+        return None;
+    }
+    let mut cutter = Cutter { surface, planes, charts: Vec::new() };
+    for u in us.windows(2) {
+        for v in vs.windows(2) {
+            let chart = Chart::rectangle([u[0], u[1], v[0], v[1]]);
+            let lines = cutter.lines(&chart);
+            cutter.cut(chart, lines, 0);
+        }
+    }
+    Some(cutter.charts)
+}
+
+struct Cutter<'a, T: Real> {
+    surface: &'a dyn Surface<T>,
+    planes: Vec<InnerPlane<'a>>,
+    charts: Vec<Chart<T>>,
+}
+
+/// How far the places of a square are beyond a line, on a grid of it.
+struct LineSamples(Vec<f64>);
+
+/// A line that is a graph: its parameter is a function of the other one.
+struct LineGraph {
+    along: usize,
+    /// The greatest step aside, in steps along.
+    steepest: f64,
+}
+
+impl LineSamples {
+    /// At step `i` along a parameter and `j` along the other one.
+    fn at(&self, along: usize, i: usize, j: usize) -> f64 {
+        let (i, j) = if along == 0 { (i, j) } else { (j, i) };
+        let x = self.0[i * (STEPS + 1) + j];
+        if x.abs() <= ON_LINE { 0.0 } else { x }
+    }
+
+    fn crosses(&self) -> bool {
+        self.0.iter().any(|x| *x > ON_LINE) && self.0.iter().any(|x| *x < -ON_LINE)
+    }
+
+    /// The step along a parameter at which the line is met on row `j`, and whether it is met upwards: `Some(None)` when it
+    /// is not, `None` when it is met more than once.
+    fn crossing(&self, along: usize, j: usize) -> Option<Option<(f64, bool)>> {
+        let mut found = None;
+        let mut last: Option<(usize, f64)> = None;
+        for i in 0..=STEPS {
+            let x = self.at(along, i, j);
+            if x == 0.0 {
+                continue;
+            }
+            if let Some((k, y)) = last
+                && (x < 0.0) != (y < 0.0)
+            {
+                if found.is_some() {
+                    return None;
+                }
+                found = Some((k as f64 + (i - k) as f64 * y / (y - x), x > 0.0));
+            }
+            last = Some((i, x));
+        }
+        Some(found)
+    }
+
+    /// Whether the line is met once at most along each row, and where it goes steadily from row to row.
+    fn graph(&self, along: usize) -> Option<LineGraph> {
+        let (mut steepest, mut upwards) = (0.0f64, None);
+        let mut before: Option<Option<f64>> = None;
+        for j in 0..=STEPS {
+            if (0..=STEPS).all(|i| self.at(along, i, j) == 0.0) {
+                before = None;
+                continue;
+            }
+            let here = self.crossing(along, j)?;
+            if let Some((_, up)) = here
+                && *upwards.get_or_insert(up) != up
+            {
+                return None;
+            }
+            let here = here.map(|(at, _)| at);
+            let to_side = |at: f64| at.min(STEPS as f64 - at);
+            let step = match (before, here) {
+                (Some(Some(a)), Some(b)) => (a - b).abs(),
+                (Some(None), Some(at)) | (Some(Some(at)), None) => to_side(at),
+                _ => 0.0,
+            };
+            steepest = steepest.max(step);
+            before = Some(here);
+        }
+        (steepest <= STEEPEST).then_some(LineGraph { along, steepest })
+    }
+}
+
+impl<T: Real> Cutter<'_, T> {
+    /// The place of a chart's place in a plane.
+    fn inside(&self, plane: usize, chart: &Chart<T>, place: [f64; 2]) -> [f64; 2] {
+        (self.planes[plane].place)(chart.real(place))
+    }
+
+    fn grid(&self, plane: usize, chart: &Chart<T>) -> Vec<[f64; 2]> {
+        let step = |k: usize| k as f64 / STEPS as f64;
+        let all = (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| [step(i), step(j)]));
+        all.map(|place| self.inside(plane, chart, place)).collect()
+    }
+
+    /// The lines that may cross a chart.
+    fn lines(&self, chart: &Chart<T>) -> Vec<InnerLine> {
+        let mut lines = Vec::new();
+        for (k, plane) in self.planes.iter().enumerate() {
+            let places = self.grid(k, chart);
+            for axis in 0..2 {
+                let all = places.iter().map(|w| w[axis]);
+                let (low, high) =
+                    all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+                let ats = breaks_between(&plane.joints[axis], plane.closed[axis], low, high);
+                lines.extend(ats.into_iter().map(|at| InnerLine { plane: k, axis, at }));
+            }
+        }
+        lines
+    }
+
+    fn samples(&self, line: InnerLine, places: &[Vec<[f64; 2]>]) -> LineSamples {
+        LineSamples(places[line.plane].iter().map(|w| w[line.axis] - line.at).collect())
+    }
+
+    /// Cuts a chart along lines and keeps the pieces.
+    fn cut(&mut self, chart: Chart<T>, lines: Vec<InnerLine>, depth: u32) {
+        let used = |k: usize| lines.iter().any(|line| line.plane == k);
+        let places: Vec<_> = (0..self.planes.len())
+            .map(|k| if used(k) { self.grid(k, &chart) } else { Vec::new() })
+            .collect();
+        let crossing: Vec<(InnerLine, LineSamples)> = lines
+            .into_iter()
+            .map(|line| (line, self.samples(line, &places)))
+            .filter(|(_, samples)| samples.crosses())
+            .collect();
+        if crossing.is_empty() {
+            self.charts.push(chart);
+            return;
+        }
+        let graphs = crossing.iter().enumerate().flat_map(|(k, (_, samples))| {
+            [0, 1].into_iter().filter_map(move |along| Some((k, samples.graph(along)?)))
+        });
+        let best = graphs.min_by(|a, b| a.1.steepest.total_cmp(&b.1.steepest).then(a.0.cmp(&b.0)));
+        let mut lines: Vec<InnerLine> = crossing.into_iter().map(|(line, _)| line).collect();
+        match best {
+            Some((k, graph)) => {
+                let line = lines.remove(k);
+                self.cut_along(&chart, line, graph.along, &lines, depth);
+            }
+            None if depth < DEEPEST => {
+                for along in [0.0, 0.5] {
+                    for across in [0.0, 0.5] {
+                        let side = |at: f64| {
+                            (at != 0.0 && at != 1.0).then(|| ChartBoundary(vec![T::from(at)]))
+                        };
+                        let part =
+                            chart.part(0, [across, across + 0.5], [side(along), side(along + 0.5)]);
+                        self.cut(part, lines.clone(), depth + 1);
+                    }
+                }
+            }
+            // Less than a cell: the fit finds what is left.
+            None => self.charts.push(chart),
+        }
+    }
+
+    /// Cuts a chart along a line that is a graph of the parameter `along`.
+    fn cut_along(
+        &mut self,
+        chart: &Chart<T>,
+        line: InnerLine,
+        along: usize,
+        others: &[InnerLine],
+        depth: u32,
+    ) {
+        let mut ends = vec![0.0, 1.0];
+        let beyond = |cutter: &Self, s: f64, t: f64| {
+            let place = if along == 0 { [s, t] } else { [t, s] };
+            cutter.inside(line.plane, chart, place)[line.axis] - line.at
+        };
+        // Where it comes in over a side or goes out.
+        for side in [0.0, 1.0] {
+            let step = |k: usize| k as f64 / STEPS as f64;
+            for k in 0..STEPS {
+                let (a, b) = (step(k), step(k + 1));
+                ends.extend(find_root(|t| beyond(self, side, t), a, b).ok());
+            }
+        }
+        ends.sort_by(f64::total_cmp);
+        ends.dedup_by(|a, b| *a - *b < ON_LINE);
+        let last = ends.len() - 1;
+        ends[last] = 1.0;
+        let mut ranges: Vec<([f64; 2], u32)> =
+            ends.windows(2).map(|w| ([w[0], w[1]], 0)).rev().collect();
+        while let Some((range, halvings)) = ranges.pop() {
+            let middle = 0.5 * (range[0] + range[1]);
+            let sides = [0.0, 1.0].map(|s| beyond(self, s, middle));
+            if (sides[0] < 0.0) == (sides[1] < 0.0) || sides.contains(&0.0) {
+                let part = chart.part(along, range, [None, None]);
+                self.cut(part, others.to_vec(), depth);
+                continue;
+            }
+            let root = |t: f64| {
+                let t = range[0] + (range[1] - range[0]) * t;
+                let ends = [0.0, 1.0].map(|s| beyond(self, s, t).abs());
+                let nearer = if ends[0] <= ends[1] { 0.0 } else { 1.0 };
+                find_root(|s| beyond(self, s, t), 0.0, 1.0).unwrap_or(nearer)
+            };
+            let found = nodes().map(root);
+            let plain = ChartBoundary::<f64>::through(&found);
+            let off = PROBES.iter().map(|&t| (plain.at(t) - root(t)).abs()).fold(0.0, f64::max);
+            // At the ends of the range the line may end at once.
+            if off > BOUNDARY_FIT && halvings < DEEPEST {
+                ranges.push(([middle, range[1]], halvings + 1));
+                ranges.push(([range[0], middle], halvings + 1));
+                continue;
+            }
+            let rate = |k: usize| {
+                let t = range[0] + (range[1] - range[0]) * nodes()[k];
+                self.rate(chart, along, found[k], t) + found[k]
+            };
+            let boundary = ChartBoundary::through(&std::array::from_fn(rate));
+            for sides in [[None, Some(boundary.clone())], [Some(boundary.clone()), None]] {
+                self.cut(chart.part(along, range, sides), others.to_vec(), depth);
+            }
+        }
+    }
+
+    /// The derivatives of the place `s` along a parameter at which a chart is creased, as a number whose real part is
+    /// 0. Both sides of a crease meet there whatever becomes of it: with S- and S+ the sides,
+    /// ds = (dS+ - dS-) . n / n . n with n = S-' - S+'. Zero where the tangent does not turn.
+    fn rate(&self, chart: &Chart<T>, along: usize, s: f64, t: f64) -> T {
+        if T::PARTS == 1 {
+            return T::zero();
+        }
+        let side = |h: f64| {
+            let place = if along == 0 { [s + h, t] } else { [t, s + h] };
+            let [x, y] = place.map(T::from);
+            let (x, y) = Bi1::parameters(x, y);
+            let [u, v] = chart.at([x, y]);
+            let jet = self.surface.jet(u.f, v.f, Order::First);
+            let [du, dv] = if along == 0 { [u.u, v.u] } else { [u.v, v.v] };
+            let slope = jet.u * du + jet.v * dv;
+            (jet.p - slope * T::from(h), slope.re())
+        };
+        let ((low, before), (high, after)) = (side(-BESIDE), side(BESIDE));
+        let turn = before - after;
+        let square = turn.norm_sq();
+        if square <= 1e-16 * before.norm_sq().max(after.norm_sq()) {
+            return T::zero();
+        }
+        let gap = high - low;
+        let rate = (gap.x * turn.x + gap.y * turn.y + gap.z * turn.z) / square;
+        if rate.is_finite() { rate - rate.re() } else { T::zero() }
+    }
+}

@@ -1,0 +1,88 @@
+"""Figures and files are those of the whole model, or say that they are not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import moldloft
+
+# Two closed floats; where the second is short, a point of it is on nothing.
+FLOATS = """
+Model info(units = "m t");
+param float h = 3 in [0.2, 4];
+AbsPoint A(0, 0, -2); AbsPoint B(0, 0, 2); Line ax(A, B);
+AbsPoint C(1, 0, -2); AbsPoint D(1, 0, 2); Line w(C, D);
+RevSurf one(w, ax, 0, 2*PI, divisions = {8, 24}); Line p0(A, A); Line p1(B, B);
+RuledSurf a0(one.u0, p0); RuledSurf a1(one.u1, p1);
+AbsPoint E(8, 0, -h); AbsPoint F(8, 0, 2); Line ax2(E, F);
+AbsPoint c2(9, 0, -h); AbsPoint c3(9, 0, 2); Line w2(c2, c3);
+ZPlane z(-1.5); IntBead cut(w2, z); AbsBead top(w2, 1); SubCurve part(cut, top);
+IntBead foot(ax2, z); AbsBead head(ax2, 1); Line q0(foot, foot); Line q1(head, head);
+RevSurf two(part, ax2, 0, 2*PI, divisions = {8, 24});
+RuledSurf b0(two.u0, q0); RuledSurf b1(two.u1, q1);
+"""
+
+
+def test_a_model_of_which_an_object_failed_has_no_figures(tmp_path: Path) -> None:
+    m = moldloft.loads(FLOATS)
+    whole = m.hydrostatics().volume
+    m["h"] = 1
+    assert m.has_errors
+    uses = (
+        m.mesh,
+        m.hydrostatics,
+        lambda: m.equilibrium(3.0),
+        lambda: m.panel_figures(),
+        lambda: m.eval("hydrostatics.volume"),
+        lambda: m.eval("mesh.volume"),
+        lambda: m.derivative("hydrostatics.volume", "h"),
+        lambda: m.jacobian(["h"]),
+        *(
+            lambda name=name: m.write(tmp_path / f"f.{name}")
+            for name in ("gdf", "stl", "step", "svg")
+        ),
+    )
+    for use in uses:
+        with pytest.raises(moldloft.errors.Error, match="cut"):
+            use()
+    assert not list(tmp_path.iterdir())
+    # What was made is there for who asks for it.
+    assert m["one"](0, 0).shape == (3,)
+    m.partial = True
+    found = m.hydrostatics()
+    assert found.partial and found.volume < 0.7 * whole
+    assert "not whole" in found.remarks[0]
+    assert m.copy().partial
+    m["h"] = 3
+    assert not m.hydrostatics().partial and m.hydrostatics().volume == pytest.approx(whole)
+
+
+def test_inner_plates_and_overlaps_are_named() -> None:
+    ball = """
+    AbsPoint A(0, 0, -1); AbsPoint B(0, 0, 1); AbsPoint C(1, 0, -1); Line axis(A, B);
+    Arc half(A, {1, 0, 0}, B, type = 1); RevSurf ball(half, axis, 0, 2*PI);
+    """
+    m = moldloft.loads(ball)
+    assert m.inner_skins() == [] and m.hydrostatics().inner_skins == []
+    other = moldloft.loads(ball + "CopySurf other(ball, A, C, 1, 1, 1);")
+    assert [d.id for d in other.inner_skins()] == ["bodies-overlap"]
+    assert any("overlap" in remark for remark in other.hydrostatics().remarks)
+    apart = moldloft.loads(ball + "AbsPoint D(2.5, 0, -1); CopySurf other(ball, A, D, 1, 1, 1);")
+    assert apart.inner_skins() == []
+    plate = moldloft.loads(
+        ball + "AbsPoint e(-0.2, -0.2, 0); AbsPoint f(0.2, -0.2, 0); AbsPoint g(-0.2, 0.2, 0);"
+        "AbsPoint h(0.2, 0.2, 0); Line ef(e, f); Line gh(g, h); RuledSurf plate(ef, gh);"
+    )
+    assert [(d.id, d.object) for d in plate.inner_skins()] == [("inner-plate", "plate")]
+
+
+def test_a_submerged_body_is_stable_by_its_centre_of_buoyancy() -> None:
+    m = moldloft.loads(
+        "AbsPoint A(0, 0, -3); AbsPoint B(0, 0, -1); Line axis(A, B);"
+        "Arc half(A, {1, 0, -2}, B, type = 1); RevSurf ball(half, axis, 0, 2*PI);"
+    )
+    low, high = (m.hydrostatics(cg=(0, 0, z), density=1.0) for z in (-2.5, -1.8))
+    assert low.gmt == pytest.approx(0.5) and low.gml == pytest.approx(0.5) and low.stable
+    assert high.gmt == pytest.approx(-0.2) and high.stable is False
