@@ -65,13 +65,13 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
 const LONGEST_HEADER: usize = 1 << 20;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Scalar {
+enum PlyScalar {
     Signed(usize),
     Unsigned(usize),
     Float(usize),
 }
 
-impl Scalar {
+impl PlyScalar {
     fn of(word: &str) -> Option<Self> {
         Some(match word {
             "char" | "int8" => Self::Signed(1),
@@ -93,24 +93,24 @@ impl Scalar {
 }
 
 #[derive(Debug)]
-struct Property {
+struct PlyProperty {
     name: String,
     /// The type of the length of a list.
-    length: Option<Scalar>,
-    value: Scalar,
+    length: Option<PlyScalar>,
+    value: PlyScalar,
 }
 
 #[derive(Debug)]
-struct Element {
+struct PlyElement {
     name: String,
     count: usize,
-    properties: Vec<Property>,
+    properties: Vec<PlyProperty>,
     /// The line of the header.
     line: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Encoding {
+enum PlyEncoding {
     Text,
     LittleEndian,
     BigEndian,
@@ -122,11 +122,11 @@ enum Encoding {
 /// A header out of order, fewer bytes than the header says, coordinates that are not finite, corners that are no
 /// vertices.
 pub fn read(bytes: &[u8]) -> Result<ForeignMesh, ReadError> {
-    let (Header { encoding, elements, unknown, lines }, body) = header(bytes)?;
-    let mut data = Body { rest: &bytes[body..], at: body, line: lines + 1, encoding, longer: 0 };
+    let (PlyHeader { encoding, elements, unknown, lines }, body) = header(bytes)?;
+    let mut data = PlyBody { rest: &bytes[body..], at: body, line: lines + 1, encoding, longer: 0 };
     let mut mesh = MeshInProgress::default();
     mesh.left_out(unknown, "lines of the header");
-    let mut corners = Corners::default();
+    let mut corners = PlyCorners::default();
     for element in &elements {
         let least = element.properties.iter().map(|p| data.least(p)).sum::<usize>();
         let needed = element.count.saturating_mul(least);
@@ -162,16 +162,16 @@ fn shown(name: &str) -> String {
     quoted(name).trim_matches('`').to_owned()
 }
 
-struct Header {
-    encoding: Encoding,
-    elements: Vec<Element>,
+struct PlyHeader {
+    encoding: PlyEncoding,
+    elements: Vec<PlyElement>,
     /// Lines that are none of a header.
     unknown: usize,
     lines: usize,
 }
 
 /// The header, and where the body begins.
-fn header(bytes: &[u8]) -> Result<(Header, usize), ReadError> {
+fn header(bytes: &[u8]) -> Result<(PlyHeader, usize), ReadError> {
     let error = |line: usize, expected: &str, found: &str| ReadError {
         format: FORMAT,
         place: FilePosition::Line(line),
@@ -179,7 +179,7 @@ fn header(bytes: &[u8]) -> Result<(Header, usize), ReadError> {
         found: if found.is_empty() { "an empty line".into() } else { quoted(found) },
     };
     let (mut at, mut encoding, mut unknown) = (0, None, 0);
-    let mut elements: Vec<Element> = Vec::new();
+    let mut elements: Vec<PlyElement> = Vec::new();
     let mut line = 0;
     loop {
         line += 1;
@@ -201,15 +201,20 @@ fn header(bytes: &[u8]) -> Result<(Header, usize), ReadError> {
             [] | ["comment" | "obj_info", ..] => {}
             ["format", form, ..] => {
                 encoding = Some(match form {
-                    "ascii" => Encoding::Text,
-                    "binary_little_endian" => Encoding::LittleEndian,
-                    "binary_big_endian" => Encoding::BigEndian,
+                    "ascii" => PlyEncoding::Text,
+                    "binary_little_endian" => PlyEncoding::LittleEndian,
+                    "binary_big_endian" => PlyEncoding::BigEndian,
                     _ => return Err(error(line, "`ascii` or a binary format", form)),
                 });
             }
             ["element", name, count] => {
                 let count = count.parse().map_err(|_| error(line, "a count of elements", count))?;
-                elements.push(Element { name: name.into(), count, properties: Vec::new(), line });
+                elements.push(PlyElement {
+                    name: name.into(),
+                    count,
+                    properties: Vec::new(),
+                    line,
+                });
             }
             ["property", ref rest @ ..] => {
                 let property = property(rest).ok_or_else(|| {
@@ -220,7 +225,7 @@ fn header(bytes: &[u8]) -> Result<(Header, usize), ReadError> {
             }
             ["end_header", ..] => {
                 let encoding = encoding.ok_or_else(|| error(line, "`format` before it", &text))?;
-                return Ok((Header { encoding, elements, unknown, lines: line }, at));
+                return Ok((PlyHeader { encoding, elements, unknown, lines: line }, at));
             }
             // A comment that was broken into lines, as some programs write it.
             _ => unknown += 1,
@@ -228,31 +233,31 @@ fn header(bytes: &[u8]) -> Result<(Header, usize), ReadError> {
     }
 }
 
-fn property(words: &[&str]) -> Option<Property> {
+fn property(words: &[&str]) -> Option<PlyProperty> {
     let (length, value, name) = match *words {
-        ["list", length, value, name] => (Some(Scalar::of(length)?), value, name),
+        ["list", length, value, name] => (Some(PlyScalar::of(length)?), value, name),
         [value, name] => (None, value, name),
         _ => return None,
     };
-    Some(Property { name: name.into(), length, value: Scalar::of(value)? })
+    Some(PlyProperty { name: name.into(), length, value: PlyScalar::of(value)? })
 }
 
 /// What follows the header.
-struct Body<'a> {
+struct PlyBody<'a> {
     rest: &'a [u8],
     at: usize,
     line: usize,
-    encoding: Encoding,
+    encoding: PlyEncoding,
     /// Lines of a text with more numbers than an element has.
     longer: usize,
 }
 
-impl Body<'_> {
+impl PlyBody<'_> {
     /// The fewest bytes that a property takes.
-    fn least(&self, property: &Property) -> usize {
+    fn least(&self, property: &PlyProperty) -> usize {
         match self.encoding {
             // A digit and a blank.
-            Encoding::Text => 2,
+            PlyEncoding::Text => 2,
             _ => property.length.unwrap_or(property.value).size(),
         }
     }
@@ -265,7 +270,7 @@ impl Body<'_> {
 
     fn here(&self) -> FilePosition {
         match self.encoding {
-            Encoding::Text => FilePosition::Line(self.line),
+            PlyEncoding::Text => FilePosition::Line(self.line),
             _ => FilePosition::Byte(self.at),
         }
     }
@@ -277,7 +282,7 @@ impl Body<'_> {
 
     /// Of a text; binary numbers follow one another.
     fn skip_blanks(&mut self) {
-        if self.encoding == Encoding::Text {
+        if self.encoding == PlyEncoding::Text {
             while let Some(blank) = self.rest.first().filter(|b| b.is_ascii_whitespace()) {
                 self.line += usize::from(*blank == b'\n');
                 self.taken(1);
@@ -287,7 +292,7 @@ impl Body<'_> {
 
     /// After an element: in a text it has a line of its own.
     fn end(&mut self) {
-        if self.encoding == Encoding::Text {
+        if self.encoding == PlyEncoding::Text {
             let length = self.rest.iter().position(|b| matches!(b, b'\n' | b'\r'));
             let more = !self.taken(length.unwrap_or(self.rest.len())).trim_ascii().is_empty();
             self.longer += usize::from(more);
@@ -302,12 +307,12 @@ impl Body<'_> {
     }
 
     /// The next number of element `k` (from 0).
-    fn number(&mut self, scalar: Scalar, element: &str, k: usize) -> Result<f64, ReadError> {
+    fn number(&mut self, scalar: PlyScalar, element: &str, k: usize) -> Result<f64, ReadError> {
         let end = |data: &Self| {
             let expected = format!("{} {}", shown(element), k + 1);
             Err(data.error(expected, "the end of the file"))
         };
-        if self.encoding == Encoding::Text {
+        if self.encoding == PlyEncoding::Text {
             self.skip_blanks();
             let length = self.rest.iter().position(u8::is_ascii_whitespace);
             let word = self.taken(length.unwrap_or(self.rest.len()));
@@ -320,7 +325,7 @@ impl Body<'_> {
         if self.rest.len() < scalar.size() {
             return end(self);
         }
-        let big = self.encoding == Encoding::BigEndian;
+        let big = self.encoding == PlyEncoding::BigEndian;
         let mut word = [0; 8];
         let size = scalar.size();
         word[..size].copy_from_slice(self.taken(size));
@@ -329,10 +334,10 @@ impl Body<'_> {
         }
         let bits = u64::from_le_bytes(word);
         Ok(match scalar {
-            Scalar::Float(4) => f64::from(f32::from_bits(bits as u32)),
-            Scalar::Float(_) => f64::from_bits(bits),
-            Scalar::Unsigned(_) => bits as f64,
-            Scalar::Signed(_) => {
+            PlyScalar::Float(4) => f64::from(f32::from_bits(bits as u32)),
+            PlyScalar::Float(_) => f64::from_bits(bits),
+            PlyScalar::Unsigned(_) => bits as f64,
+            PlyScalar::Signed(_) => {
                 let unused = 64 - 8 * size as u32;
                 ((bits << unused) as i64 >> unused) as f64
             }
@@ -340,7 +345,7 @@ impl Body<'_> {
     }
 
     /// The length of a list.
-    fn length(&mut self, scalar: Scalar, element: &str, k: usize) -> Result<usize, ReadError> {
+    fn length(&mut self, scalar: PlyScalar, element: &str, k: usize) -> Result<usize, ReadError> {
         let length = self.number(scalar, element, k)?;
         let most = self.rest.len();
         if length >= 0.0 && length <= most as f64 && length.fract() == 0.0 {
@@ -350,7 +355,7 @@ impl Body<'_> {
         }
     }
 
-    fn skip(&mut self, property: &Property, element: &str, k: usize) -> Result<(), ReadError> {
+    fn skip(&mut self, property: &PlyProperty, element: &str, k: usize) -> Result<(), ReadError> {
         let length = match property.length {
             None => 1,
             Some(scalar) => self.length(scalar, element, k)?,
@@ -363,8 +368,8 @@ impl Body<'_> {
 }
 
 fn vertices(
-    element: &Element,
-    data: &mut Body<'_>,
+    element: &PlyElement,
+    data: &mut PlyBody<'_>,
     mesh: &mut MeshInProgress,
 ) -> Result<(), ReadError> {
     let header = |expected: &str, found: &str| ReadError {
@@ -401,15 +406,15 @@ fn vertices(
 
 /// The corners of faces; they may come before the vertices.
 #[derive(Default)]
-struct Corners {
+struct PlyCorners {
     all: Vec<i64>,
     /// Of each face: where its corners end, and its place.
     faces: Vec<(usize, FilePosition)>,
     strips: bool,
 }
 
-impl Corners {
-    fn read(&mut self, element: &Element, data: &mut Body<'_>) -> Result<(), ReadError> {
+impl PlyCorners {
+    fn read(&mut self, element: &PlyElement, data: &mut PlyBody<'_>) -> Result<(), ReadError> {
         self.strips |= element.name == "tristrips";
         let lists = || element.properties.iter().enumerate().filter(|(_, p)| p.length.is_some());
         let named = lists().find(|(_, p)| matches!(&*p.name, "vertex_indices" | "vertex_index"));

@@ -63,7 +63,7 @@ class Tab:
     known: int
     """The version of the text that it has, once what waits is sent."""
     dropped: str = ""
-    """Why its connection was ended, which it is told when it is back."""
+    """Why its last connection was ended, if the server ended it."""
 
 
 @dataclass
