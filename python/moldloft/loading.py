@@ -14,7 +14,6 @@ from moldloft import _core
 from moldloft.arguments import explain
 from moldloft.errors import FileError, record_raised
 from moldloft.models import Model
-from moldloft.storage import utf8_path
 
 if TYPE_CHECKING:
     from moldloft.implicit import Field, Set
@@ -120,6 +119,8 @@ def load(
     ...     load(path)["P"].z
     3.0
     """
+    from moldloft.storage import utf8_path
+
     folders = [utf8_path(folder) for folder in library]
     place = Path(utf8_path(path))
     origin = Origin(
@@ -185,6 +186,8 @@ def loads(
     >>> m["P"].z, m.derivative("P.z", "a")
     (3.0, 0.25)
     """
+    from moldloft.storage import utf8_path
+
     folders = [utf8_path(folder) for folder in library]
     origin = Origin(name, None, _absolute(folders), dict(functions or {}), edited)
     model = Model(_core.Document.from_text(name, text, None, folders, edited), origin)

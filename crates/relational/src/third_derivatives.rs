@@ -81,46 +81,51 @@ pub fn tangent<T: Real, J: Jet<T>>(
 /// A derivative of less than this share of the next one is none: the curve stands still.
 const STILL: f64 = 1e-12;
 
+/// So near to an end at which the curve stands still its direction is a series: the tangent is mostly rounding there. What
+/// the series leaves out is the fourth power of this at a double end, the third at a triple one.
+const NEAR_END: f64 = 1e-3;
+
 /// A vector along the tangent, at t = 0 and 1 its limit from inside: where an end is double or triple, so that the curve
 /// stands still there, its direction is that of the first derivative that does not vanish. Zero where there is none.
 ///
-/// With C2 .. C5 the derivatives at t0, the first one is (t - t0) (C2 + C3 dt / 2 + C4 dt^2 / 6) at a double end, and
-/// (t - t0)^2 (C3 / 2 + C4 dt / 6 + C5 dt^2 / 24) at a triple one; the factor in brackets counts.
+/// With C2 .. C5 the derivatives at the end t0 and s = t - t0, the first derivative is s (C2 + C3 s / 2 + C4 s^2 / 6 + C5 s^3 /
+/// 24) at a double end and s^2 (C3 / 2 + C4 s / 6 + C5 s^2 / 24) at a triple one; the factor in brackets counts.
 pub fn direction<T: Real, J: Jet<T>>(
     jet: impl Fn(T, Order) -> CurveJet<T>,
     breaks: impl FnOnce() -> Vec<f64>,
     t: J,
 ) -> Vec3<J> {
-    let at = t.value();
-    let [_, d, dd] = jet(at, Order::Second);
-    let end = at.re() == 0.0 || at.re() == 1.0;
-    if !end || d.re().norm() > STILL * dd.re().norm() {
+    let at = t.re();
+    let end = if at < 0.5 { 0.0 } else { 1.0 };
+    if (at - end).abs() > NEAR_END {
+        return tangent(jet, breaks, t);
+    }
+    let [_, d, dd] = jet(T::from(end), Order::Second);
+    if d.re().norm() > STILL * dd.re().norm() {
         return tangent(jet, breaks, t);
     }
     let breaks = breaks();
+    if breaks.iter().any(|b| (b - end).abs() <= 2.0 * NEAR_END) && at != end {
+        return tangent(jet, || breaks, t);
+    }
     let third = |t: T| slope(|t| [jet(t, Order::Second)[2]], t, &breaks);
     let fourth = |t: T| slope(third, t, &breaks);
-    let [c3] = third(at);
-    let dt = t - J::fixed(at);
-    let sum = |parts: [(Vec3<T>, f64); 3]| {
+    let ([c3], [c4], [c5]) =
+        (third(T::from(end)), fourth(T::from(end)), slope(fourth, T::from(end), &breaks));
+    let s = t - J::from(end);
+    let series = |parts: [(Vec3<T>, f64); 4]| {
         let mut x = Vec3::zero();
-        for ((part, share), power) in parts.into_iter().zip([J::from(1.0), dt, dt * dt]) {
+        for ((part, share), power) in parts.into_iter().zip([J::from(1.0), s, s * s, s * s * s]) {
             x += part.map(|a| power.scaled(a * share));
         }
         x
     };
     if dd.re().norm() > STILL * c3.re().norm() {
         // Inside is before the far end.
-        let side = if at.re() == 0.0 { 1.0 } else { -1.0 };
-        let [c4] = if J::ORDER == Order::Second { fourth(at) } else { [Vec3::zero()] };
-        return sum([(dd, side), (c3, 0.5 * side), (c4, side / 6.0)]);
+        let side = if end == 0.0 { 1.0 } else { -1.0 };
+        return series([(dd, side), (c3, 0.5 * side), (c4, side / 6.0), (c5, side / 24.0)]);
     }
-    let [c4] = if J::ORDER == Order::Zero { [Vec3::zero()] } else { fourth(at) };
-    let [c5] = match J::ORDER {
-        Order::Second => slope(fourth, at, &breaks),
-        _ => [Vec3::zero()],
-    };
-    sum([(c3, 0.5), (c4, 1.0 / 6.0), (c5, 1.0 / 24.0)])
+    series([(c3, 0.5), (c4, 1.0 / 6.0), (c5, 1.0 / 24.0), (Vec3::zero(), 0.0)])
 }
 
 /// Each smooth stretch of a curve is looked at in so many parts for where it stands still.

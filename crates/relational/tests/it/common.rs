@@ -56,7 +56,9 @@ pub fn run<T: Scalar>(
         reader.expect(";");
         let (args, _) = bind_arguments(&row, given, |_| Class::Any)?;
         let value = T::call(&row, &args, &Context::default())?;
-        assert!(value.is_finite(), "{name} is not finite");
+        if !value.is_finite() {
+            return Err(CallError::new("not-finite", format!("{name} is not finite")));
+        }
         assert!(row.class.accepts(value.class()), "{} made {:?}", row.name, value.class());
         let value = value.named(Key(reader.scene.0.len() as u32));
         reader.scene.0.push(Object { name: name.to_string(), row, value });

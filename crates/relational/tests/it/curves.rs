@@ -333,6 +333,70 @@ fn a_snake_on_a_part_of_a_surface_knows_the_knots_of_the_whole() {
     }
 }
 
+/// The parallel of a Bézier curve whose last points are one, by the polynomial D of c'(t) = (1 - t)^m D(t).
+fn parallel_at_a_multiple_end(t: f64, degree: usize, distance: f64) -> Vec3 {
+    let p = [Vec3::of(0.0, 0.0, 0.0), Vec3::of(1.0, 2.0, 0.0), Vec3::of(4.0, 2.0, 0.0)];
+    let binomial = |k: usize| (0..k).fold(1.0, |b, j| b * (degree - j) as f64 / (j + 1) as f64);
+    let mut c = Vec3::zero();
+    for k in 0..=degree {
+        let share = t.powi(k as i32) * (1.0 - t).powi((degree - k) as i32);
+        c += p[k.min(2)] * (binomial(k) * share);
+    }
+    let along = (p[1] - p[0]) * (1.0 - t) + (p[2] - p[1]) * ((degree - 1) as f64 * t);
+    let sideways = along.cross(Vec3::of(0.0, 0.0, 1.0));
+    c + sideways * (distance / sideways.norm())
+}
+
+#[test]
+fn parallels_of_curves_with_multiple_ends_have_the_limit_there() {
+    for (degree, names) in
+        [(3, ["A, B, C, C", "C, C, B, A"]), (4, ["A, B, C, C, C", "C, C, C, B, A"])]
+    {
+        // To the outside of the bend, seen from both ends.
+        for (names, distance) in names.into_iter().zip([-0.25, 0.25]) {
+            let scene = scene(&format!(
+                "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(4, 2, 0);
+                 BCurve c({{{names}}}, {degree}); OffsetCurve o(c, {distance}, \"z=0\");"
+            ));
+            let forward = distance < 0.0;
+            let exact = |t: f64| {
+                parallel_at_a_multiple_end(if forward { t } else { 1.0 - t }, degree, -0.25)
+            };
+            for t in [0.0, 1e-9, 0.3, 0.8, 1.0 - 1e-9, 1.0] {
+                let jet = scene.curve("o").jet(t, Order::Second);
+                assert!(jet[0].distance(exact(t)) < 1e-12, "{names} {t}: {jet:?}");
+                let slope = moldloft_testing::ridders_vector(exact, t, 0.05);
+                assert!(jet[1].distance(slope) < 1e-6, "{names} {t}: {jet:?} {slope:?}");
+                let bend = |t: f64| moldloft_testing::ridders_vector(exact, t, 0.02);
+                let bend = moldloft_testing::ridders_vector(bend, t, 0.02);
+                assert!(
+                    jet[2].distance(bend) < 2e-4 * (1.0 + bend.norm()),
+                    "{names} {t}: {jet:?} {bend:?}"
+                );
+            }
+        }
+    }
+    // On a straight way every side does; inside of a bend the curvature has no bound.
+    let scene = scene(
+        "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(3, 0, 0); BCurve c({A, B, C, C}, 3);
+         OffsetCurve right(c, 0.25, \"z=0\"); OffsetCurve left(c, -0.25, \"z=0\"); BCurve d({A, A, A, C}, 3);
+         OffsetCurve up(d, 0.5, \"z=0\");",
+    );
+    near(at(scene.curve("right"), 1.0), 3.0, -0.25, 0.0, 1e-15);
+    near(at(scene.curve("left"), 1.0), 3.0, 0.25, 0.0, 1e-15);
+    near(at(scene.curve("up"), 0.0), 0.0, -0.5, 0.0, 1e-15);
+    const BENT: &str = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(4, 2, 0); ";
+    for (text, id) in [
+        ("BCurve c({A, B, C, C}, 3); OffsetCurve o(c, 0.25, \"z=0\");", "cusp"),
+        ("BCurve c({A, A, B, C}, 3); OffsetCurve o(c, 0.25, \"z=0\");", "cusp"),
+        ("BCurve c({A, B, A}); OffsetCurve o(c, 0.1, \"z=0\");", "no-tangent"),
+        ("BCurve c({A, B, A}); TanCurve o(c, 0.1);", "no-tangent"),
+        ("BCurve c({A, B, A}); ArcLenRelabel o(c);", "zero-slope"),
+    ] {
+        assert_eq!(fault(&format!("{BENT}{text}")).id, id, "{text}");
+    }
+}
+
 #[test]
 fn each_fault_of_the_new_kinds_has_its_id_and_its_place() {
     const BASE: &str = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(2, 0, 0);

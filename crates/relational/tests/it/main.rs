@@ -4,6 +4,8 @@ mod chebyshev;
 mod closed_forms;
 mod common;
 mod curves;
+mod degenerate;
+mod facts;
 mod inverse_relabel;
 mod laws;
 mod plates;
