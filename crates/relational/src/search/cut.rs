@@ -416,5 +416,5 @@ impl<T: Real> Curve<T> for Cut<T> {
         Some(self.place(t, order))
     }
 
-    moldloft_num::curve_facts!(broken, open, not_rational);
+    moldloft_num::curve_facts!(broken, not_rational);
 }

@@ -129,7 +129,7 @@ impl<T: Real> Curve<T> for InSpace<T> {
         self.0.trace()
     }
 
-    moldloft_num::curve_facts!(broken, open, not_rational);
+    moldloft_num::curve_facts!(broken, not_rational);
 }
 
 /// The cut of a surface, from the arguments of both kinds.
